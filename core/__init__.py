@@ -1,0 +1,1 @@
+"""From a surface to a force: tetrahedra, stiffness, compliance, contact. Knows no Blender."""

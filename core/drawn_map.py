@@ -1,0 +1,47 @@
+"""The map W from the body's free surface nodes to the vertices that are drawn."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+
+from .closest_point import ClosestPoints
+from .soft_body import SoftBody
+
+
+@dataclass(frozen=True, eq=False)
+class DrawnMap:
+    """Each drawn vertex hangs on its nearest surface triangle and moves as that place does.
+
+    Attributes
+    ----------
+    weights : W, sparse (p, n): area coordinates, without the pinned nodes, which do not move.
+    offset : float64 (p,), distance of each drawn vertex from the body's surface, metres.
+    """
+
+    weights: csr_array
+    offset: NDArray[np.float64]
+
+    @classmethod
+    def hang(cls, vertices: NDArray[np.float64], body: SoftBody) -> DrawnMap:
+        """Hang ``vertices`` (p, 3), metres in body coordinates, on the body's rest surface."""
+        triangles = body.mesh.surface_triangles
+        places = ClosestPoints(body.mesh.nodes, triangles).query(vertices)
+        free_surface = body.compliance.free_surface
+        corners = triangles[places.triangle]
+        column = np.minimum(np.searchsorted(free_surface, corners), len(free_surface) - 1)
+        moves = free_surface[column] == corners
+        row = np.broadcast_to(np.arange(len(corners))[:, None], corners.shape)
+        weights = csr_array(
+            (places.alpha[moves], (row[moves], column[moves])),
+            shape=(len(corners), len(free_surface)),
+        )
+        return cls(weights, places.distance)
+
+    def displacements(self, free_surface: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Displacements (p, 3) of the drawn vertices from those of the free surface nodes (n, 3)."""
+        moved: NDArray[np.float64] = self.weights @ free_surface
+        return moved
