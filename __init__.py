@@ -1,0 +1,1 @@
+"""Palpate: soft props that can be touched at 1 kHz."""

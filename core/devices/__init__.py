@@ -1,0 +1,1 @@
+"""Haptic devices: ports, the link's frames, and a simulated device."""
