@@ -1,0 +1,28 @@
+"""``palpate info``: what a body file holds."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import time
+from pathlib import Path
+
+from ..core import cache
+from .body_figures import as_lines, body_figures
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Describe the command."""
+    parser = subparsers.add_parser("info", help="check a body file and print its figures")
+    parser.add_argument("body", type=Path, metavar="BODY.npz")
+    parser.add_argument("--json", action="store_true", help="print figures as JSON")
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Load, check and describe."""
+    start = time.perf_counter()
+    body = cache.load(arguments.body)
+    figures = {**body_figures(body), "seconds": {"load": time.perf_counter() - start}}
+    print(json.dumps(figures) if arguments.json else as_lines(figures))
+    return 0

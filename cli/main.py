@@ -1,0 +1,56 @@
+"""Entry point of the command line ``palpate``."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from typing import NoReturn
+
+from ..core.errors import PalpateError
+from . import bake, devices, info, press, servo
+
+COMMANDS = (bake, info, press, servo, devices)
+EXIT_ERROR = 2
+
+
+class _OneLineParser(argparse.ArgumentParser):
+    """A parser whose errors are one line, like all others of this program."""
+
+    def error(self, message: str) -> NoReturn:
+        """Print the message and end with the status of an error."""
+        self.exit(EXIT_ERROR, f"palpate: {message}; see '{self.prog} --help'\n")
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command; 0 when it did what was asked, 2 with one line on standard error if not."""
+    parser = _OneLineParser(
+        prog="palpate", description="Make props soft, press them, and read the force."
+    )
+    subparsers = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
+    for command in COMMANDS:
+        command.add_parser(subparsers)
+    given = sys.argv[1:] if arguments is None else arguments
+    parsed = parser.parse_args([_shielded(word) for word in given])
+    try:
+        status: int = parsed.run(parsed)
+    except PalpateError as problem:
+        print(f"palpate: {problem}", file=sys.stderr)
+        return EXIT_ERROR
+    except KeyboardInterrupt:
+        print("palpate: stopped", file=sys.stderr)
+        return 130
+    return status
+
+
+def _shielded(word: str) -> str:
+    """Keep argparse from taking a number such as -5e-3 for an option: a blank in front helps."""
+    try:
+        float(word)
+    except ValueError:
+        return word
+    return f" {word}" if word.startswith("-") else word
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,162 @@
+"""The bake, step by step: surface -> tetrahedra -> stiffness -> compliance -> body."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass, field
+
+import numpy as np
+
+from .compliance import surface_compliance
+from .decimate import decimate
+from .errors import PalpateError
+from .pins import PinBelow, Pins, pinned_nodes
+from .soft_body import SoftBody
+from .stiffness import assemble, lame_parameters
+from .surface import Surface
+from .tet_mesh import TetMesh
+from .tetrahedralize import Fit, check_fit, tetrahedralize
+
+# (step, share of the whole bake done or None where nobody can know)
+BakeProgress = Callable[[str, float | None], None]
+
+# Beyond these the drawn shape and the body visibly part ways, and the maker should know.
+NOTABLE_DISTANCE = 0.02
+NOTABLE_VOLUME_ERROR = 0.1
+
+
+@dataclass(frozen=True)
+class BakeSettings:
+    """What a bake depends on besides the shape.
+
+    Attributes
+    ----------
+    poisson_ratio, young_modulus : material; the modulus (pascal) is only stored, never baked in.
+    pins : which nodes are held.
+    edge_length : wanted edge length of tetrahedra, as a share of the bounding box diagonal.
+    epsilon : how far the body's surface may lie from the input's, as such a share.
+    decimate_above : inputs of more triangles are reduced to this many first.
+    time_limit : seconds after which tetrahedralization is given up.
+    """
+
+    poisson_ratio: float = 0.3
+    young_modulus: float = 10_000.0
+    pins: Pins = field(default_factory=lambda: PinBelow(0.1))
+    edge_length: float = 0.05
+    epsilon: float = 0.003
+    decimate_above: int = 6000
+    time_limit: float = 600.0
+
+    def checked(self) -> BakeSettings:
+        """These settings, if they can be used.
+
+        Raises
+        ------
+        PalpateError
+            A value outside its range; names it.
+        """
+        lame_parameters(self.young_modulus, self.poisson_ratio)
+        for name, low, high in (
+            ("edge_length", 0.002, 0.5),
+            ("epsilon", 1e-5, 0.1),
+            ("decimate_above", 100, 10_000_000),
+            ("time_limit", 1.0, 1e6),
+        ):
+            value = getattr(self, name)
+            if not low <= value <= high:
+                raise PalpateError(
+                    f"bake: {name.replace('_', ' ')} is {value}, but must lie between {low:g} and "
+                    f"{high:g}"
+                )
+        return self
+
+
+@dataclass(frozen=True)
+class BakeReport:
+    """What a bake did: seconds of each step, the fit to the input, and what to tell the maker."""
+
+    seconds: dict[str, float]
+    fit: Fit | None
+    warnings: list[str]
+
+    def as_dict(self) -> dict[str, object]:
+        """The report as plain values for JSON."""
+        return asdict(self)
+
+
+def bake(
+    source: Surface | TetMesh,
+    settings: BakeSettings,
+    progress: BakeProgress = lambda step, share: None,
+    surface: Surface | None = None,
+) -> tuple[SoftBody, BakeReport]:
+    """Make a body, in this process.
+
+    Tetrahedralization cannot be interrupted here; programs with a person in front use
+    :class:`palpate.core.bake_job.BakeJob`, which runs this function in a child process.
+
+    Parameters
+    ----------
+    source : a surface, or tetrahedra that exist already.
+    settings : see :class:`BakeSettings`.
+    progress : told the step and the share of the whole that is done.
+    surface : for tetrahedra with painted pins, the surface the weights were painted on.
+
+    Raises
+    ------
+    PalpateError
+        Anything that keeps the mesh from becoming a body, with the remedy.
+    """
+    settings.checked()
+    seconds: dict[str, float] = {}
+    fit: Fit | None = None
+    if isinstance(source, Surface):
+        with _timed(seconds, "tetrahedralize"):
+            progress("tetrahedralize", None)
+            shell = decimate(source.welded(), settings.decimate_above)
+            mesh = tetrahedralize(shell, settings.edge_length, settings.epsilon)
+        with _timed(seconds, "check"):
+            progress("check", 0.5)
+            fit = check_fit(mesh, source)
+        surface = source
+    else:
+        mesh = source
+    fixed = pinned_nodes(settings.pins, mesh, surface)
+    with _timed(seconds, "stiffness"):
+        progress("stiffness", 0.55)
+        stiffness = assemble(mesh, settings.poisson_ratio)
+    with _timed(seconds, "compliance"):
+        compliance = surface_compliance(
+            mesh, stiffness, fixed, lambda share: progress("compliance", 0.6 + 0.4 * share)
+        )
+    body = SoftBody(
+        mesh, np.unique(fixed), settings.poisson_ratio, compliance, settings.young_modulus
+    )
+    diagonal = float(np.linalg.norm(np.ptp(mesh.nodes, axis=0)))
+    return body, BakeReport(seconds, fit, _warnings(fit, diagonal))
+
+
+def _warnings(fit: Fit | None, diagonal: float) -> list[str]:
+    if fit is None:
+        return []
+    found = []
+    if abs(fit.volume_ratio - 1) > NOTABLE_VOLUME_ERROR:
+        found.append(
+            f"the body has {100 * fit.volume_ratio:.0f} % of the volume that the mesh encloses; "
+            "a smaller edge length or epsilon follows it more closely"
+        )
+    if fit.input_to_body > NOTABLE_DISTANCE * diagonal:
+        found.append(
+            f"parts of the mesh lie up to {1000 * fit.input_to_body:.2g} mm from the body, being "
+            "open or too thin; they follow its nearest place"
+        )
+    return found
+
+
+@contextmanager
+def _timed(seconds: dict[str, float], step: str) -> Iterator[None]:
+    start = time.perf_counter()
+    yield
+    seconds[step] = time.perf_counter() - start

@@ -1,0 +1,87 @@
+"""Run one bake in a process of its own, so that it can be stopped at any moment.
+
+Started by file path: ``python bake_child.py FOLDER``. Inside Blender a child cannot import the
+extension by its name, so this script loads the package from where it lies itself.
+"""
+
+import ctypes
+import faulthandler
+import importlib.util
+import json
+import os
+import signal
+import sys
+import traceback
+from pathlib import Path
+
+PROGRESS_FILE = "progress.jsonl"
+BODY_FILE = "body.npz"
+OUTCOME_FILE = "outcome.json"
+LINUX_PR_SET_PDEATHSIG = 1
+
+
+def die_with_parent(longest_seconds: float) -> None:
+    """Leave no orphan: on Linux the kernel ends us with the parent, elsewhere a timer does."""
+    faulthandler.dump_traceback_later(longest_seconds, exit=True)
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(LINUX_PR_SET_PDEATHSIG, signal.SIGKILL)
+
+
+def load_package(root: Path) -> None:
+    """Make the package at ``root`` importable as ``palpate``."""
+    spec = importlib.util.spec_from_file_location(
+        "palpate", root / "__init__.py", submodule_search_locations=[str(root)]
+    )
+    if spec is None or spec.loader is None:
+        raise ImportError(f"no package at {root}")
+    package = importlib.util.module_from_spec(spec)
+    sys.modules["palpate"] = package
+    spec.loader.exec_module(package)
+
+
+def run(folder: Path) -> dict[str, object]:
+    """Bake what the folder asks for; the outcome says how it went."""
+    from palpate.core import cache
+    from palpate.core.bake import bake
+    from palpate.core.bake_request import BakeRequest
+    from palpate.core.errors import PalpateError
+
+    request = BakeRequest.read(folder)
+    with open(folder / PROGRESS_FILE, "a", encoding="utf-8", buffering=1) as lines:
+        try:
+            body, report = bake(
+                request.source,
+                request.settings,
+                lambda step, share: print(json.dumps([step, share]), file=lines),
+                request.surface,
+            )
+            cache.save(body, folder / BODY_FILE)
+        except PalpateError as problem:
+            return {"error": str(problem)}
+    return {"report": report.as_dict()}
+
+
+def main() -> int:
+    """Entry point; the only argument is the folder."""
+    folder = Path(sys.argv[1])
+    context = json.loads((folder / "context.json").read_text(encoding="utf-8"))
+    die_with_parent(context["longest_seconds"])
+    # fTetWild drops files where it stands.
+    os.chdir(folder)
+    sys.path[:] = context["path"]
+    load_package(Path(context["root"]))
+    try:
+        outcome = run(folder)
+    except MemoryError:
+        outcome = {
+            "error": "bake: the memory does not suffice for this many surface nodes; use a larger "
+            "edge length"
+        }
+    except Exception:
+        outcome = {"crash": traceback.format_exc()}
+    (folder / OUTCOME_FILE).write_text(json.dumps(outcome), encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

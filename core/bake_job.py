@@ -1,0 +1,210 @@
+"""A bake that runs beside the caller: started, polled, cancelled; leaves nothing when cancelled."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+
+from . import cache
+from .bake import BakeReport, BakeSettings
+from .bake_child import BODY_FILE, OUTCOME_FILE, PROGRESS_FILE
+from .bake_request import BakeRequest
+from .errors import PalpateError
+from .ftetwild_log import stage
+from .soft_body import SoftBody
+from .surface import Surface
+from .tet_mesh import TetMesh
+from .tetrahedralize import Fit
+
+PACKAGE_ROOT = Path(__file__).resolve().parents[1]
+LOG_FILE = "log.txt"
+STEP_TEXTS = {
+    "start": "Starting",
+    "tetrahedralize": "Filling with tetrahedra",
+    "check": "Comparing with the mesh",
+    "stiffness": "Assembling the stiffness",
+    "compliance": "Inverting the stiffness",
+}
+
+
+@dataclass(frozen=True)
+class JobProgress:
+    """Where a job stands: ``share`` of the whole is None while nobody can know it."""
+
+    step: str
+    text: str
+    share: float | None
+    seconds: float
+
+
+class BakeJob:
+    """One bake in a child process and a temporary folder, both gone when the job is closed.
+
+    Parameters
+    ----------
+    source, settings, surface : as for :func:`palpate.core.bake.bake`.
+    python : how to start Python, for example ``(sys.executable, *bpy.app.python_args)``.
+
+    Raises
+    ------
+    PalpateError
+        Settings outside their range; Python cannot be started.
+    """
+
+    def __init__(
+        self,
+        source: Surface | TetMesh,
+        settings: BakeSettings,
+        surface: Surface | None = None,
+        python: Sequence[str] = (sys.executable,),
+    ) -> None:
+        settings.checked()
+        self._time_limit = settings.time_limit
+        self._started = time.monotonic()
+        self._folder = Path(tempfile.mkdtemp(prefix="palpate-bake-"))
+        try:
+            BakeRequest(source, settings, surface).write(self._folder)
+            self._child = self._start(python)
+        except BaseException:
+            shutil.rmtree(self._folder)
+            raise
+
+    def poll(self) -> JobProgress:
+        """Where the bake stands now.
+
+        Raises
+        ------
+        PalpateError
+            Tetrahedralization took longer than its time limit; the job is closed.
+        """
+        seconds = time.monotonic() - self._started
+        step, share = self._newest_progress()
+        text = STEP_TEXTS[step]
+        if step == "tetrahedralize":
+            if seconds > self._time_limit and not self.finished:
+                self.close()
+                raise PalpateError(
+                    f"tetrahedralization: not done within {self._time_limit:g} s; use a larger edge "
+                    "length or epsilon, decimate the mesh first, or allow more time"
+                )
+            text = f"{text}: {stage(self._log())}"
+        return JobProgress(step, text, share, seconds)
+
+    @property
+    def finished(self) -> bool:
+        """Whether the child has ended, well or not."""
+        return self._child.poll() is not None
+
+    def result(self, target: Path) -> tuple[SoftBody, BakeReport]:
+        """The body and what to know about its bake; its file is put at ``target`` in one step.
+
+        Waits until the job has finished and closes it.
+
+        Raises
+        ------
+        PalpateError
+            Whatever kept the bake from succeeding. No file is left then.
+        """
+        try:
+            self._child.wait()
+            report = self._report()
+            body = cache.load(self._folder / BODY_FILE)
+            cache.adopt(self._folder / BODY_FILE, target)
+        finally:
+            self.close()
+        return body, report
+
+    def close(self) -> None:
+        """Stop the child if it still runs and remove the temporary folder. Safe to repeat."""
+        if self._child.poll() is None:
+            self._child.kill()
+        self._child.wait()
+        if self._folder.exists():
+            shutil.rmtree(self._folder)
+
+    def __enter__(self) -> BakeJob:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        problem: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def _start(self, python: Sequence[str]) -> subprocess.Popen[bytes]:
+        context = {
+            "path": sys.path,
+            "root": str(PACKAGE_ROOT),
+            # Twice the limit and an hour: only for a parent that died where the kernel does not tell.
+            "longest_seconds": 2 * self._time_limit + 3600,
+        }
+        (self._folder / "context.json").write_text(json.dumps(context), encoding="utf-8")
+        command = [*python, str(Path(__file__).with_name("bake_child.py")), str(self._folder)]
+        try:
+            with open(self._folder / LOG_FILE, "wb") as log:
+                return subprocess.Popen(
+                    command, stdin=subprocess.DEVNULL, stdout=log, stderr=subprocess.STDOUT
+                )
+        except OSError as problem:
+            raise PalpateError(
+                f"bake: {command[0]} cannot be started ({problem}); reinstall Blender or Python"
+            ) from problem
+
+    def _newest_progress(self) -> tuple[str, float | None]:
+        file = self._folder / PROGRESS_FILE
+        whole_lines = file.read_text(encoding="utf-8").split("\n")[:-1] if file.exists() else []
+        if not whole_lines:
+            return "start", None
+        step, share = json.loads(whole_lines[-1])
+        return step, share
+
+    def _log(self) -> str:
+        file = self._folder / LOG_FILE
+        return file.read_text(encoding="utf-8", errors="replace") if file.exists() else ""
+
+    def _report(self) -> BakeReport:
+        file = self._folder / OUTCOME_FILE
+        if not file.exists():
+            last = " | ".join(self._log().strip().splitlines()[-3:])
+            raise PalpateError(
+                f"bake: the process ended unexpectedly (exit status {self._child.returncode}"
+                f"{', last words: ' + last if last else ''}); use a larger edge length or epsilon, "
+                "or clean the mesh (merge by distance, recalculate normals)"
+            )
+        outcome = json.loads(file.read_text(encoding="utf-8"))
+        if "error" in outcome:
+            raise PalpateError(outcome["error"])
+        if "crash" in outcome:
+            raise RuntimeError(f"the bake process failed:\n{outcome['crash']}")
+        report = outcome["report"]
+        fit = Fit(**report["fit"]) if report["fit"] else None
+        return BakeReport(report["seconds"], fit, report["warnings"])
+
+
+def run_bake(
+    source: Surface | TetMesh,
+    settings: BakeSettings,
+    target: Path,
+    on_progress: Callable[[JobProgress], None] = lambda progress: None,
+    surface: Surface | None = None,
+    python: Sequence[str] = (sys.executable,),
+) -> tuple[SoftBody, BakeReport]:
+    """Bake in a child process and wait; parameters and errors as for :class:`BakeJob`.
+
+    An exception out of ``on_progress``, KeyboardInterrupt included, stops the child.
+    """
+    with BakeJob(source, settings, surface, python) as job:
+        while not job.finished:
+            on_progress(job.poll())
+            time.sleep(0.05)
+        return job.result(target)

@@ -1,0 +1,30 @@
+"""What fTetWild's log tells about how far it is."""
+
+from __future__ import annotations
+
+import re
+
+# Words of its log, in the order they come, and what they mean to a person.
+STAGES = (
+    ("Starting tetrahedralization", "reading the mesh"),
+    ("collapsing", "simplifying the surface"),
+    ("triangle insertion start", "inserting the surface"),
+    ("initializing...", "improving tetrahedra"),
+    ("postprocessing", "finishing"),
+)
+
+
+def stage(log: str) -> str:
+    """The latest stage named in ``log``, with the pass and worst energy while it improves.
+
+    fTetWild stops once the worst energy has fallen to 10, which is the only progress it shows.
+    """
+    reached = "reading the mesh"
+    for words, meaning in STAGES:
+        if words in log:
+            reached = meaning
+    passes = re.findall(r"/ pass (\d+) /", log)
+    energies = re.findall(r"max_energy = ([0-9.e+]+)", log)
+    if reached == "improving tetrahedra" and passes and energies:
+        return f"{reached}, pass {int(passes[-1]) + 1}, worst energy {float(energies[-1]):.0f} (goal 10)"
+    return reached

@@ -1,0 +1,88 @@
+"""What is pinned: rules that a person states, turned into node numbers of the body."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .closest_point import ClosestPoints
+from .errors import PalpateError
+from .surface import Surface
+from .tet_mesh import TetMesh
+
+
+@dataclass(frozen=True)
+class PinBelow:
+    """Pin the surface within the lowest ``fraction`` of the body's height along ``axis``."""
+
+    fraction: float
+    axis: int = 2
+
+
+@dataclass(frozen=True, eq=False)
+class PinWeights:
+    """Pin where weights (V,) painted on the input surface's vertices reach one half."""
+
+    weights: NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class PinNodes:
+    """Pin these nodes, int64 (p,), of a tetrahedral mesh that is given."""
+
+    nodes: NDArray[np.int64]
+
+
+Pins = PinBelow | PinWeights | PinNodes
+
+
+def pinned_nodes(pins: Pins, mesh: TetMesh, surface: Surface | None) -> NDArray[np.int64]:
+    """Numbers of the pinned nodes, ascending.
+
+    ``surface`` is the input surface that :class:`PinWeights` refer to, None for a body given as
+    tetrahedra.
+
+    Raises
+    ------
+    PalpateError
+        A fraction outside 0 to 1, weights without a surface or not one per vertex, or a rule that
+        pins nothing.
+    """
+    if isinstance(pins, PinNodes):
+        return np.unique(pins.nodes)
+    if isinstance(pins, PinBelow):
+        return _below(pins, mesh)
+    return _weighted(pins, mesh, surface)
+
+
+def _below(pins: PinBelow, mesh: TetMesh) -> NDArray[np.int64]:
+    if not 0 <= pins.fraction <= 1:
+        raise PalpateError(
+            f"pins: the fraction is {pins.fraction}, but must lie between 0 (only the very bottom) "
+            "and 1 (everything)"
+        )
+    height = mesh.nodes[mesh.surface_nodes, pins.axis]
+    # The last term keeps exactly level bottoms whole despite rounding.
+    limit = height.min() + (pins.fraction + 1e-9) * np.ptp(height)
+    return mesh.surface_nodes[height <= limit]
+
+
+def _weighted(pins: PinWeights, mesh: TetMesh, surface: Surface | None) -> NDArray[np.int64]:
+    if surface is None or len(pins.weights) != len(surface.vertices):
+        raise PalpateError(
+            "pins: painted weights need the surface they were painted on, one weight per vertex"
+        )
+    places = ClosestPoints(surface.vertices, surface.triangles).query(
+        mesh.nodes[mesh.surface_nodes]
+    )
+    corner_weights = pins.weights[surface.triangles[places.triangle]]
+    weight = np.einsum("pc,pc->p", places.alpha, corner_weights)
+    pinned = mesh.surface_nodes[weight >= 0.5]
+    if not pinned.size:
+        raise PalpateError(
+            "pins: no node of the body lies where the pin group reaches a weight of 0.5; assign "
+            "more vertices to it, or use a smaller edge length"
+        )
+    return pinned

@@ -1,0 +1,53 @@
+"""How much a surface encloses, also when it is open or overlaps itself."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .surface import Surface
+
+# 2000 points estimate a volume to about two percent of the box: enough to notice a wrong body.
+SAMPLES = 2000
+PAIRS_PER_PASS = 2_000_000
+
+
+def enclosed_volume(surface: Surface) -> float:
+    """Volume in cubic metres where the generalized winding number exceeds one half.
+
+    Estimated from scattered points with a fixed seed, so that the same surface always gives the
+    same figure. Winding numbers of triangle soups: Jacobson, Kavan, Sorkine-Hornung 2013; here
+    either orientation counts, as an artist's normals may all point inward.
+    """
+    used = surface.vertices[np.unique(surface.triangles)]
+    low, size = used.min(axis=0), np.ptp(used, axis=0)
+    points = low + np.random.default_rng(1999).random((SAMPLES, 3)) * size
+    inside = np.abs(winding_numbers(points, surface)) > 0.5
+    return float(inside.mean() * size.prod())
+
+
+def winding_numbers(points: NDArray[np.float64], surface: Surface) -> NDArray[np.float64]:
+    """Generalized winding number of the surface around each of ``points`` (p, 3)."""
+    corners = surface.vertices[surface.triangles]
+    step = max(1, PAIRS_PER_PASS // len(corners))
+    total = np.empty(len(points))
+    for start in range(0, len(points), step):
+        total[start : start + step] = _solid_angles(points[start : start + step], corners)
+    return total / (4 * np.pi)
+
+
+def _solid_angles(
+    points: NDArray[np.float64], corners: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Sum of the signed solid angles of all triangles seen from each point (van Oosterom 1983)."""
+    a, b, c = (corners[None, :, corner] - points[:, None] for corner in range(3))
+    la, lb, lc = (np.linalg.norm(side, axis=2) for side in (a, b, c))
+    above = np.einsum("ptx,ptx->pt", a, np.cross(b, c))
+    below = (
+        la * lb * lc
+        + np.einsum("ptx,ptx->pt", a, b) * lc
+        + np.einsum("ptx,ptx->pt", b, c) * la
+        + np.einsum("ptx,ptx->pt", c, a) * lb
+    )
+    angles: NDArray[np.float64] = 2.0 * np.arctan2(above, below).sum(axis=1)
+    return angles
