@@ -1,0 +1,122 @@
+"""Make the extension's package for one platform: the files Blender needs, with all wheels inside.
+
+The real-time thread `palpate_servo` is compiled, so its wheel must be handed in; a package without
+it would install and then not press, and is therefore refused:
+
+    python release/build_extension.py --platform linux-x64 \
+        --servo-wheel build/servo/palpate_servo-0.1.0-cp311-abi3-linux_x86_64.whl \
+        --blender .venv-bpy-5.2.3 --output build/packages
+
+Needs nothing but Python's standard library, pip, and a Blender (or bpy) for its extension tool.
+"""
+
+from __future__ import annotations
+
+import argparse
+import shutil
+import sys
+import tomllib
+from pathlib import Path
+
+import blender_tool
+import bundled_wheels
+from bundled_wheels import PackagingError
+from extension_files import extension_files
+from package_check import faults, runs_on
+from package_manifest import package_manifest
+from platforms import PLATFORMS, Platform, this_platform
+
+REPOSITORY = Path(__file__).resolve().parent.parent
+# Blender 4.5 LTS and 5.0, then 5.2 LTS.
+OFFICIAL_PYTHONS = ["3.11", "3.13"]
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Make one package and print its path; return 2 with one message when it cannot be whole."""
+    options = _options(arguments)
+    platform = PLATFORMS[options.platform]
+    try:
+        servo = _servo_wheel(options.servo_wheel, platform, options.python)
+        wheels = {
+            path.name: path
+            for version in options.python
+            for path in bundled_wheels.fetch(platform, version, options.wheel_cache / platform.name)
+        }
+        package = _package(platform, [*wheels.values(), servo], options)
+    except PackagingError as error:
+        print(f"build_extension: {error}", file=sys.stderr)
+        return 2
+    print(f"{package} ({package.stat().st_size / 1e6:.1f} MB, Python {', '.join(options.python)})")
+    return 0
+
+
+def _options(arguments: list[str] | None) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
+    parser.add_argument("--platform", choices=sorted(PLATFORMS), default=this_platform())
+    parser.add_argument("--servo-wheel", type=Path, help="palpate_servo, built for that platform")
+    parser.add_argument(
+        "--blender", type=Path, required=True, help="a folder that holds a Blender or bpy module"
+    )
+    parser.add_argument("--output", type=Path, default=REPOSITORY / "build" / "packages")
+    parser.add_argument("--wheel-cache", type=Path, default=REPOSITORY / "build" / "wheels")
+    parser.add_argument(
+        "--python",
+        nargs="+",
+        default=OFFICIAL_PYTHONS,
+        metavar="X.Y",
+        help="Python versions to bundle wheels for (default: those of the official Blenders)",
+    )
+    parser.add_argument("--name", help="the package's file name (default: id-version-platform.zip)")
+    return parser.parse_args(arguments)
+
+
+def _servo_wheel(path: Path | None, platform: Platform, python_versions: list[str]) -> Path:
+    if path is None:
+        message = (
+            f"no palpate_servo wheel for {platform.name} was given (--servo-wheel), and without it "
+            "the extension cannot press: build it on that platform with maturin, or let the "
+            "workflow in .github/workflows do it"
+        )
+        raise PackagingError(message)
+    if not path.is_file():
+        message = f"{path} does not exist: build it with `maturin build --release`"
+        raise PackagingError(message)
+    unfit = [version for version in python_versions if not runs_on(path.name, version)]
+    if not path.name.startswith("palpate_servo-") or not platform.runs(path.name) or unfit:
+        message = f"{path.name} is not a palpate_servo wheel for {platform.name}"
+        raise PackagingError(message)
+    return path
+
+
+def _package(platform: Platform, wheels: list[Path], options: argparse.Namespace) -> Path:
+    """Stage the files, let Blender's tool pack and validate them, and read the result back."""
+    source = (REPOSITORY / "blender_manifest.toml").read_text(encoding="utf-8")
+    identity = tomllib.loads(source)
+    name = options.name or (
+        f"{identity['id']}-{identity['version']}-{platform.name.replace('-', '_')}.zip"
+    )
+    package: Path = options.output / name
+    stage: Path = options.output / "stage" / package.stem
+    shutil.rmtree(stage, ignore_errors=True)
+    for relative in extension_files(REPOSITORY):
+        (stage / relative).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(REPOSITORY / relative, stage / relative)
+    (stage / "wheels").mkdir()
+    for wheel in wheels:
+        shutil.copyfile(wheel, stage / "wheels" / wheel.name)
+    manifest = package_manifest(source, platform.name, [wheel.name for wheel in wheels])
+    (stage / "blender_manifest.toml").write_text(manifest, encoding="utf-8")
+
+    tool = blender_tool.find_tool(options.blender)
+    blender_tool.build(tool, stage, package)
+    shutil.rmtree(stage)
+    blender_tool.validate(tool, package)
+    wrong = faults(package, platform, options.python)
+    if wrong:
+        package.unlink()
+        raise PackagingError("the package is not whole: " + "; ".join(wrong))
+    return package
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
