@@ -67,7 +67,11 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help="Poisson's ratio (default %(default)g)",
     )
     parser.add_argument(
-        "--metres-per-unit", type=float, default=1.0, metavar="S", help="unit of the file (default 1)"
+        "--metres-per-unit",
+        type=float,
+        default=1.0,
+        metavar="S",
+        help="unit of the file (default 1)",
     )
     parser.add_argument(
         "--time-limit",

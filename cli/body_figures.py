@@ -34,4 +34,6 @@ def body_figures(body: SoftBody) -> dict[str, object]:
 def as_lines(figures: dict[str, object]) -> str:
     """Figures for reading, one a line."""
     width = max(map(len, figures))
-    return "\n".join(f"{name.replace('_', ' '):{width}}  {value}" for name, value in figures.items())
+    return "\n".join(
+        f"{name.replace('_', ' '):{width}}  {value}" for name, value in figures.items()
+    )

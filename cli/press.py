@@ -18,18 +18,31 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Describe the command."""
     parser = subparsers.add_parser("press", help="press a body once and read the force")
     parser.add_argument("body", type=Path, metavar="BODY.npz")
-    for name, what in (("at", "the surface point nearest to this is touched"),
-                       ("by", "the finger's displacement from there")):
+    for name, what in (
+        ("at", "the surface point nearest to this is touched"),
+        ("by", "the finger's displacement from there"),
+    ):
         parser.add_argument(
-            f"--{name}", type=float, nargs=3, required=True, metavar=("X", "Y", "Z"),
+            f"--{name}",
+            type=float,
+            nargs=3,
+            required=True,
+            metavar=("X", "Y", "Z"),
             help=f"{what} (metres, body coordinates)",
         )
     parser.add_argument("--young", type=float, metavar="PA", help="default: the body's own")
     parser.add_argument(
-        "--mode", choices=["paper"], default="paper", help="contact inside triangles (default paper)"
+        "--mode",
+        choices=["paper"],
+        default="paper",
+        help="contact inside triangles (default paper)",
     )
-    parser.add_argument("--displacements", type=Path, metavar="OUT.npy",
-                        help="write displacements of the free surface nodes, float64 (n, 3)")
+    parser.add_argument(
+        "--displacements",
+        type=Path,
+        metavar="OUT.npy",
+        help="write displacements of the free surface nodes, float64 (n, 3)",
+    )
     parser.add_argument("--json", action="store_true", help="print figures as JSON")
     parser.set_defaults(run=run)
 
@@ -60,7 +73,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _write(target: Path, displacements: np.ndarray) -> None:
     try:
-        with open(target, "wb") as file:
+        with target.open("wb") as file:
             np.save(file, displacements)
     except OSError as problem:
         raise PalpateError(

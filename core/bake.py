@@ -13,6 +13,7 @@ from .compliance import surface_compliance
 from .decimate import decimate
 from .errors import PalpateError
 from .pins import PinBelow, Pins, pinned_nodes
+from .progress import unwatched
 from .soft_body import SoftBody
 from .stiffness import assemble, lame_parameters
 from .surface import Surface
@@ -89,7 +90,7 @@ class BakeReport:
 def bake(
     source: Surface | TetMesh,
     settings: BakeSettings,
-    progress: BakeProgress = lambda step, share: None,
+    progress: BakeProgress = unwatched,
     surface: Surface | None = None,
 ) -> tuple[SoftBody, BakeReport]:
     """Make a body, in this process.
@@ -119,7 +120,7 @@ def bake(
             mesh = tetrahedralize(shell, settings.edge_length, settings.epsilon)
         with _timed(seconds, "check"):
             progress("check", 0.5)
-            fit = check_fit(mesh, source)
+            fit = check_fit(mesh, source, shell)
         surface = source
     else:
         mesh = source

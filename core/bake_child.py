@@ -47,7 +47,7 @@ def run(folder: Path) -> dict[str, object]:
     from palpate.core.errors import PalpateError
 
     request = BakeRequest.read(folder)
-    with open(folder / PROGRESS_FILE, "a", encoding="utf-8", buffering=1) as lines:
+    with (folder / PROGRESS_FILE).open("a", encoding="utf-8", buffering=1) as lines:
         try:
             body, report = bake(
                 request.source,
@@ -77,7 +77,7 @@ def main() -> int:
             "error": "bake: the memory does not suffice for this many surface nodes; use a larger "
             "edge length"
         }
-    except Exception:
+    except Exception:  # noqa: BLE001  the parent raises it again, with this traceback
         outcome = {"crash": traceback.format_exc()}
     (folder / OUTCOME_FILE).write_text(json.dumps(outcome), encoding="utf-8")
     return 0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
 import subprocess
 import sys
@@ -12,6 +13,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
+from typing import Self
 
 from . import cache
 from .bake import BakeReport, BakeSettings
@@ -19,12 +21,15 @@ from .bake_child import BODY_FILE, OUTCOME_FILE, PROGRESS_FILE
 from .bake_request import BakeRequest
 from .errors import PalpateError
 from .ftetwild_log import stage
+from .progress import unwatched
 from .soft_body import SoftBody
 from .surface import Surface
 from .tet_mesh import TetMesh
 from .tetrahedralize import Fit
 
 PACKAGE_ROOT = Path(__file__).resolve().parents[1]
+# Sparse solves call BLAS with small blocks; more threads only fight for the cores.
+ONE_BLAS_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 LOG_FILE = "log.txt"
 STEP_TEXTS = {
     "start": "Starting",
@@ -130,7 +135,7 @@ class BakeJob:
         if self._folder.exists():
             shutil.rmtree(self._folder)
 
-    def __enter__(self) -> BakeJob:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(
@@ -145,15 +150,19 @@ class BakeJob:
         context = {
             "path": sys.path,
             "root": str(PACKAGE_ROOT),
-            # Twice the limit and an hour: only for a parent that died where the kernel does not tell.
+            # For a parent that died where the kernel does not tell: twice the limit and an hour.
             "longest_seconds": 2 * self._time_limit + 3600,
         }
         (self._folder / "context.json").write_text(json.dumps(context), encoding="utf-8")
         command = [*python, str(Path(__file__).with_name("bake_child.py")), str(self._folder)]
         try:
-            with open(self._folder / LOG_FILE, "wb") as log:
-                return subprocess.Popen(
-                    command, stdin=subprocess.DEVNULL, stdout=log, stderr=subprocess.STDOUT
+            with (self._folder / LOG_FILE).open("wb") as log:
+                return subprocess.Popen(  # noqa: S603  our own script, by path
+                    command,
+                    stdin=subprocess.DEVNULL,
+                    stdout=log,
+                    stderr=subprocess.STDOUT,
+                    env=os.environ | ONE_BLAS_THREAD,
                 )
         except OSError as problem:
             raise PalpateError(
@@ -195,7 +204,7 @@ def run_bake(
     source: Surface | TetMesh,
     settings: BakeSettings,
     target: Path,
-    on_progress: Callable[[JobProgress], None] = lambda progress: None,
+    on_progress: Callable[[JobProgress], None] = unwatched,
     surface: Surface | None = None,
     python: Sequence[str] = (sys.executable,),
 ) -> tuple[SoftBody, BakeReport]:

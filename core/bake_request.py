@@ -64,9 +64,7 @@ class BakeRequest:
         else:
             pins = PinNodes(arrays["pin_nodes"])
         settings = BakeSettings(pins=pins, **plain)
-        surface = (
-            Surface(arrays["vertices"], arrays["triangles"]) if "vertices" in arrays else None
-        )
+        surface = Surface(arrays["vertices"], arrays["triangles"]) if "vertices" in arrays else None
         if "nodes" in arrays:
             return cls(TetMesh.checked(arrays["nodes"], arrays["tets"]), settings, surface)
         if surface is None:

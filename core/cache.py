@@ -21,7 +21,7 @@ import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import IO
+from typing import IO, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -30,6 +30,8 @@ from .compliance import Compliance
 from .errors import PalpateError
 from .soft_body import SoftBody
 from .tet_mesh import TetMesh
+
+Arrays = dict[str, NDArray[Any]]
 
 FORMAT = "palpate-body"
 VERSION = 1
@@ -67,21 +69,22 @@ def save(body: SoftBody, path: str | os.PathLike[str]) -> None:
     BodyFileError
         The place cannot be written.
     """
-    arrays = {
+    arrays: Arrays = {
         "nodes": body.mesh.nodes,
         "tets": body.mesh.tets,
         "surface_triangles": body.mesh.surface_triangles,
         "fixed": body.fixed,
         "free_surface": body.compliance.free_surface,
         "compliance": body.compliance.columns.astype(np.float32, copy=False),
-        "poisson_ratio": np.float64(body.poisson_ratio),
-        "young_modulus": np.float64(body.young_modulus),
+        "poisson_ratio": np.array(body.poisson_ratio),
+        "young_modulus": np.array(body.young_modulus),
     }
     with _replacing(Path(path)) as file:
         np.savez(
             file,
+            allow_pickle=False,
             format=np.array(FORMAT),
-            version=np.int64(VERSION),
+            version=np.array(VERSION),
             key=np.array(body_key(body.mesh, body.fixed, body.poisson_ratio)),
             checksum=np.array(_checksum(arrays)),
             **arrays,
@@ -122,7 +125,7 @@ def adopt(finished: Path, target: Path) -> None:
     BodyFileError
         The place cannot be written; nothing is left there.
     """
-    with _replacing(target) as file, open(finished, "rb") as source:
+    with _replacing(target) as file, finished.open("rb") as source:
         shutil.copyfileobj(source, file)
 
 
@@ -132,7 +135,7 @@ def _replacing(target: Path) -> Iterator[IO[bytes]]:
     unfinished = target.with_name(f".{target.name}.{secrets.token_hex(4)}.tmp")
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
-        with open(unfinished, "xb") as file:
+        with unfinished.open("xb") as file:
             yield file
             file.flush()
             os.fsync(file.fileno())
@@ -146,7 +149,7 @@ def _replacing(target: Path) -> Iterator[IO[bytes]]:
         unfinished.unlink(missing_ok=True)
 
 
-def _read(source: Path) -> dict[str, NDArray[np.generic]]:
+def _read(source: Path) -> Arrays:
     if not source.is_file():
         raise BodyFileError(f"{source}: there is no such body file; bake the mesh first")
     try:
@@ -159,7 +162,7 @@ def _read(source: Path) -> dict[str, NDArray[np.generic]]:
         ) from problem
 
 
-def _body(source: Path, stored: dict[str, NDArray[np.generic]]) -> SoftBody:
+def _body(source: Path, stored: Arrays) -> SoftBody:
     mesh = TetMesh.checked(stored["nodes"], stored["tets"])
     fixed = stored["fixed"].astype(np.int64)
     poisson_ratio = float(stored["poisson_ratio"])
@@ -175,11 +178,15 @@ def _body(source: Path, stored: dict[str, NDArray[np.generic]]) -> SoftBody:
             f"{source}: its compliance does not belong to its mesh, pins or material; bake again"
         )
     return SoftBody(
-        mesh, fixed, poisson_ratio, Compliance(free_surface, columns), float(stored["young_modulus"])
+        mesh,
+        fixed,
+        poisson_ratio,
+        Compliance(free_surface, columns),
+        float(stored["young_modulus"]),
     )
 
 
-def _checksum(arrays: dict[str, NDArray[np.generic]] | dict[str, object]) -> str:
+def _checksum(arrays: Arrays) -> str:
     digest = hashlib.sha256()
     for name in ARRAYS:
         array = np.ascontiguousarray(arrays[name])

@@ -15,7 +15,8 @@ POINTS_PER_PASS = 4096
 @dataclass(frozen=True, eq=False)
 class SurfacePoints:
     """Places on a surface: ``triangle`` (p,), ``alpha`` (p, 3) area coordinates, ``distance`` (p,)
-    in metres from the points asked for, ``position`` (p, 3)."""
+    in metres from the points asked for, ``position`` (p, 3).
+    """
 
     triangle: NDArray[np.int64]
     alpha: NDArray[np.float64]
@@ -93,7 +94,8 @@ def closest_area_coordinates(
     points: NDArray[np.float64], corners: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Area coordinates (p, 3) of the point of each triangle ``corners`` (p, 3, 3) that is closest to
-    each of ``points`` (p, 3). On an edge or a corner the others are exactly zero."""
+    each of ``points`` (p, 3). On an edge or a corner the others are exactly zero.
+    """
     best = np.zeros((len(points), 3))
     best_distance = np.full(len(points), np.inf)
     for a, b in ((0, 1), (1, 2), (2, 0)):

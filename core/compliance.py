@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
+from scipy.sparse import csc_array, csr_array
 from scipy.sparse.linalg import SuperLU, splu
 
 from .errors import PalpateError
+from .progress import Progress, unwatched
 from .tet_mesh import TetMesh
-
-Progress = Callable[[float], None]
 
 # Columns solved in one go: enough to amortise the call, few enough to report and cancel often.
 COLUMNS_PER_SOLVE = 96
@@ -52,9 +50,7 @@ class Compliance:
         own = np.arange(self.node_count)
         return seen_by_node[own, :, own, :].transpose(0, 2, 1).astype(np.float64)
 
-    def apply(
-        self, loaded: NDArray[np.int64], forces: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def apply(self, loaded: NDArray[np.int64], forces: NDArray[np.float64]) -> NDArray[np.float64]:
         """Displacements (n, 3) under ``forces`` (k, 3) on the free surface nodes ``loaded`` (k,).
 
         Equation (15), for any number of nodes; counts within ``free_surface``, E = 1 Pa.
@@ -71,7 +67,7 @@ def surface_compliance(
     mesh: TetMesh,
     stiffness: csr_array,
     fixed: NDArray[np.int64],
-    progress: Progress = lambda share: None,
+    progress: Progress = unwatched,
     dtype: type[np.floating] = np.float32,
 ) -> Compliance:
     """Invert the stiffness for the free surface nodes (paper, eq. 4, restricted as in its text).
@@ -153,17 +149,20 @@ def _holds(held: NDArray[np.float64]) -> bool:
     return bool(spread[1] > 1e-9 * spread[0])
 
 
-def _factorised(matrix: csr_array) -> SuperLU:
+def _factorised(matrix: csc_array) -> SuperLU:
     try:
         return splu(
-            matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
+            matrix,
+            permc_spec="MMD_AT_PLUS_A",
+            diag_pivot_thresh=0.0,
+            options={"SymmetricMode": True},
         )
     except RuntimeError as singular:
         raise _loose_body_error() from singular
 
 
 def _refuse_loose_body(
-    matrix: csr_array, solution: NDArray[np.float64], loads: NDArray[np.float64]
+    matrix: csc_array, solution: NDArray[np.float64], loads: NDArray[np.float64]
 ) -> None:
     residual = np.abs(matrix @ solution - loads).max()
     if not residual < LARGEST_RESIDUAL:

@@ -38,7 +38,8 @@ class Touch:
 
 def one_node_force(block: ArrayLike, displacement: ArrayLike) -> NDArray[np.float64]:
     """F_i = L_ii^-1 u_i (9). ``block`` (3, 3) is L_ii, ``displacement`` (3,)."""
-    return np.linalg.solve(np.asarray(block), np.asarray(displacement))
+    force: NDArray[np.float64] = np.linalg.solve(np.asarray(block), np.asarray(displacement))
+    return force
 
 
 def two_node_forces(
@@ -84,4 +85,5 @@ def triangle_forces(
 
 def felt_force(nodal_forces: ArrayLike) -> NDArray[np.float64]:
     """Force on the finger, F_f = -(F_i + F_j + F_k) (14). ``nodal_forces`` (3, 3) -> (3,)."""
-    return -np.asarray(nodal_forces, dtype=np.float64).sum(axis=0)
+    force: NDArray[np.float64] = -np.asarray(nodal_forces, dtype=np.float64).sum(axis=0)
+    return force

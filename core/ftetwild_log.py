@@ -26,5 +26,6 @@ def stage(log: str) -> str:
     passes = re.findall(r"/ pass (\d+) /", log)
     energies = re.findall(r"max_energy = ([0-9.e+]+)", log)
     if reached == "improving tetrahedra" and passes and energies:
-        return f"{reached}, pass {int(passes[-1]) + 1}, worst energy {float(energies[-1]):.0f} (goal 10)"
+        worst = float(energies[-1])
+        return f"{reached}, pass {int(passes[-1]) + 1}, worst energy {worst:.0f} (goal 10)"
     return reached

@@ -66,7 +66,8 @@ def _below(pins: PinBelow, mesh: TetMesh) -> NDArray[np.int64]:
     height = mesh.nodes[mesh.surface_nodes, pins.axis]
     # The last term keeps exactly level bottoms whole despite rounding.
     limit = height.min() + (pins.fraction + 1e-9) * np.ptp(height)
-    return mesh.surface_nodes[height <= limit]
+    low: NDArray[np.int64] = mesh.surface_nodes[height <= limit]
+    return low
 
 
 def _weighted(pins: PinWeights, mesh: TetMesh, surface: Surface | None) -> NDArray[np.int64]:
@@ -79,7 +80,7 @@ def _weighted(pins: PinWeights, mesh: TetMesh, surface: Surface | None) -> NDArr
     )
     corner_weights = pins.weights[surface.triangles[places.triangle]]
     weight = np.einsum("pc,pc->p", places.alpha, corner_weights)
-    pinned = mesh.surface_nodes[weight >= 0.5]
+    pinned: NDArray[np.int64] = mesh.surface_nodes[weight >= 0.5]
     if not pinned.size:
         raise PalpateError(
             "pins: no node of the body lies where the pin group reaches a weight of 0.5; assign "

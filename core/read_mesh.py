@@ -39,9 +39,7 @@ def read_surface(path: Path, metres_per_unit: float = 1.0) -> Surface:
         raise PalpateError(f"{path}: {problem}") from problem
 
 
-def read_tets(
-    path: Path, metres_per_unit: float = 1.0
-) -> tuple[TetMesh, NDArray[np.int64] | None]:
+def read_tets(path: Path, metres_per_unit: float = 1.0) -> tuple[TetMesh, NDArray[np.int64] | None]:
     """Read tetrahedra: arrays ``X`` (N, 3), ``T`` (M, 4) and, if there, ``fixed`` node numbers.
 
     Raises

@@ -1,4 +1,4 @@
-"""A body ready to be touched: rest shape, pins and compliance; from a finger to a deformed shape."""
+"""A body ready to be touched: rest shape, pins, compliance; from a finger to a deformed shape."""
 
 from __future__ import annotations
 
@@ -130,6 +130,7 @@ def _point_checked(name: str, value: ArrayLike) -> NDArray[np.float64]:
     point = np.asarray(value, dtype=np.float64)
     if point.shape != (3,) or not np.isfinite(point).all():
         raise PalpateError(
-            f"--{name}: {np.asarray(value).tolist()} is not a point; give three finite numbers, metres"
+            f"--{name}: {np.asarray(value).tolist()} is not a point; give three finite numbers "
+            "in metres"
         )
     return point

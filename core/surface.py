@@ -7,6 +7,8 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from .errors import PalpateError
 
@@ -74,6 +76,34 @@ class Surface:
         i, j, k = (self.vertices[self.triangles[:, corner]] for corner in range(3))
         area: NDArray[np.float64] = 0.5 * np.linalg.norm(np.cross(j - i, k - i), axis=1)
         return area
+
+    @property
+    def signed_volume(self) -> float:
+        """Enclosed volume by the divergence theorem, cubic metres; for closed surfaces only."""
+        i, j, k = (self.vertices[self.triangles[:, corner]] for corner in range(3))
+        return float(np.einsum("fx,fx->", i, np.cross(j, k)) / 6.0)
+
+    @cached_property
+    def is_closed(self) -> bool:
+        """Whether every edge is used once in each direction."""
+        edges = np.concatenate([self.triangles[:, [a, b]] for a, b in ((0, 1), (1, 2), (2, 0))])
+        forward = np.unique(edges, axis=0)
+        backward = np.unique(edges[:, ::-1], axis=0)
+        return len(forward) == len(edges) and np.array_equal(forward, backward)
+
+    @cached_property
+    def piece_count(self) -> int:
+        """Number of parts that share no vertex."""
+        used, corners = np.unique(self.triangles, return_inverse=True)
+        corners = corners.reshape(-1, 3)
+        links = coo_array(
+            (
+                np.ones(2 * len(corners), dtype=np.int8),
+                (np.repeat(corners[:, 0], 2), corners[:, 1:].ravel()),
+            ),
+            shape=(len(used), len(used)),
+        )
+        return int(connected_components(links, directed=False)[0])
 
     def welded(self) -> Surface:
         """The same surface with coinciding vertices merged and collapsed triangles removed."""

@@ -1,4 +1,4 @@
-"""A checked tetrahedral mesh and what follows from it: boundary triangles, surface nodes, volume."""
+"""A checked tetrahedral mesh and what follows from it: boundary, surface nodes, volume."""
 
 from __future__ import annotations
 
@@ -78,7 +78,8 @@ class TetMesh:
                 f"tetrahedral mesh: the face {tuple(crowded.tolist())} belongs to {count.max()} "
                 "tetrahedra, so they overlap; bake the surface again"
             )
-        return faces[np.sort(first[count == 1])]
+        boundary: NDArray[np.int64] = faces[np.sort(first[count == 1])]
+        return boundary
 
     @cached_property
     def surface_nodes(self) -> NDArray[np.int64]:
@@ -106,9 +107,7 @@ class TetMesh:
         return int(self.node_components.max()) + 1
 
 
-def signed_volumes(
-    nodes: NDArray[np.float64], tets: NDArray[np.int64]
-) -> NDArray[np.float64]:
+def signed_volumes(nodes: NDArray[np.float64], tets: NDArray[np.int64]) -> NDArray[np.float64]:
     """Volumes of tetrahedra, (M,); negative where the winding is inverted."""
     origin = nodes[tets[:, 0]]
     a, b, c = (nodes[tets[:, corner]] - origin for corner in (1, 2, 3))

@@ -17,13 +17,16 @@ from .closest_point import ClosestPoints
 from .errors import PalpateError
 from .surface import Surface
 from .tet_mesh import OUTWARD_FACES, TetMesh, signed_volumes
-from .winding_volume import enclosed_volume
+from .winding_volume import enclosed_volume, is_inside
 
 # Face-connected crumbs below this share of the volume are debris of the envelope, not parts.
 CRUMB_SHARE = 1e-3
 
 # Outside these bounds the tetrahedra fill something else than what the surface encloses.
 VOLUME_RATIO_BOUNDS = (0.5, 1.5)
+
+# Input vertices farther than this share of the diagonal may be walls between merged parts.
+BURIED_DISTANCE = 0.01
 
 
 @dataclass(frozen=True)
@@ -55,9 +58,9 @@ def tetrahedralize(surface: Surface, edge_length: float, epsilon: float) -> TetM
     PalpateError
         The surface encloses nothing that fTetWild could fill.
     """
-    import pytetwild  # noqa: PLC0415  a compiled package that only the child process needs
+    from pytetwild.pytetwild import tetrahedralize as ftetwild
 
-    nodes, tets = pytetwild.tetrahedralize(
+    nodes, tets = ftetwild(
         surface.vertices,
         surface.triangles.astype(np.int32),
         edge_length_fac=edge_length,
@@ -73,15 +76,18 @@ def tetrahedralize(surface: Surface, edge_length: float, epsilon: float) -> TetM
     return _cleaned(np.asarray(nodes, dtype=np.float64), np.asarray(tets, dtype=np.int64))
 
 
-def check_fit(mesh: TetMesh, surface: Surface) -> Fit:
-    """Compare a body with the surface it was made from.
+def check_fit(mesh: TetMesh, surface: Surface, shell: Surface) -> Fit:
+    """Compare a body with the ``surface`` it was made from.
+
+    ``shell`` is the same surface welded and decimated, as it was handed to fTetWild; the volume is
+    taken from it.
 
     Raises
     ------
     PalpateError
         The volumes have nothing to do with each other.
     """
-    volume = enclosed_volume(surface)
+    volume = enclosed_volume(shell)
     ratio = mesh.volume / volume if volume > 0 else float("inf")
     if not VOLUME_RATIO_BOUNDS[0] < ratio < VOLUME_RATIO_BOUNDS[1]:
         raise PalpateError(
@@ -89,13 +95,20 @@ def check_fit(mesh: TetMesh, surface: Surface) -> Fit:
             f"encloses about {volume * 1e6:.3g} cm3; close large holes, recalculate normals, or "
             "use a smaller edge length"
         )
-    triangles = mesh.surface_triangles
-    centres = mesh.nodes[triangles].mean(axis=1)
+    body_surface = Surface(mesh.nodes, mesh.surface_triangles)
+    centres = mesh.nodes[mesh.surface_triangles].mean(axis=1)
     probes = np.concatenate([mesh.nodes[mesh.surface_nodes], centres])
-    to_input = ClosestPoints(surface.vertices, surface.triangles).query(probes)
+    to_input = ClosestPoints(surface.vertices, surface.triangles).query(probes).distance.max()
+    return Fit(float(ratio), float(to_input), _farthest_outside(surface, body_surface))
+
+
+def _farthest_outside(surface: Surface, body: Surface) -> float:
+    """Largest distance of the input's vertices from the body; those buried inside do not count."""
     used = surface.vertices[np.unique(surface.triangles)]
-    to_body = ClosestPoints(mesh.nodes, triangles).query(used)
-    return Fit(float(ratio), float(to_input.distance.max()), float(to_body.distance.max()))
+    distance = ClosestPoints(body.vertices, body.triangles).query(used).distance
+    far = np.flatnonzero(distance > BURIED_DISTANCE * surface.diagonal)
+    distance[far[is_inside(used[far], body)]] = 0.0
+    return float(distance.max())
 
 
 def _cleaned(nodes: NDArray[np.float64], tets: NDArray[np.int64]) -> TetMesh:

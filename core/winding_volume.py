@@ -7,23 +7,31 @@ from numpy.typing import NDArray
 
 from .surface import Surface
 
-# 2000 points estimate a volume to about two percent of the box: enough to notice a wrong body.
-SAMPLES = 2000
-PAIRS_PER_PASS = 2_000_000
+# One point in each of 12^3 cells estimates a volume to about one percent of the box.
+CELLS = 12
+PAIRS_PER_PASS = 1_000_000
 
 
 def enclosed_volume(surface: Surface) -> float:
-    """Volume in cubic metres where the generalized winding number exceeds one half.
+    """Volume in cubic metres that a welded surface encloses.
 
-    Estimated from scattered points with a fixed seed, so that the same surface always gives the
-    same figure. Winding numbers of triangle soups: Jacobson, Kavan, Sorkine-Hornung 2013; here
-    either orientation counts, as an artist's normals may all point inward.
+    Exact (divergence theorem) for one closed piece. Otherwise the volume where the generalized
+    winding number exceeds one half, estimated from scattered points with a fixed seed, so that the
+    same surface always gives the same figure. Winding numbers of triangle soups: Jacobson, Kavan,
+    Sorkine-Hornung 2013; here either orientation counts, as normals may all point inward.
     """
+    if surface.is_closed and surface.piece_count == 1:
+        return abs(surface.signed_volume)
     used = surface.vertices[np.unique(surface.triangles)]
     low, size = used.min(axis=0), np.ptp(used, axis=0)
-    points = low + np.random.default_rng(1999).random((SAMPLES, 3)) * size
-    inside = np.abs(winding_numbers(points, surface)) > 0.5
-    return float(inside.mean() * size.prod())
+    cells = np.indices((CELLS, CELLS, CELLS)).reshape(3, -1).T
+    points = low + (cells + np.random.default_rng(1999).random(cells.shape)) / CELLS * size
+    return float(is_inside(points, surface).mean() * size.prod())
+
+
+def is_inside(points: NDArray[np.float64], surface: Surface) -> NDArray[np.bool_]:
+    """Which of ``points`` (p, 3) the surface encloses, (p,)."""
+    return np.abs(winding_numbers(points, surface)) > 0.5
 
 
 def winding_numbers(points: NDArray[np.float64], surface: Surface) -> NDArray[np.float64]:
@@ -36,9 +44,7 @@ def winding_numbers(points: NDArray[np.float64], surface: Surface) -> NDArray[np
     return total / (4 * np.pi)
 
 
-def _solid_angles(
-    points: NDArray[np.float64], corners: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _solid_angles(points: NDArray[np.float64], corners: NDArray[np.float64]) -> NDArray[np.float64]:
     """Sum of the signed solid angles of all triangles seen from each point (van Oosterom 1983)."""
     a, b, c = (corners[None, :, corner] - points[:, None] for corner in range(3))
     la, lb, lc = (np.linalg.norm(side, axis=2) for side in (a, b, c))

@@ -1,0 +1,12 @@
+"""How long work tells its caller where it stands."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+# Share of a piece of work that is done, 0 to 1.
+Progress = Callable[[float], None]
+
+
+def unwatched(*_: object) -> None:
+    """The progress callback of a caller who does not look."""
