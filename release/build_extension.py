@@ -40,7 +40,7 @@ def main(arguments: list[str] | None = None) -> int:
         wheels = {
             path.name: path
             for version in options.python
-            for path in bundled_wheels.fetch(platform, version, options.wheel_cache / platform.name)
+            for path in bundled_wheels.fetch(platform, version, options.wheel_cache)
         }
         package = _package(platform, [*wheels.values(), servo], options)
     except PackagingError as error:

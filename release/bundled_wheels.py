@@ -38,8 +38,9 @@ def pinned_names(python_version: str) -> list[str]:
     return [f"{name.replace('-', '_')}-{version}-" for name, version in pins]
 
 
-def fetch(platform: Platform, python_version: str, into: Path) -> list[Path]:
-    """Return the wheels for one platform and Python version; download those not yet in `into`."""
+def fetch(platform: Platform, python_version: str, cache: Path) -> list[Path]:
+    """Return the wheels for one platform and Python version; download those not yet in `cache`."""
+    into = cache / platform.name / lock_file(python_version).stem
     into.mkdir(parents=True, exist_ok=True)
     command = [sys.executable, "-m", "pip", "download", "--quiet", "--disable-pip-version-check"]
     command += ["--no-deps", "--only-binary=:all:", "--require-hashes"]
@@ -49,10 +50,12 @@ def fetch(platform: Platform, python_version: str, into: Path) -> list[Path]:
     command += ["--dest", str(into), "--requirement", str(lock_file(python_version))]
     # pip keeps what lies in --dest already, after checking its hash.
     subprocess.run(command, check=True)
-    names = pinned_names(python_version)
-    wheels = sorted(path for path in into.iterdir() if path.name.startswith(tuple(names)))
-    if len(wheels) != len(names):
-        found = ", ".join(path.name for path in wheels)
-        message = f"asked for {len(names)} wheels ({', '.join(names)}) but {into} holds: {found}"
+    return [_only(into, name) for name in pinned_names(python_version)]
+
+
+def _only(folder: Path, name: str) -> Path:
+    found = [path for path in folder.iterdir() if path.name.startswith(name)]
+    if len(found) != 1:
+        message = f"{folder} should hold one wheel {name}*, and holds {len(found)}: empty it"
         raise PackagingError(message)
-    return wheels
+    return found[0]
