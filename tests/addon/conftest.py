@@ -1,0 +1,80 @@
+"""Runs the tests of this folder against the installed extension, inside the `bpy` module.
+
+They run in an environment that holds nothing but bpy and pytest (`make test-addon`), so that
+scipy, pytetwild and palpate_servo can only come from the wheels inside the package. It is installed
+once, the way a user does it, into a user folder that is thrown away:
+
+    def test_something(palpate):                          # the installed package, as a module
+        from bl_ext.user_default.palpate.core.bake import BakeSettings
+        bpy.ops.palpate...                                # the operators, synchronously
+
+Every test begins with Blender's factory scene and the extension enabled.
+
+`PALPATE_PACKAGE` names the zip; without it, the one that `make package` left in build/packages.
+"""
+
+from __future__ import annotations
+
+import importlib
+import os
+import shutil
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+MODULE = "bl_ext.user_default.palpate"
+
+# Blender reads its user folder when bpy is imported, so it must be chosen before any test does.
+USER_FOLDER = Path(tempfile.mkdtemp(prefix="palpate-addon-tests-"))
+os.environ["BLENDER_USER_RESOURCES"] = str(USER_FOLDER)
+
+try:
+    import bpy
+except ModuleNotFoundError as error:
+    raise pytest.UsageError("tests/addon needs Blender's module: run `make test-addon`") from error
+
+
+def pytest_report_header() -> str:
+    """Say which Blender is tested."""
+    return f"Blender {bpy.app.version_string}, package {package()}"
+
+
+def pytest_unconfigure() -> None:
+    """Throw the user folder away."""
+    shutil.rmtree(USER_FOLDER, ignore_errors=True)
+
+
+def package() -> Path:
+    """Return the extension's zip that is to be tested."""
+    chosen = os.environ.get("PALPATE_PACKAGE")
+    built = sorted((REPOSITORY / "build" / "packages").glob("palpate-[0-9]*.zip"))
+    if not chosen and not built:
+        raise pytest.UsageError("there is no package to test: run `make package`")
+    return Path(chosen) if chosen else built[-1]
+
+
+@pytest.fixture(scope="session")
+def installed() -> str:
+    """Install and enable the package as a user would; return the extension's module name."""
+    bpy.ops.extensions.package_install_files(
+        filepath=str(package()), repo="user_default", enable_on_install=True
+    )
+    # The operator returns FINISHED for a missing or broken file too.
+    assert MODULE in bpy.context.preferences.addons, "the package was not installed and enabled"
+    return MODULE
+
+
+@pytest.fixture
+def palpate(installed: str) -> Iterator[ModuleType]:
+    """Return the installed package, enabled, in Blender's factory scene."""
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=False)
+    if installed not in bpy.context.preferences.addons:
+        bpy.ops.preferences.addon_enable(module=installed)
+    yield importlib.import_module(installed)
+    if installed not in bpy.context.preferences.addons:
+        # A test that disables the extension hands it back enabled.
+        bpy.ops.preferences.addon_enable(module=installed)

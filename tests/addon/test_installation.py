@@ -1,0 +1,50 @@
+"""The package installs like any extension and brings along all that it imports."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from pathlib import Path
+
+import bpy
+import pytest
+
+MODULE = "bl_ext.user_default.palpate"
+BUNDLED = ["scipy", "pytetwild", "fast_simplification", "serial", "palpate_servo"]
+
+
+@pytest.mark.parametrize("name", BUNDLED)
+def test_import_comes_from_the_wheel_inside_the_package(name, palpate):
+    module = importlib.import_module(name)
+    user_folder = Path(bpy.utils.resource_path("USER"))
+    assert Path(module.__file__).is_relative_to(user_folder)
+
+
+def test_numpy_is_blenders_own(palpate):
+    numpy = importlib.import_module("numpy")
+    assert not Path(numpy.__file__).is_relative_to(Path(bpy.utils.resource_path("USER")))
+
+
+def test_code_comes_from_the_installed_package(palpate):
+    user_folder = Path(bpy.utils.resource_path("USER"))
+    assert Path(palpate.__file__).is_relative_to(user_folder)
+    assert "palpate" not in sys.modules, "a test imported the checkout instead of the installation"
+
+
+def _registered():
+    """Return the names of all classes and operators that Blender knows of Palpate."""
+    classes = {
+        name
+        for name in dir(bpy.types)
+        if getattr(getattr(bpy.types, name), "__module__", "").startswith(MODULE)
+    }
+    return classes | {f"palpate.{name}" for name in dir(bpy.ops.palpate)}
+
+
+def test_disabling_takes_everything_out_and_enabling_brings_it_back(palpate):
+    before = _registered()
+    assert before, "nothing of Palpate is registered"
+    bpy.ops.preferences.addon_disable(module=palpate.__name__)
+    assert _registered() == set()
+    bpy.ops.preferences.addon_enable(module=palpate.__name__)
+    assert _registered() == before
