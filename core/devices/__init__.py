@@ -1,1 +1,1 @@
-"""Haptic devices: ports, the link's frames, and a simulated device."""
+"""Haptic devices on a serial port: their link, the ports, and a simulated device."""

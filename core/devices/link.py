@@ -1,0 +1,288 @@
+"""The serial link, version 1: messages to frames and back. `docs/link.md` is its definition.
+
+On the wire: COBS(payload + CRC) + 0x00, with CRC-16/CCITT-FALSE, everything little-endian.
+"""
+
+from __future__ import annotations
+
+import binascii
+import math
+import struct
+from dataclasses import dataclass
+from enum import IntFlag
+
+PROTOCOL = 1
+MAX_FRAME = 62
+"""Longest frame on the wire in bytes, the closing zero counted."""
+MAX_PAYLOAD = MAX_FRAME - 4
+"""Longest payload in bytes: a frame adds the COBS code, two of CRC and the zero."""
+SEQUENCES = 1 << 16
+
+HELLO, STATE, FORCE, FAULT = 0x01, 0x02, 0x03, 0x04
+
+_HOST_HELLO = struct.Struct("<BB")
+_DEVICE_HELLO = struct.Struct("<BB16sBffffH")
+_STATE = struct.Struct("<BHI3iBB")
+_FORCE = struct.Struct("<BH3hB")
+_FAULT = struct.Struct("<BBH")
+
+NAME_BYTES = 16
+
+
+class LinkError(ValueError):
+    """Bytes that are not a message of this link, or a message that does not fit into bytes."""
+
+
+class StateFlag(IntFlag):
+    """What a device says of itself."""
+
+    READY = 1
+    FAULT = 2
+
+
+class ForceFlag(IntFlag):
+    """What a host asks for: motors on, damping added."""
+
+    ENABLE = 1
+    DAMP = 2
+
+
+@dataclass(frozen=True)
+class HostHello:
+    """The host asks who is there."""
+
+    protocol: int = PROTOCOL
+
+
+@dataclass(frozen=True)
+class DeviceHello:
+    """The device answers; forces in N, half extents of the workspace in m, rate of STATE in Hz."""
+
+    name: str
+    axes: int
+    largest_force: float
+    half_extents: tuple[float, float, float]
+    rate_hz: int
+    protocol: int = PROTOCOL
+
+
+@dataclass(frozen=True)
+class OtherHello:
+    """A HELLO of another protocol: only its first two bytes are understood."""
+
+    protocol: int
+
+
+@dataclass(frozen=True)
+class State:
+    """Where the device is: device time in us, position in um."""
+
+    sequence: int
+    device_time_us: int
+    position_um: tuple[int, int, int]
+    buttons: int = 0
+    flags: int = StateFlag.READY
+
+
+@dataclass(frozen=True)
+class Force:
+    """The force the device shall make, in mN."""
+
+    sequence: int
+    force_mn: tuple[int, int, int]
+    flags: int = ForceFlag.ENABLE
+
+
+@dataclass(frozen=True)
+class Fault:
+    """The device tells of something that went wrong; codes in `docs/link.md`."""
+
+    code: int
+    detail: int = 0
+
+
+Message = HostHello | DeviceHello | OtherHello | State | Force | Fault
+
+
+def crc16(payload: bytes) -> int:
+    """CRC-16/CCITT-FALSE: polynomial 0x1021, start 0xFFFF, no reflection, no final xor."""
+    return binascii.crc_hqx(payload, 0xFFFF)
+
+
+def cobs_encode(plain: bytes) -> bytes:
+    """`plain` (at most 253 bytes) without any zero byte, one byte longer."""
+    if len(plain) >= 0xFE:
+        raise LinkError(f"{len(plain)} bytes are more than the one COBS block this link uses")
+    return b"".join(bytes([len(run) + 1]) + run for run in plain.split(b"\0"))
+
+
+def cobs_decode(coded: bytes) -> bytes:
+    """Inverse of `cobs_encode`; raises LinkError when a code points past the end or is zero."""
+    runs: list[bytes] = []
+    start = 0
+    while start < len(coded):
+        end = start + coded[start]
+        if end == start or end > len(coded):
+            raise LinkError(f"COBS code {coded[start]} at byte {start} of {len(coded)}")
+        runs.append(coded[start + 1 : end])
+        start = end
+    return b"\0".join(runs)
+
+
+def frame(payload: bytes) -> bytes:
+    """The bytes on the wire for one payload of 1 to 58 bytes."""
+    if not 1 <= len(payload) <= MAX_PAYLOAD:
+        raise LinkError(f"a payload has 1 to {MAX_PAYLOAD} bytes, not {len(payload)}")
+    return cobs_encode(payload + struct.pack("<H", crc16(payload))) + b"\0"
+
+
+def pack(message: Message) -> bytes:
+    """The payload of a message; raises LinkError when a number does not fit its field."""
+    try:
+        match message:
+            case HostHello():
+                return _HOST_HELLO.pack(HELLO, message.protocol)
+            case DeviceHello():
+                return _pack_device_hello(message)
+            case State():
+                return _STATE.pack(
+                    STATE,
+                    message.sequence,
+                    message.device_time_us,
+                    *message.position_um,
+                    message.buttons,
+                    message.flags,
+                )
+            case Force():
+                return _FORCE.pack(FORCE, message.sequence, *message.force_mn, message.flags)
+            case Fault():
+                return _FAULT.pack(FAULT, message.code, message.detail)
+            case OtherHello():
+                raise LinkError("a HELLO of another protocol can be read, not written")
+    except (struct.error, OverflowError) as error:
+        raise LinkError(f"{message} does not fit the link: {error}") from error
+
+
+def encode(message: Message) -> bytes:
+    """The frame of a message, ready for the wire."""
+    return frame(pack(message))
+
+
+def unpack(payload: bytes) -> Message:
+    """The message in a payload whose CRC was right; raises LinkError for unknown type or length."""
+    if len(payload) >= 2 and payload[0] == HELLO:
+        return _unpack_hello(payload)
+    match (payload[:1], len(payload)):
+        case (b"\x02", _STATE.size):
+            _, sequence, time_us, x, y, z, buttons, flags = _STATE.unpack(payload)
+            return State(sequence, time_us, (x, y, z), buttons, flags)
+        case (b"\x03", _FORCE.size):
+            _, sequence, x, y, z, flags = _FORCE.unpack(payload)
+            return Force(sequence, (x, y, z), flags)
+        case (b"\x04", _FAULT.size):
+            _, code, detail = _FAULT.unpack(payload)
+            return Fault(code, detail)
+    raise LinkError(f"no message of the link: {len(payload)} bytes, type {payload[:1].hex()}")
+
+
+def _pack_device_hello(hello: DeviceHello) -> bytes:
+    # Cut between characters, never inside one.
+    name = hello.name.encode()[:NAME_BYTES].decode(errors="ignore").encode()
+    return _DEVICE_HELLO.pack(
+        HELLO,
+        hello.protocol,
+        name,
+        hello.axes,
+        hello.largest_force,
+        *hello.half_extents,
+        hello.rate_hz,
+    )
+
+
+def _unpack_hello(payload: bytes) -> HostHello | DeviceHello | OtherHello:
+    if payload[1] != PROTOCOL:
+        return OtherHello(payload[1])
+    if len(payload) == _HOST_HELLO.size:
+        return HostHello()
+    if len(payload) != _DEVICE_HELLO.size:
+        raise LinkError(f"a HELLO of protocol {PROTOCOL} has not {len(payload)} bytes")
+    _, protocol, name, axes, largest, x, y, z, rate = _DEVICE_HELLO.unpack(payload)
+    if not all(math.isfinite(value) and value >= 0.0 for value in (largest, x, y, z)):
+        raise LinkError("a HELLO with a force or an extent that is negative or no number")
+    text = name.rstrip(b"\0").decode(errors="replace")
+    return DeviceHello(text, axes, largest, (x, y, z), rate, protocol)
+
+
+@dataclass
+class LinkErrors:
+    """What a decoder had to throw away, in frames."""
+
+    crc_errors: int = 0
+    malformed: int = 0
+    """No COBS, too short for a type and a CRC, or too long."""
+    unknown: int = 0
+    """Right CRC, but no message of this version."""
+
+    @property
+    def total(self) -> int:
+        """Frames thrown away for whatever reason."""
+        return self.crc_errors + self.malformed + self.unknown
+
+
+class Decoder:
+    """Bytes as they arrive, in pieces of any size, to messages.
+
+    Zero occurs on the wire only at the end of a frame, so damage costs the frame it is in (two when
+    the zero between them is hit) and the next one is read again.
+    """
+
+    def __init__(self) -> None:
+        self.errors = LinkErrors()
+        self._begun = bytearray()
+        self._too_long = False
+
+    def feed(self, data: bytes) -> list[Message]:
+        """The messages completed by `data`, in order; broken frames are counted and left out."""
+        messages: list[Message] = []
+        for payload in self.feed_payloads(data):
+            try:
+                messages.append(unpack(payload))
+            except LinkError:
+                self.errors.unknown += 1
+        return messages
+
+    def feed_payloads(self, data: bytes) -> list[bytes]:
+        """Like `feed`, but the payloads: their CRC was right, their meaning is not looked at."""
+        payloads: list[bytes] = []
+        *endings, rest = data.split(b"\0")
+        for ending in endings:
+            self._extend(ending)
+            payload = self._finish()
+            if payload is not None:
+                payloads.append(payload)
+        self._extend(rest)
+        return payloads
+
+    def _extend(self, piece: bytes) -> None:
+        room = MAX_FRAME - 1 - len(self._begun)
+        self._too_long = self._too_long or len(piece) > room
+        self._begun += piece[:room]
+
+    def _finish(self) -> bytes | None:
+        coded, too_long = bytes(self._begun), self._too_long
+        self._begun.clear()
+        self._too_long = False
+        if not coded:
+            return None
+        try:
+            plain = b"" if too_long else cobs_decode(coded)
+        except LinkError:
+            plain = b""
+        if len(plain) < 3:
+            self.errors.malformed += 1
+            return None
+        payload, crc = plain[:-2], int.from_bytes(plain[-2:], "little")
+        if crc16(payload) != crc:
+            self.errors.crc_errors += 1
+            return None
+        return payload

@@ -1,0 +1,200 @@
+"""The simulated device: a process of its own on a pseudo-terminal that speaks the link.
+
+Started by its path (`python simulated.py --help`), so that Blender can start it too, whose child
+processes cannot import the extension; as `palpate devices simulate`; or with `SimulatedDevice`.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+if __name__ == "__main__" and not __package__:
+    # Started by its path: make `core` importable as a package, so that the imports below are the
+    # same as inside the extension.
+    sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+    import core.devices
+
+    __package__ = core.devices.__name__
+
+import argparse
+import contextlib
+import json
+import os
+import signal
+import time
+from collections.abc import Iterator
+from types import FrameType
+
+from ..errors import PalpateError
+from .simulated_board import SimulatedBoard
+from .simulated_options import SimulatedOptions, add_simulated_options, simulated_options
+
+LATE_SECONDS = 200e-6
+MOST_STEPS_AT_ONCE = 50
+"""After a longer hole the device's world has stood still for the rest, rather than jump."""
+
+
+class Clock:
+    """Ticks at absolute deadlines, and what became of them."""
+
+    def __init__(self, rate_hz: int) -> None:
+        self._period = 1.0 / rate_hz
+        self._start = time.perf_counter()
+        self._deadline = self._start
+        self.ticks = 0
+        self.late = 0
+        self.skipped = 0
+        self.longest_lateness = 0.0
+
+    def now(self) -> float:
+        """Seconds since the clock was made."""
+        return time.perf_counter() - self._start
+
+    def wait(self) -> int:
+        """Sleep until the next deadline; returns how many periods have passed, at least 1."""
+        self._deadline += self._period
+        while (pause := self._deadline - time.perf_counter()) > 0.0:
+            time.sleep(pause)
+        lateness = time.perf_counter() - self._deadline
+        missed = int(lateness / self._period)
+        self._deadline += missed * self._period
+        self.ticks += 1
+        self.late += lateness > LATE_SECONDS
+        self.longest_lateness = max(self.longest_lateness, lateness)
+        self.skipped += max(0, missed + 1 - MOST_STEPS_AT_ONCE)
+        return min(missed + 1, MOST_STEPS_AT_ONCE)
+
+    def report(self) -> dict[str, object]:
+        """The rate that was reached, and what kept it from the one asked for."""
+        seconds = self.now()
+        return {
+            "seconds": seconds,
+            "rate_hz": self.ticks / seconds,
+            "late_ticks": self.late,
+            "longest_lateness_us": self.longest_lateness * 1e6,
+            "skipped_steps": self.skipped,
+        }
+
+
+def run(options: SimulatedOptions, *, commands: bool = False, json_lines: bool = True) -> None:
+    """Be the device until SIGTERM, SIGINT or, with `commands`, the end of standard input.
+
+    Prints where the port is at the start and what was counted at the end, a JSON line each.
+    `commands` reads lines from standard input: `unplug`, `plug`, `buttons MASK`,
+    `move X Y Z SECONDS`, `report` (prints a JSON line).
+    Raises PalpateError when there can be no such port.
+    """
+    board = SimulatedBoard(options)
+    try:
+        with _stopped_by_signals() as stopped:
+            _say_where(board, options, json_lines)
+            clock = Clock(options.rate_hz)
+            inbox = _Commands() if commands else None
+            while not stopped:
+                steps = clock.wait()
+                board.tick(clock.now(), steps)
+                if inbox and not inbox.obey(board, clock):
+                    break
+            # Whoever started this may be gone, and the report with them.
+            with contextlib.suppress(BrokenPipeError):
+                _print_json({"end": True, **clock.report(), **board.report()}, json_lines)
+    finally:
+        board.terminal.unplug()
+
+
+class _Commands:
+    """Lines on standard input, read without ever waiting for them."""
+
+    def __init__(self) -> None:
+        os.set_blocking(0, False)
+        self._parent = os.getppid()
+        self._begun = b""
+
+    def obey(self, board: SimulatedBoard, clock: Clock) -> bool:
+        """False when standard input has ended or the parent process has."""
+        try:
+            data = os.read(0, 4096)
+        except BlockingIOError:
+            return os.getppid() == self._parent
+        *lines, self._begun = (self._begun + data).split(b"\n")
+        for line in lines:
+            self._do(line.decode().split(), board, clock)
+        return bool(data)
+
+    @staticmethod
+    def _do(words: list[str], board: SimulatedBoard, clock: Clock) -> None:
+        match words:
+            case ["unplug"]:
+                board.unplug()
+            case ["plug"]:
+                board.plug_in()
+            case ["buttons", mask]:
+                board.press_buttons(int(mask))
+            case ["move", x, y, z, seconds]:
+                board.move_hand(clock.now(), (float(x), float(y), float(z)), float(seconds))
+            case ["report"]:
+                _print_json({**clock.report(), **board.report()}, True)
+            case _:
+                raise PalpateError(f"simulated device: no such command: {' '.join(words)}")
+
+
+@contextlib.contextmanager
+def _stopped_by_signals() -> Iterator[list[int]]:
+    """A list that is empty until somebody asks this process to stop."""
+    received: list[int] = []
+
+    def note(number: int, _frame: FrameType | None) -> None:
+        received.append(number)
+
+    wanted = (signal.SIGTERM, signal.SIGINT)
+    before = [signal.signal(number, note) for number in wanted]
+    try:
+        yield received
+    finally:
+        for number, handler in zip(wanted, before, strict=True):
+            signal.signal(number, handler)
+
+
+def _say_where(board: SimulatedBoard, options: SimulatedOptions, json_lines: bool) -> None:
+    if json_lines:
+        path = board.terminal.path
+        _print_json({"port": path, "link": options.link or None, "pid": os.getpid()}, True)
+    else:
+        _print(f"simulated device on {board.terminal.path} (stop with Ctrl-C)")
+
+
+def _print_json(content: dict[str, object], json_lines: bool) -> None:
+    if json_lines:
+        _print(json.dumps(content))
+        return
+    width = max(map(len, content))
+    for name, value in content.items():
+        _print(f"{name:{width}}  {value}")
+
+
+def _print(line: str) -> None:
+    sys.stdout.write(line + "\n")
+    sys.stdout.flush()
+
+
+def main() -> int:
+    """The command line of this file."""
+    parser = argparse.ArgumentParser(description="A simulated haptic device on a pseudo-terminal.")
+    add_simulated_options(parser)
+    parser.add_argument(
+        "--commands",
+        action="store_true",
+        help="read commands from standard input, and stop when it ends",
+    )
+    arguments = parser.parse_args()
+    try:
+        run(simulated_options(arguments), commands=arguments.commands)
+    except PalpateError as error:
+        sys.stderr.write(f"palpate: {error}\n")
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,147 @@
+"""The simulated device put together: hand and mass, firmware, bad wires, port."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+from .hand_script import HandScript
+from .plant import Plant, Vector
+from .pseudo_terminal import PseudoTerminal
+from .simulated_firmware import Firmware
+from .simulated_options import SimulatedOptions
+from .wire_faults import BadWire
+
+RELEASE_AFTER_SECONDS = 0.25
+
+
+class SimulatedBoard:
+    """Advances by `tick`; times are seconds since it was switched on. Raises PalpateError."""
+
+    def __init__(self, options: SimulatedOptions) -> None:
+        self._options = options
+        self._script = options.hand_script()
+        self._script_begin: float | None = None
+        self._first_hello: float | None = None
+        self._buttons_by_command = 0
+        self._last_heard = 0.0
+        self._unplugged = 0
+        self._unplug_at = math.inf if options.unplug_at is None else options.unplug_at
+        self._plug_at = self._unplug_at + options.unplug_for
+        self.firmware = Firmware(options.hello)
+        start = self._script.at(0.0)
+        self.plant = Plant(options.impedance, 1.0 / options.rate_hz, start, options.brake)
+        self._lowest, self._highest = start, start
+        self._to_device = BadWire(options.loss, options.noise, options.delay, 2 * options.seed)
+        self._to_host = BadWire(options.loss, options.noise, options.delay, 2 * options.seed + 1)
+        self.terminal = PseudoTerminal(Path(options.link) if options.link else None)
+
+    def tick(self, now: float, steps: int) -> None:
+        """Read the host, move by `steps` of the device's period, say where the device is."""
+        self._keep_plug_schedule(now)
+        heard = self.terminal.read()
+        if heard:
+            self._last_heard = now
+        elif now - self._last_heard > RELEASE_AFTER_SECONDS:
+            self._last_heard = now
+            self.terminal.release()
+        self._to_device.put(heard, now)
+        answer = self.firmware.receive(self._to_device.take(now), now)
+        if self._first_hello is None and self.firmware.counters.hellos:
+            self._first_hello = now
+            if self._script_begin is None:
+                self._script_begin = now
+        answer += self.firmware.watch(now)
+        self._move(now, steps)
+        answer += self.firmware.state(now, self._encoders(), self._buttons(now))
+        self._to_host.put(answer, now)
+        self.terminal.write(self._to_host.take(now))
+
+    def move_hand(self, now: float, position: Vector, seconds: float) -> None:
+        """Leave the script: go from where the hand is to `position` and stay."""
+        here = self._script.at(self._script_time(now))
+        self._script = HandScript((0.0, max(seconds, 1e-6)), (here, position))
+        self._script_begin = now
+
+    def press_buttons(self, mask: int) -> None:
+        """Hold exactly the buttons of `mask` (8 bits) from now on."""
+        self._buttons_by_command = mask & 0xFF
+
+    def unplug(self) -> None:
+        """Pull the plug, if it is in."""
+        if self.terminal.plugged:
+            self._unplugged += 1
+            self.terminal.unplug()
+
+    def plug_in(self) -> None:
+        """Put the plug back, if it is out: the board starts afresh."""
+        if not self.terminal.plugged:
+            self.firmware.plug_in()
+            self.terminal.plug_in()
+
+    def report(self) -> dict[str, object]:
+        """Counters and where everything is now; SI units."""
+        seen, errors, plant = self.firmware.counters, self.firmware.decoder.errors, self.plant
+        return {
+            "states": seen.states,
+            "states_dropped": self.terminal.dropped,
+            "hellos": seen.hellos,
+            "forces": seen.forces,
+            "lost": seen.lost,
+            "duplicates": seen.duplicates,
+            "out_of_order": seen.out_of_order,
+            "crc_errors": errors.crc_errors,
+            "malformed": errors.malformed,
+            "unknown": errors.unknown,
+            "unexpected": seen.unexpected,
+            "clamped": seen.clamped,
+            "limp_count": seen.limp,
+            "limp": self.firmware.limp,
+            "plugged": self.terminal.plugged,
+            "unplugged": self._unplugged,
+            "largest_force": seen.largest_force,
+            "felt_force": self.firmware.force,
+            "hand_force": plant.hand_force,
+            "position": plant.position,
+            "velocity": plant.velocity,
+            "target": plant.target,
+            "position_min": self._lowest,
+            "position_max": self._highest,
+            "work_of_felt_force": plant.work,
+            "frames_lost_on_purpose": self._to_device.lost + self._to_host.lost,
+            "bits_flipped_on_purpose": self._to_device.flipped + self._to_host.flipped,
+        }
+
+    def _script_time(self, now: float) -> float:
+        return 0.0 if self._script_begin is None else now - self._script_begin
+
+    def _keep_plug_schedule(self, now: float) -> None:
+        since = -math.inf if self._first_hello is None else now - self._first_hello
+        if since >= self._unplug_at:
+            self._unplug_at = math.inf
+            self.unplug()
+        if since >= self._plug_at:
+            self._plug_at = math.inf
+            self.plug_in()
+
+    def _move(self, now: float, steps: int) -> None:
+        period = self.plant.step_seconds
+        force, braked = self.firmware.force, self.firmware.braked
+        for remaining in range(steps - 1, -1, -1):
+            target = self._script.at(self._script_time(now) - remaining * period)
+            self.plant.step(force, target, braked)
+        here = self.plant.position
+        (x, y, z), (x0, y0, z0), (x1, y1, z1) = here, self._lowest, self._highest
+        self._lowest = (min(x, x0), min(y, y0), min(z, z0))
+        self._highest = (max(x, x1), max(y, y1), max(z, z1))
+
+    def _encoders(self) -> tuple[int, int, int]:
+        grain = self._options.resolution_um
+        x, y, z = (round(metres * 1e6 / grain) * grain for metres in self.plant.position)
+        return (x, y, z)
+
+    def _buttons(self, now: float) -> int:
+        at, held = self._options.button_at, 0
+        if at is not None and self._first_hello is not None:
+            held = int(at <= now - self._first_hello < at + self._options.button_for)
+        return self._buttons_by_command | held

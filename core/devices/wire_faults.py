@@ -1,0 +1,66 @@
+"""What a bad cable does to a stream of frames: loss, flipped bits, delay."""
+
+from __future__ import annotations
+
+import math
+import random
+from collections import deque
+
+
+class BadWire:
+    """One direction of the link. Every frame that goes in comes out, unless it meets its fate.
+
+    loss: fraction of frames that vanish. noise: fraction of bits that flip. delay: seconds.
+    """
+
+    def __init__(self, loss: float, noise: float, delay: float, seed: int) -> None:
+        self.lost = 0
+        self.flipped = 0
+        self._loss = loss
+        self._delay = delay
+        self._random = random.Random(seed)  # noqa: S311 - dice for a simulation, not secrets
+        self._noise = noise
+        self._clean_bits = self._draw_clean_bits()
+        self._begun = bytearray()
+        self._on_the_way: deque[tuple[float, bytes]] = deque()
+
+    def put(self, data: bytes, now: float) -> None:
+        """Send bytes at time `now`; a frame is on its way when its closing zero has gone in."""
+        *endings, rest = data.split(b"\0")
+        for ending in endings:
+            whole = bytes(self._begun + ending + b"\0")
+            self._begun.clear()
+            if self._random.random() < self._loss:
+                self.lost += 1
+            else:
+                self._on_the_way.append((now + self._delay, self._flip(whole)))
+        self._begun += rest
+
+    def take(self, now: float) -> bytes:
+        """What has arrived until `now`."""
+        arrived = bytearray()
+        while self._on_the_way and self._on_the_way[0][0] <= now:
+            arrived += self._on_the_way.popleft()[1]
+        return bytes(arrived)
+
+    def _flip(self, whole: bytes) -> bytes:
+        bits = 8 * len(whole)
+        if self._clean_bits >= bits:
+            self._clean_bits -= bits
+            return whole
+        damaged = bytearray(whole)
+        while self._clean_bits < bits:
+            place = int(self._clean_bits)
+            damaged[place // 8] ^= 1 << place % 8
+            self.flipped += 1
+            self._clean_bits += 1 + self._draw_clean_bits()
+        self._clean_bits -= bits
+        return bytes(damaged)
+
+    def _draw_clean_bits(self) -> float:
+        # Distance to the next flipped bit: a geometric draw instead of one per bit.
+        if self._noise <= 0.0:
+            return math.inf
+        if self._noise >= 1.0:
+            return 0.0
+        return float(math.floor(math.log(1.0 - self._random.random()) / math.log1p(-self._noise)))
