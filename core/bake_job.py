@@ -97,8 +97,8 @@ class BakeJob:
             if seconds > self._time_limit and not self.finished:
                 self.close()
                 raise PalpateError(
-                    f"tetrahedralization: not done within {self._time_limit:g} s; use a larger edge "
-                    "length or epsilon, decimate the mesh first, or allow more time"
+                    f"tetrahedralization: not done within {self._time_limit:g} s; use a larger "
+                    "edge length or epsilon, decimate the mesh first, or allow more time"
                 )
             text = f"{text}: {stage(self._log())}"
         return JobProgress(step, text, share, seconds)

@@ -153,7 +153,8 @@ def _read(source: Path) -> Arrays:
     if not source.is_file():
         raise BodyFileError(f"{source}: there is no such body file; bake the mesh first")
     try:
-        with np.load(source, allow_pickle=False) as file:
+        # Opened here, since numpy leaves a damaged archive open.
+        with source.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
             return {name: file[name] for name in file.files}
     except (OSError, EOFError, ValueError, KeyError, AttributeError, zipfile.BadZipFile) as problem:
         raise BodyFileError(

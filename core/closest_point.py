@@ -93,8 +93,9 @@ class ClosestPoints:
 def closest_area_coordinates(
     points: NDArray[np.float64], corners: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Area coordinates (p, 3) of the point of each triangle ``corners`` (p, 3, 3) that is closest to
-    each of ``points`` (p, 3). On an edge or a corner the others are exactly zero.
+    """Area coordinates (p, 3) of the point of each triangle closest to the point beside it.
+
+    ``points`` (p, 3), ``corners`` (p, 3, 3). On an edge or a corner the others are exactly zero.
     """
     best = np.zeros((len(points), 3))
     best_distance = np.full(len(points), np.inf)

@@ -42,6 +42,6 @@ class DrawnMap:
         return cls(weights, places.distance)
 
     def displacements(self, free_surface: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Displacements (p, 3) of the drawn vertices from those of the free surface nodes (n, 3)."""
+        """Displacements (p, 3) of drawn vertices from those of the free surface nodes (n, 3)."""
         moved: NDArray[np.float64] = self.weights @ free_surface
         return moved

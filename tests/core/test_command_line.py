@@ -1,0 +1,180 @@
+"""The commands bake, info and press as a user runs them, from the mesh file to the figures."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+
+from palpate.cli.main import main
+
+MOUSE = Path(__file__).resolve().parents[1] / "meshes" / "mouse-1.7k.npz"
+
+
+def palpate(capsys, *words):
+    status = main([str(word) for word in words])
+    printed = capsys.readouterr()
+    return status, printed.out, printed.err
+
+
+@pytest.fixture(scope="module")
+def cube_file(tmp_path_factory, cube_mesh):
+    folder = tmp_path_factory.mktemp("cube")
+    mesh, fixed = cube_mesh
+    np.savez(folder / "cube-tets.npz", X=mesh.nodes, T=mesh.tets, fixed=fixed)
+    status = main(
+        ["bake", str(folder / "cube-tets.npz"), "-o", str(folder / "cube.npz"), "--poisson", "0.49"]
+    )
+    assert status == 0
+    return folder / "cube.npz"
+
+
+def test_bake_prints_the_papers_table_for_the_cube(cube_file, capsys):
+    tets = cube_file.with_name("cube-tets.npz")
+    out = cube_file.with_name("again.npz")
+    status, printed, _ = palpate(capsys, "bake", tets, "-o", out, "--poisson", 0.49, "--json")
+    figures = json.loads(printed)
+    assert status == 0
+    assert figures["nodes"] == 125
+    assert figures["tets"] == 320
+    assert figures["surface_nodes"] == 98
+    assert figures["free_surface_nodes"] == 73
+    assert figures["surface_triangles"] == 192
+    assert figures["compliance_bytes"] == 73 * 73 * 9 * 4
+    assert set(figures["seconds"]) == {"stiffness", "compliance"}
+    _, printed, _ = palpate(capsys, "info", out, "--json")
+    again = json.loads(printed)
+    assert again["key"] == figures["key"]
+    assert again["free_surface_nodes"] == 73
+
+
+def test_bake_fills_a_surface_with_tetrahedra(tmp_path, capsys):
+    trimesh.creation.box((50, 50, 50)).export(tmp_path / "box.stl")
+    status, printed, _ = palpate(
+        capsys, "bake", tmp_path / "box.stl", "-o", tmp_path / "box.npz", "--edge-length", 0.15,
+        "--pin-below", 0.05, "--metres-per-unit", 0.001, "--json",
+    )  # fmt: skip
+    figures = json.loads(printed)
+    assert status == 0
+    assert figures["volume_m3"] == pytest.approx(0.05**3, rel=0.02)
+    assert figures["fixed_nodes"] > 4
+
+
+@pytest.mark.parametrize("suffix", ["obj", "ply", "stl"])
+def test_surfaces_of_every_kind_are_read(tmp_path, capsys, suffix):
+    mesh = trimesh.creation.icosphere(subdivisions=1, radius=0.05)
+    mesh.export(tmp_path / f"ball.{suffix}")
+    status, printed, _ = palpate(
+        capsys, "bake", tmp_path / f"ball.{suffix}", "-o", tmp_path / "ball.npz",
+        "--edge-length", 0.2, "--epsilon", 0.01, "--pin-below", 0.3, "--json",
+    )  # fmt: skip
+    assert status == 0
+    assert json.loads(printed)["volume_m3"] == pytest.approx(mesh.volume, rel=0.1)
+
+
+def test_an_obj_with_polygons_is_triangulated(tmp_path, capsys):
+    corners = [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)]
+    faces = [(1, 3, 4, 2), (5, 6, 8, 7), (1, 2, 6, 5), (2, 4, 8, 6), (4, 3, 7, 8), (3, 1, 5, 7)]
+    lines = [f"v {x} {y} {z}" for x, y, z in corners]
+    lines += ["f " + " ".join(map(str, face)) for face in faces]
+    (tmp_path / "quads.obj").write_text("\n".join(lines))
+    status, printed, _ = palpate(
+        capsys, "bake", tmp_path / "quads.obj", "-o", tmp_path / "b.npz",
+        "--edge-length", 0.3, "--json",
+    )  # fmt: skip
+    assert status == 0
+    assert json.loads(printed)["volume_m3"] == pytest.approx(1, rel=0.02)
+
+
+def test_press_reads_the_force_and_writes_displacements(cube_file, tmp_path, capsys, cube):
+    out = tmp_path / "u.npy"
+    status, printed, _ = palpate(
+        capsys, "press", cube_file, "--at", 0.021, 0.024, 0.06, "--by", 0, "1e-3", "-5e-3",
+        "--young", 10000, "--mode", "paper", "--displacements", out, "--json",
+    )  # fmt: skip
+    figures = json.loads(printed)
+    assert status == 0
+    touch = cube.touch_nearest([0.021, 0.024, 0.06], [0, 1e-3, -5e-3], 10000)
+    np.testing.assert_allclose(figures["force"], touch.force, rtol=1e-9)
+    np.testing.assert_allclose(figures["nodal_forces"], touch.nodal_forces, rtol=1e-9)
+    assert figures["triangle"] == touch.triangle.tolist()
+    assert sum(figures["alpha"]) == pytest.approx(1)
+    np.testing.assert_allclose(-np.sum(figures["nodal_forces"], axis=0), figures["force"])
+    displacements = np.load(out)
+    assert displacements.shape == (73, 3)
+    assert displacements.dtype == np.float64
+    largest = np.linalg.norm(displacements, axis=1).max()
+    assert figures["max_displacement"] == pytest.approx(largest)
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["bake", "none.obj", "-o", "out.npz"], "none.obj"),
+        (["bake", "notes.txt", "-o", "out.npz"], "obj, ply, stl or npz"),
+        (["bake", "broken.stl", "-o", "out.npz"], "broken.stl"),
+        (["bake", "broken.npz", "-o", "out.npz"], "broken.npz"),
+        (["bake", "empty.obj", "-o", "out.npz"], "empty.obj"),
+        (["bake", "plane.obj", "-o", "out.npz"], "flat"),
+        (["bake", "nan.npz", "-o", "out.npz"], "finite"),
+        (["bake", "other.npz", "-o", "out.npz"], "no array"),
+        (["bake", "cube.npz", "-o", "out.npz", "--poisson", "0.5"], "Poisson"),
+        (["bake", "cube.npz", "-o", "out.npz", "--young", "0"], "Young"),
+        (["bake", "cube.npz", "-o", "out.npz", "--pin-below", "2"], "fraction"),
+        (["bake", "cube.npz", "-o", "out.npz", "--metres-per-unit", "-1"], "--metres-per-unit"),
+        (["bake", "cube.npz", "-o", "out.npz", "--edge-length", "0.1"], "--edge-length"),
+        (["bake", "nopins.npz", "-o", "out.npz", "--pin-below", "0", "--up", "x"], "could move"),
+        (["bake", "cube.npz", "-o", "notes.txt/out.npz"], "written"),
+        (["info", "none.npz"], "none.npz"),
+        (["info", "notes.txt"], "notes.txt"),
+        (["press", "other.npz", "--at", "0", "0", "0", "--by", "0", "0", "0"], "other.npz"),
+        (["press", "{body}", "--at", "0", "0", "nan", "--by", "0", "0", "0"], "--at"),
+        (["press", "{body}", "--at", "0", "0", "0", "--by", "0", "inf", "0"], "--by"),
+        (["press", "{body}", "--at", "0", "0", "0", "--by", "0", "0", "0", "--young", "-1"], "You"),
+        (["press", "{body}", "--at", "0", "0", "--by", "0", "0", "0"], "--at"),
+        (["press", "{body}", "--at", "0", "0", "0"], "--by"),
+        (["fly"], "fly"),
+        ([], "COMMAND"),
+    ],
+)
+def test_bad_input_gets_one_line_status_2_and_no_file(
+    tmp_path, cube_file, cube_mesh, words, said, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    mesh, fixed = cube_mesh
+    np.savez("cube.npz", X=mesh.nodes, T=mesh.tets, fixed=fixed)
+    np.savez("nan.npz", X=mesh.nodes * np.nan, T=mesh.tets, fixed=fixed)
+    np.savez("other.npz", a=1)
+    lone = np.vstack([np.zeros(3), np.eye(3)]) * 0.1
+    np.savez("nopins.npz", X=lone[[1, 0, 3, 2]], T=np.array([[0, 1, 2, 3]]))
+    Path("notes.txt").write_text("hello")
+    Path("broken.stl").write_bytes(b"solid\nfacet normal 0 0")
+    Path("broken.npz").write_bytes(b"PK\x03\x04")
+    Path("empty.obj").write_text("# nothing\n")
+    Path("plane.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    words = [word.format(body=cube_file) for word in words]
+    ended = subprocess.run(
+        [sys.executable, "-m", "palpate.cli.main", *words],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert ended.returncode == 2
+    assert ended.stdout == ""
+    assert len(ended.stderr.splitlines()) == 1
+    assert ended.stderr.startswith("palpate: ")
+    assert said in ended.stderr
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+def test_pins_of_the_file_are_taken_unless_told_otherwise(tmp_path, capsys):
+    _, printed, _ = palpate(capsys, "bake", MOUSE, "-o", tmp_path / "a.npz", "--json")
+    assert json.loads(printed)["fixed_nodes"] == 110
+    _, printed, _ = palpate(
+        capsys, "bake", MOUSE, "-o", tmp_path / "b.npz", "--pin-below", 0.5, "--json"
+    )
+    assert json.loads(printed)["fixed_nodes"] > 300
