@@ -1,0 +1,175 @@
+"""Which serial ports there are, what is plugged in, and whether it answers HELLO."""
+
+from __future__ import annotations
+
+import errno
+import os
+import struct
+import sys
+import time
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import serial
+from serial.tools.list_ports import comports
+
+from ..errors import PalpateError
+from . import link
+
+BAUD = 115200
+ANSWER_SECONDS = 2.5
+"""Boards that restart when their port is opened need up to two seconds before they listen."""
+HELLO_EVERY_SECONDS = 0.1
+
+# Linux tells whether somebody holds the terminal alone; Python 3.11 has no name for the request.
+_TIOCGEXCL = 0x80045440
+
+_REASONS = {
+    errno.ENOENT: "there is no such port; plug the device in, or see 'palpate devices'",
+    errno.EACCES: (
+        "no permission to open it; on Linux add yourself to the group that owns it "
+        "(often dialout) and log in again"
+    ),
+    errno.EPERM: "no permission to open it; ask whoever runs this computer",
+    errno.EBUSY: "in use by another program; close that program",
+    errno.ENOTTY: "not a serial port; see 'palpate devices' for those there are",
+    errno.ENXIO: "nothing is connected to it; plug the device in",
+    errno.EIO: "it has gone or does not work; plug the device in again",
+}
+
+
+class PortError(PalpateError):
+    """A port that cannot be used; `reason` is the message without the port's name."""
+
+    def __init__(self, path: str, reason: str) -> None:
+        super().__init__(f"{path}: {reason}")
+        self.reason = reason
+
+
+@dataclass(frozen=True)
+class Port:
+    """A serial port and what is known of it; texts are empty where nothing is known."""
+
+    path: str
+    description: str = ""
+    vendor: str = ""
+    product: str = ""
+    usb_id: str = ""
+    """VID:PID in hexadecimal."""
+    hello: link.DeviceHello | None = None
+    """The device's answer."""
+    reason: str = ""
+    """Why there is no answer."""
+
+
+def list_ports(extra: Sequence[str] = (), seconds: float = ANSWER_SECONDS) -> list[Port]:
+    """All ports of this computer, then `extra` paths, each asked for HELLO for up to `seconds`.
+
+    A port that is no USB device is asked only when it is among `extra`: it may be the console, or
+    a machine that does not expect to be spoken to.
+    """
+    found = [
+        Port(
+            path=port.device,
+            description="" if port.description == "n/a" else port.description,
+            vendor=port.manufacturer or "",
+            product=port.product or "",
+            usb_id="" if port.vid is None else f"{port.vid:04x}:{port.pid:04x}",
+        )
+        for port in comports()
+    ]
+    known = {port.path for port in found}
+    found += [Port(path) for path in dict.fromkeys(extra) if path not in known]
+    with ThreadPoolExecutor(max_workers=8) as pool:
+        return list(pool.map(lambda port: _asked(port, port.path in extra, seconds), found))
+
+
+def _asked(port: Port, named: bool, seconds: float) -> Port:
+    hello, reason = None, ""
+    if port.usb_id or named:
+        try:
+            hello = say_hello(port.path, seconds)
+        except PortError as error:
+            reason = error.reason
+    else:
+        reason = "not asked, as it is no USB device; name it with --port to ask it"
+    return Port(port.path, port.description, port.vendor, port.product, port.usb_id, hello, reason)
+
+
+def say_hello(path: str, seconds: float = ANSWER_SECONDS) -> link.DeviceHello:
+    """The answer of the device at `path` to HELLO.
+
+    Raises PortError when the port cannot be opened or is in use, when nothing answers within
+    `seconds`, and when the device speaks another version of the link.
+    """
+    check_port(path)
+    try:
+        with serial.Serial(path, BAUD, timeout=0.02, write_timeout=0.5, exclusive=True) as port:
+            return _exchange(path, port, seconds)
+    except serial.SerialTimeoutException as error:
+        raise PortError(path, _silence(seconds)) from error
+    except serial.SerialException as error:
+        raise _port_error(path, error) from error
+
+
+def check_port(path: str) -> None:
+    """Raises PortError when `path` is no port that could be opened now; says nothing to it."""
+    if sys.platform == "win32":
+        # Ports are no files there; opening one is the only question that can be asked.
+        return
+    import fcntl
+
+    try:
+        descriptor = os.open(path, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
+    except OSError as error:
+        raise _port_error(path, error) from error
+    try:
+        if not os.isatty(descriptor):
+            raise PortError(path, _REASONS[errno.ENOTTY])
+        if sys.platform == "linux":
+            # The superuser may open what others have for themselves, and would steal their bytes.
+            taken = fcntl.ioctl(descriptor, _TIOCGEXCL, struct.pack("i", 0))
+            if struct.unpack("i", taken)[0]:
+                raise PortError(path, _REASONS[errno.EBUSY])
+    finally:
+        os.close(descriptor)
+
+
+def _exchange(path: str, port: serial.Serial, seconds: float) -> link.DeviceHello:
+    decoder = link.Decoder()
+    deadline = time.monotonic() + seconds
+    next_hello = 0.0
+    while (now := time.monotonic()) < deadline:
+        if now >= next_hello:
+            next_hello = now + HELLO_EVERY_SECONDS
+            port.write(link.encode(link.HostHello()))
+        for message in decoder.feed(port.read(max(1, port.in_waiting))):
+            match message:
+                case link.DeviceHello():
+                    return message
+                case link.OtherHello(protocol):
+                    raise PortError(
+                        path,
+                        f"speaks version {protocol} of the link, this Palpate speaks version "
+                        f"{link.PROTOCOL}; update the older of the two",
+                    )
+    raise PortError(path, _silence(seconds))
+
+
+def _silence(seconds: float) -> str:
+    return (
+        f"does not answer HELLO within {seconds:g} s; check that it is a haptic device "
+        "that speaks Palpate's link"
+    )
+
+
+def _port_error(path: str, error: OSError) -> PortError:
+    number = error.errno
+    if isinstance(error, serial.SerialException) and number in (None, errno.EAGAIN):
+        # pyserial's own words: a lock held by another program has the number of a read in vain.
+        number = errno.EBUSY if "lock" in str(error) else None
+    if number is None:
+        return PortError(path, f"cannot be used ({error}); plug the device in again")
+    unknown = f"cannot be opened ({os.strerror(number)}); plug the device in again"
+    return PortError(path, _REASONS.get(number, unknown))
