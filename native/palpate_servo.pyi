@@ -1,0 +1,305 @@
+"""The real-time thread of Palpate: god object, contact force, safety and device link.
+
+SI units everywhere (m, N, Pa, s). Arrays that are handed in are copied; arrays that come out are
+new. Anything with three numbers (list, numpy array, mathutils.Vector) serves as a vector.
+"""
+
+from collections.abc import Sequence
+from typing import Any, Self, TypedDict, final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+_Vector = Sequence[float] | NDArray[np.floating[Any]]
+_Matrix = Sequence[_Vector] | NDArray[np.floating[Any]]
+
+class Lateness(TypedDict):
+    """Time from the deadline to the waking, us; percentiles to 3 %."""
+
+    p50: float
+    p99: float
+    p99_9: float
+    max: float
+
+class Busy(TypedDict):
+    """Time spent working in a tick, us."""
+
+    mean: float
+    max: float
+
+class TimingCounters(TypedDict):
+    """How a thread kept its deadlines."""
+
+    ticks: int
+    missed: int
+    """Whole periods that passed without a tick and were skipped."""
+    late_ticks: int
+    """Ticks more than 200 us after their deadline."""
+    late_over_10_us: int
+    late_over_50_us: int
+    late_over_200_us: int
+    late_over_1000_us: int
+    lateness_us: Lateness
+    histogram: list[tuple[float, int]]
+    """(largest lateness in the bucket in us, ticks) for every bucket that holds any."""
+    longest_gap_us: float
+    busy_us: Busy
+    realtime: str
+    """For instance "fifo 20", or "none: " and the reason."""
+
+class DeviceGreeting(TypedDict):
+    """What the device said in its HELLO."""
+
+    name: str
+    protocol: int
+    axes: int
+    max_force: float
+    half_extents: list[float]
+    rate_hz: int
+
+class LinkCounters(TypedDict):
+    """What happened on the serial link."""
+
+    states: int
+    forces: int
+    lost: int
+    duplicates: int
+    out_of_order: int
+    crc_errors: int
+    cobs_errors: int
+    oversize: int
+    unknown: int
+    hellos: int
+    device_faults: int
+    unsent: int
+    reopened: int
+    last_fault: tuple[int, int] | None
+    device: DeviceGreeting | None
+
+class ProxyCounters(TypedDict):
+    """How hard the god object worked."""
+
+    most_steps: int
+    rescues: int
+
+class ServoCounters(TimingCounters):
+    """Timing, faults and link of a servo."""
+
+    rate_hz: int
+    faults: dict[str, int]
+    """Times each fault began: nan, too fast, stale, unplugged, wrong protocol, device fault,
+    internal error."""
+    link: LinkCounters
+    samples_lost: int
+    proxy: ProxyCounters
+
+@final
+class Body:
+    """A soft body's rest surface and contact stiffness; immutable."""
+
+    def __init__(self, nodes: ArrayLike, triangles: ArrayLike, contact_blocks: ArrayLike) -> None:
+        """Take nodes (s, 3) in m, triangles (m, 3) counter-clockwise seen from outside, and
+        contact_blocks (s, 3, 3), `L_aa^-1` at unit modulus (9).
+
+        Raises ValueError when a number is not finite, an index is out of range, a triangle has no
+        area, or the surface is open or turned inside out.
+        """
+
+    @property
+    def node_count(self) -> int: ...
+    @property
+    def triangle_count(self) -> int: ...
+    def contact(
+        self, triangle: int, alpha: _Vector, displacement: _Vector, young_modulus: float
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Nodal forces (3, 3) and force on the finger (3,), N: equations (11) to (14)."""
+
+    def closest_point(
+        self, p: _Vector
+    ) -> tuple[int, NDArray[np.float64], NDArray[np.float64], float]:
+        """Triangle, area coordinates, nearest surface point and signed distance (inside < 0)."""
+
+@final
+class Proxy:
+    """The god object alone, by the same code as in the servo."""
+
+    def __init__(self, body: Body) -> None: ...
+    def restart(self, position: _Vector) -> None:
+        """Set down at a position; inside the body nothing is felt until it was outside once."""
+
+    def move(
+        self, device: _Vector
+    ) -> tuple[bool, NDArray[np.float64], int, NDArray[np.float64]]:
+        """Follow the device: touching, position (3,), triangle (-1 if free), alpha (3,)."""
+
+    def follow_path(
+        self, devices: ArrayLike
+    ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+        """Follow devices (k, 3) in turn: positions (k, 3) and triangles (k,), -1 where free."""
+
+    @property
+    def steps(self) -> int:
+        """Features visited in the last move."""
+
+    @property
+    def rescues(self) -> int:
+        """How often the sign of the distance had to correct a sweep."""
+
+@final
+class Snapshot:
+    """One tick, whole: all values belong together."""
+
+    @property
+    def tick(self) -> int: ...
+    @property
+    def time(self) -> float:
+        """Since the start, s."""
+
+    @property
+    def probe(self) -> NDArray[np.float64]:
+        """Where the finger is, m, body coordinates."""
+
+    @property
+    def proxy(self) -> NDArray[np.float64]:
+        """God object, m; the probe itself while free."""
+
+    @property
+    def triangle(self) -> NDArray[np.int64]:
+        """Surface-local node numbers of the touched triangle, -1 while free."""
+
+    @property
+    def triangle_index(self) -> int:
+        """Touched triangle, -1 while free."""
+
+    @property
+    def alpha(self) -> NDArray[np.float64]:
+        """Area coordinates; exact zeros on edges and nodes, all zero while free."""
+
+    @property
+    def nodal_forces(self) -> NDArray[np.float64]:
+        """(12), (13), N, (3, 3)."""
+
+    @property
+    def contact_force(self) -> NDArray[np.float64]:
+        """(14), N, before safety, body axes."""
+
+    @property
+    def output_force(self) -> NDArray[np.float64]:
+        """N, after safety, body axes."""
+
+    @property
+    def touching(self) -> bool: ...
+    @property
+    def state(self) -> str:
+        """One of STATES."""
+
+    @property
+    def fault(self) -> str:
+        """Name of the fault while the state is "fault" (or "internal error" when stopped)."""
+
+    @property
+    def reason(self) -> str:
+        """Why it waits or is disabled, or empty."""
+
+    @property
+    def buttons(self) -> int: ...
+
+@final
+class Servo:
+    """A native thread between a device (or pointer) and a body."""
+
+    def __init__(
+        self,
+        body: Body,
+        *,
+        young_modulus: float,
+        rate_hz: int = 1000,
+        max_force: float = 3.0,
+        max_slew: float = 1000.0,
+        ramp_seconds: float = 0.25,
+        max_speed: float = 2.0,
+        glide_speed: float = 0.5,
+        record_seconds: float = 10.0,
+    ) -> None:
+        """Prepare a servo; ValueError for a rate beyond 100 to 8000 Hz or limits without sense.
+
+        max_force N, max_slew N/s, max_speed (device) and glide_speed (pointer) m/s.
+        """
+
+    def start_pointer(self, position: _Vector) -> None:
+        """Start with the probe set down at a position, then led by set_target."""
+
+    def start_serial(
+        self,
+        port: str,
+        *,
+        baud: int = 115200,
+        rotation: _Matrix = ...,
+        translation: _Vector = ...,
+        scale: float = 1.0,
+    ) -> None:
+        """Start with a device on a serial port; OSError when the port cannot be opened.
+
+        p_body = scale * rotation @ p_device + translation; the default is the identity.
+        """
+
+    def set_target(self, position: _Vector, restart: bool = False) -> None:
+        """Lead the pointer's probe; with restart it is lifted off and set down there."""
+
+    def set_young_modulus(self, young_modulus: float) -> None: ...
+    def set_device_frame(self, rotation: _Matrix, translation: _Vector, scale: float) -> None:
+        """Map the device elsewhere; the probe is lifted off and set down at its new place."""
+
+    def set_enabled(self, enabled: bool) -> None:
+        """False: zero force from the next tick on. True: the force ramps up."""
+
+    def snapshot(self) -> Snapshot:
+        """The newest tick; state "stopped" before the start and after the end."""
+
+    def samples(self) -> NDArray[np.void]:
+        """All recorded ticks since the last call: tick, time, probe, proxy, force, output, state.
+
+        state is an index into STATES.
+        """
+
+    def counters(self) -> ServoCounters: ...
+    def stop(self) -> None:
+        """Send zero force and end the thread; nothing happens the second time."""
+
+    @property
+    def running(self) -> bool: ...
+    def __enter__(self) -> Self: ...
+    def __exit__(self, kind: object, value: object, trace: object, /) -> None: ...
+
+@final
+class BareTimer:
+    """A native thread that only sleeps and wakes: what the machine can do at best."""
+
+    def __init__(self, rate_hz: int = 1000) -> None: ...
+    def counters(self) -> TimingCounters: ...
+    def stop(self) -> TimingCounters: ...
+
+@final
+class Decoder:
+    """Cuts bytes of the link into payloads."""
+
+    def __init__(self) -> None: ...
+    def feed(self, data: bytes) -> list[bytes]: ...
+    @property
+    def crc_errors(self) -> int: ...
+    @property
+    def cobs_errors(self) -> int: ...
+    @property
+    def oversize(self) -> int: ...
+
+def bare_timer(rate_hz: int, seconds: float) -> TimingCounters:
+    """Run a BareTimer for some seconds."""
+
+def encode_frame(payload: bytes) -> bytes:
+    """COBS(payload + CRC) and a zero byte; ValueError beyond 1 to 58 bytes."""
+
+def stop_all() -> None:
+    """Stop every servo that still runs; registered with atexit."""
+
+STATES: tuple[str, ...]
+__version__: str

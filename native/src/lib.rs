@@ -1,0 +1,22 @@
+//! The real-time thread of Palpate: a probe meets a soft body at 1 kHz.
+//!
+//! One tick reads a [`device`], moves the [`proxy`] (god object) on the rest [`surface`], computes
+//! the [`contact`] force (11) to (14), passes it through [`safety`], gives it to the device and
+//! publishes a snapshot ([`servo`]). The tick allocates nothing, takes no lock and knows nothing
+//! of Python; the optional `python` feature adds the thin binding.
+
+pub mod clock;
+pub mod closest;
+pub mod codec;
+pub mod contact;
+pub mod device;
+pub mod pointer;
+pub mod proxy;
+#[cfg(feature = "python")]
+mod python;
+pub mod safety;
+pub mod servo;
+mod sleeper;
+pub mod surface;
+pub mod thread;
+pub mod tree;

@@ -1,0 +1,206 @@
+//! What stands between a computed force and a motor: pure, and on by default.
+//!
+//! Going to zero is never delayed: permission withdrawn, a fault or a number that is not finite
+//! give zero in the same tick. Growing is limited three times, by ramp, clamp and slew.
+
+use glam::DVec3;
+
+/// Limits of the final force.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limits {
+    /// Largest force, N; the smaller of the user's and the device's.
+    pub max_force: f64,
+    /// Fastest growth or turn of the force, N/s.
+    pub max_slew: f64,
+    /// Time from silence to the full force after start, enabling and every fault, s.
+    pub ramp_seconds: f64,
+}
+
+/// Limits the force from tick to tick.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Safety {
+    gain: f64,
+    output: DVec3,
+}
+
+impl Safety {
+    /// Zero now, and a ramp when force is allowed again.
+    pub fn silence(&mut self) -> DVec3 {
+        *self = Self::default();
+        DVec3::ZERO
+    }
+
+    /// Ramp gain, 0 to 1.
+    pub fn gain(&self) -> f64 {
+        self.gain
+    }
+
+    /// The force to send for the force `wanted` (N), `dt` seconds after the last one.
+    ///
+    /// None when `wanted` or a limit is not finite: the caller reports the fault, the output is
+    /// zero and ramps up again. The output is never larger than `wanted`, so no limit can hold a
+    /// force that the body no longer gives.
+    pub fn limit(&mut self, wanted: DVec3, limits: &Limits, dt: f64) -> Option<DVec3> {
+        let numbers_are_sound = wanted.is_finite()
+            && limits.max_force >= 0.0
+            && limits.max_slew >= 0.0
+            && limits.ramp_seconds >= 0.0
+            && dt >= 0.0;
+        if !numbers_are_sound {
+            self.silence();
+            return None;
+        }
+        self.gain = if limits.ramp_seconds > 0.0 {
+            (self.gain + dt / limits.ramp_seconds).min(1.0)
+        } else {
+            1.0
+        };
+        let clamped = shorten(wanted, limits.max_force) * self.gain;
+        let change = shorten(clamped - self.output, limits.max_slew * dt);
+        self.output = shorten(self.output + change, clamped.length());
+        Some(self.output)
+    }
+}
+
+/// The vector, cut to `length` if it is longer, with its direction.
+fn shorten(v: DVec3, length: f64) -> DVec3 {
+    let own = v.length();
+    if own <= length {
+        v
+    } else if own.is_finite() {
+        v * (length / own)
+    } else {
+        // The square overflowed: scale down first.
+        let small = v / v.abs().max_element();
+        small * (length / small.length())
+    }
+}
+
+/// Measures a device's speed from its own clock.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Speedometer {
+    last: Option<(DVec3, u32, f64)>,
+}
+
+impl Speedometer {
+    /// Forgets the last position, for after a gap.
+    pub fn reset(&mut self) {
+        self.last = None;
+    }
+
+    /// Speed (m/s) at `position` (m), reached at `device_us` by the device's clock and `now`
+    /// seconds by the host's, which serves when the device's stands still.
+    pub fn speed(&mut self, position: DVec3, device_us: u32, now: f64) -> f64 {
+        let last = self.last.replace((position, device_us, now));
+        let Some((from, from_us, from_now)) = last else {
+            return 0.0;
+        };
+        let device_seconds = f64::from(device_us.wrapping_sub(from_us)) * 1e-6;
+        let seconds = if device_seconds > 0.0 && device_seconds < 1.0 {
+            device_seconds
+        } else {
+            now - from_now
+        };
+        let way = position.distance(from);
+        if way == 0.0 {
+            0.0
+        } else {
+            way / seconds.max(1e-6)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const OPEN: Limits = Limits {
+        max_force: 3.0,
+        max_slew: f64::MAX,
+        ramp_seconds: 0.0,
+    };
+    const DT: f64 = 1e-3;
+
+    #[test]
+    fn clamp_keeps_the_direction() {
+        let force = Safety::default()
+            .limit(DVec3::new(30.0, 40.0, 0.0), &OPEN, DT)
+            .unwrap();
+        assert!(force.distance(DVec3::new(1.8, 2.4, 0.0)) < 1e-12);
+        let huge = Safety::default()
+            .limit(DVec3::splat(1e300), &OPEN, DT)
+            .unwrap();
+        assert!((huge.length() - 3.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn force_ramps_from_nothing() {
+        let limits = Limits {
+            ramp_seconds: 0.1,
+            ..OPEN
+        };
+        let mut safety = Safety::default();
+        let mut last = 0.0;
+        for tick in 1..=100 {
+            let force = safety.limit(DVec3::X, &limits, DT).unwrap().x;
+            assert!((force - f64::from(tick) * 0.01).abs() < 1e-9);
+            assert!(force > last);
+            last = force;
+        }
+        assert_eq!(safety.limit(DVec3::X, &limits, DT), Some(DVec3::X));
+    }
+
+    #[test]
+    fn silence_is_immediate_and_ramps_again() {
+        let limits = Limits {
+            ramp_seconds: 0.1,
+            ..OPEN
+        };
+        let mut safety = Safety::default();
+        for _ in 0..200 {
+            safety.limit(DVec3::X, &limits, DT);
+        }
+        assert_eq!(safety.silence(), DVec3::ZERO);
+        assert!(safety.limit(DVec3::X, &limits, DT).unwrap().x < 0.011);
+    }
+
+    #[test]
+    fn slew_limits_growth_and_turning_but_never_holds_a_force() {
+        let limits = Limits {
+            max_slew: 100.0,
+            ..OPEN
+        };
+        let mut safety = Safety::default();
+        assert!((safety.limit(DVec3::X, &limits, DT).unwrap().x - 0.1).abs() < 1e-12);
+        for _ in 0..20 {
+            safety.limit(DVec3::X, &limits, DT);
+        }
+        let turned = safety.limit(DVec3::Y, &limits, DT).unwrap();
+        assert!(turned.distance(DVec3::X) <= 0.1 + 1e-12);
+        assert_eq!(safety.limit(DVec3::ZERO, &limits, DT), Some(DVec3::ZERO));
+    }
+
+    #[test]
+    fn numbers_that_are_not_finite_give_no_force() {
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let mut safety = Safety::default();
+            safety.limit(DVec3::X, &OPEN, DT);
+            assert_eq!(safety.limit(DVec3::new(0.0, bad, 0.0), &OPEN, DT), None);
+            let nan_limit = Limits {
+                max_force: f64::NAN,
+                ..OPEN
+            };
+            assert_eq!(safety.limit(DVec3::X, &nan_limit, DT), None);
+        }
+    }
+
+    #[test]
+    fn speed_uses_the_devices_clock_and_survives_its_wrap() {
+        let mut meter = Speedometer::default();
+        assert_eq!(meter.speed(DVec3::ZERO, u32::MAX - 499, 0.0), 0.0);
+        let speed = meter.speed(DVec3::X * 1e-3, 500, 5.0);
+        assert!((speed - 1.0).abs() < 1e-9);
+        let by_host = meter.speed(DVec3::X * 3e-3, 500, 5.001);
+        assert!((by_host - 2.0).abs() < 1e-6);
+    }
+}

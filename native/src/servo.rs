@@ -1,0 +1,332 @@
+//! One tick: read, proxy, contact, safety, write, publish. No allocation, no lock.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use rtrb::Producer;
+use triple_buffer::{Input, Output};
+
+use crate::contact::touch;
+use crate::device::{Device, DeviceFrame, Fault, LinkReport, Probe, Reading};
+use crate::proxy::Proxy;
+use crate::safety::{Limits, Safety};
+use crate::surface::Body;
+
+/// What may change while the servo runs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// Pa.
+    pub young_modulus: f64,
+    /// False: zero force at once.
+    pub enabled: bool,
+    /// Device to body.
+    pub frame: DeviceFrame,
+}
+
+/// What is fixed when the servo starts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Options {
+    /// Ticks a second.
+    pub rate_hz: u32,
+    /// Force limits; the device's own limit is applied too.
+    pub limits: Limits,
+    /// Fastest device motion under force, m/s.
+    pub max_speed: f64,
+}
+
+/// What the servo is doing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[repr(u8)]
+pub enum State {
+    /// No device yet, or one that is not ready.
+    Waiting,
+    /// The probe is off the surface.
+    Free,
+    /// The probe presses.
+    Touching,
+    /// Zero force because of a fault.
+    Fault,
+    /// Zero force because the user or the device's button wants it.
+    Disabled,
+    /// The thread does not run.
+    #[default]
+    Stopped,
+}
+
+impl State {
+    /// Name for people and tests.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Waiting => "waiting",
+            Self::Free => "free",
+            Self::Touching => "touching",
+            Self::Fault => "fault",
+            Self::Disabled => "disabled",
+            Self::Stopped => "stopped",
+        }
+    }
+}
+
+/// One tick, whole: all fields belong together.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Snapshot {
+    /// Counts from 1; 0 before the first tick.
+    pub tick: u64,
+    /// Since the start, s.
+    pub time: f64,
+    /// Where the finger is, m.
+    pub probe: DVec3,
+    /// God object, m.
+    pub proxy: DVec3,
+    /// Triangle and area coordinates while touching.
+    pub hold: Option<(u32, [f64; 3])>,
+    /// Node numbers of that triangle.
+    pub triangle: [u32; 3],
+    /// (12), (13), N.
+    pub nodal_forces: [DVec3; 3],
+    /// (14) before safety, N.
+    pub contact_force: DVec3,
+    /// Sent to the device, N, body axes.
+    pub output_force: DVec3,
+    /// Named state.
+    pub state: State,
+    /// The fault while `state` is [`State::Fault`].
+    pub fault: Option<Fault>,
+    /// Why it waits or is disabled, or empty.
+    pub reason: &'static str,
+    /// A bit a button.
+    pub buttons: u8,
+}
+
+/// A snapshot with the counters of the same tick.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Published {
+    /// The tick.
+    pub snapshot: Snapshot,
+    /// The link.
+    pub link: LinkReport,
+    /// Times each of [`Fault::ALL`] began.
+    pub faults: [u64; Fault::ALL.len()],
+    /// Samples not recorded because nobody emptied the ring.
+    pub samples_lost: u64,
+    /// Most features the proxy visited in one tick.
+    pub most_steps: u32,
+    /// Sweeps corrected by the sign of the distance.
+    pub rescues: u64,
+}
+
+/// One tick in the recording.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(C)]
+pub struct Sample {
+    /// Counts from 1.
+    pub tick: u64,
+    /// Since the start, s.
+    pub time: f64,
+    /// m.
+    pub probe: [f64; 3],
+    /// m.
+    pub proxy: [f64; 3],
+    /// (14), N.
+    pub force: [f64; 3],
+    /// After safety, N.
+    pub output: [f64; 3],
+    /// [`State`] as a number.
+    pub state: u64,
+}
+
+/// The loop's body and memory.
+pub struct Servo<D> {
+    body: Arc<Body>,
+    /// The device in use.
+    pub device: D,
+    options: Options,
+    settings: Output<Settings>,
+    snapshots: Input<Published>,
+    samples: Producer<Sample>,
+    proxy: Option<Proxy>,
+    probe: DVec3,
+    frame_epoch: u32,
+    safety: Safety,
+    published: Published,
+}
+
+impl<D: Device> Servo<D> {
+    /// A servo at rest.
+    pub fn new(
+        body: Arc<Body>,
+        device: D,
+        options: Options,
+        mut settings: Output<Settings>,
+        snapshots: Input<Published>,
+        samples: Producer<Sample>,
+    ) -> Self {
+        let frame_epoch = settings.read().frame.epoch;
+        Self {
+            body,
+            device,
+            options,
+            settings,
+            snapshots,
+            samples,
+            proxy: None,
+            probe: DVec3::ZERO,
+            frame_epoch,
+            safety: Safety::default(),
+            published: Published::default(),
+        }
+    }
+
+    /// Does one tick at `now`, s since the start.
+    pub fn tick(&mut self, now: f64) {
+        let dt = 1.0 / f64::from(self.options.rate_hz);
+        let settings = *self.settings.read();
+        let reading = self.device.read(now, dt, &settings.frame);
+        let mut shot = Snapshot {
+            tick: self.published.snapshot.tick + 1,
+            time: now,
+            ..Snapshot::default()
+        };
+        let mut max_force = self.options.limits.max_force;
+        match reading {
+            Reading::At(probe) | Reading::Passive(probe, _) => {
+                shot.buttons = probe.buttons;
+                max_force = max_force.min(probe.max_force);
+                shot.fault = self.follow(&probe, settings.frame.epoch);
+                if shot.fault.is_none() && probe.speed > self.options.max_speed {
+                    shot.fault = Some(Fault::TooFast);
+                }
+            }
+            Reading::Waiting(_) => {}
+            Reading::Fault(fault) => shot.fault = Some(fault),
+        }
+        let lost_sight = matches!(reading, Reading::Fault(_) | Reading::Waiting(_));
+        self.feel(&mut shot, lost_sight, settings.young_modulus);
+        (shot.state, shot.reason) = judge(&reading, &shot, &settings);
+        self.send(&mut shot, max_force, dt, &settings.frame);
+        self.publish(shot);
+    }
+
+    /// Moves the proxy after the probe.
+    fn follow(&mut self, probe: &Probe, frame_epoch: u32) -> Option<Fault> {
+        if !probe.position.is_finite() || !probe.speed.is_finite() {
+            return Some(Fault::Nan);
+        }
+        self.probe = probe.position;
+        let jumped = std::mem::replace(&mut self.frame_epoch, frame_epoch) != frame_epoch;
+        match &mut self.proxy {
+            Some(proxy) if !probe.restart && !jumped => proxy.follow(&self.body, self.probe),
+            Some(proxy) => proxy.restart(&self.body, self.probe),
+            None => self.proxy = Some(Proxy::new(&self.body, self.probe)),
+        }
+        None
+    }
+
+    /// Contact of the proxy and the probe, (11) to (14).
+    fn feel(&mut self, shot: &mut Snapshot, lost_sight: bool, young_modulus: f64) {
+        shot.probe = self.probe;
+        shot.proxy = self.probe;
+        let Some(proxy) = &self.proxy else {
+            return;
+        };
+        shot.proxy = proxy.position();
+        let (steps, rescues) = (proxy.steps(), proxy.rescues());
+        self.published.most_steps = self.published.most_steps.max(steps);
+        self.published.rescues = rescues;
+        if lost_sight {
+            return;
+        }
+        if let Some(hold) = proxy.hold() {
+            let displacement = shot.probe - shot.proxy;
+            let touch = touch(
+                &self.body,
+                hold.triangle,
+                hold.alpha,
+                displacement,
+                young_modulus,
+            );
+            if !touch.force.is_finite() {
+                shot.fault = shot.fault.or(Some(Fault::Nan));
+                return;
+            }
+            shot.hold = Some((hold.triangle, hold.alpha));
+            shot.triangle = self.body.triangles[hold.triangle as usize];
+            shot.nodal_forces = touch.nodal_forces;
+            shot.contact_force = touch.force;
+        }
+    }
+
+    /// Safety, then the device.
+    fn send(&mut self, shot: &mut Snapshot, max_force: f64, dt: f64, frame: &DeviceFrame) {
+        let permitted = matches!(shot.state, State::Free | State::Touching);
+        shot.output_force = if permitted {
+            let limits = Limits {
+                max_force,
+                ..self.options.limits
+            };
+            self.safety
+                .limit(shot.contact_force, &limits, dt)
+                .unwrap_or_else(|| {
+                    shot.fault = Some(Fault::Nan);
+                    (shot.state, shot.reason) = (State::Fault, "");
+                    DVec3::ZERO
+                })
+        } else {
+            self.safety.silence()
+        };
+        let enable = matches!(shot.state, State::Free | State::Touching);
+        self.device.write(shot.output_force, enable, frame);
+    }
+
+    fn publish(&mut self, shot: Snapshot) {
+        if let Some(fault) = shot.fault
+            && self.published.snapshot.fault != Some(fault)
+        {
+            self.published.faults[fault as usize] += 1;
+        }
+        self.published.snapshot = shot;
+        self.published.link = self.device.report();
+        let sample = Sample {
+            tick: shot.tick,
+            time: shot.time,
+            probe: shot.probe.to_array(),
+            proxy: shot.proxy.to_array(),
+            force: shot.contact_force.to_array(),
+            output: shot.output_force.to_array(),
+            state: shot.state as u64,
+        };
+        if self.samples.push(sample).is_err() {
+            self.published.samples_lost += 1;
+        }
+        self.snapshots.write(self.published);
+    }
+
+    /// Leaves the device limp and says so.
+    pub fn park(&mut self, fault: Option<Fault>) {
+        self.device.park();
+        let shot = &mut self.published.snapshot;
+        shot.state = State::Stopped;
+        shot.output_force = DVec3::ZERO;
+        shot.reason = "";
+        shot.fault = fault;
+        if let Some(fault) = fault {
+            self.published.faults[fault as usize] += 1;
+        }
+        self.published.link = self.device.report();
+        self.snapshots.write(self.published);
+    }
+}
+
+/// The state that a tick's findings make, and its reason.
+fn judge(reading: &Reading, shot: &Snapshot, settings: &Settings) -> (State, &'static str) {
+    if shot.fault.is_some() {
+        return (State::Fault, "");
+    }
+    match reading {
+        Reading::Waiting(reason) | Reading::Passive(_, reason) => (State::Waiting, reason),
+        _ if !settings.enabled => (State::Disabled, "switched off"),
+        Reading::At(probe) if probe.buttons != 0 => (State::Disabled, "device button"),
+        _ if shot.hold.is_some() => (State::Touching, ""),
+        _ => (State::Free, ""),
+    }
+}

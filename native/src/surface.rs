@@ -1,0 +1,394 @@
+//! The rest surface: geometry, neighbours across the free side, corner fans, pseudonormals.
+//!
+//! All of it is immutable after [`Body::new`], so the servo thread and tests share one `Arc`.
+
+use std::collections::HashMap;
+use std::fmt;
+
+use glam::{DMat3, DVec3};
+
+use crate::tree::Tree;
+
+/// Why a surface cannot be touched.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct BodyError(pub String);
+
+impl fmt::Display for BodyError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for BodyError {}
+
+/// Edge `k` of a triangle runs from its corner `k` to its corner `(k + 1) % 3`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct HalfEdge {
+    /// Triangle the half-edge belongs to.
+    pub triangle: u32,
+    /// Which of its three edges.
+    pub edge: u8,
+}
+
+/// A triangle with what every tick needs of it, in one place in memory.
+#[derive(Debug, Clone)]
+pub struct Face {
+    /// Corner positions, counter-clockwise seen from outside.
+    pub corners: [DVec3; 3],
+    /// Twice the area times the outward normal.
+    pub area_vector: DVec3,
+    /// Unit outward normal.
+    pub normal: DVec3,
+    /// Unit in-plane perpendicular of each edge, pointing into the triangle.
+    pub inward: [DVec3; 3],
+    /// The half-edge across each edge, on the other side of the free space there.
+    pub across: [HalfEdge; 3],
+    /// The fan each corner belongs to.
+    pub fans: [u32; 3],
+}
+
+impl Face {
+    /// Area coordinates of the orthogonal projection of `p` on the triangle's plane.
+    #[inline]
+    pub fn area_coordinates(&self, p: DVec3) -> [f64; 3] {
+        let [a, b, c] = self.corners;
+        let scale = 1.0 / self.area_vector.length_squared();
+        let of = |u: DVec3, v: DVec3| self.area_vector.dot((v - u).cross(p - u)) * scale;
+        [of(b, c), of(c, a), of(a, b)]
+    }
+
+    /// Position of area coordinates; exact at the corners.
+    #[inline]
+    pub fn at(&self, alpha: [f64; 3]) -> DVec3 {
+        self.corners[0] * alpha[0] + self.corners[1] * alpha[1] + self.corners[2] * alpha[2]
+    }
+
+    /// Positive outside the plane, negative inside, zero exactly on it: the sign is exact.
+    #[inline]
+    pub fn side(&self, p: DVec3) -> f64 {
+        -orientation(self.corners[0], self.corners[1], self.corners[2], p)
+    }
+}
+
+/// Shewchuk's adaptive orientation test: its sign is that of the exact determinant.
+#[inline]
+pub(crate) fn orientation(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> f64 {
+    let coord = |p: DVec3| robust::Coord3D {
+        x: p.x,
+        y: p.y,
+        z: p.z,
+    };
+    robust::orient3d(coord(a), coord(b), coord(c), coord(d))
+}
+
+/// The triangles around a node on one sheet of the surface.
+///
+/// A node where the surface touches itself has several fans; they are walked separately.
+#[derive(Debug, Clone, Copy)]
+pub struct Fan {
+    /// The node in the middle.
+    pub node: u32,
+    first: u32,
+    count: u32,
+    /// Sum of the face normals weighted with their corner angles.
+    pub normal: DVec3,
+}
+
+/// One corner of one triangle.
+#[derive(Debug, Clone, Copy)]
+pub struct Corner {
+    /// Triangle number.
+    pub triangle: u32,
+    /// Which of its corners.
+    pub corner: u8,
+}
+
+/// A soft body as the servo sees it: rest surface and contact stiffness per node.
+#[derive(Debug)]
+pub struct Body {
+    /// Rest positions, m.
+    pub nodes: Vec<DVec3>,
+    /// Node numbers per triangle, counter-clockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// `L_aa^-1` at unit modulus per node, N/m per Pa (9).
+    pub contact_blocks: Vec<DMat3>,
+    faces: Vec<Face>,
+    fans: Vec<Fan>,
+    fan_corners: Vec<Corner>,
+    edge_normals: Vec<[DVec3; 3]>,
+    node_normals: Vec<DVec3>,
+    tree: Tree,
+    size: f64,
+}
+
+impl Body {
+    /// Checks the surface and prepares neighbours, normals and the search tree.
+    ///
+    /// # Errors
+    /// [`BodyError`] for numbers that are not finite, indices out of range, triangles without an
+    /// area, open edges, or a surface turned inside out.
+    pub fn new(
+        nodes: Vec<DVec3>,
+        triangles: Vec<[u32; 3]>,
+        contact_blocks: Vec<DMat3>,
+    ) -> Result<Self, BodyError> {
+        check_arrays(&nodes, &triangles, &contact_blocks)?;
+        let mut faces = measure_faces(&nodes, &triangles)?;
+        check_volume(&faces)?;
+        let edges = edges_by_nodes(&triangles);
+        let edge_normals = join_edges(&triangles, &mut faces, &edges)?;
+        let (fans, fan_corners) = gather_fans(&triangles, &mut faces);
+        let mut node_normals = vec![DVec3::ZERO; nodes.len()];
+        for fan in &fans {
+            node_normals[fan.node as usize] += fan.normal;
+        }
+        let tree = Tree::new(&faces);
+        let size = tree.diagonal();
+        Ok(Self {
+            nodes,
+            triangles,
+            contact_blocks,
+            faces,
+            fans,
+            fan_corners,
+            edge_normals,
+            node_normals,
+            tree,
+            size,
+        })
+    }
+
+    /// All triangles with their geometry.
+    #[inline]
+    pub fn faces(&self) -> &[Face] {
+        &self.faces
+    }
+
+    /// One triangle with its geometry.
+    #[inline]
+    pub fn face(&self, triangle: u32) -> &Face {
+        &self.faces[triangle as usize]
+    }
+
+    /// The fan of triangles around a corner, counter-clockwise.
+    #[inline]
+    pub fn fan(&self, fan: u32) -> (&Fan, &[Corner]) {
+        let fan = &self.fans[fan as usize];
+        let first = fan.first as usize;
+        (fan, &self.fan_corners[first..first + fan.count as usize])
+    }
+
+    /// The search tree over the triangles.
+    #[inline]
+    pub fn tree(&self) -> &Tree {
+        &self.tree
+    }
+
+    /// Diagonal of the bounding box, m.
+    #[inline]
+    pub fn size(&self) -> f64 {
+        self.size
+    }
+
+    /// Sum of the normals of all triangles that meet in an edge.
+    #[inline]
+    pub fn edge_normal(&self, triangle: u32, edge: usize) -> DVec3 {
+        self.edge_normals[triangle as usize][edge]
+    }
+
+    /// Angle-weighted normal of a node over all its triangles.
+    #[inline]
+    pub fn node_normal(&self, node: u32) -> DVec3 {
+        self.node_normals[node as usize]
+    }
+}
+
+fn check_arrays(
+    nodes: &[DVec3],
+    triangles: &[[u32; 3]],
+    contact_blocks: &[DMat3],
+) -> Result<(), BodyError> {
+    if triangles.is_empty() {
+        return Err(BodyError("the body has no triangles".into()));
+    }
+    if triangles.len() > (u32::MAX / 4) as usize {
+        return Err(BodyError("the body has too many triangles".into()));
+    }
+    if contact_blocks.len() != nodes.len() {
+        return Err(BodyError(format!(
+            "contact_blocks has {} blocks for {} nodes; one 3 x 3 block a node is needed",
+            contact_blocks.len(),
+            nodes.len()
+        )));
+    }
+    if let Some(i) = nodes.iter().position(|p| !p.is_finite()) {
+        return Err(BodyError(format!(
+            "node {i} has a coordinate that is not finite"
+        )));
+    }
+    if let Some(i) = contact_blocks.iter().position(|b| !b.is_finite()) {
+        return Err(BodyError(format!("contact block {i} is not finite")));
+    }
+    for (t, triangle) in triangles.iter().enumerate() {
+        if triangle.iter().any(|&n| n as usize >= nodes.len()) {
+            return Err(BodyError(format!(
+                "triangle {t} names a node beyond the {} nodes given",
+                nodes.len()
+            )));
+        }
+    }
+    Ok(())
+}
+
+fn measure_faces(nodes: &[DVec3], triangles: &[[u32; 3]]) -> Result<Vec<Face>, BodyError> {
+    let unset = HalfEdge {
+        triangle: u32::MAX,
+        edge: 0,
+    };
+    triangles
+        .iter()
+        .enumerate()
+        .map(|(t, triangle)| {
+            let corners = triangle.map(|n| nodes[n as usize]);
+            let area_vector = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+            let normal = area_vector
+                .try_normalize()
+                .ok_or_else(|| BodyError(format!("triangle {t} has no area")))?;
+            let inward = [0, 1, 2]
+                .map(|k: usize| normal.cross((corners[(k + 1) % 3] - corners[k]).normalize()));
+            Ok(Face {
+                corners,
+                area_vector,
+                normal,
+                inward,
+                across: [unset; 3],
+                fans: [u32::MAX; 3],
+            })
+        })
+        .collect()
+}
+
+fn check_volume(faces: &[Face]) -> Result<(), BodyError> {
+    let origin = faces[0].corners[0];
+    let six_volumes: f64 = faces
+        .iter()
+        .map(|f| (f.corners[0] - origin).dot(f.area_vector))
+        .sum();
+    if six_volumes > 0.0 {
+        Ok(())
+    } else {
+        Err(BodyError(
+            "the surface is turned inside out or encloses nothing; \
+             triangles must be counter-clockwise seen from outside"
+                .into(),
+        ))
+    }
+}
+
+fn edges_by_nodes(triangles: &[[u32; 3]]) -> HashMap<(u32, u32), Vec<HalfEdge>> {
+    let mut edges: HashMap<(u32, u32), Vec<HalfEdge>> = HashMap::new();
+    for (t, triangle) in triangles.iter().enumerate() {
+        for k in 0..3_u8 {
+            let (a, b) = edge_nodes(triangle, k);
+            edges
+                .entry((a.min(b), a.max(b)))
+                .or_default()
+                .push(HalfEdge {
+                    triangle: t as u32,
+                    edge: k,
+                });
+        }
+    }
+    edges
+}
+
+fn edge_nodes(triangle: &[u32; 3], edge: u8) -> (u32, u32) {
+    let k = edge as usize;
+    (triangle[k], triangle[(k + 1) % 3])
+}
+
+/// Pairs the half-edges of every edge and returns the sum of normals along each.
+///
+/// Where more than two triangles meet, each is joined to the first one met when turning about the
+/// edge from its outer side: the two then bound the same free space.
+fn join_edges(
+    triangles: &[[u32; 3]],
+    faces: &mut [Face],
+    edges: &HashMap<(u32, u32), Vec<HalfEdge>>,
+) -> Result<Vec<[DVec3; 3]>, BodyError> {
+    let mut normals = vec![[DVec3::ZERO; 3]; faces.len()];
+    for (&(low, high), half_edges) in edges {
+        let forward = |h: &HalfEdge| edge_nodes(&triangles[h.triangle as usize], h.edge).0 == low;
+        let mut opposite: Vec<HalfEdge> =
+            half_edges.iter().filter(|h| !forward(h)).copied().collect();
+        if low == high || opposite.len() * 2 != half_edges.len() {
+            return Err(BodyError(format!(
+                "the surface is not closed or not oriented at the edge between nodes {low} and {high}"
+            )));
+        }
+        for half_edge in half_edges.iter().filter(|h| forward(h)) {
+            let face = &faces[half_edge.triangle as usize];
+            let (x, y) = (face.inward[half_edge.edge as usize], face.normal);
+            let turn = |h: &HalfEdge| {
+                let w = faces[h.triangle as usize].inward[h.edge as usize];
+                let angle = w.dot(y).atan2(w.dot(x));
+                if angle < 0.0 {
+                    angle + std::f64::consts::TAU
+                } else {
+                    angle
+                }
+            };
+            let nearest = (0..opposite.len())
+                .min_by(|&i, &j| turn(&opposite[i]).total_cmp(&turn(&opposite[j])))
+                .expect("as many opposite half-edges as forward ones");
+            let partner = opposite.swap_remove(nearest);
+            faces[half_edge.triangle as usize].across[half_edge.edge as usize] = partner;
+            faces[partner.triangle as usize].across[partner.edge as usize] = *half_edge;
+        }
+        let sum = half_edges
+            .iter()
+            .map(|h| faces[h.triangle as usize].normal)
+            .sum();
+        for h in half_edges {
+            normals[h.triangle as usize][h.edge as usize] = sum;
+        }
+    }
+    Ok(normals)
+}
+
+/// Walks around every corner over the joined edges.
+fn gather_fans(triangles: &[[u32; 3]], faces: &mut [Face]) -> (Vec<Fan>, Vec<Corner>) {
+    let mut fans = Vec::new();
+    let mut fan_corners = Vec::with_capacity(3 * faces.len());
+    for start in 0..faces.len() {
+        for (start_corner, &node) in triangles[start].iter().enumerate() {
+            if faces[start].fans[start_corner] != u32::MAX {
+                continue;
+            }
+            let number = fans.len() as u32;
+            let first = fan_corners.len() as u32;
+            let mut normal = DVec3::ZERO;
+            let (mut t, mut c) = (start, start_corner);
+            while faces[t].fans[c] == u32::MAX {
+                let face = &mut faces[t];
+                face.fans[c] = number;
+                let to_next = face.corners[(c + 1) % 3] - face.corners[c];
+                let to_last = face.corners[(c + 2) % 3] - face.corners[c];
+                normal += face.normal * to_next.angle_between(to_last);
+                fan_corners.push(Corner {
+                    triangle: t as u32,
+                    corner: c as u8,
+                });
+                let next = face.across[(c + 2) % 3];
+                (t, c) = (next.triangle as usize, next.edge as usize);
+            }
+            fans.push(Fan {
+                node,
+                first,
+                count: fan_corners.len() as u32 - first,
+                normal,
+            });
+        }
+    }
+    (fans, fan_corners)
+}

@@ -1,0 +1,169 @@
+//! The servo's thread and the ends that stay outside of it.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
+use std::thread::JoinHandle;
+
+use rtrb::{Consumer, RingBuffer};
+use triple_buffer::{Input, Output, triple_buffer};
+
+use crate::clock::{Pace, Timing};
+use crate::device::{Device, Fault};
+use crate::servo::{Options, Published, Sample, Servo, Settings};
+use crate::sleeper::ask_for_real_time;
+use crate::surface::Body;
+
+/// A thread that wakes at a fixed rate until it is stopped.
+#[derive(Debug)]
+pub struct Paced {
+    stop: Arc<AtomicBool>,
+    thread: Mutex<Option<JoinHandle<()>>>,
+    timing: Arc<Timing>,
+    realtime: Arc<OnceLock<String>>,
+}
+
+impl Paced {
+    fn spawn(
+        name: &str,
+        rate_hz: u32,
+        work: impl FnOnce(&mut dyn FnMut() -> Option<f64>) + Send + 'static,
+    ) -> std::io::Result<Self> {
+        let stop = Arc::new(AtomicBool::new(false));
+        let timing = Arc::new(Timing::default());
+        let realtime = Arc::new(OnceLock::new());
+        let thread = std::thread::Builder::new().name(name.to_owned()).spawn({
+            let (stop, timing, realtime) = (stop.clone(), timing.clone(), realtime.clone());
+            move || {
+                let _ = realtime.set(ask_for_real_time(rate_hz));
+                let mut pace = Pace::new(rate_hz);
+                work(&mut || {
+                    let wake = pace.wait(&timing);
+                    (!stop.load(Relaxed)).then_some(wake.seconds)
+                });
+            }
+        })?;
+        Ok(Self {
+            stop,
+            thread: Mutex::new(Some(thread)),
+            timing,
+            realtime,
+        })
+    }
+
+    /// A thread that does nothing but wake: what the machine can do at best.
+    ///
+    /// # Errors
+    /// When the system gives no thread.
+    pub fn bare(rate_hz: u32) -> std::io::Result<Self> {
+        Self::spawn("palpate-bare", rate_hz, |wake| while wake().is_some() {})
+    }
+
+    /// Its timing counters.
+    pub fn timing(&self) -> &Timing {
+        &self.timing
+    }
+
+    /// What the system said to the wish for real-time priority.
+    pub fn realtime(&self) -> &str {
+        self.realtime.get().map_or("not asked yet", String::as_str)
+    }
+
+    /// Whether the thread has not been stopped and has not ended.
+    pub fn is_running(&self) -> bool {
+        locked(&self.thread)
+            .as_ref()
+            .is_some_and(|t| !t.is_finished())
+    }
+
+    /// Ends the thread and waits for it; nothing happens the second time.
+    pub fn stop(&self) {
+        self.stop.store(true, Relaxed);
+        let thread = locked(&self.thread).take();
+        if let Some(thread) = thread {
+            // A panic was caught inside and is told in the last snapshot.
+            let _ = thread.join();
+        }
+    }
+}
+
+impl Drop for Paced {
+    fn drop(&mut self) {
+        self.stop();
+    }
+}
+
+/// These locks are among callers only; the servo thread holds none.
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A running servo, seen from outside.
+pub struct Running {
+    paced: Paced,
+    settings: Mutex<Input<Settings>>,
+    snapshots: Mutex<Output<Published>>,
+    samples: Mutex<Consumer<Sample>>,
+}
+
+impl Running {
+    /// Starts a thread for `device`.
+    ///
+    /// # Errors
+    /// When the system gives no thread.
+    pub fn start<D: Device + 'static>(
+        body: Arc<Body>,
+        device: D,
+        options: Options,
+        settings: Settings,
+        record_samples: usize,
+    ) -> std::io::Result<Self> {
+        let (settings_in, settings_out) = triple_buffer(&settings);
+        let (snapshots_in, snapshots_out) = triple_buffer(&Published::default());
+        let (samples_in, samples_out) = RingBuffer::new(record_samples.max(1));
+        let mut servo = Servo::new(
+            body,
+            device,
+            options,
+            settings_out,
+            snapshots_in,
+            samples_in,
+        );
+        let paced = Paced::spawn("palpate-servo", options.rate_hz, move |wake| {
+            let run = catch_unwind(AssertUnwindSafe(|| {
+                while let Some(now) = wake() {
+                    servo.tick(now);
+                }
+            }));
+            servo.park(run.is_err().then_some(Fault::Internal));
+        })?;
+        Ok(Self {
+            paced,
+            settings: Mutex::new(settings_in),
+            snapshots: Mutex::new(snapshots_out),
+            samples: Mutex::new(samples_out),
+        })
+    }
+
+    /// Hands new settings to the thread.
+    pub fn set(&self, settings: Settings) {
+        locked(&self.settings).write(settings);
+    }
+
+    /// The newest tick.
+    pub fn published(&self) -> Published {
+        *locked(&self.snapshots).read()
+    }
+
+    /// Takes all recorded samples out of the ring.
+    pub fn drain(&self) -> Vec<Sample> {
+        let mut consumer = locked(&self.samples);
+        let count = consumer.slots();
+        (0..count).map_while(|_| consumer.pop().ok()).collect()
+    }
+
+    /// The thread.
+    pub fn paced(&self) -> &Paced {
+        &self.paced
+    }
+}
