@@ -1,0 +1,144 @@
+# From a fresh clone: `make demo` and `make test` need Python 3.11 or 3.13, Rust and make; they fetch and
+# build the rest, into .venv, .venv-bpy-* and build/. `make help` lists what there is.
+
+SHELL := bash
+.SHELLFLAGS := -euo pipefail -c
+.DELETE_ON_ERROR:
+MAKEFLAGS += --no-builtin-rules
+.DEFAULT_GOAL := help
+
+PYTHON ?= python3
+# A Blender with a window on a virtual screen; where there is none, the windowed tests are skipped.
+BLENDER_GUI ?= ../shared/blender-gui/blender-gui
+
+# One thread for BLAS: figures and tests do not depend on the machine's cores.
+export OPENBLAS_NUM_THREADS := 1
+export OMP_NUM_THREADS := 1
+export MKL_NUM_THREADS := 1
+export PIP_DISABLE_PIP_VERSION_CHECK := 1
+
+VENV := .venv
+BIN := $(VENV)/bin
+# pyo3 asks this interpreter; the same for all cargo calls, or each would build everything anew.
+export PYO3_PYTHON := $(abspath $(BIN)/python)
+
+# The bpy module for each Python, and the Blenders that `make test-all` tries.
+BPY_OF_3.11 := 5.0.1
+BPY_OF_3.13 := 5.2.3
+PYTHON_OF_4.5.15 := 3.11
+PYTHON_OF_5.0.1 := 3.11
+PYTHON_OF_5.2.3 := 3.13
+ALL_BPY := 4.5.15 5.0.1 5.2.3
+PYTHON_VERSION := $(shell $(PYTHON) -c 'import sys; print("%d.%d" % sys.version_info[:2])')
+BPY ?= $(BPY_OF_$(PYTHON_VERSION))
+BPY_VENV := .venv-bpy-$(BPY)
+
+CARGO := cargo
+CRATE := --locked --manifest-path native/Cargo.toml
+NATIVE_SOURCES := $(wildcard native/*.toml native/*.lock native/*.pyi native/build.rs) \
+  $(shell find native/src -name '*.rs' 2>/dev/null)
+EXTENSION_SOURCES := __init__.py LICENSE blender_manifest.toml \
+  $(shell find addon operators core cli -type f -not -path '*/__pycache__/*' 2>/dev/null) \
+  $(shell find release -name '*.py' -o -name '*.txt')
+
+.PHONY: help
+help: ## this list
+	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 22
+
+# ---------------------------------------------------------------------------------------- setup
+
+.PHONY: setup
+setup: $(VENV)/.servo-installed build/typing/palpate $(BPY_VENV)/.installed ## environments with everything in them
+
+# What follows the name of a stamp is newer than all it was made from.
+$(VENV)/.installed: pyproject.toml
+	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	$(BIN)/pip install --quiet --editable '.[dev]'
+	touch $@
+
+build/servo/.built: $(NATIVE_SOURCES) $(VENV)/.installed
+	rm -rf build/servo
+	mkdir -p build/servo
+	$(BIN)/maturin build --release --quiet $(CRATE) --out build/servo
+	touch $@
+
+$(VENV)/.servo-installed: build/servo/.built
+	$(BIN)/pip install --quiet --force-reinstall --no-deps build/servo/*.whl
+	touch $@
+
+# The name under which type checkers find the package (see pyproject.toml).
+build/typing/palpate:
+	mkdir -p build/typing
+	ln -sfn ../.. $@
+
+# Blender as a module, alone with pytest: what the extension imports must come from its own wheels.
+.venv-bpy-/.installed:
+	@echo 'Blender as a module exists for Python 3.11 and 3.13, and $(PYTHON) is $(PYTHON_VERSION).' \
+	  'Name one of these (make PYTHON=python3.13 ...) or a Blender (make BPY=5.2.3 ...).' >&2; exit 1
+
+.PRECIOUS: .venv-bpy-%/.installed
+.venv-bpy-%/.installed:
+	python=$$(release/find_python.sh $(PYTHON_OF_$*) $(PYTHON)); "$$python" -m venv .venv-bpy-$*
+	.venv-bpy-$*/bin/pip install --quiet bpy==$* pytest pytest-timeout
+	touch $@
+
+# ------------------------------------------------------------------------------------- packages
+
+.PHONY: package
+package: build/packages/.made ## the extension for Blender on this system, checked by Blender's own tool
+	@ls -l build/packages/palpate-[0-9]*.zip
+	@echo 'Packages for other systems need palpate_servo compiled there: .github/workflows/packages.yml' \
+	  'does it, and hands the wheels to the same script, release/build_extension.py.'
+
+build/packages/.made: build/servo/.built $(EXTENSION_SOURCES) | $(BPY_VENV)/.installed
+	rm -f build/packages/palpate-[0-9]*.zip
+	$(BIN)/python release/build_extension.py --servo-wheel build/servo/*.whl --blender $(BPY_VENV)
+	touch $@
+
+# ---------------------------------------------------------------------------------------- tests
+# Each part leaves its output in build/reports, so that its closing lines can be read together.
+
+REPORT = 2>&1 | tee build/reports/$@.txt
+
+.PHONY: test
+test: lint test-native test-core test-addon test-gui ## everything that must hold, in a few minutes
+
+.PHONY: test-all
+test-all: test $(ALL_BPY:%=test-addon-%) ## the same, and the extension in every supported Blender
+
+build/reports:
+	mkdir -p $@
+
+.PHONY: lint
+lint: $(VENV)/.servo-installed build/typing/palpate | build/reports ## linters, formatters and types
+	$(CARGO) fmt --check --manifest-path native/Cargo.toml
+	$(CARGO) clippy --quiet $(CRATE) --all-targets --all-features -- -D warnings
+	$(BIN)/ruff check --quiet .
+	$(BIN)/ruff format --check --quiet .
+	$(BIN)/mypy $(REPORT)
+	$(BIN)/mypy release/*.py
+
+.PHONY: test-native
+test-native: $(VENV)/.installed | build/reports ## the servo's own tests
+	$(CARGO) test --quiet $(CRATE) $(REPORT)
+
+.PHONY: test-core
+test-core: $(VENV)/.servo-installed | build/reports ## core, command line and servo, without Blender
+	$(BIN)/pytest -q $(REPORT)
+
+.PHONY: test-addon
+test-addon: test-addon-$(BPY) ## the package installed in Blender as a module, driven by its operators
+
+.PHONY: $(ALL_BPY:%=test-addon-%)
+$(ALL_BPY:%=test-addon-%): test-addon-%: .venv-bpy-%/.installed build/packages/.made | build/reports
+	.venv-bpy-$*/bin/pytest -q tests/addon $(REPORT)
+
+.PHONY: test-gui
+test-gui: $(VENV)/.servo-installed build/servo/.built | build/reports ## the package in a Blender with a window, where there is one
+	BLENDER_GUI='$(BLENDER_GUI)' BPY_VENV='$(BPY_VENV)' $(BIN)/pytest -q tests/gui $(REPORT)
+
+# ------------------------------------------------------------------------------------------ rest
+
+.PHONY: clean
+clean: ## delete everything made, except the environments
+	rm -rf build native/target *.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis
