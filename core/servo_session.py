@@ -1,0 +1,77 @@
+"""From a soft body to the native thread that touches it, and from its snapshots back."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from palpate_servo import Body, Servo, Snapshot
+
+from .errors import PalpateError
+from .soft_body import SoftBody
+
+
+def native_body(body: SoftBody) -> Body:
+    """The rest surface and contact blocks of a body as the native thread holds them.
+
+    Raises
+    ------
+    PalpateError
+        A boundary on which a god object cannot walk.
+    """
+    try:
+        return Body(
+            body.mesh.nodes[body.mesh.surface_nodes],
+            body.mesh.surface_local_triangles,
+            body.contact_blocks,
+        )
+    except ValueError as problem:
+        raise PalpateError(
+            f"servo: the body's surface cannot be touched ({problem}); bake it again, with another "
+            "edge length if that does not help"
+        ) from problem
+
+
+def servo_for(
+    body: SoftBody,
+    *,
+    young_modulus: float | None = None,
+    rate_hz: int = 1000,
+    max_force: float = 3.0,
+    record_seconds: float = 10.0,
+) -> Servo:
+    """A servo for this body, ready to be started with a pointer or a serial device.
+
+    Parameters
+    ----------
+    young_modulus : pascal; the body's own unless given. Can be changed while it runs.
+    rate_hz : 100 to 8000.
+    max_force : newton; the clamp on what any device is told.
+    record_seconds : how long samples are kept until somebody takes them.
+
+    Raises
+    ------
+    PalpateError
+        A setting out of its range, or a body that cannot be touched.
+    """
+    modulus = body.young_modulus if young_modulus is None else young_modulus
+    surface = native_body(body)
+    try:
+        return Servo(
+            surface,
+            young_modulus=modulus,
+            rate_hz=rate_hz,
+            max_force=max_force,
+            record_seconds=record_seconds,
+        )
+    except (ValueError, OverflowError) as problem:
+        raise PalpateError(f"servo: {problem}") from problem
+
+
+def displacements_of(
+    body: SoftBody, snapshot: Snapshot, young_modulus: float | None = None
+) -> NDArray[np.float64] | None:
+    """Displacements (n, 3) of the free surface nodes that a snapshot asks for, None while free."""
+    if not snapshot.touching:
+        return None
+    triangle = body.mesh.surface_nodes[snapshot.triangle]
+    return body.deform(triangle, snapshot.nodal_forces, young_modulus)
