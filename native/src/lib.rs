@@ -10,7 +10,9 @@ pub mod closest;
 pub mod codec;
 pub mod contact;
 pub mod device;
+pub mod link;
 pub mod pointer;
+pub mod port;
 pub mod proxy;
 #[cfg(feature = "python")]
 mod python;

@@ -4,14 +4,16 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
 use glam::{DMat3, DVec3};
 use numpy::{AllowTypeChange, PyArray1, PyArray2, PyArrayLike2, PyArrayLike3};
-use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyByteArray, PyBytes, PyDict, PyList};
 use triple_buffer::{Input, triple_buffer};
 
 use crate::clock::{BUCKETS, LATE_LIMITS_NS, Timing, bucket_limit_ns};
 use crate::device::{DeviceFrame, Fault, LinkReport};
+use crate::link::LinkDevice;
 use crate::pointer::{Pointer, Target};
+use crate::port::SerialPort;
 use crate::safety::Limits;
 use crate::servo::{Options, Published, Sample, Settings, State};
 use crate::thread::{Paced, Running};
@@ -19,6 +21,7 @@ use crate::{closest, codec, contact, proxy, surface};
 
 type Triple = [f64; 3];
 type Rows = [[f64; 3]; 3];
+const IDENTITY: Rows = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 /// Every servo that may still run, so that the interpreter's exit can stop it.
 static STARTED: Mutex<Vec<Weak<Running>>> = Mutex::new(Vec::new());
@@ -465,6 +468,42 @@ impl Servo {
             )
         })?;
         *locked(&self.targets) = Some((input, 0));
+        self.keep(running);
+        Ok(())
+    }
+
+    #[pyo3(signature = (port, *, baud=115_200, rotation=IDENTITY, translation=[0.0; 3], scale=1.0))]
+    fn start_serial(
+        &self,
+        py: Python<'_>,
+        port: String,
+        baud: u32,
+        rotation: Rows,
+        translation: Triple,
+        scale: f64,
+    ) -> PyResult<()> {
+        self.refuse_if_running()?;
+        let frame = device_frame(rotation, translation, scale)?;
+        let settings = {
+            let mut settings = locked(&self.settings);
+            settings.frame = frame;
+            *settings
+        };
+        let running = py.detach(|| {
+            let device = LinkDevice::open(SerialPort {
+                path: port.clone(),
+                baud,
+            })
+            .map_err(|e| PyOSError::new_err(format!("cannot open the port {port}: {e}")))?;
+            Ok::<_, PyErr>(Running::start(
+                self.body.clone(),
+                device,
+                self.options,
+                settings,
+                self.record_samples,
+            )?)
+        })?;
+        *locked(&self.targets) = None;
         self.keep(running);
         Ok(())
     }

@@ -1,0 +1,305 @@
+//! The serial device: link of version 1 as the host speaks it, with all that goes wrong on a wire.
+
+use std::io::ErrorKind;
+
+use glam::DVec3;
+
+use crate::codec::{
+    self, Decoder, DeviceState, Greeting, MAX_FRAME, Message, PROTOCOL, force_payload,
+    hello_payload,
+};
+use crate::device::{Device, DeviceFrame, Fault, LinkReport, Probe, Reading};
+use crate::port::{Opener, Wire};
+use crate::safety::Speedometer;
+
+/// HELLO is repeated this often until it is answered, s.
+const HELLO_SECONDS: f64 = 0.05;
+/// Without a STATE for this long there is no force, s.
+const STALE_SECONDS: f64 = 0.02;
+/// A port that is gone is tried again this often, s.
+const REOPEN_SECONDS: f64 = 0.2;
+/// Zero forces sent when parking: one may be lost on the wire.
+const PARKING_FRAMES: u32 = 3;
+/// Reads in one tick at most, so that a flood of bytes cannot hold it up.
+const READS_PER_TICK: usize = 16;
+
+/// The newest STATE and when it came.
+#[derive(Debug, Clone, Copy)]
+struct Newest {
+    state: DeviceState,
+    speed: f64,
+}
+
+/// A device on a line that speaks the link.
+pub struct LinkDevice<O: Opener> {
+    opener: O,
+    wire: Option<O::Wire>,
+    retry_at: f64,
+    next_hello: f64,
+    decoder: Decoder,
+    greeting: Option<Greeting>,
+    newest: Option<Newest>,
+    /// Last sound STATE, or the greeting, s.
+    heard: f64,
+    /// Out of sight for too long: any sequence number is taken next.
+    stale: bool,
+    /// The probe was never seen since the line was opened.
+    unseen: bool,
+    device_fault: bool,
+    speedometer: Speedometer,
+    sequence: u16,
+    /// The rest of a frame that did not fit.
+    pending: [u8; MAX_FRAME],
+    pending_from: usize,
+    pending_to: usize,
+    report: LinkReport,
+}
+
+impl<O: Opener> LinkDevice<O> {
+    /// Opens the line; HELLO goes out with the first tick.
+    ///
+    /// # Errors
+    /// When the line cannot be opened.
+    pub fn open(mut opener: O) -> std::io::Result<Self> {
+        let wire = opener.open()?;
+        Ok(Self {
+            opener,
+            wire: Some(wire),
+            retry_at: 0.0,
+            next_hello: 0.0,
+            decoder: Decoder::default(),
+            greeting: None,
+            newest: None,
+            heard: 0.0,
+            stale: false,
+            unseen: true,
+            device_fault: false,
+            speedometer: Speedometer::default(),
+            sequence: 0,
+            pending: [0; MAX_FRAME],
+            pending_from: 0,
+            pending_to: 0,
+            report: LinkReport::default(),
+        })
+    }
+
+    fn is_greeted(&self) -> bool {
+        self.greeting.is_some_and(|g| g.protocol == PROTOCOL)
+    }
+
+    /// Closes the line and forgets what was known of the device behind it.
+    fn unplug(&mut self, now: f64) {
+        self.wire = None;
+        self.retry_at = now + REOPEN_SECONDS;
+        self.greeting = None;
+        self.newest = None;
+        self.stale = false;
+        self.unseen = true;
+        self.decoder.resynchronise();
+        self.speedometer.reset();
+        (self.pending_from, self.pending_to) = (0, 0);
+    }
+
+    /// Tries the port again now and then. Opening takes time and memory: nothing is in contact.
+    fn reopen(&mut self, now: f64) {
+        if now < self.retry_at {
+            return;
+        }
+        match self.opener.open() {
+            Ok(wire) => {
+                self.wire = Some(wire);
+                self.next_hello = now;
+                self.report.reopened += 1;
+            }
+            Err(_) => self.retry_at = now + REOPEN_SECONDS,
+        }
+    }
+
+    /// Takes all bytes that have come; the newest STATE stays.
+    fn drain(&mut self, now: f64) {
+        let mut buffer = [0; 256];
+        for _ in 0..READS_PER_TICK {
+            let Some(wire) = &mut self.wire else { return };
+            match wire.read(&mut buffer) {
+                Ok(0) => return self.unplug(now),
+                Ok(length) => {
+                    for &byte in &buffer[..length] {
+                        self.take(byte, now);
+                    }
+                    if length < buffer.len() {
+                        return;
+                    }
+                }
+                Err(e) if e.kind() == ErrorKind::WouldBlock => return,
+                Err(e) if e.kind() == ErrorKind::Interrupted => {}
+                Err(_) => return self.unplug(now),
+            }
+        }
+    }
+
+    fn take(&mut self, byte: u8, now: f64) {
+        let Some(payload) = self.decoder.push(byte) else {
+            return;
+        };
+        match codec::parse(payload) {
+            Some(Message::Hello(greeting)) => {
+                if self.greeting.is_none() {
+                    self.heard = now;
+                }
+                self.greeting = Some(greeting);
+                self.report.greeting = Some(greeting);
+            }
+            // A device that streams before it was greeted may speak another version.
+            Some(Message::State(state)) if self.is_greeted() => self.take_state(state, now),
+            Some(Message::State(_)) => {}
+            Some(Message::Fault { code, detail }) => {
+                self.device_fault = true;
+                self.report.device_faults += 1;
+                self.report.last_fault = Some((code, detail));
+            }
+            None => self.report.unknown += 1,
+        }
+    }
+
+    fn take_state(&mut self, state: DeviceState, now: f64) {
+        if let Some(last) = &self.newest
+            && !self.stale
+        {
+            match state.sequence.wrapping_sub(last.state.sequence) {
+                0 => {
+                    self.report.duplicates += 1;
+                    return;
+                }
+                ahead @ 1..=0x7FFF => self.report.lost += u64::from(ahead) - 1,
+                _ => {
+                    self.report.out_of_order += 1;
+                    return;
+                }
+            }
+        }
+        self.report.states += 1;
+        let speed = self.speedometer.speed(state.position(), state.time_us, now);
+        self.newest = Some(Newest { state, speed });
+        self.heard = now;
+        self.stale = false;
+    }
+
+    /// Puts a frame on the line; false when it does not fit or the line is gone.
+    fn send(&mut self, payload: &[u8]) -> bool {
+        self.flush();
+        if self.wire.is_none() || self.pending_from < self.pending_to {
+            return false;
+        }
+        let Some(length) = codec::encode(payload, &mut self.pending) else {
+            return false;
+        };
+        (self.pending_from, self.pending_to) = (0, length);
+        self.flush();
+        if self.pending_from == 0 && self.pending_to > 0 {
+            // Not begun: better a newer frame later than this one.
+            self.pending_to = 0;
+            return false;
+        }
+        true
+    }
+
+    fn flush(&mut self) {
+        while self.pending_from < self.pending_to {
+            let Some(wire) = &mut self.wire else { return };
+            match wire.write(&self.pending[self.pending_from..self.pending_to]) {
+                Ok(written) if written > 0 => self.pending_from += written,
+                Err(e) if e.kind() == ErrorKind::Interrupted => {}
+                // A line that is gone is found by the next read.
+                _ => return,
+            }
+        }
+        (self.pending_from, self.pending_to) = (0, 0);
+    }
+
+    fn greet(&mut self, now: f64) {
+        if now >= self.next_hello {
+            self.next_hello = now + HELLO_SECONDS;
+            self.report.hellos += u64::from(self.send(&hello_payload()));
+        }
+    }
+}
+
+impl<O: Opener> Device for LinkDevice<O> {
+    fn read(&mut self, now: f64, _dt: f64, frame: &DeviceFrame) -> Reading {
+        if self.wire.is_none() {
+            self.reopen(now);
+        }
+        self.drain(now);
+        if self.wire.is_none() {
+            return Reading::Fault(Fault::Unplugged);
+        }
+        if !self.is_greeted() {
+            self.greet(now);
+            return match self.greeting {
+                Some(_) => Reading::Fault(Fault::Protocol),
+                None => Reading::Waiting("no answer to HELLO yet"),
+            };
+        }
+        if std::mem::take(&mut self.device_fault) {
+            return Reading::Fault(Fault::Device);
+        }
+        if now - self.heard > STALE_SECONDS {
+            self.stale = true;
+            self.speedometer.reset();
+            // A device that was reset waits for HELLO.
+            self.greet(now);
+            return Reading::Fault(Fault::Stale);
+        }
+        let (Some(Newest { state, speed }), Some(greeting)) = (self.newest, self.greeting) else {
+            return Reading::Waiting("no STATE yet");
+        };
+        if state.fault {
+            return Reading::Fault(Fault::Device);
+        }
+        let limit = f64::from(greeting.max_force);
+        let probe = Probe {
+            position: frame.to_body(state.position()),
+            speed,
+            restart: std::mem::take(&mut self.unseen),
+            buttons: state.buttons,
+            max_force: if limit > 0.0 { limit } else { 0.0 },
+        };
+        if state.ready {
+            Reading::At(probe)
+        } else {
+            Reading::Passive(probe, "the device is not ready")
+        }
+    }
+
+    fn write(&mut self, force: DVec3, enable: bool, frame: &DeviceFrame) {
+        if self.wire.is_none() || !self.is_greeted() {
+            return;
+        }
+        let payload = force_payload(self.sequence, frame.force_to_device(force), enable);
+        if self.send(&payload) {
+            self.sequence = self.sequence.wrapping_add(1);
+            self.report.forces += 1;
+        } else {
+            self.report.unsent += 1;
+        }
+    }
+
+    fn park(&mut self) {
+        for _ in 0..PARKING_FRAMES {
+            self.write(DVec3::ZERO, false, &DeviceFrame::default());
+            // Time for the device to read before the line closes.
+            std::thread::sleep(std::time::Duration::from_millis(2));
+        }
+        self.flush();
+        self.wire = None;
+    }
+
+    fn report(&self) -> LinkReport {
+        LinkReport {
+            crc_errors: self.decoder.errors.crc,
+            cobs_errors: self.decoder.errors.cobs,
+            oversize: self.decoder.errors.oversize,
+            ..self.report
+        }
+    }
+}

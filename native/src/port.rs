@@ -1,0 +1,155 @@
+//! A serial port that never makes the servo wait: reads what is there, writes what fits.
+
+use std::io;
+use std::time::Duration;
+
+/// An open line to a device.
+pub trait Wire: Send {
+    /// Takes what has arrived. `WouldBlock` when nothing has; zero bytes or any other error mean
+    /// that the line is gone.
+    ///
+    /// # Errors
+    /// See above; must not allocate for `WouldBlock`.
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize>;
+    /// Sends as much as fits at once.
+    ///
+    /// # Errors
+    /// `WouldBlock` when nothing fits; any other error means that the line is gone.
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize>;
+}
+
+/// Opens a line, at the start and again after unplugging. May take time and memory.
+pub trait Opener: Send {
+    /// What it opens.
+    type Wire: Wire;
+    /// Opens the line.
+    ///
+    /// # Errors
+    /// When there is none.
+    fn open(&mut self) -> io::Result<Self::Wire>;
+}
+
+/// A serial port by name.
+#[derive(Debug, Clone)]
+pub struct SerialPort {
+    /// Path or name for the system.
+    pub path: String,
+    /// Bits a second; without meaning on USB and pseudo-terminals.
+    pub baud: u32,
+}
+
+impl Opener for SerialPort {
+    type Wire = SerialWire;
+
+    fn open(&mut self) -> io::Result<SerialWire> {
+        // Boards with USB of their own send nothing before they see DTR.
+        let port = serialport::new(&self.path, self.baud)
+            .dtr_on_open(true)
+            .timeout(Duration::from_millis(1))
+            .open_native()?;
+        SerialWire::new(port)
+    }
+}
+
+#[cfg(unix)]
+pub use on_unix::SerialWire;
+#[cfg(windows)]
+pub use on_windows::SerialWire;
+
+#[cfg(unix)]
+mod on_unix {
+    use std::io;
+    use std::os::fd::AsRawFd;
+
+    use serialport::TTYPort;
+
+    use super::Wire;
+
+    /// A terminal in raw mode, read and written without waiting.
+    ///
+    /// The calls go around the crate's own `Read` and `Write`: those poll first, and make an error
+    /// on the heap whenever nothing has arrived.
+    #[derive(Debug)]
+    pub struct SerialWire {
+        port: TTYPort,
+    }
+
+    impl SerialWire {
+        pub(super) fn new(port: TTYPort) -> io::Result<Self> {
+            let fd = port.as_raw_fd();
+            // SAFETY: the descriptor is open while `port` lives; these calls touch no memory.
+            let done = unsafe {
+                let flags = libc::fcntl(fd, libc::F_GETFL);
+                flags >= 0 && libc::fcntl(fd, libc::F_SETFL, flags | libc::O_NONBLOCK) >= 0
+            };
+            if done {
+                Ok(Self { port })
+            } else {
+                Err(io::Error::last_os_error())
+            }
+        }
+    }
+
+    fn count(result: isize) -> io::Result<usize> {
+        usize::try_from(result).map_err(|_| io::Error::last_os_error())
+    }
+
+    impl Wire for SerialWire {
+        fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+            // SAFETY: the buffer is valid for writing its length; the descriptor is open.
+            count(unsafe {
+                libc::read(
+                    self.port.as_raw_fd(),
+                    buffer.as_mut_ptr().cast(),
+                    buffer.len(),
+                )
+            })
+        }
+
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            // SAFETY: the bytes are valid for reading; the descriptor is open.
+            count(unsafe { libc::write(self.port.as_raw_fd(), bytes.as_ptr().cast(), bytes.len()) })
+        }
+    }
+}
+
+#[cfg(windows)]
+mod on_windows {
+    use std::io::{self, Read, Write};
+
+    use serialport::{COMPort, SerialPort};
+
+    use super::Wire;
+
+    /// A COM port, asked first how much has arrived.
+    #[derive(Debug)]
+    pub struct SerialWire {
+        port: COMPort,
+    }
+
+    impl SerialWire {
+        pub(super) fn new(port: COMPort) -> io::Result<Self> {
+            Ok(Self { port })
+        }
+    }
+
+    impl Wire for SerialWire {
+        fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+            let waiting = self.port.bytes_to_read()? as usize;
+            if waiting == 0 {
+                return Err(io::ErrorKind::WouldBlock.into());
+            }
+            let length = waiting.min(buffer.len());
+            self.port.read(&mut buffer[..length])
+        }
+
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            match self.port.write(bytes) {
+                Err(e) if e.kind() == io::ErrorKind::TimedOut => {
+                    Err(io::ErrorKind::WouldBlock.into())
+                }
+                other => other,
+            }
+        }
+    }
+}
