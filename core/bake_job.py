@@ -212,6 +212,7 @@ def run_bake(
 
     An exception out of ``on_progress``, KeyboardInterrupt included, stops the child.
     """
+    cache.refuse_unwritable(target)
     with BakeJob(source, settings, surface, python) as job:
         while not job.finished:
             on_progress(job.poll())

@@ -129,12 +129,35 @@ def adopt(finished: Path, target: Path) -> None:
         shutil.copyfileobj(source, file)
 
 
+def refuse_unwritable(target: Path) -> None:
+    """Check that a body file could be put at ``target``, before the work of a bake is spent.
+
+    Raises
+    ------
+    BodyFileError
+        The target is a folder, or its folder cannot be made or written.
+    """
+    folder = next(parent for parent in target.absolute().parents if parent.exists())
+    if target.is_dir():
+        reason = "it is a folder"
+    elif not folder.is_dir():
+        reason = f"{folder} is not a folder"
+    elif not os.access(folder, os.W_OK | os.X_OK):
+        reason = f"{folder} may not be written"
+    else:
+        return
+    raise BodyFileError(
+        f"{target}: the body file cannot be written ({reason}); choose a folder you may write to"
+    )
+
+
 @contextmanager
 def _replacing(target: Path) -> Iterator[IO[bytes]]:
     """A file that becomes ``target`` when all went well, and vanishes otherwise."""
+    refuse_unwritable(target)
+    target.parent.mkdir(parents=True, exist_ok=True)
     unfinished = target.with_name(f".{target.name}.{secrets.token_hex(4)}.tmp")
     try:
-        target.parent.mkdir(parents=True, exist_ok=True)
         with unfinished.open("xb") as file:
             yield file
             file.flush()

@@ -6,7 +6,6 @@ import zipfile
 from pathlib import Path
 
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
 
 from .errors import PalpateError
@@ -24,6 +23,8 @@ def read_surface(path: Path, metres_per_unit: float = 1.0) -> Surface:
     PalpateError
         No such file, an unknown kind, contents that cannot be read or cannot become a solid.
     """
+    import trimesh
+
     _refuse_missing(path)
     try:
         mesh = trimesh.load_mesh(path, process=False)

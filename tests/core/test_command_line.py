@@ -126,7 +126,7 @@ def test_press_reads_the_force_and_writes_displacements(cube_file, tmp_path, cap
         (["bake", "cube.npz", "-o", "out.npz", "--pin-below", "2"], "fraction"),
         (["bake", "cube.npz", "-o", "out.npz", "--metres-per-unit", "-1"], "--metres-per-unit"),
         (["bake", "cube.npz", "-o", "out.npz", "--edge-length", "0.1"], "--edge-length"),
-        (["bake", "nopins.npz", "-o", "out.npz", "--pin-below", "0", "--up", "x"], "could move"),
+        (["bake", "tip.npz", "-o", "out.npz", "--pin-below", "0"], "could move"),
         (["bake", "cube.npz", "-o", "notes.txt/out.npz"], "written"),
         (["info", "none.npz"], "none.npz"),
         (["info", "notes.txt"], "notes.txt"),
@@ -141,15 +141,15 @@ def test_press_reads_the_force_and_writes_displacements(cube_file, tmp_path, cap
     ],
 )
 def test_bad_input_gets_one_line_status_2_and_no_file(
-    tmp_path, cube_file, cube_mesh, words, said, monkeypatch
+    tmp_path, cube_file, cube_mesh, words, said, monkeypatch, capfd
 ):
     monkeypatch.chdir(tmp_path)
     mesh, fixed = cube_mesh
     np.savez("cube.npz", X=mesh.nodes, T=mesh.tets, fixed=fixed)
     np.savez("nan.npz", X=mesh.nodes * np.nan, T=mesh.tets, fixed=fixed)
     np.savez("other.npz", a=1)
-    lone = np.vstack([np.zeros(3), np.eye(3)]) * 0.1
-    np.savez("nopins.npz", X=lone[[1, 0, 3, 2]], T=np.array([[0, 1, 2, 3]]))
+    on_its_tip = np.array([[0, 0, 0], [1, 0, 1], [0, 1, 1], [1, 1, 3]]) * 0.1
+    np.savez("tip.npz", X=on_its_tip, T=np.array([[0, 1, 2, 3]]))
     Path("notes.txt").write_text("hello")
     Path("broken.stl").write_bytes(b"solid\nfacet normal 0 0")
     Path("broken.npz").write_bytes(b"PK\x03\x04")
@@ -157,18 +157,30 @@ def test_bad_input_gets_one_line_status_2_and_no_file(
     Path("plane.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
     before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
     words = [word.format(body=cube_file) for word in words]
+    try:
+        status = main(words)
+    except SystemExit as ended:
+        status = ended.code
+    printed = capfd.readouterr()
+    assert status == 2
+    assert printed.out == ""
+    assert len(printed.err.splitlines()) == 1
+    assert printed.err.startswith("palpate: ")
+    assert said in printed.err
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+def test_the_program_ends_with_the_status_and_the_line(tmp_path):
     ended = subprocess.run(
-        [sys.executable, "-m", "palpate.cli.main", *words],
+        [sys.executable, "-m", "palpate.cli.main", "info", str(tmp_path / "none.npz")],
         capture_output=True,
         text=True,
         check=False,
     )
     assert ended.returncode == 2
     assert ended.stdout == ""
-    assert len(ended.stderr.splitlines()) == 1
     assert ended.stderr.startswith("palpate: ")
-    assert said in ended.stderr
-    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+    assert len(ended.stderr.splitlines()) == 1
 
 
 def test_pins_of_the_file_are_taken_unless_told_otherwise(tmp_path, capsys):

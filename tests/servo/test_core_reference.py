@@ -1,0 +1,96 @@
+"""The native contact against the numpy reference of core, on real bodies."""
+
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from palpate_servo import Proxy
+
+from palpate.core.bake import BakeSettings, bake
+from palpate.core.errors import PalpateError
+from palpate.core.paper_cube import paper_cube
+from palpate.core.pins import PinNodes
+from palpate.core.servo_session import displacements_of, native_body, servo_for
+from palpate.core.tet_mesh import TetMesh
+
+MOUSE = Path(__file__).resolve().parents[1] / "meshes" / "mouse-1.7k.npz"
+PRESSES = 10_000
+
+
+@pytest.fixture(scope="module", params=["cube", "mouse"])
+def body(request):
+    if request.param == "cube":
+        mesh, fixed = paper_cube()
+        return bake(mesh, BakeSettings(0.49, 10_000.0, PinNodes(fixed)))[0]
+    with np.load(MOUSE) as file:
+        mesh, fixed = TetMesh.checked(file["X"], file["T"]), file["fixed"]
+    return bake(mesh, BakeSettings(0.3, 1_000.0, PinNodes(fixed)))[0]
+
+
+def random_alpha(rng):
+    """Inside, on an edge, or on a node, one as often as the other."""
+    alpha = rng.dirichlet([1, 1, 1])
+    alpha[rng.permutation(3)[: rng.integers(0, 3)]] = 0
+    return alpha / alpha.sum()
+
+
+def test_native_force_equals_the_reference_at_random_presses(body):
+    rng = np.random.default_rng(1999)
+    native = native_body(body)
+    for _ in range(PRESSES):
+        triangle = int(rng.integers(len(body.mesh.surface_triangles)))
+        alpha, u = random_alpha(rng), rng.normal(size=3) * 0.005
+        touch = body.touch(triangle, alpha, u)
+        nodal_forces, force = native.contact(triangle, alpha, u, body.young_modulus)
+        scale = np.abs(touch.nodal_forces).max()
+        assert np.abs(nodal_forces - touch.nodal_forces).max() <= 1e-9 * scale
+        assert np.abs(force - touch.force).max() <= 1e-9 * scale
+
+
+def test_a_probe_pushed_in_feels_what_the_reference_says_there(body):
+    rng = np.random.default_rng(2)
+    native = native_body(body)
+    free = ~np.isin(body.mesh.surface_triangles, body.fixed).any(axis=1)
+    for triangle in rng.choice(np.flatnonzero(free), 50):
+        corners = body.mesh.nodes[body.mesh.surface_triangles[triangle]]
+        normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])
+        normal /= np.linalg.norm(normal)
+        centre = corners.mean(axis=0)
+        proxy = Proxy(native)
+        proxy.restart(centre + 1e-4 * normal)
+        finger = centre - 1e-5 * normal
+        touching, position, touched, alpha = proxy.move(finger)
+        assert touching
+        assert touched == triangle
+        np.testing.assert_allclose(position, centre, atol=1e-12)
+        _, force = native.contact(touched, alpha, finger - position, body.young_modulus)
+        expected = body.touch_nearest(centre, -1e-5 * normal).force
+        np.testing.assert_allclose(force, expected, rtol=1e-6)
+
+
+def test_the_running_servo_publishes_what_the_reference_computes(body):
+    low, high = body.mesh.nodes.min(axis=0), body.mesh.nodes.max(axis=0)
+    above = np.array([*(0.5 * (low + high))[:2], high[2] + 0.01])
+    with servo_for(body) as servo:
+        servo.start_pointer(above)
+        servo.set_target(above - [0, 0, 0.02])
+        snapshot = servo.snapshot()
+        deadline = time.monotonic() + 20
+        while not (snapshot.touching and np.allclose(snapshot.probe, above - [0, 0, 0.02])):
+            assert time.monotonic() < deadline, snapshot
+            time.sleep(0.01)
+            snapshot = servo.snapshot()
+    touch = body.touch(snapshot.triangle_index, snapshot.alpha, snapshot.probe - snapshot.proxy)
+    np.testing.assert_allclose(snapshot.contact_force, touch.force, rtol=1e-9)
+    np.testing.assert_allclose(snapshot.nodal_forces, touch.nodal_forces, rtol=1e-9, atol=1e-15)
+    moved = displacements_of(body, snapshot)
+    np.testing.assert_allclose(
+        moved, body.deform(touch.triangle, touch.nodal_forces), atol=1e-9 * np.abs(moved).max()
+    )
+
+
+@pytest.mark.parametrize("setting", [{"rate_hz": 10}, {"max_force": -1.0}, {"young_modulus": 0.0}])
+def test_settings_out_of_range_are_refused(body, setting):
+    with pytest.raises(PalpateError, match="servo: "):
+        servo_for(body, **setting)
