@@ -21,14 +21,12 @@ import argparse
 import contextlib
 import json
 import os
-import signal
 import time
-from collections.abc import Iterator
-from types import FrameType
 
 from ..errors import PalpateError
 from .simulated_board import SimulatedBoard
 from .simulated_options import SimulatedOptions, add_simulated_options, simulated_options
+from .stop_signals import stopped_by_signals
 
 LATE_SECONDS = 200e-6
 MOST_STEPS_AT_ONCE = 50
@@ -87,7 +85,7 @@ def run(options: SimulatedOptions, *, commands: bool = False, json_lines: bool =
     """
     board = SimulatedBoard(options)
     try:
-        with _stopped_by_signals() as stopped:
+        with stopped_by_signals() as stopped:
             _say_where(board, options, json_lines)
             clock = Clock(options.rate_hz)
             inbox = _Commands() if commands else None
@@ -137,23 +135,6 @@ class _Commands:
                 _print_json({**clock.report(), **board.report()}, True)
             case _:
                 raise PalpateError(f"simulated device: no such command: {' '.join(words)}")
-
-
-@contextlib.contextmanager
-def _stopped_by_signals() -> Iterator[list[int]]:
-    """A list that is empty until somebody asks this process to stop."""
-    received: list[int] = []
-
-    def note(number: int, _frame: FrameType | None) -> None:
-        received.append(number)
-
-    wanted = (signal.SIGTERM, signal.SIGINT)
-    before = [signal.signal(number, note) for number in wanted]
-    try:
-        yield received
-    finally:
-        for number, handler in zip(wanted, before, strict=True):
-            signal.signal(number, handler)
 
 
 def _say_where(board: SimulatedBoard, options: SimulatedOptions, json_lines: bool) -> None:

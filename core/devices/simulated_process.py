@@ -56,6 +56,8 @@ class SimulatedDevice:
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
+            # Ctrl-C is for the host: the device must still be there while the host lets go.
+            start_new_session=True,
         )
         try:
             self.port: str = self._read_json(START_SECONDS)["port"]

@@ -1,0 +1,200 @@
+"""``palpate servo``: run the native thread against a device, without Blender."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import time
+from collections.abc import Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core import cache
+from ..core.devices.ports import PortError, check_port
+from ..core.devices.simulated_options import SimulatedOptions
+from ..core.devices.simulated_process import SimulatedDevice
+from ..core.devices.stop_signals import stopped_by_signals
+from ..core.errors import PalpateError
+from ..core.servo_session import servo_for
+from ..core.soft_body import SoftBody
+from ..core.stiffness import lame_parameters
+from .body_figures import as_lines
+
+if TYPE_CHECKING:
+    from ..core.servo_session import Servo
+
+HELLO_SECONDS = 5.0
+LOOK_EVERY_SECONDS = 0.02
+HAND_FORCE = 1.5
+"""What the simulated hand presses with at most, N: half of what its device can give."""
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Describe the command."""
+    parser = subparsers.add_parser("servo", help="touch a body with a device, at 1 kHz")
+    parser.add_argument("body", type=Path, metavar="BODY.npz")
+    device = parser.add_mutually_exclusive_group(required=True)
+    device.add_argument("--port", metavar="PORT", help="a device that speaks the link")
+    device.add_argument(
+        "--simulate", action="store_true", help="a simulated device that presses from above"
+    )
+    parser.add_argument(
+        "--seconds", type=float, default=10.0, metavar="S", help="default: %(default)g"
+    )
+    parser.add_argument("--rate", type=int, default=1000, metavar="HZ", help="default: %(default)s")
+    parser.add_argument("--young", type=float, metavar="PA", help="default: the body's own")
+    parser.add_argument("--json", action="store_true", help="print the report as JSON")
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Load, connect, touch for some seconds, report."""
+    if not 0.0 < arguments.seconds < math.inf:
+        raise PalpateError("--seconds: the time must be more than 0 s and have an end")
+    body = cache.load(arguments.body)
+    young_modulus = body.young_modulus if arguments.young is None else arguments.young
+    lame_parameters(young_modulus, body.poisson_ratio)
+    with ExitStack() as stack:
+        simulated = None
+        port = arguments.port
+        if arguments.simulate:
+            hand = press_from_above(body, young_modulus)
+            simulated = stack.enter_context(SimulatedDevice(hand))
+            port = simulated.port
+        check_port(port)
+        stopped = stack.enter_context(stopped_by_signals())
+        servo = servo_for(body, young_modulus=young_modulus, rate_hz=arguments.rate)
+        stack.callback(servo.stop)
+        _connect(servo, port, stopped)
+        report = _touch(servo, arguments.seconds, stopped)
+        if simulated is not None:
+            report["simulated_device"] = simulated.stop()
+    report["young_modulus"] = young_modulus
+    print(json.dumps(report) if arguments.json else as_lines(report))
+    return 0
+
+
+def press_from_above(body: SoftBody, young_modulus: float) -> SimulatedOptions:
+    """A simulated hand that presses the body where it is highest, against the surface's normal.
+
+    It goes in by a tenth of the body's height or until it takes `HAND_FORCE`, whichever is less.
+    """
+    mesh = body.mesh
+    corners = mesh.nodes[mesh.surface_triangles]
+    centres = corners.mean(axis=1)
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    pinned = np.isin(mesh.surface_triangles, body.fixed).any(axis=1)
+    # Free places that look up, before steep ones, before those that are pinned.
+    highest = np.lexsort((centres[:, 2], normals[:, 2] > 0.7, ~pinned))[-1]
+    at, normal = centres[highest], normals[highest]
+    blocks = body.contact_blocks[mesh.surface_local_triangles[highest]]
+    stiffness = young_modulus * float(normal @ blocks.mean(axis=0) @ normal)
+    extents = np.ptp(mesh.nodes, axis=0)
+    depth = min(0.1 * float(extents[2]), HAND_FORCE / stiffness)
+    hand = SimulatedOptions()
+    # The hand reaches deeper than the device gets, for its spring gives way to the body's force.
+    reach = depth * (1.0 + stiffness / hand.hand_stiffness)
+    height = 0.2 * float(extents.max())
+    return SimulatedOptions(
+        rest=_vector(at + height * normal),
+        at=_vector(at),
+        by=_vector(-reach * normal),
+        # Slow enough for any size of body: at most half a metre per second.
+        approach=max(0.5, 4.0 * height),
+        period=max(2.0, 8.0 * reach),
+    )
+
+
+def _vector(values: NDArray[np.float64]) -> tuple[float, float, float]:
+    x, y, z = values.tolist()
+    return (x, y, z)
+
+
+def _connect(servo: Servo, port: str, stopped: Sequence[int]) -> None:
+    try:
+        servo.start_serial(port)
+    except OSError as error:
+        raise PalpateError(
+            f"{port}: cannot be opened ({error}); close the program that uses it, or see "
+            "'palpate devices'"
+        ) from error
+    deadline = time.monotonic() + HELLO_SECONDS
+    while servo.counters()["link"]["device"] is None and not stopped:
+        if servo.counters()["faults"]["wrong protocol"]:
+            break
+        if time.monotonic() > deadline:
+            raise PortError(
+                port,
+                f"does not answer HELLO within {HELLO_SECONDS:g} s; check that it is a haptic "
+                "device that speaks Palpate's link",
+            )
+        time.sleep(LOOK_EVERY_SECONDS)
+    if servo.counters()["faults"]["wrong protocol"]:
+        raise PortError(
+            port,
+            "speaks another version of the link than this Palpate; update the older of the two",
+        )
+
+
+@dataclass
+class _Felt:
+    """Extremes of all ticks so far, SI units."""
+
+    samples: int = 0
+    touching: int = 0
+    contact_force: float = 0.0
+    output_force: float = 0.0
+    depth: float = 0.0
+
+    def take(self, samples: NDArray[np.void]) -> None:
+        if not len(samples):
+            return
+        contact, output, depth = (
+            np.linalg.norm(vectors, axis=1)
+            for vectors in (
+                samples["force"],
+                samples["output"],
+                samples["probe"] - samples["proxy"],
+            )
+        )
+        self.samples += len(samples)
+        self.touching += int(np.count_nonzero(contact))
+        self.contact_force = max(self.contact_force, float(contact.max()))
+        self.output_force = max(self.output_force, float(output.max()))
+        self.depth = max(self.depth, float(depth[contact > 0.0].max(initial=0.0)))
+
+
+def _touch(servo: Servo, seconds: float, stopped: Sequence[int]) -> dict[str, Any]:
+    felt = _Felt()
+    begin = time.monotonic()
+    while not stopped and time.monotonic() < begin + seconds and servo.running:
+        time.sleep(LOOK_EVERY_SECONDS)
+        felt.take(servo.samples())
+    last = servo.snapshot()
+    servo.stop()
+    felt.take(servo.samples())
+    counters = servo.counters()
+    return {
+        **{name: counters[name] for name in ("rate_hz", "ticks", "missed", "late_ticks")},
+        "lateness_us": counters["lateness_us"],
+        "longest_gap_us": counters["longest_gap_us"],
+        "realtime": counters["realtime"],
+        "link": counters["link"],
+        "faults": counters["faults"],
+        "samples_lost": counters["samples_lost"],
+        "seconds": time.monotonic() - begin,
+        "interrupted": bool(stopped),
+        "last_state": last.state,
+        "last_fault": last.fault,
+        "touching_ticks": felt.touching,
+        "peak_contact_force_n": felt.contact_force,
+        "peak_output_force_n": felt.output_force,
+        "deepest_mm": felt.depth * 1e3,
+    }
