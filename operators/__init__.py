@@ -1,1 +1,1 @@
-"""One user action per file."""
+"""What a user can do, one action a file, and what these actions share."""

@@ -1,0 +1,212 @@
+"""``blender -c palpate bake|press FILE.blend --object NAME``: the operators without a window.
+
+Started with ``blender -c`` Blender has read preferences and extensions but no file; exit status is
+0, or 2 with one line on standard error and nothing written.
+"""
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import NoReturn
+
+import bpy
+
+from ..core.errors import PalpateError
+from ..core.materials import MATERIALS
+from ..operators import bake_session, body_store
+from ..operators.press_once import press_once
+
+NAME = "palpate"
+EXIT_ERROR = 2
+
+
+class _OneLineParser(argparse.ArgumentParser):
+    """A parser whose errors are one line."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(EXIT_ERROR, f"palpate: {message}; see 'blender -c palpate --help'\n")
+
+
+def run(words):
+    """Run one command with its words; the exit status."""
+    try:
+        arguments = _parser().parse_args(_shielded(words))
+    except SystemExit as end:
+        # Blender takes a status, and would report an exception as a fault of the extension.
+        return int(end.code or 0)
+    try:
+        figures = arguments.run(arguments)
+    except PalpateError as problem:
+        print(f"palpate: {problem}", file=sys.stderr)
+        return EXIT_ERROR
+    if arguments.json:
+        print(json.dumps(figures))
+    else:
+        width = max(map(len, figures))
+        for name, value in figures.items():
+            print(f"{name.replace('_', ' '):{width}}  {value}")
+    return 0
+
+
+def bake(arguments):
+    """Make an object soft and save the file."""
+    thing = _open(arguments)
+    settings = thing.palpate
+    if arguments.material:
+        settings.material = arguments.material
+    if arguments.pin_below is not None:
+        settings.pin_mode, settings.pin_fraction = "BELOW", arguments.pin_below
+    if arguments.pin_group is not None:
+        settings.pin_mode, settings.pin_group = "GROUP", arguments.pin_group
+    for option, name in (
+        ("young", "young_modulus"),
+        ("poisson", "poisson_ratio"),
+        ("edge_length", "edge_length"),
+        ("epsilon", "epsilon"),
+        ("time_limit", "time_limit"),
+    ):
+        value = getattr(arguments, option)
+        if value is not None:
+            setattr(settings, name, _within(settings, name, option, value))
+    body, report = bake_session.run(thing, bpy.context.scene)
+    _save(arguments.file)
+    for warning in report.warnings:
+        print(f"palpate: warning: {warning}", file=sys.stderr)
+    return {
+        "object": thing.name,
+        "nodes": len(body.mesh.nodes),
+        "tets": len(body.mesh.tets),
+        "surface_nodes": len(body.mesh.surface_nodes),
+        "free_surface_nodes": len(body.compliance.free_surface),
+        "surface_triangles": len(body.mesh.surface_triangles),
+        "compliance_bytes": body.compliance.columns.nbytes,
+        "seconds": report.seconds,
+        "key": settings.body_key,
+        "body": str(body_store.locate(thing)),
+    }
+
+
+def press(arguments):
+    """Press an object once; with --keep save the shape in the file."""
+    thing = _open(arguments)
+    if arguments.young is not None:
+        young = _within(thing.palpate, "young_modulus", "young", arguments.young)
+        thing.palpate.young_modulus = young
+    pressed = press_once(
+        thing, bpy.context.scene, arguments.at, arguments.by, keep=arguments.keep
+    )
+    if arguments.keep:
+        _save(arguments.file)
+    return {
+        "object": thing.name,
+        "triangle": pressed.touch.triangle.tolist(),
+        "alpha": pressed.touch.alpha.tolist(),
+        "nodal_forces": pressed.touch.nodal_forces.tolist(),
+        "force": list(pressed.force),
+        "depth": pressed.depth,
+        "max_displacement": pressed.largest_displacement,
+        "shape_key": pressed.shape_key,
+    }
+
+
+def _parser():
+    parser = _OneLineParser(
+        prog="blender -c palpate", description="Make objects soft and press them, without a window."
+    )
+    commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
+    one = commands.add_parser("bake", help="make an object soft and save the file")
+    _add_common(one)
+    one.add_argument("--material", choices=list(MATERIALS), help="preset, before the other options")
+    one.add_argument("--poisson", type=float, metavar="NU", help="Poisson's ratio")
+    pins = one.add_mutually_exclusive_group()
+    pins.add_argument("--pin-below", type=float, metavar="FRACTION", help="of the height, world Z")
+    pins.add_argument("--pin-group", metavar="GROUP", help="vertex group")
+    one.add_argument("--edge-length", type=float, metavar="F", help="share of the diagonal")
+    one.add_argument("--epsilon", type=float, metavar="F", help="tolerance, share of the diagonal")
+    one.add_argument("--time-limit", type=float, metavar="S", help="seconds")
+    one.set_defaults(run=bake)
+    two = commands.add_parser("press", help="press an object once and print the force")
+    _add_common(two)
+    two.add_argument(
+        "--at", type=float, nargs=3, required=True, metavar=("X", "Y", "Z"),
+        help="the surface point nearest to this is touched, world coordinates",
+    )
+    two.add_argument(
+        "--by", type=float, nargs=3, required=True, metavar=("DX", "DY", "DZ"),
+        help="how far it is moved, world axes",
+    )
+    two.add_argument("--keep", action="store_true", help="keep a shape key and save the file")
+    two.set_defaults(run=press)
+    return parser
+
+
+def _add_common(parser):
+    parser.add_argument("file", type=Path, metavar="FILE.blend")
+    parser.add_argument("--object", required=True, metavar="NAME")
+    parser.add_argument("--young", type=float, metavar="PA", help="Young's modulus")
+    parser.add_argument("--json", action="store_true", help="print figures as JSON")
+
+
+def _open(arguments):
+    if not arguments.file.is_file():
+        raise PalpateError(f"{arguments.file}: there is no such file; give the path of a .blend")
+    try:
+        bpy.ops.wm.open_mainfile(filepath=str(arguments.file.resolve()), load_ui=False)
+    except RuntimeError as problem:
+        reason = str(problem).strip().removeprefix("Error: ")
+        raise PalpateError(
+            f"{arguments.file}: Blender cannot open it ({reason}); give a .blend file"
+        ) from problem
+    thing = bpy.data.objects.get(arguments.object)
+    if thing is None:
+        meshes = ", ".join(o.name for o in bpy.data.objects if o.type == "MESH") or "none"
+        raise PalpateError(
+            f"{arguments.file}: it has no object '{arguments.object}'; its mesh objects: {meshes}"
+        )
+    return thing
+
+
+def _save(file):
+    try:
+        bpy.ops.wm.save_mainfile(filepath=str(file.resolve()))
+    except RuntimeError as problem:
+        raise PalpateError(
+            f"{file}: Blender cannot save it ({str(problem).strip()}); choose a folder you may write to"
+        ) from problem
+
+
+def _within(settings, name, option, value):
+    """A value that Blender would silently clamp is refused instead."""
+    allowed = settings.bl_rna.properties[name]
+    if not allowed.hard_min <= value <= allowed.hard_max:
+        raise PalpateError(
+            f"--{option.replace('_', '-')}: {value:g} is out of range; give a number from "
+            f"{allowed.hard_min:g} to {allowed.hard_max:g}"
+        )
+    return value
+
+
+def _shielded(words):
+    """Keep argparse from taking a number such as -5e-3 for an option: a blank in front helps."""
+    return [f" {word}" if _is_negative_number(word) else word for word in words]
+
+
+def _is_negative_number(word):
+    try:
+        float(word)
+    except ValueError:
+        return False
+    return word.startswith("-")
+
+
+_commands = []
+
+
+def register():
+    _commands.append(bpy.utils.register_cli_command(NAME, run))
+
+
+def unregister():
+    while _commands:
+        bpy.utils.unregister_cli_command(_commands.pop())

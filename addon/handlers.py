@@ -1,0 +1,123 @@
+"""What Blender is about to do, and who must give way: one table of application handlers."""
+
+import atexit
+from pathlib import Path
+
+import bpy
+from bpy.app.handlers import persistent
+
+from ..core.errors import PalpateError
+from ..operators import bake_session, body_store, live_shape, press_session
+from ..operators.package_preferences import preferences
+from ..operators.press_state import SaveBegins, SaveEnds
+from . import known_status
+
+# Where body files were before a save that may change the .blend's folder.
+_found_before_save: dict[str, Path] = {}
+
+
+def end_everything(reason):
+    """Stop bake and press; nothing is left of either."""
+    press_session.give_way(reason)
+    bake = bake_session.current()
+    if bake is not None:
+        bake.end()
+
+
+@persistent
+def _before_load(*_):
+    end_everything("Another file is being opened; pressing has ended")
+
+
+@persistent
+def _after_load(*_):
+    known_status.forget()
+    live_shape.remove_leftovers()
+    if not bpy.data.filepath:
+        for scene in bpy.data.scenes:
+            scene.palpate.source = preferences().default_source
+
+
+@persistent
+def _before_undo(*_):
+    press_session.give_way("Undo; pressing has ended")
+
+
+@persistent
+def _after_undo(*_):
+    known_status.forget()
+    live_shape.remove_leftovers()
+
+
+@persistent
+def _before_save(*_):
+    session = press_session.current()
+    if session is not None:
+        session.post(SaveBegins())
+    _found_before_save.clear()
+    for thing in bpy.data.objects:
+        path = body_store.locate(thing)
+        if path is not None:
+            _found_before_save[path.name] = path
+
+
+@persistent
+def _after_save(path="", *_):
+    written = Path(path or bpy.data.filepath)
+    try:
+        if written.suffix == ".blend" and _found_before_save:
+            body_store.gather_beside(
+                written,
+                _found_before_save,
+                is_open_file=written == Path(bpy.data.filepath),
+            )
+    except PalpateError as problem:
+        # A handler has no report; the console and the panel's state line are what is left.
+        print(f"palpate: {problem}")
+    finally:
+        _after_failed_save()
+
+
+@persistent
+def _after_failed_save(*_):
+    known_status.forget()
+    session = press_session.current()
+    if session is not None:
+        session.post(SaveEnds())
+
+
+@persistent
+def _after_change(scene, depsgraph):
+    if any(update.is_updated_geometry or update.is_updated_transform for update in depsgraph.updates):
+        known_status.forget()
+
+
+def _before_exit():
+    end_everything("")
+
+
+HANDLERS = {
+    "load_pre": _before_load,
+    "load_post": _after_load,
+    "undo_pre": _before_undo,
+    "redo_pre": _before_undo,
+    "undo_post": _after_undo,
+    "redo_post": _after_undo,
+    "save_pre": _before_save,
+    "save_post": _after_save,
+    "save_post_fail": _after_failed_save,
+    "depsgraph_update_post": _after_change,
+}
+
+
+def register():
+    for name, handler in HANDLERS.items():
+        getattr(bpy.app.handlers, name).append(handler)
+    atexit.register(_before_exit)
+
+
+def unregister():
+    end_everything("Palpate was switched off; pressing has ended")
+    atexit.unregister(_before_exit)
+    for name, handler in HANDLERS.items():
+        getattr(bpy.app.handlers, name).remove(handler)

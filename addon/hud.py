@@ -1,0 +1,96 @@
+"""Force, depth, state and keys, in the lower left of the view."""
+
+import blf
+import bpy
+import gpu
+from gpu_extras.batch import batch_for_shader
+
+from ..operators.press_state import Phase
+from .reading import reading
+
+FONT = 0
+MARGIN, PADDING = 20, 14
+LARGE, NORMAL, SMALL = 26, 14, 12
+LINE = 1.5
+WHITE, GREY, WARNING = (1.0, 1.0, 1.0, 1.0), (0.8, 0.8, 0.8, 1.0), (1.0, 0.72, 0.2, 1.0)
+BACKGROUND = (0.05, 0.05, 0.06, 0.72)
+
+STATES = {
+    Phase.READY: "Press on the surface and drag",
+    Phase.DRAGGING: "Pressing",
+    Phase.HOLDING: "Held: look around, keep it, or press elsewhere",
+    Phase.FEELING: "The device presses",
+    Phase.LOST: "Device away",
+}
+KEYS = {
+    Phase.READY: "Esc  Leave",
+    Phase.DRAGGING: "Wheel  Deeper",
+    Phase.HOLDING: "Enter  Keep shape      Esc  Restore",
+    Phase.FEELING: "Enter  Keep shape      Esc  Restore",
+    Phase.LOST: "Esc  Leave",
+}
+
+
+def draw(context, session):
+    """Draw the HUD of a press in the region that is being drawn."""
+    scale = context.preferences.system.ui_scale
+    lines = _lines(context, session)
+    heights = [size * scale * LINE for _, size, _ in lines]
+    widths = [_width(text, size * scale) for text, size, _ in lines]
+    left = _covered_left(context) + MARGIN * scale
+    bottom = MARGIN * scale
+    padding = PADDING * scale
+    _rectangle(left, bottom, max(widths) + 2 * padding, sum(heights) + 2 * padding)
+    y = bottom + padding + sum(heights)
+    for (text, size, color), height in zip(lines, heights, strict=True):
+        y -= height
+        blf.size(FONT, size * scale)
+        blf.color(FONT, *color)
+        blf.position(FONT, left + padding, y + 0.28 * height, 0)
+        blf.draw(FONT, text)
+
+
+def _lines(context, session):
+    """Text, size and colour of each line, from the top."""
+    figures = reading(session)
+    phase, say = session.state.phase, bpy.app.translations.pgettext_iface
+    output = session.snapshot.output_force if session.snapshot is not None else None
+    lines = [(f"{figures.force:.3f} N     {1000 * figures.depth:.1f} mm", LARGE, WHITE)]
+    if phase is Phase.LOST:
+        lines.append((say(session.state.message), NORMAL, WARNING))
+    else:
+        lines.append((say(STATES.get(phase, "")), NORMAL, WHITE))
+        if session.state.message:
+            lines.append((say(session.state.message), NORMAL, WARNING))
+    if phase is Phase.FEELING and output is not None:
+        given = sum(component**2 for component in output) ** 0.5
+        text = f"{say('The device gives')} {given:.3f} N, {say(session.snapshot.state)}"
+        lines.append((text, SMALL, GREY))
+    lines.append((say(KEYS.get(phase, "")), SMALL, GREY))
+    return lines
+
+
+def _width(text, size):
+    blf.size(FONT, size)
+    return blf.dimensions(FONT, text)[0]
+
+
+def _covered_left(context):
+    """Pixels of the view that the toolbar lies upon."""
+    overlap = context.preferences.system.use_region_overlap
+    return sum(
+        region.width
+        for region in context.area.regions
+        if overlap and region.type == "TOOLS" and region.width > 1 and region.alignment == "LEFT"
+    )
+
+
+def _rectangle(x, y, width, height):
+    corners = [(x, y), (x + width, y), (x + width, y + height), (x, y + height)]
+    shader = gpu.shader.from_builtin("UNIFORM_COLOR")
+    batch = batch_for_shader(shader, "TRIS", {"pos": corners}, indices=[(0, 1, 2), (0, 2, 3)])
+    gpu.state.blend_set("ALPHA")
+    shader.bind()
+    shader.uniform_float("color", BACKGROUND)
+    batch.draw(shader)
+    gpu.state.blend_set("NONE")

@@ -1,0 +1,179 @@
+"""What an object and a scene remember: the material, the pins, the baked body, the device."""
+
+import bpy
+
+from ..core.materials import MATERIALS
+from ..operators import refresh_devices
+
+# Longest state line of a settled enum: identifiers must never change, files hold their numbers.
+CUSTOM = "CUSTOM"
+MATERIAL_ITEMS = [
+    *(
+        (name, material.name, f"{material.young_modulus:,.0f} Pa, {material.poisson_ratio:g}")
+        for name, material in MATERIALS.items()
+    ),
+    (CUSTOM, "Custom", "Young's modulus and Poisson's ratio as set below"),
+]
+PIN_ITEMS = [
+    ("BELOW", "Below Height", "Everything in the lowest part of the object, as it stands"),
+    ("GROUP", "Vertex Group", "Vertices with a weight of 0.5 or more"),
+]
+SOURCE_ITEMS = [
+    ("POINTER", "Pointer", "Mouse, pen or trackpad press on the surface"),
+    ("SIMULATED", "Simulated Device", "A program that behaves like a haptic device"),
+    ("SERIAL", "Serial Device", "A haptic device on a serial port"),
+]
+
+
+def _take_material(settings, context):
+    material = MATERIALS.get(settings.material)
+    if material is not None:
+        settings["young_modulus"] = material.young_modulus
+        settings["poisson_ratio"] = material.poisson_ratio
+
+
+class PalpateObject(bpy.types.PropertyGroup):
+    """``object.palpate``. The tetrahedra lie beside these as ID properties nodes, tets, fixed."""
+
+    material: bpy.props.EnumProperty(
+        name="Material",
+        description="A usual soft material, as a start",
+        items=MATERIAL_ITEMS,
+        default="PLUSH",
+        update=_take_material,
+    )
+    young_modulus: bpy.props.FloatProperty(
+        name="Young's Modulus",
+        description="Stiffness in pascal. Takes effect at once, without a new bake",
+        default=1000.0,
+        min=1.0,
+        max=1e9,
+        soft_max=1e6,
+        precision=0,
+        step=10000,
+    )
+    poisson_ratio: bpy.props.FloatProperty(
+        name="Poisson's Ratio",
+        description="How much it bulges sideways: 0 like cork, near 0.5 like rubber or water. "
+        "Needs Rebuild Body",
+        default=0.3,
+        min=0.0,
+        max=0.499,
+        precision=3,
+        step=1,
+    )
+    pin_mode: bpy.props.EnumProperty(
+        name="Pin", description="Which part never moves", items=PIN_ITEMS, default="BELOW"
+    )
+    pin_fraction: bpy.props.FloatProperty(
+        name="Height",
+        description="Share of the object's height in world Z below which it is pinned",
+        default=0.1,
+        min=0.0,
+        max=0.95,
+        subtype="FACTOR",
+    )
+    pin_group: bpy.props.StringProperty(
+        name="Group", description="Vertex group that is pinned", default="Pinned"
+    )
+    edge_length: bpy.props.FloatProperty(
+        name="Edge Length",
+        description="Wanted edge length of the tetrahedra, as a share of the object's diagonal. "
+        "Half the length: about eight times the nodes",
+        default=0.05,
+        min=0.005,
+        max=0.3,
+        precision=3,
+        step=0.5,
+    )
+    epsilon: bpy.props.FloatProperty(
+        name="Tolerance",
+        description="How far the body may stray from the mesh, as a share of the diagonal. "
+        "Smaller takes longer",
+        default=0.003,
+        min=0.0001,
+        max=0.05,
+        precision=4,
+        step=0.01,
+    )
+    decimate_above: bpy.props.IntProperty(
+        name="Simplify Above",
+        description="Denser meshes are simplified to this many triangles before the bake. "
+        "What you see stays as dense as it is",
+        default=6000,
+        min=200,
+        max=1_000_000,
+    )
+    time_limit: bpy.props.FloatProperty(
+        name="Time Limit",
+        description="Give up filling with tetrahedra after this many seconds",
+        default=600.0,
+        min=5.0,
+        soft_max=3600.0,
+        precision=0,
+        step=1000,
+    )
+
+    # What the last bake left. Written by the operators only.
+    body_key: bpy.props.StringProperty(name="Body Key", options={"HIDDEN"})
+    body_file: bpy.props.StringProperty(name="Body File", options={"HIDDEN"})
+    fingerprint: bpy.props.StringProperty(name="Fingerprint", options={"HIDDEN"})
+    baked_poisson_ratio: bpy.props.FloatProperty(precision=3, options={"HIDDEN"})
+    node_count: bpy.props.IntProperty(options={"HIDDEN"})
+    tet_count: bpy.props.IntProperty(options={"HIDDEN"})
+    free_surface_count: bpy.props.IntProperty(options={"HIDDEN"})
+    compliance_megabytes: bpy.props.FloatProperty(options={"HIDDEN"})
+    bake_seconds: bpy.props.FloatProperty(options={"HIDDEN"})
+    bake_warnings: bpy.props.StringProperty(options={"HIDDEN"})
+
+
+def _is_empty(scene_settings, candidate):
+    return candidate.type == "EMPTY"
+
+
+def _suggest_ports(settings, context, edit_text):
+    return [f"{path} ({text})" if text else path for path, text in refresh_devices.known_ports()]
+
+
+class PalpateScene(bpy.types.PropertyGroup):
+    """``scene.palpate``: who presses."""
+
+    source: bpy.props.EnumProperty(
+        name="Press With",
+        description="Who moves the probe",
+        items=SOURCE_ITEMS,
+        default="POINTER",
+    )
+    port: bpy.props.StringProperty(
+        name="Port",
+        description="Serial port of the device: one from the list, or a path typed in",
+        search=_suggest_ports,
+        search_options={"SUGGESTION"},
+    )
+    device_frame: bpy.props.PointerProperty(
+        name="Device Frame",
+        description="Empty that says where the device's origin and axes are. "
+        "Without one they are the object's",
+        type=bpy.types.Object,
+        poll=_is_empty,
+    )
+    device_scale: bpy.props.FloatProperty(
+        name="Motion Scale",
+        description="How far the probe moves per movement of the device",
+        default=1.0,
+        min=0.01,
+        max=100.0,
+    )
+
+
+classes = (PalpateObject, PalpateScene)
+
+
+def register():
+    bpy.types.Object.palpate = bpy.props.PointerProperty(type=PalpateObject)
+    bpy.types.Scene.palpate = bpy.props.PointerProperty(type=PalpateScene)
+
+
+def unregister():
+    del bpy.types.Object.palpate
+    del bpy.types.Scene.palpate

@@ -1,0 +1,208 @@
+"""One bake of one object: started, polled, and either committed to the object or gone without a trace."""
+
+from __future__ import annotations
+
+import sys
+import time
+from dataclasses import dataclass, replace
+
+import bpy
+
+from ..core import cache
+from ..core.bake import BakeReport, BakeSettings
+from ..core.bake_job import BakeJob, JobProgress
+from ..core.errors import CancelledError, PalpateError
+from ..core.soft_body import SoftBody
+from ..core.surface import Surface
+from . import body_store, drawn_surface, pin_group, soft_object
+from .drawn_surface import DrawnSurface
+from .fingerprint import Fingerprint, changed_body, changed_pins
+from .object_handle import ObjectHandle
+
+SECONDS_BETWEEN_POLLS = 0.05
+
+
+@dataclass(eq=False)
+class BakeSession:
+    """A running bake. Make one with :func:`start`; it is :func:`current` until it ends."""
+
+    handle: ObjectHandle
+    surface: DrawnSurface
+    fingerprint: Fingerprint
+    settings: BakeSettings
+    job: BakeJob
+    progress: JobProgress
+
+    def poll(self) -> bool:
+        """Look how far it is; True when there is a result to :meth:`commit`.
+
+        Raises
+        ------
+        PalpateError
+            Out of time, or cancelled by somebody else; the session has ended.
+        """
+        if current() is not self:
+            raise CancelledError(f"{self.handle.name}: the bake was cancelled; nothing was changed")
+        try:
+            self.progress = self.job.poll()
+        except PalpateError:
+            self.end()
+            raise
+        return self.job.finished
+
+    @property
+    def can_commit(self) -> bool:
+        """Whether the object can take the result now: not while it is being edited."""
+        thing = self.handle.find()
+        return thing is None or thing.mode == "OBJECT"
+
+    def commit(self, scene: bpy.types.Scene) -> tuple[SoftBody, BakeReport]:
+        """Give the object its body. Ends the session, whatever happens.
+
+        Raises
+        ------
+        PalpateError
+            What went wrong in the bake; the object is gone or was changed meanwhile. Nothing is
+            changed and no file is left then.
+        """
+        try:
+            thing = self._unchanged_object(scene)
+            target = body_store.folder_for_new_files() / f".{self.job_name}.npz"
+            body, report = self.job.result(target)
+            key = cache.body_key(body.mesh, body.fixed, body.poisson_ratio)
+            name = body_store.file_name(thing, key)
+            target.replace(target.with_name(name))
+            self._record(thing, body, key, report)
+        finally:
+            self.end()
+        return body, report
+
+    def end(self) -> None:
+        """Stop the child process and remove its folder. Safe to repeat."""
+        global _current  # noqa: PLW0603  one bake at a time is a fact of the module
+        self.job.close()
+        if _current is self:
+            _current = None
+
+    @property
+    def job_name(self) -> str:
+        """A file name nobody else uses, for the moment between two renames."""
+        return f"{bpy.path.clean_name(self.handle.name)}-{id(self):x}"
+
+    def _unchanged_object(self, scene: bpy.types.Scene) -> bpy.types.Object:
+        thing = self.handle.find()
+        if thing is None:
+            raise PalpateError(f"{self.handle.name}: it was deleted while it was being baked")
+        if soft_object.refusal(thing):
+            raise PalpateError(f"bake: {soft_object.refusal(thing)}; then bake again")
+        now = drawn_surface.read(thing, scene).fingerprint(self.fingerprint.pins)
+        change = changed_body(self.fingerprint, now)
+        if change:
+            raise PalpateError(
+                f"{thing.name}: it was edited while it was being baked; press Make Soft again"
+            )
+        return thing
+
+    def _record(
+        self, thing: bpy.types.Object, body: SoftBody, key: str, report: BakeReport
+    ) -> None:
+        baked = thing.palpate
+        body_store.embed(thing, body)
+        baked.body_key = key
+        baked.body_file = body_store.file_name(thing, key)
+        baked.fingerprint = self.fingerprint.to_text()
+        baked.baked_poisson_ratio = body.poisson_ratio
+        baked.node_count = len(body.mesh.nodes)
+        baked.tet_count = len(body.mesh.tets)
+        baked.free_surface_count = len(body.compliance.free_surface)
+        baked.compliance_megabytes = body.compliance.columns.nbytes / 1e6
+        baked.bake_seconds = sum(report.seconds.values())
+        baked.bake_warnings = "\n".join(report.warnings)
+        if baked.pin_mode == "BELOW":
+            pin_group.mark_below(thing, self.surface, baked.pin_fraction)
+
+
+_current: BakeSession | None = None
+
+
+def current() -> BakeSession | None:
+    """The bake that is running, if one is."""
+    return _current
+
+
+def start(thing: bpy.types.Object, scene: bpy.types.Scene, *, rebuild: bool = False) -> BakeSession:
+    """Begin to bake an object in a child process.
+
+    Parameters
+    ----------
+    rebuild : make the compliance again from the tetrahedra in the .blend, with the pins and the
+        Poisson's ratio that are set now.
+
+    Raises
+    ------
+    PalpateError
+        Another bake is running; the object cannot be baked, with the reason and the remedy.
+    """
+    global _current  # noqa: PLW0603  see end
+    if _current is not None:
+        raise PalpateError(f"{_current.handle.name} is being baked; wait for it or cancel it")
+    if soft_object.refusal(thing):
+        raise PalpateError(soft_object.refusal(thing))
+    drawn = drawn_surface.read(thing, scene)
+    surface = drawn.surface()
+    fingerprint = drawn.fingerprint(pin_group.pin_rule(thing))
+    settings = _settings(thing, drawn)
+    python = (sys.executable, *bpy.app.python_args)
+    if rebuild:
+        job = _rebuild_job(thing, fingerprint, settings, surface, python)
+    else:
+        job = BakeJob(surface, settings, python=python)
+    _current = BakeSession(
+        ObjectHandle.of(thing), drawn, fingerprint, settings, job, job.poll()
+    )
+    return _current
+
+
+def run(
+    thing: bpy.types.Object, scene: bpy.types.Scene, *, rebuild: bool = False
+) -> tuple[SoftBody, BakeReport]:
+    """Bake and wait; errors as for :func:`start` and :meth:`BakeSession.commit`."""
+    session = start(thing, scene, rebuild=rebuild)
+    try:
+        while not session.poll():
+            time.sleep(SECONDS_BETWEEN_POLLS)
+    except BaseException:
+        session.end()
+        raise
+    return session.commit(scene)
+
+
+def _rebuild_job(
+    thing: bpy.types.Object,
+    now: Fingerprint,
+    settings: BakeSettings,
+    surface: Surface,
+    python: tuple[str, ...],
+) -> BakeJob:
+    """Same tetrahedra; also the same pins where their rule is the same, for the same key."""
+    mesh, fixed = body_store.embedded(thing)
+    old = Fingerprint.from_text(thing.palpate.fingerprint)
+    change = changed_body(old, now)
+    if change:
+        raise PalpateError(f"{thing.name}: {change}; press Make Soft to bake it anew")
+    if changed_pins(old, now):
+        return BakeJob(mesh, settings, surface, python)
+    return BakeJob(mesh, replace(settings, pins=fixed), python=python)
+
+
+def _settings(thing: bpy.types.Object, drawn: DrawnSurface) -> BakeSettings:
+    chosen = thing.palpate
+    return BakeSettings(
+        poisson_ratio=round(chosen.poisson_ratio, 6),
+        young_modulus=chosen.young_modulus,
+        pins=pin_group.pins(thing, drawn),
+        edge_length=chosen.edge_length,
+        epsilon=chosen.epsilon,
+        decimate_above=chosen.decimate_above,
+        time_limit=chosen.time_limit,
+    )

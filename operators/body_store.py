@@ -1,0 +1,152 @@
+"""Where an object's body is kept: a file beside the .blend, and its tetrahedra inside the .blend.
+
+The file holds the compliance and may be large. Should it be missing or damaged, the tetrahedra that
+travel with the object make the same body again in seconds, without a new tetrahedralization.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+from pathlib import Path
+
+import bpy
+import numpy as np
+
+from ..core import cache
+from ..core.cache import BodyFileError
+from ..core.errors import PalpateError
+from ..core.pins import PinNodes
+from ..core.soft_body import SoftBody
+from ..core.tet_mesh import TetMesh
+from .package_preferences import PACKAGE, preferences
+
+FOLDER = "palpate"
+KEY_LETTERS = 12
+EMBEDDED = ("nodes", "tets", "fixed")
+
+
+def file_name(thing: bpy.types.Object, key: str) -> str:
+    """``<object>-<start of the key>.npz``."""
+    return f"{bpy.path.clean_name(thing.name)}-{key[:KEY_LETTERS]}.npz"
+
+
+def folder_for_new_files() -> Path:
+    """Beside the saved .blend; before that the folder of the preferences, or the user's."""
+    if bpy.data.filepath:
+        return Path(bpy.data.filepath).parent / FOLDER
+    return _unsaved_folder()
+
+
+def _unsaved_folder() -> Path:
+    chosen = preferences().body_folder
+    if chosen:
+        return Path(bpy.path.abspath(chosen))
+    if PACKAGE.startswith("bl_ext."):
+        return Path(bpy.utils.extension_path_user(PACKAGE, path="bodies", create=True))
+    return Path(bpy.utils.user_resource("DATAFILES", path=FOLDER, create=True))
+
+
+def locate(thing: bpy.types.Object) -> Path | None:
+    """The object's body file, wherever it is among the known places."""
+    name = thing.palpate.body_file
+    if not name:
+        return None
+    places = [_unsaved_folder()]
+    if bpy.data.filepath:
+        places.insert(0, Path(bpy.data.filepath).parent / FOLDER)
+    return next((place / name for place in places if (place / name).is_file()), None)
+
+
+def load(thing: bpy.types.Object) -> SoftBody:
+    """Read the object's body and make sure that it is this object's.
+
+    Raises
+    ------
+    PalpateError
+        Never baked.
+    BodyFileError
+        Missing, damaged, or the body of something else; Rebuild Body makes it again.
+    """
+    baked = thing.palpate
+    if not baked.body_key:
+        raise PalpateError(f"{thing.name}: it is not soft yet; press Make Soft first")
+    path = locate(thing)
+    if path is None:
+        raise BodyFileError(
+            f"{thing.name}: its body file '{baked.body_file}' is missing; press Rebuild Body"
+        )
+    body = cache.load(path)
+    if cache.body_key(body.mesh, body.fixed, body.poisson_ratio) != baked.body_key:
+        raise BodyFileError(
+            f"{path}: it is the body of something else, not of {thing.name}; press Rebuild Body"
+        )
+    return body
+
+
+def embed(thing: bpy.types.Object, body: SoftBody) -> None:
+    """Put the tetrahedra into the .blend, on the object."""
+    thing.palpate["nodes"] = body.mesh.nodes.ravel()
+    thing.palpate["tets"] = body.mesh.tets.astype(np.int32).ravel()
+    thing.palpate["fixed"] = body.fixed.astype(np.int32)
+
+
+def embedded(thing: bpy.types.Object) -> tuple[TetMesh, PinNodes]:
+    """The tetrahedra and pins that travel with the object.
+
+    Raises
+    ------
+    PalpateError
+        There are none.
+    """
+    baked = thing.palpate
+    if any(name not in baked for name in EMBEDDED):
+        raise PalpateError(
+            f"{thing.name}: there are no tetrahedra in this file to rebuild from; press Make Soft"
+        )
+    nodes, tets, fixed = (np.array(baked[name]) for name in EMBEDDED)
+    return TetMesh.checked(nodes.reshape(-1, 3), tets.reshape(-1, 4)), PinNodes(
+        fixed.astype(np.int64)
+    )
+
+
+def forget(thing: bpy.types.Object) -> None:
+    """Remove the body: its file, unless another object uses it, and all that the object keeps."""
+    name, path = thing.palpate.body_file, locate(thing)
+    shared = any(o != thing and o.palpate.body_file == name for o in bpy.data.objects)
+    if path is not None and not shared:
+        path.unlink()
+    for key in EMBEDDED:
+        if key in thing.palpate:
+            del thing.palpate[key]
+    for setting in ("body_key", "body_file", "fingerprint"):
+        thing.palpate.property_unset(setting)
+
+
+def gather_beside(blend: Path, found: dict[str, Path], *, is_open_file: bool) -> None:
+    """After a save: put the body files at ``found`` (by name) into the folder beside ``blend``.
+
+    Files that lay in the user's folder because there was no .blend yet are moved, others copied.
+
+    Raises
+    ------
+    PalpateError
+        The folder cannot be written.
+    """
+    folder = blend.parent / FOLDER
+    for name, source in found.items():
+        target = folder / name
+        if target == source or target.is_file():
+            continue
+        try:
+            folder.mkdir(exist_ok=True)
+            unfinished = folder / f".{name}.{os.getpid()}.tmp"
+            shutil.copyfile(source, unfinished)
+            unfinished.replace(target)
+            if is_open_file and source.parent == _unsaved_folder():
+                source.unlink()
+        except OSError as problem:
+            raise PalpateError(
+                f"{target}: the body file cannot be put beside the .blend "
+                f"({problem.strerror or problem}); it stays at {source}"
+            ) from problem

@@ -1,0 +1,25 @@
+"""Cancel Bake: the button for those who do not press Escape."""
+
+import bpy
+
+from . import bake_session
+
+
+class PALPATE_OT_cancel_bake(bpy.types.Operator):
+    bl_idname = "palpate.cancel_bake"
+    bl_label = "Cancel"
+    bl_description = "Stop the bake; nothing is changed and nothing is left"
+
+    @classmethod
+    def poll(cls, context):
+        if bake_session.current() is None:
+            cls.poll_message_set("No bake is running")
+            return False
+        return True
+
+    def execute(self, context):
+        bake_session.current().end()
+        return {"FINISHED"}
+
+
+classes = (PALPATE_OT_cancel_bake,)

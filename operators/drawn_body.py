@@ -1,0 +1,86 @@
+"""A body and the mesh that hangs on it: from a contact to coordinates that can be drawn."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.drawn_map import DrawnMap
+from ..core.errors import PalpateError
+from ..core.soft_body import SoftBody
+from . import body_store, drawn_surface, soft_object
+from .body_frame import BodyFrame
+from .soft_object import Fit
+
+Array = NDArray[np.float64]
+
+# Two stretches that differ by less than this, relatively, are one: float32 matrices are not exact.
+SAME_STRETCH = 1e-5
+
+
+@dataclass(frozen=True, eq=False)
+class DrawnBody:
+    """Attributes
+    ----------
+    body : the body, metres.
+    hung : the map W to the drawn vertices.
+    rest : flat float32 (3 p,), the drawn vertices at rest, local units.
+    frame : between local units, metres and the world.
+    """
+
+    body: SoftBody
+    hung: DrawnMap
+    rest: NDArray[np.float32]
+    frame: BodyFrame
+
+    @property
+    def size(self) -> float:
+        """Diagonal of the body's bounding box, metres."""
+        return float(np.linalg.norm(np.ptp(self.body.mesh.nodes, axis=0)))
+
+    def local_coordinates(self, displacements: Array) -> NDArray[np.float32]:
+        """Flat coordinates (3 p,) of the drawn vertices, from the free surface nodes' (n, 3)."""
+        moved = self.frame.local_from_body(self.hung.displacements(displacements))
+        coordinates: NDArray[np.float32] = (self.rest + moved.ravel()).astype(np.float32)
+        return coordinates
+
+    def node_displacements(self, displacements: Array) -> Array:
+        """Displacements of all nodes (N, 3), zero where pinned or inside."""
+        everywhere = np.zeros_like(self.body.mesh.nodes)
+        everywhere[self.body.compliance.free_surface] = displacements
+        return everywhere
+
+    def moved_to(self, frame: BodyFrame) -> DrawnBody | None:
+        """The same body where its object is now; None if the object was scaled or sheared."""
+        old, new = self.frame.metric, frame.metric
+        if np.abs(new - old).max() > SAME_STRETCH * np.abs(old).max():
+            return None
+        # The stretch stays the one that was baked, so that nothing creeps while the object moves.
+        return replace(self, frame=replace(frame, stretch=self.frame.stretch))
+
+
+def open_body(thing: bpy.types.Object, scene: bpy.types.Scene) -> DrawnBody:
+    """Load an object's body, if it is there and fits.
+
+    Raises
+    ------
+    PalpateError
+        The object cannot be pressed, was never baked, or has changed since, with the remedy.
+    """
+    refusal = soft_object.refusal(thing)
+    if refusal:
+        raise PalpateError(refusal)
+    status = soft_object.body_status(thing, scene)
+    if status.fit is Fit.CHANGED:
+        raise PalpateError(f"{thing.name}: {status.text}; press Make Soft to bake it again")
+    body = body_store.load(thing)
+    surface = drawn_surface.read(thing, scene)
+    return DrawnBody(
+        body=body,
+        hung=DrawnMap.hang(surface.body, body),
+        rest=drawn_surface.rest_coordinates(thing.data),
+        frame=surface.frame,
+    )

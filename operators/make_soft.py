@@ -1,0 +1,130 @@
+"""Make Soft: bake the selected mesh into a body that can be pressed."""
+
+import bpy
+
+from ..core.errors import PalpateError
+from . import bake_session, press_session, soft_object
+from .bake_session import BakeSession
+
+POLLS_PER_SECOND = 10
+
+
+class BakingOperator:
+    """What Make Soft and Rebuild Body share: a bake beside Blender, or waited for."""
+
+    rebuild = False
+    _session: BakeSession
+    _timer: bpy.types.Timer | None = None
+
+    @classmethod
+    def poll(cls, context):
+        if bake_session.current() is not None:
+            cls.poll_message_set("A bake is running; wait for it or cancel it")
+            return False
+        if press_session.current() is not None:
+            cls.poll_message_set("Finish pressing first: Enter keeps the shape, Escape restores it")
+            return False
+        reason = soft_object.refusal(context.object)
+        if reason:
+            cls.poll_message_set(reason)
+        return not reason
+
+    def execute(self, context):
+        try:
+            body, report = bake_session.run(context.object, context.scene, rebuild=self.rebuild)
+        except PalpateError as problem:
+            self.report({"ERROR"}, str(problem))
+            return {"CANCELLED"}
+        self._tell(context.object.name, body, report)
+        return {"FINISHED"}
+
+    def invoke(self, context, event):
+        if bpy.app.background:
+            return self.execute(context)
+        try:
+            self._session = bake_session.start(
+                context.object, context.scene, rebuild=self.rebuild
+            )
+        except PalpateError as problem:
+            self.report({"ERROR"}, str(problem))
+            return {"CANCELLED"}
+        manager = context.window_manager
+        self._timer = manager.event_timer_add(1 / POLLS_PER_SECOND, window=context.window)
+        manager.progress_begin(0, 100)
+        manager.modal_handler_add(self)
+        self._show(context)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context, event):
+        try:
+            if event.type == "ESC" and event.value == "PRESS":
+                self._session.end()
+            if event.type not in {"TIMER", "ESC"}:
+                return {"PASS_THROUGH"}
+            finished = self._session.poll()
+            self._show(context, waiting=finished)
+            if not finished or not self._session.can_commit:
+                return {"PASS_THROUGH"}
+            body, report = self._session.commit(context.scene)
+        except PalpateError as problem:
+            self._leave(context)
+            level = "INFO" if isinstance(problem, bake_session.CancelledError) else "ERROR"
+            self.report({level}, str(problem))
+            return {"CANCELLED"}
+        self._leave(context)
+        self._tell(self._session.handle.name, body, report)
+        return {"FINISHED"}
+
+    def cancel(self, context):
+        """Blender ends the operator: another file, or exit."""
+        self._session.end()
+        self._leave(context)
+
+    def _show(self, context, *, waiting=False):
+        progress = self._session.progress
+        share = "" if progress.share is None else f" {100 * progress.share:.0f} %"
+        text = f"{progress.text}{share}, {progress.seconds:.0f} s"
+        if waiting:
+            text = "The body is ready; leave Edit Mode to receive it"
+        context.workspace.status_text_set(
+            f"Palpate: {self._session.handle.name}: {text}     [Esc] Cancel"
+        )
+        context.window_manager.progress_update(100 * (progress.share or 0.0))
+        redraw_sidebars(context)
+
+    def _leave(self, context):
+        if self._timer is not None:
+            context.window_manager.event_timer_remove(self._timer)
+            self._timer = None
+        context.window_manager.progress_end()
+        context.workspace.status_text_set(None)
+        redraw_sidebars(context)
+
+    def _tell(self, name, body, report):
+        for warning in report.warnings:
+            self.report({"WARNING"}, warning)
+        self.report(
+            {"INFO"},
+            f"{name} is soft: {len(body.mesh.nodes)} nodes, {sum(report.seconds.values()):.1f} s",
+        )
+
+
+def redraw_sidebars(context):
+    """Have every 3D view drawn again."""
+    for window in context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "VIEW_3D":
+                area.tag_redraw()
+
+
+class PALPATE_OT_make_soft(BakingOperator, bpy.types.Operator):
+    bl_idname = "palpate.make_soft"
+    bl_label = "Make Soft"
+    bl_description = (
+        "Fill the mesh with tetrahedra and compute how it gives way; "
+        "the mesh itself stays as it is. Escape cancels"
+    )
+    bl_options = {"UNDO"}
+
+
+classes = (PALPATE_OT_make_soft,)

@@ -1,0 +1,294 @@
+"""The press that is going on: events in, effects carried out, one frame drawn at each tick.
+
+Whatever Blender is about to do to the object, the session gives way first: the servo stops with
+zero force and the mesh is as it was found.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.devices.simulated_process import SimulatedDevice
+from ..core.errors import PalpateError
+from ..core.servo_session import Servo, Snapshot, displacements_of, servo_for
+from . import device_source, drawn_surface, live_shape
+from .device_source import DeviceFrame
+from .drawn_body import DrawnBody, open_body
+from .object_handle import ObjectHandle
+from .package_preferences import preferences
+from .press_state import (
+    DrawRest,
+    Effect,
+    Event,
+    Fault,
+    GiveWay,
+    HangLiveShape,
+    KeepShape,
+    MoveProbe,
+    Phase,
+    PlaceProbe,
+    PressState,
+    Recovered,
+    RemoveLiveShape,
+    Say,
+    Source,
+    Start,
+    StartServo,
+    StopServo,
+    transition,
+)
+
+Array = NDArray[np.float64]
+
+
+@dataclass(eq=False)
+class PressSession:
+    """One press of one object. Make one with :func:`begin`; it is :func:`current` until it ends."""
+
+    handle: ObjectHandle
+    scene_name: str
+    drawn: DrawnBody
+    young_modulus: float
+    state: PressState = field(default_factory=PressState)
+    servo: Servo | None = None
+    simulated: SimulatedDevice | None = None
+    device_frame: DeviceFrame | None = None
+    snapshot: Snapshot | None = None
+    displacements: Array | None = None
+    kept_name: str = ""
+    said: list[Say] = field(default_factory=list)
+    _drawn_contact: tuple[object, ...] = ()
+
+    def post(self, event: Event) -> None:
+        """Let an event happen: the only way in which a press changes its state."""
+        global _current  # noqa: PLW0603  one press at a time is a fact of the module
+        self.state, effects = transition(self.state, event)
+        for effect in effects:
+            self._apply(effect)
+        if self.state.phase is Phase.ENDED and _current is self:
+            _current = None
+
+    def tick(self) -> bool:
+        """Follow object, settings and servo, and draw what is new; True if the view changed."""
+        thing = self._object_as_it_is()
+        if thing is None or self.servo is None:
+            return True
+        self._follow_settings(thing)
+        snapshot = self.servo.snapshot()
+        moved = self.snapshot is None or snapshot.tick != self.snapshot.tick
+        self.snapshot = snapshot
+        if self.state.source is Source.DEVICE:
+            self._watch_device(snapshot)
+        if self.state.phase is not Phase.LOST and not self.state.withdrawn:
+            self._draw(thing, snapshot)
+        return moved
+
+    def surface_now(self) -> Array:
+        """All nodes of the body as they are seen, (N, 3), body coordinates."""
+        nodes = self.drawn.body.mesh.nodes
+        if self.displacements is None:
+            return nodes
+        return nodes + self.drawn.node_displacements(self.displacements)
+
+    def _apply(self, effect: Effect) -> None:
+        match effect:
+            case HangLiveShape():
+                self._with_object(live_shape.hang)
+                self._drawn_contact = ()
+            case StartServo(source):
+                self._start_servo(source)
+            case PlaceProbe(point):
+                self._servo.set_target(point, restart=True)
+            case MoveProbe(point):
+                self._servo.set_target(point)
+            case DrawRest():
+                self.displacements, self._drawn_contact = None, ()
+                self._with_object(lambda thing: live_shape.write(thing.data, self.drawn.rest))
+            case StopServo():
+                self._stop_servo()
+            case RemoveLiveShape():
+                self._with_object(_leave_edit_mode)
+                self._with_object(live_shape.remove)
+            case KeepShape():
+                self._with_object(self._keep)
+            case Say():
+                self.said.append(effect)
+
+    @property
+    def _servo(self) -> Servo:
+        if self.servo is None:
+            raise RuntimeError("the press has no servo; it was not started")
+        return self.servo
+
+    def _with_object(self, act) -> None:
+        thing = self.handle.find()
+        if thing is not None:
+            act(thing)
+
+    def _keep(self, thing: bpy.types.Object) -> None:
+        self.kept_name = live_shape.keep(thing)
+        thing.data.update()
+
+    def _start_servo(self, source: Source) -> None:
+        servo = servo_for(
+            self.drawn.body,
+            young_modulus=self.young_modulus,
+            max_force=preferences().max_force,
+        )
+        self.servo = servo
+        if source is Source.POINTER:
+            servo.start_pointer(self._above())
+            return
+        scene = self._scene()
+        self.device_frame = device_source.device_frame(scene, self.drawn.frame)
+        if scene.palpate.source == "SIMULATED":
+            self.simulated = device_source.start_simulated(self.drawn, self.device_frame)
+            port = self.simulated.port
+        else:
+            port = device_source.port_of(scene)
+        frame = self.device_frame
+        try:
+            servo.start_serial(
+                port, rotation=frame.rotation, translation=frame.translation, scale=frame.scale
+            )
+        except OSError as problem:
+            raise PalpateError(
+                f"device: {port} cannot be opened ({problem}); plug it in, or choose another port"
+            ) from problem
+
+    def _above(self) -> Array:
+        """A place outside the body, where the pointer's probe waits."""
+        nodes = self.drawn.body.mesh.nodes
+        above: Array = nodes.mean(axis=0) + np.array([0.0, 0.0, self.drawn.size])
+        return above
+
+    def _stop_servo(self) -> None:
+        if self.servo is not None:
+            self.servo.stop()
+        if self.simulated is not None:
+            self.simulated.stop()
+        self.servo = self.simulated = None
+
+    def _scene(self) -> bpy.types.Scene:
+        return bpy.data.scenes.get(self.scene_name) or bpy.context.scene
+
+    def _object_as_it_is(self) -> bpy.types.Object | None:
+        """The object, if the press may go on with it; else the press gives way."""
+        thing = self.handle.find()
+        reason = ""
+        if thing is None:
+            reason = f"{self.handle.name} was deleted; pressing has ended"
+        elif thing.mode != "OBJECT":
+            reason = f"{thing.name} is being edited; pressing has ended"
+        elif 3 * len(thing.data.vertices) != len(self.drawn.rest):
+            reason = f"{thing.name} was edited; press Make Soft to bake it again"
+        elif not self._follow_frame(thing):
+            reason = f"{thing.name} was scaled; press Make Soft to bake it again"
+        if reason:
+            self.post(GiveWay(reason))
+            return None
+        return thing
+
+    def _follow_frame(self, thing: bpy.types.Object) -> bool:
+        try:
+            moved = self.drawn.moved_to(drawn_surface.frame_of(thing, self._scene()))
+        except PalpateError:
+            # Flattened to nothing: that is a change of scale too.
+            return False
+        if moved is not None:
+            self.drawn = moved
+        return moved is not None
+
+    def _follow_settings(self, thing: bpy.types.Object) -> None:
+        if thing.palpate.young_modulus != self.young_modulus:
+            self.young_modulus = thing.palpate.young_modulus
+            self._servo.set_young_modulus(self.young_modulus)
+        if self.device_frame is None:
+            return
+        frame = device_source.device_frame(self._scene(), self.drawn.frame)
+        if not frame.same_as(self.device_frame):
+            self.device_frame = frame
+            self._servo.set_device_frame(frame.rotation, frame.translation, frame.scale)
+
+    def _watch_device(self, snapshot: Snapshot) -> None:
+        if snapshot.fault:
+            text = FAULTS.get(snapshot.fault, f"The device reports a fault: {snapshot.fault}")
+            if text != self.state.message:
+                self.post(Fault(text))
+        elif self.state.phase is Phase.LOST:
+            self.post(Recovered())
+
+    def _draw(self, thing: bpy.types.Object, snapshot: Snapshot) -> None:
+        contact = (
+            snapshot.touching,
+            tuple(snapshot.triangle),
+            np.asarray(snapshot.nodal_forces).tobytes(),
+        )
+        if contact == self._drawn_contact:
+            return
+        self._drawn_contact = contact
+        self.displacements = displacements_of(self.drawn.body, snapshot, self.young_modulus)
+        if self.displacements is None:
+            live_shape.write(thing.data, self.drawn.rest)
+        else:
+            live_shape.write(thing.data, self.drawn.local_coordinates(self.displacements))
+
+
+# The servo's words for a fault, as sentences with a remedy.
+FAULTS = {
+    "unplugged": "The device is unplugged; plug it in again and pressing goes on",
+    "stale": "The device is silent; check its cable and power, pressing goes on when it speaks",
+    "too fast": "The device moved too fast and was let go; hold still and pressing goes on",
+    "nan": "The device sent a position that is no number; pressing goes on when it recovers",
+    "wrong protocol": "The device speaks another version of the link; update its firmware",
+    "device fault": "The device reports a fault of its own; see its manual, or plug it in again",
+    "internal error": "The force loop has failed; leave with Escape and press again",
+}
+
+_current: PressSession | None = None
+
+
+def current() -> PressSession | None:
+    """The press that is going on, if one is."""
+    return _current
+
+
+def begin(thing: bpy.types.Object, scene: bpy.types.Scene, source: Source) -> PressSession:
+    """Start to press an object.
+
+    Raises
+    ------
+    PalpateError
+        A press is going on; the object or its body does not allow it; the device does not.
+    """
+    global _current  # noqa: PLW0603  see PressSession.post
+    if _current is not None:
+        raise PalpateError(f"{_current.handle.name} is being pressed; end that first (Escape)")
+    session = PressSession(
+        ObjectHandle.of(thing), scene.name, open_body(thing, scene), thing.palpate.young_modulus
+    )
+    _current = session
+    try:
+        session.post(Start(source))
+    except BaseException:
+        session.post(GiveWay(""))
+        raise
+    return session
+
+
+def give_way(reason: str) -> None:
+    """End the press that is going on, if one is, leaving the mesh clean."""
+    if _current is not None:
+        _current.post(GiveWay(reason))
+
+
+def _leave_edit_mode(thing: bpy.types.Object) -> None:
+    """Shape keys can only be taken away while nobody edits them."""
+    if thing.mode == "OBJECT":
+        return
+    with bpy.context.temp_override(active_object=thing, object=thing):
+        bpy.ops.object.mode_set(mode="OBJECT")

@@ -1,0 +1,270 @@
+"""What a press may do next, as one pure function: ``transition(state, event) -> (state, effects)``.
+
+No Blender, no device, no clock: the session (:mod:`press_session`) turns what happens into events
+and carries out the effects, in order, in one place.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from enum import Enum
+
+Point = tuple[float, float, float]
+
+
+class Source(Enum):
+    """Who moves the probe."""
+
+    POINTER = "pointer"
+    DEVICE = "device"
+
+
+class Phase(Enum):
+    """Where a press stands."""
+
+    IDLE = "idle"
+    READY = "ready"  # pointer: nothing touched yet
+    DRAGGING = "dragging"  # pointer: button held, probe follows
+    HOLDING = "holding"  # pointer: button released, probe stays
+    FEELING = "feeling"  # the device moves the probe
+    LOST = "lost"  # the device went away or reports a fault
+    ENDED = "ended"
+
+
+@dataclass(frozen=True)
+class PressState:
+    """A press between two events; ``withdrawn`` while the file is being written."""
+
+    phase: Phase = Phase.IDLE
+    source: Source = Source.POINTER
+    withdrawn: bool = False
+    message: str = ""
+
+    @property
+    def active(self) -> bool:
+        """Whether the press has started and not ended."""
+        return self.phase not in (Phase.IDLE, Phase.ENDED)
+
+    @property
+    def pressed(self) -> bool:
+        """Whether there is a shape that could be kept."""
+        return self.phase in (Phase.DRAGGING, Phase.HOLDING, Phase.FEELING)
+
+
+# Events
+
+
+@dataclass(frozen=True)
+class Start:
+    source: Source
+
+
+@dataclass(frozen=True)
+class SetDown:
+    """The pointer touches the surface here (body coordinates)."""
+
+    point: Point
+
+
+@dataclass(frozen=True)
+class Move:
+    """The pointer wants the probe here (body coordinates)."""
+
+    point: Point
+
+
+@dataclass(frozen=True)
+class Release:
+    """The pointer's button is up."""
+
+
+@dataclass(frozen=True)
+class Fault:
+    """The device is gone, stale or in fault; ``text`` says which and what to do."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Recovered:
+    """The device answers again."""
+
+
+@dataclass(frozen=True)
+class SaveBegins:
+    """Blender is about to write the file."""
+
+
+@dataclass(frozen=True)
+class SaveEnds:
+    """Blender has written the file, or failed to."""
+
+
+@dataclass(frozen=True)
+class Keep:
+    """The user wants the shape."""
+
+
+@dataclass(frozen=True)
+class Cancel:
+    """The user wants back what was there."""
+
+
+@dataclass(frozen=True)
+class GiveWay:
+    """Something else needs the object: file load, undo, deletion, edit, unregister, exit."""
+
+    reason: str
+
+
+Event = (
+    Start
+    | SetDown
+    | Move
+    | Release
+    | Fault
+    | Recovered
+    | SaveBegins
+    | SaveEnds
+    | Keep
+    | Cancel
+    | GiveWay
+)
+
+# Effects
+
+
+@dataclass(frozen=True)
+class StartServo:
+    source: Source
+
+
+@dataclass(frozen=True)
+class PlaceProbe:
+    """Lift the probe off and set it down there, without a sweep through the body."""
+
+    point: Point
+
+
+@dataclass(frozen=True)
+class MoveProbe:
+    point: Point
+
+
+@dataclass(frozen=True)
+class StopServo:
+    """Zero force, thread joined."""
+
+
+@dataclass(frozen=True)
+class HangLiveShape:
+    """Add the live shape key."""
+
+
+@dataclass(frozen=True)
+class DrawRest:
+    """Write the rest shape into the live shape key."""
+
+
+@dataclass(frozen=True)
+class RemoveLiveShape:
+    """Leave the mesh as it was found, bit for bit."""
+
+
+@dataclass(frozen=True)
+class KeepShape:
+    """Turn the live shape key into a kept one."""
+
+
+@dataclass(frozen=True)
+class Say:
+    """Tell the user."""
+
+    text: str
+    warning: bool = False
+
+
+Effect = (
+    StartServo
+    | PlaceProbe
+    | MoveProbe
+    | StopServo
+    | HangLiveShape
+    | DrawRest
+    | RemoveLiveShape
+    | KeepShape
+    | Say
+)
+
+Step = tuple[PressState, tuple[Effect, ...]]
+
+
+def transition(state: PressState, event: Event) -> Step:
+    """The state after ``event`` and what must be done, in order. Unfit events change nothing."""
+    if isinstance(event, Start):
+        return _start(state, event)
+    if not state.active:
+        return state, ()
+    match event:
+        case GiveWay(reason):
+            return _end(state, reason)
+        case Cancel():
+            return _end(state, "")
+        case Keep():
+            return _keep(state)
+        case SaveBegins() if not state.withdrawn:
+            return replace(state, withdrawn=True), (RemoveLiveShape(),)
+        case SaveEnds() if state.withdrawn:
+            return replace(state, withdrawn=False), (HangLiveShape(),)
+        case Fault() | Recovered() if state.source is Source.DEVICE:
+            return _device(state, event)
+        case SetDown() | Move() | Release() if state.source is Source.POINTER:
+            return _pointer(state, event)
+    return state, ()
+
+
+def _start(state: PressState, event: Start) -> Step:
+    if state.phase is not Phase.IDLE:
+        return state, ()
+    phase = Phase.READY if event.source is Source.POINTER else Phase.FEELING
+    return PressState(phase, event.source), (HangLiveShape(), StartServo(event.source))
+
+
+def _pointer(state: PressState, event: SetDown | Move | Release) -> Step:
+    match state.phase, event:
+        case (Phase.READY | Phase.HOLDING), SetDown(point):
+            return replace(state, phase=Phase.DRAGGING, message=""), (PlaceProbe(point),)
+        case Phase.DRAGGING, Move(point):
+            return state, (MoveProbe(point),)
+        case Phase.DRAGGING, Release():
+            return replace(state, phase=Phase.HOLDING), ()
+    return state, ()
+
+
+def _device(state: PressState, event: Fault | Recovered) -> Step:
+    match state.phase, event:
+        case Phase.FEELING, Fault(text):
+            lost = replace(state, phase=Phase.LOST, message=text)
+            return lost, (() if state.withdrawn else (DrawRest(),)) + (Say(text, warning=True),)
+        case Phase.LOST, Fault(text):
+            return replace(state, message=text), ()
+        case Phase.LOST, Recovered():
+            text = "The device is back"
+            return replace(state, phase=Phase.FEELING, message=""), (Say(text),)
+    return state, ()
+
+
+def _keep(state: PressState) -> Step:
+    if state.withdrawn or not state.pressed:
+        text = "Nothing is pressed yet, so there is no shape to keep"
+        return replace(state, message=text), (Say(text),)
+    return replace(state, phase=Phase.ENDED, message=""), (StopServo(), KeepShape())
+
+
+def _end(state: PressState, reason: str) -> Step:
+    effects: tuple[Effect, ...] = (StopServo(),)
+    if not state.withdrawn:
+        effects += (RemoveLiveShape(),)
+    if reason:
+        effects += (Say(reason, warning=True),)
+    return replace(state, phase=Phase.ENDED, withdrawn=False, message=reason), effects

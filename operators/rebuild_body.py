@@ -1,0 +1,28 @@
+"""Rebuild Body: the same body again from the tetrahedra in the .blend, or with new pins and ratio."""
+
+import bpy
+
+from .make_soft import BakingOperator
+
+
+class PALPATE_OT_rebuild_body(BakingOperator, bpy.types.Operator):
+    bl_idname = "palpate.rebuild_body"
+    bl_label = "Rebuild Body"
+    bl_description = (
+        "Compute the body again from the tetrahedra stored in this file, with the pins and "
+        "Poisson's ratio set now. For a body file that is missing or damaged"
+    )
+    bl_options = {"UNDO"}
+    rebuild = True
+
+    @classmethod
+    def poll(cls, context):
+        if not super().poll(context):
+            return False
+        if not context.object.palpate.body_key:
+            cls.poll_message_set(f"{context.object.name} is not soft yet; press Make Soft")
+            return False
+        return True
+
+
+classes = (PALPATE_OT_rebuild_body,)

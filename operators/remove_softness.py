@@ -1,0 +1,35 @@
+"""Remove Softness: take the body away; the mesh and the shapes kept from it stay."""
+
+import bpy
+
+from ..core.errors import PalpateError
+from . import bake_session, body_store, press_session, soft_object
+
+
+class PALPATE_OT_remove_softness(bpy.types.Operator):
+    bl_idname = "palpate.remove_softness"
+    bl_label = "Remove Softness"
+    bl_description = "Delete the body and its file. Mesh, pins and kept shapes stay"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context):
+        reason = soft_object.refusal(context.object)
+        if not reason and not context.object.palpate.body_key:
+            reason = f"{context.object.name} is not soft"
+        if not reason and (bake_session.current() or press_session.current()):
+            reason = "Finish baking or pressing first"
+        if reason:
+            cls.poll_message_set(reason)
+        return not reason
+
+    def execute(self, context):
+        try:
+            body_store.forget(context.object)
+        except PalpateError as problem:
+            self.report({"ERROR"}, str(problem))
+            return {"CANCELLED"}
+        return {"FINISHED"}
+
+
+classes = (PALPATE_OT_remove_softness,)

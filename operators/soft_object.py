@@ -1,0 +1,83 @@
+"""What an object allows now, in words: may it be made soft, does its body still fit it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+import bpy
+
+from . import body_store, drawn_surface, fingerprint, pin_group
+from .fingerprint import Fingerprint
+
+
+class Fit(Enum):
+    """How an object stands to its body."""
+
+    NEVER_BAKED = "never baked"
+    READY = "ready"
+    CHANGED = "changed"  # another bake is needed
+    FILE_MISSING = "file missing"  # can be rebuilt
+
+
+@dataclass(frozen=True)
+class BodyStatus:
+    """``text`` says why; ``notes`` are settings changed since the bake that it does not have yet."""
+
+    fit: Fit
+    text: str = ""
+    notes: tuple[str, ...] = ()
+
+
+def refusal(thing: bpy.types.Object | None) -> str:
+    """Why this object cannot be made soft or pressed at all; empty if it can."""
+    if thing is None:
+        return "Select a mesh object"
+    if thing.type != "MESH":
+        return f"{thing.name} is not a mesh; select a mesh object"
+    if thing.library or thing.override_library or thing.data.library or thing.data.override_library:
+        return f"{thing.name} is linked from another file; make it local (Object > Relations)"
+    if thing.data.users > 1:
+        return (
+            f"{thing.name} shares its mesh with {thing.data.users - 1} more; "
+            "Object > Relations > Make Single User"
+        )
+    if thing.mode != "OBJECT":
+        return f"Leave {thing.mode.replace('_', ' ').title()} Mode first"
+    keys = thing.data.shape_keys
+    if keys and not keys.use_relative:
+        return f"{thing.name} has absolute shape keys; tick Relative in its shape keys"
+    return ""
+
+
+def body_status(thing: bpy.types.Object, scene: bpy.types.Scene) -> BodyStatus:
+    """Whether the object's body is there and still fits it. Reads the mesh, not the body file.
+
+    Raises
+    ------
+    PalpateError
+        A transform that flattens the object.
+    """
+    baked = thing.palpate
+    if not baked.body_key:
+        return BodyStatus(Fit.NEVER_BAKED)
+    old = Fingerprint.from_text(baked.fingerprint)
+    new = drawn_surface.read(thing, scene).fingerprint(pin_group.pin_rule(thing))
+    change = fingerprint.changed_body(old, new)
+    if change:
+        return BodyStatus(Fit.CHANGED, change)
+    notes = _unbaked_settings(thing, old, new)
+    if body_store.locate(thing) is None:
+        return BodyStatus(Fit.FILE_MISSING, "the body file is missing", notes)
+    return BodyStatus(Fit.READY, "", notes)
+
+
+def _unbaked_settings(
+    thing: bpy.types.Object, old: Fingerprint, new: Fingerprint
+) -> tuple[str, ...]:
+    notes = []
+    if fingerprint.changed_pins(old, new):
+        notes.append("Pins changed since the bake")
+    if abs(thing.palpate.poisson_ratio - thing.palpate.baked_poisson_ratio) > 1e-6:
+        notes.append("Poisson's ratio changed since the bake")
+    return tuple(notes)

@@ -1,0 +1,119 @@
+"""The 3D view under the pointer: which one, its line of sight, and its scale at a place."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+from bpy_extras import view3d_utils
+from mathutils import Vector
+from numpy.typing import NDArray
+
+from .body_frame import BodyFrame
+from .probe_drag import View
+
+Array = NDArray[np.float64]
+
+# Blender's navigation gizmos in the corner: the ball, then a column of buttons, in unscaled pixels.
+GIZMO_MARGIN, GIZMO_BUTTON, GIZMO_BUTTONS = 20, 34, 4
+DEFAULT_GIZMO_SIZE = 80
+
+
+@dataclass(frozen=True, eq=False)
+class Viewport:
+    """A 3D view's window region and a pointer in it, in pixels of that region."""
+
+    area: bpy.types.Area
+    region: bpy.types.Region
+    cursor: tuple[float, float]
+
+    @property
+    def region_3d(self) -> bpy.types.RegionView3D:
+        """The view's projection."""
+        return self.region.data
+
+    def ray(self, frame: BodyFrame) -> tuple[Array, Array]:
+        """Line of sight through the pointer in body coordinates: origin and unit direction (3,)."""
+        origin = view3d_utils.region_2d_to_origin_3d(self.region, self.region_3d, self.cursor)
+        along = view3d_utils.region_2d_to_vector_3d(self.region, self.region_3d, self.cursor)
+        direction = frame.turn_to_body(np.array(along))
+        return frame.body_from_world(np.array(origin)), direction / np.linalg.norm(direction)
+
+    def view_at(self, point: Array, frame: BodyFrame) -> View | None:
+        """Screen axes and scale at ``point`` (body coordinates); None behind the viewer."""
+        axes = np.array(self.region_3d.view_matrix)[:3, :3]
+        right, up = frame.turn_to_body(axes[0]), frame.turn_to_body(axes[1])
+        here = Vector(frame.world_from_body(point))
+        step = self.region_3d.view_distance * 0.01
+        aside = here + step * Vector(axes[0])
+        ends = [
+            view3d_utils.location_3d_to_region_2d(self.region, self.region_3d, place)
+            for place in (here, aside)
+        ]
+        if None in ends or (ends[1] - ends[0]).length == 0.0:
+            return None
+        metres = step * frame.metres_per_unit / (ends[1] - ends[0]).length
+        return View(right, up, metres)
+
+    def over_gizmos(self) -> bool:
+        """Whether the pointer is on the view's navigation gizmos, which must keep working."""
+        if not self.area.spaces.active.show_gizmo_navigate:
+            return False
+        preferences = bpy.context.preferences
+        scale = preferences.system.ui_scale
+        size = getattr(preferences.view, "gizmo_size_navigate_view", DEFAULT_GIZMO_SIZE)
+        width = (size + 2 * GIZMO_MARGIN) * scale
+        height = width + GIZMO_BUTTONS * GIZMO_BUTTON * scale
+        right = self.region.width - self._covered("UI")
+        top = self.region.height - self._covered("HEADER") - self._covered("TOOL_HEADER")
+        x, y = self.cursor
+        return right - width <= x <= right and top - height <= y <= top
+
+    def _covered(self, kind: str) -> int:
+        """Pixels of the window region that another region of this kind lies upon."""
+        across = "width" if kind == "UI" else "height"
+        return sum(
+            getattr(r, across)
+            for r in self.area.regions
+            if r.type == kind and _overlaps(r, self.region)
+        )
+
+
+def under_pointer(window: bpy.types.Window, x: int, y: int) -> Viewport | None:
+    """The 3D view at window coordinates, unless another region lies on top of it there."""
+    for area in window.screen.areas:
+        if area.type != "VIEW_3D":
+            continue
+        here = [r for r in area.regions if _contains(r, x, y)]
+        if any(r.type != "WINDOW" for r in here):
+            return None
+        for region in here:
+            return Viewport(area, region, (x - region.x, y - region.y))
+    return None
+
+
+def in_region(viewport: Viewport, x: int, y: int) -> tuple[float, float]:
+    """Window coordinates in pixels of a viewport's region, also outside of it."""
+    return (x - viewport.region.x, y - viewport.region.y)
+
+
+def _contains(region: bpy.types.Region, x: int, y: int) -> bool:
+    # A closed region has a size of one pixel.
+    return (
+        region.width > 1
+        and region.height > 1
+        and region.x <= x < region.x + region.width
+        and region.y <= y < region.y + region.height
+    )
+
+
+def _overlaps(region: bpy.types.Region, other: bpy.types.Region) -> bool:
+    return (
+        region.width > 1
+        and region.height > 1
+        and region.x < other.x + other.width
+        and other.x < region.x + region.width
+        and region.y < other.y + other.height
+        and other.y < region.y + region.height
+    )
