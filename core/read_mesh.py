@@ -50,7 +50,8 @@ def read_tets(path: Path, metres_per_unit: float = 1.0) -> tuple[TetMesh, NDArra
     """
     _refuse_missing(path)
     try:
-        with np.load(path, allow_pickle=False) as file:
+        # Opened here, since numpy leaves a damaged archive open.
+        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
             arrays = {name: file[name] for name in ("X", "T", "fixed") if name in file.files}
     except (OSError, EOFError, ValueError, AttributeError, zipfile.BadZipFile) as problem:
         raise PalpateError(
