@@ -9,6 +9,8 @@ from palpate_servo import Body, Servo, Snapshot
 from .errors import PalpateError
 from .soft_body import SoftBody
 
+__all__ = ["Servo", "Snapshot", "displacements_of", "native_body", "servo_for"]
+
 
 def native_body(body: SoftBody) -> Body:
     """The rest surface and contact blocks of a body as the native thread holds them.
