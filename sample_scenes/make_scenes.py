@@ -1,126 +1,53 @@
-"""Make cube.blend and mouse.blend. Run: python make_scenes.py [FOLDER], with Blender's bpy module.
+"""Make cube.blend and mouse.blend, soft already: BLENDER_PYTHON make_scenes.py --package ZIP.
 
-`blender -b --factory-startup -P make_scenes.py -- [FOLDER]` does the same.
+BLENDER_PYTHON has the bpy module; use that of the oldest Blender we support, since newer ones read
+older files. The body files that appear in `palpate/` beside the scenes are not kept: the tetrahedra
+are inside the .blend, and Rebuild Body makes the same body from them.
 """
 
+import argparse
 import sys
+import tempfile
 from pathlib import Path
 
-import bpy
-import numpy as np
-from numpy.typing import NDArray
-
 HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE))
-
-import fabric  # noqa: E402
-import mouse_shape  # noqa: E402
-import studio  # noqa: E402
-
-PINNED = "Pinned"
-CUBE_EDGE = 0.05
-CUBE_CELLS = 24
+sys.path[:0] = [str(HERE), str(HERE.parent / "demo")]
 
 
-def soft_mesh(name: str, shape: mouse_shape.QuadMesh) -> bpy.types.Mesh:
-    """A Blender mesh with smooth shading, material slots by part, rest and felt attributes."""
-    mesh = bpy.data.meshes.new(name)
-    mesh.from_pydata(shape.vertices, [], shape.quads.tolist())
-    mesh.shade_smooth()
-    mesh.polygons.foreach_set("material_index", shape.part.astype(np.int32))
-    rest = mesh.attributes.new(fabric.REST, "FLOAT_VECTOR", "POINT")
-    rest.data.foreach_set("vector", shape.vertices.astype(np.float32).ravel())
-    for attribute, values in ((fabric.FELT, shape.felt), (fabric.QUILT, shape.quilt)):
-        layer = mesh.attributes.new(attribute, "FLOAT", "POINT")
-        layer.data.foreach_set("value", values.astype(np.float32))
-    mesh.update()
-    return mesh
+def main() -> int:
+    """Write both scenes into the chosen folder, with their bodies' tetrahedra inside."""
+    options = _options()
+    options.output.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory() as home:
+        import installed
+
+        installed.install(options.package.resolve(), Path(home))
+        # Only now: these import bpy, which finds its home when it is first imported.
+        import bodies
+        import bpy
+        import scenes
+
+        bpy.context.preferences.filepaths.save_version = 0
+        for make, tets in (
+            (scenes.cube_scene, bodies.cube_tets),
+            (scenes.mouse_scene, bodies.mouse_tets),
+        ):
+            body = make()
+            path = options.output / f"{body.name.lower()}.blend"
+            # Saved first, so that the body file goes beside it and the user's folder stays clean.
+            bpy.ops.wm.save_as_mainfile(filepath=str(path), compress=True)
+            bodies.attach(body, tets())
+            bpy.ops.wm.save_mainfile(compress=True)
+            print(f"{path.name}: {len(body.data.vertices)} vertices, {path.stat().st_size} bytes")
+    return 0
 
 
-def paint(mesh: bpy.types.Mesh, colours: NDArray[np.float64]) -> None:
-    """Store vertex colours (v, 3), linear: what Solid shading shows."""
-    layer = mesh.color_attributes.new("Colour", "FLOAT_COLOR", "POINT")
-    rgba = np.column_stack([colours, np.ones(len(colours))]).astype(np.float32)
-    layer.data.foreach_set("color", rgba.ravel())
-
-
-def pin(thing: bpy.types.Object, vertices: NDArray[np.int64]) -> None:
-    """Make the vertex group that holds the body on the table."""
-    thing.vertex_groups.new(name=PINNED).add(vertices.tolist(), 1.0, "REPLACE")
-
-
-def mouse_scene() -> bpy.types.Object:
-    """The plush mouse on its table."""
-    scene = studio.empty_scene("Mouse")
-    shape = mouse_shape.mouse()
-    mesh = soft_mesh("Mouse", shape)
-    body, stitch, pink = (0.36, 0.31, 0.29), (0.15, 0.12, 0.115), (0.74, 0.26, 0.27)
-    for material in (
-        fabric.plush(fabric.quilted, body, stitch, pink),
-        fabric.felt(pink),
-        fabric.bead(),
-    ):
-        mesh.materials.append(material)
-    colours = np.where((shape.felt < 0.0)[:, None], pink, body)
-    for part, colour in (
-        (mouse_shape.Part.FELT, pink),
-        (mouse_shape.Part.BEAD, (0.01, 0.01, 0.01)),
-    ):
-        colours[np.unique(shape.quads[shape.part == part])] = colour
-    paint(mesh, colours)
-    mouse = studio.link(scene, "Mouse", mesh)
-    pin(mouse, shape.pinned)
-    aim = (-0.004, -0.004, 0.030)
-    studio.backdrop(scene, (0.13, 0.27, 0.29), 0.30)
-    studio.lights(scene, (0.0, 0.0, 0.03))
-    studio.camera(scene, (0.23, -0.33, 0.215), aim, 88.0)
-    studio.render_settings(scene)
-    studio.open_view(scene, mouse, 0.30, aim)
-    return mouse
-
-
-def cube_scene() -> bpy.types.Object:
-    """The paper's cube, 50 mm, pinned at the bottom."""
-    scene = studio.empty_scene("Cube")
-    unit, quads = mouse_shape.cube_surface(CUBE_CELLS)
-    vertices = CUBE_EDGE * (unit - np.array([0.5, 0.5, 0.0]))
-    plain = np.full(len(vertices), 0.01)
-    shape = mouse_shape.QuadMesh(
-        vertices, quads, np.zeros(len(quads), dtype=np.int64), felt=plain, quilt=plain
-    )
-    mesh = soft_mesh("Cube", shape)
-    colour = (0.80, 0.20, 0.09)
-    mesh.materials.append(fabric.foam(colour, (0.40, 0.07, 0.03), CUBE_EDGE / 10.0))
-    paint(mesh, np.broadcast_to(colour, vertices.shape))
-    cube = studio.link(scene, "Cube", mesh)
-    pin(cube, np.flatnonzero(vertices[:, 2] < 1e-6))
-    aim = (0.0, 0.0, 0.023)
-    studio.backdrop(scene, (0.13, 0.27, 0.29), 0.30)
-    studio.lights(scene, aim)
-    studio.camera(scene, (0.23, -0.28, 0.20), aim, 110.0)
-    studio.render_settings(scene)
-    studio.open_view(scene, cube, 0.17, aim)
-    return cube
-
-
-def save(folder: Path, name: str) -> Path:
-    """Write the open scene, compressed."""
-    path = folder / f"{name}.blend"
-    bpy.ops.wm.save_as_mainfile(filepath=str(path), compress=True, check_existing=False)
-    return path
-
-
-def main(folder: Path) -> None:
-    """Write both scenes into `folder`."""
-    folder.mkdir(parents=True, exist_ok=True)
-    bpy.ops.preferences.addon_enable(module="cycles")
-    bpy.context.preferences.filepaths.save_version = 0
-    for make in (cube_scene, mouse_scene):
-        body = make()
-        path = save(folder, body.name.lower())
-        print(f"{path.name}: {len(body.data.vertices)} vertices, {path.stat().st_size // 1024} kB")
+def _options() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--package", type=Path, required=True, help="the extension's zip")
+    parser.add_argument("--output", type=Path, default=HERE)
+    return parser.parse_args()
 
 
 if __name__ == "__main__":
-    arguments = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else sys.argv[1:]
-    main(Path(arguments[0]) if arguments else HERE)
+    sys.exit(main())

@@ -10,7 +10,7 @@ Colour = tuple[float, float, float]
 
 def empty_scene(name: str) -> bpy.types.Scene:
     """Blender's factory start without its objects, millimetres shown, metres stored."""
-    bpy.ops.wm.read_factory_settings()
+    bpy.ops.wm.read_homefile(use_factory_startup=True)
     bpy.data.batch_remove([*bpy.data.objects, *bpy.data.meshes, *bpy.data.materials])
     bpy.data.batch_remove([*bpy.data.lights, *bpy.data.cameras])
     scene = bpy.context.scene

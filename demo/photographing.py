@@ -1,0 +1,23 @@
+"""Pictures of the scene through its own camera, and where a point of the world falls on them."""
+
+from pathlib import Path
+
+import bpy
+from bpy_extras.object_utils import world_to_camera_view
+from mathutils import Vector
+
+
+def photograph(path: Path, percent: int = 100) -> Path:
+    """Render the scene to a PNG at a share of its own size."""
+    scene = bpy.context.scene
+    scene.render.resolution_percentage = percent
+    scene.render.filepath = str(path)
+    bpy.ops.render.render(write_still=True)
+    return path
+
+
+def pixel(point: list[float]) -> tuple[float, float]:
+    """Where a point in world coordinates falls, as shares of width and height from top left."""
+    scene = bpy.context.scene
+    x, y, _ = world_to_camera_view(scene, scene.camera, Vector(point))
+    return x, 1.0 - y

@@ -1,0 +1,123 @@
+"""The device presses while Blender draws: hand script, frames at 60 Hz, what the servo recorded."""
+
+import json
+import sys
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import bpy
+import numpy as np
+from installed import palpate
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+FRAME_RATE = 60
+SECONDS = 8.0
+# When the hand is how deep, as a share of the whole depth; the last value is held until the end.
+PRESSES = [(0.6, -0.5), (1.0, 0.0), (2.2, 1.0), (2.6, 1.0), (3.6, -0.1), (4.4, 0.7), (5.2, 0.2),
+           (6.4, 1.0)]  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where to press: a point of the surface and the direction inwards, body coordinates."""
+
+    point: Array
+    inward: Array
+
+
+def place_near(thing: bpy.types.Object, near: Array) -> Place:
+    """The free surface node of the body nearest to `near`, and the surface's direction there."""
+    body = palpate("operators.body_store").load(thing)
+    mesh = body.mesh
+    free = body.compliance.free_surface
+    node = free[np.argmin(np.linalg.norm(mesh.nodes[free] - near, axis=1))]
+    ring = mesh.surface_triangles[(mesh.surface_triangles == node).any(axis=1)]
+    a, b, c = (mesh.nodes[ring[:, corner]] for corner in range(3))
+    inward = -np.cross(b - a, c - a).sum(axis=0)
+    return Place(mesh.nodes[node], inward / np.linalg.norm(inward))
+
+
+def write_hand(path: Path, place: Place, depth: float) -> None:
+    """Keyframes of the simulated hand: presses of up to `depth` metres, the last one held."""
+    start = place.point - 0.02 * place.inward
+    keys = [[0.0, *start.tolist()]]
+    keys += [[t, *(place.point + share * depth * place.inward).tolist()] for t, share in PRESSES]
+    path.write_text(json.dumps({"keyframes": keys, "repeat_from": None}), encoding="utf-8")
+
+
+def press_with_device(
+    thing: bpy.types.Object, place: Place, depth: float, folder: Path
+) -> tuple[dict[str, Any], NDArray[np.void]]:
+    """Let the simulated device press for SECONDS, beside drawing; keep the last shape.
+
+    Returns figures and the servo's samples of every tick.
+    """
+    session_module, state = palpate("operators.press_session"), palpate("operators.press_state")
+    simulated = palpate("core.devices.simulated_process")
+    options = palpate("core.devices.simulated_options")
+    hand = folder / "hand.json"
+    write_hand(hand, place, depth)
+    scene = bpy.context.scene
+    device = simulated.SimulatedDevice(
+        options.SimulatedOptions(script=str(hand)),
+        python=sys.executable,
+        python_args=bpy.app.python_args,
+    )
+    with device:
+        scene.palpate.source, scene.palpate.port = "SERIAL", device.port
+        session = session_module.begin(thing, scene, state.Source.DEVICE)
+        try:
+            frames, samples = _draw_frames(session)
+            figures = _figures(session, thing, frames)
+            session.post(state.Keep())
+        finally:
+            session_module.give_way("")
+    figures["device"] = device.stop()
+    return figures, samples
+
+
+def _draw_frames(session: Any) -> tuple[Array, NDArray[np.void]]:
+    """Tick the session FRAME_RATE times a second; times of frames that drew a dent, seconds."""
+    seconds, samples = [], [session.servo.samples()]
+    start = time.perf_counter()
+    due = start
+    while (begun := time.perf_counter()) - start < SECONDS:
+        session.tick()
+        if session.displacements is not None:
+            seconds.append(time.perf_counter() - begun)
+        samples.append(session.servo.samples())
+        if session.state.message:
+            raise RuntimeError(f"the device was lost: {session.state.message}")
+        due = max(due + 1.0 / FRAME_RATE, time.perf_counter())
+        time.sleep(due - time.perf_counter() if due > time.perf_counter() else 0.0)
+    return np.array(seconds), np.concatenate(samples)
+
+
+def _figures(session: Any, thing: bpy.types.Object, frames: Array) -> dict[str, Any]:
+    snapshot, moved = session.snapshot, session.displacements
+    if moved is None:
+        raise RuntimeError("the hand holds, but nothing is touched: no press to keep")
+    frame = session.drawn.frame
+    return {
+        "servo": session.servo.counters(),
+        "press": {
+            "object": thing.name,
+            "depth_mm": 1e3 * float(np.linalg.norm(snapshot.probe - snapshot.proxy)),
+            "force_n": float(np.linalg.norm(snapshot.output_force)),
+            "max_displacement_mm": 1e3 * float(np.linalg.norm(moved, axis=1).max()),
+            "frames": len(frames),
+            "frame_ms": {
+                "p50": 1e3 * float(np.percentile(frames, 50)),
+                "p99": 1e3 * float(np.percentile(frames, 99)),
+            },
+        },
+        "contact": {
+            "proxy": frame.world_from_body(snapshot.proxy).tolist(),
+            "probe": frame.world_from_body(snapshot.probe).tolist(),
+            "force": frame.turn_to_world(snapshot.output_force).tolist(),
+        },
+    }

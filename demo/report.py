@@ -1,0 +1,77 @@
+"""What the demo measured, as report.json and as lines to read."""
+
+from typing import Any
+
+SERVO = ("rate_hz", "ticks", "late_ticks", "realtime")
+LINK = ("states", "forces", "lost", "crc_errors")
+
+
+def report(raw: dict[str, Any], pictures: list[str]) -> dict[str, Any]:
+    """The report from what the Blender part wrote."""
+    servo = raw["servo"]
+    return {
+        "blender": raw["blender"],
+        "cube": raw["cube"],
+        "mouse": raw["mouse"],
+        "servo": {
+            **{name: servo[name] for name in SERVO},
+            "lateness_us": {name: servo["lateness_us"][name] for name in ("p50", "p99", "max")},
+            "link": {name: servo["link"][name] for name in LINK},
+        },
+        "press": raw["press"],
+        "pictures": pictures,
+    }
+
+
+def summary(made: dict[str, Any]) -> str:
+    """The report in a dozen lines."""
+    lines = {
+        "Blender": made["blender"],
+        "cube": _body(made["cube"]),
+        "mouse": _body(made["mouse"]),
+        "servo": _servo(made["servo"]),
+        "link": _link(made["servo"]["link"]),
+        "press": _press(made["press"]),
+        "frames": _frames(made["press"]),
+    }
+    told = [f"{name:8} {text}" for name, text in lines.items()]
+    return "\n".join([*told, *(f"picture  {path}" for path in made["pictures"])])
+
+
+def _servo(servo: dict[str, Any]) -> str:
+    late = servo["lateness_us"]
+    return (
+        f"{servo['ticks']} ticks at {servo['rate_hz']} Hz, {servo['late_ticks']} of them more than "
+        f"200 us late; lateness {late['p50']:.0f} us median, {late['p99']:.0f} us 99 %, "
+        f"{late['max']:.0f} us worst; real-time priority: {servo['realtime']}"
+    )
+
+
+def _link(link: dict[str, Any]) -> str:
+    return (
+        f"{link['states']} states in, {link['forces']} forces out, {link['lost']} lost, "
+        f"{link['crc_errors']} checksum errors"
+    )
+
+
+def _press(press: dict[str, Any]) -> str:
+    return (
+        f"{press['object']}: {press['depth_mm']:.1f} mm deep, {press['force_n']:.3f} N, "
+        f"the mesh moves {press['max_displacement_mm']:.1f} mm"
+    )
+
+
+def _frames(press: dict[str, Any]) -> str:
+    time = press["frame_ms"]
+    return (
+        f"{press['frames']} drawn beside it; {time['p50']:.1f} ms median, {time['p99']:.1f} ms 99 %"
+    )
+
+
+def _body(figures: dict[str, Any]) -> str:
+    return (
+        f"{figures['nodes']} nodes, {figures['tets']} tetrahedra, "
+        f"{figures['free_surface_nodes']} free surface nodes of {figures['surface_nodes']}, "
+        f"L {figures['compliance_bytes'] / 1e6:.1f} MB, "
+        f"baked in {figures['seconds']['until_pressable']:.1f} s"
+    )

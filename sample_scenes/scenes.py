@@ -1,0 +1,97 @@
+"""The two scenes: cube and plush mouse with material, pins, light and camera."""
+
+import bodies
+import bpy
+import fabric
+import mouse_shape
+import numpy as np
+import studio
+from numpy.typing import NDArray
+
+PINNED = "Pinned"
+CUBE_EDGE = 0.05
+CUBE_CELLS = 24
+
+
+def soft_mesh(name: str, shape: mouse_shape.QuadMesh) -> bpy.types.Mesh:
+    """A Blender mesh with smooth shading, material slots by part, rest and felt attributes."""
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata(shape.vertices, [], shape.quads.tolist())
+    mesh.shade_smooth()
+    mesh.polygons.foreach_set("material_index", shape.part.astype(np.int32))
+    rest = mesh.attributes.new(fabric.REST, "FLOAT_VECTOR", "POINT")
+    rest.data.foreach_set("vector", shape.vertices.astype(np.float32).ravel())
+    for attribute, values in ((fabric.FELT, shape.felt), (fabric.QUILT, shape.quilt)):
+        layer = mesh.attributes.new(attribute, "FLOAT", "POINT")
+        layer.data.foreach_set("value", values.astype(np.float32))
+    mesh.update()
+    return mesh
+
+
+def paint(mesh: bpy.types.Mesh, colours: NDArray[np.float64]) -> None:
+    """Store vertex colours (v, 3), linear: what Solid shading shows."""
+    layer = mesh.color_attributes.new("Colour", "FLOAT_COLOR", "POINT")
+    rgba = np.column_stack([colours, np.ones(len(colours))]).astype(np.float32)
+    layer.data.foreach_set("color", rgba.ravel())
+
+
+def pin(thing: bpy.types.Object, vertices: NDArray[np.int64]) -> None:
+    """Make the vertex group that holds the body on the table."""
+    thing.vertex_groups.new(name=PINNED).add(vertices.tolist(), 1.0, "REPLACE")
+
+
+def mouse_scene() -> bpy.types.Object:
+    """The plush mouse on its table."""
+    scene = studio.empty_scene("Mouse")
+    shape = mouse_shape.mouse()
+    mesh = soft_mesh("Mouse", shape)
+    body, stitch, pink = (0.36, 0.31, 0.29), (0.15, 0.12, 0.115), (0.74, 0.26, 0.27)
+    for material in (
+        fabric.plush(fabric.quilted, body, stitch, pink),
+        fabric.felt(pink),
+        fabric.bead(),
+    ):
+        mesh.materials.append(material)
+    colours = np.where((shape.felt < 0.0)[:, None], pink, body)
+    for part, colour in (
+        (mouse_shape.Part.FELT, pink),
+        (mouse_shape.Part.BEAD, (0.01, 0.01, 0.01)),
+    ):
+        colours[np.unique(shape.quads[shape.part == part])] = colour
+    paint(mesh, colours)
+    mouse = studio.link(scene, "Mouse", mesh)
+    pin(mouse, shape.pinned)
+    bodies.set_up(mouse, PINNED, young_modulus=1000.0, poisson_ratio=0.3)
+    bodies.set_mesh_size(mouse)
+    aim = (-0.004, -0.004, 0.030)
+    studio.backdrop(scene, (0.13, 0.27, 0.29), 0.30)
+    studio.lights(scene, (0.0, 0.0, 0.03))
+    studio.camera(scene, (0.23, -0.33, 0.215), aim, 88.0)
+    studio.render_settings(scene)
+    studio.open_view(scene, mouse, 0.30, aim)
+    return mouse
+
+
+def cube_scene() -> bpy.types.Object:
+    """The paper's cube, 50 mm, pinned at the bottom."""
+    scene = studio.empty_scene("Cube")
+    unit, quads = mouse_shape.cube_surface(CUBE_CELLS)
+    vertices = CUBE_EDGE * (unit - np.array([0.5, 0.5, 0.0]))
+    plain = np.full(len(vertices), 0.01)
+    shape = mouse_shape.QuadMesh(
+        vertices, quads, np.zeros(len(quads), dtype=np.int64), felt=plain, quilt=plain
+    )
+    mesh = soft_mesh("Cube", shape)
+    colour = (0.80, 0.20, 0.09)
+    mesh.materials.append(fabric.foam(colour, (0.40, 0.07, 0.03), CUBE_EDGE / 10.0))
+    paint(mesh, np.broadcast_to(colour, vertices.shape))
+    cube = studio.link(scene, "Cube", mesh)
+    pin(cube, np.flatnonzero(vertices[:, 2] < 1e-6))
+    bodies.set_up(cube, PINNED, young_modulus=10_000.0, poisson_ratio=0.49)
+    aim = (0.0, 0.0, 0.023)
+    studio.backdrop(scene, (0.13, 0.27, 0.29), 0.30)
+    studio.lights(scene, aim)
+    studio.camera(scene, (0.23, -0.28, 0.20), aim, 110.0)
+    studio.render_settings(scene)
+    studio.open_view(scene, cube, 0.17, aim)
+    return cube
