@@ -91,12 +91,17 @@ def press_from_above(body: SoftBody, young_modulus: float) -> SimulatedOptions:
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     pinned = np.isin(mesh.surface_triangles, body.fixed).any(axis=1)
-    # Free places that look up, before steep ones, before those that are pinned.
-    highest = np.lexsort((centres[:, 2], normals[:, 2] > 0.7, ~pinned))[-1]
+    extents = np.ptp(mesh.nodes, axis=0)
+    # Free places that look up come before steep ones and those before pinned ones; of places as
+    # high as the highest, such as a flat top, the middle.
+    fit = ~pinned & (normals[:, 2] > 0.7)
+    candidates = next(choice for choice in (fit, ~pinned, ~fit) if choice.any())
+    high = candidates & (centres[:, 2] >= centres[candidates, 2].max() - 0.01 * extents[2])
+    off_centre = np.linalg.norm((centres - centres[high].mean(axis=0))[:, :2], axis=1)
+    highest = int(np.where(high, off_centre, np.inf).argmin())
     at, normal = centres[highest], normals[highest]
     blocks = body.contact_blocks[mesh.surface_local_triangles[highest]]
     stiffness = young_modulus * float(normal @ blocks.mean(axis=0) @ normal)
-    extents = np.ptp(mesh.nodes, axis=0)
     depth = min(0.1 * float(extents[2]), HAND_FORCE / stiffness)
     hand = SimulatedOptions()
     # The hand reaches deeper than the device gets, for its spring gives way to the body's force.

@@ -29,6 +29,7 @@ from .simulated_options import SimulatedOptions, add_simulated_options, simulate
 from .stop_signals import stopped_by_signals
 
 LATE_SECONDS = 200e-6
+PRIORITY = 1
 MOST_STEPS_AT_ONCE = 50
 """After a longer hole the device's world has stood still for the rest, rather than jump."""
 
@@ -87,6 +88,7 @@ def run(options: SimulatedOptions, *, commands: bool = False, json_lines: bool =
     try:
         with stopped_by_signals() as stopped:
             _say_where(board, options, json_lines)
+            realtime = _ask_for_real_time()
             clock = Clock(options.rate_hz)
             inbox = _Commands() if commands else None
             while not stopped:
@@ -96,7 +98,8 @@ def run(options: SimulatedOptions, *, commands: bool = False, json_lines: bool =
                     break
             # Whoever started this may be gone, and the report with them.
             with contextlib.suppress(BrokenPipeError):
-                _print_json({"end": True, **clock.report(), **board.report()}, json_lines)
+                report = {"end": True, "realtime": realtime, **clock.report(), **board.report()}
+                _print_json(report, json_lines)
     finally:
         board.terminal.unplug()
 
@@ -135,6 +138,17 @@ class _Commands:
                 _print_json({**clock.report(), **board.report()}, True)
             case _:
                 raise PalpateError(f"simulated device: no such command: {' '.join(words)}")
+
+
+def _ask_for_real_time() -> bool:
+    """A board has nobody beside it; come as near to that as this user may, below any servo."""
+    if sys.platform != "linux":
+        return False
+    try:
+        os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(PRIORITY))
+    except PermissionError:
+        return False
+    return True
 
 
 def _say_where(board: SimulatedBoard, options: SimulatedOptions, json_lines: bool) -> None:

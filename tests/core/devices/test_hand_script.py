@@ -17,16 +17,16 @@ DEEP = (0.0, 0.0, 0.02)
 
 def test_minimum_jerk_begins_and_ends_at_rest():
     assert [minimum_jerk(s) for s in (-1.0, 0.0, 0.5, 1.0, 2.0)] == [0.0, 0.0, 0.5, 1.0, 1.0]
-    step = 1e-6
+    step = 1e-4
     for end in (0.0, 1.0):
         inside = abs(end - step)
-        assert abs(minimum_jerk(inside) - minimum_jerk(end)) < 20 * step**3 + 1e-15
+        assert abs(minimum_jerk(inside) - minimum_jerk(end)) < 20 * step**3
 
 
 @given(st.floats(0.0, 1.0), st.floats(0.0, 1.0))
 def test_minimum_jerk_never_goes_back(a, b):
     low, high = sorted((a, b))
-    assert minimum_jerk(low) <= minimum_jerk(high) + 1e-15
+    assert minimum_jerk(low) <= minimum_jerk(high)
 
 
 def test_a_press_goes_from_rest_to_the_surface_in_out_and_in_again():
