@@ -95,6 +95,15 @@ build/packages/.made: build/servo/.built $(EXTENSION_SOURCES) | $(BPY_VENV)/.ins
 	$(BIN)/python release/build_extension.py --servo-wheel build/servo/*.whl --blender $(BPY_VENV)
 	touch $@
 
+# The windowed Blender may be of another Python than the official ones, and gets a package of its own.
+WINDOWED_PACKAGE := $(if $(wildcard $(BLENDER_GUI)),build/packages/palpate-windowed.zip)
+
+build/packages/palpate-windowed.zip: build/servo/.built $(EXTENSION_SOURCES) | $(BPY_VENV)/.installed
+	$(BLENDER_GUI) setup
+	version=$$($(BLENDER_GUI) sh python3 -c 'import sys; print("%d.%d" % sys.version_info[:2])'); \
+	  $(BIN)/python release/build_extension.py --servo-wheel build/servo/*.whl --blender $(BPY_VENV) \
+	  --python "$$version" --name $(notdir $@)
+
 # ---------------------------------------------------------------------------------------- tests
 # Each part leaves its output in build/reports, so that its closing lines can be read together.
 
@@ -134,8 +143,8 @@ $(ALL_BPY:%=test-addon-%): test-addon-%: .venv-bpy-%/.installed build/packages/.
 	.venv-bpy-$*/bin/pytest -q tests/addon $(REPORT)
 
 .PHONY: test-gui
-test-gui: $(VENV)/.servo-installed build/servo/.built | build/reports ## the package in a Blender with a window, where there is one
-	BLENDER_GUI='$(BLENDER_GUI)' BPY_VENV='$(BPY_VENV)' $(BIN)/pytest -q tests/gui $(REPORT)
+test-gui: $(VENV)/.servo-installed $(WINDOWED_PACKAGE) | build/reports ## the package in a Blender with a window, where there is one
+	BLENDER_GUI='$(BLENDER_GUI)' $(BIN)/pytest -q tests/gui $(REPORT)
 
 # ------------------------------------------------------------------------------------------ rest
 

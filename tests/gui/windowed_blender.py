@@ -1,0 +1,115 @@
+"""Starts the windowed Blender, hands it scenarios, and reads back what became of them."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import tempfile
+from dataclasses import dataclass, field
+from pathlib import Path
+
+PLAYER = Path(__file__).with_name("scenario_player.py")
+# Software drawing is slow to start; what a scenario may take is kept by the player itself.
+SECONDS_TO_START = 120
+LONGEST_RUN_SECONDS = 1800
+LINES_OF_LOG = 60
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How one scenario ended."""
+
+    failure: str
+    """Why it failed, as text with tracebacks; empty when it held."""
+    pictures: tuple[str, ...] = ()
+    figures: dict[str, object] = field(default_factory=dict)
+
+
+@dataclass
+class WindowedBlender:
+    """Plays scenarios with one package, in as few starts of Blender as possible."""
+
+    program: Path
+    package: Path
+    repository: Path
+    outcomes: dict[str, Outcome] = field(default_factory=dict)
+
+    def play(self, scenarios: list[str]) -> None:
+        """Fill `outcomes` with one for each scenario."""
+        output = self.repository / "build" / "gui"
+        output.mkdir(parents=True, exist_ok=True)
+        waiting = list(scenarios)
+        start = 0
+        while waiting:
+            start += 1
+            log = output / f"blender-{start}.log"
+            self._run_blender(waiting, output, log)
+            played = self._read(output, log, waiting)
+            self.outcomes |= played
+            waiting = [scenario for scenario in waiting if scenario not in played]
+
+    def _run_blender(self, scenarios: list[str], output: Path, log: Path) -> None:
+        result = output / "result.json"
+        result.unlink(missing_ok=True)
+        with tempfile.TemporaryDirectory(prefix="palpate-gui-") as user_folder:
+            job = Path(user_folder) / "job.json"
+            job.write_text(
+                json.dumps(
+                    {
+                        "scenarios": scenarios,
+                        "package": str(self.package),
+                        "repository": str(self.repository),
+                        "output": str(output),
+                        "result": str(result),
+                    }
+                ),
+                encoding="utf-8",
+            )
+            environment = os.environ | {
+                "BLENDER_USER_RESOURCES": user_folder,
+                "TIMEOUT": str(LONGEST_RUN_SECONDS),
+            }
+            command = [str(self.program), "run", "--enable-event-simulate", "--factory-startup"]
+            command += ["--python-exit-code", "3", "--python", str(PLAYER), "--", str(job)]
+            with log.open("wb") as text:
+                subprocess.run(
+                    command,
+                    check=False,
+                    cwd=self.repository,
+                    env=environment,
+                    stdin=subprocess.DEVNULL,
+                    stdout=text,
+                    stderr=subprocess.STDOUT,
+                    timeout=LONGEST_RUN_SECONDS + SECONDS_TO_START,
+                )
+
+    def _read(self, output: Path, log: Path, scenarios: list[str]) -> dict[str, Outcome]:
+        """Return outcomes of all that were at least begun; of the first, if none was."""
+        result = output / "result.json"
+        reported = json.loads(result.read_text(encoding="utf-8")) if result.is_file() else {}
+        text = log.read_text(encoding="utf-8", errors="replace")
+        if not reported:
+            return {
+                scenarios[0]: Outcome(f"Blender did not get as far as a scenario:\n{tail(text)}")
+            }
+        return {name: _outcome(name, report, text) for name, report in reported.items()}
+
+
+def _outcome(name: str, report: dict[str, object], log: str) -> Outcome:
+    printed = log.partition(f"scenario begins: {name}\n")[2].partition("scenario begins: ")[0]
+    failure = str(report["failure"])
+    if report["state"] == "running":
+        failure = f"Blender ended in the middle of the scenario:\n{tail(printed)}"
+    elif "Traceback (most recent call last)" in printed:
+        failure += f"\nBlender printed a traceback meanwhile:\n{tail(printed)}"
+    pictures = report["pictures"]
+    figures = report["figures"]
+    assert isinstance(pictures, list)
+    assert isinstance(figures, dict)
+    return Outcome(failure.strip(), tuple(str(picture) for picture in pictures), figures)
+
+
+def tail(text: str) -> str:
+    """Return the last lines of a log."""
+    return "\n".join(text.splitlines()[-LINES_OF_LOG:])
