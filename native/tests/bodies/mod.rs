@@ -1,0 +1,218 @@
+//! Test bodies: a box cut into a grid, an icosphere, extruded voxels with concave edges.
+#![allow(dead_code)] // Each test file takes what it needs.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use glam::{DMat3, DVec3};
+use palpate_servo::surface::Body;
+
+pub fn soft(nodes: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Arc<Body> {
+    let blocks = (0..nodes.len())
+        .map(|i| {
+            let s = 0.02 + 0.01 * ((i * 37 % 11) as f64 / 11.0);
+            let c = 0.003 * ((i * 17 % 7) as f64 / 7.0);
+            DMat3::from_cols_array(&[s, c, 0.0, c, s * 1.2, c, 0.0, c, s * 1.5])
+        })
+        .collect();
+    Arc::new(Body::new(nodes, triangles, blocks).expect("a sound body"))
+}
+
+/// The outer surface of filled unit cells, scaled; each square cut along one diagonal or the other.
+pub fn voxels(cells: &[[i32; 3]], edge: f64) -> Arc<Body> {
+    let filled = |c: [i32; 3]| cells.contains(&c);
+    let mut numbers: HashMap<[i32; 3], u32> = HashMap::new();
+    let mut nodes = Vec::new();
+    let mut triangles = Vec::new();
+    for &cell in cells {
+        for axis in 0..3 {
+            for sign in [0, 1] {
+                let mut beside = cell;
+                beside[axis] += 2 * sign - 1;
+                if filled(beside) {
+                    continue;
+                }
+                let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+                let mut square = [[0, 0], [1, 0], [1, 1], [0, 1]].map(|[a, b]| {
+                    let mut corner = cell;
+                    corner[axis] += sign;
+                    corner[u] += a;
+                    corner[v] += b;
+                    *numbers.entry(corner).or_insert_with(|| {
+                        nodes.push(DVec3::from_array(corner.map(|k| f64::from(k) * edge)));
+                        nodes.len() as u32 - 1
+                    })
+                });
+                if sign == 0 {
+                    square.reverse();
+                }
+                let [a, b, c, d] = square;
+                if (cell[0] + cell[1] + cell[2]) % 2 == 0 {
+                    triangles.extend([[a, b, c], [a, c, d]]);
+                } else {
+                    triangles.extend([[a, b, d], [b, c, d]]);
+                }
+            }
+        }
+    }
+    soft(nodes, triangles)
+}
+
+pub fn grid(x: i32, y: i32, z: i32) -> Vec<[i32; 3]> {
+    (0..x)
+        .flat_map(|i| (0..y).flat_map(move |j| (0..z).map(move |k| [i, j, k])))
+        .collect()
+}
+
+/// The paper's cube: 50 mm, four cells an edge, 192 triangles.
+pub fn cube() -> Arc<Body> {
+    let body = voxels(&grid(4, 4, 4), 0.0125);
+    assert_eq!((body.nodes.len(), body.triangles.len()), (98, 192));
+    body
+}
+
+/// A bar with an inner corner along y.
+pub fn angle_bar() -> Arc<Body> {
+    let cells: Vec<_> = grid(4, 4, 4)
+        .into_iter()
+        .filter(|c| c[0] < 2 || c[2] < 2)
+        .collect();
+    voxels(&cells, 0.0125)
+}
+
+/// A room's corner: three planes meet inside.
+pub fn inner_corner() -> Arc<Body> {
+    let cells: Vec<_> = grid(4, 4, 4)
+        .into_iter()
+        .filter(|c| c[0] < 2 || c[1] < 2 || c[2] < 2)
+        .collect();
+    voxels(&cells, 0.0125)
+}
+
+/// Two blocks that share only an edge.
+pub fn touching_blocks() -> Arc<Body> {
+    voxels(&[[0, 0, 0], [1, 0, 1]], 0.0125)
+}
+
+/// Two blocks that share only a node.
+pub fn touching_tips() -> Arc<Body> {
+    voxels(&[[0, 0, 0], [1, 1, 1]], 0.0125)
+}
+
+/// A wall of 50 x 50 mm, `thickness` thick.
+pub fn wall(thickness: f64) -> Arc<Body> {
+    let body = voxels(&grid(4, 4, 1), 1.0);
+    let scale = DVec3::new(0.0125, 0.0125, thickness);
+    let nodes = body.nodes.iter().map(|&p| p * scale).collect();
+    soft(nodes, body.triangles.clone())
+}
+
+/// An icosphere around the origin.
+pub fn sphere(radius: f64, halvings: u32) -> Arc<Body> {
+    let g = f64::midpoint(1.0, 5.0_f64.sqrt());
+    let mut nodes: Vec<DVec3> = [
+        [-1.0, g, 0.0],
+        [1.0, g, 0.0],
+        [-1.0, -g, 0.0],
+        [1.0, -g, 0.0],
+        [0.0, -1.0, g],
+        [0.0, 1.0, g],
+        [0.0, -1.0, -g],
+        [0.0, 1.0, -g],
+        [g, 0.0, -1.0],
+        [g, 0.0, 1.0],
+        [-g, 0.0, -1.0],
+        [-g, 0.0, 1.0],
+    ]
+    .map(|p| DVec3::from_array(p).normalize() * radius)
+    .to_vec();
+    let mut triangles: Vec<[u32; 3]> = vec![
+        [0, 11, 5],
+        [0, 5, 1],
+        [0, 1, 7],
+        [0, 7, 10],
+        [0, 10, 11],
+        [1, 5, 9],
+        [5, 11, 4],
+        [11, 10, 2],
+        [10, 7, 6],
+        [7, 1, 8],
+        [3, 9, 4],
+        [3, 4, 2],
+        [3, 2, 6],
+        [3, 6, 8],
+        [3, 8, 9],
+        [4, 9, 5],
+        [2, 4, 11],
+        [6, 2, 10],
+        [8, 6, 7],
+        [9, 8, 1],
+    ];
+    for _ in 0..halvings {
+        let mut middles: HashMap<(u32, u32), u32> = HashMap::new();
+        let mut finer = Vec::with_capacity(4 * triangles.len());
+        for [a, b, c] in triangles {
+            let [ab, bc, ca] = [(a, b), (b, c), (c, a)].map(|(p, q)| {
+                *middles.entry((p.min(q), p.max(q))).or_insert_with(|| {
+                    let middle = (nodes[p as usize] + nodes[q as usize]).normalize() * radius;
+                    nodes.push(middle);
+                    nodes.len() as u32 - 1
+                })
+            });
+            finer.extend([[a, ab, ca], [b, bc, ab], [c, ca, bc], [ab, bc, ca]]);
+        }
+        triangles = finer;
+    }
+    soft(nodes, triangles)
+}
+
+/// A ball with long thin triangles: an icosphere squeezed flat.
+pub fn lentil() -> Arc<Body> {
+    let ball = sphere(0.025, 3);
+    let squeeze = DVec3::new(1.0, 0.02, 1.0);
+    let nodes = ball.nodes.iter().map(|&p| p * squeeze).collect();
+    soft(nodes, ball.triangles.clone())
+}
+
+/// The same numbers on every machine.
+pub struct Dice(u64);
+
+impl Dice {
+    pub fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    pub fn bits(&mut self) -> u64 {
+        // SplitMix64.
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+
+    pub fn unit(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    pub fn below(&mut self, n: usize) -> usize {
+        (self.bits() % n as u64) as usize
+    }
+
+    pub fn within(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
+    }
+
+    pub fn direction(&mut self) -> DVec3 {
+        loop {
+            let v = DVec3::new(
+                self.within(-1.0, 1.0),
+                self.within(-1.0, 1.0),
+                self.within(-1.0, 1.0),
+            );
+            if (0.01..1.0).contains(&v.length()) {
+                return v.normalize();
+            }
+        }
+    }
+}

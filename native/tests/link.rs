@@ -1,0 +1,309 @@
+//! The serial device against a wire in memory: greeting, gaps, staleness, faults, unplugging.
+
+mod bodies;
+
+use std::collections::VecDeque;
+use std::io::{self, ErrorKind};
+use std::sync::{Arc, Mutex};
+
+use glam::DVec3;
+use palpate_servo::codec::{Decoder, MAX_FRAME, encode};
+use palpate_servo::device::{Device, DeviceFrame, Fault, Reading};
+use palpate_servo::link::LinkDevice;
+use palpate_servo::port::{Opener, Wire};
+
+#[derive(Default)]
+struct Line {
+    to_host: VecDeque<u8>,
+    payloads: Vec<Vec<u8>>,
+    decoder: Decoder,
+    gone: bool,
+    full: bool,
+}
+
+/// The device's end of the wire.
+#[derive(Clone, Default)]
+struct Bench(Arc<Mutex<Line>>);
+
+impl Bench {
+    fn line(&self) -> std::sync::MutexGuard<'_, Line> {
+        self.0.lock().unwrap()
+    }
+
+    fn send(&self, payload: &[u8]) {
+        let mut frame = [0; MAX_FRAME];
+        let length = encode(payload, &mut frame).unwrap();
+        self.line().to_host.extend(&frame[..length]);
+    }
+
+    fn hello(&self, protocol: u8, max_force: f32) {
+        let mut payload = vec![1, protocol];
+        payload.extend([0; 16]);
+        payload.push(3);
+        payload.extend(max_force.to_le_bytes());
+        payload.extend([0; 14]);
+        self.send(&payload);
+    }
+
+    fn state(&self, sequence: u16, micrometres: i32, buttons: u8, flags: u8) {
+        let mut payload = vec![2];
+        payload.extend(sequence.to_le_bytes());
+        payload.extend((u32::from(sequence) * 1000).to_le_bytes());
+        for um in [micrometres, 0, 0] {
+            payload.extend(um.to_le_bytes());
+        }
+        payload.extend([buttons, flags]);
+        self.send(&payload);
+    }
+
+    fn received(&self) -> Vec<Vec<u8>> {
+        std::mem::take(&mut self.line().payloads)
+    }
+}
+
+impl Wire for Bench {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let mut line = self.line();
+        if line.gone {
+            return Ok(0);
+        }
+        if line.to_host.is_empty() {
+            return Err(ErrorKind::WouldBlock.into());
+        }
+        let length = buffer.len().min(line.to_host.len());
+        for (byte, arrived) in buffer.iter_mut().zip(line.to_host.drain(..length)) {
+            *byte = arrived;
+        }
+        Ok(length)
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let mut line = self.line();
+        if line.full {
+            return Err(ErrorKind::WouldBlock.into());
+        }
+        // Small pieces: partial writes must be continued.
+        let piece = &bytes[..bytes.len().min(5)];
+        for &byte in piece {
+            if let Some(payload) = line.decoder.push(byte).map(<[u8]>::to_vec) {
+                line.payloads.push(payload);
+            }
+        }
+        Ok(piece.len())
+    }
+}
+
+impl Opener for Bench {
+    type Wire = Self;
+
+    fn open(&mut self) -> io::Result<Self> {
+        if self.line().gone {
+            Err(ErrorKind::NotFound.into())
+        } else {
+            Ok(self.clone())
+        }
+    }
+}
+
+const FRAME: fn() -> DeviceFrame = DeviceFrame::default;
+
+fn read(device: &mut LinkDevice<Bench>, now: f64) -> Reading {
+    device.read(now, 1e-3, &FRAME())
+}
+
+fn position(reading: Reading) -> f64 {
+    match reading {
+        Reading::At(probe) => probe.position.x,
+        other => panic!("no position but {other:?}"),
+    }
+}
+
+fn greeted() -> (Bench, LinkDevice<Bench>) {
+    let bench = Bench::default();
+    let mut device = LinkDevice::open(bench.clone()).unwrap();
+    assert!(matches!(read(&mut device, 0.0), Reading::Waiting(_)));
+    assert_eq!(bench.received(), [[1, 1]]);
+    bench.hello(1, 2.5);
+    bench.state(65_534, 1000, 0, 1);
+    (bench, device)
+}
+
+#[test]
+fn hello_is_repeated_until_it_is_answered() {
+    let bench = Bench::default();
+    let mut device = LinkDevice::open(bench.clone()).unwrap();
+    for tick in 0..200 {
+        let reading = read(&mut device, f64::from(tick) * 1e-3);
+        assert!(matches!(reading, Reading::Waiting(_)));
+        device.write(DVec3::ZERO, false, &FRAME());
+    }
+    assert_eq!(bench.received(), vec![vec![1, 1]; 4]);
+    bench.hello(1, 2.5);
+    bench.state(0, 1000, 0, 1);
+    let Reading::At(probe) = read(&mut device, 0.2) else {
+        panic!("not greeted");
+    };
+    assert!(probe.restart);
+    assert_eq!((probe.position.x, probe.max_force), (1e-3, 2.5));
+    device.write(DVec3::X, true, &FRAME());
+    let mut expected = vec![3, 0, 0];
+    expected.extend(1000_i16.to_le_bytes());
+    expected.extend([0, 0, 0, 0, 1]);
+    assert_eq!(bench.received(), [expected]);
+}
+
+#[test]
+fn gaps_duplicates_and_old_states_are_counted_across_the_wrap() {
+    let (bench, mut device) = greeted();
+    assert_eq!(position(read(&mut device, 0.001)), 1e-3);
+    bench.state(65_535, 1100, 0, 1);
+    bench.state(65_535, 9000, 0, 1);
+    bench.state(3, 1200, 0, 1);
+    bench.state(2, 9000, 0, 1);
+    assert_eq!(position(read(&mut device, 0.002)), 1.2e-3);
+    let report = device.report();
+    assert_eq!(report.states, 3);
+    assert_eq!(
+        (report.lost, report.duplicates, report.out_of_order),
+        (3, 1, 1)
+    );
+}
+
+#[test]
+fn silence_is_stale_and_the_return_takes_any_sequence() {
+    let (bench, mut device) = greeted();
+    read(&mut device, 0.001);
+    assert!(matches!(read(&mut device, 0.0209), Reading::At(_)));
+    assert_eq!(read(&mut device, 0.0212), Reading::Fault(Fault::Stale));
+    assert_eq!(read(&mut device, 0.0600), Reading::Fault(Fault::Stale));
+    assert_eq!(
+        bench.received(),
+        [[1, 1]],
+        "a device that was reset needs HELLO"
+    );
+    bench.state(40, 2000, 0, 1);
+    let Reading::At(probe) = read(&mut device, 0.061) else {
+        panic!("did not come back");
+    };
+    assert!(!probe.restart, "the way it went unseen is swept");
+    assert_eq!(device.report().lost, 0);
+}
+
+#[test]
+fn unplugging_is_found_and_the_same_port_opened_again() {
+    let (bench, mut device) = greeted();
+    read(&mut device, 0.001);
+    bench.line().gone = true;
+    assert_eq!(read(&mut device, 0.002), Reading::Fault(Fault::Unplugged));
+    assert_eq!(read(&mut device, 0.203), Reading::Fault(Fault::Unplugged));
+    bench.line().gone = false;
+    assert_eq!(
+        read(&mut device, 0.300),
+        Reading::Fault(Fault::Unplugged),
+        "slow pace"
+    );
+    bench.received();
+    assert!(matches!(read(&mut device, 0.404), Reading::Waiting(_)));
+    assert_eq!(bench.received(), [[1, 1]]);
+    bench.hello(1, 2.5);
+    bench.state(0, 500, 0, 1);
+    let Reading::At(probe) = read(&mut device, 0.405) else {
+        panic!("did not come back");
+    };
+    assert!(probe.restart);
+    assert_eq!(device.report().reopened, 1);
+}
+
+#[test]
+fn another_version_gets_no_force() {
+    let bench = Bench::default();
+    let mut device = LinkDevice::open(bench.clone()).unwrap();
+    bench.hello(2, 2.5);
+    bench.state(0, 0, 0, 1);
+    assert_eq!(read(&mut device, 0.0), Reading::Fault(Fault::Protocol));
+    bench.received();
+    device.write(DVec3::X, true, &FRAME());
+    assert!(bench.received().is_empty());
+}
+
+#[test]
+fn faults_flags_and_buttons_of_the_device_are_passed_on() {
+    let (bench, mut device) = greeted();
+    read(&mut device, 0.001);
+    bench.state(65_535, 0, 4, 1);
+    assert!(matches!(read(&mut device, 0.002), Reading::At(p) if p.buttons == 4));
+    bench.state(0, 0, 0, 0);
+    assert!(matches!(read(&mut device, 0.003), Reading::Passive(..)));
+    bench.state(1, 0, 0, 3);
+    assert_eq!(read(&mut device, 0.004), Reading::Fault(Fault::Device));
+    bench.state(2, 0, 0, 1);
+    bench.send(&[4, 7, 1, 2]);
+    assert_eq!(read(&mut device, 0.005), Reading::Fault(Fault::Device));
+    assert!(matches!(read(&mut device, 0.006), Reading::At(_)));
+    assert_eq!(device.report().last_fault, Some((7, 513)));
+    bench.send(&[9, 9]);
+    read(&mut device, 0.007);
+    assert_eq!(device.report().unknown, 1);
+}
+
+#[test]
+fn a_jump_is_measured_as_speed() {
+    let (bench, mut device) = greeted();
+    read(&mut device, 0.001);
+    bench.state(65_535, 31_000, 0, 1);
+    // 30 mm; the bench's clock wraps with the sequence, so it went by 1 ms.
+    assert!(matches!(read(&mut device, 0.002), Reading::At(p) if (p.speed - 30.0).abs() < 1e-6));
+}
+
+#[test]
+fn a_full_line_drops_new_forces_and_never_tears_a_frame() {
+    let (bench, mut device) = greeted();
+    read(&mut device, 0.001);
+    bench.line().full = true;
+    for _ in 0..10 {
+        device.write(DVec3::X, true, &FRAME());
+    }
+    bench.line().full = false;
+    device.write(DVec3::Y, true, &FRAME());
+    let received = bench.received();
+    assert_eq!(received.len(), 1);
+    assert_eq!(
+        received[0][..3],
+        [3, 0, 0],
+        "no number is used up by what was not sent"
+    );
+    assert_eq!(device.report().unsent, 10);
+    assert_eq!(bench.line().decoder.errors, Default::default());
+}
+
+#[test]
+fn parking_sends_zero_without_enable() {
+    let (bench, mut device) = greeted();
+    read(&mut device, 0.001);
+    device.write(DVec3::X, true, &FRAME());
+    bench.received();
+    device.park();
+    let received = bench.received();
+    assert_eq!(received.len(), 3);
+    assert!(received.iter().all(|p| p[3..] == [0; 7]));
+    device.write(DVec3::X, true, &FRAME());
+    assert!(bench.received().is_empty());
+}
+
+#[test]
+fn the_frame_maps_positions_and_forces() {
+    let (bench, mut device) = greeted();
+    let frame = DeviceFrame {
+        rotation: glam::DMat3::from_rotation_z(std::f64::consts::FRAC_PI_2),
+        translation: DVec3::new(0.0, 0.0, 0.5),
+        scale: 2.0,
+        epoch: 0,
+    };
+    let Reading::At(probe) = device.read(0.001, 1e-3, &frame) else {
+        panic!("not greeted");
+    };
+    assert!(probe.position.distance(DVec3::new(0.0, 2e-3, 0.5)) < 1e-12);
+    bench.received();
+    device.write(DVec3::Y, true, &frame);
+    assert_eq!(bench.received()[0][3..5], 1000_i16.to_le_bytes());
+}

@@ -1,0 +1,243 @@
+//! The tick allocates nothing: counted over 100,000 of them, with a device on a wire.
+
+mod bodies;
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+use std::io::{self, ErrorKind};
+
+use glam::DVec3;
+use palpate_servo::codec::{Decoder, MAX_FRAME, encode};
+use palpate_servo::device::{Device, DeviceFrame};
+use palpate_servo::link::LinkDevice;
+use palpate_servo::pointer::{Pointer, Target};
+use palpate_servo::port::{Opener, Wire};
+use palpate_servo::safety::Limits;
+use palpate_servo::servo::{Options, Published, Servo, Settings, State};
+use rtrb::RingBuffer;
+use triple_buffer::triple_buffer;
+
+thread_local! {
+    static COUNTED: Cell<u64> = const { Cell::new(0) };
+}
+
+struct Counting;
+
+// SAFETY: passes everything on to the system's allocator.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        COUNTED.with(|c| c.set(c.get() + 1));
+        // SAFETY: as asked by the caller.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        COUNTED.with(|c| c.set(c.get() + 1));
+        // SAFETY: as asked by the caller.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+fn counted(work: impl FnOnce()) -> u64 {
+    let before = COUNTED.with(Cell::get);
+    work();
+    COUNTED.with(Cell::get) - before
+}
+
+const OPTIONS: Options = Options {
+    rate_hz: 1000,
+    limits: Limits {
+        max_force: 3.0,
+        max_slew: 1000.0,
+        ramp_seconds: 0.1,
+    },
+    max_speed: 10.0,
+};
+
+fn settings() -> Settings {
+    Settings {
+        young_modulus: 1e4,
+        enabled: true,
+        frame: DeviceFrame::default(),
+    }
+}
+
+/// A device in memory that answers HELLO and then circles over the body, in and out; now and then
+/// it loses a frame, damages one, sends too much, or nothing.
+struct Circling {
+    out: [u8; 1024],
+    filled: usize,
+    taken: usize,
+    heard: Decoder,
+    tick: u32,
+    greeted: bool,
+    forces: u64,
+}
+
+impl Circling {
+    fn put(&mut self, payload: &[u8]) {
+        let mut frame = [0; MAX_FRAME];
+        let length = encode(payload, &mut frame).expect("it fits");
+        if self.tick % 97 == 0 {
+            frame[3] ^= 0x40;
+        }
+        self.out[self.filled..self.filled + length].copy_from_slice(&frame[..length]);
+        self.filled += length;
+    }
+
+    fn state(&mut self) {
+        let t = f64::from(self.tick) * 1e-3;
+        let height = 0.052 - 0.008 * (1.0 - (t * 2.0).cos()) / 2.0;
+        let p = DVec3::new(
+            0.025 + 0.02 * t.cos(),
+            0.025 + 0.02 * (t * 1.3).sin(),
+            height,
+        );
+        let mut payload = [0; 21];
+        payload[0] = 2;
+        payload[1..3].copy_from_slice(&(self.tick as u16).to_le_bytes());
+        payload[3..7].copy_from_slice(&(self.tick.wrapping_mul(1000)).to_le_bytes());
+        for (i, x) in p.to_array().into_iter().enumerate() {
+            let um = (x * 1e6).round() as i32;
+            payload[7 + 4 * i..11 + 4 * i].copy_from_slice(&um.to_le_bytes());
+        }
+        payload[20] = 1;
+        self.put(&payload);
+    }
+}
+
+impl Wire for Circling {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        if self.taken == self.filled {
+            (self.taken, self.filled) = (0, 0);
+            self.tick += 1;
+            if self.greeted && self.tick % 31 != 0 {
+                self.state();
+            }
+            if self.tick % 501 == 0 {
+                self.out[self.filled..self.filled + 200].fill(0x55);
+                self.filled += 200;
+            }
+            return Err(ErrorKind::WouldBlock.into());
+        }
+        let length = buffer.len().min(self.filled - self.taken);
+        buffer[..length].copy_from_slice(&self.out[self.taken..self.taken + length]);
+        self.taken += length;
+        Ok(length)
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let mut hello = false;
+        for &byte in bytes {
+            match self.heard.push(byte) {
+                Some([1, 1]) => hello = true,
+                Some([3, ..]) => self.forces += 1,
+                _ => {}
+            }
+        }
+        if hello && !self.greeted {
+            self.greeted = true;
+            let mut payload = [0; 38];
+            payload[..2].copy_from_slice(&[1, 1]);
+            payload[18] = 3;
+            payload[19..23].copy_from_slice(&2.5_f32.to_le_bytes());
+            let length = 1 + 1 + 16 + 1 + 4 + 12 + 2;
+            self.put(&payload[..length]);
+        }
+        Ok(bytes.len())
+    }
+}
+
+struct InMemory;
+
+impl Opener for InMemory {
+    type Wire = Circling;
+
+    fn open(&mut self) -> io::Result<Circling> {
+        Ok(Circling {
+            out: [0; 1024],
+            filled: 0,
+            taken: 0,
+            heard: Decoder::default(),
+            tick: 0,
+            greeted: false,
+            forces: 0,
+        })
+    }
+}
+
+fn ticks_of<D: Device>(device: D, mut each: impl FnMut(u32)) -> (Published, u64) {
+    let (_settings_in, settings_out) = triple_buffer(&settings());
+    let (snapshots_in, mut snapshots) = triple_buffer(&Published::default());
+    // Smaller than the run: a full ring must not allocate either.
+    let (samples_in, _samples) = RingBuffer::new(50_000);
+    let mut servo = Servo::new(
+        bodies::cube(),
+        device,
+        OPTIONS,
+        settings_out,
+        snapshots_in,
+        samples_in,
+    );
+    let allocations = counted(|| {
+        for tick in 1..=100_000_u32 {
+            each(tick);
+            servo.tick(f64::from(tick) * 1e-3);
+        }
+    });
+    (*snapshots.read(), allocations)
+}
+
+#[test]
+fn the_counter_counts() {
+    assert!(counted(|| drop(std::hint::black_box(Box::new(1)))) >= 2);
+}
+
+#[test]
+fn a_hundred_thousand_ticks_with_a_device_allocate_nothing() {
+    let device = LinkDevice::open(InMemory).expect("memory opens");
+    let (last, allocations) = ticks_of(device, |_| {});
+    assert_eq!(allocations, 0);
+    assert_eq!(last.snapshot.tick, 100_000);
+    assert!(last.link.states > 45_000, "{:?}", last.link);
+    assert!(last.link.forces > 99_000);
+    assert!(
+        last.link.crc_errors > 100 && last.link.oversize > 50,
+        "{:?}",
+        last.link
+    );
+    assert_eq!(last.samples_lost, 50_000);
+    assert_eq!(last.faults, [0; 7]);
+}
+
+#[test]
+fn a_hundred_thousand_ticks_with_a_pointer_allocate_nothing() {
+    let start = Target {
+        position: DVec3::new(0.02, 0.02, 0.06),
+        epoch: 0,
+    };
+    let (mut targets_in, targets) = triple_buffer(&start);
+    let mut touching = 0;
+    let pointer = Pointer::new(start, targets, 0.5);
+    let (last, allocations) = ticks_of(pointer, |tick| {
+        if tick % 17 == 0 {
+            let t = f64::from(tick) * 1e-3;
+            touching += 1;
+            targets_in.write(Target {
+                position: DVec3::new(
+                    0.025 + 0.03 * t.cos(),
+                    0.025 + 0.03 * (0.7 * t).sin(),
+                    0.05 - 0.015 * (3.0 * t).sin(),
+                ),
+                epoch: tick / 20_000,
+            });
+        }
+    });
+    assert_eq!(allocations, 0);
+    assert!(touching > 5_000);
+    assert!(matches!(last.snapshot.state, State::Free | State::Touching));
+    assert!(last.most_steps >= 2);
+}

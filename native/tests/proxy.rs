@@ -1,0 +1,390 @@
+//! The god object never enters the body, never sticks, and rests where the device is nearest.
+
+mod bodies;
+
+use bodies::{
+    Dice, angle_bar, cube, inner_corner, lentil, sphere, touching_blocks, touching_tips, wall,
+};
+use glam::DVec3;
+use palpate_servo::closest::closest_point;
+use palpate_servo::proxy::Proxy;
+use palpate_servo::surface::Body;
+
+const MICROMETRE: f64 = 1e-6;
+
+/// Winding number of the surface about `p`: 1 inside, 0 outside (van Oosterom and Strackee 1983).
+/// A referee that shares no code with the crate.
+fn winding(body: &Body, p: DVec3) -> f64 {
+    let mut sum = 0.0;
+    for triangle in &body.triangles {
+        let [a, b, c] = triangle.map(|n| body.nodes[n as usize] - p);
+        let (la, lb, lc) = (a.length(), b.length(), c.length());
+        let below = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
+        sum += 2.0 * a.dot(b.cross(c)).atan2(below);
+    }
+    sum / (4.0 * std::f64::consts::PI)
+}
+
+/// Nearest point of one triangle to `p` by projecting and clamping, as a referee.
+fn nearest_on(corners: [DVec3; 3], p: DVec3) -> DVec3 {
+    let [a, b, c] = corners;
+    let n = (b - a).cross(c - a);
+    let q = p - n * (n.dot(p - a) / n.length_squared());
+    let is_in = [(a, b), (b, c), (c, a)]
+        .iter()
+        .all(|&(s, e)| n.cross(e - s).dot(q - s) >= 0.0);
+    if is_in {
+        return q;
+    }
+    [(a, b), (b, c), (c, a)]
+        .map(|(s, e)| {
+            let t = ((p - s).dot(e - s) / (e - s).length_squared()).clamp(0.0, 1.0);
+            s + (e - s) * t
+        })
+        .into_iter()
+        .min_by(|x, y| x.distance(p).total_cmp(&y.distance(p)))
+        .unwrap()
+}
+
+fn distance_to_surface(body: &Body, p: DVec3) -> f64 {
+    body.triangles
+        .iter()
+        .map(|t| nearest_on(t.map(|n| body.nodes[n as usize]), p).distance(p))
+        .fold(f64::INFINITY, f64::min)
+}
+
+/// Triangles on the proxy's own sheet of the surface that meet its feature. Where the surface
+/// touches itself the other sheet belongs to another free space.
+fn triangles_here(body: &Body, triangle: u32, alpha: [f64; 3]) -> Vec<u32> {
+    let face = body.face(triangle);
+    let carrying: Vec<usize> = (0..3).filter(|&k| alpha[k] > 0.0).collect();
+    match carrying[..] {
+        [corner] => {
+            let (_, corners) = body.fan(face.fans[corner]);
+            corners.iter().map(|c| c.triangle).collect()
+        }
+        [0, 1] => vec![triangle, face.across[0].triangle],
+        [1, 2] => vec![triangle, face.across[1].triangle],
+        [0, 2] => vec![triangle, face.across[2].triangle],
+        _ => vec![triangle],
+    }
+}
+
+/// No triangle that meets the proxy's feature leads nearer to the device.
+fn assert_rests(name: &str, body: &Body, proxy: &Proxy, device: DVec3) {
+    let hold = proxy.hold().expect("it touches");
+    let here = proxy.position().distance(device);
+    for t in triangles_here(body, hold.triangle, hold.alpha) {
+        let corners = body.triangles[t as usize].map(|n| body.nodes[n as usize]);
+        let there = nearest_on(corners, device).distance(device);
+        // Squares: a nearer point at a distance s sideways gains s^2 here.
+        assert!(
+            here * here - there * there <= 1e-15,
+            "{name}: {here} at {:?} of {}, but {there} on {t}",
+            hold.alpha,
+            hold.triangle
+        );
+    }
+}
+
+/// A proxy may hold on only if the way to the device leads into the body at once.
+fn assert_held_back(name: &str, body: &Body, proxy: &Proxy, device: DVec3) {
+    let way = device - proxy.position();
+    if way.length() < 1e-12 {
+        return; // The device is on the surface: holding and free are the same.
+    }
+    let a_bit_on = proxy.position() + way * (2e-6 / way.length()).min(0.5);
+    assert!(
+        winding(body, a_bit_on) > 0.5,
+        "{name}: sticks at {} with the device free at {device}",
+        proxy.position()
+    );
+}
+
+fn all_bodies() -> Vec<(&'static str, std::sync::Arc<Body>)> {
+    vec![
+        ("cube", cube()),
+        ("sphere", sphere(0.025, 3)),
+        ("angle bar", angle_bar()),
+        ("inner corner", inner_corner()),
+        ("lentil", lentil()),
+        ("wall", wall(0.0005)),
+        ("touching blocks", touching_blocks()),
+        ("touching tips", touching_tips()),
+    ]
+}
+
+fn quantised(p: DVec3, quantum: f64) -> DVec3 {
+    (p / quantum).round() * quantum
+}
+
+/// A place on the surface: in a triangle, on an edge, or a node.
+fn target(body: &Body, dice: &mut Dice) -> (DVec3, DVec3) {
+    let t = dice.below(body.triangles.len()) as u32;
+    let face = body.face(t);
+    let mut alpha = [dice.unit(), dice.unit(), dice.unit()];
+    let zeros = dice.below(3);
+    let first = dice.below(3);
+    for k in 0..zeros {
+        alpha[(first + k) % 3] = 0.0;
+    }
+    let sum: f64 = alpha.iter().sum();
+    (face.at(alpha.map(|a| a / sum)), face.normal)
+}
+
+/// The device's way in one push: in along `inwards` and out again, quantised.
+struct Push {
+    from: DVec3,
+    inwards: DVec3,
+    quantum: f64,
+    steps: usize,
+}
+
+impl Push {
+    const LENGTH: f64 = 0.009;
+
+    fn at(&self, step: usize) -> DVec3 {
+        let part = step as f64 / self.steps as f64;
+        quantised(
+            self.from + self.inwards * (Self::LENGTH * part),
+            self.quantum,
+        )
+    }
+
+    fn random(body: &Body, dice: &mut Dice, number: usize) -> Self {
+        let quantum = [1.0, 10.0, 20.0, 50.0, 60.0][number % 5] * MICROMETRE;
+        let (goal, normal) = target(body, dice);
+        // Every kind of direction: the normal, an axis, a diagonal, anything.
+        let inwards = match number % 4 {
+            0 => -normal,
+            1 => {
+                let axis = normal.abs().max_position();
+                let mut d = DVec3::ZERO;
+                d[axis] = -normal[axis].signum();
+                d
+            }
+            2 => (-normal.signum()).normalize(),
+            _ => {
+                let d = dice.direction();
+                if d.dot(normal) > 0.0 { -d } else { d }
+            }
+        };
+        Self {
+            from: quantised(goal, quantum) - inwards * 0.004,
+            inwards,
+            quantum,
+            steps: 40 + dice.below(200),
+        }
+    }
+}
+
+#[test]
+fn pushes_at_every_quantum_neither_fall_through_nor_stick() {
+    const PUSHES: usize = 2000;
+    for (name, body) in all_bodies() {
+        let mut dice = Dice::new(7);
+        let mut pushed = 0;
+        for number in 0..PUSHES {
+            let push = Push::random(&body, &mut dice, number);
+            let start = push.at(0);
+            if closest_point(&body, start, 0).1 {
+                continue;
+            }
+            pushed += 1;
+            let mut proxy = Proxy::new(&body, start);
+            for step in (0..=push.steps).chain((0..=push.steps).rev()) {
+                let device = push.at(step);
+                proxy.follow(&body, device);
+                if proxy.hold().is_some() {
+                    if step % 8 == 0 {
+                        assert_rests(name, &body, &proxy, device);
+                    }
+                } else {
+                    let (closest, inside) = closest_point(&body, device, 0);
+                    assert!(
+                        !inside || closest.distance < 1e-12,
+                        "{name}: push {number} fell through to {device}"
+                    );
+                }
+            }
+            if proxy.hold().is_some() {
+                assert_held_back(name, &body, &proxy, start);
+            }
+        }
+        assert!(pushed > PUSHES / 4, "{name}: only {pushed} pushes");
+    }
+}
+
+#[test]
+fn a_device_inside_never_loses_the_surface_whatever_it_does() {
+    for (name, body) in all_bodies() {
+        let mut dice = Dice::new(11);
+        let mut proxy = Proxy::new(&body, DVec3::splat(0.2));
+        let mut device = DVec3::splat(0.2);
+        let mut touched = 0;
+        let middle = body.nodes.iter().sum::<DVec3>() / body.nodes.len() as f64;
+        for step in 0..4000 {
+            let reach = [1e-5, 1e-4, 1e-3, 1e-2][dice.below(4)];
+            device += dice.direction() * reach - (device - middle) * 0.02;
+            if step % 3 == 0 {
+                device = quantised(device, 5e-5);
+            }
+            proxy.follow(&body, device);
+            if proxy.hold().is_some() {
+                touched += 1;
+                assert_rests(name, &body, &proxy, device);
+                let off = distance_to_surface(&body, proxy.position());
+                assert!(off < 1e-15, "{name}: proxy off the surface by {off}");
+            } else {
+                let lost =
+                    winding(&body, device) > 0.5 && distance_to_surface(&body, device) > 1e-12;
+                assert!(!lost, "{name}: lost the surface at {device}");
+                assert_eq!(proxy.position(), device);
+            }
+            assert!(proxy.steps() < 300, "{name}: {} steps", proxy.steps());
+        }
+        assert!(touched > 100, "{name}: hardly touched ({touched})");
+    }
+}
+
+#[test]
+fn force_begins_and_ends_at_nothing() {
+    for (_, body) in all_bodies() {
+        let mut dice = Dice::new(3);
+        for _ in 0..200 {
+            let t = dice.below(body.triangles.len());
+            let face = body.face(t as u32);
+            let goal = face.at([1.0 / 3.0; 3]);
+            let start = goal + face.normal * 1e-4;
+            if winding(&body, start) > 0.5 {
+                continue;
+            }
+            let mut proxy = Proxy::new(&body, start);
+            for nanometres in (-2000..100_i32).rev().chain(-2000..100) {
+                let height = f64::from(nanometres) * 1e-9;
+                let device = goal + face.normal * height;
+                proxy.follow(&body, device);
+                let displacement = proxy.position().distance(device);
+                let expected = if nanometres < 0 { -height } else { 0.0 };
+                assert!((displacement - expected).abs() < 1e-16);
+                if nanometres.abs() > 1 {
+                    assert_eq!(proxy.hold().is_some(), nanometres < 0);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn fast_sweeps_stop_at_thin_walls() {
+    for thickness in [5e-4, 1e-5, 1e-7] {
+        let body = wall(thickness);
+        let mut dice = Dice::new(5);
+        for _ in 0..3000 {
+            // 10 m/s at 1 kHz, often through edges and nodes of the 12.5 mm grid.
+            let snap = [1e-3, 1.25e-2 / 4.0, 1e-9][dice.below(3)];
+            let spot = quantised(
+                DVec3::new(dice.within(0.006, 0.044), dice.within(0.006, 0.044), 0.0),
+                snap,
+            );
+            let slant = quantised(
+                DVec3::new(dice.within(-0.004, 0.004), dice.within(-0.004, 0.004), 0.0),
+                snap,
+            );
+            let up = DVec3::Z * 0.005;
+            let mut proxy = Proxy::new(&body, spot - slant + up);
+            let device = spot + slant - up;
+            proxy.follow(&body, device);
+            assert!(proxy.hold().is_some(), "tunnelled at {spot}");
+            assert!((proxy.position().z - thickness).abs() < 1e-12);
+            proxy.follow(&body, spot - slant + up);
+            assert!(proxy.hold().is_none());
+        }
+    }
+}
+
+#[test]
+fn two_planes_hold_the_proxy_in_an_inner_edge() {
+    let body = angle_bar();
+    // The inner edge runs along y at x = z = 25 mm.
+    let mut proxy = Proxy::new(&body, DVec3::new(0.04, 0.01, 0.04));
+    for step in 0..=100 {
+        let t = f64::from(step) / 100.0;
+        let device = DVec3::new(0.04 - 0.018 * t, 0.01 + 0.02 * t, 0.04 - 0.017 * t);
+        proxy.follow(&body, device);
+    }
+    let p = proxy.position();
+    assert!(p.distance(DVec3::new(0.025, 0.03, 0.025)) < 1e-15, "{p}");
+    assert!(proxy.hold().unwrap().alpha.contains(&0.0));
+}
+
+#[test]
+fn three_planes_hold_the_proxy_in_an_inner_corner() {
+    let body = inner_corner();
+    let mut proxy = Proxy::new(&body, DVec3::splat(0.04));
+    for step in 0..=50 {
+        let t = f64::from(step) / 50.0;
+        proxy.follow(
+            &body,
+            DVec3::new(0.04 - 0.02 * t, 0.04 - 0.019 * t, 0.04 - 0.018 * t),
+        );
+    }
+    assert_eq!(proxy.position(), DVec3::splat(0.025));
+    let alpha = proxy.hold().unwrap().alpha;
+    assert_eq!(alpha.iter().filter(|&&a| a == 0.0).count(), 2);
+}
+
+#[test]
+fn sliding_under_a_sphere_never_needs_rescue_and_stays_near_the_nearest_point() {
+    let body = sphere(0.025, 3);
+    let mut dice = Dice::new(9);
+    let mut device = DVec3::new(0.0, 0.0, 0.04);
+    let mut proxy = Proxy::new(&body, device);
+    for _ in 0..5000 {
+        device += dice.direction() * 3e-4;
+        device = device.normalize() * 0.0235;
+        proxy.follow(&body, device);
+        let (closest, inside) = closest_point(&body, device, 0);
+        assert!(inside && proxy.hold().is_some());
+        // Under facets each has its own nearest point; they differ by less than their sag.
+        let mine = proxy.position().distance(device);
+        assert!(mine - closest.distance < 2e-4);
+        assert_rests("sphere", &body, &proxy, device);
+    }
+    assert_eq!(proxy.rescues(), 0);
+}
+
+#[test]
+fn set_down_inside_it_feels_nothing_until_it_was_outside() {
+    let body = cube();
+    let mut proxy = Proxy::new(&body, DVec3::splat(0.02));
+    for z in [0.03, 0.045, 0.0499, 0.02] {
+        proxy.follow(&body, DVec3::new(0.02, 0.02, z));
+        assert!(proxy.hold().is_none());
+    }
+    proxy.follow(&body, DVec3::new(0.02, 0.02, 0.051));
+    assert!(proxy.hold().is_none());
+    proxy.follow(&body, DVec3::new(0.02, 0.02, 0.049));
+    assert!(proxy.hold().is_some());
+    proxy.restart(&body, DVec3::splat(0.02));
+    proxy.follow(&body, DVec3::splat(0.021));
+    assert!(proxy.hold().is_none());
+}
+
+#[test]
+fn the_sign_of_the_distance_agrees_with_the_winding_number() {
+    for (name, body) in all_bodies() {
+        let mut dice = Dice::new(13);
+        for _ in 0..1500 {
+            let (goal, normal) = target(&body, &mut dice);
+            let p = goal + (normal + dice.direction()) * dice.within(-1e-3, 1e-3);
+            let (closest, inside) =
+                closest_point(&body, p, dice.below(body.triangles.len()) as u32);
+            let truth = distance_to_surface(&body, p);
+            assert!((closest.distance - truth).abs() < 1e-12);
+            if truth > 1e-9 {
+                assert_eq!(inside, winding(&body, p) > 0.5, "{name} at {p}");
+            }
+        }
+    }
+}
