@@ -103,7 +103,7 @@ def say_hello(path: str, seconds: float = ANSWER_SECONDS) -> link.DeviceHello:
     Raises PortError when the port cannot be opened or is in use, when nothing answers within
     `seconds`, and when the device speaks another version of the link.
     """
-    check_port(path)
+    _look_at(path, even_if_taken=False)
     try:
         with serial.Serial(path, BAUD, timeout=0.02, write_timeout=0.5, exclusive=True) as port:
             return _exchange(path, port, seconds)
@@ -114,7 +114,11 @@ def say_hello(path: str, seconds: float = ANSWER_SECONDS) -> link.DeviceHello:
 
 
 def check_port(path: str) -> None:
-    """Raises PortError when `path` is no port that could be opened now; says nothing to it."""
+    """Raises PortError when `path` is no port that may be opened; says nothing to it."""
+    _look_at(path, even_if_taken=True)
+
+
+def _look_at(path: str, *, even_if_taken: bool) -> None:
     if sys.platform == "win32":
         # Ports are no files there; opening one is the only question that can be asked.
         return
@@ -127,8 +131,8 @@ def check_port(path: str) -> None:
     try:
         if not os.isatty(descriptor):
             raise PortError(path, _REASONS[errno.ENOTTY])
-        if sys.platform == "linux":
-            # The superuser may open what others have for themselves, and would steal their bytes.
+        if sys.platform == "linux" and not even_if_taken:
+            # The superuser may open what others hold alone, and would steal their bytes.
             taken = fcntl.ioctl(descriptor, _TIOCGEXCL, struct.pack("i", 0))
             if struct.unpack("i", taken)[0]:
                 raise PortError(path, _REASONS[errno.EBUSY])

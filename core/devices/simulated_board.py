@@ -12,7 +12,7 @@ from .simulated_firmware import Firmware
 from .simulated_options import SimulatedOptions
 from .wire_faults import BadWire
 
-RELEASE_AFTER_SECONDS = 0.25
+RELEASE_AFTER_SECONDS = 0.1
 
 
 class SimulatedBoard:

@@ -229,3 +229,16 @@ def test_long_names_are_cut_between_characters():
     hello = link.DeviceHello("fünfzehn Büchsen", 3, 1.0, (0.1, 0.1, 0.1), 1000)
     read = link.unpack(link.pack(hello))
     assert read.name == "fünfzehn Büchs"
+
+
+def test_the_examples_in_the_documentation_are_those_of_the_vectors():
+    page = Path(__file__).resolve().parents[3] / "docs" / "link.md"
+    text = page.read_text(encoding="utf-8")
+    shown = {
+        name for name in (vector["name"] for vector in VECTORS["messages"]) if name in text.lower()
+    }
+    assert len(shown) >= 5
+    for vector in VECTORS["messages"]:
+        if vector["name"] in shown:
+            assert bytes.fromhex(vector["frame"]).hex(" ").upper() in text
+            assert f"CRC {vector['crc'].upper()}" in text

@@ -1,0 +1,219 @@
+"""`palpate servo` against devices that behave, misbehave or are not there."""
+
+import fcntl
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+import tty
+
+import pytest
+
+from palpate.cli import servo as servo_command
+from palpate.cli.main import main
+from palpate.core import cache
+from palpate.core.bake import BakeSettings, bake
+from palpate.core.devices import link, ports
+from palpate.core.devices.simulated_options import SimulatedOptions
+from palpate.core.devices.simulated_process import SimulatedDevice
+from palpate.core.paper_cube import paper_cube
+from palpate.core.pins import PinNodes
+
+ABOVE, DEEP = (0.026, 0.024, 0.06), (0.026, 0.024, 0.044)
+
+
+@pytest.fixture(scope="module")
+def cube():
+    mesh, fixed = paper_cube()
+    return bake(mesh, BakeSettings(0.49, 10_000.0, PinNodes(fixed)))[0]
+
+
+@pytest.fixture(scope="module")
+def body_file(cube, tmp_path_factory):
+    path = tmp_path_factory.mktemp("body") / "cube.npz"
+    cache.save(cube, path)
+    return str(path)
+
+
+@pytest.fixture
+def device():
+    with SimulatedDevice(SimulatedOptions(rest=ABOVE)) as device:
+        yield device
+
+
+@pytest.fixture
+def silent_port():
+    device_end, host_end = os.openpty()
+    tty.setraw(host_end)
+    yield os.ttyname(host_end)
+    os.close(device_end)
+    os.close(host_end)
+
+
+def eventually(condition, seconds=20.0):
+    deadline = time.monotonic() + seconds
+    while not (value := condition()):
+        assert time.monotonic() < deadline, "this did not happen"
+        time.sleep(0.01)
+    return value
+
+
+def host(body_file, port, *more):
+    """The command as a process of its own."""
+    command = [sys.executable, "-m", "palpate.cli.main", "servo", body_file, "--json"]
+    return subprocess.Popen(
+        [*command, "--port", port, "--seconds", "60", *more], stdout=subprocess.PIPE, text=True
+    )
+
+
+def held_alone(port):
+    """Whether an ordinary user could not open the port now (the superuser always can)."""
+    descriptor = os.open(port, os.O_RDWR | os.O_NOCTTY)
+    answer = fcntl.ioctl(descriptor, ports._TIOCGEXCL, bytes(4))
+    os.close(descriptor)
+    return any(answer)
+
+
+def driven(device):
+    return device.report()["felt_force"][2] > 0.2
+
+
+def refused(capsys, *arguments):
+    assert main(["servo", *arguments]) == 2
+    out, error = capsys.readouterr()
+    assert out == ""
+    assert error.startswith("palpate: ")
+    assert error.count("\n") == 1
+    return error
+
+
+def test_simulate_presses_from_above_and_reports(body_file, capsys):
+    assert main(["servo", body_file, "--simulate", "--seconds", "2.5", "--json"]) == 0
+    report = json.loads(capsys.readouterr().out)
+    assert report["rate_hz"] == 1000
+    assert report["ticks"] > 1000
+    assert report["late_ticks"] <= report["ticks"]
+    assert {"p50", "p99", "max"} <= set(report["lateness_us"])
+    assert {"states", "forces", "lost", "crc_errors"} <= set(report["link"])
+    assert report["link"]["states"] > 1000
+    assert isinstance(report["realtime"], str)
+    assert report["faults"]["unplugged"] == 0
+    assert report["interrupted"] is False
+    # A tenth of the height is 5 mm; the hand's spring gives way to the body's force.
+    assert 3.0 < report["deepest_mm"] < 6.5
+    assert 0.3 < report["peak_output_force_n"] <= report["peak_contact_force_n"] < 2.0
+    assert report["simulated_device"]["largest_force"] == pytest.approx(
+        report["peak_output_force_n"], abs=2e-3
+    )
+
+
+def test_a_firmer_body_is_pressed_with_no_more_force_than_the_hand_has(cube):
+    soft = servo_command.press_from_above(cube, 1_000.0)
+    firm = servo_command.press_from_above(cube, 1e6)
+    assert soft.at == firm.at
+    assert soft.at[2] == pytest.approx(0.05)
+    assert soft.rest[2] > soft.at[2]
+    # Along the normal of the flat top, straight down.
+    assert soft.by[:2] == pytest.approx((0.0, 0.0))
+    assert -0.006 < soft.by[2] < -0.005
+    assert firm.by[2] == pytest.approx(-servo_command.HAND_FORCE / 500.0, rel=0.05)
+
+
+def test_ctrl_c_zeroes_the_force_and_still_reports(body_file, device):
+    with host(body_file, device.port) as process:
+        eventually(lambda: device.report()["forces"] > 100)
+        device.move_hand(DEEP, 0.2)
+        eventually(lambda: driven(device))
+        process.send_signal(signal.SIGINT)
+        report = json.loads(process.stdout.read())
+    assert process.returncode == 0
+    assert report["interrupted"] is True
+    assert report["last_state"] == "touching"
+    assert report["peak_output_force_n"] > 0.2
+    assert device.report()["felt_force"] == [0.0, 0.0, 0.0]
+
+
+def test_a_killed_host_leaves_the_device_limp(body_file, device):
+    with host(body_file, device.port) as process:
+        eventually(lambda: device.report()["forces"] > 100)
+        device.move_hand(DEEP, 0.2)
+        eventually(lambda: driven(device))
+        process.kill()
+    report = eventually(lambda: (r := device.report())["limp"] and r)
+    assert report["felt_force"] == [0.0, 0.0, 0.0]
+    assert report["limp_count"] >= 1
+
+
+def test_a_killed_host_does_not_keep_the_port_from_the_next_one(body_file, device):
+    for _ in range(2):
+        before = device.report()["forces"]
+        with host(body_file, device.port) as process:
+            eventually(lambda before=before: device.report()["forces"] > before + 100)
+            assert held_alone(device.port)
+            process.kill()
+        # The host has locked the terminal, which outlives it; the device lets go of the lock.
+        eventually(lambda: not held_alone(device.port))
+
+
+def test_unplugged_for_good_is_reported_and_no_failure(body_file, device):
+    with host(body_file, device.port) as process:
+        eventually(lambda: device.report()["forces"] > 100)
+        device.unplug()
+        eventually(lambda: device.report()["limp"])
+        process.send_signal(signal.SIGTERM)
+        report = json.loads(process.stdout.read())
+    assert process.returncode == 0
+    assert report["faults"]["unplugged"] == 1
+    assert (report["last_state"], report["last_fault"]) == ("fault", "unplugged")
+
+
+def test_a_port_that_is_not_there_is_an_error(body_file, capsys, tmp_path):
+    path = str(tmp_path / "port")
+    assert f"{path}: there is no such port" in refused(capsys, body_file, "--port", path)
+
+
+def test_a_file_is_no_port(body_file, capsys):
+    assert "not a serial port" in refused(capsys, body_file, "--port", body_file)
+
+
+def test_a_port_without_an_answer_is_an_error(body_file, capsys, monkeypatch, silent_port):
+    monkeypatch.setattr(servo_command, "HELLO_SECONDS", 0.5)
+    assert "does not answer HELLO" in refused(capsys, body_file, "--port", silent_port)
+
+
+def test_a_device_of_another_protocol_is_an_error(body_file, capsys):
+    """Any program on a pseudo-terminal can be the device; this one comes from the future."""
+    device_end, host_end = os.openpty()
+    tty.setraw(host_end)
+    answer = link.frame(b"\x01\x02Later" + bytes(11) + bytes([3]) + bytes(16) + b"\xe8\x03")
+    child = subprocess.Popen(
+        [sys.executable, "-c", FOREIGN, str(device_end), answer.hex()], pass_fds=[device_end]
+    )
+    try:
+        error = refused(capsys, body_file, "--port", os.ttyname(host_end))
+        assert "another version of the link" in error
+    finally:
+        child.kill()
+        child.wait()
+        os.close(device_end)
+        os.close(host_end)
+
+
+FOREIGN = """
+import os, sys
+end, answer = int(sys.argv[1]), bytes.fromhex(sys.argv[2])
+while os.read(end, 100):
+    os.write(end, answer)
+"""
+
+
+@pytest.mark.parametrize("seconds", ["0", "-1", "nan", "inf"])
+def test_a_time_without_sense_is_an_error(body_file, capsys, seconds):
+    assert "--seconds" in refused(capsys, body_file, "--simulate", "--seconds", seconds)
+
+
+def test_a_rate_or_material_out_of_range_is_an_error(body_file, capsys, device):
+    assert "rate_hz" in refused(capsys, body_file, "--port", device.port, "--rate", "10")
+    assert "modulus" in refused(capsys, body_file, "--simulate", "--young", "-5")
