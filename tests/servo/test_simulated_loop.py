@@ -61,12 +61,17 @@ def press(device, servo):
 
 
 def settled(device):
-    """The device's report once nothing moves any more."""
+    """The device's report once the hand is there and nothing has moved for 20 reports."""
+    resting = []
 
     def still():
         report = device.report()
-        at_target = report["target"] == pytest.approx(DEEP)
-        return report if at_target and math.hypot(*report["velocity"]) < 1e-4 else None
+        if report["target"] != pytest.approx(DEEP) or (
+            resting and math.dist(report["position"], resting[-1]["position"]) > 1e-6
+        ):
+            resting.clear()
+        resting.append(report)
+        return resting[-1] if len(resting) > 20 else None
 
     return eventually(still)
 
