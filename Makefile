@@ -146,6 +146,17 @@ $(ALL_BPY:%=test-addon-%): test-addon-%: .venv-bpy-%/.installed build/packages/.
 test-gui: $(VENV)/.servo-installed $(WINDOWED_PACKAGE) | build/reports ## the package in a Blender with a window, where there is one
 	BLENDER_GUI='$(BLENDER_GUI)' $(BIN)/pytest -q tests/gui $(REPORT)
 
+# ---------------------------------------------------------------------------- demo, benchmarks
+
+.PHONY: demo
+demo: $(VENV)/.servo-installed build/packages/.made ## the main job on a plush mouse and a cube; see build/demo
+	$(BIN)/python demo/make_demo.py --blender $(BPY_VENV)/bin/python \
+	  --package build/packages/palpate-[0-9]*.zip --output build/demo
+
+.PHONY: bench
+bench: $(VENV)/.servo-installed ## how long things take here; see build/bench.json
+	$(BIN)/python benchmarks/measure.py --output build/bench.json
+
 # ------------------------------------------------------------------------------------------ rest
 
 .PHONY: clean

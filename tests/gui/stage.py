@@ -143,7 +143,7 @@ class Stage:
         yield from self._modifiers("RELEASE", held)
 
     def _modifiers(self, value: str, held: dict[str, bool]) -> Wait:
-        """Press or release shift, ctrl or alt: Blender remembers them until it sees them released."""
+        """Press or release shift, ctrl or alt: Blender holds them until it sees them released."""
         for name in held:
             down = held if value == "PRESS" else {}
             yield from self.event(f"LEFT_{name.upper()}", value, self.mouse, **down)

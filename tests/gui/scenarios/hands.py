@@ -24,4 +24,4 @@ def dragging_draws_a_selection_box(stage: Stage) -> Wait:
     with stage.view():
         bpy.ops.object.select_all(action="DESELECT")
     yield from stage.drag([(x - 200, y - 200), (x + 200, y + 200)])
-    yield from stage.until(lambda: bpy.data.objects["Cube"].select_get(), "the selection")
+    yield from stage.until(bpy.data.objects["Cube"].select_get, "the selection")
