@@ -16,7 +16,7 @@ from . import hud
 from .overlay_shapes import CONE, SPHERE, lit
 from .reading import reading
 
-SEEN_THROUGH = 0.38
+SEEN_THROUGH = 0.5
 # The arrow has half its full length at this force: small forces show, large ones stay on the screen.
 HALF_LENGTH_FORCE = 0.3
 CONTACT_SIZE, LINE_PIXELS = 0.6, 2.5

@@ -76,23 +76,22 @@ def _draw_idle(layout, context):
     thing = context.object
     refusal = soft_object.refusal(thing)
     column = layout.column(align=True)
-    column.scale_y = 1.3
+    column.scale_y = 1.5
     if refusal:
         _say(layout, context, refusal, "INFO")
         return
     status = known_status.body_status(thing, context.scene)
-    baked = status.fit is not Fit.NEVER_BAKED
-    column.operator(
-        "palpate.make_soft", icon="MOD_SOFT", text="Make Soft Again" if baked else "Make Soft"
-    )
-    if status.fit is Fit.FILE_MISSING or status.notes:
-        column.operator("palpate.rebuild_body", icon="FILE_REFRESH")
-    if not baked:
+    if status.fit is Fit.NEVER_BAKED:
+        column.operator("palpate.make_soft", icon="MOD_SOFT")
         _say(layout, context, "Choose a material and pins, then press Make Soft", "INFO")
         return
-    row = column.row(align=True)
+    row = column.row()
     row.enabled = status.fit is Fit.READY
     row.operator("palpate.press", icon="FORCE_FORCE")
+    column = layout.column(align=True)
+    if status.fit is Fit.FILE_MISSING or status.notes:
+        column.operator("palpate.rebuild_body", icon="FILE_REFRESH")
+    column.operator("palpate.make_soft", icon="MOD_SOFT", text="Make Soft Again")
     _draw_status(layout, context, status)
 
 
@@ -121,7 +120,7 @@ class PALPATE_PT_material(PalpatePanel, bpy.types.Panel):
         settings = context.object.palpate
         layout.prop(settings, "material")
         column = layout.column(align=True)
-        column.prop(settings, "young_modulus", text="Young's Modulus (Pa)")
+        column.prop(settings, "young_modulus", text="Young's (Pa)")
         row = column.row()
         row.enabled = press_session.current() is None
         row.prop(settings, "poisson_ratio")

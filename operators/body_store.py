@@ -86,9 +86,17 @@ def load(thing: bpy.types.Object) -> SoftBody:
 
 def embed(thing: bpy.types.Object, body: SoftBody) -> None:
     """Put the tetrahedra into the .blend, on the object."""
+    _remove_embedded(thing)
     thing.palpate["nodes"] = body.mesh.nodes.ravel()
     thing.palpate["tets"] = body.mesh.tets.astype(np.int32).ravel()
     thing.palpate["fixed"] = body.fixed.astype(np.int32)
+
+
+def _remove_embedded(thing: bpy.types.Object) -> None:
+    # Also before writing: overwriting an array property corrupts memory (Blender 4.5 to 5.2).
+    for name in EMBEDDED:
+        if name in thing.palpate:
+            del thing.palpate[name]
 
 
 def embedded(thing: bpy.types.Object) -> tuple[TetMesh, PinNodes]:
@@ -116,12 +124,9 @@ def forget(thing: bpy.types.Object) -> None:
     shared = any(o != thing and o.palpate.body_file == name for o in bpy.data.objects)
     if path is not None and not shared:
         path.unlink()
-    for key in EMBEDDED:
-        if key in thing.palpate:
-            del thing.palpate[key]
+    _remove_embedded(thing)
     for setting in ("body_key", "body_file", "fingerprint"):
         thing.palpate.property_unset(setting)
-
 
 def gather_beside(blend: Path, found: dict[str, Path], *, is_open_file: bool) -> None:
     """After a save: put the body files at ``found`` (by name) into the folder beside ``blend``.

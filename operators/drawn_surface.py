@@ -85,6 +85,9 @@ def read(thing: bpy.types.Object, scene: bpy.types.Scene) -> DrawnSurface:
 def rest_coordinates(mesh: bpy.types.Mesh) -> NDArray[np.float32]:
     """Coordinates of the Basis, or of the mesh where it has no shape keys, flat float32 (3 p,)."""
     coordinates = np.empty(3 * len(mesh.vertices), dtype=np.float32)
+    if not len(coordinates):
+        # An empty mesh has no attribute "position".
+        return coordinates
     if mesh.shape_keys:
         mesh.shape_keys.reference_key.points.foreach_get("co", coordinates)
     else:

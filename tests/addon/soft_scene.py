@@ -1,0 +1,104 @@
+"""Objects for the tests of the installed extension, and what they look like from outside."""
+
+from __future__ import annotations
+
+import importlib
+from types import ModuleType
+from typing import Any
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+MODULE = "bl_ext.user_default.palpate"
+# Few tetrahedra: a bake takes about a second, most of it the child process.
+COARSE = 0.2
+
+
+def part(name: str) -> ModuleType:
+    """A module of the installed extension, such as `operators.press_state`."""
+    return importlib.import_module(f"{MODULE}.{name}")
+
+
+def select(thing: bpy.types.Object) -> bpy.types.Object:
+    """Make an object the active one."""
+    bpy.context.view_layer.objects.active = thing
+    bpy.context.view_layer.update()
+    return thing
+
+
+def cube(edge: float = 0.05) -> bpy.types.Object:
+    """A cube of this edge at the origin, its scale applied, settings for a quick bake."""
+    bpy.ops.mesh.primitive_cube_add(size=edge)
+    thing = bpy.context.object
+    thing.palpate.edge_length = COARSE
+    return select(thing)
+
+
+def mesh_object(vertices: Any, faces: Any, name: str = "Thing") -> bpy.types.Object:
+    """An object made of vertices and polygons."""
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata(vertices, [], faces)
+    thing = bpy.data.objects.new(name, mesh)
+    bpy.context.collection.objects.link(thing)
+    thing.palpate.edge_length = COARSE
+    return select(thing)
+
+
+def soft_cube(edge: float = 0.05) -> bpy.types.Object:
+    """A cube with its body."""
+    thing = cube(edge)
+    assert bpy.ops.palpate.make_soft() == {"FINISHED"}
+    return thing
+
+
+def press_down(thing: bpy.types.Object, top: float = 0.025, depth: float = 0.005) -> None:
+    """Press the middle of the top of a cube at the origin and keep the shape."""
+    select(thing)
+    assert bpy.ops.palpate.press(at=(0.0, 0.0, top), by=(0.0, 0.0, -depth)) == {"FINISHED"}
+
+
+def error_of(operator: Any, **arguments: Any) -> str:
+    """The message with which an operator refuses."""
+    try:
+        operator(**arguments)
+    except RuntimeError as refusal:
+        return str(refusal)
+    raise AssertionError("the operator did not refuse")
+
+
+def mesh_state(thing: bpy.types.Object) -> dict[str, Any]:
+    """Every coordinate, bit for bit, of the mesh and its shape keys, and which key is active."""
+    mesh = thing.data
+    state: dict[str, Any] = {"mesh": _bytes(mesh.vertices), "active": thing.active_shape_key_index}
+    state["only"] = thing.show_only_shape_key
+    state["marks"] = sorted(mesh.shape_keys.keys()) if mesh.shape_keys else None
+    for key in mesh.shape_keys.key_blocks if mesh.shape_keys else ():
+        state[key.name] = (_bytes(key.points), key.value, key.mute, key.relative_key.name)
+    return state
+
+
+def key_names(thing: bpy.types.Object) -> list[str]:
+    """Names of its shape keys."""
+    return thing.data.shape_keys.key_blocks.keys() if thing.data.shape_keys else []
+
+
+def key_coordinates(thing: bpy.types.Object, name: str) -> NDArray[np.float32]:
+    """Coordinates (p, 3) of a shape key, local units."""
+    points = thing.data.shape_keys.key_blocks[name].points
+    flat = np.empty(3 * len(points), dtype=np.float32)
+    points.foreach_get("co", flat)
+    return flat.reshape(-1, 3)
+
+
+def world_extents(thing: bpy.types.Object) -> NDArray[np.float64]:
+    """Size of the mesh along the world's axes."""
+    corners = np.array([thing.matrix_world @ vertex.co for vertex in thing.data.vertices])
+    extents: NDArray[np.float64] = np.ptp(corners, axis=0)
+    return extents
+
+
+def _bytes(points: Any) -> bytes:
+    flat = np.empty(3 * len(points), dtype=np.float32)
+    points.foreach_get("co", flat)
+    return flat.tobytes()

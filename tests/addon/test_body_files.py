@@ -1,0 +1,147 @@
+"""Save, reopen, press again; and what happens to bodies that are missing, damaged or of another shape."""
+
+from __future__ import annotations
+
+import shutil
+
+import bpy
+import numpy as np
+import pytest
+from soft_scene import cube, error_of, key_names, part, press_down, select, soft_cube
+
+
+def status(thing):
+    return part("operators.soft_object").body_status(thing, bpy.context.scene)
+
+
+def locate(thing):
+    return part("operators.body_store").locate(thing)
+
+
+@pytest.fixture
+def saved(palpate, tmp_path):
+    """A soft cube in a saved and reopened file."""
+    thing = soft_cube()
+    name = thing.name
+    unsaved = locate(thing)
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"))
+    assert not unsaved.exists(), "the body file was left behind in the user's folder"
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "scene.blend"))
+    return select(bpy.data.objects[name])
+
+
+def test_save_reopen_press_again(saved, tmp_path):
+    assert locate(saved).parent == tmp_path / "palpate"
+    assert status(saved).fit.name == "READY"
+    press_down(saved)
+    assert key_names(saved) == ["Basis", "Press 1"]
+
+
+def test_the_body_goes_along_when_the_file_is_saved_elsewhere(saved, tmp_path):
+    (tmp_path / "other").mkdir()
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "other" / "copy.blend"))
+    assert locate(saved).parent == tmp_path / "other" / "palpate"
+    assert (tmp_path / "palpate" / locate(saved).name).is_file()
+    press_down(saved)
+
+
+def test_a_missing_body_file_is_said_and_rebuilt_the_same(saved):
+    key, path = saved.palpate.body_key, locate(saved)
+    wanted = part("core.cache").load(path).compliance.columns
+    path.unlink()
+    assert status(saved).fit.name == "FILE_MISSING"
+    assert "Rebuild Body" in error_of(bpy.ops.palpate.press, at=(0, 0, 0.03), by=(0, 0, -0.005))
+    assert bpy.ops.palpate.rebuild_body() == {"FINISHED"}
+    assert saved.palpate.body_key == key
+    assert np.array_equal(part("core.cache").load(locate(saved)).compliance.columns, wanted)
+    press_down(saved)
+
+
+@pytest.mark.parametrize("damage", ["truncated", "flipped", "foreign"])
+def test_a_damaged_body_file_is_never_used(saved, damage):
+    path = locate(saved)
+    content = bytearray(path.read_bytes())
+    if damage == "truncated":
+        path.write_bytes(content[: len(content) // 2])
+    elif damage == "flipped":
+        content[len(content) // 2] ^= 0x10
+        path.write_bytes(content)
+    else:
+        path.write_text("not a body")
+    message = error_of(bpy.ops.palpate.press, at=(0, 0, 0.03), by=(0, 0, -0.005))
+    assert path.name in message
+    assert key_names(saved) == []
+    assert bpy.ops.palpate.rebuild_body() == {"FINISHED"}
+    press_down(saved)
+
+
+def test_the_body_of_something_else_under_the_right_name_is_not_used(saved):
+    path = locate(saved)
+    other = soft_cube(0.06)
+    shutil.copyfile(locate(other), path)
+    select(saved)
+    message = error_of(bpy.ops.palpate.press, at=(0, 0, 0.03), by=(0, 0, -0.005))
+    assert "something else" in message
+
+
+def test_edited_topology_is_said_and_needs_a_bake(saved):
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_all(action="SELECT")
+    bpy.ops.mesh.subdivide()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert status(saved).fit.name == "CHANGED"
+    assert "26 vertices" in status(saved).text
+    for operator in (bpy.ops.palpate.rebuild_body, bpy.ops.palpate.press):
+        arguments = {"by": (0.0, 0.0, -0.005)} if operator.idname() == "PALPATE_OT_press" else {}
+        assert "Make Soft" in error_of(operator, **arguments)
+    assert bpy.ops.palpate.make_soft() == {"FINISHED"}
+    assert status(saved).fit.name == "READY"
+
+
+def test_moving_and_turning_needs_no_bake_scaling_does(saved):
+    saved.location = (3.0, 2.0, 1.0)
+    saved.rotation_euler = (0.1, 0.2, 0.3)
+    bpy.context.view_layer.update()
+    assert status(saved).fit.name == "READY"
+    saved.scale = (1.0, 1.0, 1.01)
+    bpy.context.view_layer.update()
+    assert status(saved).fit.name == "CHANGED"
+    assert "scale" in status(saved).text
+
+
+def test_applying_the_scale_leaves_the_body_valid(palpate):
+    thing = cube(1.0)
+    thing.scale = (0.05, 0.04, 0.06)
+    select(thing)
+    assert bpy.ops.palpate.make_soft() == {"FINISHED"}
+    bpy.ops.object.select_all(action="DESELECT")
+    thing.select_set(True)
+    bpy.ops.object.transform_apply(location=False, rotation=False, scale=True)
+    assert status(thing).fit.name == "READY"
+
+
+def test_pins_and_ratio_changed_later_are_said_and_taken_over_without_tetrahedralization(saved):
+    tets = np.array(saved.palpate["tets"])
+    key = saved.palpate.body_key
+    saved.palpate.poisson_ratio = 0.4
+    saved.palpate.pin_fraction = 0.3
+    assert len(status(saved).notes) == 2
+    assert bpy.ops.palpate.rebuild_body() == {"FINISHED"}
+    assert status(saved).notes == ()
+    assert np.array_equal(np.array(saved.palpate["tets"]), tets)
+    assert saved.palpate.body_key != key
+    body = part("operators.body_store").load(saved)
+    assert body.poisson_ratio == 0.4
+    assert body.mesh.nodes[body.fixed, 2].max() > -0.025 + 0.2 * 0.05
+
+
+def test_a_copied_object_brings_its_body(saved):
+    copy = saved.copy()
+    copy.data = saved.data.copy()
+    bpy.context.collection.objects.link(copy)
+    select(copy)
+    assert status(copy).fit.name == "READY"
+    press_down(copy)
+    assert key_names(saved) == []
+    assert bpy.ops.palpate.remove_softness() == {"FINISHED"}
+    assert locate(saved) is not None, "the file was still needed"

@@ -1,0 +1,62 @@
+"""The headless command, called as Blender calls it."""
+
+from __future__ import annotations
+
+import json
+
+import bpy
+import pytest
+from soft_scene import cube, part
+
+
+@pytest.fixture
+def command(palpate):
+    return part("addon.command").run
+
+
+@pytest.fixture
+def scene(palpate, tmp_path):
+    """A saved file with a cube that is not soft yet."""
+    cube().name = "Prop"
+    path = tmp_path / "scene.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    bpy.ops.wm.read_homefile(use_factory_startup=True)
+    return path
+
+
+def test_bake_saves_a_file_that_can_be_pressed(command, scene, capfd):
+    assert command(["bake", str(scene), "--object", "Prop", "--edge-length", "0.2", "--json"]) == 0
+    figures = json.loads(capfd.readouterr().out.splitlines()[-1])
+    assert figures["nodes"] > figures["free_surface_nodes"] > 0
+    assert len(list((scene.parent / "palpate").iterdir())) == 1
+    words = ["press", str(scene), "--object", "Prop", "--at", "0", "0", "0.025"]
+    words += ["--by", "0", "0", "-5e-3", "--json", "--keep"]
+    assert command(words) == 0
+    pressed = json.loads(capfd.readouterr().out.splitlines()[-1])
+    assert pressed["force"][2] > 0
+    bpy.ops.wm.open_mainfile(filepath=str(scene))
+    keys = bpy.data.objects["Prop"].data.shape_keys.key_blocks.keys()
+    assert keys == ["Basis", pressed["shape_key"]]
+
+
+@pytest.mark.parametrize(
+    ("words", "reason"),
+    [
+        (["bake", "/nowhere.blend", "--object", "Prop"], "no such file"),
+        (["bake", "{scene}", "--object", "Nobody"], "Prop"),
+        (["bake", "{scene}", "--object", "Prop", "--poisson", "0.7"], "out of range"),
+        (["bake", "{scene}", "--object", "Prop", "--pin-group", "None"], "vertex group"),
+        (["press", "{scene}", "--object", "Prop", "--at", "0", "0", "0", "--by", "0", "0", "1"],
+         "not soft"),
+        (["press", "{scene}", "--object", "Prop"], "--at"),
+        (["squeeze"], "squeeze"),
+    ],
+)
+def test_errors_are_one_line_and_leave_nothing(command, scene, capfd, words, reason):
+    before = scene.read_bytes()
+    assert command([word.format(scene=scene) for word in words]) == 2
+    lines = [line for line in capfd.readouterr().err.splitlines() if line.startswith("palpate: ")]
+    assert len(lines) == 1
+    assert reason in lines[0]
+    assert scene.read_bytes() == before
+    assert [path.name for path in scene.parent.iterdir()] == [scene.name]

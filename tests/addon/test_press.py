@@ -1,0 +1,316 @@
+"""Pressing: scripts by the operator, sessions by the events that its modal side posts."""
+
+from __future__ import annotations
+
+import time
+
+import bpy
+import numpy as np
+import pytest
+from soft_scene import (
+    cube,
+    error_of,
+    key_coordinates,
+    key_names,
+    mesh_state,
+    part,
+    press_down,
+    select,
+    soft_cube,
+)
+
+TOP = (0.0, 0.0, 0.02501)
+DEEP = (0.0, 0.0, 0.02)
+
+
+@pytest.fixture
+def states(palpate):
+    return part("operators.press_state")
+
+
+@pytest.fixture
+def sessions(palpate):
+    module = part("operators.press_session")
+    yield module
+    module.give_way("")
+
+
+def begin(sessions, states, thing, source="POINTER"):
+    return sessions.begin(thing, bpy.context.scene, states.Source[source])
+
+
+def press_in(session, states):
+    """Touch the middle of the top and go in, until the thread has answered."""
+    session.post(states.SetDown(TOP))
+    wait(session, lambda: session.snapshot is not None and session.snapshot.tick > 0)
+    session.post(states.Move(DEEP))
+    wait(session, lambda: session.snapshot.touching and session.snapshot.probe[2] < 0.02 + 1e-9)
+
+
+def wait(session, condition, seconds=10.0):
+    end = time.monotonic() + seconds
+    while True:
+        session.tick()
+        if condition():
+            return
+        assert time.monotonic() < end, "waited in vain"
+        time.sleep(0.005)
+
+
+def test_a_script_presses_and_keeps_a_shape(palpate):
+    thing = soft_cube()
+    press_down(thing)
+    assert key_names(thing) == ["Basis", "Press 1"]
+    moved = key_coordinates(thing, "Press 1") - key_coordinates(thing, "Basis")
+    assert moved[:, 2].min() < -1e-4
+    assert np.abs(moved).max() <= 0.005
+    press_down(thing)
+    assert key_names(thing) == ["Basis", "Press 1", "Press 2"]
+
+
+def test_without_keep_nothing_changes(palpate):
+    thing = soft_cube()
+    before = mesh_state(thing)
+    assert bpy.ops.palpate.press(at=TOP, by=(0, 0, -0.005), keep=False) == {"FINISHED"}
+    assert mesh_state(thing) == before
+
+
+def test_force_grows_with_the_modulus_and_the_shape_does_not_without_a_bake(palpate):
+    thing = soft_cube()
+    press = part("operators.press_once").press_once
+    path = part("operators.body_store").locate(thing)
+    stamp = path.stat().st_mtime_ns
+    soft = press(thing, bpy.context.scene, TOP, (0, 0, -0.005))
+    thing.palpate.young_modulus *= 3
+    firm = press(thing, bpy.context.scene, TOP, (0, 0, -0.005))
+    assert np.allclose(np.array(firm.force), 3 * np.array(soft.force))
+    assert np.array_equal(key_coordinates(thing, "Press 1"), key_coordinates(thing, "Press 2"))
+    assert path.stat().st_mtime_ns == stamp
+    assert part("operators.soft_object").body_status(thing, bpy.context.scene).fit.name == "READY"
+
+
+def test_the_felt_force_points_back_out(palpate):
+    thing = soft_cube()
+    pressed = part("operators.press_once").press_once(
+        thing, bpy.context.scene, TOP, (0, 0, -0.005), keep=False
+    )
+    assert pressed.force[2] > 0
+
+
+def test_what_was_never_baked_cannot_be_pressed(palpate):
+    cube()
+    assert "Make Soft" in error_of(bpy.ops.palpate.press, at=TOP, by=(0, 0, -0.005))
+
+
+@pytest.mark.parametrize("with_keys", [False, True])
+def test_cancel_restores_every_bit(sessions, states, with_keys):
+    thing = soft_cube()
+    if with_keys:
+        thing.shape_key_add(name="Basis")
+        other = thing.shape_key_add(name="Other")
+        other.points[0].co.x += 0.01
+        other.value = 0.3
+        thing.active_shape_key_index = 1
+        thing.show_only_shape_key = True
+    before = mesh_state(thing)
+    session = begin(sessions, states, thing)
+    press_in(session, states)
+    live = key_coordinates(thing, "Palpate live")
+    assert np.abs(live - key_coordinates(thing, "Basis")).max() > 1e-4
+    session.post(states.Cancel())
+    assert mesh_state(thing) == before
+    assert sessions.current() is None
+
+
+@pytest.mark.parametrize("with_keys", [False, True])
+def test_keep_leaves_one_new_key_and_all_else(sessions, states, with_keys):
+    thing = soft_cube()
+    if with_keys:
+        thing.shape_key_add(name="Basis")
+        thing.shape_key_add(name="Other").value = 0.3
+    before = mesh_state(thing)
+    session = begin(sessions, states, thing)
+    press_in(session, states)
+    seen = key_coordinates(thing, "Palpate live")
+    session.post(states.Release())
+    session.post(states.Keep())
+    after = mesh_state(thing)
+    assert np.array_equal(key_coordinates(thing, "Press 1"), seen)
+    assert after["mesh"] == before["mesh"]
+    assert key_names(thing) == (["Basis", "Other"] if with_keys else ["Basis"]) + ["Press 1"]
+    if with_keys:
+        assert after["Other"] == before["Other"]
+        assert after["Basis"] == before["Basis"]
+
+
+def test_a_modulus_changed_while_pressing_is_felt_at_once(sessions, states):
+    thing = soft_cube()
+    session = begin(sessions, states, thing)
+    press_in(session, states)
+    soft = np.linalg.norm(session.snapshot.contact_force)
+    thing.palpate.young_modulus *= 2
+    wait(
+        session,
+        lambda: np.isclose(np.linalg.norm(session.snapshot.contact_force), 2 * soft, rtol=1e-3),
+    )
+
+
+def test_an_object_may_be_moved_but_not_scaled_while_pressed(sessions, states):
+    thing = soft_cube()
+    before = mesh_state(thing)
+    session = begin(sessions, states, thing)
+    press_in(session, states)
+    thing.location.x += 1.0
+    thing.rotation_euler.z += 0.5
+    bpy.context.view_layer.update()
+    session.tick()
+    assert sessions.current() is session
+    thing.scale.x = 1.2
+    bpy.context.view_layer.update()
+    session.tick()
+    assert sessions.current() is None
+    assert "scaled" in session.state.message
+    assert mesh_state(thing) == before
+
+
+def test_a_deleted_object_ends_the_press(sessions, states):
+    thing = soft_cube()
+    session = begin(sessions, states, thing)
+    press_in(session, states)
+    bpy.data.objects.remove(thing)
+    session.tick()
+    assert sessions.current() is None
+    assert session.servo is None
+
+
+def test_a_renamed_object_is_pressed_on(sessions, states):
+    thing = soft_cube()
+    session = begin(sessions, states, thing)
+    thing.name = "Another name"
+    press_in(session, states)
+    session.post(states.Cancel())
+    assert key_names(thing) == []
+
+
+def test_edit_mode_ends_the_press_and_leaves_the_mesh_clean(sessions, states):
+    thing = soft_cube()
+    before = mesh_state(thing)
+    session = begin(sessions, states, thing)
+    press_in(session, states)
+    bpy.ops.object.mode_set(mode="EDIT")
+    session.tick()
+    assert sessions.current() is None
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert mesh_state(thing) == before
+
+
+def test_a_save_while_pressing_writes_no_live_shape_and_the_press_goes_on(
+    sessions, states, tmp_path
+):
+    thing = soft_cube()
+    name = thing.name
+    session = begin(sessions, states, thing)
+    press_in(session, states)
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "saved.blend"))
+    assert sessions.current() is session
+    session.tick()
+    assert key_names(thing) == ["Basis", "Palpate live"]
+    session.post(states.Cancel())
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "saved.blend"))
+    assert key_names(bpy.data.objects[name]) == []
+
+
+def test_opening_another_file_ends_the_press(sessions, states):
+    session = begin(sessions, states, soft_cube())
+    press_in(session, states)
+    servo = session.servo
+    bpy.ops.wm.read_homefile(use_factory_startup=True)
+    assert sessions.current() is None
+    assert not servo.running
+
+
+def test_undo_while_pressing_ends_it_and_leaves_the_mesh_clean(sessions, states):
+    thing = soft_cube()
+    name = thing.name
+    bpy.ops.ed.undo_push(message="soft")
+    session = begin(sessions, states, thing)
+    press_in(session, states)
+    bpy.ops.ed.undo_push(message="something with the live key in it")
+    servo = session.servo
+    bpy.ops.ed.undo()
+    assert sessions.current() is None
+    assert not servo.running
+    assert key_names(bpy.data.objects[name]) == []
+    bpy.ops.ed.redo()
+    assert key_names(bpy.data.objects[name]) == []
+
+
+def test_switching_the_extension_off_ends_the_press(palpate, sessions, states):
+    thing = soft_cube()
+    before = mesh_state(thing)
+    session = begin(sessions, states, thing)
+    press_in(session, states)
+    servo = session.servo
+    bpy.ops.preferences.addon_disable(module=palpate.__name__)
+    assert not servo.running
+    assert mesh_state(thing) == before
+
+
+def test_only_one_press_at_a_time(sessions, states):
+    thing = soft_cube()
+    begin(sessions, states, thing)
+    error = part("core.errors").PalpateError
+    with pytest.raises(error, match="Escape"):
+        begin(sessions, states, thing)
+    assert "press" in error_of(bpy.ops.palpate.press, at=TOP, by=(0, 0, -0.005))
+
+
+def test_a_port_that_is_not_there_is_refused_and_leaves_the_mesh_clean(sessions, states):
+    thing = soft_cube()
+    before = mesh_state(thing)
+    bpy.context.scene.palpate.source = "SERIAL"
+    bpy.context.scene.palpate.port = "/nowhere/port"
+    error = part("core.errors").PalpateError
+    with pytest.raises(error, match="/nowhere/port"):
+        begin(sessions, states, thing, "DEVICE")
+    assert mesh_state(thing) == before
+    assert sessions.current() is None
+
+
+def test_the_simulated_device_presses_is_unplugged_and_comes_back(sessions, states):
+    thing = soft_cube()
+    before = mesh_state(thing)
+    bpy.context.scene.palpate.source = "SIMULATED"
+    session = begin(sessions, states, thing, "DEVICE")
+    wait(session, lambda: session.snapshot.touching)
+    wait(session, lambda: np.linalg.norm(session.snapshot.output_force) > 0.01)
+    session.simulated.unplug()
+    wait(session, lambda: session.state.phase is states.Phase.LOST)
+    assert np.array_equal(
+        key_coordinates(thing, "Palpate live"), key_coordinates(thing, "Basis")
+    )
+    assert not np.any(session.snapshot.output_force)
+    assert "plug" in session.state.message
+    session.simulated.plug_in()
+    wait(session, lambda: session.state.phase is states.Phase.FEELING)
+    wait(session, lambda: session.snapshot.touching)
+    child = session.simulated._process
+    session.post(states.Cancel())
+    assert child.poll() is not None
+    assert mesh_state(thing) == before
+
+
+def test_an_empty_places_the_device(sessions, states):
+    thing = soft_cube()
+    bpy.ops.object.empty_add(location=(0.0, 0.0, 0.3), rotation=(0.3, 0.0, 0.0))
+    scene = bpy.context.scene
+    scene.palpate.device_frame, scene.palpate.device_scale = bpy.context.object, 2.0
+    bpy.context.view_layer.update()
+    body = part("operators.drawn_surface").frame_of(thing, scene)
+    frame = part("operators.device_source").device_frame(scene, body)
+    device = np.array([0.01, 0.02, 0.03])
+    expected = np.array(bpy.context.object.matrix_world.to_3x3()) @ (2 * device) + [0, 0, 0.3]
+    mapped = frame.scale * frame.rotation @ device + frame.translation
+    assert np.allclose(body.world_from_body(mapped), expected, atol=1e-6)
+    assert np.allclose(frame.device_from_body(mapped), device)
+    select(thing)

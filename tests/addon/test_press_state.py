@@ -1,0 +1,107 @@
+"""The press as a pure function of state and event; no Blender is asked."""
+
+from __future__ import annotations
+
+import itertools
+
+import pytest
+from soft_scene import part
+
+POINT = (0.0, 0.0, 0.1)
+
+
+@pytest.fixture
+def ps(installed):
+    return part("operators.press_state")
+
+
+def play(ps, *events):
+    """The state after events, and all effects on the way."""
+    state, effects = ps.PressState(), []
+    for event in events:
+        state, more = ps.transition(state, event)
+        effects += more
+    return state, effects
+
+
+def test_a_pointer_press_goes_from_touch_to_kept_shape(ps):
+    state, effects = play(
+        ps,
+        ps.Start(ps.Source.POINTER),
+        ps.SetDown(POINT),
+        ps.Move((0.0, 0.0, 0.09)),
+        ps.Release(),
+        ps.Keep(),
+    )
+    assert state.phase is ps.Phase.ENDED
+    assert effects == [
+        ps.HangLiveShape(),
+        ps.StartServo(ps.Source.POINTER),
+        ps.PlaceProbe(POINT),
+        ps.MoveProbe((0.0, 0.0, 0.09)),
+        ps.StopServo(),
+        ps.KeepShape(),
+    ]
+
+
+def test_nothing_pressed_cannot_be_kept(ps):
+    state, effects = play(ps, ps.Start(ps.Source.POINTER), ps.Keep())
+    assert state.phase is ps.Phase.READY
+    assert ps.KeepShape() not in effects
+
+
+def test_moving_without_the_button_does_not_move_the_probe(ps):
+    _, effects = play(ps, ps.Start(ps.Source.POINTER), ps.Move(POINT))
+    assert not [effect for effect in effects if isinstance(effect, ps.MoveProbe)]
+
+
+def test_a_device_that_goes_away_leaves_the_rest_shape_and_comes_back(ps):
+    state, effects = play(ps, ps.Start(ps.Source.DEVICE), ps.Fault("gone"))
+    assert state.phase is ps.Phase.LOST
+    assert ps.DrawRest() in effects
+    assert ps.Say("gone", warning=True) in effects
+    state, _ = ps.transition(state, ps.Recovered())
+    assert state.phase is ps.Phase.FEELING
+
+
+def test_a_lost_device_has_no_shape_to_keep(ps):
+    state, effects = play(ps, ps.Start(ps.Source.DEVICE), ps.Fault("gone"), ps.Keep())
+    assert state.phase is ps.Phase.LOST
+    assert ps.KeepShape() not in effects
+
+
+def test_a_save_sees_no_live_shape_and_the_press_goes_on(ps):
+    state, effects = play(
+        ps, ps.Start(ps.Source.POINTER), ps.SetDown(POINT), ps.SaveBegins(), ps.SaveEnds()
+    )
+    assert state.phase is ps.Phase.DRAGGING
+    assert effects[-2:] == [ps.RemoveLiveShape(), ps.HangLiveShape()]
+
+
+def test_whatever_happened_giving_way_stops_the_servo_and_cleans_the_mesh(ps):
+    """All walks of three events from both starts."""
+    events = [
+        ps.SetDown(POINT),
+        ps.Move(POINT),
+        ps.Release(),
+        ps.Fault("gone"),
+        ps.Recovered(),
+        ps.SaveBegins(),
+        ps.SaveEnds(),
+        ps.Keep(),
+        ps.Cancel(),
+    ]
+    for source in ps.Source:
+        for walk in itertools.product(events, repeat=3):
+            state, effects = play(ps, ps.Start(source), *walk, ps.GiveWay("end"))
+            assert state.phase is ps.Phase.ENDED
+            assert effects.count(ps.StopServo()) == 1
+            hung = effects.count(ps.HangLiveShape())
+            removed = effects.count(ps.RemoveLiveShape()) + effects.count(ps.KeepShape())
+            assert hung == removed, f"{source}, {walk}"
+
+
+def test_after_the_end_nothing_has_an_effect(ps):
+    state, _ = play(ps, ps.Start(ps.Source.POINTER), ps.Cancel())
+    for event in (ps.Start(ps.Source.POINTER), ps.SetDown(POINT), ps.Keep(), ps.GiveWay("")):
+        assert ps.transition(state, event) == (state, ())
