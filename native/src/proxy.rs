@@ -19,6 +19,8 @@ const MAX_STEPS: u32 = 512;
 const MAX_ROUNDS: u32 = 16;
 /// A start this much behind a surface (relative to the body) counts as inside, not as rounding.
 const ROUNDING: f64 = 1e-9;
+/// A device no deeper than this (relative to the body) is on the surface: its side is rounding.
+const ON_SURFACE: f64 = 1e-13;
 /// Area coordinates below this are exact zeros: the proxy then stands *on* the edge or node, and
 /// no step of the walk is too short to be told from rounding. It moves along the surface only.
 const BORDER: f64 = 1e-12;
@@ -186,10 +188,12 @@ impl Proxy {
     fn fly(&mut self, body: &Body, device: DVec3, left: &Feature) -> bool {
         let start = self.position;
         let Sweep { entering, leaving } = body.tree().sweep(body, start, device, left);
-        let length = device.distance(start);
-        let inside_already = leaving.is_some_and(|l| {
-            l.fraction * length > ROUNDING * body.size()
-                && entering.is_none_or(|e| l.fraction < e.fraction)
+        let leaves_first = leaving.filter(|l| entering.is_none_or(|e| l.fraction < e.fraction));
+        let inside_already = leaves_first.is_some_and(|l| {
+            // A way that grazes an edge seems to leave too; but it never was inside.
+            let before = start.lerp(device, 0.5 * l.fraction);
+            let (closest, inside) = closest_point(body, before, l.triangle);
+            inside && closest.distance > ROUNDING * body.size()
         });
         if inside_already {
             // A start exactly on the surface, rounded to its inner side, in front of a thin wall.
@@ -207,12 +211,14 @@ impl Proxy {
             return false;
         }
         let (clearance, inside) = self.look(body, device);
-        if inside {
+        if inside && clearance > ON_SURFACE * body.size() {
             self.rescues += 1;
             self.land(body);
             return false;
         }
         self.position = device;
+        // A device that is on the surface within rounding is free; the next sweep starts there.
+        let clearance = if inside { 0.0 } else { clearance };
         self.place = Place::Free { clearance };
         true
     }
@@ -286,7 +292,7 @@ impl Proxy {
     ) -> bool {
         let face = body.face(triangle);
         let goal = face.area_coordinates(device);
-        if goal.iter().all(|&g| g > 0.0) {
+        if goal.iter().all(|&g| g > BORDER) {
             self.hold = Hold {
                 triangle,
                 alpha: goal,
@@ -298,10 +304,12 @@ impl Proxy {
         let mut part = 1.0;
         let mut side = usize::MAX;
         for k in 0..3 {
-            if goal[k] <= 0.0 {
-                // Zero minus zero: the way runs along this side, which does not end it.
-                let down = alpha[k] - goal[k];
-                let reached = if down > 0.0 { alpha[k] / down } else { 1.0 };
+            if goal[k] <= BORDER {
+                let reached = if goal[k] < 0.0 {
+                    alpha[k] / (alpha[k] - goal[k])
+                } else {
+                    1.0
+                };
                 if side == usize::MAX || reached < part {
                     (part, side) = (reached, k);
                 }

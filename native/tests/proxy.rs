@@ -94,6 +94,9 @@ fn assert_held_back(name: &str, body: &Body, proxy: &Proxy, device: DVec3) {
         return; // The device is on the surface: holding and free are the same.
     }
     let a_bit_on = proxy.position() + way * (2e-6 / way.length()).min(0.5);
+    if distance_to_surface(body, a_bit_on) < 1e-12 {
+        return; // The way runs in the surface: no referee can tell its sides apart.
+    }
     assert!(
         winding(body, a_bit_on) > 0.5,
         "{name}: sticks at {} with the device free at {device}",
@@ -192,10 +195,16 @@ fn pushes_at_every_quantum_neither_fall_through_nor_stick() {
             }
             pushed += 1;
             let mut proxy = Proxy::new(&body, start);
-            for step in (0..=push.steps).chain((0..=push.steps).rev()) {
+            let mut landings = 0;
+            let mut held_in_front = false;
+            let there_and_back = (0..=push.steps).chain((0..=push.steps).rev());
+            for (count, step) in there_and_back.enumerate() {
                 let device = push.at(step);
+                let was_free = proxy.hold().is_none();
                 proxy.follow(&body, device);
                 if proxy.hold().is_some() {
+                    landings += usize::from(was_free);
+                    held_in_front |= count == push.steps;
                     if step % 8 == 0 {
                         assert_rests(name, &body, &proxy, device);
                     }
@@ -207,7 +216,8 @@ fn pushes_at_every_quantum_neither_fall_through_nor_stick() {
                     );
                 }
             }
-            if proxy.hold().is_some() {
+            // Whoever went round or through free space comes back from behind and is held there.
+            if proxy.hold().is_some() && landings == 1 && held_in_front {
                 assert_held_back(name, &body, &proxy, start);
             }
         }
