@@ -128,6 +128,7 @@ def forget(thing: bpy.types.Object) -> None:
     for setting in ("body_key", "body_file", "fingerprint"):
         thing.palpate.property_unset(setting)
 
+
 def gather_beside(blend: Path, found: dict[str, Path], *, is_open_file: bool) -> None:
     """After a save: put the body files at ``found`` (by name) into the folder beside ``blend``.
 

@@ -19,6 +19,8 @@ Array = NDArray[np.float64]
 
 # The simulated hand starts this far above the body and presses this deep, as shares of its size.
 SIMULATED_REST, SIMULATED_DEPTH = 0.15, 0.12
+# What lies at most this share of the size below the highest node counts as the top too.
+LEVEL = 0.02
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,6 +73,15 @@ def port_of(scene: bpy.types.Scene) -> str:
     return port
 
 
+def _top(drawn: DrawnBody, up: Array) -> Array:
+    """The free surface node in the middle of the highest part of the body."""
+    nodes = drawn.body.mesh.nodes[drawn.body.compliance.free_surface]
+    height = nodes @ up
+    highest = nodes[height >= height.max() - LEVEL * drawn.size]
+    middle: Array = highest[np.argmin(np.linalg.norm(highest - highest.mean(axis=0), axis=1))]
+    return middle
+
+
 def start_simulated(drawn: DrawnBody, frame: DeviceFrame) -> SimulatedDevice:
     """Start the simulated device, whose hand presses on the top of the body, again and again.
 
@@ -79,9 +90,8 @@ def start_simulated(drawn: DrawnBody, frame: DeviceFrame) -> SimulatedDevice:
     PalpateError
         It does not start, or this system has no pseudo-terminals.
     """
-    nodes = drawn.body.mesh.nodes[drawn.body.compliance.free_surface]
     up = drawn.frame.turn_to_body(np.array([0.0, 0.0, 1.0]))
-    top = nodes[np.argmax(nodes @ up)]
+    top = _top(drawn, up)
     rest, deep = top + SIMULATED_REST * drawn.size * up, -SIMULATED_DEPTH * drawn.size * up
     x, y, z = frame.device_from_body(rest).tolist()
     at = frame.device_from_body(top).tolist()
