@@ -51,14 +51,21 @@ class SimulatedDevice:
         self.options = options
         self._unread = b""
         self._last_report: dict[str, Any] | None = None
-        self._process = subprocess.Popen(  # noqa: S603 - our own script, no shell
-            [python, *python_args, str(SCRIPT), "--commands", *options.arguments()],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            # Ctrl-C is for the host: the device must still be there while the host lets go.
-            start_new_session=True,
-        )
+        try:
+            self._process = subprocess.Popen(  # noqa: S603 - our own script, no shell
+                [python, *python_args, str(SCRIPT), "--commands", *options.arguments()],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                # Ctrl-C is for the host: the device must still be there while the host lets go.
+                start_new_session=True,
+            )
+        except OSError as error:
+            self._remove_folder()
+            raise PalpateError(
+                f"the simulated device cannot be started: {python}: {error.strerror}; "
+                "check this installation of Python"
+            ) from error
         try:
             self.port: str = self._read_json(START_SECONDS)["port"]
         except BaseException:
@@ -112,9 +119,12 @@ class SimulatedDevice:
         """End the process and return its last report; idempotent. Empty if it ended without one."""
         if self._last_report is None:
             self._last_report = self._end()
-            if self._folder:
-                self._folder.cleanup()
+            self._remove_folder()
         return self._last_report
+
+    def _remove_folder(self) -> None:
+        if self._folder:
+            self._folder.cleanup()
 
     def _end(self) -> dict[str, Any]:
         try:

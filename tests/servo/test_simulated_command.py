@@ -1,5 +1,6 @@
 """`palpate servo` against devices that behave, misbehave or are not there."""
 
+import errno
 import fcntl
 import json
 import os
@@ -8,6 +9,7 @@ import subprocess
 import sys
 import time
 import tty
+from contextlib import contextmanager
 
 import pytest
 
@@ -60,17 +62,25 @@ def eventually(condition, seconds=20.0):
     return value
 
 
-def host(body_file, port, *more):
-    """The command as a process of its own."""
+@contextmanager
+def host(body_file, port):
+    """The command as a process of its own, which does not outlive the test."""
     command = [sys.executable, "-m", "palpate.cli.main", "servo", body_file, "--json"]
-    return subprocess.Popen(
-        [*command, "--port", port, "--seconds", "60", *more], stdout=subprocess.PIPE, text=True
-    )
+    command += ["--port", port, "--seconds", "60"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        try:
+            yield process
+        finally:
+            process.kill()
 
 
 def held_alone(port):
     """Whether an ordinary user could not open the port now (the superuser always can)."""
-    descriptor = os.open(port, os.O_RDWR | os.O_NOCTTY)
+    try:
+        descriptor = os.open(port, os.O_RDWR | os.O_NOCTTY)
+    except OSError as error:
+        assert error.errno == errno.EBUSY
+        return True
     answer = fcntl.ioctl(descriptor, ports._TIOCGEXCL, bytes(4))
     os.close(descriptor)
     return any(answer)
@@ -128,6 +138,7 @@ def test_ctrl_c_zeroes_the_force_and_still_reports(body_file, device):
         eventually(lambda: driven(device))
         process.send_signal(signal.SIGINT)
         report = json.loads(process.stdout.read())
+        process.wait()
     assert process.returncode == 0
     assert report["interrupted"] is True
     assert report["last_state"] == "touching"
@@ -164,6 +175,7 @@ def test_unplugged_for_good_is_reported_and_no_failure(body_file, device):
         eventually(lambda: device.report()["limp"])
         process.send_signal(signal.SIGTERM)
         report = json.loads(process.stdout.read())
+        process.wait()
     assert process.returncode == 0
     assert report["faults"]["unplugged"] == 1
     assert (report["last_state"], report["last_fault"]) == ("fault", "unplugged")

@@ -123,6 +123,11 @@ def test_a_start_that_fails_gives_the_reason_in_one_line(tmp_path):
     assert "\n" not in str(error.value)
 
 
+def test_a_python_that_is_not_there_is_named(tmp_path):
+    with pytest.raises(PalpateError, match=r"cannot be started: .*no-python: No such file"):
+        SimulatedDevice(python=str(tmp_path / "no-python"))
+
+
 def test_a_device_that_hangs_is_ended_all_the_same(monkeypatch):
     monkeypatch.setattr(simulated_process, "ANSWER_SECONDS", 0.3)
     device = SimulatedDevice()
