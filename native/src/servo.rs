@@ -54,6 +54,16 @@ pub enum State {
 }
 
 impl State {
+    /// All states, in the order of their numbers.
+    pub const ALL: [Self; 6] = [
+        Self::Waiting,
+        Self::Free,
+        Self::Touching,
+        Self::Fault,
+        Self::Disabled,
+        Self::Stopped,
+    ];
+
     /// Name for people and tests.
     pub const fn name(self) -> &'static str {
         match self {

@@ -1,0 +1,118 @@
+//! `Body`: arrays in, contact forces and distances out.
+
+use std::sync::Arc;
+
+use glam::{DMat3, DVec3};
+use numpy::{AllowTypeChange, PyArray1, PyArrayLike2, PyArrayLike3};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use super::vectors::{Matrix, Triple, Vector, array, finite, rows};
+use crate::{closest, contact, surface};
+
+#[pyclass(frozen, module = "palpate_servo")]
+pub struct Body {
+    pub inner: Arc<surface::Body>,
+}
+
+#[pymethods]
+impl Body {
+    #[new]
+    fn new(
+        nodes: PyArrayLike2<'_, f64, AllowTypeChange>,
+        triangles: PyArrayLike2<'_, i64, AllowTypeChange>,
+        contact_blocks: PyArrayLike3<'_, f64, AllowTypeChange>,
+    ) -> PyResult<Self> {
+        let (nodes, triangles, blocks) = (
+            nodes.as_array(),
+            triangles.as_array(),
+            contact_blocks.as_array(),
+        );
+        if nodes.ncols() != 3 || triangles.ncols() != 3 {
+            return Err(PyValueError::new_err(
+                "nodes and triangles must have three columns",
+            ));
+        }
+        if blocks.shape()[1..] != [3, 3] {
+            return Err(PyValueError::new_err(
+                "contact_blocks must have the shape (nodes, 3, 3)",
+            ));
+        }
+        let nodes = nodes
+            .rows()
+            .into_iter()
+            .map(|r| DVec3::new(r[0], r[1], r[2]))
+            .collect();
+        let triangles = triangles
+            .rows()
+            .into_iter()
+            .enumerate()
+            .map(|(t, r)| {
+                let index = |k: usize| {
+                    u32::try_from(r[k]).map_err(|_| {
+                        PyValueError::new_err(format!("triangle {t} names the node {}", r[k]))
+                    })
+                };
+                Ok([index(0)?, index(1)?, index(2)?])
+            })
+            .collect::<PyResult<_>>()?;
+        let blocks = blocks
+            .outer_iter()
+            .map(|b| DMat3::from_cols_array_2d(&[0, 1, 2].map(|c| [0, 1, 2].map(|r| b[[r, c]]))))
+            .collect();
+        let inner = surface::Body::new(nodes, triangles, blocks)
+            .map_err(|e| PyValueError::new_err(e.to_string()))?;
+        Ok(Self {
+            inner: Arc::new(inner),
+        })
+    }
+
+    #[getter]
+    fn node_count(&self) -> usize {
+        self.inner.nodes.len()
+    }
+
+    #[getter]
+    fn triangle_count(&self) -> usize {
+        self.inner.triangles.len()
+    }
+
+    fn contact<'py>(
+        &self,
+        py: Python<'py>,
+        triangle: usize,
+        alpha: Triple,
+        displacement: Triple,
+        young_modulus: f64,
+    ) -> PyResult<(Matrix<'py>, Vector<'py>)> {
+        if triangle >= self.inner.triangles.len() {
+            return Err(PyValueError::new_err(format!(
+                "triangle {triangle} is beyond the {} triangles of the body",
+                self.inner.triangles.len()
+            )));
+        }
+        let touch = contact::touch(
+            &self.inner,
+            triangle as u32,
+            alpha,
+            DVec3::from_array(displacement),
+            young_modulus,
+        );
+        Ok((rows(py, &touch.nodal_forces)?, array(py, touch.force)))
+    }
+
+    fn closest_point<'py>(
+        &self,
+        py: Python<'py>,
+        p: Triple,
+    ) -> PyResult<(u32, Vector<'py>, Vector<'py>, f64)> {
+        let (found, inside) = closest::closest_point(&self.inner, finite("p", p)?, 0);
+        let sign = if inside { -1.0 } else { 1.0 };
+        Ok((
+            found.triangle,
+            PyArray1::from_slice(py, &found.alpha),
+            array(py, found.point),
+            sign * found.distance,
+        ))
+    }
+}

@@ -1,0 +1,117 @@
+//! Counters as dictionaries, and `BareTimer`, the thread to compare with.
+
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use super::vectors::{check_rate, check_seconds};
+use crate::clock::{BUCKETS, LATE_LIMITS_NS, Timing, bucket_limit_ns};
+use crate::device::LinkReport;
+use crate::thread::Paced;
+
+pub fn timing_counters<'py>(
+    py: Python<'py>,
+    timing: &Timing,
+    realtime: &str,
+) -> PyResult<Bound<'py, PyDict>> {
+    const LATE_TICK: usize = 2;
+    let report = timing.report();
+    let us = |ns: u64| ns as f64 * 1e-3;
+    let counters = PyDict::new(py);
+    counters.set_item("ticks", report.ticks)?;
+    counters.set_item("missed", report.missed)?;
+    counters.set_item("late_ticks", report.late[LATE_TICK])?;
+    for (limit, count) in LATE_LIMITS_NS.iter().zip(report.late) {
+        counters.set_item(format!("late_over_{}_us", limit / 1000), count)?;
+    }
+    let lateness = PyDict::new(py);
+    for (name, part) in [("p50", 0.5), ("p99", 0.99), ("p99_9", 0.999)] {
+        lateness.set_item(name, us(report.percentile_ns(part)))?;
+    }
+    lateness.set_item("max", us(report.worst_ns))?;
+    counters.set_item("lateness_us", lateness)?;
+    let filled = (0..BUCKETS).filter(|&i| report.histogram[i] > 0);
+    let histogram: Vec<(f64, u64)> = filled
+        .map(|i| (us(bucket_limit_ns(i)), report.histogram[i]))
+        .collect();
+    counters.set_item("histogram", histogram)?;
+    counters.set_item("longest_gap_us", us(report.longest_gap_ns))?;
+    let busy = PyDict::new(py);
+    busy.set_item("mean", us(report.busy_ns) / report.ticks.max(1) as f64)?;
+    busy.set_item("max", us(report.busiest_ns))?;
+    counters.set_item("busy_us", busy)?;
+    counters.set_item("realtime", realtime)?;
+    Ok(counters)
+}
+
+pub fn link_counters<'py>(py: Python<'py>, link: &LinkReport) -> PyResult<Bound<'py, PyDict>> {
+    let counters = PyDict::new(py);
+    for (name, count) in [
+        ("states", link.states),
+        ("forces", link.forces),
+        ("lost", link.lost),
+        ("duplicates", link.duplicates),
+        ("out_of_order", link.out_of_order),
+        ("crc_errors", link.crc_errors),
+        ("cobs_errors", link.cobs_errors),
+        ("oversize", link.oversize),
+        ("unknown", link.unknown),
+        ("hellos", link.hellos),
+        ("device_faults", link.device_faults),
+        ("unsent", link.unsent),
+        ("reopened", link.reopened),
+    ] {
+        counters.set_item(name, count)?;
+    }
+    counters.set_item("last_fault", link.last_fault)?;
+    let device = link.greeting.map(|g| -> PyResult<_> {
+        let device = PyDict::new(py);
+        let name = String::from_utf8_lossy(&g.name);
+        device.set_item("name", name.trim_end_matches('\0'))?;
+        device.set_item("protocol", g.protocol)?;
+        device.set_item("axes", g.axes)?;
+        device.set_item("max_force", g.max_force)?;
+        device.set_item("half_extents", g.half_extents)?;
+        device.set_item("rate_hz", g.rate_hz)?;
+        Ok(device)
+    });
+    counters.set_item("device", device.transpose()?)?;
+    Ok(counters)
+}
+
+#[pyclass(frozen, module = "palpate_servo")]
+pub struct BareTimer {
+    paced: Paced,
+}
+
+#[pymethods]
+impl BareTimer {
+    #[new]
+    #[pyo3(signature = (rate_hz=1000))]
+    fn new(rate_hz: u32) -> PyResult<Self> {
+        check_rate(rate_hz)?;
+        Ok(Self {
+            paced: Paced::bare(rate_hz)?,
+        })
+    }
+
+    fn counters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        timing_counters(py, self.paced.timing(), self.paced.realtime())
+    }
+
+    fn stop<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        py.detach(|| self.paced.stop());
+        self.counters(py)
+    }
+}
+
+#[pyfunction]
+pub fn bare_timer<'py>(
+    py: Python<'py>,
+    rate_hz: u32,
+    seconds: f64,
+) -> PyResult<Bound<'py, PyDict>> {
+    check_seconds("seconds", seconds)?;
+    let timer = BareTimer::new(rate_hz)?;
+    py.detach(|| std::thread::sleep(std::time::Duration::from_secs_f64(seconds)));
+    timer.stop(py)
+}

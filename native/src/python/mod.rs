@@ -1,0 +1,34 @@
+//! The thin binding: arrays in, arrays out. Nothing of Python reaches the servo thread.
+
+mod body;
+mod counters;
+mod frames;
+mod proxy;
+mod servo;
+mod snapshot;
+mod vectors;
+
+use pyo3::prelude::*;
+use pyo3::types::PyTuple;
+
+use crate::servo::State;
+
+#[pymodule]
+fn palpate_servo(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    let py = module.py();
+    module.add_class::<body::Body>()?;
+    module.add_class::<proxy::Proxy>()?;
+    module.add_class::<servo::Servo>()?;
+    module.add_class::<snapshot::Snapshot>()?;
+    module.add_class::<counters::BareTimer>()?;
+    module.add_class::<frames::Decoder>()?;
+    module.add_function(wrap_pyfunction!(counters::bare_timer, module)?)?;
+    module.add_function(wrap_pyfunction!(frames::encode_frame, module)?)?;
+    let stop_all = wrap_pyfunction!(servo::stop_all, module)?;
+    py.import("atexit")?
+        .call_method1("register", (&stop_all,))?;
+    module.add_function(stop_all)?;
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add("STATES", PyTuple::new(py, State::ALL.map(State::name))?)?;
+    Ok(())
+}

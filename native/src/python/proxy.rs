@@ -1,0 +1,99 @@
+//! `Proxy`: the god object alone.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use numpy::{AllowTypeChange, PyArray1, PyArray2, PyArrayLike2};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use super::body::Body;
+use super::vectors::{Matrix, Triple, Vector, array, finite};
+use crate::{proxy, surface};
+
+#[pyclass(module = "palpate_servo")]
+pub struct Proxy {
+    body: Arc<surface::Body>,
+    inner: Option<proxy::Proxy>,
+}
+
+type Held<'py> = (bool, Vector<'py>, i64, Vector<'py>);
+
+impl Proxy {
+    fn place<'py>(&self, py: Python<'py>) -> Held<'py> {
+        let hold = self.inner.as_ref().and_then(proxy::Proxy::hold);
+        let position = self.inner.as_ref().map_or(DVec3::ZERO, |p| p.position());
+        (
+            hold.is_some(),
+            array(py, position),
+            hold.map_or(-1, |h| i64::from(h.triangle)),
+            PyArray1::from_slice(py, &hold.map_or([0.0; 3], |h| h.alpha)),
+        )
+    }
+}
+
+#[pymethods]
+impl Proxy {
+    #[new]
+    fn new(body: &Body) -> Self {
+        Self {
+            body: body.inner.clone(),
+            inner: None,
+        }
+    }
+
+    fn restart(&mut self, position: Triple) -> PyResult<()> {
+        let position = finite("position", position)?;
+        self.inner = Some(proxy::Proxy::new(&self.body, position));
+        Ok(())
+    }
+
+    #[pyo3(name = "move")]
+    fn follow<'py>(&mut self, py: Python<'py>, device: Triple) -> PyResult<Held<'py>> {
+        let device = finite("device", device)?;
+        match &mut self.inner {
+            Some(inner) => inner.follow(&self.body, device),
+            None => self.inner = Some(proxy::Proxy::new(&self.body, device)),
+        }
+        Ok(self.place(py))
+    }
+
+    fn follow_path<'py>(
+        &mut self,
+        py: Python<'py>,
+        devices: PyArrayLike2<'_, f64, AllowTypeChange>,
+    ) -> PyResult<(Matrix<'py>, Bound<'py, PyArray1<i64>>)> {
+        let devices = devices.as_array();
+        if devices.ncols() != 3 {
+            return Err(PyValueError::new_err("devices must have three columns"));
+        }
+        let mut positions = Vec::with_capacity(devices.nrows());
+        let mut triangles = Vec::with_capacity(devices.nrows());
+        for row in devices.rows() {
+            let device = finite("devices", [row[0], row[1], row[2]])?;
+            let inner = match &mut self.inner {
+                Some(inner) => {
+                    inner.follow(&self.body, device);
+                    inner
+                }
+                empty => empty.insert(proxy::Proxy::new(&self.body, device)),
+            };
+            positions.push(inner.position().to_array().to_vec());
+            triangles.push(inner.hold().map_or(-1, |h| i64::from(h.triangle)));
+        }
+        Ok((
+            PyArray2::from_vec2(py, &positions)?,
+            PyArray1::from_vec(py, triangles),
+        ))
+    }
+
+    #[getter]
+    fn steps(&self) -> u32 {
+        self.inner.as_ref().map_or(0, proxy::Proxy::steps)
+    }
+
+    #[getter]
+    fn rescues(&self) -> u64 {
+        self.inner.as_ref().map_or(0, proxy::Proxy::rescues)
+    }
+}

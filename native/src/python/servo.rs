@@ -1,0 +1,306 @@
+//! `Servo`: starts, leads and stops the native thread.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
+
+use glam::DMat3;
+use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use triple_buffer::{Input, triple_buffer};
+
+use super::body::Body;
+use super::counters::{link_counters, timing_counters};
+use super::snapshot::{Snapshot, structured};
+use super::vectors::{IDENTITY, Rows, Triple, check_rate, check_seconds, finite, matrix, positive};
+use crate::clock::Timing;
+use crate::device::{DeviceFrame, Fault};
+use crate::link::LinkDevice;
+use crate::pointer::{Pointer, Target};
+use crate::port::SerialPort;
+use crate::safety::Limits;
+use crate::servo::{Options, Published, Settings};
+use crate::surface;
+use crate::thread::Running;
+
+/// Every servo that may still run, so that the interpreter's exit can stop it.
+static STARTED: Mutex<Vec<Weak<Running>>> = Mutex::new(Vec::new());
+
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+#[pyclass(frozen, module = "palpate_servo")]
+pub struct Servo {
+    body: Arc<surface::Body>,
+    options: Options,
+    glide_speed: f64,
+    record_samples: usize,
+    settings: Mutex<Settings>,
+    running: Mutex<Option<Arc<Running>>>,
+    targets: Mutex<Option<(Input<Target>, u32)>>,
+}
+
+impl Servo {
+    fn current(&self) -> Option<Arc<Running>> {
+        locked(&self.running).clone()
+    }
+
+    fn published(&self) -> Published {
+        self.current().map(|r| r.published()).unwrap_or_default()
+    }
+
+    fn change(&self, edit: impl FnOnce(&mut Settings)) {
+        let mut settings = locked(&self.settings);
+        edit(&mut settings);
+        if let Some(running) = self.current() {
+            running.set(*settings);
+        }
+    }
+
+    fn refuse_if_running(&self) -> PyResult<()> {
+        match self.current() {
+            Some(running) if running.paced().is_running() => Err(PyRuntimeError::new_err(
+                "the servo runs already; stop it before starting it again",
+            )),
+            _ => Ok(()),
+        }
+    }
+
+    fn keep(&self, running: Running) {
+        let running = Arc::new(running);
+        let mut started = locked(&STARTED);
+        started.retain(|weak| weak.strong_count() > 0);
+        started.push(Arc::downgrade(&running));
+        *locked(&self.running) = Some(running);
+    }
+}
+
+#[pymethods]
+impl Servo {
+    #[new]
+    #[pyo3(signature = (body, *, young_modulus, rate_hz=1000, max_force=3.0, max_slew=1000.0,
+        ramp_seconds=0.25, max_speed=2.0, glide_speed=0.5, record_seconds=10.0))]
+    #[allow(clippy::too_many_arguments)] // Keywords in Python.
+    fn new(
+        body: &Body,
+        young_modulus: f64,
+        rate_hz: u32,
+        max_force: f64,
+        max_slew: f64,
+        ramp_seconds: f64,
+        max_speed: f64,
+        glide_speed: f64,
+        record_seconds: f64,
+    ) -> PyResult<Self> {
+        check_rate(rate_hz)?;
+        check_seconds("ramp_seconds", ramp_seconds)?;
+        check_seconds("record_seconds", record_seconds)?;
+        Ok(Self {
+            body: body.inner.clone(),
+            options: Options {
+                rate_hz,
+                limits: Limits {
+                    max_force: positive("max_force", max_force)?,
+                    max_slew: positive("max_slew", max_slew)?,
+                    ramp_seconds,
+                },
+                max_speed: positive("max_speed", max_speed)?,
+            },
+            glide_speed: positive("glide_speed", glide_speed)?,
+            record_samples: (record_seconds * f64::from(rate_hz)).ceil() as usize,
+            settings: Mutex::new(Settings {
+                young_modulus: positive("young_modulus", young_modulus)?,
+                enabled: true,
+                frame: DeviceFrame::default(),
+            }),
+            running: Mutex::new(None),
+            targets: Mutex::new(None),
+        })
+    }
+
+    fn start_pointer(&self, py: Python<'_>, position: Triple) -> PyResult<()> {
+        self.refuse_if_running()?;
+        let position = finite("position", position)?;
+        let start = Target { position, epoch: 0 };
+        let (input, output) = triple_buffer(&start);
+        let pointer = Pointer::new(start, output, self.glide_speed);
+        let settings = *locked(&self.settings);
+        let running = py.detach(|| {
+            Running::start(
+                self.body.clone(),
+                pointer,
+                self.options,
+                settings,
+                self.record_samples,
+            )
+        })?;
+        *locked(&self.targets) = Some((input, 0));
+        self.keep(running);
+        Ok(())
+    }
+
+    #[pyo3(signature = (port, *, baud=115_200, rotation=IDENTITY, translation=[0.0; 3], scale=1.0))]
+    fn start_serial(
+        &self,
+        py: Python<'_>,
+        port: String,
+        baud: u32,
+        rotation: Rows,
+        translation: Triple,
+        scale: f64,
+    ) -> PyResult<()> {
+        self.refuse_if_running()?;
+        let frame = device_frame(rotation, translation, scale)?;
+        let settings = {
+            let mut settings = locked(&self.settings);
+            settings.frame = frame;
+            *settings
+        };
+        let running = py.detach(|| {
+            let device = LinkDevice::open(SerialPort {
+                path: port.clone(),
+                baud,
+            })
+            .map_err(|e| PyOSError::new_err(format!("cannot open the port {port}: {e}")))?;
+            Ok::<_, PyErr>(Running::start(
+                self.body.clone(),
+                device,
+                self.options,
+                settings,
+                self.record_samples,
+            )?)
+        })?;
+        *locked(&self.targets) = None;
+        self.keep(running);
+        Ok(())
+    }
+
+    #[pyo3(signature = (position, restart=false))]
+    fn set_target(&self, position: Triple, restart: bool) -> PyResult<()> {
+        let position = finite("position", position)?;
+        match locked(&self.targets).as_mut() {
+            Some((input, epoch)) => {
+                *epoch = epoch.wrapping_add(u32::from(restart));
+                input.write(Target {
+                    position,
+                    epoch: *epoch,
+                });
+                Ok(())
+            }
+            None => Err(PyRuntimeError::new_err(
+                "targets lead a pointer; call start_pointer first",
+            )),
+        }
+    }
+
+    fn set_young_modulus(&self, young_modulus: f64) -> PyResult<()> {
+        let young_modulus = positive("young_modulus", young_modulus)?;
+        self.change(|s| s.young_modulus = young_modulus);
+        Ok(())
+    }
+
+    fn set_device_frame(&self, rotation: Rows, translation: Triple, scale: f64) -> PyResult<()> {
+        let frame = device_frame(rotation, translation, scale)?;
+        self.change(|s| {
+            s.frame = DeviceFrame {
+                epoch: s.frame.epoch.wrapping_add(1),
+                ..frame
+            };
+        });
+        Ok(())
+    }
+
+    fn set_enabled(&self, enabled: bool) {
+        self.change(|s| s.enabled = enabled);
+    }
+
+    fn snapshot(&self) -> Snapshot {
+        Snapshot {
+            inner: self.published().snapshot,
+        }
+    }
+
+    fn samples<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let samples = self.current().map(|r| r.drain()).unwrap_or_default();
+        structured(py, &samples)
+    }
+
+    fn counters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let running = self.current();
+        let counters = match &running {
+            Some(running) => {
+                let paced = running.paced();
+                timing_counters(py, paced.timing(), paced.realtime())?
+            }
+            None => timing_counters(py, &Timing::default(), "not started")?,
+        };
+        let published = self.published();
+        let faults = PyDict::new(py);
+        for (fault, count) in Fault::ALL.iter().zip(published.faults) {
+            faults.set_item(fault.name(), count)?;
+        }
+        counters.set_item("rate_hz", self.options.rate_hz)?;
+        counters.set_item("faults", faults)?;
+        counters.set_item("link", link_counters(py, &published.link)?)?;
+        counters.set_item("samples_lost", published.samples_lost)?;
+        let proxy = PyDict::new(py);
+        proxy.set_item("most_steps", published.most_steps)?;
+        proxy.set_item("rescues", published.rescues)?;
+        counters.set_item("proxy", proxy)?;
+        Ok(counters)
+    }
+
+    fn stop(&self, py: Python<'_>) {
+        if let Some(running) = self.current() {
+            py.detach(|| running.paced().stop());
+        }
+        *locked(&self.targets) = None;
+    }
+
+    #[getter]
+    fn running(&self) -> bool {
+        self.current().is_some_and(|r| r.paced().is_running())
+    }
+
+    fn __enter__(slf: Py<Self>) -> Py<Self> {
+        slf
+    }
+
+    fn __exit__(
+        &self,
+        py: Python<'_>,
+        _kind: &Bound<'_, PyAny>,
+        _value: &Bound<'_, PyAny>,
+        _trace: &Bound<'_, PyAny>,
+    ) {
+        self.stop(py);
+    }
+}
+
+fn device_frame(rotation: Rows, translation: Triple, scale: f64) -> PyResult<DeviceFrame> {
+    let rotation = matrix(rotation);
+    let error = rotation * rotation.transpose() - DMat3::IDENTITY;
+    let is_orthonormal = error.to_cols_array().iter().all(|e| e.abs() < 1e-6);
+    if !is_orthonormal {
+        return Err(PyValueError::new_err(
+            "rotation is not orthonormal; a device frame may turn and scale, not shear",
+        ));
+    }
+    Ok(DeviceFrame {
+        rotation,
+        translation: finite("translation", translation)?,
+        scale: positive("scale", scale)?,
+        epoch: 0,
+    })
+}
+
+/// Stops every servo that still runs; called at the interpreter's exit.
+#[pyfunction]
+pub fn stop_all(py: Python<'_>) {
+    let started = std::mem::take(&mut *locked(&STARTED));
+    py.detach(|| {
+        for running in started.iter().filter_map(Weak::upgrade) {
+            running.paced().stop();
+        }
+    });
+}

@@ -1,0 +1,66 @@
+//! Vectors and matrices between Python and the crate, and checks of single numbers.
+
+use glam::{DMat3, DVec3};
+use numpy::{PyArray1, PyArray2};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+pub type Triple = [f64; 3];
+pub type Rows = [[f64; 3]; 3];
+pub const IDENTITY: Rows = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+pub type Vector<'py> = Bound<'py, PyArray1<f64>>;
+pub type Matrix<'py> = Bound<'py, PyArray2<f64>>;
+
+pub fn finite(name: &str, v: Triple) -> PyResult<DVec3> {
+    let v = DVec3::from_array(v);
+    if v.is_finite() {
+        Ok(v)
+    } else {
+        Err(PyValueError::new_err(format!(
+            "{name} has a coordinate that is not finite"
+        )))
+    }
+}
+
+pub fn positive(name: &str, value: f64) -> PyResult<f64> {
+    if value.is_finite() && value > 0.0 {
+        Ok(value)
+    } else {
+        Err(PyValueError::new_err(format!(
+            "{name} is {value}; it must be finite and greater than zero"
+        )))
+    }
+}
+
+pub fn array(py: Python<'_>, v: DVec3) -> Vector<'_> {
+    PyArray1::from_slice(py, &v.to_array())
+}
+
+pub fn rows<'py>(py: Python<'py>, m: &[DVec3; 3]) -> PyResult<Matrix<'py>> {
+    Ok(PyArray2::from_vec2(py, &m.map(|v| v.to_array().to_vec()))?)
+}
+
+pub fn matrix(rows: Rows) -> DMat3 {
+    DMat3::from_cols_array_2d(&rows).transpose()
+}
+
+pub fn check_rate(rate_hz: u32) -> PyResult<()> {
+    if (100..=8000).contains(&rate_hz) {
+        Ok(())
+    } else {
+        Err(PyValueError::new_err(format!(
+            "rate_hz is {rate_hz}; it must be from 100 to 8000"
+        )))
+    }
+}
+
+pub fn check_seconds(name: &str, seconds: f64) -> PyResult<()> {
+    if (0.0..=3600.0).contains(&seconds) {
+        Ok(())
+    } else {
+        Err(PyValueError::new_err(format!(
+            "{name} is {seconds}; it must be from 0 to 3600"
+        )))
+    }
+}
