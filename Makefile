@@ -20,7 +20,7 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 VENV := .venv
 BIN := $(VENV)/bin
 # pyo3 asks this interpreter; the same for all cargo calls, or each would build everything anew.
-export PYO3_PYTHON := $(abspath $(BIN)/python)
+export PYO3_PYTHON := $(CURDIR)/$(BIN)/python
 
 # The bpy module for each Python, and the Blenders that `make test-all` tries.
 BPY_OF_3.11 := 5.0.1
