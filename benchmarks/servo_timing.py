@@ -123,6 +123,7 @@ def main() -> None:
     }
     columns = ("ticks", "missed", "late", "p50 us", "p99 us", "p99.9 us", "max us", "work us")
     print(f"{'load':<20}{'thread':<8}" + "".join(f"{name:>10}" for name in columns))
+    realtime = ""
     for name, run in loads.items():
         servo, bare = measure(body, arguments.rate, run)
         for thread, counters in (("servo", servo), ("bare", bare)):
@@ -134,10 +135,11 @@ def main() -> None:
                 + "".join(f"{count:>10}" for count in counts)
                 + "".join(f"{us:>10.1f}" for us in [*times, counters["busy_us"]["mean"]])
             )
+        realtime = servo["realtime"]
         late = ratio(servo["late_ticks"], bare["late_ticks"])
         tail = ratio(servo["lateness_us"]["p99_9"], bare["lateness_us"]["p99_9"])
         print(f"{'':<20}{'ratio':<8}{'':>20}    {late}{'':>20}    {tail}")
-    print(f"real-time priority: {servo['realtime']}; late: more than 200 us after the deadline")
+    print(f"real-time priority: {realtime}; late: more than 200 us after the deadline")
 
 
 if __name__ == "__main__":

@@ -328,6 +328,7 @@ fn closest_on_face(face: &Face, p: DVec3) -> ([f64; 3], DVec3) {
         let s = (d4 - d3) / ((d4 - d3) + (d5 - d6));
         return ([0.0, 1.0 - s, s], b + (c - b) * s);
     }
-    let alpha = face.area_coordinates(p);
+    // Inside by the tests above; rounding may still say a hair less than zero.
+    let alpha = face.area_coordinates(p).map(|a| a.max(0.0));
     (alpha, face.at(alpha))
 }
