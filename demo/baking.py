@@ -1,6 +1,5 @@
-"""Bake by the operators, and the figures of what came out."""
+"""Bake as the operators and `blender -c palpate bake` do, and the figures of what came out."""
 
-import time
 from typing import Any
 
 import bpy
@@ -8,23 +7,17 @@ from installed import palpate
 
 
 def make_soft(thing: bpy.types.Object) -> dict[str, Any]:
-    """Press Make Soft: fTetWild and all; figures as `palpate bake --json` prints them."""
-    return _bake(thing, bpy.ops.palpate.make_soft)
+    """What Make Soft does, fTetWild and all; figures as `palpate bake --json` prints them."""
+    return _bake(thing, rebuild=False)
 
 
 def rebuild_body(thing: bpy.types.Object) -> dict[str, Any]:
-    """Press Rebuild Body: the tetrahedra that are stored in the .blend."""
-    return _bake(thing, bpy.ops.palpate.rebuild_body)
+    """What Rebuild Body does: a bake of the tetrahedra that are stored in the .blend."""
+    return _bake(thing, rebuild=True)
 
 
-def _bake(thing: bpy.types.Object, operator: Any) -> dict[str, Any]:
-    bpy.context.view_layer.objects.active = thing
-    start = time.perf_counter()
-    done = operator()
-    waited = time.perf_counter() - start
-    if done != {"FINISHED"}:
-        raise RuntimeError(f"{operator.idname_py()} on {thing.name} gave {done}")
-    body = palpate("operators.body_store").load(thing)
+def _bake(thing: bpy.types.Object, *, rebuild: bool) -> dict[str, Any]:
+    session = palpate("operators.bake_session")
+    body, report = session.run(thing, bpy.context.scene, rebuild=rebuild)
     figures: dict[str, Any] = palpate("cli.body_figures").body_figures(body)
-    figures["seconds"] = {"steps": thing.palpate.bake_seconds, "until_pressable": waited}
-    return figures
+    return {**figures, "seconds": report.seconds}

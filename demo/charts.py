@@ -12,9 +12,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
-from PIL import Image
 
 TEAL, CORAL, INK = "#1f7a80", "#e4572e", "#263238"
+CLOSE = (0.03, 0.87, 0.06, 0.9)  # the mouse, without much of the table
 STYLE = {
     "font.family": "DejaVu Sans",
     "font.size": 9.5,
@@ -47,19 +47,16 @@ def readme_picture(
     samples: NDArray[np.void],
     press: dict[str, Any],
 ) -> Path:
-    """At rest, pressed, and the felt force: one picture for the README, in 256 colours."""
+    """At rest, pressed, and the felt force: one picture for the README."""
     with mpl.rc_context(STYLE):
         figure = plt.figure(figsize=(13.5, 3.75), layout="constrained")
         left, middle, right = figure.subplots(1, 3, width_ratios=[1.5, 1.5, 1.15])
-        _show(left, before, "At rest")
-        _show(middle, after, f"Pressed {press['depth_mm']:.1f} mm: {press['force_n']:.2f} N")
+        _show(left, before, "At rest", CLOSE)
+        pressed = f"Pressed {press['depth_mm']:.1f} mm: {1e3 * press['force_n']:.0f} mN"
+        _show(middle, after, pressed, CLOSE)
         _arrow(middle, contact)
         _draw_curve(right, samples, press)
-        _save(figure, path, 110)
-    with Image.open(path) as picture:
-        few = picture.convert("RGB").quantize(256, dither=Image.Dither.FLOYDSTEINBERG)
-    few.save(path, optimize=True)
-    return path
+        return _save(figure, path, 110)
 
 
 def cube_picture(path: Path, pictures: list[Path], presses: list[dict[str, Any]]) -> Path:
@@ -108,25 +105,30 @@ def _draw_course(ax: Axes, samples: NDArray[np.void]) -> None:
     twin.grid(visible=False)
 
 
-def _show(ax: Axes, picture: Path, title: str) -> None:
-    ax.imshow(plt.imread(picture), interpolation="lanczos")
+def _show(ax: Axes, picture: Path, title: str, crop: tuple[float, ...] = (0, 1, 0, 1)) -> None:
+    """Show a picture, or the part between shares `crop` of its width and height."""
+    pixels = plt.imread(picture)
+    height, width = pixels.shape[:2]
+    ax.imshow(pixels, interpolation="lanczos")
+    ax.set_xlim(crop[0] * width, crop[1] * width)
+    ax.set_ylim(crop[3] * height, crop[2] * height)
     ax.set_title(title, fontsize=10)
     ax.axis("off")
 
 
 def _arrow(ax: Axes, contact: dict[str, Any]) -> None:
-    """The felt force on the finger, from the probe outwards, on a picture."""
+    """The felt force on a picture, beside the dent so that it does not hide it."""
     height, width = ax.get_images()[0].get_array().shape[:2]
-    probe = np.array(contact["pixels"]["probe"]) * (width, height)
-    proxy = np.array(contact["pixels"]["proxy"]) * (width, height)
+    probe, proxy = (
+        np.array(contact["pixels"][name]) * (width, height) for name in ("probe", "proxy")
+    )
     out = (proxy - probe) / np.linalg.norm(proxy - probe)
     ax.annotate(
         "",
-        xy=tuple(probe + 0.27 * height * out),
-        xytext=tuple(probe),
-        arrowprops={"arrowstyle": "-|>", "color": CORAL, "linewidth": 2.4, "mutation_scale": 18},
+        xy=tuple(proxy + 0.27 * height * out),
+        xytext=tuple(proxy + 0.07 * height * out),
+        arrowprops={"arrowstyle": "-|>", "color": CORAL, "linewidth": 3, "mutation_scale": 20},
     )
-    ax.plot(*probe, "o", color=CORAL, markersize=5)
 
 
 def _save(figure: Figure, path: Path, dpi: int) -> Path:

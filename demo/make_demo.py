@@ -47,8 +47,8 @@ def _report(output: Path, readme: Path | None) -> dict[str, object]:
     with np.load(output / "samples.npz", allow_pickle=False) as file:
         samples = file["samples"]
     press, contact = raw["press"], raw["contact"]
-    cube_pictures = [Path(path) for path in raw["cube_pictures"]]
-    before, after = (Path(path) for path in raw["mouse_pictures"])
+    cube_pictures = [output / name for name in raw["cube_pictures"]]
+    before, after = (output / name for name in raw["mouse_pictures"])
     figures = [
         charts.force_curve(output / "force-depth.png", samples, press),
         charts.readme_picture(output / "press.png", before, after, contact, samples, press),

@@ -25,15 +25,16 @@ def main() -> int:
     parser.add_argument("--output", type=Path, required=True)
     options = parser.parse_args()
     # A fresh home: nothing that an earlier demo left can help this one.
-    home = options.output / "blender"
+    output = options.output.resolve()
+    home = output / "blender"
     shutil.rmtree(home, ignore_errors=True)
-    install(options.package.resolve(), home.resolve())
+    install(options.package.resolve(), home)
     import bpy
 
     raw: dict[str, Any] = {"blender": bpy.app.version_string}
-    raw |= demo_cube(options.output)
-    raw |= demo_mouse(options.output)
-    (options.output / "raw.json").write_text(json.dumps(raw, indent=1), encoding="utf-8")
+    raw |= demo_cube(output)
+    raw |= demo_mouse(output)
+    (output / "raw.json").write_text(json.dumps(raw, indent=1), encoding="utf-8")
     return 0
 
 
@@ -80,7 +81,7 @@ def demo_cube(folder: Path) -> dict[str, Any]:
     return {
         "cube": figures,
         "cube_presses": presses,
-        "cube_pictures": [str(path) for path in pictures],
+        "cube_pictures": [path.name for path in pictures],
     }
 
 
@@ -97,7 +98,7 @@ def demo_mouse(folder: Path) -> dict[str, Any]:
     say("mouse: picture before")
     pictures = [photograph(folder / "mouse-before.png")]
     say(f"mouse: the device presses for {pressing.SECONDS:g} s")
-    place = pressing.place_near(mouse, np.array([-0.027, -0.014, 0.057]))
+    place = pressing.place_near(mouse, np.array([-0.024, -0.025, 0.047]))
     pressed, samples = pressing.press_with_device(mouse, place, 0.0082, folder)
     np.savez_compressed(folder / "samples.npz", samples=samples)
     say("mouse: picture after")
@@ -105,7 +106,7 @@ def demo_mouse(folder: Path) -> dict[str, Any]:
     pressed["contact"]["pixels"] = {
         name: pixel(pressed["contact"][name]) for name in ("proxy", "probe")
     }
-    return {"mouse": figures, **pressed, "mouse_pictures": [str(path) for path in pictures]}
+    return {"mouse": figures, **pressed, "mouse_pictures": [path.name for path in pictures]}
 
 
 def say(what: str) -> None:

@@ -90,8 +90,6 @@ def _draw_frames(session: Any) -> tuple[Array, NDArray[np.void]]:
         if session.displacements is not None:
             seconds.append(time.perf_counter() - begun)
         samples.append(session.servo.samples())
-        if session.state.message:
-            raise RuntimeError(f"the device was lost: {session.state.message}")
         due = max(due + 1.0 / FRAME_RATE, time.perf_counter())
         time.sleep(due - time.perf_counter() if due > time.perf_counter() else 0.0)
     return np.array(seconds), np.concatenate(samples)
@@ -99,8 +97,9 @@ def _draw_frames(session: Any) -> tuple[Array, NDArray[np.void]]:
 
 def _figures(session: Any, thing: bpy.types.Object, frames: Array) -> dict[str, Any]:
     snapshot, moved = session.snapshot, session.displacements
-    if moved is None:
-        raise RuntimeError("the hand holds, but nothing is touched: no press to keep")
+    if moved is None or not session.state.pressed:
+        reason = session.state.message or "nothing is touched"
+        raise RuntimeError(f"the hand holds, but there is no press to keep: {reason}")
     frame = session.drawn.frame
     return {
         "servo": session.servo.counters(),

@@ -8,6 +8,7 @@ Colour = tuple[float, float, float]
 Socket = bpy.types.NodeSocket
 REST = "rest"  # vertex attribute: position before any press, metres
 FELT = "felt"  # vertex attribute: distance from the seam, negative on felt, metres
+PITCH, THREAD = 0.0045, 0.0006  # of the quilt, metres
 QUILT = "quilt"  # vertex attribute: distance from the quilt's border, positive inside, metres
 
 
@@ -80,7 +81,9 @@ class Graph:
     def surface(self, **inputs: Socket | float | Colour) -> bpy.types.Material:
         """Feed the Principled BSDF by its inputs' names; the finished material."""
         for name, value in inputs.items():
-            self.feed(self.shader.inputs[name.replace("_", " ").title()], value)
+            self.feed(
+                self.shader.inputs[name.replace("_", " ").title().replace("Ior", "IOR")], value
+            )
         return self.material
 
 
@@ -123,8 +126,8 @@ def foam(colour: Colour, line: Colour, pitch: float) -> bpy.types.Material:
     ruled = graph.math("MAXIMUM", graph.math("MAXIMUM", lines[0], lines[1]), lines[2])
     return graph.surface(
         base_color=graph.mix(ruled, colour, line),
-        roughness=0.65,
-        sheen_weight=0.1,
+        roughness=0.7,
+        specular_ior_level=0.15,
         normal=graph.pile(2500.0, 0.2, 0.0003),
     )
 
@@ -132,9 +135,9 @@ def foam(colour: Colour, line: Colour, pitch: float) -> bpy.types.Material:
 def quilted(graph: Graph) -> Socket:
     """Rings across the mouse and seams along it, and a stitched smile."""
     x, y, z = graph.node("ShaderNodeSeparateXYZ", graph.attribute(REST).outputs["Vector"]).outputs
-    rings = graph.line(x, 0.006, 0.0007)
+    rings = graph.line(x, PITCH, THREAD)
     angle = graph.math("ARCTAN2", y, graph.math("SUBTRACT", z, 0.018))
-    seams = graph.line(graph.math("MULTIPLY", angle, 0.034), 0.006, 0.0007)
+    seams = graph.line(graph.math("MULTIPLY", angle, 0.034), PITCH, THREAD)
     border = graph.step(graph.attribute(QUILT).outputs["Fac"], 0.0, 0.0006)
     quilt = graph.math("MULTIPLY", graph.math("MAXIMUM", rings, seams), border)
     return graph.math("MAXIMUM", quilt, smile(graph, x, y, z))

@@ -115,7 +115,7 @@ def felt_seam(points: Points) -> Distances:
 def quilt_seam(points: Points) -> Distances:
     """Signed distance to the border of the stitched back (mm): muzzle and ears stay plain."""
     ear = _ear(_folded(points))
-    return np.minimum(ear - 1.5, 43.0 - points[:, 0])
+    return np.minimum(ear - 3.0, 43.0 - points[:, 0])
 
 
 def tail(segments: int = 12, rings: int = 64) -> tuple[Points, NDArray[np.int64]]:

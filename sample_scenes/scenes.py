@@ -45,7 +45,7 @@ def mouse_scene() -> bpy.types.Object:
     scene = studio.empty_scene("Mouse")
     shape = mouse_shape.mouse()
     mesh = soft_mesh("Mouse", shape)
-    body, stitch, pink = (0.36, 0.31, 0.29), (0.15, 0.12, 0.115), (0.74, 0.26, 0.27)
+    body, stitch, pink = (0.40, 0.315, 0.265), (0.14, 0.095, 0.08), (0.76, 0.24, 0.25)
     for material in (
         fabric.plush(fabric.quilted, body, stitch, pink),
         fabric.felt(pink),
