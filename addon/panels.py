@@ -55,8 +55,11 @@ class PALPATE_PT_main(bpy.types.Panel):
 def _draw_bake(layout, context, bake):
     progress = bake.progress
     layout.label(text=bake.handle.name, icon="MOD_SOFT", translate=False)
-    text = f"{progress.text}, {progress.seconds:.0f} s"
+    # A share that nobody can know yet is shown as time only.
+    share = "" if progress.share is None else f"{100 * progress.share:.0f} %, "
+    text = f"{share}{progress.seconds:.0f} s"
     layout.progress(factor=progress.share or 0.0, type="BAR", text=text, translate=False)
+    _say(layout, context, progress.text, "TIME")
     layout.operator("palpate.cancel_bake", icon="CANCEL")
 
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ..core.devices.simulated_options import SimulatedOptions
 from ..core.devices.simulated_process import SimulatedDevice
 from ..core.errors import PalpateError
+from . import ray
 from .body_frame import BodyFrame
 from .drawn_body import DrawnBody
 
@@ -19,8 +20,6 @@ Array = NDArray[np.float64]
 
 # The simulated hand starts this far above the body and presses this deep, as shares of its size.
 SIMULATED_REST, SIMULATED_DEPTH = 0.15, 0.12
-# What lies at most this share of the size below the highest node counts as the top too.
-LEVEL = 0.02
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,12 +73,16 @@ def port_of(scene: bpy.types.Scene) -> str:
 
 
 def _top(drawn: DrawnBody, up: Array) -> Array:
-    """The free surface node in the middle of the highest part of the body."""
-    nodes = drawn.body.mesh.nodes[drawn.body.compliance.free_surface]
-    height = nodes @ up
-    highest = nodes[height >= height.max() - LEVEL * drawn.size]
-    middle: Array = highest[np.argmin(np.linalg.norm(highest - highest.mean(axis=0), axis=1))]
-    return middle
+    """The surface point above the body's middle, where a hand would press it."""
+    nodes, triangles = drawn.body.mesh.nodes, drawn.body.mesh.surface_triangles
+    above = nodes.mean(axis=0) + 2.0 * drawn.size * up
+    hit = ray.first_hit(above, -up, nodes, triangles)
+    if hit is None:
+        # Nothing there, as in a ring: then the highest place.
+        highest: Array = nodes[np.argmax(nodes @ up)]
+        return highest
+    point: Array = hit.alpha @ nodes[triangles[hit.triangle]]
+    return point
 
 
 def start_simulated(drawn: DrawnBody, frame: DeviceFrame) -> SimulatedDevice:

@@ -42,7 +42,6 @@ def begin(sessions, states, thing, source="POINTER"):
 def press_in(session, states):
     """Touch the middle of the top and go in, until the thread has answered."""
     session.post(states.SetDown(TOP))
-    wait(session, lambda: session.snapshot is not None and session.snapshot.tick > 0)
     session.post(states.Move(DEEP))
     wait(session, lambda: session.snapshot.touching and session.snapshot.probe[2] < 0.02 + 1e-9)
 

@@ -1,69 +1,297 @@
-"""Pressing a soft object with the pointer, the way a user does it."""
+"""Pressing and making soft in the window, the way a user does it."""
 
 from __future__ import annotations
 
+from pathlib import Path
+from typing import Any
+
 import bpy
 import numpy as np
-from stage import Stage, Wait
+from bl_ext.user_default.palpate.operators import bake_session, body_store, press_session
+from bl_ext.user_default.palpate.operators.press_state import Phase
+from stage import Pixel, Stage, Wait, takes
 
 SCENE, NAME = "sample_scenes/mouse.blend", "Mouse"
+# A place on the back, world coordinates: its inward normal points down and right on the screen.
+BACK = (-0.027, -0.014, 0.057)
 
 
-def _mouse() -> bpy.types.Object:
+@takes(150)
+def dragging_dents_the_surface_and_enter_keeps_the_shape(stage: Stage) -> Wait:
+    yield from _open_mouse(stage)
+    yield from stage.picture("panel")
+    yield from _press(stage)
+    yield from _drag_in(stage, release=False)
+    force = np.linalg.norm(press_session.current().snapshot.contact_force)
+    stage.note(force_newton=float(force))
+    assert force > 0.005
+    yield from stage.picture("dragging")
+    yield from stage.event("LEFTMOUSE", "RELEASE", stage.mouse)
+    yield from stage.until(lambda: _phase() is Phase.HOLDING, "the hold")
+    yield from stage.picture("held")
+    yield from _key(stage, "RET")
+    yield from stage.until(lambda: press_session.current() is None, "the end of the press")
+    assert _keys() == ["Basis", "Press 1"]
+    yield from stage.picture("kept")
+    yield from _key(stage, "Z", ctrl=True)
+    yield from stage.until(lambda: _keys() == [], "one undo step back to before the press")
+    yield from _key(stage, "Z", ctrl=True, shift=True)
+    yield from stage.until(lambda: _keys() == ["Basis", "Press 1"], "the redo")
+
+
+def escape_restores_every_bit(stage: Stage) -> Wait:
+    yield from _open_mouse(stage)
+    before = _coordinates()
+    yield from _press(stage)
+    yield from _drag_in(stage)
+    yield from _key(stage, "ESC")
+    yield from stage.until(lambda: press_session.current() is None, "the end of the press")
+    assert _keys() == []
+    assert _coordinates() == before
+
+
+def right_click_restores_every_bit(stage: Stage) -> Wait:
+    yield from _open_mouse(stage)
+    before = _coordinates()
+    yield from _press(stage)
+    yield from _drag_in(stage)
+    yield from stage.click(stage.pixel(BACK), "RIGHTMOUSE")
+    yield from stage.until(lambda: press_session.current() is None, "the end of the press")
+    assert _keys() == []
+    assert _coordinates() == before
+
+
+def the_wheel_goes_deeper_while_the_button_is_held(stage: Stage) -> Wait:
+    yield from _open_mouse(stage)
+    yield from _press(stage)
+    here = stage.pixel(BACK)
+    yield from stage.drag([here, here], steps=1, release=False)
+    for _ in range(5):
+        yield from stage.event("WHEELUPMOUSE", "PRESS", here)
+    size = press_session.current().drawn.size
+    yield from stage.until(lambda: _depth() > 0.045 * size, "five steps of a hundredth each")
+    for _ in range(5):
+        yield from stage.event("WHEELDOWNMOUSE", "PRESS", here)
+    yield from stage.until(lambda: _depth() < 0.005 * size, "the way back")
+    yield from stage.event("LEFTMOUSE", "RELEASE", here)
+    yield from _key(stage, "ESC")
+
+
+def the_view_turns_while_a_dent_is_held_and_another_touch_starts_elsewhere(stage: Stage) -> Wait:
+    yield from _open_mouse(stage)
+    yield from _press(stage)
+    yield from _drag_in(stage)
+    depth = _depth()
+    before = stage.area.spaces.active.region_3d.view_rotation.copy()
+    x, y = stage.pixel(BACK)
+    yield from stage.drag([(x, y), (x + 120, y + 20)], "MIDDLEMOUSE")
+    yield 0.3
+    turned = stage.area.spaces.active.region_3d.view_rotation.rotation_difference(before).angle
+    assert turned > 0.05
+    assert abs(_depth() - depth) < 1e-4
+    yield from stage.picture("turned")
+    yield from stage.drag([stage.pixel(BACK), stage.pixel((0.0, -0.02, 0.03))], release=False)
+    yield from stage.until(lambda: _phase() is Phase.DRAGGING, "the next touch")
+    yield from stage.event("LEFTMOUSE", "RELEASE", stage.mouse)
+    yield from _key(stage, "ESC")
+    yield from stage.until(lambda: press_session.current() is None, "the end of the press")
+
+
+def the_modulus_slider_is_felt_while_pressing(stage: Stage) -> Wait:
+    yield from _open_mouse(stage)
+    yield from _press(stage)
+    yield from _drag_in(stage)
+    soft = _force()
+    _mouse().palpate.young_modulus *= 2
+    yield from stage.until(lambda: np.isclose(_force(), 2 * soft, rtol=0.01), "twice the force")
+    yield from _key(stage, "ESC")
+
+
+def deleting_the_object_while_pressing_ends_the_press(stage: Stage) -> Wait:
+    yield from _open_mouse(stage)
+    yield from _press(stage)
+    yield from _drag_in(stage)
+    servo = press_session.current().servo
+    bpy.data.objects.remove(_mouse())
+    yield from stage.until(lambda: press_session.current() is None, "the end of the press")
+    assert not servo.running
+
+
+def opening_another_file_while_pressing_ends_the_press(stage: Stage) -> Wait:
+    yield from _open_mouse(stage)
+    yield from _press(stage)
+    yield from _drag_in(stage)
+    servo = press_session.current().servo
+    stage.open_scene(SCENE)
+    yield 0.5
+    assert press_session.current() is None
+    assert not servo.running
+    assert _keys() == []
+
+
+@takes(120)
+def the_simulated_device_presses_is_unplugged_and_comes_back(stage: Stage) -> Wait:
+    yield from _open_mouse(stage)
+    before = _coordinates()
+    bpy.context.scene.palpate.source = "SIMULATED"
+    yield from _press(stage)
+    yield from stage.until(lambda: _depth() > 0.008, "the device's press")
+    yield from stage.picture("device")
+    session = press_session.current()
+    session.simulated.unplug()
+    yield from stage.until(lambda: _phase() is Phase.LOST, "the message")
+    yield 0.3
+    assert not np.any(session.snapshot.output_force)
+    assert _key_bytes("Palpate live") == _key_bytes("Basis")
+    yield from stage.picture("unplugged")
+    session.simulated.plug_in()
+    yield from stage.until(lambda: _phase() is Phase.FEELING, "the device's return")
+    yield from stage.until(lambda: _depth() > 0.008, "its next press")
+    child = session.simulated.pid
+    yield from _key(stage, "ESC")
+    yield from stage.until(lambda: press_session.current() is None, "the end of the press")
+    assert _coordinates() == before
+    assert not Path(f"/proc/{child}").exists()
+
+
+@takes(120)
+def make_soft_shows_progress_and_escape_leaves_nothing(stage: Stage) -> Wait:
+    yield from _open_mouse(stage)
+    bpy.ops.palpate.remove_softness()
+    files = _files()
+    yield from stage.picture("not-soft")
+    with stage.view():
+        bpy.ops.palpate.make_soft("INVOKE_DEFAULT")
+    yield from stage.until(
+        lambda: bake_session.current().progress.step == "tetrahedralize", "the child's first step"
+    )
+    yield from stage.picture("baking")
+    session = bake_session.current()
+    child, folder = session.job._child, session.job._folder
+    yield from _key(stage, "ESC")
+    yield from stage.until(lambda: bake_session.current() is None, "the end of the bake")
+    assert child.poll() is not None
+    assert not folder.exists()
+    assert _files() == files
+    assert not _mouse().palpate.body_key
+    assert _keys() == []
+
+
+@takes(180)
+def make_soft_beside_blender_makes_the_mouse_pressable(stage: Stage) -> Wait:
+    yield from _open_mouse(stage)
+    bpy.ops.palpate.remove_softness()
+    with stage.view():
+        bpy.ops.palpate.make_soft("INVOKE_DEFAULT")
+    yield from stage.until(lambda: bake_session.current() is None, "the bake", seconds=150)
+    assert _mouse().palpate.body_key
+    stage.note(nodes=_mouse().palpate.node_count, seconds=_mouse().palpate.bake_seconds)
+    yield from stage.picture("baked")
+    yield from _press(stage)
+    yield from _drag_in(stage)
+    yield from _key(stage, "RET")
+    yield from stage.until(lambda: _keys() == ["Basis", "Press 1"], "the kept shape")
+
+
+def an_edited_mesh_is_said_in_the_panel(stage: Stage) -> Wait:
+    yield from _open_mouse(stage)
+    with stage.view():
+        bpy.ops.object.mode_set(mode="EDIT")
+        bpy.ops.mesh.select_all(action="SELECT")
+        bpy.ops.mesh.poke()
+        bpy.ops.object.mode_set(mode="OBJECT")
+    yield from stage.picture("panel")
+    with stage.view():
+        try:
+            bpy.ops.palpate.press("INVOKE_DEFAULT")
+        except RuntimeError as refusal:
+            assert "Make Soft" in str(refusal)
+        else:
+            raise AssertionError("an edited mesh was pressed")
+
+
+def _mouse() -> Any:
     return bpy.data.objects[NAME]
 
 
-def _session():
-    from bl_ext.user_default.palpate.operators import press_session
+def _phase() -> Phase | None:
+    session = press_session.current()
+    return session.state.phase if session else None
 
-    return press_session.current()
+
+def _force() -> float:
+    return float(np.linalg.norm(press_session.current().snapshot.contact_force))
 
 
-def _ready(stage: Stage) -> Wait:
+def _depth() -> float:
+    """How deep the probe is, in metres."""
+    snapshot = press_session.current().snapshot
+    if snapshot is None or not snapshot.touching:
+        return 0.0
+    return float(np.linalg.norm(snapshot.probe - snapshot.proxy))
+
+
+def _open_mouse(stage: Stage) -> Wait:
     """Open the mouse with its body there, the sidebar at Palpate."""
     stage.open_scene(SCENE)
     yield 0.5
     yield from stage.open_sidebar("Palpate")
-    with stage.view():
-        bpy.context.view_layer.objects.active = _mouse()
-        bpy.ops.palpate.rebuild_body("EXEC_DEFAULT")
+    bpy.context.view_layer.objects.active = _mouse()
+    if body_store.locate(_mouse()) is None:
+        # The repository has no body files: the tetrahedra in the .blend make them.
+        with stage.view():
+            bpy.ops.palpate.rebuild_body("EXEC_DEFAULT")
+    bpy.ops.ed.undo_push(message="Mouse opened")
     yield
 
 
 def _press(stage: Stage) -> Wait:
+    yield from stage.move(stage.pixel(BACK))
     with stage.view():
         bpy.ops.palpate.press("INVOKE_DEFAULT")
-    yield 0.3
-    assert _session() is not None
+    yield from stage.until(
+        lambda: press_session.current() and press_session.current().snapshot, "the first tick"
+    )
 
 
-def _back(stage: Stage) -> tuple[float, float]:
-    """A pixel on the mouse's back, well away from its ears."""
-    return stage.pixel((-0.027, -0.014, 0.057))
+def _drag_in(stage: Stage, *, release: bool = True) -> Wait:
+    """Press the back with the pointer until it is well dented."""
+    x, y = stage.pixel(BACK)
+    yield from stage.drag([(x, y), (x + 25, y - 40)], release=release)
+    yield from stage.until(lambda: _depth() > 0.005, "a depth of 5 mm")
 
 
-def _coordinates() -> np.ndarray:
+def _key(stage: Stage, kind: str, **modifiers: bool) -> Wait:
+    """Type a key with the mouse over the view."""
+    yield from stage.move(_over_the_view(stage))
+    yield from stage.key(kind, **modifiers)
+
+
+def _over_the_view(stage: Stage) -> Pixel:
+    region = stage.region("WINDOW")
+    return (region.x + region.width / 3, region.y + region.height / 3)
+
+
+def _keys() -> list[str]:
+    keys = _mouse().data.shape_keys
+    return keys.key_blocks.keys() if keys else []
+
+
+def _coordinates() -> bytes:
     mesh = _mouse().data
     flat = np.empty(3 * len(mesh.vertices), dtype=np.float32)
     mesh.attributes["position"].data.foreach_get("vector", flat)
-    return flat
+    return flat.tobytes()
 
 
-def dragging_dents_the_surface_and_enter_keeps_the_shape(stage: Stage) -> Wait:
-    yield from _ready(stage)
-    yield from stage.picture("panel")
-    yield from _press(stage)
-    yield from stage.picture("ready")
-    here = _back(stage)
-    yield from stage.drag([here, (here[0], here[1] - 45)], release=False)
-    yield 0.5
-    yield from stage.picture("dragging")
-    session = _session()
-    assert session.snapshot.touching
-    assert np.linalg.norm(session.snapshot.contact_force) > 0.005
-    yield from stage.event("LEFTMOUSE", "RELEASE", stage.mouse)
-    yield from stage.picture("held")
-    yield from stage.key("RET")
-    yield from stage.until(lambda: _session() is None, "the end of the press")
-    assert _mouse().data.shape_keys.key_blocks.keys() == ["Basis", "Press 1"]
-    yield from stage.picture("kept")
+def _key_bytes(name: str) -> bytes:
+    points = _mouse().data.shape_keys.key_blocks[name].points
+    flat = np.empty(3 * len(points), dtype=np.float32)
+    points.foreach_get("co", flat)
+    return flat.tobytes()
+
+
+def _files() -> set[str]:
+    """Body files beside the .blend and in the user's folder."""
+    folders = {body_store.folder_for_new_files(), body_store._unsaved_folder()}
+    return {str(path) for folder in folders if folder.is_dir() for path in folder.iterdir()}
