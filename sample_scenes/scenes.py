@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 PINNED = "Pinned"
 CUBE_EDGE = 0.05
 CUBE_CELLS = 24
+CHECK = 0.0125  # two squares of the check, metres
+Colour = tuple[float, float, float]
 
 
 def soft_mesh(name: str, shape: mouse_shape.QuadMesh) -> bpy.types.Mesh:
@@ -35,6 +37,13 @@ def paint(mesh: bpy.types.Mesh, colours: NDArray[np.float64]) -> None:
     layer.data.foreach_set("color", rgba.ravel())
 
 
+def checked(colour: Colour, *ways: NDArray[np.float64]) -> NDArray[np.float64]:
+    """A soft check of two tones (v, 3) along some ways (v,) in metres, for Solid shading."""
+    waves = [np.cos(2.0 * np.pi * way / CHECK) for way in ways]
+    tone = 1.0 + 0.3 * np.tanh(3.0 * np.prod(waves, axis=0))
+    return tone[:, None] * np.array(colour)
+
+
 def pin(thing: bpy.types.Object, vertices: NDArray[np.int64]) -> None:
     """Make the vertex group that holds the body on the table."""
     thing.vertex_groups.new(name=PINNED).add(vertices.tolist(), 1.0, "REPLACE")
@@ -52,7 +61,9 @@ def mouse_scene() -> bpy.types.Object:
         fabric.bead(),
     ):
         mesh.materials.append(material)
-    colours = np.where((shape.felt < 0.0)[:, None], pink, body)
+    x, y, z = shape.vertices.T
+    plain = checked(body, x, 0.034 * np.arctan2(y, z - 0.018))
+    colours = np.where((shape.felt < 0.0)[:, None], pink, plain)
     for part, colour in (
         (mouse_shape.Part.FELT, pink),
         (mouse_shape.Part.BEAD, (0.01, 0.01, 0.01)),
@@ -68,7 +79,7 @@ def mouse_scene() -> bpy.types.Object:
     studio.lights(scene, (0.0, 0.0, 0.03))
     studio.camera(scene, (0.23, -0.33, 0.215), aim, 88.0)
     studio.render_settings(scene)
-    studio.open_view(scene, mouse, 0.30, aim)
+    studio.open_view(scene, mouse, 0.23, aim)
     return mouse
 
 
@@ -84,7 +95,7 @@ def cube_scene() -> bpy.types.Object:
     mesh = soft_mesh("Cube", shape)
     colour = (0.80, 0.20, 0.09)
     mesh.materials.append(fabric.foam(colour, (0.40, 0.07, 0.03), CUBE_EDGE / 10.0))
-    paint(mesh, np.broadcast_to(colour, vertices.shape))
+    paint(mesh, checked(colour, *vertices.T))
     cube = studio.link(scene, "Cube", mesh)
     pin(cube, np.flatnonzero(vertices[:, 2] < 1e-6))
     bodies.set_up(cube, PINNED, young_modulus=10_000.0, poisson_ratio=0.49)
@@ -93,5 +104,5 @@ def cube_scene() -> bpy.types.Object:
     studio.lights(scene, aim)
     studio.camera(scene, (0.23, -0.28, 0.20), aim, 110.0)
     studio.render_settings(scene)
-    studio.open_view(scene, cube, 0.17, aim)
+    studio.open_view(scene, cube, 0.14, aim)
     return cube
