@@ -1,4 +1,4 @@
-"""What Blender shows and keeps. The one place where classes, handlers and draw callbacks register."""
+"""What Blender shows and keeps, and the one place where all of it registers."""
 
 import bpy
 
@@ -32,7 +32,8 @@ modules = (
 )
 
 
-def register():
+def register() -> None:
+    """Add all of Palpate to Blender."""
     for module in modules:
         for cls in getattr(module, "classes", ()):
             bpy.utils.register_class(cls)
@@ -40,7 +41,8 @@ def register():
             module.register()
 
 
-def unregister():
+def unregister() -> None:
+    """Take all of it out again; what is going on ends first."""
     # Handlers first: they end a bake or press while everything is still there.
     for module in reversed(modules):
         if hasattr(module, "unregister"):

@@ -4,6 +4,8 @@ Started with ``blender -c`` Blender has read preferences and extensions but no f
 0, or 2 with one line on standard error and nothing written.
 """
 
+# ruff: noqa: T201  printing is what a command does
+
 import argparse
 import json
 import sys
@@ -28,7 +30,7 @@ class _OneLineParser(argparse.ArgumentParser):
         self.exit(EXIT_ERROR, f"palpate: {message}; see 'blender -c palpate --help'\n")
 
 
-def run(words):
+def run(words: list[str]) -> int:
     """Run one command with its words; the exit status."""
     try:
         arguments = _parser().parse_args(_shielded(words))
@@ -49,7 +51,7 @@ def run(words):
     return 0
 
 
-def bake(arguments):
+def bake(arguments: argparse.Namespace) -> dict[str, object]:
     """Make an object soft and save the file."""
     thing = _open(arguments)
     settings = thing.palpate
@@ -87,15 +89,13 @@ def bake(arguments):
     }
 
 
-def press(arguments):
+def press(arguments: argparse.Namespace) -> dict[str, object]:
     """Press an object once; with --keep save the shape in the file."""
     thing = _open(arguments)
     if arguments.young is not None:
         young = _within(thing.palpate, "young_modulus", "young", arguments.young)
         thing.palpate.young_modulus = young
-    pressed = press_once(
-        thing, bpy.context.scene, arguments.at, arguments.by, keep=arguments.keep
-    )
+    pressed = press_once(thing, bpy.context.scene, arguments.at, arguments.by, keep=arguments.keep)
     if arguments.keep:
         _save(arguments.file)
     return {
@@ -110,7 +110,7 @@ def press(arguments):
     }
 
 
-def _parser():
+def _parser() -> argparse.ArgumentParser:
     parser = _OneLineParser(
         prog="blender -c palpate", description="Make objects soft and press them, without a window."
     )
@@ -129,11 +129,19 @@ def _parser():
     two = commands.add_parser("press", help="press an object once and print the force")
     _add_common(two)
     two.add_argument(
-        "--at", type=float, nargs=3, required=True, metavar=("X", "Y", "Z"),
+        "--at",
+        type=float,
+        nargs=3,
+        required=True,
+        metavar=("X", "Y", "Z"),
         help="the surface point nearest to this is touched, world coordinates",
     )
     two.add_argument(
-        "--by", type=float, nargs=3, required=True, metavar=("DX", "DY", "DZ"),
+        "--by",
+        type=float,
+        nargs=3,
+        required=True,
+        metavar=("DX", "DY", "DZ"),
         help="how far it is moved, world axes",
     )
     two.add_argument("--keep", action="store_true", help="keep a shape key and save the file")
@@ -141,14 +149,14 @@ def _parser():
     return parser
 
 
-def _add_common(parser):
+def _add_common(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", type=Path, metavar="FILE.blend")
     parser.add_argument("--object", required=True, metavar="NAME")
     parser.add_argument("--young", type=float, metavar="PA", help="Young's modulus")
     parser.add_argument("--json", action="store_true", help="print figures as JSON")
 
 
-def _open(arguments):
+def _open(arguments: argparse.Namespace) -> bpy.types.Object:
     if not arguments.file.is_file():
         raise PalpateError(f"{arguments.file}: there is no such file; give the path of a .blend")
     try:
@@ -167,16 +175,17 @@ def _open(arguments):
     return thing
 
 
-def _save(file):
+def _save(file: Path) -> None:
     try:
         bpy.ops.wm.save_mainfile(filepath=str(file.resolve()))
     except RuntimeError as problem:
         raise PalpateError(
-            f"{file}: Blender cannot save it ({str(problem).strip()}); choose a folder you may write to"
+            f"{file}: Blender cannot save it ({str(problem).strip()}); choose a folder you may "
+            "write to"
         ) from problem
 
 
-def _within(settings, name, option, value):
+def _within(settings: bpy.types.PropertyGroup, name: str, option: str, value: float) -> float:
     """A value that Blender would silently clamp is refused instead."""
     allowed = settings.bl_rna.properties[name]
     if not allowed.hard_min <= value <= allowed.hard_max:
@@ -187,12 +196,12 @@ def _within(settings, name, option, value):
     return value
 
 
-def _shielded(words):
+def _shielded(words: list[str]) -> list[str]:
     """Keep argparse from taking a number such as -5e-3 for an option: a blank in front helps."""
     return [f" {word}" if _is_negative_number(word) else word for word in words]
 
 
-def _is_negative_number(word):
+def _is_negative_number(word: str) -> bool:
     try:
         float(word)
     except ValueError:
@@ -203,10 +212,12 @@ def _is_negative_number(word):
 _commands = []
 
 
-def register():
+def register() -> None:
+    """Add the command."""
     _commands.append(bpy.utils.register_cli_command(NAME, run))
 
 
-def unregister():
+def unregister() -> None:
+    """Take it out."""
     while _commands:
         bpy.utils.unregister_cli_command(_commands.pop())

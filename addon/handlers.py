@@ -16,7 +16,7 @@ from . import known_status
 _found_before_save: dict[str, Path] = {}
 
 
-def end_everything(reason):
+def end_everything(reason: str) -> None:
     """Stop bake and press; nothing is left of either."""
     press_session.give_way(reason)
     bake = bake_session.current()
@@ -25,12 +25,12 @@ def end_everything(reason):
 
 
 @persistent
-def _before_load(*_):
+def _before_load(*_: object) -> None:
     end_everything("Another file is being opened; pressing has ended")
 
 
 @persistent
-def _after_load(*_):
+def _after_load(*_: object) -> None:
     known_status.forget()
     live_shape.remove_leftovers()
     if not bpy.data.filepath:
@@ -39,18 +39,18 @@ def _after_load(*_):
 
 
 @persistent
-def _before_undo(*_):
+def _before_undo(*_: object) -> None:
     press_session.give_way("Undo; pressing has ended")
 
 
 @persistent
-def _after_undo(*_):
+def _after_undo(*_: object) -> None:
     known_status.forget()
     live_shape.remove_leftovers()
 
 
 @persistent
-def _before_save(*_):
+def _before_save(*_: object) -> None:
     session = press_session.current()
     if session is not None:
         session.post(SaveBegins())
@@ -62,7 +62,7 @@ def _before_save(*_):
 
 
 @persistent
-def _after_save(path="", *_):
+def _after_save(path: str = "", *_: object) -> None:
     written = Path(path or bpy.data.filepath)
     try:
         if written.suffix == ".blend" and _found_before_save:
@@ -73,13 +73,13 @@ def _after_save(path="", *_):
             )
     except PalpateError as problem:
         # A handler has no report; the console and the panel's state line are what is left.
-        print(f"palpate: {problem}")
+        print(f"palpate: {problem}")  # noqa: T201
     finally:
         _after_failed_save()
 
 
 @persistent
-def _after_failed_save(*_):
+def _after_failed_save(*_: object) -> None:
     known_status.forget()
     session = press_session.current()
     if session is not None:
@@ -87,12 +87,13 @@ def _after_failed_save(*_):
 
 
 @persistent
-def _after_change(scene, depsgraph):
-    if any(update.is_updated_geometry or update.is_updated_transform for update in depsgraph.updates):
+def _after_change(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+    updates = depsgraph.updates
+    if any(update.is_updated_geometry or update.is_updated_transform for update in updates):
         known_status.forget()
 
 
-def _before_exit():
+def _before_exit() -> None:
     end_everything("")
 
 
@@ -110,13 +111,15 @@ HANDLERS = {
 }
 
 
-def register():
+def register() -> None:
+    """Listen to what Blender is about to do."""
     for name, handler in HANDLERS.items():
         getattr(bpy.app.handlers, name).append(handler)
     atexit.register(_before_exit)
 
 
-def unregister():
+def unregister() -> None:
+    """End everything and stop listening."""
     end_everything("Palpate was switched off; pressing has ended")
     atexit.unregister(_before_exit)
     for name, handler in HANDLERS.items():

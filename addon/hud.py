@@ -5,8 +5,11 @@ import bpy
 import gpu
 from gpu_extras.batch import batch_for_shader
 
+from ..operators.press_session import PressSession
 from ..operators.press_state import Phase
 from .reading import reading
+
+Color = tuple[float, float, float, float]
 
 FONT = 0
 MARGIN, PADDING = 20, 14
@@ -31,7 +34,7 @@ KEYS = {
 }
 
 
-def draw(context, session):
+def draw(context: bpy.types.Context, session: PressSession) -> None:
     """Draw the HUD of a press in the region that is being drawn."""
     scale = context.preferences.system.ui_scale
     lines = _lines(context, session)
@@ -50,7 +53,7 @@ def draw(context, session):
         blf.draw(FONT, text)
 
 
-def _lines(context, session):
+def _lines(context: bpy.types.Context, session: PressSession) -> list[tuple[str, float, Color]]:
     """Text, size and colour of each line, from the top."""
     figures = reading(session)
     phase, say = session.state.phase, bpy.app.translations.pgettext_iface
@@ -64,18 +67,19 @@ def _lines(context, session):
             lines.append((say(session.state.message), NORMAL, WARNING))
     if phase is Phase.FEELING and output is not None:
         given = sum(component**2 for component in output) ** 0.5
-        text = f"{say('The device gives')} {given:.3f} N, {say(session.snapshot.state)}"
+        state = session.snapshot.reason or session.snapshot.state
+        text = f"{say('The device gives')} {given:.3f} N, {say(state)}"
         lines.append((text, SMALL, GREY))
     lines.append((say(KEYS.get(phase, "")), SMALL, GREY))
     return lines
 
 
-def _width(text, size):
+def _width(text: str, size: float) -> float:
     blf.size(FONT, size)
     return blf.dimensions(FONT, text)[0]
 
 
-def _covered_left(context):
+def _covered_left(context: bpy.types.Context) -> float:
     """Pixels of the view that the toolbar lies upon."""
     overlap = context.preferences.system.use_region_overlap
     return sum(
@@ -85,7 +89,7 @@ def _covered_left(context):
     )
 
 
-def _rectangle(x, y, width, height):
+def _rectangle(x: float, y: float, width: float, height: float) -> None:
     corners = [(x, y), (x + width, y), (x + width, y + height), (x, y + height)]
     shader = gpu.shader.from_builtin("UNIFORM_COLOR")
     batch = batch_for_shader(shader, "TRIS", {"pos": corners}, indices=[(0, 1, 2), (0, 2, 3)])

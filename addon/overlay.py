@@ -3,27 +3,35 @@
 Everything is drawn twice: faintly through the body, and fully where nothing hides it.
 """
 
+from collections.abc import Sequence
+
 import bpy
 import gpu
 import numpy as np
 from bpy_extras import view3d_utils
 from gpu_extras.batch import batch_for_shader
 from mathutils import Vector
+from numpy.typing import NDArray
 
 from ..operators import press_session
 from ..operators.package_preferences import preferences
+from ..operators.press_session import PressSession
 from . import hud
-from .overlay_shapes import CONE, SPHERE, lit
-from .reading import reading
+from .overlay_shapes import CONE, SPHERE, Lit, lit
+from .reading import Reading, reading
+
+Array = NDArray[np.float64]
+# Start, end, colour and width in pixels of a line.
+Line = tuple[Array, Array, Sequence[float], float]
 
 SEEN_THROUGH = 0.5
-# The arrow has half its full length at this force: small forces show, large ones stay on the screen.
+# The arrow has half its full length at this force: small ones show, large ones fit the screen.
 HALF_LENGTH_FORCE = 0.3
 CONTACT_SIZE, LINE_PIXELS = 0.6, 2.5
 HEAD_LENGTH, HEAD_WIDTH, SHAFT_PIXELS = 20.0, 7.0, 4.0
 
 
-def draw_in_view():
+def draw_in_view() -> None:
     """Draw in world coordinates, after the scene."""
     session = press_session.current()
     region, region_3d = bpy.context.region, bpy.context.region_data
@@ -53,12 +61,14 @@ def draw_in_view():
         _draw(parts, lines, depth_test, opacity)
 
 
-def _worth_drawing(session, figures):
+def _worth_drawing(session: PressSession, figures: Reading) -> bool:
     """A pointer that has not touched yet has no probe to show."""
     return figures.touching or session.state.phase.value not in {"ready", "lost"}
 
 
-def _arrow(figures, chosen, pixel, toward):
+def _arrow(
+    figures: Reading, chosen: bpy.types.AddonPreferences, pixel: float, toward: Array
+) -> tuple[tuple[Array, Array], Lit]:
     direction = figures.force_vector / np.linalg.norm(figures.force_vector)
     share = figures.force / (figures.force + HALF_LENGTH_FORCE)
     tip = figures.contact + (HEAD_LENGTH + chosen.arrow_pixels * share) * pixel * direction
@@ -69,7 +79,7 @@ def _arrow(figures, chosen, pixel, toward):
     return (figures.contact, neck), head
 
 
-def _draw(parts, lines, depth_test, opacity):
+def _draw(parts: list[Lit], lines: list[Line], depth_test: str, opacity: float) -> None:
     gpu.state.blend_set("ALPHA")
     gpu.state.depth_test_set(depth_test)
     gpu.state.face_culling_set("BACK")
@@ -95,7 +105,9 @@ def _draw(parts, lines, depth_test, opacity):
     gpu.state.blend_set("NONE")
 
 
-def _world_per_pixel(region, region_3d, place):
+def _world_per_pixel(
+    region: bpy.types.Region, region_3d: bpy.types.RegionView3D, place: Array
+) -> float:
     """Length of a pixel at ``place`` in world units."""
     right = np.array(region_3d.view_matrix)[0, :3]
     step = 0.01 * region_3d.view_distance
@@ -107,7 +119,7 @@ def _world_per_pixel(region, region_3d, place):
     return step / pixels if pixels > 0.0 else 0.0
 
 
-def draw_hud():
+def draw_hud() -> None:
     """Draw in pixels, on top of everything."""
     session = press_session.current()
     if session is not None:
@@ -117,7 +129,8 @@ def draw_hud():
 _handles = []
 
 
-def register():
+def register() -> None:
+    """Draw in all 3D views."""
     if bpy.app.background:
         # There is no view to draw in.
         return
@@ -126,6 +139,7 @@ def register():
     _handles.append(add(draw_hud, (), "WINDOW", "POST_PIXEL"))
 
 
-def unregister():
+def unregister() -> None:
+    """Stop drawing."""
     while _handles:
         bpy.types.SpaceView3D.draw_handler_remove(_handles.pop(), "WINDOW")

@@ -7,6 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+# Vertices (v, 3), colours (v, 4) and triangles (t, 3).
+Lit = tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.int32]]
+
 RINGS, SEGMENTS = 10, 20
 # Light from the upper left before the viewer, and how dark the far side is.
 LIGHT = np.array([-0.4, 0.6, 0.7]) / np.linalg.norm([-0.4, 0.6, 0.7])
@@ -29,8 +32,8 @@ def lit(
     color: ArrayLike,
     view_axes: NDArray[np.float64],
     turn: NDArray[np.float64] | None = None,
-) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.int32]]:
-    """Vertices (v, 3), colours (v, 4) and triangles of a shape at ``place``, lit as the view sees it."""
+) -> Lit:
+    """A shape at ``place``, lit as the view sees it."""
     rotation = np.eye(3) if turn is None else turn
     vertices = np.asarray(place) + (shape.vertices * size) @ rotation.T
     brightness = AMBIENT + (1.0 - AMBIENT) * np.clip(

@@ -5,8 +5,10 @@ import textwrap
 import bpy
 
 from ..operators import bake_session, press_session, soft_object
+from ..operators.bake_session import BakeSession
+from ..operators.press_session import PressSession
 from ..operators.press_state import Phase
-from ..operators.soft_object import Fit
+from ..operators.soft_object import BodyStatus, Fit
 from . import known_status
 from .reading import reading
 
@@ -14,13 +16,14 @@ from .reading import reading
 LETTER_PIXELS = 7
 
 
-def _say(layout, context, text, icon):
+def _say(layout: bpy.types.UILayout, context: bpy.types.Context, text: str, icon: str) -> None:
     """A sentence on as many lines as the sidebar's width needs."""
     scale = context.preferences.system.ui_scale
     letters = max(20, int(context.region.width / scale / LETTER_PIXELS) - 5)
     column = layout.column(align=True)
     column.use_property_split = False
-    for number, line in enumerate(textwrap.wrap(bpy.app.translations.pgettext_iface(text), letters)):
+    said = bpy.app.translations.pgettext_iface(text)
+    for number, line in enumerate(textwrap.wrap(said, letters)):
         column.label(text=line, icon=icon if number == 0 else "BLANK1", translate=False)
 
 
@@ -30,7 +33,7 @@ class PalpatePanel:
     bl_category = "Palpate"
 
     @classmethod
-    def poll(cls, context):
+    def poll(cls, context: bpy.types.Context) -> bool:
         return context.object is not None and context.object.type == "MESH"
 
 
@@ -41,7 +44,7 @@ class PALPATE_PT_main(bpy.types.Panel):
     bl_region_type = "UI"
     bl_category = "Palpate"
 
-    def draw(self, context):
+    def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         bake, press = bake_session.current(), press_session.current()
         if bake is not None:
@@ -52,7 +55,7 @@ class PALPATE_PT_main(bpy.types.Panel):
             _draw_idle(layout, context)
 
 
-def _draw_bake(layout, context, bake):
+def _draw_bake(layout: bpy.types.UILayout, context: bpy.types.Context, bake: BakeSession) -> None:
     progress = bake.progress
     layout.label(text=bake.handle.name, icon="MOD_SOFT", translate=False)
     # A share that nobody can know yet is shown as time only.
@@ -63,7 +66,9 @@ def _draw_bake(layout, context, bake):
     layout.operator("palpate.cancel_bake", icon="CANCEL")
 
 
-def _draw_press(layout, context, press):
+def _draw_press(
+    layout: bpy.types.UILayout, context: bpy.types.Context, press: PressSession
+) -> None:
     layout.label(text=press.handle.name, icon="MOD_SOFT", translate=False)
     if press.state.message:
         _say(layout, context, press.state.message, "ERROR")
@@ -75,7 +80,7 @@ def _draw_press(layout, context, press):
         _say(layout, context, "Enter keeps the shape, Escape restores it", "INFO")
 
 
-def _draw_idle(layout, context):
+def _draw_idle(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     thing = context.object
     refusal = soft_object.refusal(thing)
     column = layout.column(align=True)
@@ -98,7 +103,9 @@ def _draw_idle(layout, context):
     _draw_status(layout, context, status)
 
 
-def _draw_status(layout, context, status):
+def _draw_status(
+    layout: bpy.types.UILayout, context: bpy.types.Context, status: BodyStatus
+) -> None:
     if status.fit is Fit.READY:
         _say(layout, context, "Ready to press", "CHECKMARK")
     elif status.fit is Fit.FILE_MISSING:
@@ -116,7 +123,7 @@ class PALPATE_PT_material(PalpatePanel, bpy.types.Panel):
     bl_label = "Material"
     bl_parent_id = "PALPATE_PT_main"
 
-    def draw(self, context):
+    def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         layout.use_property_split = True
         layout.use_property_decorate = False
@@ -133,7 +140,7 @@ class PALPATE_PT_pins(PalpatePanel, bpy.types.Panel):
     bl_label = "Pins"
     bl_parent_id = "PALPATE_PT_main"
 
-    def draw(self, context):
+    def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         layout.use_property_split = True
         layout.use_property_decorate = False
@@ -155,7 +162,7 @@ class PALPATE_PT_bake(PalpatePanel, bpy.types.Panel):
     bl_parent_id = "PALPATE_PT_main"
     bl_options = {"DEFAULT_CLOSED"}
 
-    def draw(self, context):
+    def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         layout.use_property_split = True
         layout.use_property_decorate = False
@@ -166,13 +173,16 @@ class PALPATE_PT_bake(PalpatePanel, bpy.types.Panel):
         for name in ("edge_length", "epsilon", "decimate_above", "time_limit"):
             column.prop(settings, name)
         if any(modifier.type == "MIRROR" for modifier in thing.modifiers):
-            _say(layout, context, "Only the base mesh is baked: apply the Mirror modifier first", "INFO")
+            text = "Only the base mesh is baked: apply the Mirror modifier first"
+            _say(layout, context, text, "INFO")
         if settings.body_key:
             _draw_figures(layout, context, settings)
             layout.operator("palpate.remove_softness", icon="TRASH")
 
 
-def _draw_figures(layout, context, settings):
+def _draw_figures(
+    layout: bpy.types.UILayout, context: bpy.types.Context, settings: bpy.types.PropertyGroup
+) -> None:
     figures = (
         ("Nodes", f"{settings.node_count:,}"),
         ("Tetrahedra", f"{settings.tet_count:,}"),
@@ -193,7 +203,7 @@ class PALPATE_PT_press(PalpatePanel, bpy.types.Panel):
     bl_label = "Device"
     bl_parent_id = "PALPATE_PT_main"
 
-    def draw(self, context):
+    def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         layout.use_property_split = True
         layout.use_property_decorate = False

@@ -65,7 +65,7 @@ class PalpatePreferences(bpy.types.AddonPreferences):
         subtype="PIXEL",
     )
 
-    def draw(self, context):
+    def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         layout.use_property_split = True
         column = layout.column(heading="Pressing")

@@ -1,5 +1,8 @@
 """What an object and a scene remember: the material, the pins, the baked body, the device."""
 
+import math
+from collections.abc import Callable
+
 import bpy
 
 from ..core.materials import MATERIALS
@@ -25,11 +28,24 @@ SOURCE_ITEMS = [
 ]
 
 
-def _take_material(settings, context):
+def _take_material(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
     material = MATERIALS.get(settings.material)
     if material is not None:
-        settings["young_modulus"] = material.young_modulus
-        settings["poisson_ratio"] = material.poisson_ratio
+        settings.young_modulus = material.young_modulus
+        settings.poisson_ratio = material.poisson_ratio
+
+
+def _leave_material(name: str) -> Callable[[bpy.types.PropertyGroup, bpy.types.Context], None]:
+    """An update that says Custom as soon as the number ``name`` is not the preset's any more."""
+
+    def update(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+        material = MATERIALS.get(settings.material)
+        if material is not None and not math.isclose(
+            getattr(settings, name), getattr(material, name), rel_tol=1e-5
+        ):
+            settings.material = CUSTOM
+
+    return update
 
 
 class PalpateObject(bpy.types.PropertyGroup):
@@ -51,6 +67,7 @@ class PalpateObject(bpy.types.PropertyGroup):
         soft_max=1e6,
         precision=0,
         step=10000,
+        update=_leave_material("young_modulus"),
     )
     poisson_ratio: bpy.props.FloatProperty(
         name="Poisson's Ratio",
@@ -61,6 +78,7 @@ class PalpateObject(bpy.types.PropertyGroup):
         max=0.499,
         precision=3,
         step=1,
+        update=_leave_material("poisson_ratio"),
     )
     pin_mode: bpy.props.EnumProperty(
         name="Pin", description="Which part never moves", items=PIN_ITEMS, default="BELOW"
@@ -127,11 +145,13 @@ class PalpateObject(bpy.types.PropertyGroup):
     bake_warnings: bpy.props.StringProperty(options={"HIDDEN"})
 
 
-def _is_empty(scene_settings, candidate):
+def _is_empty(scene_settings: bpy.types.PropertyGroup, candidate: bpy.types.Object) -> bool:
     return candidate.type == "EMPTY"
 
 
-def _suggest_ports(settings, context, edit_text):
+def _suggest_ports(
+    settings: bpy.types.PropertyGroup, context: bpy.types.Context, edit_text: str
+) -> list[str]:
     return [f"{path} ({text})" if text else path for path, text in refresh_devices.known_ports()]
 
 
@@ -169,11 +189,13 @@ class PalpateScene(bpy.types.PropertyGroup):
 classes = (PalpateObject, PalpateScene)
 
 
-def register():
+def register() -> None:
+    """Give objects and scenes their properties."""
     bpy.types.Object.palpate = bpy.props.PointerProperty(type=PalpateObject)
     bpy.types.Scene.palpate = bpy.props.PointerProperty(type=PalpateScene)
 
 
-def unregister():
+def unregister() -> None:
+    """Take them away; files keep what is stored in them."""
     del bpy.types.Object.palpate
     del bpy.types.Scene.palpate

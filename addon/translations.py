@@ -7,9 +7,11 @@ DOMAIN = __package__
 WORDS: dict[str, dict[tuple[str, str], str]] = {}
 
 
-def register():
+def register() -> None:
+    """Add the dictionary."""
     bpy.app.translations.register(DOMAIN, WORDS)
 
 
-def unregister():
+def unregister() -> None:
+    """Take it out."""
     bpy.app.translations.unregister(DOMAIN)

@@ -1,4 +1,4 @@
-"""One bake of one object: started, polled, and either committed to the object or gone without a trace."""
+"""One bake of one object: started, polled, then given to the object or gone without a trace."""
 
 from __future__ import annotations
 
@@ -157,9 +157,7 @@ def start(thing: bpy.types.Object, scene: bpy.types.Scene, *, rebuild: bool = Fa
         job = _rebuild_job(thing, fingerprint, settings, surface, python)
     else:
         job = BakeJob(surface, settings, python=python)
-    _current = BakeSession(
-        ObjectHandle.of(thing), drawn, fingerprint, settings, job, job.poll()
-    )
+    _current = BakeSession(ObjectHandle.of(thing), drawn, fingerprint, settings, job, job.poll())
     return _current
 
 

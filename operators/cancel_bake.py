@@ -11,13 +11,13 @@ class PALPATE_OT_cancel_bake(bpy.types.Operator):
     bl_description = "Stop the bake; nothing is changed and nothing is left"
 
     @classmethod
-    def poll(cls, context):
+    def poll(cls, context: bpy.types.Context) -> bool:
         if bake_session.current() is None:
             cls.poll_message_set("No bake is running")
             return False
         return True
 
-    def execute(self, context):
+    def execute(self, context: bpy.types.Context) -> set[str]:
         bake_session.current().end()
         return {"FINISHED"}
 

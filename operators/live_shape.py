@@ -1,4 +1,4 @@
-"""The shape key that follows a press: added, written each frame, then kept or removed without trace.
+"""The shape key that follows a press: added, written each frame, then kept or taken away.
 
 Other shape keys, the active one, and the mesh itself stay as they are, bit for bit.
 """

@@ -2,7 +2,9 @@
 
 import bpy
 
+from ..core.bake import BakeReport
 from ..core.errors import PalpateError
+from ..core.soft_body import SoftBody
 from . import bake_session, press_session, soft_object
 from .bake_session import BakeSession
 
@@ -17,7 +19,7 @@ class BakingOperator:
     _timer: bpy.types.Timer | None = None
 
     @classmethod
-    def poll(cls, context):
+    def poll(cls, context: bpy.types.Context) -> bool:
         if bake_session.current() is not None:
             cls.poll_message_set("A bake is running; wait for it or cancel it")
             return False
@@ -29,7 +31,7 @@ class BakingOperator:
             cls.poll_message_set(reason)
         return not reason
 
-    def execute(self, context):
+    def execute(self, context: bpy.types.Context) -> set[str]:
         try:
             body, report = bake_session.run(context.object, context.scene, rebuild=self.rebuild)
         except PalpateError as problem:
@@ -38,13 +40,11 @@ class BakingOperator:
         self._tell(context.object.name, body, report)
         return {"FINISHED"}
 
-    def invoke(self, context, event):
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if bpy.app.background:
             return self.execute(context)
         try:
-            self._session = bake_session.start(
-                context.object, context.scene, rebuild=self.rebuild
-            )
+            self._session = bake_session.start(context.object, context.scene, rebuild=self.rebuild)
         except PalpateError as problem:
             self.report({"ERROR"}, str(problem))
             return {"CANCELLED"}
@@ -55,7 +55,7 @@ class BakingOperator:
         self._show(context)
         return {"RUNNING_MODAL"}
 
-    def modal(self, context, event):
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         try:
             if event.type == "ESC" and event.value == "PRESS":
                 self._session.end()
@@ -75,12 +75,12 @@ class BakingOperator:
         self._tell(self._session.handle.name, body, report)
         return {"FINISHED"}
 
-    def cancel(self, context):
+    def cancel(self, context: bpy.types.Context) -> None:
         """Blender ends the operator: another file, or exit."""
         self._session.end()
         self._leave(context)
 
-    def _show(self, context, *, waiting=False):
+    def _show(self, context: bpy.types.Context, *, waiting: bool = False) -> None:
         progress = self._session.progress
         share = "" if progress.share is None else f" {100 * progress.share:.0f} %"
         text = f"{progress.text}{share}, {progress.seconds:.0f} s"
@@ -92,7 +92,7 @@ class BakingOperator:
         context.window_manager.progress_update(100 * (progress.share or 0.0))
         redraw_sidebars(context)
 
-    def _leave(self, context):
+    def _leave(self, context: bpy.types.Context) -> None:
         if self._timer is not None:
             context.window_manager.event_timer_remove(self._timer)
             self._timer = None
@@ -100,7 +100,7 @@ class BakingOperator:
         context.workspace.status_text_set(None)
         redraw_sidebars(context)
 
-    def _tell(self, name, body, report):
+    def _tell(self, name: str, body: SoftBody, report: BakeReport) -> None:
         for warning in report.warnings:
             self.report({"WARNING"}, warning)
         self.report(
@@ -109,7 +109,7 @@ class BakingOperator:
         )
 
 
-def redraw_sidebars(context):
+def redraw_sidebars(context: bpy.types.Context) -> None:
     """Have every 3D view drawn again."""
     for window in context.window_manager.windows:
         for area in window.screen.areas:

@@ -25,7 +25,7 @@ class PALPATE_OT_pin_below(bpy.types.Operator):
     )
 
     @classmethod
-    def poll(cls, context):
+    def poll(cls, context: bpy.types.Context) -> bool:
         reason = soft_object.refusal(context.object)
         if not reason and not context.object.data.polygons:
             reason = f"{context.object.name} has no faces"
@@ -33,11 +33,11 @@ class PALPATE_OT_pin_below(bpy.types.Operator):
             cls.poll_message_set(reason)
         return not reason
 
-    def invoke(self, context, event):
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         self.fraction = context.object.palpate.pin_fraction
         return self.execute(context)
 
-    def execute(self, context):
+    def execute(self, context: bpy.types.Context) -> set[str]:
         thing = context.object
         try:
             count = pin_group.mark_below(

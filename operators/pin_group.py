@@ -79,9 +79,7 @@ def _relative_height(surface: DrawnSurface) -> NDArray[np.float64]:
     return relative
 
 
-def _group_weights(
-    thing: bpy.types.Object, group: bpy.types.VertexGroup
-) -> NDArray[np.float64]:
+def _group_weights(thing: bpy.types.Object, group: bpy.types.VertexGroup) -> NDArray[np.float64]:
     weights = np.zeros(len(thing.data.vertices))
     for vertex in thing.data.vertices:
         for membership in vertex.groups:

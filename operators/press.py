@@ -1,7 +1,8 @@
-"""Press: touch a soft object with pointer, pen or device; Enter keeps the shape, Escape restores it."""
+"""Press: touch a soft object with pointer, pen or device, then keep the shape or restore it."""
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 from ..core.errors import PalpateError
 from . import press_session, ray, soft_object, viewport
@@ -9,7 +10,7 @@ from .make_soft import redraw_sidebars
 from .package_preferences import preferences
 from .press_once import press_once
 from .press_session import PressSession
-from .press_state import Cancel, Keep, Move, Phase, Release, SetDown, Source
+from .press_state import Cancel, Keep, Move, Phase, Point, Release, SetDown, Source
 from .probe_drag import ProbeDrag
 from .viewport import Viewport
 
@@ -75,7 +76,7 @@ class PALPATE_OT_press(bpy.types.Operator):
     _status = ""
 
     @classmethod
-    def poll(cls, context):
+    def poll(cls, context: bpy.types.Context) -> bool:
         thing = context.object
         reason = soft_object.refusal(thing)
         if not reason and press_session.current() is not None:
@@ -86,7 +87,7 @@ class PALPATE_OT_press(bpy.types.Operator):
             cls.poll_message_set(reason)
         return not reason
 
-    def execute(self, context):
+    def execute(self, context: bpy.types.Context) -> set[str]:
         if not any(self.by):
             self.report({"ERROR"}, "press: 'by' is zero; say how far to press, in world units")
             return {"CANCELLED"}
@@ -99,7 +100,7 @@ class PALPATE_OT_press(bpy.types.Operator):
         self.report({"INFO"}, f"{newton:.3g} N at {1000 * pressed.depth:.3g} mm")
         return {"FINISHED"}
 
-    def invoke(self, context, event):
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if bpy.app.background:
             return self.execute(context)
         source = Source.POINTER if context.scene.palpate.source == "POINTER" else Source.DEVICE
@@ -115,7 +116,7 @@ class PALPATE_OT_press(bpy.types.Operator):
         redraw_sidebars(context)
         return {"RUNNING_MODAL"}
 
-    def modal(self, context, event):
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         try:
             passed = self._handle(context, event)
         except BaseException:
@@ -135,12 +136,12 @@ class PALPATE_OT_press(bpy.types.Operator):
         self.report({"INFO"}, f"Kept as shape key '{self._session.kept_name}'")
         return {"FINISHED"}
 
-    def cancel(self, context):
+    def cancel(self, context: bpy.types.Context) -> None:
         """Blender ends the operator: another file, unregister, or exit."""
         press_session.give_way("")
         self._leave(context)
 
-    def _handle(self, context, event):
+    def _handle(self, context: bpy.types.Context, event: bpy.types.Event) -> bool:
         """Act on an event; True if Blender shall have it too."""
         session = self._session
         if event.type == "TIMER":
@@ -165,14 +166,14 @@ class PALPATE_OT_press(bpy.types.Operator):
             self._set_down(here, event)
         return False
 
-    def _is_navigation(self, event, here):
+    def _is_navigation(self, event: bpy.types.Event, here: Viewport) -> bool:
         if event.type in NAVIGATION or event.type.startswith("NDOF"):
             return True
         if event.type != "LEFTMOUSE":
             return event.type in {"MOUSEMOVE", "INBETWEEN_MOUSEMOVE"}
         return event.alt or here.over_gizmos()
 
-    def _set_down(self, here, event):
+    def _set_down(self, here: Viewport, event: bpy.types.Event) -> None:
         session = self._session
         if session.state.source is not Source.POINTER:
             return
@@ -202,7 +203,7 @@ class PALPATE_OT_press(bpy.types.Operator):
         self._drag = self._drag.dragged(here.cursor, _pressure(event))
         session.post(SetDown(_tuple(point + SET_DOWN_HEIGHT * drawn.size * normal)))
 
-    def _follow(self, event):
+    def _follow(self, event: bpy.types.Event) -> None:
         if event.type == "LEFTMOUSE" and event.value == "RELEASE":
             self._session.post(Release())
             return
@@ -217,13 +218,13 @@ class PALPATE_OT_press(bpy.types.Operator):
             return
         self._session.post(Move(_tuple(self._drag.target)))
 
-    def _show(self, context):
+    def _show(self, context: bpy.types.Context) -> None:
         status = f"Palpate: {STATUS.get(self._session.state.phase, '')}"
         if status != self._status:
             self._status = status
             context.workspace.status_text_set(status)
 
-    def _leave(self, context):
+    def _leave(self, context: bpy.types.Context) -> None:
         if self._timer is not None:
             context.window_manager.event_timer_remove(self._timer)
             self._timer = None
@@ -232,11 +233,11 @@ class PALPATE_OT_press(bpy.types.Operator):
         redraw_sidebars(context)
 
 
-def _pressure(event):
+def _pressure(event: bpy.types.Event) -> float:
     return event.pressure if event.is_tablet else 0.0
 
 
-def _tuple(vector):
+def _tuple(vector: NDArray[np.float64]) -> Point:
     x, y, z = vector.tolist()
     return (x, y, z)
 

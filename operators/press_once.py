@@ -1,4 +1,4 @@
-"""One press without pointer, device or clock: for scripts, the command line and background Blender."""
+"""One press without pointer, device or clock: for scripts, command line and background Blender."""
 
 from __future__ import annotations
 

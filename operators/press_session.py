@@ -6,6 +6,7 @@ zero force and the mesh is as it was found.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import bpy
@@ -146,7 +147,7 @@ class PressSession:
             raise RuntimeError("the press has no servo; it was not started")
         return self.servo
 
-    def _with_object(self, act) -> None:
+    def _with_object(self, act: Callable[[bpy.types.Object], object]) -> None:
         thing = self.handle.find()
         if thing is not None:
             act(thing)

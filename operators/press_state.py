@@ -199,7 +199,7 @@ Effect = (
 Step = tuple[PressState, tuple[Effect, ...]]
 
 
-def transition(state: PressState, event: Event) -> Step:
+def transition(state: PressState, event: Event) -> Step:  # noqa: PLR0911  a case a line
     """The state after ``event`` and what must be done, in order. Unfit events change nothing."""
     if isinstance(event, Start):
         return _start(state, event)
@@ -232,7 +232,7 @@ def _start(state: PressState, event: Start) -> Step:
 
 def _pointer(state: PressState, event: SetDown | Move | Release) -> Step:
     match state.phase, event:
-        case (Phase.READY | Phase.HOLDING), SetDown(point):
+        case ((Phase.READY | Phase.HOLDING), SetDown(point)):
             return replace(state, phase=Phase.DRAGGING, message=""), (PlaceProbe(point),)
         case Phase.DRAGGING, Move(point):
             return state, (MoveProbe(point),)

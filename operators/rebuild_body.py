@@ -1,4 +1,4 @@
-"""Rebuild Body: the same body again from the tetrahedra in the .blend, or with new pins and ratio."""
+"""Rebuild Body: the body again from the tetrahedra in the .blend, also with new pins and ratio."""
 
 import bpy
 
@@ -16,7 +16,7 @@ class PALPATE_OT_rebuild_body(BakingOperator, bpy.types.Operator):
     rebuild = True
 
     @classmethod
-    def poll(cls, context):
+    def poll(cls, context: bpy.types.Context) -> bool:
         if not super().poll(context):
             return False
         if not context.object.palpate.body_key:

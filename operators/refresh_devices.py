@@ -8,7 +8,7 @@ from ..core.errors import PalpateError
 _ports: list[tuple[str, str]] = []
 
 
-def known_ports():
+def known_ports() -> list[tuple[str, str]]:
     """Ports found last, as (path, description)."""
     return list(_ports)
 
@@ -18,7 +18,7 @@ class PALPATE_OT_refresh_devices(bpy.types.Operator):
     bl_label = "Refresh Devices"
     bl_description = "Look for serial ports again"
 
-    def execute(self, context):
+    def execute(self, context: bpy.types.Context) -> set[str]:
         try:
             found = list_ports()
         except PalpateError as problem:

@@ -13,7 +13,7 @@ class PALPATE_OT_remove_softness(bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     @classmethod
-    def poll(cls, context):
+    def poll(cls, context: bpy.types.Context) -> bool:
         reason = soft_object.refusal(context.object)
         if not reason and not context.object.palpate.body_key:
             reason = f"{context.object.name} is not soft"
@@ -23,7 +23,7 @@ class PALPATE_OT_remove_softness(bpy.types.Operator):
             cls.poll_message_set(reason)
         return not reason
 
-    def execute(self, context):
+    def execute(self, context: bpy.types.Context) -> set[str]:
         try:
             body_store.forget(context.object)
         except PalpateError as problem:

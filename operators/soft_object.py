@@ -22,14 +22,14 @@ class Fit(Enum):
 
 @dataclass(frozen=True)
 class BodyStatus:
-    """``text`` says why; ``notes`` are settings changed since the bake that it does not have yet."""
+    """``text`` says why; ``notes`` are settings changed since the bake, not in the body yet."""
 
     fit: Fit
     text: str = ""
     notes: tuple[str, ...] = ()
 
 
-def refusal(thing: bpy.types.Object | None) -> str:
+def refusal(thing: bpy.types.Object | None) -> str:  # noqa: PLR0911  one reason a line
     """Why this object cannot be made soft or pressed at all; empty if it can."""
     if thing is None:
         return "Select a mesh object"

@@ -1,4 +1,4 @@
-"""Save, reopen, press again; and what happens to bodies that are missing, damaged or of another shape."""
+"""Save, reopen, press again; and bodies that are missing, damaged or of another shape."""
 
 from __future__ import annotations
 

@@ -46,8 +46,10 @@ def test_bake_saves_a_file_that_can_be_pressed(command, scene, capfd):
         (["bake", "{scene}", "--object", "Nobody"], "Prop"),
         (["bake", "{scene}", "--object", "Prop", "--poisson", "0.7"], "out of range"),
         (["bake", "{scene}", "--object", "Prop", "--pin-group", "None"], "vertex group"),
-        (["press", "{scene}", "--object", "Prop", "--at", "0", "0", "0", "--by", "0", "0", "1"],
-         "not soft"),
+        (
+            ["press", "{scene}", "--object", "Prop", "--at", "0", "0", "0", "--by", "0", "0", "1"],
+            "not soft",
+        ),
         (["press", "{scene}", "--object", "Prop"], "--at"),
         (["squeeze"], "squeeze"),
     ],

@@ -45,7 +45,9 @@ def test_suzanne_with_an_ngon_and_open_seams_becomes_soft(palpate):
     first = form.faces[100]
     beside = next(face for face in first.edges[0].link_faces if face != first)
     bmesh.ops.dissolve_faces(form, faces=[first, beside])
-    bmesh.ops.split_edges(form, edges=[edge for edge in form.edges if edge.calc_face_angle(0) > 0.9])
+    bmesh.ops.split_edges(
+        form, edges=[edge for edge in form.edges if edge.calc_face_angle(0) > 0.9]
+    )
     form.to_mesh(thing.data)
     form.free()
     assert max(len(polygon.vertices) for polygon in thing.data.polygons) > 4
@@ -57,7 +59,13 @@ def test_suzanne_with_an_ngon_and_open_seams_becomes_soft(palpate):
 
 @pytest.mark.parametrize(
     ("scale", "unit"),
-    [((1, 1, 1), 1.0), ((0.5, 2.0, 1.0), 1.0), ((-1, 1, 1), 1.0), ((2, -0.5, 1), 1.0), ((1,) * 3, 0.01)],
+    [
+        ((1, 1, 1), 1.0),
+        ((0.5, 2.0, 1.0), 1.0),
+        ((-1, 1, 1), 1.0),
+        ((2, -0.5, 1), 1.0),
+        ((1,) * 3, 0.01),
+    ],
 )
 def test_a_body_is_as_large_as_it_looks_whatever_the_scale(palpate, scale, unit):
     bpy.context.scene.unit_settings.scale_length = unit
@@ -244,3 +252,7 @@ def test_a_preset_sets_the_material(palpate):
     thing.palpate.material = "RUBBER"
     assert np.isclose(thing.palpate.young_modulus, 2.5e6)
     assert np.isclose(thing.palpate.poisson_ratio, 0.49)
+    assert thing.palpate.material == "RUBBER"
+    thing.palpate.young_modulus *= 2
+    assert thing.palpate.material == "CUSTOM"
+    assert np.isclose(thing.palpate.young_modulus, 5e6)

@@ -285,9 +285,7 @@ def test_the_simulated_device_presses_is_unplugged_and_comes_back(sessions, stat
     wait(session, lambda: np.linalg.norm(session.snapshot.output_force) > 0.01)
     session.simulated.unplug()
     wait(session, lambda: session.state.phase is states.Phase.LOST)
-    assert np.array_equal(
-        key_coordinates(thing, "Palpate live"), key_coordinates(thing, "Basis")
-    )
+    assert np.array_equal(key_coordinates(thing, "Palpate live"), key_coordinates(thing, "Basis"))
     assert not np.any(session.snapshot.output_force)
     assert "plug" in session.state.message
     session.simulated.plug_in()
