@@ -122,7 +122,7 @@ build/reports:
 lint: $(VENV)/.servo-installed build/typing/palpate | build/reports ## linters, formatters and types
 	$(CARGO) fmt --check --manifest-path native/Cargo.toml
 	$(CARGO) clippy --quiet $(CRATE) --all-targets --all-features -- -D warnings
-	$(BIN)/ruff check --quiet .
+	$(BIN)/ruff check --quiet --output-format concise .
 	$(BIN)/ruff format --check --quiet .
 	$(BIN)/mypy $(REPORT)
 	$(BIN)/mypy release/*.py
