@@ -5,13 +5,13 @@ new. Anything with three numbers (list, numpy array, mathutils.Vector) serves as
 """
 
 from collections.abc import Sequence
-from typing import Any, Self, TypedDict, final
+from typing import Any, Self, TypeAlias, TypedDict, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-_Vector = Sequence[float] | NDArray[np.floating[Any]]
-_Matrix = Sequence[_Vector] | NDArray[np.floating[Any]]
+_Vector: TypeAlias = Sequence[float] | NDArray[np.floating[Any]]
+_Matrix: TypeAlias = Sequence[_Vector] | NDArray[np.floating[Any]]
 
 class Lateness(TypedDict):
     """Time from the deadline to the waking, us; percentiles to 3 %."""

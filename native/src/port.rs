@@ -90,6 +90,16 @@ mod on_unix {
         }
     }
 
+    impl Drop for SerialWire {
+        /// Gives the terminal back: its exclusive mode outlasts this descriptor for as long as
+        /// somebody else, such as a device behind a pseudo-terminal, keeps it open.
+        fn drop(&mut self) {
+            // SAFETY: the descriptor is open until `port` is dropped after this.
+            // An unplugged terminal has no mode to give back, so a failure means nothing.
+            let _ = unsafe { libc::ioctl(self.port.as_raw_fd(), libc::TIOCNXCL) };
+        }
+    }
+
     fn count(result: isize) -> io::Result<usize> {
         usize::try_from(result).map_err(|_| io::Error::last_os_error())
     }

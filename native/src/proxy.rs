@@ -4,8 +4,8 @@
 //! Touching, the proxy is held *combinatorially* on a triangle, an edge or a node and walks to the
 //! point of the surface that is locally nearest to the device. Around the proxy the surface is a
 //! cone; the nearest feature of that cone to the device tells both the way down and, by its
-//! pseudonormal, whether the device is on the free side. No distance tolerance decides anything,
-//! so there is none to fall through.
+//! pseudonormal, whether the device is on the free side. Signs decide, not distances; the few
+//! tolerances below only name what rounding cannot tell apart (on an edge, on the surface).
 
 mod walk;
 

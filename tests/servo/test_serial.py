@@ -1,8 +1,10 @@
 """The servo with a device on a pseudo-terminal; the device is written here, from the design."""
 
 import contextlib
+import fcntl
 import os
 import struct
+import sys
 import threading
 import time
 import tty
@@ -308,3 +310,18 @@ def test_a_port_that_is_not_there_is_said_so(servo, tmp_path):
     with pytest.raises(ValueError, match="orthonormal"):
         servo.start_serial(str(tmp_path / "nowhere"), rotation=np.ones((3, 3)))
     assert not servo.running
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="asks the Linux kernel for the mode")
+def test_a_stopped_servo_gives_the_terminal_back(servo):
+    """Else an ordinary user could not press again while the device keeps its end open."""
+    is_exclusive = 0x80045440  # TIOCGEXCL
+    master, slave = os.openpty()
+    try:
+        servo.start_serial(os.ttyname(slave))
+        assert fcntl.ioctl(slave, is_exclusive, b"\0\0\0\0") == b"\1\0\0\0"
+        servo.stop()
+        assert fcntl.ioctl(slave, is_exclusive, b"\0\0\0\0") == b"\0\0\0\0"
+    finally:
+        os.close(master)
+        os.close(slave)
