@@ -4,8 +4,6 @@ Started with ``blender -c`` Blender has read preferences and extensions but no f
 0, or 2 with one line on standard error and nothing written.
 """
 
-# ruff: noqa: T201  printing is what a command does
-
 import argparse
 import json
 import sys

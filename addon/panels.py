@@ -111,6 +111,7 @@ def _draw_status(
     elif status.fit is Fit.FILE_MISSING:
         _say(layout, context, "The body file is missing; Rebuild Body makes it again", "ERROR")
     else:
+        # As it begins a line, so that it is found in the dictionary.
         _say(layout, context, status.text[:1].upper() + status.text[1:], "ERROR")
         _say(layout, context, "Press Make Soft Again", "BLANK1")
     for note in status.notes:

@@ -58,7 +58,7 @@ class PalpatePreferences(bpy.types.AddonPreferences):
     )
     arrow_pixels: bpy.props.FloatProperty(
         name="Arrow Length",
-        description="Length of the force arrow at the largest force",
+        description="Length of the arrow for large forces; half of it at 0.3 N",
         default=160.0,
         min=20.0,
         max=600.0,

@@ -8,7 +8,7 @@ import bpy
 from ..core.materials import MATERIALS
 from ..operators import refresh_devices
 
-# Longest state line of a settled enum: identifiers must never change, files hold their numbers.
+# Files hold the numbers of these items: add new ones at the end only.
 CUSTOM = "CUSTOM"
 MATERIAL_ITEMS = [
     *(

@@ -2,14 +2,22 @@
 
 import bpy
 
-DOMAIN = __package__
+from .german import WORDS as GERMAN
+from .japanese import WORDS as JAPANESE
 
-WORDS: dict[str, dict[tuple[str, str], str]] = {}
+DOMAIN = __package__
+LANGUAGES = {"de_DE": GERMAN, "de": GERMAN, "ja_JP": JAPANESE, "ja": JAPANESE}
+# Blender looks up labels of operators in a context of their own.
+CONTEXTS = ("*", "Operator")
 
 
 def register() -> None:
     """Add the dictionary."""
-    bpy.app.translations.register(DOMAIN, WORDS)
+    words = {
+        language: {(context, text): said for context in CONTEXTS for text, said in known.items()}
+        for language, known in LANGUAGES.items()
+    }
+    bpy.app.translations.register(DOMAIN, words)
 
 
 def unregister() -> None:

@@ -199,7 +199,7 @@ Effect = (
 Step = tuple[PressState, tuple[Effect, ...]]
 
 
-def transition(state: PressState, event: Event) -> Step:  # noqa: PLR0911  a case a line
+def transition(state: PressState, event: Event) -> Step:
     """The state after ``event`` and what must be done, in order. Unfit events change nothing."""
     if isinstance(event, Start):
         return _start(state, event)

@@ -29,7 +29,7 @@ class BodyStatus:
     notes: tuple[str, ...] = ()
 
 
-def refusal(thing: bpy.types.Object | None) -> str:  # noqa: PLR0911  one reason a line
+def refusal(thing: bpy.types.Object | None) -> str:
     """Why this object cannot be made soft or pressed at all; empty if it can."""
     if thing is None:
         return "Select a mesh object"

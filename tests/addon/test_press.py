@@ -311,3 +311,25 @@ def test_an_empty_places_the_device(sessions, states):
     assert np.allclose(body.world_from_body(mapped), expected, atol=1e-6)
     assert np.allclose(frame.device_from_body(mapped), device)
     select(thing)
+
+
+def test_bounding_box_and_normals_follow_each_frame(palpate):
+    """Blender 5.0 leaves both stale after bulk writes in some places."""
+    thing = soft_cube()
+    live = part("operators.live_shape")
+    live.hang(thing)
+    rest = part("operators.drawn_surface").rest_coordinates(thing.data).reshape(-1, 3)
+    graph = bpy.context.evaluated_depsgraph_get()
+    for factor in (1.5, 2.0):
+        live.write(thing.data, (rest * [1, 1, factor]).astype(np.float32).ravel())
+        bpy.context.view_layer.update()
+        seen = thing.evaluated_get(graph)
+        assert np.isclose(np.array(seen.bound_box)[:, 2].max(), 0.025 * factor)
+    live.write(thing.data, (rest + rest[:, [2, 0, 1]] * [0, 0, 0.5]).astype(np.float32).ravel())
+    bpy.context.view_layer.update()
+    seen = thing.evaluated_get(graph).data
+    fresh = seen.copy()
+    fresh.update()
+    for polygon, again in zip(seen.polygons, fresh.polygons, strict=True):
+        assert np.allclose(polygon.normal, again.normal)
+    live.remove(thing)

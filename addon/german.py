@@ -1,0 +1,222 @@
+"""The interface in German."""
+
+WORDS = {
+    # Panel
+    "Pins": "Fixierung",
+    "Device": "Gerät",
+    "Bake": "Berechnung",
+    "Make Soft": "Weich machen",
+    "Make Soft Again": "Neu weich machen",
+    "Rebuild Body": "Körper neu berechnen",
+    "Press": "Drücken",
+    "Cancel": "Abbrechen",
+    "Make Pin Group": "Fixiergruppe anlegen",
+    "Refresh Devices": "Geräte neu suchen",
+    "Remove Softness": "Weichheit entfernen",
+    "Choose a material and pins, then press Make Soft": (
+        "Material und Fixierung wählen, dann „Weich machen“ drücken"
+    ),
+    "Ready to press": "Bereit zum Drücken",
+    "The body file is missing; Rebuild Body makes it again": (
+        "Die Körperdatei fehlt; „Körper neu berechnen“ erzeugt sie wieder"
+    ),
+    "Press Make Soft Again": "„Neu weich machen“ drücken",
+    "Rebuild Body takes them over": "„Körper neu berechnen“ übernimmt das",
+    "Pins changed since the bake": "Fixierung seit der Berechnung geändert",
+    "Poisson's ratio changed since the bake": "Querkontraktionszahl seit der Berechnung geändert",
+    "The body file is missing": "Die Körperdatei fehlt",
+    "The faces are connected differently than when it was baked": (
+        "Die Flächen hängen anders zusammen als bei der Berechnung"
+    ),
+    "The object's scale or the scene's unit scale changed since the bake": (
+        "Skalierung des Objekts oder Einheit der Szene hat sich seit der Berechnung geändert"
+    ),
+    "The shape was edited since the bake": "Die Form wurde seit der Berechnung bearbeitet",
+    "Enter keeps the shape, Escape restores it": (
+        "Eingabe behält die Form, Escape stellt sie wieder her"
+    ),
+    "There is no such vertex group": "Diese Vertexgruppe gibt es nicht",
+    "Only the base mesh is baked: apply the Mirror modifier first": (
+        "Nur das Grundnetz wird berechnet: zuerst den Spiegeln-Modifikator anwenden"
+    ),
+    "Nodes": "Knoten",
+    "Tetrahedra": "Tetraeder",
+    "Free Surface Nodes": "Freie Oberflächenknoten",
+    "Memory": "Speicher",
+    "Bake Time": "Rechenzeit",
+    "Young's (Pa)": "E-Modul (Pa)",
+    "Select a mesh object": "Ein Netzobjekt auswählen",
+    # View
+    "Press on the surface and drag": "Auf die Oberfläche drücken und ziehen",
+    "Pressing": "Drücken",
+    "Held: look around, keep it, or press elsewhere": (
+        "Gehalten: umsehen, behalten oder anderswo drücken"
+    ),
+    "The device presses": "Das Gerät drückt",
+    "Device away": "Gerät fehlt",
+    "Esc  Leave": "Esc  Verlassen",
+    "Wheel  Deeper": "Rad  Tiefer",
+    "Enter  Keep shape      Esc  Restore": "Eingabe  Form behalten      Esc  Wiederherstellen",
+    "The device gives": "Das Gerät gibt",
+    "The device is unplugged; plug it in again and pressing goes on": (
+        "Das Gerät ist abgezogen; wieder anstecken, dann geht es weiter"
+    ),
+    "The device is silent; check its cable and power, pressing goes on when it speaks": (
+        "Das Gerät schweigt; Kabel und Strom prüfen, es geht weiter, sobald es antwortet"
+    ),
+    "The device moved too fast and was let go; hold still and pressing goes on": (
+        "Das Gerät war zu schnell und wurde losgelassen; stillhalten, dann geht es weiter"
+    ),
+    "The device sent a position that is no number; pressing goes on when it recovers": (
+        "Das Gerät meldete eine ungültige Position; es geht weiter, sobald es sich erholt"
+    ),
+    "The device speaks another version of the link; update its firmware": (
+        "Das Gerät spricht eine andere Protokollversion; seine Firmware aktualisieren"
+    ),
+    "The device reports a fault of its own; see its manual, or plug it in again": (
+        "Das Gerät meldet einen eigenen Fehler; siehe Handbuch, oder neu anstecken"
+    ),
+    "The force loop has failed; leave with Escape and press again": (
+        "Die Kraftschleife ist ausgefallen; mit Escape verlassen und erneut drücken"
+    ),
+    "Nothing is pressed yet, so there is no shape to keep": (
+        "Noch ist nichts eingedrückt, also gibt es keine Form zu behalten"
+    ),
+    # Properties
+    "A usual soft material, as a start": "Ein übliches weiches Material als Anfang",
+    "Plush toy": "Plüschtier",
+    "Jelly": "Gelee",
+    "Soft cube of the paper": "Weicher Würfel des Aufsatzes",
+    "Upholstery foam": "Polsterschaum",
+    "Soft silicone (Shore 00-30)": "Weiches Silikon (Shore 00-30)",
+    "Firm silicone (Shore A 20)": "Festes Silikon (Shore A 20)",
+    "Rubber (Shore A 50)": "Gummi (Shore A 50)",
+    "Custom": "Eigenes",
+    "Young's modulus and Poisson's ratio as set below": (
+        "Elastizitätsmodul und Querkontraktionszahl wie unten eingestellt"
+    ),
+    "Young's Modulus": "Elastizitätsmodul",
+    "Stiffness in pascal. Takes effect at once, without a new bake": (
+        "Steifigkeit in Pascal. Wirkt sofort, ohne neue Berechnung"
+    ),
+    "Poisson's Ratio": "Querkontraktion",
+    "How much it bulges sideways: 0 like cork, near 0.5 like rubber or water. Needs Rebuild Body": (
+        "Wie stark es seitlich ausweicht: 0 wie Kork, nahe 0,5 wie Gummi oder Wasser. "
+        "Braucht „Körper neu berechnen“"
+    ),
+    "Pin": "Fixieren",
+    "Which part never moves": "Welcher Teil sich nie bewegt",
+    "Below Height": "Unter Höhe",
+    "Everything in the lowest part of the object, as it stands": (
+        "Alles im untersten Teil des Objekts, wie es steht"
+    ),
+    "Vertices with a weight of 0.5 or more": "Vertices mit einem Gewicht ab 0,5",
+    "Share of the object's height in world Z below which it is pinned": (
+        "Anteil der Höhe in Welt-Z, unter dem das Objekt fixiert ist"
+    ),
+    "Share of the object's height in world Z below which vertices are pinned": (
+        "Anteil der Höhe in Welt-Z, unter dem Vertices fixiert sind"
+    ),
+    "Vertex group that is pinned": "Vertexgruppe, die fixiert ist",
+    "Edge Length": "Kantenlänge",
+    "Wanted edge length of the tetrahedra, as a share of the object's diagonal. "
+    "Half the length: about eight times the nodes": (
+        "Gewünschte Kantenlänge der Tetraeder als Anteil der Diagonale. "
+        "Halbe Länge: etwa achtmal so viele Knoten"
+    ),
+    "Tolerance": "Toleranz",
+    "How far the body may stray from the mesh, as a share of the diagonal. Smaller takes longer": (
+        "Wie weit der Körper vom Netz abweichen darf, als Anteil der Diagonale. "
+        "Kleiner dauert länger"
+    ),
+    "Simplify Above": "Vereinfachen über",
+    "Denser meshes are simplified to this many triangles before the bake. "
+    "What you see stays as dense as it is": (
+        "Dichtere Netze werden vorher auf so viele Dreiecke vereinfacht. "
+        "Das Sichtbare bleibt, wie es ist"
+    ),
+    "Time Limit": "Zeitgrenze",
+    "Give up filling with tetrahedra after this many seconds": (
+        "Das Füllen mit Tetraedern nach so vielen Sekunden aufgeben"
+    ),
+    "Press With": "Drücken mit",
+    "Who moves the probe": "Wer den Taster bewegt",
+    "Pointer": "Zeiger",
+    "Mouse, pen or trackpad press on the surface": "Maus, Stift oder Trackpad drücken",
+    "Simulated Device": "Simuliertes Gerät",
+    "A program that behaves like a haptic device": "Ein Programm, das ein Gerät nachahmt",
+    "Serial Device": "Serielles Gerät",
+    "A haptic device on a serial port": "Ein haptisches Gerät an einer seriellen Schnittstelle",
+    "Serial port of the device: one from the list, or a path typed in": (
+        "Schnittstelle des Geräts: aus der Liste oder als Pfad eingegeben"
+    ),
+    "Device Frame": "Gerätelage",
+    "Empty that says where the device's origin and axes are. Without one they are the object's": (
+        "Empty, das Ursprung und Achsen des Geräts angibt. Ohne sind es die des Objekts"
+    ),
+    "Motion Scale": "Wegfaktor",
+    "How far the probe moves per movement of the device": (
+        "Wie weit sich der Taster je Bewegung des Geräts bewegt"
+    ),
+    # Preferences
+    "What new files press with": "Womit in neuen Dateien gedrückt wird",
+    "Largest Force": "Größte Kraft",
+    "A device never gives more than this, in newtons, nor more than it says itself": (
+        "Mehr gibt ein Gerät nie, in Newton, und nie mehr als es selbst angibt"
+    ),
+    "Pointer Sensitivity": "Empfindlichkeit",
+    "How deep a drag presses: 1 follows the pointer": (
+        "Wie tief das Ziehen drückt: 1 folgt dem Zeiger"
+    ),
+    "Body Folder": "Körperordner",
+    "Where bodies of files not yet saved are kept. Empty: the extension's own user folder": (
+        "Wo Körper ungespeicherter Dateien liegen. Leer: der eigene Ordner der Erweiterung"
+    ),
+    "Probe": "Taster",
+    "Contact": "Berührung",
+    "Force": "Kraft",
+    "Probe Size": "Tastergröße",
+    "Radius of the probe on the screen": "Halbmesser des Tasters auf dem Bildschirm",
+    "Arrow Length": "Pfeillänge",
+    "Length of the arrow for large forces; half of it at 0.3 N": (
+        "Länge des Pfeils bei großen Kräften; die Hälfte bei 0,3 N"
+    ),
+    "Files": "Dateien",
+    "In the View": "In der Ansicht",
+    # Operators
+    "Stop the bake; nothing is changed and nothing is left": (
+        "Die Berechnung beenden; nichts wird geändert, nichts bleibt zurück"
+    ),
+    "Fill the mesh with tetrahedra and compute how it gives way; "
+    "the mesh itself stays as it is. Escape cancels": (
+        "Das Netz mit Tetraedern füllen und berechnen, wie es nachgibt; "
+        "das Netz selbst bleibt. Escape bricht ab"
+    ),
+    "Put all vertices below this share of the object's height, as it stands now, "
+    "into the vertex group Pinned": (
+        "Alle Vertices unter diesem Anteil der Höhe, wie es jetzt steht, "
+        "in die Vertexgruppe Pinned aufnehmen"
+    ),
+    "Press the soft object with the pointer or a device. Enter keeps the shape, "
+    "Escape restores it. From scripts: EXEC_DEFAULT with at and by": (
+        "Das weiche Objekt mit Zeiger oder Gerät drücken. Eingabe behält die Form, "
+        "Escape stellt sie wieder her. Aus Skripten: EXEC_DEFAULT mit at und by"
+    ),
+    "At": "Ort",
+    "The surface point nearest to this is touched, world coordinates": (
+        "Der nächste Oberflächenpunkt wird berührt, Weltkoordinaten"
+    ),
+    "By": "Weg",
+    "How far it is moved, world axes": "Wie weit er bewegt wird, Weltachsen",
+    "Keep": "Behalten",
+    "Keep the shape as a shape key": "Die Form als Formschlüssel behalten",
+    "Compute the body again from the tetrahedra stored in this file, with the pins and "
+    "Poisson's ratio set now. For a body file that is missing or damaged": (
+        "Den Körper aus den Tetraedern dieser Datei neu berechnen, mit jetziger Fixierung und "
+        "Querkontraktion. Für eine fehlende oder beschädigte Körperdatei"
+    ),
+    "Look for serial ports again": "Erneut nach Schnittstellen suchen",
+    "Delete the body and its file. Mesh, pins and kept shapes stay": (
+        "Körper und Datei löschen. Netz, Fixierung und behaltene Formen bleiben"
+    ),
+}
