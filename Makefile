@@ -43,7 +43,7 @@ EXTENSION_SOURCES := __init__.py LICENSE blender_manifest.toml \
 
 .PHONY: help
 help: ## this list
-	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 22
+	@sed -nE 's/^([a-z-]+):.*## (.*)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 22
 
 # ---------------------------------------------------------------------------------------- setup
 
@@ -154,8 +154,8 @@ demo: $(VENV)/.servo-installed build/packages/.made ## the main job on a plush m
 	  --package build/packages/palpate-[0-9]*.zip --output build/demo
 
 .PHONY: bench
-bench: $(VENV)/.servo-installed ## how long things take here; see build/bench.json
-	$(BIN)/python benchmarks/measure.py --output build/bench.json
+bench: $(VENV)/.servo-installed | build/reports ## how long things take on this machine; see build/reports/bench.txt
+	for script in benchmarks/*.py; do $(BIN)/python "$$script"; done $(REPORT)
 
 # ------------------------------------------------------------------------------------------ rest
 
