@@ -127,14 +127,10 @@ class Proxy:
     def restart(self, position: _Vector) -> None:
         """Set down at a position; inside the body nothing is felt until it was outside once."""
 
-    def move(
-        self, device: _Vector
-    ) -> tuple[bool, NDArray[np.float64], int, NDArray[np.float64]]:
+    def move(self, device: _Vector) -> tuple[bool, NDArray[np.float64], int, NDArray[np.float64]]:
         """Follow the device: touching, position (3,), triangle (-1 if free), alpha (3,)."""
 
-    def follow_path(
-        self, devices: ArrayLike
-    ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    def follow_path(self, devices: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
         """Follow devices (k, 3) in turn: positions (k, 3) and triangles (k,), -1 where free."""
 
     @property
