@@ -116,11 +116,12 @@ def bake(
     if isinstance(source, Surface):
         with _timed(seconds, "tetrahedralize"):
             progress("tetrahedralize", None)
-            shell = decimate(source.welded(), settings.decimate_above)
+            welded = source.welded()
+            shell = decimate(welded, settings.decimate_above)
             mesh = tetrahedralize(shell, settings.edge_length, settings.epsilon)
         with _timed(seconds, "check"):
             progress("check", 0.5)
-            fit = check_fit(mesh, source, shell)
+            fit = check_fit(mesh, welded, shell)
         surface = source
     else:
         mesh = source

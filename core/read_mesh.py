@@ -23,17 +23,14 @@ def read_surface(path: Path, metres_per_unit: float = 1.0) -> Surface:
     PalpateError
         No such file, an unknown kind, contents that cannot be read or cannot become a solid.
     """
-    import trimesh
-
     _refuse_missing(path)
+    read = _read_ply if path.suffix.lower() == ".ply" else _read_obj_or_stl
     try:
-        mesh = trimesh.load_mesh(path, process=False)
-    except Exception as problem:  # trimesh raises many kinds for a damaged file; all mean the same
+        vertices, triangles = read(path)
+    except Exception as problem:  # readers raise many kinds for a damaged file; all mean the same
         raise PalpateError(
             f"{path}: cannot be read as {path.suffix[1:]} ({problem}); export it again"
         ) from problem
-    vertices = np.asarray(getattr(mesh, "vertices", np.empty((0, 3))), dtype=np.float64)
-    triangles = np.asarray(getattr(mesh, "faces", np.empty((0, 3))), dtype=np.int64)
     try:
         return Surface.checked(vertices * metres_per_unit, triangles)
     except PalpateError as problem:
@@ -69,6 +66,32 @@ def read_tets(path: Path, metres_per_unit: float = 1.0) -> tuple[TetMesh, NDArra
         raise PalpateError(f"{path}: {problem}") from problem
     fixed = arrays.get("fixed")
     return mesh, None if fixed is None else fixed.astype(np.int64)
+
+
+def _read_obj_or_stl(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    import trimesh
+
+    materials = {"skip_materials": True} if path.suffix.lower() == ".obj" else {}
+    mesh = trimesh.load_mesh(path, process=False, **materials)
+    return np.asarray(mesh.vertices, dtype=np.float64), np.asarray(mesh.faces, dtype=np.int64)
+
+
+def _read_ply(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Read with plyfile, which takes files that mix triangles, quads and larger polygons."""
+    from plyfile import PlyData
+
+    data = PlyData.read(path)
+    vertex = data["vertex"]
+    vertices = np.column_stack([vertex[axis] for axis in "xyz"]).astype(np.float64)
+    polygons = data["face"].data[data["face"].data.dtype.names[0]] if "face" in data else []
+    fans = [_fan(np.asarray(polygon, dtype=np.int64)) for polygon in polygons]
+    return vertices, np.concatenate(fans) if fans else np.empty((0, 3), dtype=np.int64)
+
+
+def _fan(polygon: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Triangles (k - 2, 3) of a polygon of k corners."""
+    first = np.repeat(polygon[:1], len(polygon) - 2)
+    return np.column_stack([first, polygon[1:-1], polygon[2:]])
 
 
 def _refuse_missing(path: Path) -> None:

@@ -79,8 +79,8 @@ def tetrahedralize(surface: Surface, edge_length: float, epsilon: float) -> TetM
 def check_fit(mesh: TetMesh, surface: Surface, shell: Surface) -> Fit:
     """Compare a body with the ``surface`` it was made from.
 
-    ``shell`` is the same surface welded and decimated, as it was handed to fTetWild; the volume is
-    taken from it.
+    ``shell`` is the same surface decimated, as it was handed to fTetWild; the volume is taken
+    from it.
 
     Raises
     ------

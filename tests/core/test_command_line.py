@@ -89,6 +89,38 @@ def test_an_obj_with_polygons_is_triangulated(tmp_path, capsys):
     assert json.loads(printed)["volume_m3"] == pytest.approx(1, rel=0.02)
 
 
+def test_a_ply_that_mixes_polygons_is_read_as_blender_writes_it(tmp_path, capsys):
+    """A house: four walls and a floor of four corners, two gables of three, two roof sides."""
+    corners = [
+        (0, 0, 0),
+        (1, 0, 0),
+        (1, 1, 0),
+        (0, 1, 0),
+        (0, 0, 1),
+        (1, 0, 1),
+        (1, 1, 1),
+        (0, 1, 1),
+    ]
+    corners += [(0.5, 0, 1.5), (0.5, 1, 1.5)]
+    faces = [(0, 3, 2, 1), (0, 1, 5, 8, 4), (2, 3, 7, 9, 6), (1, 2, 6, 5), (3, 0, 4, 7)]
+    faces += [(4, 8, 9, 7), (5, 6, 9), (5, 9, 8)]
+    header = (
+        "ply\nformat binary_little_endian 1.0\nelement vertex 10\nproperty float x\n"
+        f"property float y\nproperty float z\nelement face {len(faces)}\n"
+        "property list uchar uint vertex_indices\nend_header\n"
+    )
+    content = header.encode() + np.array(corners, dtype="<f4").tobytes()
+    for face in faces:
+        content += bytes([len(face)]) + np.array(face, dtype="<u4").tobytes()
+    (tmp_path / "house.ply").write_bytes(content)
+    status, printed, _ = palpate(
+        capsys, "bake", tmp_path / "house.ply", "-o", tmp_path / "b.npz",
+        "--edge-length", 0.3, "--json",
+    )  # fmt: skip
+    assert status == 0
+    assert json.loads(printed)["volume_m3"] == pytest.approx(1.25, rel=0.02)
+
+
 def test_press_reads_the_force_and_writes_displacements(cube_file, tmp_path, capsys, cube):
     out = tmp_path / "u.npy"
     status, printed, _ = palpate(
