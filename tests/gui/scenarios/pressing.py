@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -123,7 +124,7 @@ def opening_another_file_while_pressing_ends_the_press(stage: Stage) -> Wait:
     yield from _press(stage)
     yield from _drag_in(stage)
     servo = press_session.current().servo
-    stage.open_scene(SCENE)
+    stage.open_scene(_own_copy(stage))
     yield 0.5
     assert press_session.current() is None
     assert not servo.running
@@ -234,7 +235,7 @@ def _depth() -> float:
 
 def _open_mouse(stage: Stage) -> Wait:
     """Open the mouse with its body there, the sidebar at Palpate."""
-    stage.open_scene(SCENE)
+    stage.open_scene(_own_copy(stage))
     yield 0.5
     yield from stage.open_sidebar("Palpate")
     bpy.context.view_layer.objects.active = _mouse()
@@ -244,6 +245,15 @@ def _open_mouse(stage: Stage) -> Wait:
             bpy.ops.palpate.rebuild_body("EXEC_DEFAULT")
     bpy.ops.ed.undo_push(message="Mouse opened")
     yield
+
+
+def _own_copy(stage: Stage) -> str:
+    """A copy of the scene, so that no body file is made or removed beside the repository's."""
+    copy = stage.output / "scene" / Path(SCENE).name
+    if not copy.is_file():
+        copy.parent.mkdir(exist_ok=True)
+        shutil.copyfile(stage.repository / SCENE, copy)
+    return str(copy)
 
 
 def _press(stage: Stage) -> Wait:

@@ -1,0 +1,23 @@
+"""The interface in the languages that Palpate knows."""
+
+from __future__ import annotations
+
+import bpy
+from stage import Stage, Wait
+
+
+def panel_and_view_speak_japanese_and_german(stage: Stage) -> Wait:
+    stage.open_scene("sample_scenes/mouse.blend")
+    yield 0.3
+    yield from stage.open_sidebar("Palpate")
+    view = bpy.context.preferences.view
+    before = view.language
+    view.use_translate_interface = True
+    try:
+        for language, said in (("ja_JP", "柔らかくする"), ("de_DE", "Weich machen")):
+            view.language = language
+            label = bpy.app.translations.pgettext_iface("Make Soft", "Operator")
+            assert label == said
+            yield from stage.picture(language)
+    finally:
+        view.language = before
