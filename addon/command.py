@@ -207,7 +207,7 @@ def _is_negative_number(word: str) -> bool:
     return word.startswith("-")
 
 
-_commands = []
+_commands: list[object] = []
 
 
 def register() -> None:

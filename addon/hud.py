@@ -57,17 +57,19 @@ def _lines(context: bpy.types.Context, session: PressSession) -> list[tuple[str,
     """Text, size and colour of each line, from the top."""
     figures = reading(session)
     phase, say = session.state.phase, bpy.app.translations.pgettext_iface
-    output = session.snapshot.output_force if session.snapshot is not None else None
-    lines = [(f"{figures.force:.3f} N     {1000 * figures.depth:.1f} mm", LARGE, WHITE)]
+    snapshot = session.snapshot
+    lines: list[tuple[str, float, Color]] = [
+        (f"{figures.force:.3f} N     {1000 * figures.depth:.1f} mm", LARGE, WHITE)
+    ]
     if phase is Phase.LOST:
         lines.append((say(session.state.message), NORMAL, WARNING))
     else:
         lines.append((say(STATES.get(phase, "")), NORMAL, WHITE))
         if session.state.message:
             lines.append((say(session.state.message), NORMAL, WARNING))
-    if phase is Phase.FEELING and output is not None:
-        given = sum(component**2 for component in output) ** 0.5
-        state = session.snapshot.reason or session.snapshot.state
+    if phase is Phase.FEELING and snapshot is not None:
+        given = sum(component**2 for component in snapshot.output_force) ** 0.5
+        state = snapshot.reason or snapshot.state
         text = f"{say('The device gives')} {given:.3f} N, {say(state)}"
         lines.append((text, SMALL, GREY))
     lines.append((say(KEYS.get(phase, "")), SMALL, GREY))

@@ -38,7 +38,7 @@ def draw_in_view() -> None:
     if session is None or region_3d is None:
         return
     figures = reading(session)
-    if session.snapshot is None or figures is None or not _worth_drawing(session, figures):
+    if session.snapshot is None or not _worth_drawing(session, figures):
         return
     chosen = preferences()
     scale = bpy.context.preferences.system.ui_scale
@@ -126,7 +126,7 @@ def draw_hud() -> None:
         hud.draw(bpy.context, session)
 
 
-_handles = []
+_handles: list[object] = []
 
 
 def register() -> None:

@@ -35,7 +35,7 @@ def lit(
 ) -> Lit:
     """A shape at ``place``, lit as the view sees it."""
     rotation = np.eye(3) if turn is None else turn
-    vertices = np.asarray(place) + (shape.vertices * size) @ rotation.T
+    vertices = np.asarray(place) + (shape.vertices * np.asarray(size)) @ rotation.T
     brightness = AMBIENT + (1.0 - AMBIENT) * np.clip(
         shape.normals @ rotation.T @ view_axes.T @ LIGHT, 0.0, 1.0
     )

@@ -18,7 +18,10 @@ class PALPATE_OT_cancel_bake(bpy.types.Operator):
         return True
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        bake_session.current().end()
+        session = bake_session.current()
+        if session is None:
+            return {"CANCELLED"}
+        session.end()
         return {"FINISHED"}
 
 

@@ -84,8 +84,8 @@ def remove(thing: bpy.types.Object) -> None:
 
 def keep(thing: bpy.types.Object) -> str:
     """Turn the live shape key into the next free "Press <n>"; returns its name."""
-    live = _live(thing.data)
     keys = thing.data.shape_keys
+    live = keys.key_blocks[LIVE_NAME]
     found = _found(thing.data)
     number = 1
     while f"{KEPT_NAME} {number}" in keys.key_blocks:

@@ -1,9 +1,12 @@
 """Make Soft: bake the selected mesh into a body that can be pressed."""
 
+from collections.abc import Callable
+from typing import ClassVar
+
 import bpy
 
 from ..core.bake import BakeReport
-from ..core.errors import PalpateError
+from ..core.errors import CancelledError, PalpateError
 from ..core.soft_body import SoftBody
 from . import bake_session, press_session, soft_object
 from .bake_session import BakeSession
@@ -15,6 +18,9 @@ class BakingOperator:
     """What Make Soft and Rebuild Body share: a bake beside Blender, or waited for."""
 
     rebuild = False
+    # What every bpy.types.Operator has, which this is mixed into.
+    report: Callable[[set[str], str], None]
+    poll_message_set: ClassVar[Callable[[str], None]]
     _session: BakeSession
     _timer: bpy.types.Timer | None = None
 
@@ -68,7 +74,7 @@ class BakingOperator:
             body, report = self._session.commit(context.scene)
         except PalpateError as problem:
             self._leave(context)
-            level = "INFO" if isinstance(problem, bake_session.CancelledError) else "ERROR"
+            level = "INFO" if isinstance(problem, CancelledError) else "ERROR"
             self.report({level}, str(problem))
             return {"CANCELLED"}
         self._leave(context)

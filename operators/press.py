@@ -207,6 +207,9 @@ class PALPATE_OT_press(bpy.types.Operator):
         if event.type == "LEFTMOUSE" and event.value == "RELEASE":
             self._session.post(Release())
             return
+        if self._drag is None or self._view is None:
+            # Not set down yet: there is nothing to lead.
+            return
         if event.type == "WHEELUPMOUSE":
             self._drag = self._drag.wheeled(1)
         elif event.type == "WHEELDOWNMOUSE":
