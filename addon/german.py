@@ -49,6 +49,9 @@ WORDS = {
     # View
     "Press on the surface and drag": "Auf die Oberfläche drücken und ziehen",
     "Pressing": "Drücken",
+    "Above the surface: drag inward, or turn the wheel": (
+        "Über der Oberfläche: nach innen ziehen oder am Rad drehen"
+    ),
     "Held: look around, keep it, or press elsewhere": (
         "Gehalten: umsehen, behalten oder anderswo drücken"
     ),

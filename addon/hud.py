@@ -25,6 +25,7 @@ STATES = {
     Phase.FEELING: "The device presses",
     Phase.LOST: "Device away",
 }
+ABOVE = "Above the surface: drag inward, or turn the wheel"
 KEYS = {
     Phase.READY: "Esc  Leave",
     Phase.DRAGGING: "Wheel  Deeper",
@@ -64,7 +65,8 @@ def _lines(context: bpy.types.Context, session: PressSession) -> list[tuple[str,
     if phase is Phase.LOST:
         lines.append((say(session.state.message), NORMAL, WARNING))
     else:
-        lines.append((say(STATES.get(phase, "")), NORMAL, WHITE))
+        above = phase is Phase.DRAGGING and not figures.touching
+        lines.append((say(ABOVE if above else STATES.get(phase, "")), NORMAL, WHITE))
         if session.state.message:
             lines.append((say(session.state.message), NORMAL, WARNING))
     if phase is Phase.FEELING and snapshot is not None:

@@ -47,6 +47,9 @@ WORDS = {
     # View
     "Press on the surface and drag": "表面を押してドラッグ",
     "Pressing": "押しています",
+    "Above the surface: drag inward, or turn the wheel": (
+        "表面の外です: 内側へドラッグするか、ホイールを回してください"
+    ),
     "Held: look around, keep it, or press elsewhere": "保持中: 視点移動、保存、別の場所を押す",
     "The device presses": "デバイスが押しています",
     "Device away": "デバイスなし",

@@ -103,7 +103,9 @@ class BakingOperator:
             context.window_manager.event_timer_remove(self._timer)
             self._timer = None
         context.window_manager.progress_end()
-        context.workspace.status_text_set(None)
+        # There is none while Blender replaces its windows for another file.
+        if context.workspace is not None:
+            context.workspace.status_text_set(None)
         redraw_sidebars(context)
 
     def _tell(self, name: str, body: SoftBody, report: BakeReport) -> None:

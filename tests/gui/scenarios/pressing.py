@@ -8,7 +8,7 @@ from typing import Any
 
 import bpy
 import numpy as np
-from stage import Pixel, Stage, Wait, takes
+from stage import MODULE, Pixel, Stage, Wait, takes
 
 from bl_ext.user_default.palpate.operators import bake_session, body_store, press_session
 from bl_ext.user_default.palpate.operators.press_state import Phase
@@ -193,6 +193,33 @@ def make_soft_beside_blender_makes_the_mouse_pressable(stage: Stage) -> Wait:
     yield from _drag_in(stage)
     yield from _key(stage, "RET")
     yield from stage.until(lambda: _keys() == ["Basis", "Press 1"], "the kept shape")
+
+
+def opening_another_file_during_make_soft_ends_it(stage: Stage) -> Wait:
+    yield from _open_mouse(stage)
+    with stage.view():
+        bpy.ops.palpate.make_soft("INVOKE_DEFAULT")
+    child = bake_session.current().job._child
+    yield 1.0
+    stage.open_scene(_own_copy(stage))
+    yield 0.5
+    assert bake_session.current() is None
+    assert child.poll() is not None
+
+
+def switching_the_extension_off_while_pressing_leaves_a_clean_mesh(stage: Stage) -> Wait:
+    yield from _open_mouse(stage)
+    before = _coordinates()
+    yield from _press(stage)
+    yield from _drag_in(stage)
+    servo = press_session.current().servo
+    bpy.ops.preferences.addon_disable(module=MODULE)
+    yield 0.5
+    bpy.ops.preferences.addon_enable(module=MODULE)
+    yield
+    assert not servo.running
+    assert _keys() == []
+    assert _coordinates() == before
 
 
 def an_edited_mesh_is_said_in_the_panel(stage: Stage) -> Wait:
