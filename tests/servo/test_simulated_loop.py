@@ -1,6 +1,8 @@
 """The native servo and the simulated device, each with its own codec: the loop really closes."""
 
+import ctypes
 import math
+import sys
 import time
 
 import numpy as np
@@ -12,7 +14,7 @@ from palpate.core.devices.simulated_options import SimulatedOptions
 from palpate.core.devices.simulated_process import SimulatedDevice
 from palpate.core.paper_cube import paper_cube
 from palpate.core.pins import PinNodes
-from palpate.core.servo_session import servo_for
+from palpate.core.servo_session import displacements_of, servo_for
 
 # Over the middle of the cube's top (50 mm), a little off the mesh's symmetry.
 ABOVE = (0.026, 0.024, 0.06)
@@ -204,3 +206,36 @@ def test_the_device_is_left_without_force_when_the_servo_stops(loop):
     servo.stop()
     report = eventually(lambda: (r := device.report())["felt_force"] == [0.0, 0.0, 0.0] and r)
     assert report["largest_force"] > 0.3
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="asks the C library to keep the interpreter")
+def test_a_press_with_deformation_and_a_busy_interpreter_loses_no_ticks(loop, cube):
+    """Device presses, the shape follows at 60 Hz, then Python is kept for 2 s without a break.
+
+    What the machine itself does to a native thread is seen beside, by one that only sleeps.
+    """
+    device, servo = loop()
+    press(device, servo)
+    keep_interpreter = ctypes.PyDLL(None).usleep  # PyDLL: the interpreter's lock stays held
+    bare = palpate_servo.BareTimer(1000)
+    try:
+        before, bare_before = servo.counters(), bare.counters()
+        for _ in range(60):
+            moved = displacements_of(cube, servo.snapshot())
+            assert moved is not None
+            assert np.isfinite(moved).all()
+            time.sleep(1 / 60)
+        keep_interpreter(1_000_000)
+        keep_interpreter(1_000_000)
+        after, bare_after = servo.counters(), bare.counters()
+    finally:
+        bare.stop()
+
+    def lost(end, start):
+        return end["missed"] - start["missed"]
+
+    figures = lost(after, before), lost(bare_after, bare_before)
+    assert after["ticks"] - before["ticks"] > 2500, figures
+    # With the lock in the loop, all 2,000 ticks of the busy time would be lost.
+    assert figures[0] <= figures[1] + 100, figures
+    assert servo.snapshot().touching
