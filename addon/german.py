@@ -17,8 +17,8 @@ WORDS = {
         "Material und Fixierung wählen, dann „Weich machen“ drücken"
     ),
     "Ready to press": "Bereit zum Drücken",
-    "The body file is missing; Rebuild Body makes it again": (
-        "Die Körperdatei fehlt; „Körper neu berechnen“ erzeugt sie wieder"
+    "The body file is missing; Press computes it again": (
+        "Die Körperdatei fehlt; „Drücken“ berechnet sie neu"
     ),
     "Press Make Soft Again": "„Neu weich machen“ drücken",
     "Rebuild Body takes them over": "„Körper neu berechnen“ übernimmt das",

@@ -17,8 +17,8 @@ WORDS = {
         "材質と固定を選び、「柔らかくする」を押してください"
     ),
     "Ready to press": "押す準備ができました",
-    "The body file is missing; Rebuild Body makes it again": (
-        "物体ファイルがありません。「物体を再計算」で作り直せます"
+    "The body file is missing; Press computes it again": (
+        "物体ファイルがありません。「押す」で再計算されます"
     ),
     "Press Make Soft Again": "「もう一度柔らかくする」を押してください",
     "Rebuild Body takes them over": "「物体を再計算」で反映されます",

@@ -94,7 +94,7 @@ def _draw_idle(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         _say(layout, context, "Choose a material and pins, then press Make Soft", "INFO")
         return
     row = column.row()
-    row.enabled = status.fit is Fit.READY
+    row.enabled = status.fit in {Fit.READY, Fit.FILE_MISSING}
     row.operator("palpate.press", icon="FORCE_FORCE")
     column = layout.column(align=True)
     if status.fit is Fit.FILE_MISSING or status.notes:
@@ -109,7 +109,7 @@ def _draw_status(
     if status.fit is Fit.READY:
         _say(layout, context, "Ready to press", "CHECKMARK")
     elif status.fit is Fit.FILE_MISSING:
-        _say(layout, context, "The body file is missing; Rebuild Body makes it again", "ERROR")
+        _say(layout, context, "The body file is missing; Press computes it again", "INFO")
     else:
         # As it begins a line, so that it is found in the dictionary.
         _say(layout, context, status.text[:1].upper() + status.text[1:], "ERROR")

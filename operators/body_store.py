@@ -8,12 +8,15 @@ from __future__ import annotations
 
 import os
 import shutil
+import sys
 from pathlib import Path
 
 import bpy
 import numpy as np
 
 from ..core import cache
+from ..core.bake import BakeSettings
+from ..core.bake_job import run_bake
 from ..core.cache import BodyFileError
 from ..core.errors import PalpateError
 from ..core.pins import PinNodes
@@ -82,6 +85,29 @@ def load(thing: bpy.types.Object) -> SoftBody:
             f"{path}: it is the body of something else, not of {thing.name}; press Rebuild Body"
         )
     return body
+
+
+def restore(thing: bpy.types.Object) -> SoftBody:
+    """Compute a missing body again from the tetrahedra in the .blend, and store its file.
+
+    Waits: a second or two for a thousand free surface nodes.
+
+    Raises
+    ------
+    PalpateError
+        There are no tetrahedra, or they are not those of the body that was baked.
+    """
+    baked = thing.palpate
+    mesh, pins = embedded(thing)
+    ratio = round(baked.baked_poisson_ratio, 6)
+    if cache.body_key(mesh, pins.nodes, ratio) != baked.body_key:
+        raise PalpateError(
+            f"{thing.name}: the tetrahedra in this file are not those of its body; press Make Soft"
+        )
+    settings = BakeSettings(ratio, baked.young_modulus, pins)
+    target = folder_for_new_files() / baked.body_file
+    python = (sys.executable, *bpy.app.python_args)
+    return run_bake(mesh, settings, target, python=python)[0]
 
 
 def embed(thing: bpy.types.Object, body: SoftBody) -> None:

@@ -20,6 +20,9 @@ Array = NDArray[np.float64]
 # Two stretches that differ by less than this, relatively, are one: float32 matrices are not exact.
 SAME_STRETCH = 1e-5
 
+# A missing body of this many free surface nodes takes a few seconds; a larger one wants progress.
+MOST_NODES_AT_ONCE = 1500
+
 
 @dataclass(frozen=True, eq=False)
 class DrawnBody:
@@ -62,8 +65,13 @@ class DrawnBody:
         return replace(self, frame=replace(frame, stretch=self.frame.stretch))
 
 
+def _restores_quickly(thing: bpy.types.Object) -> bool:
+    """Whether somebody who wants to press can wait for the body, without progress or Escape."""
+    return bool(bpy.app.background or thing.palpate.free_surface_count <= MOST_NODES_AT_ONCE)
+
+
 def open_body(thing: bpy.types.Object, scene: bpy.types.Scene) -> DrawnBody:
-    """Load an object's body, if it is there and fits.
+    """Load an object's body, if it fits; a missing one of usual size is computed again at once.
 
     Raises
     ------
@@ -76,7 +84,10 @@ def open_body(thing: bpy.types.Object, scene: bpy.types.Scene) -> DrawnBody:
     status = soft_object.body_status(thing, scene)
     if status.fit is Fit.CHANGED:
         raise PalpateError(f"{thing.name}: {status.text}; press Make Soft to bake it again")
-    body = body_store.load(thing)
+    if status.fit is Fit.FILE_MISSING and _restores_quickly(thing):
+        body = body_store.restore(thing)
+    else:
+        body = body_store.load(thing)
     surface = drawn_surface.read(thing, scene)
     return DrawnBody(
         body=body,

@@ -104,11 +104,15 @@ class PALPATE_OT_press(bpy.types.Operator):
         if bpy.app.background:
             return self.execute(context)
         source = Source.POINTER if context.scene.palpate.source == "POINTER" else Source.DEVICE
+        # A missing body file is computed again first, which may take a few seconds.
+        context.window.cursor_modal_set("WAIT")
         try:
             self._session = press_session.begin(context.object, context.scene, source)
         except PalpateError as problem:
             self.report({"ERROR"}, str(problem))
             return {"CANCELLED"}
+        finally:
+            context.window.cursor_modal_restore()
         manager = context.window_manager
         self._timer = manager.event_timer_add(1 / FRAMES_PER_SECOND, window=context.window)
         manager.modal_handler_add(self)

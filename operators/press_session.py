@@ -32,7 +32,6 @@ from .press_state import (
     MoveProbe,
     Phase,
     PlaceProbe,
-    Point,
     PressState,
     Recovered,
     RemoveLiveShape,
@@ -64,8 +63,6 @@ class PressSession:
     kept_name: str = ""
     said: list[Say] = field(default_factory=list)
     _drawn_contact: tuple[object, ...] = ()
-    _set_down: Point | None = None
-    _wanted: Point | None = None
 
     def post(self, event: Event) -> None:
         """Let an event happen: the only way in which a press changes its state."""
@@ -85,7 +82,6 @@ class PressSession:
         snapshot = self.servo.snapshot()
         moved = self.snapshot is None or snapshot.tick != self.snapshot.tick
         self.snapshot = snapshot
-        self._lead_probe()
         if self.state.source is Source.DEVICE:
             self._watch_device(snapshot)
         if self.state.phase is not Phase.LOST and not self.state.withdrawn:
@@ -108,10 +104,8 @@ class PressSession:
                 self._start_servo(source)
             case PlaceProbe(point):
                 self._servo.set_target(point, restart=True)
-                self._set_down, self._wanted = point, None
             case MoveProbe(point):
-                self._wanted = point
-                self._lead_probe()
+                self._servo.set_target(point)
             case DrawRest():
                 self.displacements, self._drawn_contact = None, ()
                 self._with_object(lambda thing: live_shape.write(thing.data, self.drawn.rest))
@@ -124,22 +118,6 @@ class PressSession:
                 self._with_object(self._keep)
             case Say():
                 self.said.append(effect)
-
-    def _lead_probe(self) -> None:
-        """Send the probe where the pointer wants it, once it has been set down.
-
-        The thread sees the newest target only: one that is already inside would be where it sets
-        the probe down, and from inside nothing is felt.
-        """
-        if self._set_down is not None:
-            if self.snapshot is None or not np.allclose(
-                self.snapshot.probe, self._set_down, rtol=0.0, atol=1e-9
-            ):
-                return
-            self._set_down = None
-        if self._wanted is not None and self.servo is not None:
-            self.servo.set_target(self._wanted)
-            self._wanted = None
 
     @property
     def _servo(self) -> Servo:

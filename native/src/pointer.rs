@@ -10,9 +10,34 @@ use crate::device::{Device, DeviceFrame, LinkReport, Probe, Reading};
 pub struct Target {
     /// Position in the body, m.
     pub position: DVec3,
-    /// Changes when the probe shall be set down at the target instead of gliding there. Carried
-    /// with the position, so that no newer target can hide it.
+    /// Where the probe was last set down instead of gliding there, m.
+    pub set_down: DVec3,
+    /// Changes with every `set_down`. Both are carried on by newer targets, so that none of them
+    /// can hide that the probe was set down, or where.
     pub epoch: u32,
+}
+
+impl Target {
+    /// A first target, with the probe set down there.
+    pub fn first(position: DVec3) -> Self {
+        Self {
+            position,
+            set_down: position,
+            epoch: 0,
+        }
+    }
+
+    /// The target after this one.
+    pub fn next(self, position: DVec3, restart: bool) -> Self {
+        if restart {
+            Self {
+                epoch: self.epoch.wrapping_add(1),
+                ..Self::first(position)
+            }
+        } else {
+            Self { position, ..self }
+        }
+    }
 }
 
 /// A probe led by targets.
@@ -31,7 +56,7 @@ impl Pointer {
         Self {
             targets,
             glide_speed,
-            position: start.position,
+            position: start.set_down,
             epoch: start.epoch,
             set_down: true,
         }
@@ -45,7 +70,7 @@ impl Device for Pointer {
         let restart = lifted || std::mem::take(&mut self.set_down);
         if lifted {
             self.epoch = target.epoch;
-            self.position = target.position;
+            self.position = target.set_down;
         } else if !restart {
             let way = target.position - self.position;
             let reach = self.glide_speed * dt;

@@ -215,10 +215,8 @@ fn a_hundred_thousand_ticks_with_a_device_allocate_nothing() {
 
 #[test]
 fn a_hundred_thousand_ticks_with_a_pointer_allocate_nothing() {
-    let start = Target {
-        position: DVec3::new(0.02, 0.02, 0.06),
-        epoch: 0,
-    };
+    let start = Target::first(DVec3::new(0.02, 0.02, 0.06));
+    let mut target = start;
     let (mut targets_in, targets) = triple_buffer(&start);
     let mut touching = 0;
     let pointer = Pointer::new(start, targets, 0.5);
@@ -226,14 +224,13 @@ fn a_hundred_thousand_ticks_with_a_pointer_allocate_nothing() {
         if tick % 17 == 0 {
             let t = f64::from(tick) * 1e-3;
             touching += 1;
-            targets_in.write(Target {
-                position: DVec3::new(
-                    0.025 + 0.03 * t.cos(),
-                    0.025 + 0.03 * (0.7 * t).sin(),
-                    0.05 - 0.015 * (3.0 * t).sin(),
-                ),
-                epoch: tick / 20_000,
-            });
+            let position = DVec3::new(
+                0.025 + 0.03 * t.cos(),
+                0.025 + 0.03 * (0.7 * t).sin(),
+                0.05 - 0.015 * (3.0 * t).sin(),
+            );
+            target = target.next(position, tick % 20_000 == 0);
+            targets_in.write(target);
         }
     });
     assert_eq!(allocations, 0);

@@ -45,14 +45,18 @@ def test_the_body_goes_along_when_the_file_is_saved_elsewhere(saved, tmp_path):
     press_down(saved)
 
 
-def test_a_missing_body_file_is_said_and_rebuilt_the_same(saved):
+@pytest.mark.parametrize("by_hand", [True, False], ids=["by Rebuild Body", "by Press itself"])
+def test_a_missing_body_file_is_said_and_computed_again_the_same(saved, by_hand):
     key, path = saved.palpate.body_key, locate(saved)
     wanted = part("core.cache").load(path).compliance.columns
     path.unlink()
     assert status(saved).fit.name == "FILE_MISSING"
-    assert "Rebuild Body" in error_of(bpy.ops.palpate.press, at=(0, 0, 0.03), by=(0, 0, -0.005))
-    assert bpy.ops.palpate.rebuild_body() == {"FINISHED"}
+    if by_hand:
+        assert bpy.ops.palpate.rebuild_body() == {"FINISHED"}
+    else:
+        press_down(saved)
     assert saved.palpate.body_key == key
+    assert status(saved).fit.name == "READY"
     assert np.array_equal(part("core.cache").load(locate(saved)).compliance.columns, wanted)
     press_down(saved)
 
@@ -73,6 +77,18 @@ def test_a_damaged_body_file_is_never_used(saved, damage):
     assert key_names(saved) == []
     assert bpy.ops.palpate.rebuild_body() == {"FINISHED"}
     press_down(saved)
+
+
+def test_tetrahedra_of_another_body_are_not_used_for_a_missing_one(saved):
+    locate(saved).unlink()
+    nodes = np.array(saved.palpate["nodes"])
+    nodes[0] += 1e-4
+    del saved.palpate["nodes"]
+    saved.palpate["nodes"] = nodes
+    message = error_of(bpy.ops.palpate.press, at=(0, 0, 0.03), by=(0, 0, -0.005))
+    assert "press Make Soft" in message
+    assert locate(saved) is None
+    assert key_names(saved) == []
 
 
 def test_the_body_of_something_else_under_the_right_name_is_not_used(saved):

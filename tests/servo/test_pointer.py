@@ -82,6 +82,18 @@ def test_restart_sets_the_probe_down_without_a_sweep_through_the_body(servo, eve
     assert np.linalg.norm(np.diff(samples["probe"], axis=0), axis=1).max() > 0.1
 
 
+def test_a_move_right_after_setting_down_does_not_hide_where(servo, eventually):
+    """Both arrive before the thread looks once; only the newest target is seen."""
+    servo.start_pointer(ABOVE + np.array([0, 0, 0.03]))
+    eventually(lambda: servo.snapshot().state == "free")
+    for push in range(50):
+        inside = PRESSED + np.array([0, 0, -1e-5 * push])
+        servo.set_target(ABOVE, restart=True)
+        servo.set_target(inside)
+        eventually(lambda inside=inside: np.allclose(servo.snapshot().probe, inside, atol=1e-9))
+        assert servo.snapshot().touching, push
+
+
 def test_set_down_inside_nothing_is_felt_until_it_was_outside(servo, eventually):
     servo.start_pointer(PRESSED)
     eventually(lambda: servo.snapshot().tick > 10)

@@ -37,7 +37,7 @@ pub struct Servo {
     record_samples: usize,
     settings: Mutex<Settings>,
     running: Mutex<Option<Arc<Running>>>,
-    targets: Mutex<Option<(Input<Target>, u32)>>,
+    targets: Mutex<Option<(Input<Target>, Target)>>,
 }
 
 impl Servo {
@@ -121,7 +121,7 @@ impl Servo {
     fn start_pointer(&self, py: Python<'_>, position: Triple) -> PyResult<()> {
         self.refuse_if_running()?;
         let position = finite("position", position)?;
-        let start = Target { position, epoch: 0 };
+        let start = Target::first(position);
         let (input, output) = triple_buffer(&start);
         let pointer = Pointer::new(start, output, self.glide_speed);
         let settings = *locked(&self.settings);
@@ -134,7 +134,7 @@ impl Servo {
                 self.record_samples,
             )
         })?;
-        *locked(&self.targets) = Some((input, 0));
+        *locked(&self.targets) = Some((input, start));
         self.keep(running);
         Ok(())
     }
@@ -179,12 +179,9 @@ impl Servo {
     fn set_target(&self, position: Triple, restart: bool) -> PyResult<()> {
         let position = finite("position", position)?;
         match locked(&self.targets).as_mut() {
-            Some((input, epoch)) => {
-                *epoch = epoch.wrapping_add(u32::from(restart));
-                input.write(Target {
-                    position,
-                    epoch: *epoch,
-                });
+            Some((input, last)) => {
+                *last = last.next(position, restart);
+                input.write(*last);
                 Ok(())
             }
             None => Err(PyRuntimeError::new_err(

@@ -261,15 +261,11 @@ def _depth() -> float:
 
 
 def _open_mouse(stage: Stage) -> Wait:
-    """Open the mouse with its body there, the sidebar at Palpate."""
+    """Open the mouse as it lies in the repository, without a body file: Press makes one."""
     stage.open_scene(_own_copy(stage))
     yield 0.5
     yield from stage.open_sidebar("Palpate")
     bpy.context.view_layer.objects.active = _mouse()
-    if body_store.locate(_mouse()) is None:
-        # The repository has no body files: the tetrahedra in the .blend make them.
-        with stage.view():
-            bpy.ops.palpate.rebuild_body("EXEC_DEFAULT")
     bpy.ops.ed.undo_push(message="Mouse opened")
     yield
 
