@@ -50,7 +50,7 @@ help: ## this list
 .PHONY: setup
 setup: $(VENV)/.servo-installed build/typing/palpate $(BPY_VENV)/.installed ## environments with everything in them
 
-# What follows the name of a stamp is newer than all it was made from.
+# Each environment and each product has a stamp beside it that is newer than all it was made from.
 $(VENV)/.installed: pyproject.toml
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	$(BIN)/pip install --quiet --editable '.[dev]'
@@ -113,7 +113,7 @@ REPORT = 2>&1 | tee build/reports/$@.txt
 test: lint test-native test-core test-addon test-gui ## everything that must hold, in a few minutes
 
 .PHONY: test-all
-test-all: test $(ALL_BPY:%=test-addon-%) ## the same, and the extension in every supported Blender
+test-all: test $(ALL_BPY:%=test-addon-%) check-systems ## the same, the extension in every Blender, the servo for every system
 
 build/reports:
 	mkdir -p $@
@@ -141,6 +141,16 @@ test-addon: test-addon-$(BPY) ## the package installed in Blender as a module, d
 .PHONY: $(ALL_BPY:%=test-addon-%)
 $(ALL_BPY:%=test-addon-%): test-addon-%: .venv-bpy-%/.installed build/packages/.made | build/reports
 	.venv-bpy-$*/bin/pytest -q tests/addon $(REPORT)
+
+# Compiles without linking, for those systems whose standard library rustup has put here.
+.PHONY: check-systems
+check-systems: $(VENV)/.installed
+	for target in x86_64-pc-windows-msvc aarch64-apple-darwin; do \
+	  if [ -d "$$(rustc --print sysroot)/lib/rustlib/$$target" ]; then \
+	    $(CARGO) check --quiet $(CRATE) --all-targets --all-features --target "$$target"; \
+	    echo "compiles for $$target"; \
+	  else echo "not compiled for $$target: rustup target add $$target"; fi; \
+	done
 
 .PHONY: test-gui
 test-gui: $(VENV)/.servo-installed $(WINDOWED_PACKAGE) | build/reports ## the package in a Blender with a window, where there is one

@@ -96,7 +96,8 @@ mod on_unix {
         fn drop(&mut self) {
             // SAFETY: the descriptor is open until `port` is dropped after this.
             // An unplugged terminal has no mode to give back, so a failure means nothing.
-            let _ = unsafe { libc::ioctl(self.port.as_raw_fd(), libc::TIOCNXCL) };
+            // The request's type differs between systems, hence the cast.
+            let _ = unsafe { libc::ioctl(self.port.as_raw_fd(), libc::TIOCNXCL as _) };
         }
     }
 
