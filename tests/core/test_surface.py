@@ -89,6 +89,15 @@ def test_decimation_keeps_the_shape_and_reaches_the_number():
     assert coarse.signed_volume == pytest.approx(dense.volume, rel=0.005)
 
 
+@pytest.mark.parametrize("centre", [0.0, 3.0])
+def test_the_slivers_at_the_poles_of_a_fine_sphere_do_not_tear_it_out_of_shape(centre):
+    dense = trimesh.creation.uv_sphere(radius=0.05, count=[200, 400])
+    dense.apply_translation([centre, 0.0, 0.0])
+    coarse = decimate(surface_of(dense), 4000)
+    assert len(coarse.triangles) < 20_000
+    assert np.abs(np.linalg.norm(coarse.vertices - [centre, 0, 0], axis=1) - 0.05).max() < 5e-4
+
+
 def test_a_small_surface_is_not_decimated(ball):
     surface = surface_of(ball)
     assert decimate(surface, 6000) is surface
