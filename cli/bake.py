@@ -5,16 +5,19 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.bake import BakeSettings
+from ..core.bake import BakeReport, BakeSettings
 from ..core.bake_job import JobProgress, run_bake
+from ..core.devices.stop_signals import stopped_by_signals
 from ..core.errors import PalpateError
 from ..core.pins import PinBelow, PinNodes, Pins
 from ..core.read_mesh import read_surface, read_tets
+from ..core.soft_body import SoftBody
 from ..core.surface import Surface
 from ..core.tet_mesh import TetMesh
 from .body_figures import as_lines, body_figures
@@ -85,22 +88,10 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Bake and print the body's figures."""
-    if not (np.isfinite(arguments.metres_per_unit) and arguments.metres_per_unit > 0):
-        raise PalpateError(
-            f"--metres-per-unit: {arguments.metres_per_unit} is not a positive number; "
-            "give 0.001 for a file in millimetres"
-        )
-    source, fixed = _source(arguments)
-    settings = BakeSettings(
-        poisson_ratio=arguments.poisson,
-        young_modulus=arguments.young,
-        pins=_pins(arguments, fixed),
-        edge_length=arguments.edge_length or BakeSettings().edge_length,
-        epsilon=arguments.epsilon,
-        time_limit=arguments.time_limit,
-    )
-    body, report = run_bake(source, settings, arguments.output, _show)
+    """Bake and print the body's figures. Whoever asks it to stop finds nothing left of it."""
+    # From the first import on: readers of meshes swallow the exception that Ctrl-C is.
+    with stopped_by_signals() as stopped:
+        body, report = _bake(arguments, stopped)
     if sys.stderr.isatty():
         print("\r\x1b[K", end="", file=sys.stderr)
     for warning in report.warnings:
@@ -108,6 +99,35 @@ def run(arguments: argparse.Namespace) -> int:
     figures = {**body_figures(body), **report.as_dict(), "body": str(arguments.output)}
     print(json.dumps(figures) if arguments.json else as_lines(figures))
     return 0
+
+
+def _bake(arguments: argparse.Namespace, stopped: Sequence[int]) -> tuple[SoftBody, BakeReport]:
+    if not (np.isfinite(arguments.metres_per_unit) and arguments.metres_per_unit > 0):
+        raise PalpateError(
+            f"--metres-per-unit: {arguments.metres_per_unit} is not a positive number; "
+            "give 0.001 for a file in millimetres"
+        )
+    folder = arguments.output.absolute().parent
+    if not folder.exists():
+        raise PalpateError(f"{arguments.output}: there is no folder {folder}; make it first")
+    source, fixed = _source(arguments)
+    settings = BakeSettings(
+        poisson_ratio=arguments.poisson,
+        young_modulus=arguments.young,
+        pins=_pins(arguments, fixed),
+        edge_length=(
+            BakeSettings.edge_length if arguments.edge_length is None else arguments.edge_length
+        ),
+        epsilon=arguments.epsilon,
+        time_limit=arguments.time_limit,
+    )
+
+    def watch(progress: JobProgress) -> None:
+        if stopped:
+            raise KeyboardInterrupt
+        _show(progress)
+
+    return run_bake(source, settings, arguments.output, watch)
 
 
 def _source(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+import warnings
 from collections.abc import Sequence
 from typing import NoReturn
 
@@ -30,17 +31,29 @@ def main(arguments: Sequence[str] | None = None) -> int:
     subparsers = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
     for command in COMMANDS:
         command.add_parser(subparsers)
+    if not sys.warnoptions:
+        # What libraries warn of is for developers; people get a result, or one line.
+        warnings.simplefilter("ignore")
     given = sys.argv[1:] if arguments is None else arguments
     parsed = parser.parse_args([_shielded(word) for word in given])
     try:
         status: int = parsed.run(parsed)
     except PalpateError as problem:
-        print(f"palpate: {problem}", file=sys.stderr)
-        return EXIT_ERROR
+        return _refused(str(problem))
+    except OSError as problem:
+        return _refused(
+            ": ".join(filter(None, (problem.filename, problem.strerror or str(problem))))
+        )
     except KeyboardInterrupt:
         print("palpate: stopped", file=sys.stderr)
         return 130
     return status
+
+
+def _refused(message: str) -> int:
+    # Reasons that come from elsewhere, and names of files, may have several lines.
+    print("palpate:", " ".join(message.splitlines()), file=sys.stderr)
+    return EXIT_ERROR
 
 
 def _shielded(word: str) -> str:

@@ -11,6 +11,7 @@ import numpy as np
 from ..core import cache
 from ..core.errors import PalpateError
 from ..core.stiffness import lame_parameters
+from ..core.whole_file import whole_file
 from .body_figures import as_lines
 
 
@@ -54,8 +55,13 @@ def run(arguments: argparse.Namespace) -> int:
     lame_parameters(young_modulus, body.poisson_ratio)
     touch = body.touch_nearest(arguments.at, arguments.by, young_modulus)
     displacements = body.deform(touch.triangle, touch.nodal_forces, young_modulus)
+    if not (np.isfinite(touch.force).all() and np.isfinite(displacements).all()):
+        raise PalpateError(
+            f"--young: at {young_modulus} Pa this press is beyond what numbers can hold; give less"
+        )
     if arguments.displacements is not None:
-        _write(arguments.displacements, displacements)
+        with whole_file(arguments.displacements) as file:
+            np.save(file, displacements)
     figures = {
         "triangle": touch.triangle.tolist(),
         "alpha": touch.alpha.tolist(),
@@ -69,13 +75,3 @@ def run(arguments: argparse.Namespace) -> int:
     }
     print(json.dumps(figures) if arguments.json else as_lines(figures))
     return 0
-
-
-def _write(target: Path, displacements: np.ndarray) -> None:
-    try:
-        with target.open("wb") as file:
-            np.save(file, displacements)
-    except OSError as problem:
-        raise PalpateError(
-            f"{target}: cannot be written ({problem.strerror}); choose a folder you may write to"
-        ) from problem

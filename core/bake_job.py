@@ -26,6 +26,7 @@ from .soft_body import SoftBody
 from .surface import Surface
 from .tet_mesh import TetMesh
 from .tetrahedralize import Fit
+from .whole_file import refuse_unwritable
 
 PACKAGE_ROOT = Path(__file__).resolve().parents[1]
 # Sparse solves call BLAS with small blocks; more threads only fight for the cores.
@@ -212,7 +213,7 @@ def run_bake(
 
     An exception out of ``on_progress``, KeyboardInterrupt included, stops the child.
     """
-    cache.refuse_unwritable(target)
+    refuse_unwritable(target)
     with BakeJob(source, settings, surface, python) as job:
         while not job.finished:
             on_progress(job.poll())

@@ -15,21 +15,20 @@ from __future__ import annotations
 
 import hashlib
 import os
-import secrets
 import shutil
-import zipfile
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .compliance import Compliance
 from .errors import PalpateError
+from .npz_archive import ArchiveError, read_arrays
 from .soft_body import SoftBody
+from .stiffness import lame_parameters
 from .tet_mesh import TetMesh
+from .whole_file import whole_file
 
 Arrays = dict[str, NDArray[Any]]
 
@@ -66,7 +65,7 @@ def save(body: SoftBody, path: str | os.PathLike[str]) -> None:
 
     Raises
     ------
-    BodyFileError
+    UnwritableError
         The place cannot be written.
     """
     arrays: Arrays = {
@@ -79,7 +78,7 @@ def save(body: SoftBody, path: str | os.PathLike[str]) -> None:
         "poisson_ratio": np.array(body.poisson_ratio),
         "young_modulus": np.array(body.young_modulus),
     }
-    with _replacing(Path(path)) as file:
+    with whole_file(Path(path), make_folders=True) as file:
         np.savez(
             file,
             allow_pickle=False,
@@ -103,8 +102,8 @@ def load(path: str | os.PathLike[str]) -> SoftBody:
     stored = _read(source)
     if "format" not in stored or str(stored["format"]) != FORMAT:
         raise BodyFileError(f"{source}: not a Palpate body file; bake the mesh to make one")
-    version = int(stored["version"]) if "version" in stored else 0
-    if version != VERSION:
+    version = str(stored.get("version", 0))
+    if version != str(VERSION):
         raise BodyFileError(
             f"{source}: written in version {version} of the body format, this Palpate reads "
             f"version {VERSION}; bake again"
@@ -114,7 +113,10 @@ def load(path: str | os.PathLike[str]) -> SoftBody:
         raise BodyFileError(f"{source}: damaged ({', '.join(missing)} missing); bake again")
     if str(stored["checksum"]) != _checksum({name: stored[name] for name in ARRAYS}):
         raise BodyFileError(f"{source}: damaged (its checksum does not match); bake again")
-    return _body(source, stored)
+    try:
+        return _body(stored)
+    except PalpateError as problem:
+        raise BodyFileError(f"{source}: {problem}; bake again") from problem
 
 
 def adopt(finished: Path, target: Path) -> None:
@@ -122,74 +124,28 @@ def adopt(finished: Path, target: Path) -> None:
 
     Raises
     ------
-    BodyFileError
+    UnwritableError
         The place cannot be written; nothing is left there.
     """
-    with _replacing(target) as file, finished.open("rb") as source:
+    with whole_file(target, make_folders=True) as file, finished.open("rb") as source:
         shutil.copyfileobj(source, file)
-
-
-def refuse_unwritable(target: Path) -> None:
-    """Check that a body file could be put at ``target``, before the work of a bake is spent.
-
-    Raises
-    ------
-    BodyFileError
-        The target is a folder, or its folder cannot be made or written.
-    """
-    folder = next(parent for parent in target.absolute().parents if parent.exists())
-    if target.is_dir():
-        reason = "it is a folder"
-    elif not folder.is_dir():
-        reason = f"{folder} is not a folder"
-    elif not os.access(folder, os.W_OK | os.X_OK):
-        reason = f"{folder} may not be written"
-    else:
-        return
-    raise BodyFileError(
-        f"{target}: the body file cannot be written ({reason}); choose a folder you may write to"
-    )
-
-
-@contextmanager
-def _replacing(target: Path) -> Iterator[IO[bytes]]:
-    """A file that becomes ``target`` when all went well, and vanishes otherwise."""
-    refuse_unwritable(target)
-    target.parent.mkdir(parents=True, exist_ok=True)
-    unfinished = target.with_name(f".{target.name}.{secrets.token_hex(4)}.tmp")
-    try:
-        with unfinished.open("xb") as file:
-            yield file
-            file.flush()
-            os.fsync(file.fileno())
-        unfinished.replace(target)
-    except OSError as problem:
-        raise BodyFileError(
-            f"{target}: the body file cannot be written ({problem.strerror or problem}); choose a "
-            "folder you may write to, with enough room"
-        ) from problem
-    finally:
-        unfinished.unlink(missing_ok=True)
 
 
 def _read(source: Path) -> Arrays:
     if not source.is_file():
         raise BodyFileError(f"{source}: there is no such body file; bake the mesh first")
     try:
-        # Opened here, since numpy leaves a damaged archive open.
-        with source.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
-            return {name: file[name] for name in file.files}
-    except (OSError, EOFError, ValueError, KeyError, AttributeError, zipfile.BadZipFile) as problem:
-        raise BodyFileError(
-            f"{source}: damaged, cut short or not a Palpate body file "
-            f"({type(problem).__name__}); bake again"
-        ) from problem
+        return read_arrays(source)
+    except ArchiveError as problem:
+        raise BodyFileError(f"{problem}; bake again") from problem
 
 
-def _body(source: Path, stored: Arrays) -> SoftBody:
+def _body(stored: Arrays) -> SoftBody:
+    """The body of arrays whose checksum is right; PalpateError where they contradict each other."""
     mesh = TetMesh.checked(stored["nodes"], stored["tets"])
     fixed = stored["fixed"].astype(np.int64)
-    poisson_ratio = float(stored["poisson_ratio"])
+    poisson_ratio, young_modulus = float(stored["poisson_ratio"]), float(stored["young_modulus"])
+    lame_parameters(young_modulus, poisson_ratio)
     free_surface = stored["free_surface"].astype(np.int64)
     columns = stored["compliance"].astype(np.float32, copy=False)
     consistent = (
@@ -198,16 +154,8 @@ def _body(source: Path, stored: Arrays) -> SoftBody:
         and columns.shape == (len(free_surface), 3, 3 * len(free_surface))
     )
     if not consistent:
-        raise BodyFileError(
-            f"{source}: its compliance does not belong to its mesh, pins or material; bake again"
-        )
-    return SoftBody(
-        mesh,
-        fixed,
-        poisson_ratio,
-        Compliance(free_surface, columns),
-        float(stored["young_modulus"]),
-    )
+        raise PalpateError("its compliance does not belong to its mesh, pins or material")
+    return SoftBody(mesh, fixed, poisson_ratio, Compliance(free_surface, columns), young_modulus)
 
 
 def _checksum(arrays: Arrays) -> str:

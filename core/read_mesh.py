@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import zipfile
+import io
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .errors import PalpateError
+from .npz_archive import ArchiveError, read_arrays
 from .surface import Surface
 from .tet_mesh import TetMesh
-
-SURFACE_SUFFIXES = (".obj", ".ply", ".stl")
 
 
 def read_surface(path: Path, metres_per_unit: float = 1.0) -> Surface:
@@ -24,9 +24,8 @@ def read_surface(path: Path, metres_per_unit: float = 1.0) -> Surface:
         No such file, an unknown kind, contents that cannot be read or cannot become a solid.
     """
     _refuse_missing(path)
-    read = _read_ply if path.suffix.lower() == ".ply" else _read_obj_or_stl
     try:
-        vertices, triangles = read(path)
+        vertices, triangles = READERS[path.suffix.lower()](path)
     except Exception as problem:  # readers raise many kinds for a damaged file; all mean the same
         raise PalpateError(
             f"{path}: cannot be read as {path.suffix[1:]} ({problem}); export it again"
@@ -38,7 +37,9 @@ def read_surface(path: Path, metres_per_unit: float = 1.0) -> Surface:
 
 
 def read_tets(path: Path, metres_per_unit: float = 1.0) -> tuple[TetMesh, NDArray[np.int64] | None]:
-    """Read tetrahedra: arrays ``X`` (N, 3), ``T`` (M, 4) and, if there, ``fixed`` node numbers.
+    """Read tetrahedra: arrays ``X`` (N, 3), ``T`` (M, 4) and, if there, ``fixed``.
+
+    ``fixed`` are node numbers, or a mask with one boolean a node.
 
     Raises
     ------
@@ -47,13 +48,9 @@ def read_tets(path: Path, metres_per_unit: float = 1.0) -> tuple[TetMesh, NDArra
     """
     _refuse_missing(path)
     try:
-        # Opened here, since numpy leaves a damaged archive open.
-        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
-            arrays = {name: file[name] for name in ("X", "T", "fixed") if name in file.files}
-    except (OSError, EOFError, ValueError, AttributeError, zipfile.BadZipFile) as problem:
-        raise PalpateError(
-            f"{path}: damaged or not an npz file ({problem}); save it again with numpy.savez"
-        ) from problem
+        arrays = read_arrays(path)
+    except ArchiveError as problem:
+        raise PalpateError(f"{problem}; save it again with numpy.savez") from problem
     missing = [name for name in ("X", "T") if name not in arrays]
     if missing:
         raise PalpateError(
@@ -61,31 +58,72 @@ def read_tets(path: Path, metres_per_unit: float = 1.0) -> tuple[TetMesh, NDArra
             "T (tetrahedra) and optionally fixed (pinned nodes)"
         )
     try:
-        mesh = TetMesh.checked(arrays["X"] * metres_per_unit, arrays["T"])
+        mesh = TetMesh.checked(_metres(arrays["X"], metres_per_unit), arrays["T"])
+        fixed = _node_numbers(arrays["fixed"], len(mesh.nodes)) if "fixed" in arrays else None
     except PalpateError as problem:
         raise PalpateError(f"{path}: {problem}") from problem
-    fixed = arrays.get("fixed")
-    return mesh, None if fixed is None else fixed.astype(np.int64)
+    return mesh, fixed
 
 
-def _read_obj_or_stl(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def _metres(given: NDArray[Any], metres_per_unit: float) -> NDArray[Any]:
+    """Scaled in double precision; what is no number is left to those who check."""
+    is_number = given.dtype.kind in "fiu"
+    return given.astype(np.float64) * metres_per_unit if is_number else given
+
+
+def _node_numbers(fixed: NDArray[Any], node_count: int) -> NDArray[np.int64]:
+    if fixed.dtype == np.bool_ and fixed.shape == (node_count,):
+        return np.flatnonzero(fixed)
+    if fixed.size and not np.issubdtype(fixed.dtype, np.integer):
+        raise PalpateError(
+            f"fixed: an array of {fixed.dtype} and shape {fixed.shape} names no nodes; give node "
+            f"numbers as integers, or {node_count} booleans"
+        )
+    return fixed.astype(np.int64).ravel()
+
+
+def _read_obj(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    # Names of objects may be in any encoding, and do not matter.
+    text = path.read_text(encoding="utf-8", errors="replace")
+    return _by_trimesh(io.StringIO(text), "obj", skip_materials=True)
+
+
+def _read_stl(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    content = path.read_bytes()
+    # Binary ones may begin with "solid" too; only their length tells.
+    if len(content) == 84 + 50 * int.from_bytes(content[80:84], "little"):
+        return _by_trimesh(io.BytesIO(content), "stl")
+    text = content.decode("utf-8", errors="replace")
+    if "facet" not in text:
+        raise ValueError("neither text nor as long as its binary header says")
+    return _by_trimesh(io.StringIO(text), "stl_ascii")
+
+
+def _by_trimesh(
+    content: io.StringIO | io.BytesIO, kind: str, **options: bool
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     import trimesh
 
-    materials = {"skip_materials": True} if path.suffix.lower() == ".obj" else {}
-    mesh = trimesh.load_mesh(path, process=False, **materials)
+    mesh = trimesh.load_mesh(content, file_type=kind, process=False, **options)
     return np.asarray(mesh.vertices, dtype=np.float64), np.asarray(mesh.faces, dtype=np.int64)
 
 
 def _read_ply(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Read with plyfile, which takes files that mix triangles, quads and larger polygons."""
-    from plyfile import PlyData
+    from plyfile import PlyData, PlyListProperty
 
     data = PlyData.read(path)
     vertex = data["vertex"]
     vertices = np.column_stack([vertex[axis] for axis in "xyz"]).astype(np.float64)
-    polygons = data["face"].data[data["face"].data.dtype.names[0]] if "face" in data else []
-    fans = [_fan(np.asarray(polygon, dtype=np.int64)) for polygon in polygons]
+    if "face" not in data:
+        return vertices, np.empty((0, 3), dtype=np.int64)
+    lists = [entry.name for entry in data["face"].properties if isinstance(entry, PlyListProperty)]
+    name = next(name for name in ("vertex_indices", "vertex_index", *lists) if name in lists)
+    fans = [_fan(np.asarray(polygon, dtype=np.int64)) for polygon in data["face"][name]]
     return vertices, np.concatenate(fans) if fans else np.empty((0, 3), dtype=np.int64)
+
+
+READERS = {".obj": _read_obj, ".ply": _read_ply, ".stl": _read_stl}
 
 
 def _fan(polygon: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -97,7 +135,7 @@ def _fan(polygon: NDArray[np.int64]) -> NDArray[np.int64]:
 def _refuse_missing(path: Path) -> None:
     if not path.is_file():
         raise PalpateError(f"{path}: there is no such file; check the path")
-    if path.suffix.lower() not in (*SURFACE_SUFFIXES, ".npz"):
+    if path.suffix.lower() not in (*READERS, ".npz"):
         raise PalpateError(
             f"{path}: files of kind '{path.suffix}' cannot be read; give obj, ply, stl or npz"
         )

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from .closest_point import ClosestPoints
 from .compliance import Compliance
 from .contact import Touch, triangle_forces
+from .coordinates import LARGEST_COORDINATE
 from .errors import PalpateError
 from .tet_mesh import TetMesh
 
@@ -128,9 +129,9 @@ class SoftBody:
 
 def _point_checked(name: str, value: ArrayLike) -> NDArray[np.float64]:
     point = np.asarray(value, dtype=np.float64)
-    if point.shape != (3,) or not np.isfinite(point).all():
+    if point.shape != (3,) or not (np.abs(point) <= LARGEST_COORDINATE).all():
         raise PalpateError(
             f"--{name}: {np.asarray(value).tolist()} is not a point; give three finite numbers "
-            "in metres"
+            f"in metres, none beyond {LARGEST_COORDINATE:g}"
         )
     return point

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from .coordinates import refuse_unusable
 from .errors import PalpateError
 
 # Vertices closer than this share of the diagonal are one: seams that only look open are closed.
@@ -49,15 +50,11 @@ class Surface:
                 f"mesh: it has {len(points)} vertices and {len(faces)} faces, so there is nothing "
                 "to make soft; choose a mesh with faces"
             )
-        if not np.isfinite(points).all():
-            bad = int((~np.isfinite(points).all(axis=1)).sum())
-            raise PalpateError(
-                f"mesh: {bad} vertices have coordinates that are not finite numbers; delete or "
-                "repair them"
-            )
+        refuse_unusable("mesh", points)
         if faces.min() < 0 or faces.max() >= len(points):
+            wrong = int(faces.min()) if faces.min() < 0 else int(faces.max())
             raise PalpateError(
-                f"mesh: a face names vertex {int(faces.max())}, but there are only {len(points)}; "
+                f"mesh: a face names vertex {wrong}, but they are numbered 0 to {len(points) - 1}; "
                 "the file is damaged, export it again"
             )
         surface = cls(points, faces)

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from .coordinates import refuse_unusable
 from .errors import PalpateError
 
 # The four faces of a positively oriented tetrahedron, wound so that normals point outward.
@@ -116,18 +117,18 @@ def signed_volumes(nodes: NDArray[np.float64], tets: NDArray[np.int64]) -> NDArr
 
 
 def _nodes_checked(nodes: ArrayLike) -> NDArray[np.float64]:
-    array = np.array(nodes, dtype=np.float64)
-    if array.ndim != 2 or array.shape[1] != 3 or not len(array):
+    given = np.asarray(nodes)
+    if given.ndim != 2 or given.shape[1] != 3 or not len(given):
         raise PalpateError(
-            f"tetrahedral mesh: nodes have shape {array.shape}, expected (N, 3) with N > 0; "
+            f"tetrahedral mesh: nodes have shape {given.shape}, expected (N, 3) with N > 0; "
             "give one row of x, y, z in metres per node"
         )
-    if not np.isfinite(array).all():
-        node = int(np.flatnonzero(~np.isfinite(array).all(axis=1))[0])
+    if given.dtype.kind not in "fiu":
         raise PalpateError(
-            f"tetrahedral mesh: node {node} has a coordinate that is not a finite number; "
-            "repair the mesh it came from"
+            f"tetrahedral mesh: nodes are {given.dtype}, expected real numbers; give metres"
         )
+    array = given.astype(np.float64, order="C")
+    refuse_unusable("tetrahedral mesh", array)
     return array
 
 

@@ -7,7 +7,8 @@ import signal
 from collections.abc import Iterator
 from types import FrameType
 
-WANTED = (signal.SIGTERM, signal.SIGINT)
+HANG_UP = getattr(signal, "SIGHUP", None)
+WANTED = [number for number in (signal.SIGTERM, signal.SIGINT, HANG_UP) if number is not None]
 
 
 @contextlib.contextmanager
@@ -18,9 +19,15 @@ def stopped_by_signals() -> Iterator[list[int]]:
     def note(number: int, _frame: FrameType | None) -> None:
         received.append(number)
 
-    before = [signal.signal(number, note) for number in WANTED]
+    # Whoever is started by nohup shall outlive the terminal.
+    wanted = [number for number in WANTED if number != HANG_UP or not _is_ignored(number)]
+    before = {number: signal.signal(number, note) for number in wanted}
     try:
         yield received
     finally:
-        for number, handler in zip(WANTED, before, strict=True):
+        for number, handler in before.items():
             signal.signal(number, handler)
+
+
+def _is_ignored(number: int) -> bool:
+    return signal.getsignal(number) is signal.SIG_IGN

@@ -1,3 +1,4 @@
+import os
 import zipfile
 
 import numpy as np
@@ -5,6 +6,7 @@ import pytest
 
 from palpate.core import cache
 from palpate.core.cache import BodyFileError, body_key
+from palpate.core.whole_file import UnwritableError
 
 
 @pytest.fixture
@@ -75,6 +77,51 @@ def test_a_flipped_bit_anywhere_is_never_stale_data(cube, file, rng):
         np.testing.assert_array_equal(body.mesh.nodes, cube.mesh.nodes)
 
 
+def test_a_flipped_bit_in_the_archives_own_headers_is_damage_or_nothing(cube, file):
+    content = file.read_bytes()
+    headers = [place for place in range(len(content) - 31) if content.startswith(b"PK", place)]
+    for place in (start + offset for start in headers for offset in (4, 6, 8, 31)):
+        damaged = bytearray(content)
+        damaged[place] ^= 0x21
+        file.write_bytes(damaged)
+        try:
+            body = cache.load(file)
+        except BodyFileError:
+            continue
+        np.testing.assert_array_equal(body.compliance.columns, cube.compliance.columns)
+
+
+def test_a_single_array_under_the_name_of_an_archive_is_refused(tmp_path):
+    with (tmp_path / "single.npz").open("wb") as stream:
+        np.save(stream, np.eye(3))
+    with pytest.raises(BodyFileError, match=r"single\.npz.*npz archive"):
+        cache.load(tmp_path / "single.npz")
+
+
+def test_a_version_that_is_no_number_is_another_version(file):
+    rewrite(file, version=np.array(["x", "y"]))
+    with pytest.raises(BodyFileError, match="version"):
+        cache.load(file)
+
+
+def test_the_file_that_a_link_leads_to_is_replaced(cube, file, tmp_path):
+    link = tmp_path / "link.npz"
+    link.symlink_to(file)
+    file.write_bytes(b"old")
+    cache.save(cube, link)
+    assert link.is_symlink()
+    assert cache.load(file).young_modulus == cube.young_modulus
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs named pipes")
+def test_what_is_no_ordinary_file_is_never_replaced(cube, tmp_path):
+    pipe = tmp_path / "pipe.npz"
+    os.mkfifo(pipe)
+    with pytest.raises(UnwritableError, match="no ordinary file"):
+        cache.save(cube, pipe)
+    assert pipe.is_fifo()
+
+
 def test_changed_arrays_fail_the_checksum(cube, file):
     rewrite(file, compliance=2 * cube.compliance.columns)
     with pytest.raises(BodyFileError, match="checksum"):
@@ -143,7 +190,7 @@ def test_a_failed_save_leaves_the_old_file_and_nothing_else(cube, file, monkeypa
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(np, "savez", full)
-    with pytest.raises(BodyFileError, match="No space left"):
+    with pytest.raises(UnwritableError, match="No space left"):
         cache.save(cube, file)
     assert file.read_bytes() == before
     assert [path.name for path in file.parent.iterdir()] == ["cube.npz"]

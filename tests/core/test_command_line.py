@@ -1,8 +1,11 @@
 """The commands bake, info and press as a user runs them, from the mesh file to the figures."""
 
 import json
+import os
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import numpy as np
@@ -158,6 +161,14 @@ def test_press_reads_the_force_and_writes_displacements(cube_file, tmp_path, cap
         (["bake", "cube.npz", "-o", "out.npz", "--pin-below", "2"], "fraction"),
         (["bake", "cube.npz", "-o", "out.npz", "--metres-per-unit", "-1"], "--metres-per-unit"),
         (["bake", "cube.npz", "-o", "out.npz", "--edge-length", "0.1"], "--edge-length"),
+        (["bake", "box.stl", "-o", "out.npz", "--edge-length", "0"], "edge length"),
+        (["bake", "cube.npz", "-o", "nowhere/out.npz"], "no folder"),
+        (["bake", "single.npz", "-o", "out.npz"], "single.npz"),
+        (["bake", "halves.npz", "-o", "out.npz"], "names no nodes"),
+        (["bake", "words.npz", "-o", "out.npz"], "real numbers"),
+        (["bake", "vast.npz", "-o", "out.npz"], "check the unit"),
+        (["bake", "short.stl", "-o", "out.npz"], "neither text nor"),
+        (["bake", "two\nlines.obj", "-o", "out.npz"], "two lines.obj"),
         (["bake", "tip.npz", "-o", "out.npz", "--pin-below", "0"], "could move"),
         (["bake", "cube.npz", "-o", "notes.txt/out.npz"], "written"),
         (["info", "none.npz"], "none.npz"),
@@ -165,6 +176,15 @@ def test_press_reads_the_force_and_writes_displacements(cube_file, tmp_path, cap
         (["press", "other.npz", "--at", "0", "0", "0", "--by", "0", "0", "0"], "other.npz"),
         (["press", "{body}", "--at", "0", "0", "nan", "--by", "0", "0", "0"], "--at"),
         (["press", "{body}", "--at", "0", "0", "0", "--by", "0", "inf", "0"], "--by"),
+        (["press", "{body}", "--at", "0", "0", "1e200", "--by", "0", "0", "0"], "--at"),
+        (
+            ["press", "{body}", "--at", *"000", "--by", "0", "0", "1e9", "--young", "1e308"],
+            "numbers",
+        ),
+        (
+            ["press", "{body}", "--at", *"000", "--by", *"000", "--displacements", "no/u.npy"],
+            "u.npy",
+        ),
         (["press", "{body}", "--at", "0", "0", "0", "--by", "0", "0", "0", "--young", "-1"], "You"),
         (["press", "{body}", "--at", "0", "0", "--by", "0", "0", "0"], "--at"),
         (["press", "{body}", "--at", "0", "0", "0"], "--by"),
@@ -180,6 +200,14 @@ def test_bad_input_gets_one_line_status_2_and_no_file(
     np.savez("cube.npz", X=mesh.nodes, T=mesh.tets, fixed=fixed)
     np.savez("nan.npz", X=mesh.nodes * np.nan, T=mesh.tets, fixed=fixed)
     np.savez("other.npz", a=1)
+    with Path("single.npz").open("wb") as stream:
+        np.save(stream, mesh.nodes)
+    np.savez("halves.npz", X=mesh.nodes, T=mesh.tets, fixed=fixed + 0.5)
+    np.savez("words.npz", X=mesh.nodes.astype(str), T=mesh.tets, fixed=fixed)
+    np.savez("vast.npz", X=mesh.nodes * 1e200, T=mesh.tets, fixed=fixed)
+    box = trimesh.creation.box().export(file_type="stl")
+    Path("box.stl").write_bytes(box)
+    Path("short.stl").write_bytes(box[:-60])
     on_its_tip = np.array([[0, 0, 0], [1, 0, 1], [0, 1, 1], [1, 1, 3]]) * 0.1
     np.savez("tip.npz", X=on_its_tip, T=np.array([[0, 1, 2, 3]]))
     Path("notes.txt").write_text("hello")
@@ -200,6 +228,67 @@ def test_bad_input_gets_one_line_status_2_and_no_file(
     assert printed.err.startswith("palpate: ")
     assert said in printed.err
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+def test_names_in_any_encoding_do_not_hinder(tmp_path, capsys):
+    text = trimesh.creation.box((0.1, 0.1, 0.1)).export(file_type="obj")
+    (tmp_path / "box.obj").write_bytes(b"o W\xfcrfel\n" + text.encode())
+    status, _, _ = palpate(
+        capsys, "bake", tmp_path / "box.obj", "-o", tmp_path / "b.npz", "--edge-length", 0.3
+    )
+    assert status == 0
+
+
+def test_a_ply_with_more_to_say_of_its_faces_is_read(tmp_path, capsys):
+    box = trimesh.creation.box((0.1, 0.1, 0.1))
+    lines = [
+        *("ply", "format ascii 1.0", "element vertex 8"),
+        *(f"property float {axis}" for axis in "xyz"),
+        *("element face 12", "property uchar red", "property list uchar int vertex_indices"),
+        "end_header",
+        *("{} {} {}".format(*vertex) for vertex in box.vertices),
+        *("7 3 {} {} {}".format(*face) for face in box.faces),
+    ]
+    (tmp_path / "box.ply").write_text("\n".join(lines) + "\n")
+    status, _, _ = palpate(
+        capsys, "bake", tmp_path / "box.ply", "-o", tmp_path / "b.npz", "--edge-length", 0.3
+    )
+    assert status == 0
+
+
+def test_pins_may_be_a_mask(tmp_path, capsys, cube_mesh):
+    mesh, fixed = cube_mesh
+    mask = np.isin(np.arange(len(mesh.nodes)), fixed)
+    np.savez(tmp_path / "cube.npz", X=mesh.nodes, T=mesh.tets, fixed=mask)
+    status, printed, _ = palpate(
+        capsys, "bake", tmp_path / "cube.npz", "-o", tmp_path / "b.npz", "--json"
+    )
+    assert status == 0
+    assert json.loads(printed)["fixed_nodes"] == 25
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals are of Unix")
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_bake_that_is_stopped_leaves_nothing(tmp_path, number):
+    trimesh.creation.icosphere(subdivisions=4).export(tmp_path / "ball.stl")
+    scratch = tmp_path / "scratch"
+    scratch.mkdir()
+    words = ["bake", "ball.stl", "-o", "out.npz", "--edge-length", "0.02"]
+    with subprocess.Popen(
+        [sys.executable, "-m", "palpate.cli.main", *words],
+        cwd=tmp_path,
+        env=os.environ | {"TMPDIR": str(scratch)},
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as program:
+        while not list(scratch.glob("*/progress.jsonl")):
+            assert program.poll() is None
+            time.sleep(0.05)
+        program.send_signal(number)
+        _, said = program.communicate(timeout=30)
+    assert (program.returncode, said) == (130, "palpate: stopped\n")
+    assert [path.name for path in scratch.iterdir()] == []
+    assert not (tmp_path / "out.npz").exists()
 
 
 def test_the_program_ends_with_the_status_and_the_line(tmp_path):
