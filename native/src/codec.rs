@@ -118,9 +118,9 @@ impl Decoder {
 }
 
 /// What a device says of itself.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Greeting {
-    /// Protocol version the device speaks.
+    /// Protocol version the device speaks; of another one than [`PROTOCOL`] nothing else is known.
     pub protocol: u8,
     /// UTF-8, zero padded.
     pub name: [u8; 16],
@@ -132,6 +132,16 @@ pub struct Greeting {
     pub half_extents: [f32; 3],
     /// Rate of the STATE stream, Hz.
     pub rate_hz: u16,
+}
+
+impl Greeting {
+    /// Whether its figures can be those of a device.
+    pub fn is_sound(&self) -> bool {
+        let [x, y, z] = self.half_extents;
+        [self.max_force, x, y, z]
+            .iter()
+            .all(|figure| figure.is_finite() && *figure >= 0.0)
+    }
 }
 
 /// Where a device is.
@@ -180,6 +190,13 @@ pub fn parse(payload: &[u8]) -> Option<Message> {
     let (&kind, rest) = payload.split_first()?;
     let mut fields = Fields(rest);
     let message = match kind {
+        // Type and protocol stay where they are in every version; all else may change.
+        HELLO if *rest.first()? != PROTOCOL => {
+            return Some(Message::Hello(Greeting {
+                protocol: rest[0],
+                ..Greeting::default()
+            }));
+        }
         HELLO => Message::Hello(Greeting {
             protocol: fields.take::<1>()?[0],
             name: fields.take()?,

@@ -142,6 +142,10 @@ impl<O: Opener> LinkDevice<O> {
             return;
         };
         match codec::parse(payload) {
+            Some(Message::Hello(greeting)) if !greeting.is_sound() => {
+                self.greeting = None;
+                self.report.unknown += 1;
+            }
             Some(Message::Hello(greeting)) => {
                 if self.greeting.is_none() {
                     self.heard = now;
@@ -237,7 +241,7 @@ impl<O: Opener> Device for LinkDevice<O> {
             self.greet(now);
             return match self.greeting {
                 Some(_) => Reading::Fault(Fault::Protocol),
-                None => Reading::Waiting("no answer to HELLO yet"),
+                None => Reading::Waiting("no sound answer to HELLO yet"),
             };
         }
         if std::mem::take(&mut self.device_fault) {
@@ -256,13 +260,12 @@ impl<O: Opener> Device for LinkDevice<O> {
         if state.fault {
             return Reading::Fault(Fault::Device);
         }
-        let limit = f64::from(greeting.max_force);
         let probe = Probe {
             position: frame.to_body(state.position()),
             speed,
             restart: std::mem::take(&mut self.unseen),
             buttons: state.buttons,
-            max_force: if limit > 0.0 { limit } else { 0.0 },
+            max_force: f64::from(greeting.max_force),
         };
         if state.ready {
             Reading::At(probe)

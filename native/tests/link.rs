@@ -227,6 +227,31 @@ fn another_version_gets_no_force() {
 }
 
 #[test]
+fn another_version_is_told_whatever_its_hello_looks_like() {
+    let bench = Bench::default();
+    let mut device = LinkDevice::open(bench.clone()).unwrap();
+    bench.send(&[1, 2, 42]);
+    assert_eq!(read(&mut device, 0.0), Reading::Fault(Fault::Protocol));
+    assert_eq!(device.report().greeting.unwrap().protocol, 2);
+}
+
+#[test]
+fn a_greeting_with_figures_that_cannot_be_gets_no_force() {
+    for max_force in [f32::NAN, f32::INFINITY, -1.0] {
+        let (bench, mut device) = greeted();
+        assert!(matches!(read(&mut device, 0.001), Reading::At(_)));
+        bench.received();
+        bench.hello(1, max_force);
+        bench.state(0, 0, 0, 1);
+        assert!(matches!(read(&mut device, 0.002), Reading::Waiting(_)));
+        device.write(DVec3::X, true, &FRAME());
+        assert!(bench.received().iter().all(|payload| payload == &[1, 1]));
+        assert_eq!(device.report().greeting.unwrap().max_force, 2.5);
+        assert_eq!(device.report().unknown, 1);
+    }
+}
+
+#[test]
 fn faults_flags_and_buttons_of_the_device_are_passed_on() {
     let (bench, mut device) = greeted();
     read(&mut device, 0.001);
