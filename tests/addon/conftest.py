@@ -15,7 +15,7 @@ Every test begins with Blender's factory scene and the extension enabled.
 
 from __future__ import annotations
 
-import importlib
+import importlib.util
 import os
 import shutil
 import tempfile
@@ -28,14 +28,14 @@ import pytest
 REPOSITORY = Path(__file__).resolve().parents[2]
 MODULE = "bl_ext.user_default.palpate"
 
+if importlib.util.find_spec("bpy") is None:
+    raise pytest.UsageError("tests/addon needs Blender's module: run `make test-addon`")
+
 # Blender reads its user folder when bpy is imported, so it must be chosen before any test does.
 USER_FOLDER = Path(tempfile.mkdtemp(prefix="palpate-addon-tests-"))
 os.environ["BLENDER_USER_RESOURCES"] = str(USER_FOLDER)
 
-try:
-    import bpy
-except ModuleNotFoundError as error:
-    raise pytest.UsageError("tests/addon needs Blender's module: run `make test-addon`") from error
+import bpy  # noqa: E402 -- the environment comes first, see above
 
 
 def pytest_report_header() -> str:
