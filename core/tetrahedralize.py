@@ -17,13 +17,16 @@ from .closest_point import ClosestPoints
 from .errors import PalpateError
 from .surface import Surface
 from .tet_mesh import OUTWARD_FACES, TetMesh, signed_volumes
-from .winding_volume import enclosed_volume, is_inside
+from .winding_volume import enclosed_volume, is_inside, sampled_volume
 
 # Face-connected crumbs below this share of the volume are debris of the envelope, not parts.
 CRUMB_SHARE = 1e-3
 
 # Outside these bounds the tetrahedra fill something else than what the surface encloses.
 VOLUME_RATIO_BOUNDS = (0.5, 1.5)
+
+# A larger difference asks for a second opinion on what the surface encloses.
+DOUBTFUL_VOLUME_ERROR = 0.1
 
 # Input vertices farther than this share of the diagonal may be walls between merged parts.
 BURIED_DISTANCE = 0.01
@@ -88,6 +91,9 @@ def check_fit(mesh: TetMesh, surface: Surface, shell: Surface) -> Fit:
         The volumes have nothing to do with each other.
     """
     volume = enclosed_volume(shell)
+    if abs(mesh.volume - volume) > DOUBTFUL_VOLUME_ERROR * volume:
+        # Perhaps the surface passes through itself; this costs a second or two.
+        volume = sampled_volume(shell)
     ratio = mesh.volume / volume if volume > 0 else float("inf")
     if not VOLUME_RATIO_BOUNDS[0] < ratio < VOLUME_RATIO_BOUNDS[1]:
         raise PalpateError(

@@ -15,13 +15,21 @@ PAIRS_PER_PASS = 1_000_000
 def enclosed_volume(surface: Surface) -> float:
     """Volume in cubic metres that a welded surface encloses.
 
-    Exact (divergence theorem) for one closed piece. Otherwise the volume where the generalized
-    winding number exceeds one half, estimated from scattered points with a fixed seed, so that the
-    same surface always gives the same figure. Winding numbers of triangle soups: Jacobson, Kavan,
-    Sorkine-Hornung 2013; here either orientation counts, as normals may all point inward.
+    Exact (divergence theorem) for one closed piece that does not pass through itself: there, what
+    overlaps would count twice. Otherwise see :func:`sampled_volume`.
     """
     if surface.is_closed and surface.piece_count == 1:
         return abs(surface.signed_volume)
+    return sampled_volume(surface)
+
+
+def sampled_volume(surface: Surface) -> float:
+    """Volume in cubic metres where the generalized winding number exceeds one half.
+
+    Estimated from scattered points with a fixed seed, so that the same surface always gives the
+    same figure. Winding numbers of triangle soups: Jacobson, Kavan, Sorkine-Hornung 2013; here
+    either orientation counts, as normals may all point inward.
+    """
     used = surface.vertices[np.unique(surface.triangles)]
     low, size = used.min(axis=0), np.ptp(used, axis=0)
     cells = np.indices((CELLS, CELLS, CELLS)).reshape(3, -1).T

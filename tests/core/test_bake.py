@@ -48,6 +48,9 @@ def bodies():
     ball = trimesh.creation.icosphere(subdivisions=2, radius=0.05)
     beside = ball.copy()
     beside.apply_translation([0.04, 0, 0])
+    # Vertices that coincide make one closed piece of these two, which passes through itself.
+    entwined = ball.copy()
+    entwined.apply_translation([0.05, 0, 0])
     apart = ball.copy()
     apart.apply_translation([0.2, 0, 0])
     holed = ball.copy()
@@ -61,6 +64,7 @@ def bodies():
         "ball": (ball, 1),
         "seams": (soup, 1),
         "overlapping": (trimesh.util.concatenate([ball, beside]), 1),
+        "entwined": (trimesh.util.concatenate([ball, entwined]), 1),
         "apart": (trimesh.util.concatenate([ball, apart]), 2),
         "open": (holed, 1),
         "inward": (inward, 1),
