@@ -24,7 +24,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     )
     parser.add_argument("--json", action="store_true", help="print as JSON")
     parser.set_defaults(run=run)
-    below = parser.add_subparsers(title="without hardware", metavar="")
+    below = parser.add_subparsers(title="without hardware", metavar="[simulate]")
     simulate = below.add_parser(
         "simulate",
         help="be a device on a pseudo-terminal until Ctrl-C",
