@@ -24,7 +24,12 @@ WORDS = {
     "Rebuild Body takes them over": "„Körper neu berechnen“ übernimmt das",
     "Pins changed since the bake": "Fixierung seit der Berechnung geändert",
     "Poisson's ratio changed since the bake": "Querkontraktionszahl seit der Berechnung geändert",
-    "The body file is missing": "Die Körperdatei fehlt",
+    "The body file is missing; press Rebuild Body": (
+        "Die Körperdatei fehlt; „Körper neu berechnen“ drücken"
+    ),
+    "The body file is damaged; press Rebuild Body": (
+        "Die Körperdatei ist beschädigt; „Körper neu berechnen“ drücken"
+    ),
     "The faces are connected differently than when it was baked": (
         "Die Flächen hängen anders zusammen als bei der Berechnung"
     ),
@@ -49,6 +54,9 @@ WORDS = {
     # View
     "Press on the surface and drag": "Auf die Oberfläche drücken und ziehen",
     "Pressing": "Drücken",
+    "Waiting for the device: check its port, cable and power": (
+        "Warte auf das Gerät: Anschluss, Kabel und Strom prüfen"
+    ),
     "Above the surface: drag inward, or turn the wheel": (
         "Über der Oberfläche: nach innen ziehen oder am Rad drehen"
     ),

@@ -26,6 +26,7 @@ STATES = {
     Phase.LOST: "Device away",
 }
 ABOVE = "Above the surface: drag inward, or turn the wheel"
+WAITING = "Waiting for the device: check its port, cable and power"
 KEYS = {
     Phase.READY: "Esc  Leave",
     Phase.DRAGGING: "Wheel  Deeper",
@@ -65,8 +66,7 @@ def _lines(context: bpy.types.Context, session: PressSession) -> list[tuple[str,
     if phase is Phase.LOST:
         lines.append((say(session.state.message), NORMAL, WARNING))
     else:
-        above = phase is Phase.DRAGGING and not figures.touching
-        lines.append((say(ABOVE if above else STATES.get(phase, "")), NORMAL, WHITE))
+        lines.append((say(_standing(session, touching=figures.touching)), NORMAL, WHITE))
         if session.state.message:
             lines.append((say(session.state.message), NORMAL, WARNING))
     if phase is Phase.FEELING and snapshot is not None:
@@ -76,6 +76,15 @@ def _lines(context: bpy.types.Context, session: PressSession) -> list[tuple[str,
         lines.append((text, SMALL, GREY))
     lines.append((say(KEYS.get(phase, "")), SMALL, GREY))
     return lines
+
+
+def _standing(session: PressSession, *, touching: bool) -> str:
+    """Where the press stands, or what it waits for."""
+    if session.awaits_device:
+        return WAITING
+    if session.state.phase in {Phase.DRAGGING, Phase.HOLDING} and not touching:
+        return ABOVE
+    return STATES.get(session.state.phase, "")
 
 
 def _width(text: str, size: float) -> float:

@@ -24,7 +24,12 @@ WORDS = {
     "Rebuild Body takes them over": "「物体を再計算」で反映されます",
     "Pins changed since the bake": "ベイク後に固定が変更されました",
     "Poisson's ratio changed since the bake": "ベイク後にポアソン比が変更されました",
-    "The body file is missing": "物体ファイルがありません",
+    "The body file is missing; press Rebuild Body": (
+        "物体ファイルがありません。「物体を再計算」を押してください"
+    ),
+    "The body file is damaged; press Rebuild Body": (
+        "物体ファイルが壊れています。「物体を再計算」を押してください"
+    ),
     "The faces are connected differently than when it was baked": (
         "面のつながりがベイク時と異なります"
     ),
@@ -47,6 +52,9 @@ WORDS = {
     # View
     "Press on the surface and drag": "表面を押してドラッグ",
     "Pressing": "押しています",
+    "Waiting for the device: check its port, cable and power": (
+        "デバイスの応答を待っています: ポート、ケーブル、電源を確認してください"
+    ),
     "Above the surface: drag inward, or turn the wheel": (
         "表面の外です: 内側へドラッグするか、ホイールを回してください"
     ),

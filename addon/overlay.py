@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from ..operators import press_session
 from ..operators.package_preferences import preferences
 from ..operators.press_session import PressSession
+from ..operators.press_state import Phase
 from . import hud
 from .overlay_shapes import CONE, SPHERE, Lit, lit
 from .reading import Reading, reading
@@ -62,8 +63,9 @@ def draw_in_view() -> None:
 
 
 def _worth_drawing(session: PressSession, figures: Reading) -> bool:
-    """A pointer that has not touched yet has no probe to show."""
-    return figures.touching or session.state.phase.value not in {"ready", "lost"}
+    """A pointer that has not touched yet has no probe to show, nor has a device not heard of."""
+    nowhere = session.awaits_device or session.state.phase in {Phase.READY, Phase.LOST}
+    return figures.touching or not nowhere
 
 
 def _arrow(

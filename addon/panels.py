@@ -6,6 +6,7 @@ import bpy
 
 from ..operators import bake_session, press_session, soft_object
 from ..operators.bake_session import BakeSession
+from ..operators.drawn_body import restores_quickly
 from ..operators.press_session import PressSession
 from ..operators.press_state import Phase
 from ..operators.soft_object import BodyStatus, Fit
@@ -94,13 +95,18 @@ def _draw_idle(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         _say(layout, context, "Choose a material and pins, then press Make Soft", "INFO")
         return
     row = column.row()
-    row.enabled = status.fit in {Fit.READY, Fit.FILE_MISSING}
+    row.enabled = status.fit is Fit.READY or _press_restores(thing, status)
     row.operator("palpate.press", icon="FORCE_FORCE")
     column = layout.column(align=True)
-    if status.fit is Fit.FILE_MISSING or status.notes:
+    if status.fit in {Fit.FILE_MISSING, Fit.FILE_DAMAGED} or status.notes:
         column.operator("palpate.rebuild_body", icon="FILE_REFRESH")
     column.operator("palpate.make_soft", icon="MOD_SOFT", text="Make Soft Again")
     _draw_status(layout, context, status)
+
+
+def _press_restores(thing: bpy.types.Object, status: BodyStatus) -> bool:
+    """Whether Press itself computes the missing body again."""
+    return status.fit is Fit.FILE_MISSING and restores_quickly(thing)
 
 
 def _draw_status(
@@ -108,8 +114,12 @@ def _draw_status(
 ) -> None:
     if status.fit is Fit.READY:
         _say(layout, context, "Ready to press", "CHECKMARK")
-    elif status.fit is Fit.FILE_MISSING:
+    elif _press_restores(context.object, status):
         _say(layout, context, "The body file is missing; Press computes it again", "INFO")
+    elif status.fit is Fit.FILE_MISSING:
+        _say(layout, context, "The body file is missing; press Rebuild Body", "ERROR")
+    elif status.fit is Fit.FILE_DAMAGED:
+        _say(layout, context, "The body file is damaged; press Rebuild Body", "ERROR")
     else:
         # As it begins a line, so that it is found in the dictionary.
         _say(layout, context, status.text[:1].upper() + status.text[1:], "ERROR")

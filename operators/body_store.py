@@ -6,8 +6,6 @@ travel with the object make the same body again in seconds, without a new tetrah
 
 from __future__ import annotations
 
-import os
-import shutil
 import sys
 from pathlib import Path
 
@@ -27,6 +25,9 @@ from .package_preferences import PACKAGE, preferences
 FOLDER = "palpate"
 KEY_LETTERS = 12
 EMBEDDED = ("nodes", "tets", "fixed")
+
+# Files found damaged, and the time they had then: the panel offers to rebuild them.
+_damaged: dict[Path, int] = {}
 
 
 def file_name(thing: bpy.types.Object, key: str) -> str:
@@ -79,12 +80,22 @@ def load(thing: bpy.types.Object) -> SoftBody:
         raise BodyFileError(
             f"{thing.name}: its body file '{baked.body_file}' is missing; press Rebuild Body"
         )
-    body = cache.load(path)
+    try:
+        body = cache.load(path)
+    except BodyFileError:
+        _damaged[path] = path.stat().st_mtime_ns
+        raise
     if cache.body_key(body.mesh, body.fixed, body.poisson_ratio) != baked.body_key:
+        _damaged[path] = path.stat().st_mtime_ns
         raise BodyFileError(
             f"{path}: it is the body of something else, not of {thing.name}; press Rebuild Body"
         )
     return body
+
+
+def is_known_damaged(path: Path) -> bool:
+    """Whether :func:`load` found this file damaged, and it has not been written since."""
+    return path in _damaged and _damaged[path] == path.stat().st_mtime_ns
 
 
 def restore(thing: bpy.types.Object) -> SoftBody:
@@ -162,7 +173,7 @@ def gather_beside(blend: Path, found: dict[str, Path], *, is_open_file: bool) ->
 
     Raises
     ------
-    PalpateError
+    BodyFileError
         The folder cannot be written.
     """
     folder = blend.parent / FOLDER
@@ -170,15 +181,6 @@ def gather_beside(blend: Path, found: dict[str, Path], *, is_open_file: bool) ->
         target = folder / name
         if target == source or target.is_file():
             continue
-        try:
-            folder.mkdir(exist_ok=True)
-            unfinished = folder / f".{name}.{os.getpid()}.tmp"
-            shutil.copyfile(source, unfinished)
-            unfinished.replace(target)
-            if is_open_file and source.parent == _unsaved_folder():
-                source.unlink()
-        except OSError as problem:
-            raise PalpateError(
-                f"{target}: the body file cannot be put beside the .blend "
-                f"({problem.strerror or problem}); it stays at {source}"
-            ) from problem
+        cache.adopt(source, target)
+        if is_open_file and source.parent == _unsaved_folder():
+            source.unlink()

@@ -65,7 +65,7 @@ class DrawnBody:
         return replace(self, frame=replace(frame, stretch=self.frame.stretch))
 
 
-def _restores_quickly(thing: bpy.types.Object) -> bool:
+def restores_quickly(thing: bpy.types.Object) -> bool:
     """Whether somebody who wants to press can wait for the body, without progress or Escape."""
     return bool(bpy.app.background or thing.palpate.free_surface_count <= MOST_NODES_AT_ONCE)
 
@@ -84,7 +84,7 @@ def open_body(thing: bpy.types.Object, scene: bpy.types.Scene) -> DrawnBody:
     status = soft_object.body_status(thing, scene)
     if status.fit is Fit.CHANGED:
         raise PalpateError(f"{thing.name}: {status.text}; press Make Soft to bake it again")
-    if status.fit is Fit.FILE_MISSING and _restores_quickly(thing):
+    if status.fit is Fit.FILE_MISSING and restores_quickly(thing):
         body = body_store.restore(thing)
     else:
         body = body_store.load(thing)

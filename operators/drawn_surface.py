@@ -63,8 +63,6 @@ def read(thing: bpy.types.Object, scene: bpy.types.Scene) -> DrawnSurface:
     PalpateError
         An object whose transform flattens it.
     """
-    if thing.mode == "EDIT":
-        thing.update_from_editmode()
     mesh = thing.data
     mesh.calc_loop_triangles()
     triangles = np.empty(3 * len(mesh.loop_triangles), dtype=np.int32)

@@ -7,6 +7,7 @@ zero force and the mesh is as it was found.
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import ExitStack
 from dataclasses import dataclass, field
 
 import bpy
@@ -68,10 +69,14 @@ class PressSession:
         """Let an event happen: the only way in which a press changes its state."""
         global _current  # noqa: PLW0603  one press at a time is a fact of the module
         self.state, effects = transition(self.state, event)
-        for effect in effects:
-            self._apply(effect)
-        if self.state.phase is Phase.ENDED and _current is self:
-            _current = None
+        try:
+            # In order; should one fail, those behind it are still carried out.
+            with ExitStack() as waiting:
+                for effect in reversed(effects):
+                    waiting.callback(self._apply, effect)
+        finally:
+            if self.state.phase is Phase.ENDED and _current is self:
+                _current = None
 
     def tick(self) -> bool:
         """Follow object, settings and servo, and draw what is new; True if the view changed."""
@@ -87,6 +92,12 @@ class PressSession:
         if self.state.phase is not Phase.LOST and not self.state.withdrawn:
             self._draw(thing, snapshot)
         return moved
+
+    @property
+    def awaits_device(self) -> bool:
+        """Whether a device leads that has not said yet where it is."""
+        waiting = self.snapshot is not None and self.snapshot.state == "waiting"
+        return self.state.phase is Phase.FEELING and waiting
 
     def surface_now(self) -> Array:
         """All nodes of the body as they are seen, (N, 3), body coordinates."""
@@ -158,7 +169,7 @@ class PressSession:
             )
         except OSError as problem:
             raise PalpateError(
-                f"device: {port} cannot be opened ({problem}); plug it in, or choose another port"
+                f"device: {problem}; plug it in, or choose another port"
             ) from problem
 
     def _above(self) -> Array:

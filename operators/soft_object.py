@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 import bpy
@@ -18,6 +18,7 @@ class Fit(Enum):
     READY = "ready"
     CHANGED = "changed"  # another bake is needed
     FILE_MISSING = "file missing"  # can be rebuilt
+    FILE_DAMAGED = "file damaged"  # found so when it was to be pressed; can be rebuilt
 
 
 @dataclass(frozen=True)
@@ -37,9 +38,10 @@ def refusal(thing: bpy.types.Object | None) -> str:
         return f"{thing.name} is not a mesh; select a mesh object"
     if thing.library or thing.override_library or thing.data.library or thing.data.override_library:
         return f"{thing.name} is linked from another file; make it local (Object > Relations)"
-    if thing.data.users > 1:
+    others = thing.data.users - thing.data.use_fake_user - 1
+    if others > 0:
         return (
-            f"{thing.name} shares its mesh with {thing.data.users - 1} more; "
+            f"{thing.name} shares its mesh with {others} more; "
             "Object > Relations > Make Single User"
         )
     if thing.mode != "OBJECT":
@@ -58,6 +60,29 @@ def body_status(thing: bpy.types.Object, scene: bpy.types.Scene) -> BodyStatus:
     PalpateError
         A transform that flattens the object.
     """
+    return with_file(thing, mesh_status(thing, scene))
+
+
+def with_file(thing: bpy.types.Object, status: BodyStatus) -> BodyStatus:
+    """A :func:`mesh_status` together with what is known of the body file; quick."""
+    if status.fit is not Fit.READY:
+        return status
+    path = body_store.locate(thing)
+    if path is None:
+        return replace(status, fit=Fit.FILE_MISSING, text="the body file is missing")
+    if body_store.is_known_damaged(path):
+        return replace(status, fit=Fit.FILE_DAMAGED, text="the body file is damaged")
+    return status
+
+
+def mesh_status(thing: bpy.types.Object, scene: bpy.types.Scene) -> BodyStatus:
+    """Whether the object was baked and its mesh is still the same; takes its time.
+
+    Raises
+    ------
+    PalpateError
+        A transform that flattens the object.
+    """
     baked = thing.palpate
     if not baked.body_key:
         return BodyStatus(Fit.NEVER_BAKED)
@@ -66,10 +91,7 @@ def body_status(thing: bpy.types.Object, scene: bpy.types.Scene) -> BodyStatus:
     change = fingerprint.changed_body(old, new)
     if change:
         return BodyStatus(Fit.CHANGED, change)
-    notes = _unbaked_settings(thing, old, new)
-    if body_store.locate(thing) is None:
-        return BodyStatus(Fit.FILE_MISSING, "the body file is missing", notes)
-    return BodyStatus(Fit.READY, "", notes)
+    return BodyStatus(Fit.READY, "", _unbaked_settings(thing, old, new))
 
 
 def _unbaked_settings(

@@ -75,7 +75,9 @@ def test_a_damaged_body_file_is_never_used(saved, damage):
     message = error_of(bpy.ops.palpate.press, at=(0, 0, 0.03), by=(0, 0, -0.005))
     assert path.name in message
     assert key_names(saved) == []
+    assert status(saved).fit.name == "FILE_DAMAGED", "the panel offers no Rebuild Body"
     assert bpy.ops.palpate.rebuild_body() == {"FINISHED"}
+    assert status(saved).fit.name == "READY"
     press_down(saved)
 
 
@@ -123,6 +125,17 @@ def test_moving_and_turning_needs_no_bake_scaling_does(saved):
     bpy.context.view_layer.update()
     assert status(saved).fit.name == "CHANGED"
     assert "scale" in status(saved).text
+
+
+def test_the_panel_sees_a_lost_file_and_another_unit_scale_though_no_handler_tells(saved):
+    known = part("addon.known_status").body_status
+    scene = bpy.context.scene
+    assert known(saved, scene).fit.name == "READY"
+    scene.unit_settings.scale_length = 0.5
+    assert known(saved, scene).fit.name == "CHANGED"
+    scene.unit_settings.scale_length = 1.0
+    locate(saved).unlink()
+    assert known(saved, scene).fit.name == "FILE_MISSING"
 
 
 def test_applying_the_scale_leaves_the_body_valid(palpate):

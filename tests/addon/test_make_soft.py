@@ -164,6 +164,22 @@ def test_a_shared_mesh_is_refused_with_a_remedy(palpate):
     assert "Make Single User" in error_of(bpy.ops.palpate.make_soft)
 
 
+def test_a_fake_user_is_nobody_who_shares_the_mesh(palpate):
+    thing = cube()
+    thing.data.use_fake_user = True
+    assert bpy.ops.palpate.make_soft() == {"FINISHED"}
+
+
+def test_a_fine_sphere_gets_a_body_of_its_own_shape(palpate):
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=320, ring_count=160, radius=0.05)
+    thing = bpy.context.object
+    thing.palpate.edge_length = 0.1
+    assert bpy.ops.palpate.make_soft() == {"FINISHED"}
+    surface = body_of(thing).mesh
+    radius = np.linalg.norm(surface.nodes[surface.surface_nodes], axis=1)
+    assert np.abs(radius - 0.05).max() < 1e-3
+
+
 def test_edit_mode_is_refused_with_a_remedy(palpate):
     cube()
     bpy.ops.object.mode_set(mode="EDIT")

@@ -50,7 +50,7 @@ def said_in_code(palpate):
     hud = part("addon.hud")
     yield from hud.STATES.values()
     yield from hud.KEYS.values()
-    yield hud.ABOVE
+    yield from (hud.ABOVE, hud.WAITING)
     yield from part("operators.press_session").FAULTS.values()
 
 
