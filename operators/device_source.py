@@ -66,9 +66,10 @@ def port_of(scene: bpy.types.Scene) -> str:
     PalpateError
         None is chosen.
     """
-    port = scene.palpate.port.split(" ", 1)[0].strip()
+    # The list suggests "path (description)".
+    port = scene.palpate.port.partition(" (")[0].strip()
     if not port:
-        raise PalpateError("device: no port is chosen; pick one in the Press panel")
+        raise PalpateError("device: no port is chosen; pick one in the panel Device")
     return port
 
 

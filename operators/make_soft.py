@@ -47,7 +47,7 @@ class BakingOperator:
         return {"FINISHED"}
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        if bpy.app.background:
+        if bpy.app.background or context.window is None:
             return self.execute(context)
         try:
             self._session = bake_session.start(context.object, context.scene, rebuild=self.rebuild)
@@ -63,20 +63,27 @@ class BakingOperator:
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         try:
-            if event.type == "ESC" and event.value == "PRESS":
-                self._session.end()
-            if event.type not in {"TIMER", "ESC"}:
-                return {"PASS_THROUGH"}
-            finished = self._session.poll()
-            self._show(context, waiting=finished)
-            if not finished or not self._session.can_commit:
-                return {"PASS_THROUGH"}
-            body, report = self._session.commit(context.scene)
+            return self._follow(context, event)
         except PalpateError as problem:
             self._leave(context)
             level = "INFO" if isinstance(problem, CancelledError) else "ERROR"
             self.report({level}, str(problem))
             return {"CANCELLED"}
+        except BaseException:
+            # A fault of ours must not leave a child process, a timer and a status line behind.
+            self.cancel(context)
+            raise
+
+    def _follow(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        if event.type == "ESC" and event.value == "PRESS":
+            self._session.end()
+        if event.type not in {"TIMER", "ESC"}:
+            return {"PASS_THROUGH"}
+        finished = self._session.poll()
+        self._show(context, waiting=finished)
+        if not finished or not self._session.can_commit:
+            return {"PASS_THROUGH"}
+        body, report = self._session.commit(context.scene)
         self._leave(context)
         self._tell(self._session.handle.name, body, report)
         return {"FINISHED"}

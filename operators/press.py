@@ -29,9 +29,11 @@ NAVIGATION = {
     "MOUSEROTATE",
     "MOUSESMARTZOOM",
     "HOME",
+    "ACCENT_GRAVE",
     "N",
     *(f"NUMPAD_{key}" for key in (*range(10), "PERIOD", "PLUS", "MINUS", "SLASH")),
 }
+FILE_KEYS = {"S", "O", "Q"}
 STATUS = {
     Phase.READY: "Drag on the surface: Press     [Enter] Keep     [Esc] Restore",
     Phase.DRAGGING: "Drag: In and along     [Wheel] Deeper",
@@ -72,7 +74,6 @@ class PALPATE_OT_press(bpy.types.Operator):
     _session: PressSession
     _timer: bpy.types.Timer | None = None
     _drag: ProbeDrag | None = None
-    _view: Viewport | None = None
     _status = ""
 
     @classmethod
@@ -101,15 +102,22 @@ class PALPATE_OT_press(bpy.types.Operator):
         return {"FINISHED"}
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        if bpy.app.background:
+        if bpy.app.background or context.window is None:
             return self.execute(context)
+        thing = context.object
+        if not thing.visible_get():
+            self.report(
+                {"ERROR"}, f"{thing.name} is hidden; show it (Object > Show/Hide) to press it"
+            )
+            return {"CANCELLED"}
         source = Source.POINTER if context.scene.palpate.source == "POINTER" else Source.DEVICE
         # A missing body file is computed again first, which may take a few seconds.
         context.window.cursor_modal_set("WAIT")
         try:
-            self._session = press_session.begin(context.object, context.scene, source)
+            self._session = press_session.begin(thing, context.scene, source)
         except PalpateError as problem:
             self.report({"ERROR"}, str(problem))
+            redraw_sidebars(context)
             return {"CANCELLED"}
         finally:
             context.window.cursor_modal_restore()
@@ -152,17 +160,13 @@ class PALPATE_OT_press(bpy.types.Operator):
             if session.tick():
                 redraw_sidebars(context)
             return True
+        if _is_blenders(event):
+            return True
         here = viewport.under_pointer(context.window, event.mouse_x, event.mouse_y)
-        dragging = session.state.phase is Phase.DRAGGING
-        if event.value == "PRESS" and event.type in {"ESC", "RIGHTMOUSE"}:
-            if event.type == "RIGHTMOUSE" and here is None:
-                return True
-            session.post(Cancel())
-        elif event.value == "PRESS" and event.type == "Z" and (event.ctrl or event.oskey):
-            session.post(Cancel())
-        elif event.value == "PRESS" and event.type in {"RET", "NUMPAD_ENTER"}:
-            session.post(Keep())
-        elif dragging:
+        last = _ending(event, over_view=here is not None, dented=session.displacements is not None)
+        if last is not None:
+            session.post(last)
+        elif session.state.phase is Phase.DRAGGING:
             self._follow(event)
         elif here is None or self._is_navigation(event, here):
             return True
@@ -195,23 +199,22 @@ class PALPATE_OT_press(bpy.types.Operator):
         view = here.view_at(point, drawn.frame)
         if view is None:
             return
-        self._view = here
         self._drag = ProbeDrag(
             point=point,
             normal=normal,
             view=view,
             size=drawn.size,
-            start=here.cursor,
+            start=(event.mouse_x, event.mouse_y),
             sensitivity=preferences().sensitivity,
         )
-        self._drag = self._drag.dragged(here.cursor, _pressure(event))
+        self._drag = self._drag.dragged(self._drag.start, _pressure(event))
         session.post(SetDown(_tuple(point + SET_DOWN_HEIGHT * drawn.size * normal)))
 
     def _follow(self, event: bpy.types.Event) -> None:
         if event.type == "LEFTMOUSE" and event.value == "RELEASE":
             self._session.post(Release())
             return
-        if self._drag is None or self._view is None:
+        if self._drag is None:
             # Not set down yet: there is nothing to lead.
             return
         if event.type == "WHEELUPMOUSE":
@@ -219,7 +222,7 @@ class PALPATE_OT_press(bpy.types.Operator):
         elif event.type == "WHEELDOWNMOUSE":
             self._drag = self._drag.wheeled(-1)
         elif event.type in {"MOUSEMOVE", "INBETWEEN_MOUSEMOVE"}:
-            cursor = viewport.in_region(self._view, event.mouse_x, event.mouse_y)
+            cursor = (event.mouse_x, event.mouse_y)
             self._drag = self._drag.dragged(cursor, _pressure(event))
         else:
             return
@@ -238,6 +241,22 @@ class PALPATE_OT_press(bpy.types.Operator):
         if context.workspace is not None:
             context.workspace.status_text_set(None)
         redraw_sidebars(context)
+
+
+def _is_blenders(event: bpy.types.Event) -> bool:
+    """What Blender tells itself (smooth view, playback, banners), and saving, opening, quitting."""
+    internal = event.type.startswith("TIMER") or event.type in {"NONE", "WINDOW_DEACTIVATE"}
+    return internal or (event.type in FILE_KEYS and (event.ctrl or event.oskey))
+
+
+def _ending(event: bpy.types.Event, *, over_view: bool, dented: bool) -> Cancel | Keep | None:
+    """How an event ends the press, if it does."""
+    if event.value != "PRESS":
+        return None
+    undoes = event.type == "Z" and (event.ctrl or event.oskey)
+    if event.type == "ESC" or undoes or (event.type == "RIGHTMOUSE" and over_view):
+        return Cancel()
+    return Keep(dented) if event.type in {"RET", "NUMPAD_ENTER"} else None
 
 
 def _pressure(event: bpy.types.Event) -> float:

@@ -102,7 +102,9 @@ class SaveEnds:
 
 @dataclass(frozen=True)
 class Keep:
-    """The user wants the shape."""
+    """The user wants the shape; ``dented`` if there is one, for the probe may be in the air."""
+
+    dented: bool = True
 
 
 @dataclass(frozen=True)
@@ -210,8 +212,8 @@ def transition(state: PressState, event: Event) -> Step:
             return _end(state, reason)
         case Cancel():
             return _end(state, "")
-        case Keep():
-            return _keep(state)
+        case Keep(dented):
+            return _keep(state, dented=dented)
         case SaveBegins() if not state.withdrawn:
             return replace(state, withdrawn=True), (RemoveLiveShape(),)
         case SaveEnds() if state.withdrawn:
@@ -254,8 +256,8 @@ def _device(state: PressState, event: Fault | Recovered) -> Step:
     return state, ()
 
 
-def _keep(state: PressState) -> Step:
-    if state.withdrawn or not state.pressed:
+def _keep(state: PressState, *, dented: bool) -> Step:
+    if state.withdrawn or not (state.pressed and dented):
         text = "Nothing is pressed yet, so there is no shape to keep"
         return replace(state, message=text), (Say(text),)
     return replace(state, phase=Phase.ENDED, message=""), (StopServo(), KeepShape())

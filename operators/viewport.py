@@ -93,11 +93,6 @@ def under_pointer(window: bpy.types.Window, x: int, y: int) -> Viewport | None:
     return None
 
 
-def in_region(viewport: Viewport, x: int, y: int) -> tuple[float, float]:
-    """Window coordinates in pixels of a viewport's region, also outside of it."""
-    return (x - viewport.region.x, y - viewport.region.y)
-
-
 def _contains(region: bpy.types.Region, x: int, y: int) -> bool:
     # A closed region has a size of one pixel.
     return (

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import time
 
 import bpy
@@ -272,6 +273,53 @@ def test_a_port_that_is_not_there_is_refused_and_leaves_the_mesh_clean(sessions,
     error = part("core.errors").PalpateError
     with pytest.raises(error, match="/nowhere/port"):
         begin(sessions, states, thing, "DEVICE")
+    assert mesh_state(thing) == before
+    assert sessions.current() is None
+
+
+def test_a_port_is_taken_as_typed_or_with_what_the_list_says_of_it(palpate):
+    port_of, scene = part("operators.device_source").port_of, bpy.context.scene
+    for text, port in {
+        "/dev/ttyACM0 (Arduino Uno (R3))": "/dev/ttyACM0",
+        " COM3": "COM3",
+        "/dev/my links/device": "/dev/my links/device",
+    }.items():
+        scene.palpate.port = text
+        assert port_of(scene) == port
+
+
+def test_a_device_that_says_nothing_is_waited_for(sessions, states):
+    controller, terminal = os.openpty()
+    try:
+        thing = soft_cube()
+        bpy.context.scene.palpate.source = "SERIAL"
+        bpy.context.scene.palpate.port = os.ttyname(terminal)
+        session = begin(sessions, states, thing, "DEVICE")
+        wait(session, lambda: session.snapshot.tick > 50)
+        assert session.awaits_device
+        assert not part("addon.overlay")._worth_drawing(session, part("addon.reading").NOTHING)
+        sessions.give_way("")
+        assert key_names(thing) == []
+    finally:
+        os.close(controller)
+        os.close(terminal)
+
+
+def test_a_servo_that_fails_to_stop_does_not_leave_the_live_key(sessions, states):
+    thing = soft_cube()
+    before = mesh_state(thing)
+    session = begin(sessions, states, thing)
+    press_in(session, states)
+    servo = session.servo
+
+    class Failing:
+        def stop(self):
+            servo.stop()
+            raise RuntimeError("it did not stop")
+
+    session.servo = Failing()
+    with pytest.raises(RuntimeError, match="it did not stop"):
+        session.post(states.Cancel())
     assert mesh_state(thing) == before
     assert sessions.current() is None
 

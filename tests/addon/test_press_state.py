@@ -44,6 +44,14 @@ def test_a_pointer_press_goes_from_touch_to_kept_shape(ps):
     ]
 
 
+def test_a_probe_in_the_air_leaves_no_shape_to_keep(ps):
+    touched = (ps.Start(ps.Source.POINTER), ps.SetDown(POINT), ps.Release())
+    state, effects = play(ps, *touched, ps.Keep(dented=False))
+    assert state.phase is ps.Phase.HOLDING
+    assert "no shape" in state.message
+    assert ps.KeepShape() not in effects
+
+
 def test_nothing_pressed_cannot_be_kept(ps):
     state, effects = play(ps, ps.Start(ps.Source.POINTER), ps.Keep())
     assert state.phase is ps.Phase.READY

@@ -99,6 +99,76 @@ def the_view_turns_while_a_dent_is_held_and_another_touch_starts_elsewhere(stage
     yield from stage.until(lambda: press_session.current() is None, "the end of the press")
 
 
+@takes(90)
+def numpad_turns_the_view_and_ctrl_s_saves_while_a_dent_is_held(stage: Stage) -> Wait:
+    yield from _open_mouse(stage)
+    yield from _press(stage)
+    yield from _drag_in(stage)
+    before = stage.area.spaces.active.region_3d.view_rotation.copy()
+    yield from _key(stage, "NUMPAD_1")
+    yield from stage.until(
+        lambda: stage.area.spaces.active.region_3d.view_rotation != before, "the front view"
+    )
+    file = Path(bpy.data.filepath)
+    stamp = file.stat().st_mtime_ns
+    yield from _key(stage, "S", ctrl=True)
+    yield from stage.until(lambda: file.stat().st_mtime_ns != stamp, "the saved file")
+    yield 0.2
+    assert _keys() == ["Basis", "Palpate live"]
+    assert _depth() > 0.005
+    yield from _key(stage, "ESC")
+    yield from stage.until(lambda: press_session.current() is None, "the end of the press")
+    assert _keys() == []
+
+
+def a_probe_led_outward_keeps_no_shape(stage: Stage) -> Wait:
+    yield from _open_mouse(stage)
+    yield from _press(stage)
+    x, y = stage.pixel(BACK)
+    yield from stage.drag([(x, y), (x - 25, y + 40)])
+    yield from stage.until(lambda: _phase() is Phase.HOLDING, "the hold")
+    yield from stage.picture("in-the-air")
+    yield from _key(stage, "RET")
+    yield 0.3
+    assert press_session.current() is not None
+    assert "no shape" in press_session.current().state.message
+    yield from _key(stage, "ESC")
+    yield from stage.until(lambda: press_session.current() is None, "the end of the press")
+    assert _keys() == []
+
+
+def closing_the_window_in_which_is_pressed_ends_the_press(stage: Stage) -> Wait:
+    yield from _open_mouse(stage)
+    before = _coordinates()
+    with stage.view():
+        bpy.ops.wm.window_new()
+    yield 1.0
+    with bpy.context.temp_override(window=bpy.context.window_manager.windows[1]):
+        bpy.ops.palpate.press("INVOKE_DEFAULT")
+    yield from stage.until(lambda: press_session.current().snapshot, "the first tick")
+    servo = press_session.current().servo
+    with bpy.context.temp_override(window=bpy.context.window_manager.windows[1]):
+        bpy.ops.wm.window_close()
+    yield from stage.until(lambda: press_session.current() is None, "the end of the press")
+    assert not servo.running
+    assert _keys() == []
+    assert _coordinates() == before
+
+
+def a_hidden_object_is_refused_with_a_remedy(stage: Stage) -> Wait:
+    yield from _open_mouse(stage)
+    _mouse().hide_set(True)
+    reason = ""
+    with stage.view():
+        try:
+            bpy.ops.palpate.press("INVOKE_DEFAULT")
+        except RuntimeError as refusal:
+            reason = str(refusal)
+    assert "show it" in reason
+    assert press_session.current() is None
+    yield
+
+
 def the_modulus_slider_is_felt_while_pressing(stage: Stage) -> Wait:
     yield from _open_mouse(stage)
     yield from _press(stage)
