@@ -58,7 +58,7 @@ def draw(context: bpy.types.Context, session: PressSession) -> None:
 def _lines(context: bpy.types.Context, session: PressSession) -> list[tuple[str, float, Color]]:
     """Text, size and colour of each line, from the top."""
     figures = reading(session)
-    phase, say = session.state.phase, bpy.app.translations.pgettext_iface
+    phase, say = _phase(session, touching=figures.touching), bpy.app.translations.pgettext_iface
     snapshot = session.snapshot
     lines: list[tuple[str, float, Color]] = [
         (f"{figures.force:.3f} N     {1000 * figures.depth:.1f} mm", LARGE, WHITE)
@@ -66,7 +66,9 @@ def _lines(context: bpy.types.Context, session: PressSession) -> list[tuple[str,
     if phase is Phase.LOST:
         lines.append((say(session.state.message), NORMAL, WARNING))
     else:
-        lines.append((say(_standing(session, touching=figures.touching)), NORMAL, WHITE))
+        above = phase is Phase.DRAGGING and not figures.touching
+        text = WAITING if session.awaits_device else ABOVE if above else STATES.get(phase, "")
+        lines.append((say(text), NORMAL, WHITE))
         if session.state.message:
             lines.append((say(session.state.message), NORMAL, WARNING))
     if phase is Phase.FEELING and snapshot is not None:
@@ -78,13 +80,10 @@ def _lines(context: bpy.types.Context, session: PressSession) -> list[tuple[str,
     return lines
 
 
-def _standing(session: PressSession, *, touching: bool) -> str:
-    """Where the press stands, or what it waits for."""
-    if session.awaits_device:
-        return WAITING
-    if session.state.phase in {Phase.DRAGGING, Phase.HOLDING} and not touching:
-        return ABOVE
-    return STATES.get(session.state.phase, "")
+def _phase(session: PressSession, *, touching: bool) -> Phase:
+    """Where the press stands for the user: a probe let go in the air presses nothing yet."""
+    phase = session.state.phase
+    return Phase.READY if phase is Phase.HOLDING and not touching else phase
 
 
 def _width(text: str, size: float) -> float:

@@ -47,7 +47,7 @@ class BakingOperator:
         return {"FINISHED"}
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        if bpy.app.background or context.window is None:
+        if bpy.app.background:
             return self.execute(context)
         try:
             self._session = bake_session.start(context.object, context.scene, rebuild=self.rebuild)

@@ -102,7 +102,7 @@ class PALPATE_OT_press(bpy.types.Operator):
         return {"FINISHED"}
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        if bpy.app.background or context.window is None:
+        if bpy.app.background:
             return self.execute(context)
         thing = context.object
         if not thing.visible_get():

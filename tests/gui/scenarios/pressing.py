@@ -119,6 +119,8 @@ def numpad_turns_the_view_and_ctrl_s_saves_while_a_dent_is_held(stage: Stage) ->
     yield from _key(stage, "ESC")
     yield from stage.until(lambda: press_session.current() is None, "the end of the press")
     assert _keys() == []
+    # The others shall open the scene as it was.
+    file.unlink()
 
 
 def a_probe_led_outward_keeps_no_shape(stage: Stage) -> Wait:
