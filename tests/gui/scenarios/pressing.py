@@ -160,13 +160,7 @@ def closing_the_window_in_which_is_pressed_ends_the_press(stage: Stage) -> Wait:
 def a_hidden_object_is_refused_with_a_remedy(stage: Stage) -> Wait:
     yield from _open_mouse(stage)
     _mouse().hide_set(True)
-    reason = ""
-    with stage.view():
-        try:
-            bpy.ops.palpate.press("INVOKE_DEFAULT")
-        except RuntimeError as refusal:
-            reason = str(refusal)
-    assert "show it" in reason
+    assert "show it" in _refusal(stage)
     assert press_session.current() is None
     yield
 
@@ -302,13 +296,7 @@ def an_edited_mesh_is_said_in_the_panel(stage: Stage) -> Wait:
         bpy.ops.mesh.poke()
         bpy.ops.object.mode_set(mode="OBJECT")
     yield from stage.picture("panel")
-    reason = ""
-    with stage.view():
-        try:
-            bpy.ops.palpate.press("INVOKE_DEFAULT")
-        except RuntimeError as refusal:
-            reason = str(refusal)
-    assert "Make Soft" in reason
+    assert "Make Soft" in _refusal(stage)
 
 
 def _mouse() -> Any:
@@ -358,6 +346,16 @@ def _press(stage: Stage) -> Wait:
     yield from stage.until(
         lambda: press_session.current() and press_session.current().snapshot, "the first tick"
     )
+
+
+def _refusal(stage: Stage) -> str:
+    """What Press says when it does not start."""
+    with stage.view():
+        try:
+            bpy.ops.palpate.press("INVOKE_DEFAULT")
+        except RuntimeError as refusal:
+            return str(refusal)
+    return ""
 
 
 def _drag_in(stage: Stage, *, release: bool = True) -> Wait:
