@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import settings
 from scipy.sparse.linalg import spsolve
 
 from palpate.core.compliance import surface_compliance
@@ -11,6 +12,10 @@ from palpate.core.paper_cube import paper_cube
 from palpate.core.soft_body import SoftBody
 from palpate.core.stiffness import assemble
 from palpate.core.tet_mesh import TetMesh
+
+# The same examples in every run, so that a red test means a changed program.
+settings.register_profile("repeatable", derandomize=True)
+settings.load_profile("repeatable")
 
 MESHES = Path(__file__).resolve().parents[1] / "meshes"
 

@@ -26,7 +26,8 @@ def test_minimum_jerk_begins_and_ends_at_rest():
 @given(st.floats(0.0, 1.0), st.floats(0.0, 1.0))
 def test_minimum_jerk_never_goes_back(a, b):
     low, high = sorted((a, b))
-    assert minimum_jerk(low) <= minimum_jerk(high)
+    # Between neighbouring numbers rounding may go either way, by far less than a micrometre.
+    assert minimum_jerk(low) <= minimum_jerk(high) + 1e-12
 
 
 def test_a_press_goes_from_rest_to_the_surface_in_out_and_in_again():
