@@ -12,7 +12,7 @@ from .simulated_firmware import Firmware
 from .simulated_options import SimulatedOptions
 from .wire_faults import BadWire
 
-RELEASE_AFTER_SECONDS = 0.1
+RELEASE_AFTER_SECONDS = 0.5
 
 
 class SimulatedBoard:
@@ -25,6 +25,7 @@ class SimulatedBoard:
         self._first_hello: float | None = None
         self._buttons_by_command = 0
         self._last_heard = 0.0
+        self._host_is_there = False
         self._unplugged = 0
         self._unplug_at = math.inf if options.unplug_at is None else options.unplug_at
         self._plug_at = self._unplug_at + options.unplug_for
@@ -41,9 +42,10 @@ class SimulatedBoard:
         self._keep_plug_schedule(now)
         heard = self.terminal.read()
         if heard:
-            self._last_heard = now
-        elif now - self._last_heard > RELEASE_AFTER_SECONDS:
-            self._last_heard = now
+            self._last_heard, self._host_is_there = now, True
+        elif self._host_is_there and now - self._last_heard > RELEASE_AFTER_SECONDS:
+            # Once a silence: the next host may be taking the terminal at any later moment.
+            self._host_is_there = False
             self.terminal.release()
         self._to_device.put(heard, now)
         answer = self.firmware.receive(self._to_device.take(now), now)
