@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from .closest_point import ClosestPoints
 from .soft_body import SoftBody
 
 
@@ -29,15 +28,14 @@ class DrawnMap:
     def hang(cls, vertices: NDArray[np.float64], body: SoftBody) -> DrawnMap:
         """Hang ``vertices`` (p, 3), metres in body coordinates, on the body's rest surface."""
         triangles = body.mesh.surface_triangles
-        places = ClosestPoints(body.mesh.nodes, triangles).query(vertices)
-        free_surface = body.compliance.free_surface
+        places = body.closest_points.query(vertices)
         corners = triangles[places.triangle]
-        column = np.minimum(np.searchsorted(free_surface, corners), len(free_surface) - 1)
-        moves = free_surface[column] == corners
+        column = body.free_index(corners)
+        moves = column >= 0
         row = np.broadcast_to(np.arange(len(corners))[:, None], corners.shape)
         weights = csr_array(
             (places.alpha[moves], (row[moves], column[moves])),
-            shape=(len(corners), len(free_surface)),
+            shape=(len(corners), body.compliance.node_count),
         )
         return cls(weights, places.distance)
 

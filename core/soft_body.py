@@ -52,7 +52,8 @@ class SoftBody:
         return blocks
 
     @cached_property
-    def _closest(self) -> ClosestPoints:
+    def closest_points(self) -> ClosestPoints:
+        """The search for places on the rest surface; triangles count as in the mesh's surface."""
         return ClosestPoints(self.mesh.nodes, self.mesh.surface_triangles)
 
     def touch_nearest(
@@ -65,7 +66,7 @@ class SoftBody:
         PalpateError
             Coordinates that are not three finite numbers.
         """
-        place = self._closest.query(_point_checked("at", at))
+        place = self.closest_points.query(_point_checked("at", at))
         return self.touch(
             int(place.triangle[0]), place.alpha[0], _point_checked("by", by), young_modulus
         )
@@ -109,7 +110,7 @@ class SoftBody:
         self, touch: Touch, displacements: NDArray[np.float64]
     ) -> NDArray[np.float64]:
         """How far the touched point itself moves, (3,), given the displacements (n, 3)."""
-        free, corner = self._free_index(touch.triangle), np.arange(3)
+        free, corner = self.free_index(touch.triangle), np.arange(3)
         held = free >= 0
         moved: NDArray[np.float64] = touch.alpha[corner[held]] @ displacements[free[held]]
         return moved
@@ -117,10 +118,10 @@ class SoftBody:
     def _on_free_nodes(
         self, nodes: NDArray[np.int64], forces: NDArray[np.float64]
     ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-        free = self._free_index(nodes)
+        free = self.free_index(nodes)
         return free[free >= 0], np.asarray(forces)[free >= 0]
 
-    def _free_index(self, nodes: NDArray[np.int64]) -> NDArray[np.int64]:
+    def free_index(self, nodes: NDArray[np.int64]) -> NDArray[np.int64]:
         """Positions of nodes in ``free_surface``, -1 for pinned ones."""
         free_surface = self.compliance.free_surface
         place = np.minimum(np.searchsorted(free_surface, nodes), len(free_surface) - 1)
