@@ -80,7 +80,7 @@ def bake(arguments: argparse.Namespace) -> dict[str, object]:
         "surface_nodes": len(body.mesh.surface_nodes),
         "free_surface_nodes": len(body.compliance.free_surface),
         "surface_triangles": len(body.mesh.surface_triangles),
-        "compliance_bytes": body.compliance.columns.nbytes,
+        "compliance_bytes": body.compliance.nbytes,
         "seconds": report.seconds,
         "key": settings.body_key,
         "body": str(body_store.locate(thing)),

@@ -26,7 +26,7 @@ def body_figures(body: SoftBody) -> dict[str, object]:
         "extents_m": np.ptp(body.mesh.nodes, axis=0).tolist(),
         "poisson_ratio": body.poisson_ratio,
         "young_modulus": body.young_modulus,
-        "compliance_bytes": body.compliance.columns.nbytes,
+        "compliance_bytes": body.compliance.nbytes,
         "key": body_key(body.mesh, body.fixed, body.poisson_ratio),
     }
 

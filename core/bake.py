@@ -9,7 +9,6 @@ from dataclasses import asdict, dataclass, field
 
 import numpy as np
 
-from .compliance import surface_compliance
 from .decimate import decimate
 from .errors import PalpateError
 from .pins import PinBelow, Pins, pinned_nodes
@@ -17,6 +16,7 @@ from .progress import unwatched
 from .soft_body import SoftBody
 from .stiffness import assemble, lame_parameters
 from .surface import Surface
+from .surface_compliance import surface_compliance
 from .tet_mesh import TetMesh
 from .tetrahedralize import Fit, check_fit, tetrahedralize
 

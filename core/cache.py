@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .compliance import Compliance
+from .dense_compliance import DenseCompliance
 from .errors import PalpateError
 from .npz_archive import ArchiveError, read_arrays
 from .soft_body import SoftBody
@@ -74,7 +74,7 @@ def save(body: SoftBody, path: str | os.PathLike[str]) -> None:
         "surface_triangles": body.mesh.surface_triangles,
         "fixed": body.fixed,
         "free_surface": body.compliance.free_surface,
-        "compliance": body.compliance.columns.astype(np.float32, copy=False),
+        "compliance": _table(body).astype(np.float32, copy=False),
         "poisson_ratio": np.array(body.poisson_ratio),
         "young_modulus": np.array(body.young_modulus),
     }
@@ -131,6 +131,12 @@ def adopt(finished: Path, target: Path) -> None:
         shutil.copyfileobj(source, file)
 
 
+def _table(body: SoftBody) -> NDArray[np.floating]:
+    if not isinstance(body.compliance, DenseCompliance):
+        raise TypeError(f"no layout for a compliance of the form {body.compliance.form}")
+    return body.compliance.table
+
+
 def _read(source: Path) -> Arrays:
     if not source.is_file():
         raise BodyFileError(f"{source}: there is no such body file; bake the mesh first")
@@ -147,15 +153,15 @@ def _body(stored: Arrays) -> SoftBody:
     poisson_ratio, young_modulus = float(stored["poisson_ratio"]), float(stored["young_modulus"])
     lame_parameters(young_modulus, poisson_ratio)
     free_surface = stored["free_surface"].astype(np.int64)
-    columns = stored["compliance"].astype(np.float32, copy=False)
+    table = stored["compliance"].astype(np.float32, copy=False)
     consistent = (
         str(stored["key"]) == body_key(mesh, fixed, poisson_ratio)
         and np.array_equal(free_surface, np.setdiff1d(mesh.surface_nodes, fixed))
-        and columns.shape == (len(free_surface), 3, 3 * len(free_surface))
+        and table.shape == (len(free_surface), 3, 3 * len(free_surface))
     )
     if not consistent:
         raise PalpateError("its compliance does not belong to its mesh, pins or material")
-    return SoftBody(mesh, fixed, poisson_ratio, Compliance(free_surface, columns), young_modulus)
+    return SoftBody(mesh, fixed, poisson_ratio, DenseCompliance(free_surface, table), young_modulus)
 
 
 def _checksum(arrays: Arrays) -> str:

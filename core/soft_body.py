@@ -104,7 +104,7 @@ class SoftBody:
         """
         modulus = self.young_modulus if young_modulus is None else young_modulus
         free, forces = self._on_free_nodes(triangle, nodal_forces)
-        return self.compliance.apply(free, forces / modulus)
+        return self.compliance.apply(forces / modulus, free)
 
     def contact_displacement(
         self, touch: Touch, displacements: NDArray[np.float64]

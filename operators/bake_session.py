@@ -115,7 +115,7 @@ class BakeSession:
         baked.node_count = len(body.mesh.nodes)
         baked.tet_count = len(body.mesh.tets)
         baked.free_surface_count = len(body.compliance.free_surface)
-        baked.compliance_megabytes = body.compliance.columns.nbytes / 1e6
+        baked.compliance_megabytes = body.compliance.nbytes / 1e6
         baked.bake_seconds = sum(report.seconds.values())
         baked.bake_warnings = "\n".join(report.warnings)
         if baked.pin_mode == "BELOW":

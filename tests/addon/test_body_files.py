@@ -48,7 +48,7 @@ def test_the_body_goes_along_when_the_file_is_saved_elsewhere(saved, tmp_path):
 @pytest.mark.parametrize("by_hand", [True, False], ids=["by Rebuild Body", "by Press itself"])
 def test_a_missing_body_file_is_said_and_computed_again_the_same(saved, by_hand):
     key, path = saved.palpate.body_key, locate(saved)
-    wanted = part("core.cache").load(path).compliance.columns
+    wanted = part("core.cache").load(path).compliance.table
     path.unlink()
     assert status(saved).fit.name == "FILE_MISSING"
     if by_hand:
@@ -57,7 +57,7 @@ def test_a_missing_body_file_is_said_and_computed_again_the_same(saved, by_hand)
         press_down(saved)
     assert saved.palpate.body_key == key
     assert status(saved).fit.name == "READY"
-    assert np.array_equal(part("core.cache").load(locate(saved)).compliance.columns, wanted)
+    assert np.array_equal(part("core.cache").load(locate(saved)).compliance.table, wanted)
     press_down(saved)
 
 

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import settings
 from scipy.sparse.linalg import spsolve
 
-from palpate.core.compliance import surface_compliance
 from palpate.core.paper_cube import paper_cube
 from palpate.core.soft_body import SoftBody
 from palpate.core.stiffness import assemble
+from palpate.core.surface_compliance import surface_compliance
 from palpate.core.tet_mesh import TetMesh
 
 # The same examples in every run, so that a red test means a changed program.

@@ -28,7 +28,7 @@ def test_a_body_comes_back_as_it_was(cube, file):
     np.testing.assert_array_equal(body.mesh.nodes, cube.mesh.nodes)
     np.testing.assert_array_equal(body.mesh.tets, cube.mesh.tets)
     np.testing.assert_array_equal(body.fixed, cube.fixed)
-    np.testing.assert_array_equal(body.compliance.columns, cube.compliance.columns)
+    np.testing.assert_array_equal(body.compliance.table, cube.compliance.table)
     assert (body.poisson_ratio, body.young_modulus) == (cube.poisson_ratio, cube.young_modulus)
 
 
@@ -73,7 +73,7 @@ def test_a_flipped_bit_anywhere_is_never_stale_data(cube, file, rng):
         except BodyFileError:
             continue
         # A bit in the padding or the date of the archive changes nothing that is read.
-        np.testing.assert_array_equal(body.compliance.columns, cube.compliance.columns)
+        np.testing.assert_array_equal(body.compliance.table, cube.compliance.table)
         np.testing.assert_array_equal(body.mesh.nodes, cube.mesh.nodes)
 
 
@@ -88,7 +88,7 @@ def test_a_flipped_bit_in_the_archives_own_headers_is_damage_or_nothing(cube, fi
             body = cache.load(file)
         except BodyFileError:
             continue
-        np.testing.assert_array_equal(body.compliance.columns, cube.compliance.columns)
+        np.testing.assert_array_equal(body.compliance.table, cube.compliance.table)
 
 
 def test_a_single_array_under_the_name_of_an_archive_is_refused(tmp_path):
@@ -123,7 +123,7 @@ def test_what_is_no_ordinary_file_is_never_replaced(cube, tmp_path):
 
 
 def test_changed_arrays_fail_the_checksum(cube, file):
-    rewrite(file, compliance=2 * cube.compliance.columns)
+    rewrite(file, compliance=2 * cube.compliance.table)
     with pytest.raises(BodyFileError, match="checksum"):
         cache.load(file)
 

@@ -43,7 +43,7 @@ def test_two_nodes_held_at_once_move_by_exactly_both_displacements(body):
     blocks = np.array([[compliance.block(a, b) for b in (i, j)] for a in (i, j)])
     u_i, u_j = PRESS, -2 * PRESS
     forces = np.array(two_node_forces(blocks, u_i, u_j))
-    moved = compliance.apply(np.array([i, j]), forces)
+    moved = compliance.apply(forces, np.array([i, j]))
     np.testing.assert_allclose(moved[[i, j]], [u_i, u_j], rtol=1e-6)
 
 
@@ -82,8 +82,8 @@ def test_touching_is_reciprocal(body, rng):
     n = body.compliance.node_count
     for i, j in rng.integers(0, n, (20, 2)):
         f, g = rng.normal(size=(2, 3))
-        under_f = body.compliance.apply(np.array([i]), f[None])[j]
-        under_g = body.compliance.apply(np.array([j]), g[None])[i]
+        under_f = body.compliance.apply(f[None], np.array([i]))[j]
+        under_g = body.compliance.apply(g[None], np.array([j]))[i]
         assert under_f @ g == pytest.approx(under_g @ f, rel=1e-9)
 
 
