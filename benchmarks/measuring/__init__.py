@@ -1,0 +1,1 @@
+"""What benchmarks share: stopwatches, the machine's own speed, memory, and bodies to measure on."""
