@@ -28,8 +28,8 @@ SIZE_OF_MISSING = {"mouse-20k": 20_000}
 PINNED_SHARE = 0.1
 
 # Nodes that fTetWild made of the mouse's surface at these edge lengths (shares of the diagonal).
-EDGE_LENGTHS = (0.08, 0.05, 0.03, 0.02, 0.014, 0.0105)
-NODES_AT_EDGE = (970, 1_280, 3_170, 11_970, 24_500, 52_000)
+EDGE_LENGTHS = (0.08, 0.05, 0.03, 0.02, 0.014, 0.01)
+NODES_AT_EDGE = (970, 1_280, 3_170, 11_970, 24_500, 82_950)
 EPSILON = 0.003
 TIME_LIMIT = 1800.0
 
