@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .closest_point import ClosestPoints
+from .closest_point import ClosestPoints, SurfacePoints
 from .errors import PalpateError
 from .surface import Surface
 from .tet_mesh import TetMesh
@@ -38,11 +38,16 @@ class PinNodes:
 Pins = PinBelow | PinWeights | PinNodes
 
 
-def pinned_nodes(pins: Pins, mesh: TetMesh, surface: Surface | None) -> NDArray[np.int64]:
+def pinned_nodes(
+    pins: Pins, mesh: TetMesh, surface: Surface | None, places: SurfacePoints | None = None
+) -> NDArray[np.int64]:
     """Numbers of the pinned nodes, ascending.
 
-    ``surface`` is the input surface that :class:`PinWeights` refer to, None for a body given as
-    tetrahedra.
+    Parameters
+    ----------
+    surface : the input surface that :class:`PinWeights` refer to, None for a body given as
+        tetrahedra.
+    places : what :func:`places_on` gives for this mesh and surface, if it is known already.
 
     Raises
     ------
@@ -54,7 +59,12 @@ def pinned_nodes(pins: Pins, mesh: TetMesh, surface: Surface | None) -> NDArray[
         return np.unique(pins.nodes)
     if isinstance(pins, PinBelow):
         return _below(pins, mesh)
-    return _weighted(pins, mesh, surface)
+    return _weighted(pins, mesh, surface, places)
+
+
+def places_on(surface: Surface, mesh: TetMesh) -> SurfacePoints:
+    """Where the body's surface nodes lie on the surface it was made from: one place a node."""
+    return ClosestPoints(surface.vertices, surface.triangles).query(mesh.nodes[mesh.surface_nodes])
 
 
 def _below(pins: PinBelow, mesh: TetMesh) -> NDArray[np.int64]:
@@ -70,16 +80,16 @@ def _below(pins: PinBelow, mesh: TetMesh) -> NDArray[np.int64]:
     return low
 
 
-def _weighted(pins: PinWeights, mesh: TetMesh, surface: Surface | None) -> NDArray[np.int64]:
+def _weighted(
+    pins: PinWeights, mesh: TetMesh, surface: Surface | None, places: SurfacePoints | None
+) -> NDArray[np.int64]:
     if surface is None or len(pins.weights) != len(surface.vertices):
         raise PalpateError(
             "pins: painted weights need the surface they were painted on, one weight per vertex"
         )
-    places = ClosestPoints(surface.vertices, surface.triangles).query(
-        mesh.nodes[mesh.surface_nodes]
-    )
-    corner_weights = pins.weights[surface.triangles[places.triangle]]
-    weight = np.einsum("pc,pc->p", places.alpha, corner_weights)
+    known = places_on(surface, mesh) if places is None else places
+    corner_weights = pins.weights[surface.triangles[known.triangle]]
+    weight = np.einsum("pc,pc->p", known.alpha, corner_weights)
     pinned: NDArray[np.int64] = mesh.surface_nodes[weight >= 0.5]
     if not pinned.size:
         raise PalpateError(
