@@ -3,21 +3,43 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.sparse import coo_array, csr_array
+from numpy.typing import ArrayLike, NDArray
+from scipy.sparse import bsr_array, csr_array
 
 from .errors import PalpateError
+from .formulation import LINEAR, formulation_checked
+from .strain_smoothing import (
+    SmoothingDomains,
+    edge_domains,
+    gradient_products,
+    node_domains,
+    tet_domains,
+)
 from .tet_mesh import TetMesh
 
+# Young's modulus of one place may differ from the body's by this factor, up or down: enough for
+# steel in foam, and far from where rounding would hide the softer part.
+LARGEST_SCALE = 1e6
 
-def assemble(mesh: TetMesh, poisson_ratio: float, young_modulus: float = 1.0) -> csr_array:
-    """Stiffness matrix of a homogeneous isotropic body (paper, eq. 1).
+
+def assemble(
+    mesh: TetMesh,
+    poisson_ratio: float,
+    young_modulus: float = 1.0,
+    *,
+    formulation: str = LINEAR,
+    young_scale: ArrayLike | None = None,
+) -> csr_array:
+    """Stiffness matrix of an isotropic body (paper, eq. 1).
 
     Parameters
     ----------
     mesh : tetrahedra, metres.
     poisson_ratio : between -1 and 0.5, both excluded.
     young_modulus : pascal; the method works at 1 Pa and scales at run time.
+    formulation : ``"linear"``, the paper's, with the strain constant in each tetrahedron; or
+        ``"smoothed"``, which does not lock as Poisson's ratio approaches 0.5.
+    young_scale : (M,), a positive factor on Young's modulus for each tetrahedron.
 
     Returns
     -------
@@ -26,22 +48,75 @@ def assemble(mesh: TetMesh, poisson_ratio: float, young_modulus: float = 1.0) ->
     Raises
     ------
     PalpateError
-        A material constant outside its range.
+        A material constant outside its range, or an unknown formulation.
     """
     first_lame, shear_modulus = lame_parameters(young_modulus, poisson_ratio)
-    gradients = shape_gradients(mesh)
-    volumes = mesh.tet_volumes
-    # K_ab = V (lambda g_a g_b^T + mu g_b g_a^T + mu (g_a . g_b) I), for all pairs of corners.
-    outer = np.einsum("t,tai,tbj->taibj", volumes, gradients, gradients, optimize=True)
-    diagonal = np.einsum("taibi->tab", outer)
-    blocks = first_lame * outer + shear_modulus * outer.transpose(0, 1, 4, 3, 2)
+    scale = (
+        np.ones(len(mesh.tets))
+        if young_scale is None
+        else young_scale_checked(young_scale, len(mesh.tets))
+    )
+    if formulation_checked(formulation) == LINEAR:
+        products = _products(mesh, tet_domains(mesh.tet_volumes, scale))
+        stiffness = _isotropic(products, first_lame, shear_modulus)
+    else:
+        stiffness = _smoothed(mesh, first_lame, shear_modulus, scale)
+    matrix = stiffness.tocsr()
+    matrix.sort_indices()
+    return matrix
+
+
+def _smoothed(
+    mesh: TetMesh, first_lame: float, shear_modulus: float, young_scale: NDArray[np.float64]
+) -> bsr_array:
+    """Shear averaged around edges, change of volume around nodes: selective ES/NS-FEM."""
+    by_edges = _products(mesh, edge_domains(mesh.tets, mesh.tet_volumes, young_scale))
+    if first_lame <= 0:
+        # Cork and auxetic foam have no volume to keep, and a negative term must not be averaged
+        # over other domains than the positive ones that outweigh it.
+        return _isotropic(by_edges, first_lame, shear_modulus)
+    by_nodes = _products(mesh, node_domains(mesh.tets, mesh.tet_volumes, young_scale))
+    sum_of_both: bsr_array = _isotropic(by_edges, 0.0, shear_modulus) + first_lame * by_nodes
+    return sum_of_both
+
+
+def _products(mesh: TetMesh, domains: SmoothingDomains) -> bsr_array:
+    return gradient_products(domains, mesh.tets, shape_gradients(mesh))
+
+
+def _isotropic(products: bsr_array, first_lame: float, shear_modulus: float) -> bsr_array:
+    """Blocks lambda P_ab + mu P_ab^T + mu tr(P_ab) I from gradient products P_ab."""
+    trace = np.einsum("bii->b", products.data)
+    blocks = first_lame * products.data + shear_modulus * products.data.transpose(0, 2, 1)
     for axis in range(3):
-        blocks[:, :, axis, :, axis] += shear_modulus * diagonal
-    freedoms = (3 * mesh.tets[:, :, None] + np.arange(3)).reshape(-1, 12)
-    rows = np.repeat(freedoms, 12, axis=1).ravel()
-    columns = np.tile(freedoms, (1, 12)).ravel()
-    size = 3 * len(mesh.nodes)
-    return coo_array((blocks.ravel(), (rows, columns)), shape=(size, size)).tocsr()
+        blocks[:, axis, axis] += shear_modulus * trace
+    return bsr_array((blocks, products.indices, products.indptr), shape=products.shape)
+
+
+def young_scale_checked(young_scale: ArrayLike, tet_count: int) -> NDArray[np.float64]:
+    """Factors on Young's modulus as float64 (M,), if they can be used.
+
+    Raises
+    ------
+    PalpateError
+        Not one number a tetrahedron, or one not between 1e-6 and 1e6.
+    """
+    given = np.asarray(young_scale)
+    if given.shape != (tet_count,) or given.dtype.kind not in "fiu":
+        raise PalpateError(
+            f"young_scale: an array of {given.dtype} and shape {given.shape} does not fit the "
+            f"body's tetrahedra; give one real number for each, shape ({tet_count},)"
+        )
+    scale = given.astype(np.float64)
+    usable = (scale >= 1 / LARGEST_SCALE) & (scale <= LARGEST_SCALE)
+    if not usable.all():
+        first = int(np.flatnonzero(~usable)[0])
+        raise PalpateError(
+            f"young_scale: {int((~usable).sum())} tetrahedra have a factor on Young's modulus that "
+            f"is not between {1 / LARGEST_SCALE:g} and {LARGEST_SCALE:g} (first: tetrahedron "
+            f"{first} with {scale[first]}); 1 leaves a place as it is"
+        )
+    return scale
 
 
 def lame_parameters(young_modulus: float, poisson_ratio: float) -> tuple[float, float]:
