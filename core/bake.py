@@ -5,20 +5,22 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass
 
 import numpy as np
 
+from .bake_settings import BakeSettings
 from .decimate import decimate
-from .errors import PalpateError
-from .pins import PinBelow, Pins, pinned_nodes
+from .pins import pinned_nodes
 from .progress import unwatched
 from .soft_body import SoftBody
-from .stiffness import assemble, lame_parameters
+from .stiffness import assemble
 from .surface import Surface
 from .surface_compliance import surface_compliance
 from .tet_mesh import TetMesh
 from .tetrahedralize import Fit, check_fit, tetrahedralize
+
+__all__ = ["BakeProgress", "BakeReport", "BakeSettings", "bake"]
 
 # (step, share of the whole bake done or None where nobody can know)
 BakeProgress = Callable[[str, float | None], None]
@@ -26,52 +28,6 @@ BakeProgress = Callable[[str, float | None], None]
 # Beyond these the drawn shape and the body visibly part ways, and the maker should know.
 NOTABLE_DISTANCE = 0.02
 NOTABLE_VOLUME_ERROR = 0.1
-
-
-@dataclass(frozen=True)
-class BakeSettings:
-    """What a bake depends on besides the shape.
-
-    Attributes
-    ----------
-    poisson_ratio, young_modulus : material; the modulus (pascal) is only stored, never baked in.
-    pins : which nodes are held.
-    edge_length : wanted edge length of tetrahedra, as a share of the bounding box diagonal.
-    epsilon : how far the body's surface may lie from the input's, as such a share.
-    decimate_above : inputs of more triangles are reduced to this many first.
-    time_limit : seconds after which tetrahedralization is given up.
-    """
-
-    poisson_ratio: float = 0.3
-    young_modulus: float = 10_000.0
-    pins: Pins = field(default_factory=lambda: PinBelow(0.1))
-    edge_length: float = 0.05
-    epsilon: float = 0.003
-    decimate_above: int = 6000
-    time_limit: float = 600.0
-
-    def checked(self) -> BakeSettings:
-        """These settings, if they can be used.
-
-        Raises
-        ------
-        PalpateError
-            A value outside its range; names it.
-        """
-        lame_parameters(self.young_modulus, self.poisson_ratio)
-        for name, low, high in (
-            ("edge_length", 0.002, 0.5),
-            ("epsilon", 1e-5, 0.1),
-            ("decimate_above", 100, 10_000_000),
-            ("time_limit", 1.0, 1e6),
-        ):
-            value = getattr(self, name)
-            if not low <= value <= high:
-                raise PalpateError(
-                    f"bake: {name.replace('_', ' ')} is {value}, but must lie between {low:g} and "
-                    f"{high:g}"
-                )
-        return self
 
 
 @dataclass(frozen=True)

@@ -43,12 +43,21 @@ STEP_TEXTS = {
 
 @dataclass(frozen=True)
 class JobProgress:
-    """Where a job stands: ``share`` of the whole is None while nobody can know it."""
+    """Where a job stands.
+
+    Attributes
+    ----------
+    step, text : what it is doing, as a word for programs and in words for people.
+    share : of the whole that is done; None while nobody can know.
+    seconds : since it began.
+    remaining : seconds until it is done; None while nobody can know.
+    """
 
     step: str
     text: str
     share: float | None
     seconds: float
+    remaining: float | None = None
 
 
 class BakeJob:

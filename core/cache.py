@@ -20,8 +20,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
+from .body_key import body_key
 from .dense_compliance import DenseCompliance
 from .errors import PalpateError
 from .npz_archive import ArchiveError, read_arrays
@@ -29,6 +30,8 @@ from .soft_body import SoftBody
 from .stiffness import lame_parameters
 from .tet_mesh import TetMesh
 from .whole_file import whole_file
+
+__all__ = ["BodyFileError", "adopt", "body_key", "load", "save"]
 
 Arrays = dict[str, NDArray[Any]]
 
@@ -48,16 +51,6 @@ ARRAYS = (
 
 class BodyFileError(PalpateError):
     """A body file that cannot be used. A new bake replaces it."""
-
-
-def body_key(mesh: TetMesh, fixed: ArrayLike, poisson_ratio: float) -> str:
-    """Hex digest of everything the compliance depends on. Young's modulus is not part of it."""
-    digest = hashlib.sha256(f"{FORMAT} {VERSION}".encode())
-    digest.update(mesh.nodes.astype("<f8").tobytes())
-    digest.update(mesh.tets.astype("<i8").tobytes())
-    digest.update(np.unique(np.asarray(fixed)).astype("<i8").tobytes())
-    digest.update(np.float64(poisson_ratio).astype("<f8").tobytes())
-    return digest.hexdigest()
 
 
 def save(body: SoftBody, path: str | os.PathLike[str]) -> None:
@@ -84,7 +77,7 @@ def save(body: SoftBody, path: str | os.PathLike[str]) -> None:
             allow_pickle=False,
             format=np.array(FORMAT),
             version=np.array(VERSION),
-            key=np.array(body_key(body.mesh, body.fixed, body.poisson_ratio)),
+            key=np.array(body.key),
             checksum=np.array(_checksum(arrays)),
             **arrays,
         )

@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .body_key import body_key
 from .closest_point import ClosestPoints
 from .compliance import Compliance
 from .contact import Touch, triangle_forces
@@ -27,6 +28,8 @@ class SoftBody:
     poisson_ratio : the one the compliance was computed with.
     compliance : of the free surface nodes, at unit modulus.
     young_modulus : pascal; what a touch uses unless told otherwise. Not baked in.
+    formulation : of the stiffness the compliance comes from; see :mod:`.formulation`.
+    young_scale : float64 (M,), factor of Young's modulus per tetrahedron; None where all are 1.
     """
 
     mesh: TetMesh
@@ -34,6 +37,15 @@ class SoftBody:
     poisson_ratio: float
     compliance: Compliance
     young_modulus: float
+    formulation: str = "linear"
+    young_scale: NDArray[np.float64] | None = None
+
+    @cached_property
+    def key(self) -> str:
+        """Digest of all that the compliance depends on; see :func:`.body_key.body_key`."""
+        return body_key(
+            self.mesh, self.fixed, self.poisson_ratio, self.formulation, self.young_scale
+        )
 
     @cached_property
     def contact_blocks(self) -> NDArray[np.float64]:

@@ -1,0 +1,52 @@
+"""How much memory this process could still get without driving the machine into swapping."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import psutil
+
+
+@dataclass(frozen=True)
+class ControlGroup:
+    """Where Linux tells a container its limit and its use of memory.
+
+    ``reclaimable`` names the line of ``statistics`` that counts pages of files nobody has used
+    lately: they are part of the use, but are given back when memory is wanted.
+    """
+
+    limit: str
+    use: str
+    statistics: str
+    reclaimable: str
+
+    def bytes_left(self, root: Path) -> int | None:
+        """What the limit leaves; None where there is no such group or no limit."""
+        if not all((root / name).is_file() for name in (self.limit, self.use, self.statistics)):
+            return None
+        limit = (root / self.limit).read_text(encoding="ascii").strip()
+        if not limit.isdigit():
+            return None
+        lines = (root / self.statistics).read_text(encoding="ascii").splitlines()
+        counts = dict(line.split(maxsplit=1) for line in lines)
+        use = int((root / self.use).read_text(encoding="ascii"))
+        return max(0, int(limit) - use + int(counts.get(self.reclaimable, 0)))
+
+
+CONTROL_GROUPS = (
+    ControlGroup("memory.max", "memory.current", "memory.stat", "inactive_file"),
+    ControlGroup(
+        "memory/memory.limit_in_bytes",
+        "memory/memory.usage_in_bytes",
+        "memory/memory.stat",
+        "total_inactive_file",
+    ),
+)
+
+
+def available_memory(groups_root: Path = Path("/sys/fs/cgroup")) -> int:
+    """Bytes that can be had: what the system calls available, or less within a container."""
+    left = (group.bytes_left(groups_root) for group in CONTROL_GROUPS)
+    system = int(psutil.virtual_memory().available)
+    return min([system, *(count for count in left if count is not None)])
