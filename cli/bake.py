@@ -140,7 +140,8 @@ def _source(
             f"--edge-length: {arguments.mesh} holds tetrahedra already; leave the option out, or "
             "give a surface (obj, ply, stl)"
         )
-    return read_tets(arguments.mesh, arguments.metres_per_unit)
+    file = read_tets(arguments.mesh, arguments.metres_per_unit)
+    return file.mesh, file.fixed
 
 
 def _pins(arguments: argparse.Namespace, fixed: NDArray[np.int64] | None) -> Pins:

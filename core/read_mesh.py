@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 
 from .errors import PalpateError
 from .npz_archive import ArchiveError, read_arrays
+from .stiffness import young_scale_checked
 from .surface import Surface
 from .tet_mesh import TetMesh
 
@@ -36,8 +38,24 @@ def read_surface(path: Path, metres_per_unit: float = 1.0) -> Surface:
         raise PalpateError(f"{path}: {problem}") from problem
 
 
-def read_tets(path: Path, metres_per_unit: float = 1.0) -> tuple[TetMesh, NDArray[np.int64] | None]:
-    """Read tetrahedra: arrays ``X`` (N, 3), ``T`` (M, 4) and, if there, ``fixed``.
+@dataclass(frozen=True, eq=False)
+class TetFile:
+    """What a file of tetrahedra holds.
+
+    Attributes
+    ----------
+    mesh : the tetrahedra.
+    fixed : int64, numbers of the pinned nodes; None where the file does not say.
+    young_scale : float64 (M,), factors on Young's modulus; None where the file does not say.
+    """
+
+    mesh: TetMesh
+    fixed: NDArray[np.int64] | None
+    young_scale: NDArray[np.float64] | None
+
+
+def read_tets(path: Path, metres_per_unit: float = 1.0) -> TetFile:
+    """Read tetrahedra: arrays ``X`` (N, 3), ``T`` (M, 4) and, if there, ``fixed``, ``young_scale``.
 
     ``fixed`` are node numbers, or a mask with one boolean a node.
 
@@ -55,14 +73,17 @@ def read_tets(path: Path, metres_per_unit: float = 1.0) -> tuple[TetMesh, NDArra
     if missing:
         raise PalpateError(
             f"{path}: has no array {' and '.join(missing)}; a tetrahedral mesh holds X (nodes), "
-            "T (tetrahedra) and optionally fixed (pinned nodes)"
+            "T (tetrahedra) and optionally fixed (pinned nodes) and young_scale (stiffness)"
         )
     try:
         mesh = TetMesh.checked(_metres(arrays["X"], metres_per_unit), arrays["T"])
         fixed = _node_numbers(arrays["fixed"], len(mesh.nodes)) if "fixed" in arrays else None
+        scale = None
+        if "young_scale" in arrays:
+            scale = young_scale_checked(arrays["young_scale"], len(mesh.tets))
     except PalpateError as problem:
         raise PalpateError(f"{path}: {problem}") from problem
-    return mesh, fixed
+    return TetFile(mesh, fixed, scale)
 
 
 def _metres(given: NDArray[Any], metres_per_unit: float) -> NDArray[Any]:
