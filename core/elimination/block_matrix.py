@@ -1,0 +1,52 @@
+"""The stiffness by node: 3x3 blocks, and the graph of nodes that they couple."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+
+
+@dataclass(frozen=True, eq=False)
+class BlockMatrix:
+    """The blocks of a symmetric matrix of 3x3 blocks, in no particular order.
+
+    Attributes
+    ----------
+    node_count : n; the matrix is (3n, 3n).
+    rows, columns : int64 (m,), which block each is.
+    blocks : float64 (m, 3, 3).
+    """
+
+    node_count: int
+    rows: NDArray[np.int64]
+    columns: NDArray[np.int64]
+    blocks: NDArray[np.float64]
+
+    @property
+    def edges(self) -> NDArray[np.int64]:
+        """Pairs of different nodes that the matrix couples, (e, 2), each pair once."""
+        above = self.rows < self.columns
+        return np.stack([self.rows[above], self.columns[above]], axis=1)
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of the blocks and of their numbers."""
+        return self.rows.nbytes + self.columns.nbytes + self.blocks.nbytes
+
+
+def free_blocks(stiffness: csr_array, free: NDArray[np.int64]) -> BlockMatrix:
+    """The blocks of ``stiffness`` (3N, 3N) between the nodes ``free`` (n,), numbered 0 to n - 1.
+
+    The couplings come from the matrix and not from the tetrahedra, because a formulation may couple
+    more nodes than share a tetrahedron.
+    """
+    by_block = stiffness.tobsr(blocksize=(3, 3))
+    number = np.full(stiffness.shape[0] // 3, -1, dtype=np.int64)
+    number[free] = np.arange(len(free))
+    rows = np.repeat(number, np.diff(by_block.indptr))
+    columns = number[by_block.indices]
+    kept = (rows >= 0) & (columns >= 0)
+    return BlockMatrix(len(free), rows[kept], columns[kept], by_block.data[kept])

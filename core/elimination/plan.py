@@ -1,0 +1,102 @@
+"""What an elimination will cost, exactly, before it starts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+
+from ..held_pins import pins_checked
+from ..tet_mesh import TetMesh
+from .block_matrix import BlockMatrix, free_blocks
+from .dissection import dissect
+from .inverse import inverse_bytes
+from .symbolic import SymbolicFactor, analyse
+from .work import FrontWork, elimination_peak_bytes
+
+
+@dataclass(frozen=True, eq=False)
+class EliminationPlan:
+    """The symbolic step of a body, and what follows from it.
+
+    Attributes
+    ----------
+    free_surface : int64 (n,), the nodes whose compliance is wanted, ascending.
+    matrix : the stiffness between free nodes.
+    symbolic : fronts and order; nodes are counted among the free ones.
+    ranks : int64 (n,), for each loaded node in order of elimination, its place in free_surface.
+    table_itemsize : bytes of a number of the table that is to be made; 0 for none.
+    """
+
+    free_surface: NDArray[np.int64]
+    matrix: BlockMatrix
+    symbolic: SymbolicFactor
+    ranks: NDArray[np.int64]
+    table_itemsize: int
+
+    @cached_property
+    def works(self) -> list[FrontWork]:
+        """The work of each front."""
+        return [FrontWork.of(front) for front in self.symbolic.fronts]
+
+    @cached_property
+    def flops(self) -> float:
+        """Floating point operations, exactly those that BLAS and LAPACK will be asked for."""
+        eliminated = sum(work.flops for work in self.works)
+        return eliminated + (self._gram_flops if self.table_itemsize else 0.0)
+
+    @cached_property
+    def weight(self) -> float:
+        """Time needed, in floating point operations of a large matrix product."""
+        eliminated = sum(work.weight for work in self.works)
+        return eliminated + (self._gram_flops if self.table_itemsize else 0.0)
+
+    @cached_property
+    def peak_bytes(self) -> int:
+        """The most bytes that the numeric steps hold at once, the plan and its matrix included."""
+        peak, factor = elimination_peak_bytes(self.symbolic.fronts)
+        table = inverse_bytes(len(self.ranks), self.table_itemsize)
+        return 2 * self.matrix.nbytes + max(peak, factor + table)
+
+    @property
+    def _gram_flops(self) -> float:
+        return sum(work.gram_flops for work in self.works)
+
+
+def plan_surface_inverse(
+    mesh: TetMesh,
+    stiffness: csr_array,
+    fixed: NDArray[np.int64],
+    dtype: type[np.floating] = np.float32,
+) -> EliminationPlan:
+    """Plan the whole compliance of the free surface, stored as ``dtype``.
+
+    Raises
+    ------
+    PalpateError
+        Pins that do not hold the body, or leave nothing to touch.
+    """
+    return _planned(mesh, stiffness, fixed, np.dtype(dtype).itemsize)
+
+
+def plan_factor(mesh: TetMesh, stiffness: csr_array, fixed: NDArray[np.int64]) -> EliminationPlan:
+    """Plan the factor alone, from which single columns follow; errors as for the whole."""
+    return _planned(mesh, stiffness, fixed, 0)
+
+
+def _planned(
+    mesh: TetMesh, stiffness: csr_array, fixed: NDArray[np.int64], itemsize: int
+) -> EliminationPlan:
+    pins = pins_checked(mesh, fixed)
+    free = np.setdiff1d(np.arange(len(mesh.nodes)), pins)
+    free_surface = np.setdiff1d(mesh.surface_nodes, pins)
+    loaded = np.zeros(len(free), dtype=bool)
+    loaded[np.searchsorted(free, free_surface)] = True
+    matrix = free_blocks(stiffness, free)
+    edges = matrix.edges
+    symbolic = analyse(dissect(edges, mesh.nodes[free], loaded), edges, loaded)
+    ranks = np.searchsorted(free_surface, free[symbolic.loaded])
+    return EliminationPlan(free_surface, matrix, symbolic, ranks, itemsize)
