@@ -8,11 +8,14 @@ from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .bake_settings import BakeSettings
 from .decimate import decimate
+from .formulation import formulation_for
 from .pins import pinned_nodes
 from .progress import unwatched
+from .regional_stiffness import StiffRegion, TetScale, young_scale
 from .soft_body import SoftBody
 from .stiffness import assemble
 from .surface import Surface
@@ -82,18 +85,38 @@ def bake(
     else:
         mesh = source
     fixed = pinned_nodes(settings.pins, mesh, surface)
+    formulation = formulation_for(settings.formulation, settings.poisson_ratio)
+    scale = _young_scale(settings.stiffness, mesh, surface)
     with _timed(seconds, "stiffness"):
         progress("stiffness", 0.55)
-        stiffness = assemble(mesh, settings.poisson_ratio)
+        stiffness = assemble(
+            mesh, settings.poisson_ratio, formulation=formulation, young_scale=scale
+        )
     with _timed(seconds, "compliance"):
         compliance = surface_compliance(
             mesh, stiffness, fixed, lambda share: progress("compliance", 0.6 + 0.4 * share)
         )
     body = SoftBody(
-        mesh, np.unique(fixed), settings.poisson_ratio, compliance, settings.young_modulus
+        mesh,
+        np.unique(fixed),
+        settings.poisson_ratio,
+        compliance,
+        settings.young_modulus,
+        formulation,
+        scale,
     )
     diagonal = float(np.linalg.norm(np.ptp(mesh.nodes, axis=0)))
     return body, BakeReport(seconds, fit, _warnings(fit, diagonal))
+
+
+def _young_scale(
+    stiffness: StiffRegion | TetScale | None, mesh: TetMesh, surface: Surface | None
+) -> NDArray[np.float64] | None:
+    """Factors on Young's modulus (M,), None where none differs from 1: the key is the same then."""
+    if stiffness is None:
+        return None
+    scale = young_scale(stiffness, mesh, surface)
+    return None if np.array_equal(scale, np.ones_like(scale)) else scale
 
 
 def _warnings(fit: Fit | None, diagonal: float) -> list[str]:

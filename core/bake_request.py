@@ -8,8 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from .bake import BakeSettings
+from .bake_settings import BakeSettings
 from .pins import PinBelow, PinNodes, Pins, PinWeights
+from .regional_stiffness import StiffRegion, TetScale
 from .surface import Surface
 from .tet_mesh import TetMesh
 
@@ -37,7 +38,7 @@ class BakeRequest:
         plain = {
             name: getattr(settings, name)
             for name in settings.__dataclass_fields__
-            if name != "pins"
+            if name not in {"pins", "stiffness"}
         }
         match settings.pins:
             case PinBelow(fraction, axis):
@@ -46,6 +47,12 @@ class BakeRequest:
                 arrays["pin_weights"] = weights
             case PinNodes(nodes):
                 arrays["pin_nodes"] = nodes
+        match settings.stiffness:
+            case StiffRegion(weights, factor):
+                arrays["stiff_weights"] = weights
+                plain["stiff_factor"] = factor
+            case TetScale(values):
+                arrays["tet_scale"] = values
         np.savez(folder / ARRAYS_FILE, allow_pickle=False, **arrays)
         (folder / SETTINGS_FILE).write_text(json.dumps(plain), encoding="utf-8")
 
@@ -63,7 +70,12 @@ class BakeRequest:
             pins = PinWeights(arrays["pin_weights"])
         else:
             pins = PinNodes(arrays["pin_nodes"])
-        settings = BakeSettings(pins=pins, **plain)
+        stiffness: StiffRegion | TetScale | None = None
+        if "stiff_weights" in arrays:
+            stiffness = StiffRegion(arrays["stiff_weights"], plain.pop("stiff_factor"))
+        elif "tet_scale" in arrays:
+            stiffness = TetScale(arrays["tet_scale"])
+        settings = BakeSettings(pins=pins, stiffness=stiffness, **plain)
         surface = Surface(arrays["vertices"], arrays["triangles"]) if "vertices" in arrays else None
         if "nodes" in arrays:
             return cls(TetMesh.checked(arrays["nodes"], arrays["tets"]), settings, surface)

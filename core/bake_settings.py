@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from .errors import PalpateError
+from .formulation import AUTOMATIC, formulation_for
 from .pins import PinBelow, Pins
+from .regional_stiffness import StiffRegion, TetScale
 from .stiffness import lame_parameters
 
 # How a compliance can be asked for.
@@ -27,7 +29,7 @@ class BakeSettings:
     formulation : of the stiffness; ``auto`` takes what suits Poisson's ratio.
     form : of the compliance, ``dense`` or ``compressed``; ``auto`` compresses large bodies.
     tolerance : largest relative column error that compressing may cause.
-    stiffness : where the body is stiffer or softer than elsewhere.
+    stiffness : where the body is stiffer or softer than elsewhere; None for the same everywhere.
     threads : of BLAS; None for as many as there are cores for this process.
     """
 
@@ -38,10 +40,10 @@ class BakeSettings:
     epsilon: float = 0.003
     decimate_above: int = 6000
     time_limit: float = 600.0
-    formulation: str = "auto"
+    formulation: str = AUTOMATIC
     form: str = "auto"
     tolerance: float = 1e-3
-    stiffness: object = None
+    stiffness: StiffRegion | TetScale | None = None
     threads: int | None = None
 
     def checked(self) -> BakeSettings:
@@ -69,6 +71,7 @@ class BakeSettings:
                     f"bake: {name.replace('_', ' ')} is {value}, but must lie between {low:g} and "
                     f"{high:g}"
                 )
+        formulation_for(self.formulation, self.poisson_ratio)
         if self.form not in FORMS:
             raise PalpateError(
                 f"bake: the form is '{self.form}', but must be one of {', '.join(FORMS)}"

@@ -11,3 +11,7 @@ class PalpateError(Exception):
 
 class CancelledError(PalpateError):
     """The user asked to stop; nothing was kept."""
+
+
+class BodyFileError(PalpateError):
+    """A body file that cannot be used. A new bake replaces it."""

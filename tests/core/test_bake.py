@@ -11,12 +11,17 @@ import pytest
 import trimesh
 
 from palpate.core import cache
-from palpate.core.bake import BakeSettings
+from palpate.core.bake import bake
 from palpate.core.bake_job import BakeJob, run_bake
+from palpate.core.bake_settings import BakeSettings
+from palpate.core.body_key import body_key
 from palpate.core.errors import PalpateError
 from palpate.core.ftetwild_log import stage
 from palpate.core.pins import PinBelow, PinNodes, PinWeights
+from palpate.core.regional_stiffness import TetScale
+from palpate.core.stiffness import assemble
 from palpate.core.surface import Surface
+from palpate.core.surface_compliance import surface_compliance
 
 COARSE = BakeSettings(edge_length=0.12, epsilon=0.01, pins=PinBelow(0.2))
 
@@ -122,13 +127,33 @@ def test_painted_pins_that_reach_no_node_are_refused(tmp_path, ball):
 
 def test_given_tetrahedra_are_baked_as_they_are(tmp_path, cube_mesh, cube):
     mesh, fixed = cube_mesh
-    settings = BakeSettings(poisson_ratio=0.49, pins=PinNodes(fixed))
+    settings = BakeSettings(poisson_ratio=0.49, pins=PinNodes(fixed), formulation="linear")
     body, report = run_bake(mesh, settings, tmp_path / "body.npz")
     assert report.fit is None
     largest = np.abs(cube.compliance.table).max()
     np.testing.assert_allclose(
         body.compliance.table, cube.compliance.table, rtol=1e-6, atol=1e-7 * largest
     )
+
+
+def test_formulation_and_stiffer_tetrahedra_are_baked_in(tmp_path, cube_mesh):
+    mesh, fixed = cube_mesh
+    scale = np.where(mesh.nodes[mesh.tets].mean(axis=1)[:, 2] > 0.025, 10.0, 1.0)
+    settings = BakeSettings(poisson_ratio=0.49, pins=PinNodes(fixed), stiffness=TetScale(scale))
+    body, _ = bake(mesh, settings)
+    assert body.formulation == "smoothed"
+    stiffness = assemble(mesh, 0.49, formulation="smoothed", young_scale=scale)
+    wanted = surface_compliance(mesh, stiffness, fixed)
+    np.testing.assert_array_equal(body.compliance.table, wanted.table)
+    assert body.key == body_key(mesh, fixed, 0.49, "smoothed", scale)
+
+
+def test_a_scale_of_one_everywhere_is_none(cube_mesh):
+    mesh, fixed = cube_mesh
+    settings = BakeSettings(pins=PinNodes(fixed), stiffness=TetScale(np.ones(len(mesh.tets))))
+    body, _ = bake(mesh, settings)
+    assert body.young_scale is None
+    assert body.key == body_key(mesh, fixed, 0.3)
 
 
 def test_cancelling_leaves_no_process_no_file_no_folder(tmp_path, temporary):
