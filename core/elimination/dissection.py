@@ -16,8 +16,8 @@ from scipy.sparse.csgraph import connected_components
 
 from .vertex_cover import minimum_vertex_cover
 
-# Regions of so few nodes are eliminated as one dense front: cutting them on would cost more in calls
-# than it saves in arithmetic.
+# Regions of so few nodes are eliminated as one dense front: cutting them on would cost more in
+# calls than it saves in arithmetic.
 LEAF_NODES = 64
 
 # Larger regions are cut across each of their three main directions and the best cut is taken. They

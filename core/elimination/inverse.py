@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg.blas import dgemm, dsyrk
@@ -32,7 +34,7 @@ def inverse_table(
     # Loads that never meet in a front do not move each other: zeros stay there.
     table = np.zeros((count, count), dtype=dtype)
     edges = tile_edges(count, TILE)
-    tiles = [slice(start, stop) for start, stop in zip(edges[:-1], edges[1:], strict=True)]
+    tiles = [slice(start, stop) for start, stop in pairwise(edges)]
     for index, columns in enumerate(tiles):
         for rows in tiles[: index + 1]:
             block = _tile(factor, rows, columns, meter)

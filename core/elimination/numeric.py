@@ -7,7 +7,7 @@ For a front with pivots p, boundary b and loads E, in Fortran order and upper ha
                              W_p  = R_pp^-T E_p                          the result
                              A_bb - R_pb^T R_pb,  E_b - R_pb^T W_p       added to the parent
 
-Loads come to a front from below or begin on its own pivots, so W has no entries for loads elsewhere.
+Loads come to a front from below or begin on its own pivots; W has no entries for loads elsewhere.
 """
 
 from __future__ import annotations
@@ -163,7 +163,7 @@ def _short_calls(columns: int, flops_per_column: int) -> list[slice]:
 
 
 class _EntriesByFront:
-    """The upper half of a block matrix in order of elimination, sorted by the front it begins in."""
+    """The upper half of a block matrix in order of elimination, cut into fronts."""
 
     def __init__(self, matrix: BlockMatrix, symbolic: SymbolicFactor) -> None:
         rows, columns = symbolic.place[matrix.rows], symbolic.place[matrix.columns]

@@ -1,4 +1,4 @@
-"""The symbolic step: which rows and which loads every front will hold, before any number is known."""
+"""The symbolic step: which nodes and which loads every front will hold, before any number."""
 
 from __future__ import annotations
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,7 +50,7 @@ class UpperTiles:
 
         ``done`` is told the floating point operations of each call when it ends.
         """
-        parts = [panel[:, a:b] for a, b in zip(self.edges[:-1], self.edges[1:], strict=True)]
+        parts = [panel[:, a:b] for a, b in pairwise(self.edges)]
         for column, right in enumerate(parts):
             for row, left in enumerate(parts[:column]):
                 tile = self.tiles[column][row]

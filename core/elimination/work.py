@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 
 from .symbolic import Front
 from .upper_tiles import tile_edges
@@ -108,7 +109,7 @@ class FrontWork:
 def upper_tiles_size(size: int) -> int:
     """Numbers that the upper tiles of a (size, size) matrix hold."""
     edges = tile_edges(size)
-    return sum(stop * (stop - start) for start, stop in zip(edges[:-1], edges[1:], strict=True))
+    return sum(stop * (stop - start) for start, stop in pairwise(edges))
 
 
 def elimination_peak_bytes(fronts: tuple[Front, ...]) -> tuple[int, int]:
