@@ -1,4 +1,4 @@
-"""``palpate bake``: from a mesh file to a body file."""
+"""``palpate bake``: from mesh files to body files, or a prediction of what that would take."""
 
 from __future__ import annotations
 
@@ -8,92 +8,66 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
-
-from ..core.bake import BakeReport, BakeSettings
+from ..core.bake import BakeReport
 from ..core.bake_job import JobProgress, run_bake
 from ..core.devices.stop_signals import stopped_by_signals
 from ..core.errors import PalpateError
-from ..core.pins import PinBelow, PinNodes, Pins
-from ..core.read_mesh import read_surface, read_tets
 from ..core.soft_body import SoftBody
-from ..core.surface import Surface
-from ..core.tet_mesh import TetMesh
+from . import bake_folder, bake_prediction
+from .bake_options import add_bake_options, bake_input
 from .body_figures import as_lines, body_figures
-
-DEFAULT_PIN_FRACTION = 0.1
-AXES = {"x": 0, "y": 1, "z": 2}
+from .status_line import bake_status, show, status_line
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Describe the command."""
-    default = BakeSettings()
-    parser = subparsers.add_parser("bake", help="make a body file from a mesh file")
-    parser.add_argument("mesh", type=Path, metavar="MESH.(obj|ply|stl|npz)")
-    parser.add_argument("-o", "--output", type=Path, required=True, metavar="BODY.npz")
-    parser.add_argument(
-        "--edge-length",
-        type=float,
-        metavar="F",
-        help="wanted edge length of tetrahedra as a share of the bounding box diagonal "
-        f"(default {default.edge_length:g}; not for npz)",
+    parser = subparsers.add_parser("bake", help="make body files from mesh files")
+    parser.add_argument("meshes", type=Path, nargs="+", metavar="MESH.(obj|ply|stl|npz)")
+    result = parser.add_mutually_exclusive_group(required=True)
+    result.add_argument("-o", "--output", type=Path, metavar="BODY.npz", help="of one mesh")
+    result.add_argument(
+        "--output-folder",
+        type=Path,
+        metavar="FOLDER",
+        help="of many meshes: each becomes FOLDER/NAME.npz",
     )
-    parser.add_argument(
-        "--epsilon",
-        type=float,
-        default=default.epsilon,
-        metavar="F",
-        help="how far the body's surface may lie from the mesh's, as such a share "
-        "(default %(default)g)",
+    result.add_argument(
+        "--predict",
+        action="store_true",
+        help="print predicted nodes, time, memory and file size, and bake nothing",
     )
-    parser.add_argument(
-        "--pin-below",
-        type=float,
-        metavar="FRACTION",
-        help="pin surface nodes within this lowest share of the height "
-        f"(default: 'fixed' of an npz, else {DEFAULT_PIN_FRACTION:g})",
+    workers = parser.add_argument_group("many meshes").add_mutually_exclusive_group()
+    workers.add_argument(
+        "--jobs",
+        type=int,
+        metavar="N",
+        help="bakes at once on this computer (default: its cores)",
     )
-    parser.add_argument("--up", choices=AXES, default="z", help="upward axis (default z)")
-    parser.add_argument(
-        "--young",
-        type=float,
-        default=default.young_modulus,
-        metavar="PA",
-        help="Young's modulus stored as the default for presses (default %(default)g)",
+    workers.add_argument(
+        "--scheduler",
+        metavar="ADDRESS",
+        help="bake on a Dask cluster, for example tcp://farm:8786, or its scheduler file",
     )
-    parser.add_argument(
-        "--poisson",
-        type=float,
-        default=default.poisson_ratio,
-        metavar="NU",
-        help="Poisson's ratio (default %(default)g)",
-    )
-    parser.add_argument(
-        "--metres-per-unit",
-        type=float,
-        default=1.0,
-        metavar="S",
-        help="unit of the file (default 1)",
-    )
-    parser.add_argument(
-        "--time-limit",
-        type=float,
-        default=default.time_limit,
-        metavar="S",
-        help="give up tetrahedralization after so many seconds (default %(default)g)",
-    )
+    add_bake_options(parser)
     parser.add_argument("--json", action="store_true", help="print figures as JSON")
     parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Bake and print the body's figures. Whoever asks it to stop finds nothing left of it."""
+    """Bake and print figures. Whoever asks it to stop finds nothing unfinished."""
+    if arguments.predict:
+        return bake_prediction.run(arguments)
     # From the first import on: readers of meshes swallow the exception that Ctrl-C is.
     with stopped_by_signals() as stopped:
-        body, report = _bake(arguments, stopped)
-    if sys.stderr.isatty():
-        print("\r\x1b[K", end="", file=sys.stderr)
+        try:
+            if arguments.output_folder is not None:
+                return bake_folder.run(arguments, stopped)
+            body, report = _bake(arguments, stopped)
+        except PalpateError:
+            if stopped:
+                # A terminal stops the child too, which then looks like one that failed.
+                raise KeyboardInterrupt from None
+            raise
     for warning in report.warnings:
         print(f"palpate: warning: {warning}", file=sys.stderr)
     figures = {**body_figures(body), **report.as_dict(), "body": str(arguments.output)}
@@ -102,58 +76,25 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _bake(arguments: argparse.Namespace, stopped: Sequence[int]) -> tuple[SoftBody, BakeReport]:
-    if not (np.isfinite(arguments.metres_per_unit) and arguments.metres_per_unit > 0):
+    if len(arguments.meshes) > 1:
         raise PalpateError(
-            f"--metres-per-unit: {arguments.metres_per_unit} is not a positive number; "
-            "give 0.001 for a file in millimetres"
+            f"-o: {len(arguments.meshes)} meshes do not fit in one body file; name a folder with "
+            "--output-folder"
         )
+    for option in ("jobs", "scheduler"):
+        if getattr(arguments, option) is not None:
+            raise PalpateError(
+                f"--{option}: is for many meshes; name a folder with --output-folder instead of -o"
+            )
     folder = arguments.output.absolute().parent
     if not folder.exists():
         raise PalpateError(f"{arguments.output}: there is no folder {folder}; make it first")
-    source, fixed = _source(arguments)
-    settings = BakeSettings(
-        poisson_ratio=arguments.poisson,
-        young_modulus=arguments.young,
-        pins=_pins(arguments, fixed),
-        edge_length=(
-            BakeSettings.edge_length if arguments.edge_length is None else arguments.edge_length
-        ),
-        epsilon=arguments.epsilon,
-        time_limit=arguments.time_limit,
-    )
+    given = bake_input(arguments, arguments.meshes[0], arguments.threads)
 
     def watch(progress: JobProgress) -> None:
         if stopped:
             raise KeyboardInterrupt
-        _show(progress)
+        show(bake_status(progress))
 
-    return run_bake(source, settings, arguments.output, watch)
-
-
-def _source(
-    arguments: argparse.Namespace,
-) -> tuple[Surface | TetMesh, NDArray[np.int64] | None]:
-    if arguments.mesh.suffix.lower() != ".npz":
-        return read_surface(arguments.mesh, arguments.metres_per_unit), None
-    if arguments.edge_length is not None:
-        raise PalpateError(
-            f"--edge-length: {arguments.mesh} holds tetrahedra already; leave the option out, or "
-            "give a surface (obj, ply, stl)"
-        )
-    file = read_tets(arguments.mesh, arguments.metres_per_unit)
-    return file.mesh, file.fixed
-
-
-def _pins(arguments: argparse.Namespace, fixed: NDArray[np.int64] | None) -> Pins:
-    if arguments.pin_below is not None:
-        return PinBelow(arguments.pin_below, AXES[arguments.up])
-    if fixed is not None:
-        return PinNodes(fixed)
-    return PinBelow(DEFAULT_PIN_FRACTION, AXES[arguments.up])
-
-
-def _show(progress: JobProgress) -> None:
-    if sys.stderr.isatty():
-        share = "" if progress.share is None else f" {100 * progress.share:3.0f} %"
-        line = f"{progress.text}{share}, {progress.seconds:.0f} s"
-        print(f"\r\x1b[K{line}", end="", file=sys.stderr, flush=True)
+    with status_line():
+        return run_bake(given.source, given.settings, arguments.output, watch)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..core.cache import body_key
 from ..core.soft_body import SoftBody
 
 
@@ -26,9 +25,19 @@ def body_figures(body: SoftBody) -> dict[str, object]:
         "extents_m": np.ptp(body.mesh.nodes, axis=0).tolist(),
         "poisson_ratio": body.poisson_ratio,
         "young_modulus": body.young_modulus,
+        "formulation": body.formulation,
+        **_stiffness_range(body),
+        "form": body.compliance.form,
         "compliance_bytes": body.compliance.nbytes,
-        "key": body_key(body.mesh, body.fixed, body.poisson_ratio),
+        "key": body.key,
     }
+
+
+def _stiffness_range(body: SoftBody) -> dict[str, object]:
+    """Smallest and largest factor on Young's modulus, where a body is not the same all over."""
+    if body.young_scale is None:
+        return {}
+    return {"young_scale": [float(body.young_scale.min()), float(body.young_scale.max())]}
 
 
 def as_lines(figures: dict[str, object]) -> str:

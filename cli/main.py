@@ -9,9 +9,9 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from ..core.errors import PalpateError
-from . import bake, devices, info, press, servo
+from . import bake, devices, info, pin, press, servo
 
-COMMANDS = (bake, info, press, servo, devices)
+COMMANDS = (bake, info, pin, press, servo, devices)
 EXIT_ERROR = 2
 
 

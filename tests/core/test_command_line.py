@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -13,6 +14,8 @@ import pytest
 import trimesh
 
 from palpate.cli.main import main
+from palpate.cli.status_line import bake_status
+from palpate.core.bake_job import JobProgress
 
 MOUSE = Path(__file__).resolve().parents[1] / "meshes" / "mouse-1.7k.npz"
 
@@ -28,9 +31,8 @@ def cube_file(tmp_path_factory, cube_mesh):
     folder = tmp_path_factory.mktemp("cube")
     mesh, fixed = cube_mesh
     np.savez(folder / "cube-tets.npz", X=mesh.nodes, T=mesh.tets, fixed=fixed)
-    status = main(
-        ["bake", str(folder / "cube-tets.npz"), "-o", str(folder / "cube.npz"), "--poisson", "0.49"]
-    )
+    words = ["--poisson", "0.49", "--formulation", "linear"]
+    status = main(["bake", str(folder / "cube-tets.npz"), "-o", str(folder / "cube.npz"), *words])
     assert status == 0
     return folder / "cube.npz"
 
@@ -163,6 +165,12 @@ def test_press_reads_the_force_and_writes_displacements(cube_file, tmp_path, cap
         (["bake", "cube.npz", "-o", "out.npz", "--edge-length", "0.1"], "--edge-length"),
         (["bake", "box.stl", "-o", "out.npz", "--edge-length", "0"], "edge length"),
         (["bake", "cube.npz", "-o", "nowhere/out.npz"], "no folder"),
+        (["bake", "cube.npz"], "--output-folder"),
+        (["bake", "cube.npz", "-o", "out.npz", "--form", "sparse"], "--form"),
+        (["bake", "cube.npz", "-o", "out.npz", "--formulation", "cubic"], "--formulation"),
+        (["bake", "cube.npz", "-o", "out.npz", "--tolerance", "2"], "tolerance"),
+        (["bake", "cube.npz", "-o", "out.npz", "--threads", "0"], "threads"),
+        (["bake", "none.obj", "--predict"], "none.obj"),
         (["bake", "single.npz", "-o", "out.npz"], "single.npz"),
         (["bake", "halves.npz", "-o", "out.npz"], "names no nodes"),
         (["bake", "words.npz", "-o", "out.npz"], "real numbers"),
@@ -173,6 +181,17 @@ def test_press_reads_the_force_and_writes_displacements(cube_file, tmp_path, cap
         (["bake", "cube.npz", "-o", "notes.txt/out.npz"], "written"),
         (["info", "none.npz"], "none.npz"),
         (["info", "notes.txt"], "notes.txt"),
+        (["pin", "none.npz", "--below", "0.3", "-o", "out.npz"], "none.npz"),
+        (["pin", "{body}", "--below", "2", "-o", "out.npz"], "fraction"),
+        (["pin", "{body}", "--below", "1", "-o", "out.npz"], "nothing is left to touch"),
+        (["pin", "{body}", "-o", "out.npz"], "--below"),
+        (["pin", "{body}", "--nodes", "none.txt", "-o", "out.npz"], "none.txt"),
+        (["pin", "{body}", "--nodes", "notes.txt", "-o", "out.npz"], "notes.txt"),
+        (["pin", "{body}", "--nodes", "blank.txt", "-o", "out.npz"], "no node numbers"),
+        (["pin", "{body}", "--nodes", "halves.npy", "-o", "out.npz"], "no node numbers"),
+        (["pin", "{body}", "--nodes", "beyond.txt", "-o", "out.npz"], "not a node"),
+        (["pin", "{body}", "--nodes", "inner.txt", "-o", "out.npz"], "inside the body"),
+        (["pin", "{body}", "--nodes", "top.txt", "-o", "nowhere/out.npz"], "nowhere"),
         (["press", "other.npz", "--at", "0", "0", "0", "--by", "0", "0", "0"], "other.npz"),
         (["press", "{body}", "--at", "0", "0", "nan", "--by", "0", "0", "0"], "--at"),
         (["press", "{body}", "--at", "0", "0", "0", "--by", "0", "inf", "0"], "--by"),
@@ -211,6 +230,11 @@ def test_bad_input_gets_one_line_status_2_and_no_file(
     on_its_tip = np.array([[0, 0, 0], [1, 0, 1], [0, 1, 1], [1, 1, 3]]) * 0.1
     np.savez("tip.npz", X=on_its_tip, T=np.array([[0, 1, 2, 3]]))
     Path("notes.txt").write_text("hello")
+    Path("blank.txt").write_text(" ")
+    Path("beyond.txt").write_text("99999")
+    Path("top.txt").write_text(str(mesh.surface_nodes[-1]))
+    Path("inner.txt").write_text(str(np.setdiff1d(np.arange(125), mesh.surface_nodes)[0]))
+    np.save("halves.npy", [0.5, 1.5])
     Path("broken.stl").write_bytes(b"solid\nfacet normal 0 0")
     Path("broken.npz").write_bytes(b"PK\x03\x04")
     Path("empty.obj").write_text("# nothing\n")
@@ -311,3 +335,76 @@ def test_pins_of_the_file_are_taken_unless_told_otherwise(tmp_path, capsys):
         capsys, "bake", MOUSE, "-o", tmp_path / "b.npz", "--pin-below", 0.5, "--json"
     )
     assert json.loads(printed)["fixed_nodes"] > 300
+
+
+def test_more_of_a_body_is_pinned_without_a_bake(cube_file, tmp_path, capsys, cube_mesh):
+    mesh, fixed = cube_mesh
+    _, printed, _ = palpate(
+        capsys, "pin", cube_file, "--below", 0.3, "-o", tmp_path / "low.npz", "--json"
+    )
+    figures = json.loads(printed)
+    assert (figures["pinned_before"], figures["fixed_nodes"]) == (25, 41)
+    both = tmp_path / "both.npz"
+    np.savez(both, X=mesh.nodes, T=mesh.tets, fixed=np.append(fixed, mesh.surface_nodes[-1]))
+    words = ["--poisson", 0.49, "--formulation", "linear", "--json"]
+    _, printed, _ = palpate(capsys, "bake", both, "-o", tmp_path / "baked.npz", *words)
+    baked = json.loads(printed)
+    (tmp_path / "top.txt").write_text(f"{mesh.surface_nodes[-1]}\n0 0")
+    for file in ("top.txt", "top.npy"):
+        if file.endswith("npy"):
+            np.save(tmp_path / file, mesh.surface_nodes[-1:])
+        pin = ["pin", cube_file, "--nodes", tmp_path / file, "-o", tmp_path / "pinned.npz"]
+        status, printed, _ = palpate(capsys, *pin, "--json")
+        pinned = json.loads(printed)
+        assert status == 0
+        assert (pinned["key"], pinned["fixed_nodes"]) == (baked["key"], 26)
+    press = ["--at", 0.03, 0.03, 0.06, "--by", 0, 0, "-1e-3", "--json"]
+    forces = [
+        json.loads(palpate(capsys, "press", tmp_path / name, *press)[1])["force"]
+        for name in ("baked.npz", "pinned.npz")
+    ]
+    np.testing.assert_allclose(forces[1], forces[0], rtol=1e-4, atol=1e-7)
+
+
+def test_a_prediction_bakes_nothing(tmp_path, capsys, cube_file):
+    trimesh.creation.box((0.1, 0.1, 0.1)).export(tmp_path / "box.stl")
+    before = sorted(path.name for path in tmp_path.iterdir())
+    tets = cube_file.with_name("cube-tets.npz")
+    status, printed, _ = palpate(
+        capsys, "bake", tmp_path / "box.stl", tets, "--predict", "--form", "dense", "--json"
+    )
+    assert status == 0
+    box, cube = json.loads(printed)["predictions"]
+    assert (cube["nodes"], cube["free_surface_nodes"], cube["spread"]) == (125, 73, 1)
+    assert box["spread"] > 1
+    assert 500 < box["nodes"] < 5000
+    for figures in (box, cube):
+        assert figures["form"] == "dense"
+        assert figures["file_bytes"] > 36 * figures["free_surface_nodes"] ** 2
+        assert figures["peak_bytes"] > 0
+        assert figures["seconds"] > 0
+        assert figures["refusal"] is None
+    status, printed, _ = palpate(capsys, "bake", tets, "--predict")
+    assert status == 0
+    assert re.search(r"^free surface nodes +73$", printed, re.MULTILINE)
+    assert sorted(path.name for path in tmp_path.iterdir()) == before
+
+
+def test_formulation_and_stiffness_are_told(tmp_path, capsys, cube_mesh):
+    mesh, fixed = cube_mesh
+    scale = np.where(np.arange(len(mesh.tets)) < 100, 20.0, 1.0)
+    np.savez(tmp_path / "t.npz", X=mesh.nodes, T=mesh.tets, fixed=fixed, young_scale=scale)
+    words = ["bake", tmp_path / "t.npz", "-o", tmp_path / "b.npz", "--poisson", 0.49, "--json"]
+    told = json.loads(palpate(capsys, *words)[1])
+    assert (told["formulation"], told["form"]) == ("smoothed", "dense")
+    assert told["young_scale"] == [1, 20]
+    told = json.loads(palpate(capsys, *words, "--formulation", "linear")[1])
+    assert told["formulation"] == "linear"
+    again = json.loads(palpate(capsys, "info", tmp_path / "b.npz", "--json")[1])
+    assert (again["formulation"], again["key"]) == ("linear", told["key"])
+
+
+def test_progress_tells_share_and_remaining_time():
+    words = bake_status(JobProgress("compliance", "Inverting the stiffness", 0.42, 130.0, 12.4))
+    assert words == "Inverting the stiffness 42 %, 2.2 min, about 12 s left"
+    assert bake_status(JobProgress("start", "Starting", None, 0.2)) == "Starting, 0 s"
