@@ -102,11 +102,16 @@ class Surface:
         )
         return int(connected_components(links, directed=False)[0])
 
+    def coinciding(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """One vertex of each place, (P,), and for every vertex the number of its place, (V,)."""
+        grid = np.round(self.vertices / (WELD_TOLERANCE * self.diagonal)).astype(np.int64)
+        _, first, place = np.unique(grid, axis=0, return_index=True, return_inverse=True)
+        return first, place.reshape(-1)
+
     def welded(self) -> Surface:
         """The same surface with coinciding vertices merged and collapsed triangles removed."""
-        grid = np.round(self.vertices / (WELD_TOLERANCE * self.diagonal)).astype(np.int64)
-        _, first, merged = np.unique(grid, axis=0, return_index=True, return_inverse=True)
-        faces = merged.reshape(-1)[self.triangles]
+        first, place = self.coinciding()
+        faces = place[self.triangles]
         proper = (faces != np.roll(faces, 1, axis=1)).all(axis=1)
         return Surface(self.vertices[first], faces[proper])
 
