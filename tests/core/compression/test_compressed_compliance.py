@@ -1,0 +1,121 @@
+import numpy as np
+import pytest
+
+from palpate.core.compression.compress import compress
+from palpate.core.compression.compressed_compliance import CompressedCompliance
+from palpate.core.errors import PalpateError
+from palpate.core.soft_body import SoftBody
+
+
+@pytest.fixture(scope="module")
+def compressed(mouse):
+    positions = mouse.mesh.nodes[mouse.compliance.free_surface]
+    return compress(mouse.compliance, positions, 1e-3)
+
+
+def pairs(compressed, rng, count=300):
+    """Node pairs of all kinds: far, near, and in one cluster."""
+    nodes = rng.integers(0, compressed.node_count, (count, 2))
+    beside = np.argsort(compressed.places)
+    nodes[::3, 1] = beside[(np.argsort(beside)[nodes[::3, 0]] + 5) % compressed.node_count]
+    return nodes
+
+
+def test_it_is_a_compliance_of_its_form(compressed, mouse):
+    assert compressed.form == "compressed"
+    assert compressed.node_count == mouse.compliance.node_count
+    assert compressed.nbytes == sum(array.nbytes for array in compressed.arrays().values())
+
+
+def test_diagonal_blocks_are_exact(compressed, mouse):
+    np.testing.assert_array_equal(compressed.diagonal(), mouse.compliance.diagonal())
+    np.testing.assert_array_equal(compressed.block(7, 7), mouse.compliance.block(7, 7))
+    np.testing.assert_array_equal(compressed.columns(np.array([7]))[21:24], compressed.block(7, 7))
+
+
+def test_it_is_symmetric_to_the_last_bit(compressed, rng):
+    for i, j in pairs(compressed, rng):
+        np.testing.assert_array_equal(compressed.block(i, j), compressed.block(j, i).T)
+
+
+def test_columns_are_made_of_blocks(compressed, rng):
+    nodes = pairs(compressed, rng)
+    columns = compressed.columns(nodes[:, 1]).reshape(-1, 3, len(nodes), 3)
+    for k, (i, j) in enumerate(nodes):
+        scale = np.abs(columns[:, :, k]).max()
+        np.testing.assert_allclose(columns[i, :, k], compressed.block(i, j), atol=1e-13 * scale)
+
+
+@pytest.mark.parametrize("count", [1, 3, 40])
+def test_displacements_are_columns_times_forces(compressed, rng, count):
+    nodes = rng.integers(0, compressed.node_count, count)  # some of them twice
+    forces = rng.normal(size=(count, 3))
+    expected = (compressed.columns(nodes) @ forces.ravel()).reshape(-1, 3)
+    moved = compressed.apply(forces, nodes)
+    assert np.abs(moved - expected).max() < 1e-6 * np.abs(expected).max()
+
+
+def test_forces_on_all_nodes_need_no_numbers(compressed, mouse, rng):
+    forces = rng.normal(size=(compressed.node_count, 3))
+    expected = mouse.compliance.apply(forces)
+    assert np.linalg.norm(compressed.apply(forces) - expected) < 1e-3 * np.linalg.norm(expected)
+
+
+def test_no_forces_move_nothing(compressed):
+    assert not compressed.apply(np.zeros((0, 3)), np.zeros(0, int)).any()
+    assert compressed.columns(np.zeros(0, int)).shape == (3 * compressed.node_count, 0)
+
+
+def test_a_soft_body_feels_the_same_and_moves_nearly_the_same(compressed, mouse):
+    body = SoftBody(mouse.mesh, mouse.fixed, mouse.poisson_ratio, compressed, mouse.young_modulus)
+    touch = mouse.touch(50, [0.2, 0.3, 0.5], [0.001, 0, -0.003])
+    ours = body.touch(50, [0.2, 0.3, 0.5], [0.001, 0, -0.003])
+    np.testing.assert_array_equal(ours.nodal_forces, touch.nodal_forces)
+    expected = mouse.deform(touch.triangle, touch.nodal_forces)
+    moved = body.deform(ours.triangle, ours.nodal_forces)
+    assert np.linalg.norm(moved - expected) < 1e-3 * np.linalg.norm(expected)
+
+
+def test_its_arrays_make_it_again(compressed, rng):
+    arrays = compressed.arrays()
+    assert all(key.startswith("compressed_") for key in arrays)
+    again = CompressedCompliance.from_arrays(
+        compressed.free_surface, arrays | {"something else": np.zeros(1)}, compressed.tolerance
+    )
+    nodes, forces = rng.integers(0, compressed.node_count, 3), rng.normal(size=(3, 3))
+    np.testing.assert_array_equal(again.apply(forces, nodes), compressed.apply(forces, nodes))
+
+
+def changed(name, change):
+    def spoil(arrays):
+        return arrays | {f"compressed_{name}": change(arrays[f"compressed_{name}"].copy())}
+
+    return spoil
+
+
+def with_entry(place, value):
+    def change(array):
+        array[place] = value
+        return array
+
+    return change
+
+
+DAMAGE = {
+    "missing": lambda arrays: {k: v for k, v in arrays.items() if k != "compressed_basis"},
+    "is float64": changed("basis", lambda a: a.astype(np.float64)),
+    "not finite": changed("basis", with_entry(5, np.nan)),
+    "has the shape": changed("basis", lambda a: a[:-1]),
+    "numbers beyond": changed("tile_table", with_entry((0, 5), 1 << 30)),
+    "not symmetric": changed("tile_table", with_entry((0, 100), 0)),
+    "contradict": changed("places", with_entry(0, 1)),
+    "no neighbour": changed("near_table", with_entry((0, 0), 0)),
+}
+
+
+@pytest.mark.parametrize("reason", DAMAGE)
+def test_damaged_arrays_are_refused(compressed, reason):
+    with pytest.raises(PalpateError, match=reason):
+        CompressedCompliance.from_arrays(
+            compressed.free_surface, DAMAGE[reason](compressed.arrays()), compressed.tolerance
+        )
