@@ -1,102 +1,234 @@
-"""What a touch costs after the bake, beside solving the whole body anew for the same load.
+"""What a touch costs after the bake, beside what the same touch costs otherwise.
 
-The opponent is a prefactored sparse solve (SuperLU, symmetric mode, minimum degree), which is what
-one would use without the inverse stiffness. Run: python benchmarks/touch_cost.py [TETS.npz ...]
+    python benchmarks/touch_cost.py [--quick]
+
+For ``mouse-1.7k`` and ``mouse-20k``, in the same run and on random triangles all over the body, so
+that no column is in the cache before it is wanted:
+
+- the deformation (15), nine columns of L, in both forms;
+- a copy of those nine columns from the table to another place: what reading the memory costs;
+- CHOLMOD's solve of the whole body under the same forces, factored beforehand (cholespy);
+- a whole frame in its parts: deform, carry to 100,000 drawn vertices, write into Blender's mesh.
+
+``--quick`` leaves out ``mouse-20k``.
 """
 
 from __future__ import annotations
 
-import sys
-import time
+import argparse
+import json
+import subprocess
 from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
+from measuring.bodies import MeasuredBody, stored_body
+from measuring.prefactored import PrefactoredSolve, cholespy_module
+from measuring.timing import median_seconds
 from numpy.typing import NDArray
-from scipy.sparse.linalg import splu
 
-from palpate.core.bake import BakeSettings, bake
-from palpate.core.closest_point import ClosestPoints
+from palpate.core.bake import bake
+from palpate.core.bake_settings import BakeSettings
+from palpate.core.compression.compress import compress
+from palpate.core.contact import Touch
+from palpate.core.dense_compliance import DenseCompliance
 from palpate.core.drawn_map import DrawnMap
-from palpate.core.paper_cube import paper_cube
 from palpate.core.pins import PinNodes
 from palpate.core.servo_session import native_body
 from palpate.core.soft_body import SoftBody
-from palpate.core.stiffness import assemble
-from palpate.core.tet_mesh import TetMesh
 
-MOUSE = Path(__file__).resolve().parents[1] / "tests" / "meshes" / "mouse-1.7k.npz"
+PROJECT = Path(__file__).resolve().parents[1]
 DRAWN_VERTICES = 100_000
+TOUCHES = 400
+TOLERANCE = 1e-3
+
+# At most so many times a copy of the same memory, and at least so many times faster than CHOLMOD.
+LARGEST_COPIES = 2.0
+SMALLEST_GAIN = {"mouse-1.7k": 20.0, "mouse-20k": 500.0}
 
 
-def median_us(work: Callable[[], object], repeats: int) -> float:
-    """Median time of a call in microseconds."""
-    work()
-    times = []
-    for _ in range(repeats):
-        start = time.perf_counter_ns()
-        work()
-        times.append(time.perf_counter_ns() - start)
-    return float(np.median(times)) / 1000
+@dataclass(frozen=True)
+class Load:
+    """A touch as the deformation wants it: three nodes and the forces on them."""
+
+    triangle: NDArray[np.int64]
+    nodal_forces: NDArray[np.float64]
 
 
-def prefactored(body: SoftBody, forces: NDArray[np.float64]) -> Callable[[], object]:
-    """A solve of the whole body for the same nodal forces (N, 3), factored beforehand."""
-    K = assemble(body.mesh, body.poisson_ratio).tocsc()
-    free = np.setdiff1d(np.arange(len(body.mesh.nodes)), body.fixed)
-    dofs = (3 * free[:, None] + np.arange(3)).ravel()
-    factor = splu(
-        K[dofs][:, dofs],
-        permc_spec="MMD_AT_PLUS_A",
-        diag_pivot_thresh=0.0,
-        options={"SymmetricMode": True},
-    )
-    load = forces.ravel()[dofs]
-    return lambda: factor.solve(load)
+def in_turn(loads: list[Load], work: Callable[[Load], object]) -> Callable[[], object]:
+    """Work on one load after the other, from the first again after the last."""
+    place = 0
+
+    def next_one() -> object:
+        nonlocal place
+        place = (place + 1) % len(loads)
+        return work(loads[place])
+
+    return next_one
 
 
-def measure(name: str, body: SoftBody) -> None:
-    """Print one row."""
-    triangle, alpha, u = 10, np.array([0.2, 0.3, 0.5]), np.array([0.0, 0.0, -0.003])
-    touch = body.touch(triangle, alpha, u)
-    native = native_body(body)
+def random_loads(body: SoftBody, count: int) -> list[Load]:
+    """Touches of random free triangles by 3 mm, as forces on their nodes."""
     rng = np.random.default_rng(1999)
-    chosen = rng.integers(0, len(body.mesh.surface_triangles), DRAWN_VERTICES)
-    places = np.einsum(
-        "pc,pcx->px",
-        rng.dirichlet([1, 1, 1], DRAWN_VERTICES),
-        body.mesh.nodes[body.mesh.surface_triangles[chosen]],
+    free = np.isin(body.mesh.surface_triangles, body.compliance.free_surface).all(axis=1)
+    touches: list[Touch] = [
+        body.touch(int(triangle), rng.dirichlet([1, 1, 1]), rng.normal(scale=0.003, size=3))
+        for triangle in rng.choice(np.flatnonzero(free), count)
+    ]
+    return [Load(touch.triangle, touch.nodal_forces) for touch in touches]
+
+
+def copy_seconds(body: SoftBody, table: NDArray[np.floating], loads: list[Load]) -> float:
+    """Median time of copying a load's nine columns to a place that is there already."""
+    wanted = iter([body.free_index(load.triangle) for load in 2 * loads])
+    place = np.empty((3, *table.shape[1:]), table.dtype)
+    return median_seconds(
+        lambda: np.take(table, next(wanted), axis=0, out=place, mode="clip"), TOUCHES
     )
-    hung = DrawnMap.hang(places, body)
-    moved = body.deform(touch.triangle, touch.nodal_forces)
+
+
+def apply_seconds(body: SoftBody, loads: list[Load]) -> float:
+    """Median time of the product alone, without finding the columns and dividing by E."""
+    wanted = iter([(load.nodal_forces, body.free_index(load.triangle)) for load in 2 * loads])
+    return median_seconds(lambda: body.compliance.apply(*next(wanted)), TOUCHES)
+
+
+def deform_seconds(body: SoftBody, loads: list[Load]) -> float:
+    """Median time of a deformation."""
+    return median_seconds(
+        in_turn(loads, lambda load: body.deform(load.triangle, load.nodal_forces)), TOUCHES
+    )
+
+
+def cholmod_seconds(body: SoftBody, load: Load) -> float | None:
+    """Median time of CHOLMOD's solve, after comparing its answer with ours; None without it."""
+    cholespy = cholespy_module()
+    if cholespy is None:
+        return None
     forces = np.zeros_like(body.mesh.nodes)
-    forces[touch.triangle] = touch.nodal_forces
-    force_native = median_us(lambda: native.contact(triangle, alpha, u, 1000.0), 2000)
-    deform = median_us(lambda: body.deform(touch.triangle, touch.nodal_forces), 300)
-    solve = median_us(prefactored(body, forces), 30)
-    draw = median_us(lambda: hung.displacements(moved), 30)
-    search = ClosestPoints(body.mesh.nodes, body.mesh.surface_triangles)
-    nearest = median_us(lambda: search.query(places[:1]), 100)
-    print(
-        f"{name:12} {body.compliance.node_count:6d} {force_native:12.1f} {deform:12.1f} "
-        f"{solve:12.1f} {solve / deform:8.1f} {draw:14.1f} {nearest:12.1f}"
-    )
+    forces[load.triangle] = load.nodal_forces
+    solve = PrefactoredSolve(body, cholespy).under(forces)
+    truth, ours = solve(), body.deform(load.triangle, load.nodal_forces)
+    difference = float(np.linalg.norm(ours - truth) / np.linalg.norm(truth))
+    print(f"  the two deformations differ by {difference:.1e}")
+    return median_seconds(solve, 10)
 
 
-def main(files: list[str]) -> None:
-    """Measure the paper's cube, the stored mouse, and any tetrahedra named."""
+def dense_and_compressed(measured: MeasuredBody) -> tuple[SoftBody, SoftBody]:
+    """The same body twice."""
+    settings = BakeSettings(0.3, 1000.0, PinNodes(measured.fixed), form="dense")
+    dense, _ = bake(measured.mesh, settings)
+    positions = dense.mesh.nodes[dense.compliance.free_surface]
+    compressed = compress(dense.compliance, positions, TOLERANCE)
+    return dense, replace(dense, compliance=compressed)
+
+
+def measure_touch(measured: MeasuredBody) -> tuple[SoftBody, SoftBody]:
+    """Print what a touch costs; returns the bodies."""
+    dense, compressed = dense_and_compressed(measured)
+    table = dense.compliance
+    if not isinstance(table, DenseCompliance):
+        raise TypeError(f"a dense body was baked in the form {table.form}")
+    print(f"\n{measured.name}: {table.node_count} free surface nodes")
+    loads = random_loads(dense, TOUCHES)
+    copying = copy_seconds(dense, table.table, loads)
+    times = {"dense": deform_seconds(dense, loads), "compressed": deform_seconds(compressed, loads)}
+    native = native_body(dense)
+    triangle, alpha, u = 10, np.array([0.2, 0.3, 0.5]), np.array([0.0, 0.0, -0.003])
+    force = median_seconds(lambda: native.contact(triangle, alpha, u, 1000.0), 2000)
+    print(f"  force on the finger, native, (11) to (14)  {1e6 * force:9.1f} us")
+    print(f"  copy of nine columns of the table          {1e6 * copying:9.1f} us")
+    product = apply_seconds(dense, loads)
+    print(f"  product with them, dense                   {1e6 * product:9.1f} us")
+    for form, seconds in times.items():
+        print(f"  deformation, {form:<10} (15)               {1e6 * seconds:9.1f} us")
+    opponent = cholmod_seconds(dense, loads[0])
+    print(f"  deformation against the copy               {times['dense'] / copying:9.2f}", end="")
+    print(f"     (at most {LARGEST_COPIES:g})")
     print(
-        f"{'body':12} {'free':>6} {'force us':>12} {'deform us':>12} {'solve us':>12} {'ratio':>8} "
-        f"{'map 100k us':>14} {'nearest us':>12}"
+        f"  compressed against dense                   {times['compressed'] / times['dense']:9.2f}"
     )
-    mesh, fixed = paper_cube()
-    measure("cube", bake(mesh, BakeSettings(0.49, 10_000.0, PinNodes(fixed)))[0])
-    for file in [str(MOUSE), *files]:
-        with np.load(file) as stored:
-            mesh, fixed = TetMesh.checked(stored["X"], stored["T"]), stored["fixed"]
-        measure(Path(file).stem, bake(mesh, BakeSettings(0.3, 1000.0, PinNodes(fixed)))[0])
-    print("force: native, called from Python, (11) to (14); deform: (15); solve: the opponent")
+    if opponent is None:
+        print("  CHOLMOD is not here to compare with: pip install palpate[bench]")
+        return dense, compressed
+    print(f"  CHOLMOD's solve, factored beforehand       {1e6 * opponent:9.1f} us")
+    for form, seconds in times.items():
+        wanted = SMALLEST_GAIN.get(measured.name)
+        least = f"     (at least {wanted:g})" if form == "dense" and wanted else ""
+        print(f"  times faster, {form:<10}                    {opponent / seconds:9.0f}{least}")
+    return dense, compressed
+
+
+def hung_vertices(body: SoftBody) -> DrawnMap:
+    """A hundred thousand vertices drawn on the body's surface."""
+    rng = np.random.default_rng(1999)
+    triangles = body.mesh.surface_triangles
+    chosen = triangles[rng.integers(0, len(triangles), DRAWN_VERTICES)]
+    weights = rng.dirichlet([1, 1, 1], DRAWN_VERTICES)
+    return DrawnMap.hang(np.einsum("pc,pcx->px", weights, body.mesh.nodes[chosen]), body)
+
+
+def drawn_coordinates(
+    rest: NDArray[np.float32], displacements: NDArray[np.float64]
+) -> NDArray[np.float32]:
+    """What Blender is handed: flat coordinates (3 p,)."""
+    return (rest + displacements.ravel()).astype(np.float32)
+
+
+def blender_write_seconds() -> float | None:
+    """Median time of writing as many coordinates into a shape key; None without bpy."""
+    pythons = sorted(PROJECT.glob(".venv-bpy-*/bin/python"))
+    if not pythons:
+        return None
+    script = Path(__file__).with_name("measuring") / "shape_key_write.py"
+    ended = subprocess.run(
+        [str(pythons[0]), str(script), str(DRAWN_VERTICES), "200"],
+        check=True,
+        capture_output=True,
+        text=True,
+    )
+    return float(json.loads(ended.stdout.splitlines()[-1])["seconds"])
+
+
+def measure_frame(name: str, bodies: tuple[SoftBody, SoftBody], write: float | None) -> None:
+    """Print a frame in its parts, for both forms."""
+    hung = hung_vertices(bodies[0])
+    rest = np.random.default_rng(1).normal(size=3 * DRAWN_VERTICES).astype(np.float32)
+    for body in bodies:
+        loads = random_loads(body, TOUCHES)
+        moved = body.deform(loads[0].triangle, loads[0].nodal_forces)
+        far = hung.displacements(moved)
+        deform = deform_seconds(body, loads)
+        carry = median_seconds(partial(hung.displacements, moved), 30)
+        place = median_seconds(partial(drawn_coordinates, rest, far), 30)
+        parts = [deform, carry, place, *([] if write is None else [write])]
+        print(
+            f"{name:<12}{body.compliance.form:<12}"
+            + "".join(f"{1e3 * part:>10.3f}" for part in parts)
+            + f"{1e3 * sum(parts):>10.3f}"
+        )
+
+
+def main() -> None:
+    """Print touches, then frames."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--quick", action="store_true", help="leave out mouse-20k")
+    names = ["mouse-1.7k"] if parser.parse_args().quick else ["mouse-1.7k", "mouse-20k"]
+    bodies = {}
+    for name in names:
+        measured = stored_body(name)
+        bodies[measured.name] = measure_touch(measured)
+    write = blender_write_seconds()
+    print(f"\na frame in its parts, ms, {DRAWN_VERTICES} drawn vertices")
+    columns = ["deform", "carry", "place", *([] if write is None else ["write"]), "frame"]
+    print(f"{'':<24}" + "".join(f"{column:>10}" for column in columns))
+    for name, pair in bodies.items():
+        measure_frame(name, pair, write)
+    if write is None:
+        print("what Blender's write takes is not known: there is no .venv-bpy-* (make setup)")
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    main()
