@@ -4,12 +4,14 @@ import bpy
 
 from ..operators import (
     cancel_bake,
+    fit_memory,
     make_soft,
     pin_below,
     press,
     rebuild_body,
     refresh_devices,
     remove_softness,
+    update_pins,
 )
 from . import command, handlers, overlay, panels, preferences, properties, translations
 
@@ -21,6 +23,8 @@ modules = (
     rebuild_body,
     cancel_bake,
     pin_below,
+    update_pins,
+    fit_memory,
     press,
     refresh_devices,
     remove_softness,

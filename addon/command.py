@@ -16,9 +16,21 @@ from ..core.errors import PalpateError
 from ..core.materials import MATERIALS
 from ..operators import bake_session, body_store
 from ..operators.press_once import press_once
+from .properties import FORM_ITEMS, FORMULATION_ITEMS
 
 NAME = "palpate"
 EXIT_ERROR = 2
+
+# Options that are numbers: the property each sets, and the property's unit.
+NUMBERS = {
+    "young": ("young_modulus", 1.0),
+    "poisson": ("poisson_ratio", 1.0),
+    "edge_length": ("edge_length", 1.0),
+    "epsilon": ("epsilon", 1.0),
+    "time_limit": ("time_limit", 1.0),
+    "stiff_factor": ("stiff_factor", 1.0),
+    "tolerance": ("compression_tolerance", 0.01),
+}
 
 
 class _OneLineParser(argparse.ArgumentParser):
@@ -52,25 +64,15 @@ def run(words: list[str]) -> int:
 def bake(arguments: argparse.Namespace) -> dict[str, object]:
     """Make an object soft and save the file."""
     thing = _open(arguments)
-    settings = thing.palpate
-    if arguments.material:
-        settings.material = arguments.material
-    if arguments.pin_below is not None:
-        settings.pin_mode, settings.pin_fraction = "BELOW", arguments.pin_below
-    if arguments.pin_group is not None:
-        settings.pin_mode, settings.pin_group = "GROUP", arguments.pin_group
-    for option, name in (
-        ("young", "young_modulus"),
-        ("poisson", "poisson_ratio"),
-        ("edge_length", "edge_length"),
-        ("epsilon", "epsilon"),
-        ("time_limit", "time_limit"),
-    ):
-        value = getattr(arguments, option)
-        if value is not None:
-            setattr(settings, name, _within(settings, name, option, value))
+    _set_up(thing.palpate, arguments)
+    before = body_store.new_files()
     body, report = bake_session.run(thing, bpy.context.scene)
-    _save(arguments.file)
+    try:
+        _save(arguments.file)
+    except PalpateError:
+        # The body of a scene that was not saved is nobody's.
+        body_store.take_back(before)
+        raise
     for warning in report.warnings:
         print(f"palpate: warning: {warning}", file=sys.stderr)
     return {
@@ -80,9 +82,11 @@ def bake(arguments: argparse.Namespace) -> dict[str, object]:
         "surface_nodes": len(body.mesh.surface_nodes),
         "free_surface_nodes": len(body.compliance.free_surface),
         "surface_triangles": len(body.mesh.surface_triangles),
+        "formulation": body.formulation,
+        "form": body.compliance.form,
         "compliance_bytes": body.compliance.nbytes,
         "seconds": report.seconds,
-        "key": settings.body_key,
+        "key": thing.palpate.body_key,
         "body": str(body_store.locate(thing)),
     }
 
@@ -108,6 +112,25 @@ def press(arguments: argparse.Namespace) -> dict[str, object]:
     }
 
 
+def _set_up(settings: bpy.types.PropertyGroup, arguments: argparse.Namespace) -> None:
+    """Fill in the panel with what the options say."""
+    if arguments.material:
+        settings.material = arguments.material
+    if arguments.pin_below is not None:
+        settings.pin_mode, settings.pin_fraction = "BELOW", arguments.pin_below
+    if arguments.pin_group is not None:
+        settings.pin_mode, settings.pin_group = "GROUP", arguments.pin_group
+    if arguments.stiff_group is not None:
+        settings.stiff_group = arguments.stiff_group
+    for name in ("formulation", "form"):
+        if getattr(arguments, name) is not None:
+            setattr(settings, name, getattr(arguments, name).upper())
+    for option, (name, unit) in NUMBERS.items():
+        value = getattr(arguments, option)
+        if value is not None:
+            setattr(settings, name, _within(settings, name, option, value, unit))
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = _OneLineParser(
         prog="blender -c palpate", description="Make objects soft and press them, without a window."
@@ -123,6 +146,15 @@ def _parser() -> argparse.ArgumentParser:
     one.add_argument("--edge-length", type=float, metavar="F", help="share of the diagonal")
     one.add_argument("--epsilon", type=float, metavar="F", help="tolerance, share of the diagonal")
     one.add_argument("--time-limit", type=float, metavar="S", help="seconds")
+    formulations = [name.lower() for name, *_ in FORMULATION_ITEMS]
+    one.add_argument("--formulation", choices=formulations, help="of the stiffness")
+    forms = [name.lower() for name, *_ in FORM_ITEMS]
+    one.add_argument("--form", choices=forms, help="of the compliance: dense or compressed")
+    one.add_argument(
+        "--tolerance", type=float, metavar="F", help="largest error of compressing, such as 0.001"
+    )
+    one.add_argument("--stiff-group", metavar="GROUP", help="vertex group that is stiffer")
+    one.add_argument("--stiff-factor", type=float, metavar="F", help="factor on Young's modulus")
     one.set_defaults(run=bake)
     two = commands.add_parser("press", help="press an object once and print the force")
     _add_common(two)
@@ -183,15 +215,19 @@ def _save(file: Path) -> None:
         ) from problem
 
 
-def _within(settings: bpy.types.PropertyGroup, name: str, option: str, value: float) -> float:
-    """A value that Blender would silently clamp is refused instead."""
+def _within(
+    settings: bpy.types.PropertyGroup, name: str, option: str, value: float, unit: float = 1.0
+) -> float:
+    """The property's value for an option given in its ``unit``; refused where Blender would
+    silently clamp it.
+    """
     allowed = settings.bl_rna.properties[name]
-    if not allowed.hard_min <= value <= allowed.hard_max:
+    if not allowed.hard_min <= value / unit <= allowed.hard_max:
         raise PalpateError(
             f"--{option.replace('_', '-')}: {value:g} is out of range; give a number from "
-            f"{allowed.hard_min:g} to {allowed.hard_max:g}"
+            f"{unit * allowed.hard_min:g} to {unit * allowed.hard_max:g}"
         )
-    return value
+    return value / unit
 
 
 def _shielded(words: list[str]) -> list[str]:

@@ -21,7 +21,6 @@ WORDS = {
         "Die Körperdatei fehlt; „Drücken“ berechnet sie neu"
     ),
     "Press Make Soft Again": "„Neu weich machen“ drücken",
-    "Rebuild Body takes them over": "„Körper neu berechnen“ übernimmt das",
     "Pins changed since the bake": "Fixierung seit der Berechnung geändert",
     "Poisson's ratio changed since the bake": "Querkontraktionszahl seit der Berechnung geändert",
     "The body file is missing; press Rebuild Body": (
@@ -51,6 +50,64 @@ WORDS = {
     "Bake Time": "Rechenzeit",
     "Young's (Pa)": "E-Modul (Pa)",
     "Select a mesh object": "Ein Netzobjekt auswählen",
+    "Update Pins": "Fixierung übernehmen",
+    "Fit Memory": "An den Speicher anpassen",
+    "Compress It": "Komprimieren",
+    "Edge Length {length}": "Kantenlänge {length}",
+    "{time} left": "noch {time}",
+    "About {nodes} nodes in {time}": "Etwa {nodes} Knoten in {time}",
+    "Takes {needed} of memory; {available} are free": (
+        "Braucht {needed} Speicher; {available} sind frei"
+    ),
+    "The Next Bake, About": "Nächste Berechnung, etwa",
+    "Peak Memory": "Größter Speicher",
+    "File": "Datei",
+    "Uncompressed": "Unkomprimiert",
+    "Stiff Region": "Steifer Bereich",
+    "Method": "Verfahren",
+    "Baked Body": "Berechneter Körper",
+    "Bone in flesh: a closed shell inside the mesh, as a vertex group": (
+        "Knochen im Fleisch: eine geschlossene Hülle im Netz, als Vertexgruppe"
+    ),
+    "Linear: as in the paper, right up to about 0.4": (
+        "Linear: wie im Aufsatz, richtig bis etwa 0,4"
+    ),
+    "Smoothed: does not lock near 0.5": "Geglättet: versteift nicht nahe 0,5",
+    "These pins were computed before: no bake needed": (
+        "Diese Fixierung wurde schon berechnet: keine Berechnung nötig"
+    ),
+    "More is pinned: takes effect in about {time}, no bake needed": (
+        "Mehr ist fixiert: wirkt in etwa {time}, ohne Berechnung"
+    ),
+    "Less is pinned than before: needs a bake": (
+        "Weniger ist fixiert als vorher: braucht eine Berechnung"
+    ),
+    "Other places are pinned: needs a bake": "Andere Stellen sind fixiert: braucht eine Berechnung",
+    "Press does it by itself, too": "„Drücken“ tut es auch von selbst",
+    "These pins would hold the whole surface; pin less": (
+        "So wäre die ganze Oberfläche fixiert; weniger fixieren"
+    ),
+    "Rebuild Body takes it over and keeps the tetrahedra": (
+        "„Körper neu berechnen“ übernimmt es und behält die Tetraeder"
+    ),
+    "The formulation changed since the bake": "Formulierung seit der Berechnung geändert",
+    "The stiff region changed since the bake": "Steifer Bereich seit der Berechnung geändert",
+    "The compliance is wanted in another form": "Die Nachgiebigkeit wird in anderer Form gewünscht",
+    # A bake
+    "The body is ready; leave Edit Mode to receive it": (
+        "Der Körper ist fertig; zum Übernehmen den Bearbeitungsmodus verlassen"
+    ),
+    "Starting": "Beginnt",
+    "Filling with tetrahedra": "Füllt mit Tetraedern",
+    "Comparing with the mesh": "Vergleicht mit dem Netz",
+    "Assembling the stiffness": "Stellt die Steifigkeit auf",
+    "Inverting the stiffness": "Kehrt die Steifigkeit um",
+    "Compressing the response": "Komprimiert die Antwort",
+    "reading the mesh": "liest das Netz",
+    "simplifying the surface": "vereinfacht die Oberfläche",
+    "inserting the surface": "fügt die Oberfläche ein",
+    "improving tetrahedra": "verbessert Tetraeder",
+    "finishing": "schließt ab",
     # View
     "Press on the surface and drag": "Auf die Oberfläche drücken und ziehen",
     "Pressing": "Drücken",
@@ -169,6 +226,55 @@ WORDS = {
     "How far the probe moves per movement of the device": (
         "Wie weit sich der Taster je Bewegung des Geräts bewegt"
     ),
+    "Automatic": "Automatisch",
+    "Smoothed where linear tetrahedra would be too stiff, linear elsewhere": (
+        "Geglättet, wo lineare Tetraeder zu steif wären, sonst linear"
+    ),
+    "Linear": "Linear",
+    "The paper's. Too stiff as Poisson's ratio comes near 0.5": (
+        "Die des Aufsatzes. Zu steif, wenn die Querkontraktion nahe 0,5 ist"
+    ),
+    "Smoothed": "Geglättet",
+    "Right for rubber and silicone too. The bake takes longer": (
+        "Auch für Gummi und Silikon richtig. Die Berechnung dauert länger"
+    ),
+    "Full while it is small, compressed where it would be large": (
+        "Vollständig, solange sie klein ist, komprimiert, wo sie groß würde"
+    ),
+    "Full": "Vollständig",
+    "Every number is kept. Memory grows with the square of the surface": (
+        "Jede Zahl bleibt. Der Speicher wächst mit dem Quadrat der Oberfläche"
+    ),
+    "Compressed": "Komprimiert",
+    "Takes a tenth of the memory or less, for large bodies": (
+        "Braucht ein Zehntel des Speichers oder weniger, für große Körper"
+    ),
+    "Vertex group that is stiffer or softer than the material. A closed shell inside the mesh "
+    "makes all that it encloses stiff: bone in flesh. Needs Rebuild Body": (
+        "Vertexgruppe, die steifer oder weicher ist als das Material. Eine geschlossene Hülle "
+        "im Netz macht alles steif, was sie umschließt: Knochen im Fleisch. Braucht „Körper "
+        "neu berechnen“"
+    ),
+    "Times as Stiff": "Mal so steif",
+    "Factor on Young's modulus where the group's weight is 1; halfway painted weights feel "
+    "halfway": (
+        "Faktor auf den Elastizitätsmodul, wo das Gewicht der Gruppe 1 ist; halb gemalt fühlt "
+        "sich halb an"
+    ),
+    "Formulation": "Formulierung",
+    "How tetrahedra resist. Needs Rebuild Body": (
+        "Wie Tetraeder widerstehen. Braucht „Körper neu berechnen“"
+    ),
+    "Compliance": "Nachgiebigkeit",
+    "How the computed response is kept. Needs Rebuild Body": (
+        "Wie die berechnete Antwort gespeichert wird. Braucht „Körper neu berechnen“"
+    ),
+    "Largest Error": "Größter Fehler",
+    "By how much compressing may change the shape under any touch. The force that is felt "
+    "stays exact": (
+        "Wie weit das Komprimieren die Form bei einer Berührung ändern darf. Die gefühlte "
+        "Kraft bleibt exakt"
+    ),
     # Preferences
     "What new files press with": "Womit in neuen Dateien gedrückt wird",
     "Largest Force": "Größte Kraft",
@@ -230,4 +336,16 @@ WORDS = {
     "Delete the body and its file. Mesh, pins and kept shapes stay": (
         "Körper und Datei löschen. Netz, Fixierung und behaltene Formen bleiben"
     ),
+    "Hold the body where the pins are now. More pins take about a second and no bake; so do "
+    "pins that were baked before": (
+        "Den Körper dort halten, wo jetzt fixiert ist. Mehr Fixierung braucht etwa eine "
+        "Sekunde und keine Berechnung, früher berechnete ebenso"
+    ),
+    "Change the bake's settings so that the memory of this machine suffices": (
+        "Die Einstellungen so ändern, dass der Speicher dieses Rechners reicht"
+    ),
+    "What is changed": "Was geändert wird",
+    "Keep the computed response compressed": "Die berechnete Antwort komprimiert speichern",
+    "Coarser": "Gröber",
+    "Take the smallest edge length that fits": "Die kleinste passende Kantenlänge nehmen",
 }

@@ -1,5 +1,7 @@
 """Force, depth, state and keys, in the lower left of the view."""
 
+import re
+
 import blf
 import bpy
 import gpu
@@ -17,6 +19,9 @@ LARGE, NORMAL, SMALL = 26, 14, 12
 LINE = 1.5
 WHITE, GREY, WARNING = (1.0, 1.0, 1.0, 1.0), (0.8, 0.8, 0.8, 1.0), (1.0, 0.72, 0.2, 1.0)
 BACKGROUND = (0.05, 0.05, 0.06, 0.72)
+
+# A word with what belongs to it (keys have two spaces behind them), and the space where it may end.
+BREAKS = re.compile(r"(\S+(?:  \S+)*)( *)")
 
 STATES = {
     Phase.READY: "Press on the surface and drag",
@@ -39,12 +44,17 @@ KEYS = {
 def draw(context: bpy.types.Context, session: PressSession) -> None:
     """Draw the HUD of a press in the region that is being drawn."""
     scale = context.preferences.system.ui_scale
-    lines = _lines(context, session)
+    left = _covered(context, "TOOLS", "LEFT") + MARGIN * scale
+    padding = PADDING * scale
+    right = context.region.width - _covered(context, "UI", "RIGHT") - MARGIN * scale
+    lines = [
+        (part, size, color)
+        for text, size, color in _lines(context, session)
+        for part in _wrapped(text, size * scale, right - left - 2 * padding)
+    ]
     heights = [size * scale * LINE for _, size, _ in lines]
     widths = [_width(text, size * scale) for text, size, _ in lines]
-    left = _covered_left(context) + MARGIN * scale
     bottom = MARGIN * scale
-    padding = PADDING * scale
     _rectangle(left, bottom, max(widths) + 2 * padding, sum(heights) + 2 * padding)
     y = bottom + padding + sum(heights)
     for (text, size, color), height in zip(lines, heights, strict=True):
@@ -91,13 +101,29 @@ def _width(text: str, size: float) -> float:
     return blf.dimensions(FONT, text)[0]
 
 
-def _covered_left(context: bpy.types.Context) -> float:
-    """Pixels of the view that the toolbar lies upon."""
+def _wrapped(text: str, size: float, width: float) -> list[str]:
+    """The text on lines that fit ``width`` pixels; words stay whole where they fit at all."""
+    if _width(text, size) <= width:
+        return [text]
+    lines = [""]
+    for word, space in BREAKS.findall(text):
+        # A script without spaces may break anywhere.
+        pieces = [word] if _width(word, size) <= width else list(word)
+        for piece in pieces:
+            if lines[-1].strip() and _width(lines[-1] + piece, size) > width:
+                lines.append("")
+            lines[-1] += piece
+        lines[-1] += space
+    return [line.strip() for line in lines]
+
+
+def _covered(context: bpy.types.Context, kind: str, side: str) -> float:
+    """Pixels of the view that a region of this kind lies upon at its left or right."""
     overlap = context.preferences.system.use_region_overlap
     return sum(
         region.width
         for region in context.area.regions
-        if overlap and region.type == "TOOLS" and region.width > 1 and region.alignment == "LEFT"
+        if overlap and region.type == kind and region.width > 1 and region.alignment == side
     )
 
 

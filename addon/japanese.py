@@ -21,7 +21,6 @@ WORDS = {
         "物体ファイルがありません。「押す」で再計算されます"
     ),
     "Press Make Soft Again": "「もう一度柔らかくする」を押してください",
-    "Rebuild Body takes them over": "「物体を再計算」で反映されます",
     "Pins changed since the bake": "ベイク後に固定が変更されました",
     "Poisson's ratio changed since the bake": "ベイク後にポアソン比が変更されました",
     "The body file is missing; press Rebuild Body": (
@@ -49,6 +48,58 @@ WORDS = {
     "Bake Time": "ベイク時間",
     "Young's (Pa)": "ヤング率 (Pa)",
     "Select a mesh object": "メッシュオブジェクトを選択してください",
+    "Update Pins": "固定を反映",
+    "Fit Memory": "メモリに合わせる",
+    "Compress It": "圧縮する",
+    "Edge Length {length}": "辺の長さ {length}",
+    "{time} left": "残り {time}",
+    "About {nodes} nodes in {time}": "約 {nodes} 節点、{time}",
+    "Takes {needed} of memory; {available} are free": (
+        "メモリ {needed} が必要です。空きは {available} です"
+    ),
+    "The Next Bake, About": "次のベイク (およそ)",
+    "Peak Memory": "最大メモリ",
+    "File": "ファイル",
+    "Uncompressed": "非圧縮時",
+    "Stiff Region": "硬い領域",
+    "Method": "手法",
+    "Baked Body": "ベイク済みの物体",
+    "Bone in flesh: a closed shell inside the mesh, as a vertex group": (
+        "肉の中の骨: メッシュ内の閉じた殻を頂点グループにします"
+    ),
+    "Linear: as in the paper, right up to about 0.4": "線形: 論文どおり。約 0.4 まで正確です",
+    "Smoothed: does not lock near 0.5": "平滑化: 0.5 付近でも硬くなりません",
+    "These pins were computed before: no bake needed": "この固定は計算済みです。ベイクは不要です",
+    "More is pinned: takes effect in about {time}, no bake needed": (
+        "固定が増えました。約 {time} で反映され、ベイクは不要です"
+    ),
+    "Less is pinned than before: needs a bake": "固定が減りました。ベイクが必要です",
+    "Other places are pinned: needs a bake": "別の場所が固定されています。ベイクが必要です",
+    "Press does it by itself, too": "「押す」でも自動で反映されます",
+    "These pins would hold the whole surface; pin less": (
+        "表面全体が固定されてしまいます。固定を減らしてください"
+    ),
+    "Rebuild Body takes it over and keeps the tetrahedra": (
+        "「物体を再計算」で反映され、四面体は保たれます"
+    ),
+    "The formulation changed since the bake": "ベイク後に定式化が変更されました",
+    "The stiff region changed since the bake": "ベイク後に硬い領域が変更されました",
+    "The compliance is wanted in another form": "コンプライアンスの別の形式が選ばれています",
+    # A bake
+    "The body is ready; leave Edit Mode to receive it": (
+        "物体の準備ができました。編集モードを終了すると反映されます"
+    ),
+    "Starting": "開始しています",
+    "Filling with tetrahedra": "四面体で充填しています",
+    "Comparing with the mesh": "メッシュと比較しています",
+    "Assembling the stiffness": "剛性を組み立てています",
+    "Inverting the stiffness": "剛性の逆を計算しています",
+    "Compressing the response": "応答を圧縮しています",
+    "reading the mesh": "メッシュの読み込み",
+    "simplifying the surface": "表面の簡略化",
+    "inserting the surface": "表面の挿入",
+    "improving tetrahedra": "四面体の改善",
+    "finishing": "仕上げ",
     # View
     "Press on the surface and drag": "表面を押してドラッグ",
     "Pressing": "押しています",
@@ -157,6 +208,48 @@ WORDS = {
     "How far the probe moves per movement of the device": (
         "デバイスの動きに対するプローブの動きの比"
     ),
+    "Automatic": "自動",
+    "Smoothed where linear tetrahedra would be too stiff, linear elsewhere": (
+        "線形四面体が硬すぎる場合は平滑化、それ以外は線形"
+    ),
+    "Linear": "線形",
+    "The paper's. Too stiff as Poisson's ratio comes near 0.5": (
+        "論文の方式。ポアソン比が 0.5 に近いと硬すぎます"
+    ),
+    "Smoothed": "平滑化",
+    "Right for rubber and silicone too. The bake takes longer": (
+        "ゴムやシリコーンでも正確です。ベイクは長くなります"
+    ),
+    "Full while it is small, compressed where it would be large": (
+        "小さいうちは完全、大きくなる場合は圧縮"
+    ),
+    "Full": "完全",
+    "Every number is kept. Memory grows with the square of the surface": (
+        "すべての数値を保持します。メモリは表面の二乗で増えます"
+    ),
+    "Compressed": "圧縮",
+    "Takes a tenth of the memory or less, for large bodies": (
+        "メモリは十分の一以下。大きな物体向けです"
+    ),
+    "Vertex group that is stiffer or softer than the material. A closed shell inside the mesh "
+    "makes all that it encloses stiff: bone in flesh. Needs Rebuild Body": (
+        "材質より硬い、または柔らかい頂点グループ。メッシュ内の閉じた殻は、その内側すべてを硬く"
+        "します (肉の中の骨)。「物体を再計算」が必要です"
+    ),
+    "Times as Stiff": "硬さの倍率",
+    "Factor on Young's modulus where the group's weight is 1; halfway painted weights feel "
+    "halfway": (
+        "グループのウェイトが 1 の場所でのヤング率の倍率。途中のウェイトは途中の硬さになります"
+    ),
+    "Formulation": "定式化",
+    "How tetrahedra resist. Needs Rebuild Body": "四面体の抵抗の求め方。「物体を再計算」が必要です",
+    "Compliance": "コンプライアンス",
+    "How the computed response is kept. Needs Rebuild Body": (
+        "計算された応答の保存方法。「物体を再計算」が必要です"
+    ),
+    "Largest Error": "最大誤差",
+    "By how much compressing may change the shape under any touch. The force that is felt "
+    "stays exact": ("圧縮による、触れたときの形の変化の上限。感じる力は正確なままです"),
     # Preferences
     "What new files press with": "新しいファイルでの押す手段",
     "Largest Force": "最大の力",
@@ -214,4 +307,16 @@ WORDS = {
     "Delete the body and its file. Mesh, pins and kept shapes stay": (
         "物体とそのファイルを削除します。メッシュ、固定、保存した形は残ります"
     ),
+    "Hold the body where the pins are now. More pins take about a second and no bake; so do "
+    "pins that were baked before": (
+        "現在の固定を物体に反映します。固定の追加は約 1 "
+        "秒でベイク不要、以前ベイクした固定も同様です"
+    ),
+    "Change the bake's settings so that the memory of this machine suffices": (
+        "このマシンのメモリに収まるようにベイクの設定を変えます"
+    ),
+    "What is changed": "変更する項目",
+    "Keep the computed response compressed": "計算された応答を圧縮して保存します",
+    "Coarser": "粗く",
+    "Take the smallest edge length that fits": "収まる最小の辺の長さにします",
 }

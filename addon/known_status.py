@@ -1,29 +1,125 @@
-"""How meshes fit their bodies, as last looked up, so that drawing a panel does not read them."""
+"""How meshes fit their bodies, and what a bake would cost, as last looked up.
+
+A panel is drawn many times a second, and reading a large mesh takes a tenth of one: it is read
+again only after something changed that a handler tells of.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
 
 import bpy
 
+from ..core.bake_cost import ShapeSize
+from ..core.bake_settings import BakeSettings
 from ..core.errors import PalpateError
-from ..operators import drawn_surface, soft_object
+from ..core.machine_speed import dgemm_rate
+from ..core.pins import PinBelow, Pins
+from ..operators import bake_prediction, drawn_surface, pin_group, soft_object
+from ..operators.bake_prediction import Prediction
+from ..operators.drawn_surface import DrawnSurface
 from ..operators.soft_object import BodyStatus, Fit
+from ..operators.viewport import redraw_views
 
-_known: dict[tuple[object, ...], BodyStatus] = {}
+# The panel appears first, then the machine's speed is measured, a tenth of a second.
+SECONDS_TO_MEASURING = 0.2
+PIN_SETTINGS = ("pin_mode", "pin_group", "pin_fraction")
+# What a status depends on, besides what the mesh has in it.
+STATUS_SETTINGS = (
+    *PIN_SETTINGS,
+    "body_key",
+    "poisson_ratio",
+    "formulation",
+    "form",
+    "compression_tolerance",
+    "stiff_group",
+    "stiff_factor",
+)
+Values = tuple[object, ...]
+
+
+@dataclass(eq=False)
+class _KnownMesh:
+    """A mesh as it was read, and what was concluded from it, by the settings of the time."""
+
+    drawn: DrawnSurface
+    size: ShapeSize | None = None
+    statuses: dict[Values, BodyStatus] = field(default_factory=dict)
+    pins: dict[Values, Pins] = field(default_factory=dict)
+
+
+_known: dict[Values, _KnownMesh] = {}
 
 
 def body_status(thing: bpy.types.Object, scene: bpy.types.Scene) -> BodyStatus:
     """As :func:`operators.soft_object.body_status`, but the mesh is read only after changes."""
-    settings = thing.palpate
-    pins = f"{settings.pin_mode} {settings.pin_fraction:.4f} {settings.pin_group}"
-    # No handler tells of a changed unit scale.
-    unit = drawn_surface.metres_per_unit(scene)
-    question = (thing.session_uid, settings.body_key, pins, settings.poisson_ratio, unit)
-    if question not in _known:
-        try:
-            _known[question] = soft_object.mesh_status(thing, scene)
-        except PalpateError as problem:
-            _known[question] = BodyStatus(Fit.CHANGED, str(problem))
-    return soft_object.with_file(thing, _known[question])
+    try:
+        known = _mesh(thing, scene)
+    except PalpateError as problem:
+        return BodyStatus(Fit.CHANGED if thing.palpate.body_key else Fit.NEVER_BAKED, str(problem))
+    question = _values(thing, STATUS_SETTINGS)
+    if question not in known.statuses:
+        known.statuses[question] = soft_object.mesh_status(thing, known.drawn)
+    return soft_object.with_file(thing, known.statuses[question])
+
+
+def prediction(thing: bpy.types.Object, scene: bpy.types.Scene) -> Prediction | None:
+    """What a bake would cost with the settings of now; None until this machine's speed is known.
+
+    Raises
+    ------
+    PalpateError
+        What cannot be baked at all, with the remedy.
+    """
+    if not dgemm_rate.cache_info().currsize:
+        if not bpy.app.timers.is_registered(_measure):
+            bpy.app.timers.register(_measure, first_interval=SECONDS_TO_MEASURING)
+        return None
+    known = _mesh(thing, scene)
+    if known.size is None:
+        known.size = bake_prediction.shape_size(known.drawn)
+    chosen = thing.palpate
+    settings = BakeSettings(
+        poisson_ratio=round(chosen.poisson_ratio, 6),
+        pins=_pins(thing, known),
+        edge_length=chosen.edge_length,
+        epsilon=chosen.epsilon,
+        decimate_above=chosen.decimate_above,
+        formulation=chosen.formulation.lower(),
+        form=chosen.form.lower(),
+        tolerance=chosen.compression_tolerance / 100,
+    )
+    return bake_prediction.predict(known.size, settings)
 
 
 def forget() -> None:
     """Look everything up again: a mesh, a transform or a file changed."""
     _known.clear()
+
+
+def _mesh(thing: bpy.types.Object, scene: bpy.types.Scene) -> _KnownMesh:
+    # No handler tells of a changed unit scale.
+    which = (thing.session_uid, drawn_surface.metres_per_unit(scene))
+    if which not in _known:
+        _known[which] = _KnownMesh(drawn_surface.read(thing, scene))
+    return _known[which]
+
+
+def _pins(thing: bpy.types.Object, known: _KnownMesh) -> Pins:
+    question = _values(thing, PIN_SETTINGS)
+    if question not in known.pins:
+        try:
+            known.pins[question] = pin_group.pins(thing, known.drawn)
+        except PalpateError:
+            # Said beside the pins; the prediction is one for the whole surface then.
+            known.pins[question] = PinBelow(0.0)
+    return known.pins[question]
+
+
+def _values(thing: bpy.types.Object, names: tuple[str, ...]) -> Values:
+    return tuple(getattr(thing.palpate, name) for name in names)
+
+
+def _measure() -> None:
+    dgemm_rate()
+    redraw_views()

@@ -21,6 +21,20 @@ PIN_ITEMS = [
     ("BELOW", "Below Height", "Everything in the lowest part of the object, as it stands"),
     ("GROUP", "Vertex Group", "Vertices with a weight of 0.5 or more"),
 ]
+FORMULATION_ITEMS = [
+    (
+        "AUTO",
+        "Automatic",
+        "Smoothed where linear tetrahedra would be too stiff, linear elsewhere",
+    ),
+    ("LINEAR", "Linear", "The paper's. Too stiff as Poisson's ratio comes near 0.5"),
+    ("SMOOTHED", "Smoothed", "Right for rubber and silicone too. The bake takes longer"),
+]
+FORM_ITEMS = [
+    ("AUTO", "Automatic", "Full while it is small, compressed where it would be large"),
+    ("DENSE", "Full", "Every number is kept. Memory grows with the square of the surface"),
+    ("COMPRESSED", "Compressed", "Takes a tenth of the memory or less, for large bodies"),
+]
 SOURCE_ITEMS = [
     ("POINTER", "Pointer", "Mouse, pen or trackpad press on the surface"),
     ("SIMULATED", "Simulated Device", "A program that behaves like a haptic device"),
@@ -49,7 +63,9 @@ def _leave_material(name: str) -> Callable[[bpy.types.PropertyGroup, bpy.types.C
 
 
 class PalpateObject(bpy.types.PropertyGroup):
-    """``object.palpate``. The tetrahedra lie beside these as ID properties nodes, tets, fixed."""
+    """``object.palpate``. The tetrahedra lie beside these as ID properties nodes, tets,
+    fixed and, where there is a stiff region, young_scale.
+    """
 
     material: bpy.props.EnumProperty(
         name="Material",
@@ -94,13 +110,53 @@ class PalpateObject(bpy.types.PropertyGroup):
     pin_group: bpy.props.StringProperty(
         name="Group", description="Vertex group that is pinned", default="Pinned"
     )
+    stiff_group: bpy.props.StringProperty(
+        name="Group",
+        description="Vertex group that is stiffer or softer than the material. A closed shell "
+        "inside the mesh makes all that it encloses stiff: bone in flesh. Needs Rebuild Body",
+    )
+    stiff_factor: bpy.props.FloatProperty(
+        name="Times as Stiff",
+        description="Factor on Young's modulus where the group's weight is 1; halfway painted "
+        "weights feel halfway",
+        default=100.0,
+        min=0.001,
+        max=100_000.0,
+        soft_min=0.01,
+        soft_max=10_000.0,
+        precision=2,
+        step=1000,
+    )
+    formulation: bpy.props.EnumProperty(
+        name="Formulation",
+        description="How tetrahedra resist. Needs Rebuild Body",
+        items=FORMULATION_ITEMS,
+        default="AUTO",
+    )
+    form: bpy.props.EnumProperty(
+        name="Compliance",
+        description="How the computed response is kept. Needs Rebuild Body",
+        items=FORM_ITEMS,
+        default="AUTO",
+    )
+    compression_tolerance: bpy.props.FloatProperty(
+        name="Largest Error",
+        description="By how much compressing may change the shape under any touch. The force "
+        "that is felt stays exact",
+        default=0.1,
+        min=0.001,
+        max=5.0,
+        precision=2,
+        step=1,
+        subtype="PERCENTAGE",
+    )
     edge_length: bpy.props.FloatProperty(
         name="Edge Length",
         description="Wanted edge length of the tetrahedra, as a share of the object's diagonal. "
         "Half the length: about eight times the nodes",
         default=0.05,
         min=0.005,
-        max=0.3,
+        max=0.5,
         precision=3,
         step=0.5,
     )
@@ -137,6 +193,12 @@ class PalpateObject(bpy.types.PropertyGroup):
     body_file: bpy.props.StringProperty(name="Body File", options={"HIDDEN"})
     fingerprint: bpy.props.StringProperty(name="Fingerprint", options={"HIDDEN"})
     baked_poisson_ratio: bpy.props.FloatProperty(precision=3, options={"HIDDEN"})
+    # What bodies of files from before there was a choice have.
+    baked_formulation: bpy.props.StringProperty(default="linear", options={"HIDDEN"})
+    baked_form: bpy.props.StringProperty(default="dense", options={"HIDDEN"})
+    # Of a compressed body, in percent: what was allowed, and what it is.
+    baked_tolerance: bpy.props.FloatProperty(default=0.1, options={"HIDDEN"})
+    column_error: bpy.props.FloatProperty(options={"HIDDEN"})
     node_count: bpy.props.IntProperty(options={"HIDDEN"})
     tet_count: bpy.props.IntProperty(options={"HIDDEN"})
     free_surface_count: bpy.props.IntProperty(options={"HIDDEN"})

@@ -8,15 +8,15 @@ from dataclasses import dataclass, replace
 
 import bpy
 
-from ..core import cache
 from ..core.bake import BakeReport, BakeSettings
 from ..core.bake_job import BakeJob, JobProgress
 from ..core.errors import CancelledError, PalpateError
+from ..core.pins import PinNodes
 from ..core.soft_body import SoftBody
 from ..core.surface import Surface
-from . import body_store, drawn_surface, pin_group, soft_object
+from . import baked_record, body_store, drawn_surface, pin_group, soft_object, stiff_region
 from .drawn_surface import DrawnSurface
-from .fingerprint import Fingerprint, changed_body, changed_pins
+from .fingerprint import Fingerprint, changed_body
 from .object_handle import ObjectHandle
 
 SECONDS_BETWEEN_POLLS = 0.05
@@ -69,10 +69,11 @@ class BakeSession:
             thing = self._unchanged_object(scene)
             target = body_store.folder_for_new_files() / f".{self.job_name}.npz"
             body, report = self.job.result(target)
-            key = cache.body_key(body.mesh, body.fixed, body.poisson_ratio)
-            name = body_store.file_name(thing, key)
+            name = body_store.file_name(thing, body.key)
             target.replace(target.with_name(name))
-            self._record(thing, body, key, report)
+            baked_record.record(thing, body, name, self.surface, self.fingerprint)
+            thing.palpate.bake_seconds = sum(report.seconds.values())
+            thing.palpate.bake_warnings = "\n".join(report.warnings)
         finally:
             self.end()
         return body, report
@@ -95,31 +96,14 @@ class BakeSession:
             raise PalpateError(f"{self.handle.name}: it was deleted while it was being baked")
         if soft_object.refusal(thing):
             raise PalpateError(f"bake: {soft_object.refusal(thing)}; then bake again")
-        now = drawn_surface.read(thing, scene).fingerprint(self.fingerprint.pins)
+        drawn = drawn_surface.read(thing, scene)
+        now = drawn.fingerprint(self.fingerprint.pins, self.fingerprint.stiffness)
         change = changed_body(self.fingerprint, now)
         if change:
             raise PalpateError(
                 f"{thing.name}: it was edited while it was being baked; press Make Soft again"
             )
         return thing
-
-    def _record(
-        self, thing: bpy.types.Object, body: SoftBody, key: str, report: BakeReport
-    ) -> None:
-        baked = thing.palpate
-        body_store.embed(thing, body)
-        baked.body_key = key
-        baked.body_file = body_store.file_name(thing, key)
-        baked.fingerprint = self.fingerprint.to_text()
-        baked.baked_poisson_ratio = body.poisson_ratio
-        baked.node_count = len(body.mesh.nodes)
-        baked.tet_count = len(body.mesh.tets)
-        baked.free_surface_count = len(body.compliance.free_surface)
-        baked.compliance_megabytes = body.compliance.nbytes / 1e6
-        baked.bake_seconds = sum(report.seconds.values())
-        baked.bake_warnings = "\n".join(report.warnings)
-        if baked.pin_mode == "BELOW":
-            pin_group.mark_below(thing, self.surface, baked.pin_fraction)
 
 
 _current: BakeSession | None = None
@@ -136,7 +120,7 @@ def start(thing: bpy.types.Object, scene: bpy.types.Scene, *, rebuild: bool = Fa
     Parameters
     ----------
     rebuild : make the compliance again from the tetrahedra in the .blend, with the pins and the
-        Poisson's ratio that are set now.
+        material that are set now.
 
     Raises
     ------
@@ -150,8 +134,8 @@ def start(thing: bpy.types.Object, scene: bpy.types.Scene, *, rebuild: bool = Fa
         raise PalpateError(soft_object.refusal(thing))
     drawn = drawn_surface.read(thing, scene)
     surface = drawn.surface()
-    fingerprint = drawn.fingerprint(pin_group.pin_rule(thing))
-    settings = _settings(thing, drawn)
+    fingerprint = drawn.fingerprint(pin_group.pin_rule(thing), stiff_region.stiff_rule(thing))
+    settings = settings_of(thing, drawn)
     python = (sys.executable, *bpy.app.python_args)
     if rebuild:
         job = _rebuild_job(thing, fingerprint, settings, surface, python)
@@ -182,18 +166,27 @@ def _rebuild_job(
     surface: Surface,
     python: tuple[str, ...],
 ) -> BakeJob:
-    """Same tetrahedra; also the same pins where their rule is the same, for the same key."""
-    mesh, fixed = body_store.embedded(thing)
+    """Same tetrahedra; also the same nodes pinned and stiff where the rules are, for one key."""
+    within = body_store.embedded(thing)
     old = Fingerprint.from_text(thing.palpate.fingerprint)
     change = changed_body(old, now)
     if change:
         raise PalpateError(f"{thing.name}: {change}; press Make Soft to bake it anew")
-    if changed_pins(old, now):
-        return BakeJob(mesh, settings, surface, python)
-    return BakeJob(mesh, replace(settings, pins=fixed), python=python)
+    if old.pins == now.pins:
+        settings = replace(settings, pins=PinNodes(within.fixed))
+    if old.stiffness == now.stiffness:
+        settings = replace(settings, stiffness=within.stiffness)
+    return BakeJob(within.mesh, settings, surface, python)
 
 
-def _settings(thing: bpy.types.Object, drawn: DrawnSurface) -> BakeSettings:
+def settings_of(thing: bpy.types.Object, drawn: DrawnSurface) -> BakeSettings:
+    """What the panel asks of a bake.
+
+    Raises
+    ------
+    PalpateError
+        A vertex group that is missing or empty.
+    """
     chosen = thing.palpate
     return BakeSettings(
         poisson_ratio=round(chosen.poisson_ratio, 6),
@@ -203,4 +196,8 @@ def _settings(thing: bpy.types.Object, drawn: DrawnSurface) -> BakeSettings:
         epsilon=chosen.epsilon,
         decimate_above=chosen.decimate_above,
         time_limit=chosen.time_limit,
+        formulation=chosen.formulation.lower(),
+        form=chosen.form.lower(),
+        tolerance=chosen.compression_tolerance / 100,
+        stiffness=stiff_region.stiff_region(thing),
     )

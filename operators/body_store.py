@@ -7,17 +7,21 @@ travel with the object make the same body again in seconds, without a new tetrah
 from __future__ import annotations
 
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 from ..core import cache
 from ..core.bake import BakeSettings
 from ..core.bake_job import run_bake
+from ..core.body_key import body_key
 from ..core.cache import BodyFileError
 from ..core.errors import PalpateError
 from ..core.pins import PinNodes
+from ..core.regional_stiffness import TetScale
 from ..core.soft_body import SoftBody
 from ..core.tet_mesh import TetMesh
 from .package_preferences import PACKAGE, preferences
@@ -25,6 +29,29 @@ from .package_preferences import PACKAGE, preferences
 FOLDER = "palpate"
 KEY_LETTERS = 12
 EMBEDDED = ("nodes", "tets", "fixed")
+# Only where the body is not equally stiff everywhere.
+EMBEDDED_SCALE = "young_scale"
+
+
+@dataclass(frozen=True, eq=False)
+class EmbeddedBody:
+    """What travels inside the .blend: the tetrahedra, the pinned nodes (p,), and the factor on
+    Young's modulus of each tetrahedron (M,), None where all are 1.
+    """
+
+    mesh: TetMesh
+    fixed: NDArray[np.int64]
+    young_scale: NDArray[np.float64] | None
+
+    @property
+    def stiffness(self) -> TetScale | None:
+        """The factors as a bake takes them."""
+        return None if self.young_scale is None else TetScale(self.young_scale)
+
+    def key(self, poisson_ratio: float, formulation: str) -> str:
+        """The key of the body that these and a material make."""
+        return body_key(self.mesh, self.fixed, poisson_ratio, formulation, self.young_scale)
+
 
 # Files found damaged, and the time they had then: the panel offers to rebuild them.
 _damaged: dict[Path, int] = {}
@@ -56,10 +83,18 @@ def locate(thing: bpy.types.Object) -> Path | None:
     name = thing.palpate.body_file
     if not name:
         return None
-    places = [_unsaved_folder()]
-    if bpy.data.filepath:
-        places.insert(0, Path(bpy.data.filepath).parent / FOLDER)
-    return next((place / name for place in places if (place / name).is_file()), None)
+    return next((place / name for place in _places() if (place / name).is_file()), None)
+
+
+def locate_key(key: str) -> Path | None:
+    """A body file with this key, whatever object it was made for."""
+    found = (path for place in _places() for path in place.glob(f"*-{key[:KEY_LETTERS]}.npz"))
+    return next((path for path in found if not is_known_damaged(path)), None)
+
+
+def _places() -> list[Path]:
+    beside = [Path(bpy.data.filepath).parent / FOLDER] if bpy.data.filepath else []
+    return [*beside, _unsaved_folder()]
 
 
 def load(thing: bpy.types.Object) -> SoftBody:
@@ -80,15 +115,28 @@ def load(thing: bpy.types.Object) -> SoftBody:
         raise BodyFileError(
             f"{thing.name}: its body file '{baked.body_file}' is missing; press Rebuild Body"
         )
+    return load_file(path, baked.body_key)
+
+
+def load_file(path: Path, key: str) -> SoftBody:
+    """Read a body file that must have this key; remembers it where it is found damaged.
+
+    Raises
+    ------
+    BodyFileError
+        As for :func:`load`.
+    """
     try:
-        body = cache.load(path)
+        return _with_key(cache.load(path), key, path)
     except BodyFileError:
         _damaged[path] = path.stat().st_mtime_ns
         raise
-    if cache.body_key(body.mesh, body.fixed, body.poisson_ratio) != baked.body_key:
-        _damaged[path] = path.stat().st_mtime_ns
+
+
+def _with_key(body: SoftBody, key: str, path: Path) -> SoftBody:
+    if body.key != key:
         raise BodyFileError(
-            f"{path}: it is the body of something else, not of {thing.name}; press Rebuild Body"
+            f"{path}: it is the body of something else than its name says; press Rebuild Body"
         )
     return body
 
@@ -109,16 +157,24 @@ def restore(thing: bpy.types.Object) -> SoftBody:
         There are no tetrahedra, or they are not those of the body that was baked.
     """
     baked = thing.palpate
-    mesh, pins = embedded(thing)
+    within = embedded(thing)
     ratio = round(baked.baked_poisson_ratio, 6)
-    if cache.body_key(mesh, pins.nodes, ratio) != baked.body_key:
+    if within.key(ratio, baked.baked_formulation) != baked.body_key:
         raise PalpateError(
             f"{thing.name}: the tetrahedra in this file are not those of its body; press Make Soft"
         )
-    settings = BakeSettings(ratio, baked.young_modulus, pins)
+    settings = BakeSettings(
+        ratio,
+        baked.young_modulus,
+        PinNodes(within.fixed),
+        formulation=baked.baked_formulation,
+        form=baked.baked_form,
+        tolerance=baked.baked_tolerance / 100,
+        stiffness=within.stiffness,
+    )
     target = folder_for_new_files() / baked.body_file
     python = (sys.executable, *bpy.app.python_args)
-    return run_bake(mesh, settings, target, python=python)[0]
+    return run_bake(within.mesh, settings, target, python=python)[0]
 
 
 def embed(thing: bpy.types.Object, body: SoftBody) -> None:
@@ -127,17 +183,19 @@ def embed(thing: bpy.types.Object, body: SoftBody) -> None:
     thing.palpate["nodes"] = body.mesh.nodes.ravel()
     thing.palpate["tets"] = body.mesh.tets.astype(np.int32).ravel()
     thing.palpate["fixed"] = body.fixed.astype(np.int32)
+    if body.young_scale is not None:
+        thing.palpate[EMBEDDED_SCALE] = body.young_scale.astype(np.float64)
 
 
 def _remove_embedded(thing: bpy.types.Object) -> None:
     # Also before writing: overwriting an array property corrupts memory (Blender 4.5 to 5.2).
-    for name in EMBEDDED:
+    for name in (*EMBEDDED, EMBEDDED_SCALE):
         if name in thing.palpate:
             del thing.palpate[name]
 
 
-def embedded(thing: bpy.types.Object) -> tuple[TetMesh, PinNodes]:
-    """The tetrahedra and pins that travel with the object.
+def embedded(thing: bpy.types.Object) -> EmbeddedBody:
+    """The tetrahedra, pins and stiffness that travel with the object.
 
     Raises
     ------
@@ -150,9 +208,9 @@ def embedded(thing: bpy.types.Object) -> tuple[TetMesh, PinNodes]:
             f"{thing.name}: there are no tetrahedra in this file to rebuild from; press Make Soft"
         )
     nodes, tets, fixed = (np.array(baked[name]) for name in EMBEDDED)
-    return TetMesh.checked(nodes.reshape(-1, 3), tets.reshape(-1, 4)), PinNodes(
-        fixed.astype(np.int64)
-    )
+    scale = np.array(baked[EMBEDDED_SCALE]) if EMBEDDED_SCALE in baked else None
+    mesh = TetMesh.checked(nodes.reshape(-1, 3), tets.reshape(-1, 4))
+    return EmbeddedBody(mesh, fixed.astype(np.int64), scale)
 
 
 def forget(thing: bpy.types.Object) -> None:
@@ -162,8 +220,23 @@ def forget(thing: bpy.types.Object) -> None:
     if path is not None and not shared:
         path.unlink()
     _remove_embedded(thing)
-    for setting in ("body_key", "body_file", "fingerprint"):
+    for setting in ("body_key", "body_file", "fingerprint", "baked_formulation", "baked_form"):
         thing.palpate.property_unset(setting)
+
+
+def new_files() -> set[Path]:
+    """What is in the folder where new body files are put now, and the folder itself."""
+    folder = folder_for_new_files()
+    return {folder, *folder.iterdir()} if folder.is_dir() else set()
+
+
+def take_back(before: set[Path]) -> None:
+    """Remove what came into that folder since :func:`new_files` was asked."""
+    for path in sorted(new_files() - before, reverse=True):
+        if path.is_dir():
+            path.rmdir()
+        else:
+            path.unlink()
 
 
 def gather_beside(blend: Path, found: dict[str, Path], *, is_open_file: bool) -> None:

@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from ..core.drawn_map import DrawnMap
 from ..core.errors import PalpateError
 from ..core.soft_body import SoftBody
-from . import body_store, drawn_surface, soft_object
+from . import body_store, drawn_surface, pin_change, soft_object
 from .body_frame import BodyFrame
-from .soft_object import Fit
+from .drawn_surface import DrawnSurface
+from .soft_object import BodyStatus, Fit
 
 Array = NDArray[np.float64]
 
@@ -71,7 +72,8 @@ def restores_quickly(thing: bpy.types.Object) -> bool:
 
 
 def open_body(thing: bpy.types.Object, scene: bpy.types.Scene) -> DrawnBody:
-    """Load an object's body, if it fits; a missing one of usual size is computed again at once.
+    """Load an object's body, if it fits; a missing one of usual size is computed again at once,
+    and more pins are taken over where that takes no bake.
 
     Raises
     ------
@@ -81,17 +83,24 @@ def open_body(thing: bpy.types.Object, scene: bpy.types.Scene) -> DrawnBody:
     refusal = soft_object.refusal(thing)
     if refusal:
         raise PalpateError(refusal)
-    status = soft_object.body_status(thing, scene)
-    if status.fit is Fit.CHANGED:
-        raise PalpateError(f"{thing.name}: {status.text}; press Make Soft to bake it again")
-    if status.fit is Fit.FILE_MISSING and restores_quickly(thing):
-        body = body_store.restore(thing)
-    else:
-        body = body_store.load(thing)
     surface = drawn_surface.read(thing, scene)
+    status = soft_object.with_file(thing, soft_object.mesh_status(thing, surface))
+    soft_object.refuse_changed(thing, status)
+    body = _body(thing, surface, status)
     return DrawnBody(
         body=body,
         hung=DrawnMap.hang(surface.body, body),
         rest=drawn_surface.rest_coordinates(thing.data),
         frame=surface.frame,
     )
+
+
+def _body(thing: bpy.types.Object, surface: DrawnSurface, status: BodyStatus) -> SoftBody:
+    """The object's body, held where its pins are now if that needs no bake."""
+    if status.fit is Fit.FILE_MISSING and restores_quickly(thing):
+        body_store.restore(thing)
+        status = replace(status, fit=Fit.READY, pins=pin_change.look(thing, surface))
+    # Other settings wait for Rebuild Body, and the pins with them.
+    if status.fit is Fit.READY and status.pins.quick and not status.notes:
+        return pin_change.take_over(thing, surface)
+    return body_store.load(thing)

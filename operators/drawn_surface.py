@@ -5,7 +5,8 @@ It is the base mesh (the Basis of its shape keys), not the evaluated one: modifi
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import bpy
 import numpy as np
@@ -50,9 +51,13 @@ class DrawnSurface:
         """
         return Surface.checked(self.body, self.frame.wind(self.triangles))
 
-    def fingerprint(self, pins: str) -> Fingerprint:
-        """What a body baked from this surface, with these pins, remembers of it."""
-        return fingerprint.take(self.local, self.body, self.corners, self.face_starts, pins)
+    @cached_property
+    def _shape(self) -> Fingerprint:
+        return fingerprint.take(self.local, self.body, self.corners, self.face_starts)
+
+    def fingerprint(self, pins: str, stiffness: str) -> Fingerprint:
+        """What a body baked from this surface, with these rules, remembers of it."""
+        return replace(self._shape, pins=pins, stiffness=stiffness)
 
 
 def read(thing: bpy.types.Object, scene: bpy.types.Scene) -> DrawnSurface:

@@ -22,7 +22,10 @@ SEED = 19980331
 
 @dataclass(frozen=True)
 class Fingerprint:
-    """A drawn surface as a body sees it: topology, shape, size and pins."""
+    """A drawn surface as a body sees it: topology, shape and size; and the rules painted on it.
+
+    ``pins`` and ``stiffness`` are texts that change when what is pinned or stiff does.
+    """
 
     vertices: int
     faces: int
@@ -31,7 +34,8 @@ class Fingerprint:
     body: tuple[float, ...]
     size: float
     local_size: float
-    pins: str
+    pins: str = ""
+    stiffness: str = ""
 
     def to_text(self) -> str:
         """As stored on the object."""
@@ -50,9 +54,8 @@ def take(
     body: NDArray[np.float64],
     corners: NDArray[np.int64],
     face_starts: NDArray[np.int64],
-    pins: str,
 ) -> Fingerprint:
-    """Fingerprint a surface: vertices (p, 3) in local units and in metres, polygons, pin rule."""
+    """Fingerprint a surface without rules: vertices (p, 3) in local units and metres, polygons."""
     return Fingerprint(
         vertices=len(local),
         faces=len(face_starts),
@@ -61,7 +64,6 @@ def take(
         body=_project(body),
         size=_size(body),
         local_size=_size(local),
-        pins=pins,
     )
 
 
@@ -88,11 +90,6 @@ def changed_body(old: Fingerprint, new: Fingerprint) -> str:
     if _same(old.local, new.local, old.local_size, old.vertices):
         return "the object's scale or the scene's unit scale changed since the bake"
     return "the shape was edited since the bake"
-
-
-def changed_pins(old: Fingerprint, new: Fingerprint) -> bool:
-    """Whether other vertices are pinned than when the body was baked."""
-    return old.pins != new.pins
 
 
 def _project(points: NDArray[np.float64]) -> tuple[float, ...]:

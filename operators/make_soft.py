@@ -8,8 +8,9 @@ import bpy
 from ..core.bake import BakeReport
 from ..core.errors import CancelledError, PalpateError
 from ..core.soft_body import SoftBody
-from . import bake_session, press_session, soft_object
+from . import bake_session, bake_words, press_session, soft_object
 from .bake_session import BakeSession
+from .viewport import redraw_views
 
 POLLS_PER_SECOND = 10
 
@@ -95,15 +96,15 @@ class BakingOperator:
 
     def _show(self, context: bpy.types.Context, *, waiting: bool = False) -> None:
         progress = self._session.progress
-        share = "" if progress.share is None else f" {100 * progress.share:.0f} %"
-        text = f"{progress.text}{share}, {progress.seconds:.0f} s"
+        say = bpy.app.translations.pgettext_iface
+        text = f"{bake_words.step(progress)}, {bake_words.how_far(progress)}"
         if waiting:
-            text = "The body is ready; leave Edit Mode to receive it"
+            text = say(bake_words.WAITING)
         context.workspace.status_text_set(
-            f"Palpate: {self._session.handle.name}: {text}     [Esc] Cancel"
+            f"Palpate: {self._session.handle.name}: {text}     [Esc] {say('Cancel')}"
         )
         context.window_manager.progress_update(100 * (progress.share or 0.0))
-        redraw_sidebars(context)
+        redraw_views()
 
     def _leave(self, context: bpy.types.Context) -> None:
         if self._timer is not None:
@@ -113,7 +114,7 @@ class BakingOperator:
         # There is none while Blender replaces its windows for another file.
         if context.workspace is not None:
             context.workspace.status_text_set(None)
-        redraw_sidebars(context)
+        redraw_views()
 
     def _tell(self, name: str, body: SoftBody, report: BakeReport) -> None:
         for warning in report.warnings:
@@ -122,14 +123,6 @@ class BakingOperator:
             {"INFO"},
             f"{name} is soft: {len(body.mesh.nodes)} nodes, {sum(report.seconds.values()):.1f} s",
         )
-
-
-def redraw_sidebars(context: bpy.types.Context) -> None:
-    """Have every 3D view drawn again."""
-    for window in context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type == "VIEW_3D":
-                area.tag_redraw()
 
 
 class PALPATE_OT_make_soft(BakingOperator, bpy.types.Operator):

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from ..core.errors import PalpateError
 from ..core.pins import PinWeights
-from . import fingerprint
 from .drawn_surface import DrawnSurface
+from .group_weights import group_digest, group_weights
 
 GROUP_NAME = "Pinned"
 # Keeps a level bottom whole in spite of rounding, as a share of the height.
@@ -24,8 +24,7 @@ def pin_rule(thing: bpy.types.Object) -> str:
     group = thing.vertex_groups.get(settings.pin_group)
     if group is None:
         return "no group"
-    weights = _group_weights(thing, group)
-    return f"group {fingerprint.digest(np.rint(1000 * weights).astype(np.int64))}"
+    return f"group {group_digest(thing, group)}"
 
 
 def pins(thing: bpy.types.Object, surface: DrawnSurface) -> PinWeights:
@@ -49,7 +48,7 @@ def pins(thing: bpy.types.Object, surface: DrawnSurface) -> PinWeights:
             f"{thing.name}: it has no vertex group '{settings.pin_group}' to pin; choose one under "
             "Pins, or pin below a height"
         )
-    weights = _group_weights(thing, group)
+    weights = group_weights(thing, group)
     if not (weights >= 0.5).any():
         raise PalpateError(
             f"{thing.name}: no vertex has a weight of 0.5 or more in the group '{group.name}'; "
@@ -77,12 +76,3 @@ def _relative_height(surface: DrawnSurface) -> NDArray[np.float64]:
     low, span = used.min(), np.ptp(used)
     relative: NDArray[np.float64] = (height - low) / (span or 1.0)
     return relative
-
-
-def _group_weights(thing: bpy.types.Object, group: bpy.types.VertexGroup) -> NDArray[np.float64]:
-    weights = np.zeros(len(thing.data.vertices))
-    for vertex in thing.data.vertices:
-        for membership in vertex.groups:
-            if membership.group == group.index:
-                weights[vertex.index] = membership.weight
-    return weights

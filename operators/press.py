@@ -6,13 +6,12 @@ from numpy.typing import NDArray
 
 from ..core.errors import PalpateError
 from . import press_session, ray, soft_object, viewport
-from .make_soft import redraw_sidebars
 from .package_preferences import preferences
 from .press_once import press_once
 from .press_session import PressSession
 from .press_state import Cancel, Keep, Move, Phase, Point, Release, SetDown, Source
 from .probe_drag import ProbeDrag
-from .viewport import Viewport
+from .viewport import Viewport, redraw_views
 
 FRAMES_PER_SECOND = 60
 # The probe is set down this far above the surface, as a share of the body's size: from outside.
@@ -117,7 +116,7 @@ class PALPATE_OT_press(bpy.types.Operator):
             self._session = press_session.begin(thing, context.scene, source)
         except PalpateError as problem:
             self.report({"ERROR"}, str(problem))
-            redraw_sidebars(context)
+            redraw_views()
             return {"CANCELLED"}
         finally:
             context.window.cursor_modal_restore()
@@ -125,7 +124,7 @@ class PALPATE_OT_press(bpy.types.Operator):
         self._timer = manager.event_timer_add(1 / FRAMES_PER_SECOND, window=context.window)
         manager.modal_handler_add(self)
         self._show(context)
-        redraw_sidebars(context)
+        redraw_views()
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -158,7 +157,7 @@ class PALPATE_OT_press(bpy.types.Operator):
         session = self._session
         if event.type == "TIMER":
             if session.tick():
-                redraw_sidebars(context)
+                redraw_views()
             return True
         if _is_blenders(event):
             return True
@@ -240,7 +239,7 @@ class PALPATE_OT_press(bpy.types.Operator):
             self._timer = None
         if context.workspace is not None:
             context.workspace.status_text_set(None)
-        redraw_sidebars(context)
+        redraw_views()
 
 
 def _is_blenders(event: bpy.types.Event) -> bool:

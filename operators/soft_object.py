@@ -7,8 +7,12 @@ from enum import Enum
 
 import bpy
 
-from . import body_store, drawn_surface, fingerprint, pin_group
+from ..core.errors import PalpateError
+from ..core.formulation import formulation_for
+from . import body_store, drawn_surface, fingerprint, pin_change, pin_group, stiff_region
+from .drawn_surface import DrawnSurface
 from .fingerprint import Fingerprint
+from .pin_change import PinChange
 
 
 class Fit(Enum):
@@ -23,11 +27,14 @@ class Fit(Enum):
 
 @dataclass(frozen=True)
 class BodyStatus:
-    """``text`` says why; ``notes`` are settings changed since the bake, not in the body yet."""
+    """``text`` says why; ``notes`` are settings changed since the bake, not in the body yet, other
+    than pins, which may not need a bake: ``pins``.
+    """
 
     fit: Fit
     text: str = ""
     notes: tuple[str, ...] = ()
+    pins: PinChange = pin_change.SAME
 
 
 def refusal(thing: bpy.types.Object | None) -> str:
@@ -60,7 +67,7 @@ def body_status(thing: bpy.types.Object, scene: bpy.types.Scene) -> BodyStatus:
     PalpateError
         A transform that flattens the object.
     """
-    return with_file(thing, mesh_status(thing, scene))
+    return with_file(thing, mesh_status(thing, drawn_surface.read(thing, scene)))
 
 
 def with_file(thing: bpy.types.Object, status: BodyStatus) -> BodyStatus:
@@ -75,31 +82,63 @@ def with_file(thing: bpy.types.Object, status: BodyStatus) -> BodyStatus:
     return status
 
 
-def mesh_status(thing: bpy.types.Object, scene: bpy.types.Scene) -> BodyStatus:
-    """Whether the object was baked and its mesh is still the same; takes its time.
-
-    Raises
-    ------
-    PalpateError
-        A transform that flattens the object.
-    """
+def mesh_status(thing: bpy.types.Object, drawn: DrawnSurface) -> BodyStatus:
+    """Whether the object was baked and its mesh, as read now, is still the same; takes its time."""
     baked = thing.palpate
     if not baked.body_key:
         return BodyStatus(Fit.NEVER_BAKED)
     old = Fingerprint.from_text(baked.fingerprint)
-    new = drawn_surface.read(thing, scene).fingerprint(pin_group.pin_rule(thing))
+    new = drawn.fingerprint(pin_group.pin_rule(thing), stiff_region.stiff_rule(thing))
     change = fingerprint.changed_body(old, new)
     if change:
         return BodyStatus(Fit.CHANGED, change)
-    return BodyStatus(Fit.READY, "", _unbaked_settings(thing, old, new))
+    return BodyStatus(
+        Fit.READY, notes=_unbaked_settings(thing, old, new), pins=pin_change.look(thing, drawn)
+    )
+
+
+def refuse_changed(thing: bpy.types.Object, status: BodyStatus) -> None:
+    """Refuse an object that is not what was baked any more.
+
+    Raises
+    ------
+    PalpateError
+        What changed, with the remedy.
+    """
+    if status.fit is Fit.CHANGED:
+        raise PalpateError(f"{thing.name}: {status.text}; press Make Soft to bake it again")
+
+
+def formulation_now(thing: bpy.types.Object) -> str:
+    """The formulation that a bake would take, with Automatic resolved."""
+    settings = thing.palpate
+    return formulation_for(settings.formulation.lower(), round(settings.poisson_ratio, 6))
 
 
 def _unbaked_settings(
     thing: bpy.types.Object, old: Fingerprint, new: Fingerprint
 ) -> tuple[str, ...]:
-    notes = []
-    if fingerprint.changed_pins(old, new):
-        notes.append("Pins changed since the bake")
-    if abs(thing.palpate.poisson_ratio - thing.palpate.baked_poisson_ratio) > 1e-6:
-        notes.append("Poisson's ratio changed since the bake")
-    return tuple(notes)
+    settings = thing.palpate
+    changes = (
+        (
+            abs(settings.poisson_ratio - settings.baked_poisson_ratio) > 1e-6,
+            "Poisson's ratio changed since the bake",
+        ),
+        (
+            formulation_now(thing) != settings.baked_formulation,
+            "The formulation changed since the bake",
+        ),
+        (old.stiffness != new.stiffness, "The stiff region changed since the bake"),
+        (_other_form(settings), "The compliance is wanted in another form"),
+    )
+    return tuple(text for changed, text in changes if changed)
+
+
+def _other_form(settings: bpy.types.PropertyGroup) -> bool:
+    """Whether a form is asked for that the body does not have. Automatic leaves it as it is."""
+    if settings.form == "AUTO":
+        return False
+    if settings.form.lower() != settings.baked_form:
+        return True
+    finer = settings.compression_tolerance < settings.baked_tolerance * (1 - 1e-5)
+    return settings.form == "COMPRESSED" and finer

@@ -93,6 +93,14 @@ def under_pointer(window: bpy.types.Window, x: int, y: int) -> Viewport | None:
     return None
 
 
+def redraw_views() -> None:
+    """Have every 3D view, with its sidebar, drawn again."""
+    for window in bpy.context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "VIEW_3D":
+                area.tag_redraw()
+
+
 def _contains(region: bpy.types.Region, x: int, y: int) -> bool:
     # A closed region has a size of one pixel.
     return (

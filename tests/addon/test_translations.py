@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import itertools
+import re
 from pathlib import Path
 
 import bpy
@@ -34,19 +35,30 @@ def shown_by_blender():
                     yield item.description
 
 
+def sentences(path):
+    """What reads like words of the interface in a source file: no docstrings, no parts of texts."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    nodes = list(ast.walk(tree))
+    left_out = {id(node.value) for node in nodes if isinstance(node, ast.Expr)}
+    for text in (node for node in nodes if isinstance(node, ast.JoinedStr)):
+        left_out |= {id(piece) for piece in text.values}
+    texts = [node.value for node in nodes if _is_text(node) and id(node) not in left_out]
+    return [text for text in texts if re.match(r"[A-Z{][a-z]", text)]
+
+
+def _is_text(node):
+    return isinstance(node, ast.Constant) and isinstance(node.value, str)
+
+
 def said_in_code(palpate):
     """Sentences of panel and view, read from the source."""
     folder = Path(palpate.__file__).parent
-    tree = ast.parse((folder / "addon" / "panels.py").read_text(encoding="utf-8"))
-    for call in (node for node in ast.walk(tree) if isinstance(node, ast.Call)):
-        name = getattr(call.func, "id", getattr(call.func, "attr", ""))
-        if name == "_say" and isinstance(call.args[2], ast.Constant):
-            yield call.args[2].value
-        yield from (
-            word.value.value
-            for word in call.keywords
-            if word.arg in {"text", "heading"} and isinstance(word.value, ast.Constant)
-        )
+    for path in (folder / "addon").glob("panel*.py"):
+        yield from sentences(path)
+    for name in ("bake_words", "pin_change", "soft_object"):
+        yield from sentences(folder / "operators" / f"{name}.py")
+    yield from part("core.bake_job").STEP_TEXTS.values()
+    yield from (meaning for _, meaning in part("core.ftetwild_log").STAGES)
     hud = part("addon.hud")
     yield from hud.STATES.values()
     yield from hud.KEYS.values()

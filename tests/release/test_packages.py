@@ -24,6 +24,7 @@ WHOLE = [
     "pytetwild-0.2.3-cp312-abi3-manylinux2014_x86_64.manylinux_2_17_x86_64.whl",
     "fast_simplification-0.2.0-cp311-cp311-manylinux_2_28_x86_64.whl",
     "fast_simplification-0.2.0-cp313-cp313-manylinux_2_28_x86_64.whl",
+    "psutil-7.2.2-cp36-abi3-manylinux2010_x86_64.manylinux_2_12_x86_64.manylinux_2_28_x86_64.whl",
     "pyserial-3.5-py2.py3-none-any.whl",
     "palpate_servo-0.1.0-cp311-abi3-manylinux_2_28_x86_64.whl",
 ]
@@ -124,9 +125,9 @@ def test_every_bundled_wheel_is_pinned_with_a_hash_for_each_platform():
     for version in ("3.11", "3.13"):
         text = lock_file(version).read_text(encoding="utf-8")
         names = pinned_names(version)
-        assert len(names) == 4
-        # pyserial is the same file everywhere.
-        assert text.count("--hash=sha256:") == 3 * len(PLATFORMS) + 1
+        assert len(names) == 5
+        # pyserial is the same file everywhere, the others have one for each system.
+        assert text.count("--hash=sha256:") == 4 * len(PLATFORMS) + 1
         assert "pytetwild-0.2.3-" in names
         assert not any(name.startswith("numpy-") for name in names)
 

@@ -1,0 +1,34 @@
+"""Quantities as a person reads them: few digits, fit units."""
+
+from __future__ import annotations
+
+MINUTE, HOUR = 60.0, 3600.0
+
+
+def duration(seconds: float) -> str:
+    """A time: ``8 s``, ``2 min 10 s``, ``1 h 5 min``."""
+    if seconds < MINUTE:
+        return f"{max(0, round(seconds))} s"
+    if seconds < HOUR:
+        minutes, rest = divmod(round(seconds), 60)
+        return f"{minutes} min {rest} s" if minutes < 10 and rest else f"{minutes} min"
+    hours, minutes = divmod(round(seconds / MINUTE), 60)
+    return f"{hours} h {minutes} min"
+
+
+def memory(count: float) -> str:
+    """Bytes: ``36 MB``, ``1.2 GB``."""
+    for unit, size in (("TB", 1e12), ("GB", 1e9), ("MB", 1e6)):
+        if count >= size:
+            return f"{count / size:.{1 if count < 10 * size else 0}f} {unit}"
+    return f"{count / 1e3:.0f} kB"
+
+
+def about(count: float) -> str:
+    """A predicted number, two digits of it: ``1,700``."""
+    return f"{float(f'{count:.2g}'):,.0f}"
+
+
+def percent(share: float) -> str:
+    """A share in percent, two digits of it: ``0.1 %``."""
+    return f"{100 * share:.2g} %"
