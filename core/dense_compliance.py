@@ -6,6 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg.blas import dgemv, sgemv
+
+# Nodes whose columns are added up in the table's precision, before rounding could add up too.
+NODES_SUMMED = 32
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,12 +58,22 @@ class DenseCompliance:
     ) -> NDArray[np.float64]:
         """Displacements (n, 3) under ``nodal_forces`` (k, 3) on ``nodes`` (k,); equation (15).
 
-        Without ``nodes`` there is one force for every node, (n, 3).
+        Without ``nodes`` there is one force for every node, (n, 3). The table's own precision adds
+        up the columns of up to 32 nodes, float64 the sums of these: nine columns take little longer
+        than copying them, and float32 costs about 1e-7 of the largest displacement.
         """
-        loaded = np.arange(self.node_count) if nodes is None else nodes
-        touched = self.table[loaded].reshape(-1, 3 * self.node_count)
-        weights = np.asarray(nodal_forces, dtype=np.float64).reshape(-1)
+        loaded = np.arange(self.node_count) if nodes is None else np.asarray(nodes)
+        forces = np.asarray(nodal_forces, dtype=self.table.dtype).reshape(-1, 3)
+        gemv = sgemv if self.table.dtype == np.float32 else dgemv
         total = np.zeros(3 * self.node_count)
-        for weight, column in zip(weights, touched, strict=True):
-            total += weight * column
+        for first in range(0, len(loaded), NODES_SUMMED):
+            moved = np.zeros(3 * self.node_count, dtype=self.table.dtype)
+            for node, force in zip(
+                loaded[first : first + NODES_SUMMED],
+                forces[first : first + NODES_SUMMED],
+                strict=True,
+            ):
+                # Each node's columns lie together, as BLAS wants them: (3n, 3) in Fortran order.
+                gemv(1.0, self.table[node].T, force, 1.0, moved, overwrite_y=True)
+            total += moved
         return total.reshape(-1, 3)

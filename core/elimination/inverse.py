@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from itertools import pairwise
 
 import numpy as np
@@ -10,7 +11,7 @@ from scipy.linalg.blas import dgemm, dsyrk
 
 from .numeric import LoadRows
 from .upper_tiles import tile_edges
-from .work import REAL_BYTES, Meter
+from .work import MOVE_WEIGHT, REAL_BYTES, FrontWork, Meter
 
 # Rows and columns of L computed at once.
 TILE = 768
@@ -40,11 +41,11 @@ def inverse_table(
             block = _tile(factor, rows, columns, meter)
             table[rows, columns] = block
             table[columns, rows] = table[rows, columns].T
-    _renumber(table, ranks)
+    _renumber(table, ranks, meter)
     return table.reshape(len(ranks), 3, count)
 
 
-def _renumber(table: NDArray[np.floating], ranks: NDArray[np.int64]) -> None:
+def _renumber(table: NDArray[np.floating], ranks: NDArray[np.int64], meter: Meter) -> None:
     """Move row and column of each node i to place ``ranks[i]``, without a second table."""
     nodes = len(ranks)
     order = np.argsort(ranks)
@@ -52,6 +53,7 @@ def _renumber(table: NDArray[np.floating], ranks: NDArray[np.int64]) -> None:
     for start in range(0, len(table), ROWS_RENUMBERED):
         rows = slice(start, start + ROWS_RENUMBERED)
         table[rows] = np.take(table[rows], freedoms, axis=1)
+        meter.add(MOVE_WEIGHT * table[rows].size)
     by_node = table.reshape(nodes, -1)
     pending = np.ones(nodes, dtype=bool)
     for first in range(nodes):
@@ -65,6 +67,11 @@ def _renumber(table: NDArray[np.floating], ranks: NDArray[np.int64]) -> None:
             place = source
         by_node[place] = waiting
         pending[place] = False
+
+
+def inverse_weight(works: Iterable[FrontWork], node_count: int) -> float:
+    """Time of :func:`inverse_table` for n loaded nodes, in operations of a large product."""
+    return sum(work.gram_flops for work in works) + MOVE_WEIGHT * (3 * node_count) ** 2
 
 
 def inverse_bytes(node_count: int, itemsize: int) -> int:

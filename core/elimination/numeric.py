@@ -24,7 +24,7 @@ from .extend_add import extend_add, runs_between
 from .loose_body import refuse_loose
 from .symbolic import Front, SymbolicFactor
 from .upper_tiles import UpperTiles
-from .work import CHOLESKY_WEIGHT, SOLVE_WEIGHT, FrontWork, Meter
+from .work import CHOLESKY_WEIGHT, FRONT_WEIGHT, MOVE_WEIGHT, SOLVE_WEIGHT, FrontWork, Meter
 
 # Floating point operations that one call of BLAS may take: some hundredths of a second.
 FLOPS_PER_CALL = 2e9
@@ -97,12 +97,15 @@ def _eliminated(
         below, remainder = symbolic.fronts[child], remainders.pop(child)
         runs = runs_between(_targets(below, front), work.pivots, remainder.schur.edges, schur.edges)
         extend_add(remainder.schur, runs, pivots, coupling, schur)
+        meter.add(MOVE_WEIGHT * remainder.schur.size)
         first = 3 * (below.load_start - front.load_start)
         columns = slice(first, first + remainder.loads.shape[1])
         for run in runs:
             target = own if run.parent_tile < 0 else passed
-            target[run.onward, columns] = remainder.loads[run.below]
-    meter.add(work.assembly_weight)
+            part = remainder.loads[run.below]
+            target[run.onward, columns] = part
+            meter.add(MOVE_WEIGHT * part.size)
+    meter.add(FRONT_WEIGHT)
 
     factor, breakdown = dpotrf(pivots, lower=False, clean=False, overwrite_a=True)
     refuse_loose(breakdown, factor.diagonal() ** 2, stiffness)

@@ -13,7 +13,7 @@ from ..held_pins import pins_checked
 from ..tet_mesh import TetMesh
 from .block_matrix import BlockMatrix, free_blocks
 from .dissection import dissect
-from .inverse import inverse_bytes
+from .inverse import inverse_bytes, inverse_weight
 from .symbolic import SymbolicFactor, analyse
 from .work import FrontWork, elimination_peak_bytes
 
@@ -46,13 +46,17 @@ class EliminationPlan:
     def flops(self) -> float:
         """Floating point operations, exactly those that BLAS and LAPACK will be asked for."""
         eliminated = sum(work.flops for work in self.works)
-        return eliminated + (self._gram_flops if self.table_itemsize else 0.0)
+        if not self.table_itemsize:
+            return eliminated
+        return eliminated + sum(work.gram_flops for work in self.works)
 
     @cached_property
     def weight(self) -> float:
         """Time needed, in floating point operations of a large matrix product."""
         eliminated = sum(work.weight for work in self.works)
-        return eliminated + (self._gram_flops if self.table_itemsize else 0.0)
+        if not self.table_itemsize:
+            return eliminated
+        return eliminated + inverse_weight(self.works, len(self.ranks))
 
     @cached_property
     def peak_bytes(self) -> int:
@@ -60,10 +64,6 @@ class EliminationPlan:
         peak, factor = elimination_peak_bytes(self.symbolic.fronts)
         table = inverse_bytes(len(self.ranks), self.table_itemsize)
         return 2 * self.matrix.nbytes + max(peak, factor + table)
-
-    @property
-    def _gram_flops(self) -> float:
-        return sum(work.gram_flops for work in self.works)
 
 
 def plan_surface_inverse(

@@ -45,6 +45,11 @@ class UpperTiles:
             ),
         )
 
+    @property
+    def size(self) -> int:
+        """How many numbers the tiles hold."""
+        return sum(tile.size for column in self.tiles for tile in column)
+
     def subtract_gram(self, panel: NDArray[np.float64], done: Callable[[float], None]) -> None:
         """Subtract ``panel.T @ panel``; panel is (k, m) and Fortran-ordered.
 

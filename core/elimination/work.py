@@ -79,13 +79,9 @@ class FrontWork:
             CHOLESKY_WEIGHT * self.cholesky_flops
             + SOLVE_WEIGHT * self.solve_flops
             + self.product_flops
-            + self.assembly_weight
+            + FRONT_WEIGHT
+            + MOVE_WEIGHT * (upper_tiles_size(self.boundary) + self.boundary * self.loads)
         )
-
-    @property
-    def assembly_weight(self) -> float:
-        """Time until a front's numbers stand ready, in operations of a large product."""
-        return FRONT_WEIGHT + MOVE_WEIGHT * (self.remainder_bytes / REAL_BYTES)
 
     @property
     def factor_bytes(self) -> int:
@@ -132,6 +128,6 @@ class Meter:
         self._done = 0.0
 
     def add(self, work: float) -> None:
-        """Count work as done and tell; the caller may raise to cancel."""
+        """Count work as done, in operations of a large product; the caller may raise to cancel."""
         self._done += work
         self._progress(min(self._done / self._total, 1.0))

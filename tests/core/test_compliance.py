@@ -38,7 +38,8 @@ def test_blocks_diagonal_and_columns_agree(body, rng):
     np.testing.assert_array_equal(compliance.block(i, j), compliance.block(j, i).T)
     force = rng.normal(size=3)
     moved = compliance.apply(force[None], np.array([j]))
-    np.testing.assert_allclose(moved[i], compliance.block(i, j) @ force, rtol=1e-12)
+    largest = np.abs(moved).max()
+    np.testing.assert_allclose(moved[i], compliance.block(i, j) @ force, atol=3e-7 * largest)
 
 
 def test_a_stiffer_material_moves_in_proportion_less(cube_mesh):

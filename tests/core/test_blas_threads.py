@@ -1,0 +1,36 @@
+import pytest
+from threadpoolctl import ThreadpoolController
+
+from palpate.core import blas_threads as module
+from palpate.core.blas_threads import blas_threads
+
+
+def threads_of_blas():
+    return {
+        library["num_threads"]
+        for library in ThreadpoolController().info()
+        if library["user_api"] == "blas"
+    }
+
+
+def test_the_number_holds_within_and_the_old_one_afterwards():
+    before = threads_of_blas()
+    with blas_threads(1) as count:
+        assert count == 1
+        assert threads_of_blas() == {1}
+    assert threads_of_blas() == before
+
+
+def test_there_are_never_more_threads_than_cores_for_the_process(monkeypatch):
+    monkeypatch.setattr(module, "available_cores", lambda: 1)
+    for wanted in (None, 1, 64):
+        with blas_threads(wanted) as count:
+            assert count == 1
+            assert threads_of_blas() == {1}
+
+
+def test_the_old_number_holds_again_after_an_error():
+    before = threads_of_blas()
+    with pytest.raises(InterruptedError), blas_threads(1):
+        raise InterruptedError
+    assert threads_of_blas() == before
