@@ -5,32 +5,42 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .available_memory import available_memory
+from .bake_cost import MeshSize, affordable_form, check_seconds, rest_seconds
 from .bake_settings import BakeSettings
+from .bake_work import BakeProgress, BakeWork
+from .blas_threads import blas_threads
+from .compliance import Compliance
+from .compression.compress import compress
 from .decimate import decimate
+from .elimination.plan import EliminationPlan, plan_surface_inverse
+from .elimination.surface_columns import planned_columns
 from .formulation import formulation_for
+from .machine_speed import dgemm_rate
 from .pins import pinned_nodes
 from .progress import unwatched
 from .regional_stiffness import StiffRegion, TetScale, young_scale
 from .soft_body import SoftBody
 from .stiffness import assemble
 from .surface import Surface
-from .surface_compliance import surface_compliance
+from .surface_compliance import planned_compliance
 from .tet_mesh import TetMesh
 from .tetrahedralize import Fit, check_fit, tetrahedralize
 
 __all__ = ["BakeProgress", "BakeReport", "BakeSettings", "bake"]
 
-# (step, share of the whole bake done or None where nobody can know)
-BakeProgress = Callable[[str, float | None], None]
-
 # Beyond these the drawn shape and the body visibly part ways, and the maker should know.
 NOTABLE_DISTANCE = 0.02
 NOTABLE_VOLUME_ERROR = 0.1
+
+# Bodies of less arithmetic (in operations) are done within a second by one thread; several, waiting
+# for one another on a machine that is busy otherwise, would take longer.
+WORTH_THREADS = 2e10
 
 
 @dataclass(frozen=True)
@@ -51,6 +61,7 @@ def bake(
     settings: BakeSettings,
     progress: BakeProgress = unwatched,
     surface: Surface | None = None,
+    available: Callable[[], int] = available_memory,
 ) -> tuple[SoftBody, BakeReport]:
     """Make a body, in this process.
 
@@ -61,8 +72,9 @@ def bake(
     ----------
     source : a surface, or tetrahedra that exist already.
     settings : see :class:`BakeSettings`.
-    progress : told the step and the share of the whole that is done.
+    progress : told the step and the share of the whole that is done; may raise to cancel.
     surface : for tetrahedra with painted pins, the surface the weights were painted on.
+    available : asked, before the compliance is computed, how many bytes of memory can be had.
 
     Raises
     ------
@@ -70,32 +82,29 @@ def bake(
         Anything that keeps the mesh from becoming a body, with the remedy.
     """
     settings.checked()
-    seconds: dict[str, float] = {}
-    fit: Fit | None = None
+    report = BakeReport({}, None, [])
+    work = BakeWork(progress)
     if isinstance(source, Surface):
-        with _timed(seconds, "tetrahedralize"):
-            progress("tetrahedralize", None)
-            welded = source.welded()
-            shell = decimate(welded, settings.decimate_above)
-            mesh = tetrahedralize(shell, settings.edge_length, settings.epsilon)
-        with _timed(seconds, "check"):
-            progress("check", 0.5)
-            fit = check_fit(mesh, welded, shell)
+        mesh, fit = _tetrahedra(source, settings, work, report.seconds)
+        report = replace(report, fit=fit, warnings=_fit_warnings(fit, mesh))
         surface = source
     else:
         mesh = source
+        work.expect(rest_seconds(MeshSize.of(mesh), settings))
     fixed = pinned_nodes(settings.pins, mesh, surface)
     formulation = formulation_for(settings.formulation, settings.poisson_ratio)
     scale = _young_scale(settings.stiffness, mesh, surface)
-    with _timed(seconds, "stiffness"):
-        progress("stiffness", 0.55)
+    with _timed(report.seconds, "stiffness"):
+        work.begin("stiffness")
         stiffness = assemble(
             mesh, settings.poisson_ratio, formulation=formulation, young_scale=scale
         )
-    with _timed(seconds, "compliance"):
-        compliance = surface_compliance(
-            mesh, stiffness, fixed, lambda share: progress("compliance", 0.6 + 0.4 * share)
-        )
+    with _timed(report.seconds, "plan"):
+        work.begin("plan")
+        plan = plan_surface_inverse(mesh, stiffness, fixed)
+        form, warnings = affordable_form(plan, settings, available())
+    with _timed(report.seconds, "compliance"):
+        compliance = _compliance(plan, form, mesh, settings, work)
     body = SoftBody(
         mesh,
         np.unique(fixed),
@@ -105,8 +114,42 @@ def bake(
         formulation,
         scale,
     )
-    diagonal = float(np.linalg.norm(np.ptp(mesh.nodes, axis=0)))
-    return body, BakeReport(seconds, fit, _warnings(fit, diagonal))
+    return body, replace(report, warnings=[*report.warnings, *warnings])
+
+
+def _tetrahedra(
+    source: Surface, settings: BakeSettings, work: BakeWork, seconds: dict[str, float]
+) -> tuple[TetMesh, Fit]:
+    """Fill the surface and see whether the tetrahedra fit it."""
+    with _timed(seconds, "tetrahedralize"):
+        work.unknown("tetrahedralize")
+        welded = source.welded()
+        shell = decimate(welded, settings.decimate_above)
+        mesh = tetrahedralize(shell, settings.edge_length, settings.epsilon)
+    work.expect(
+        {"check": check_seconds(welded, mesh), **rest_seconds(MeshSize.of(mesh), settings)},
+        spent=seconds["tetrahedralize"],
+    )
+    with _timed(seconds, "check"):
+        work.begin("check")
+        return mesh, check_fit(mesh, welded, shell)
+
+
+def _compliance(
+    plan: EliminationPlan, form: str, mesh: TetMesh, settings: BakeSettings, work: BakeWork
+) -> Compliance:
+    """The compliance by the plan, which is what most of a bake's time goes into."""
+    threads = settings.threads if plan.weight >= WORTH_THREADS else 1
+    with blas_threads(threads):
+        if form == "dense":
+            work.forget("compress")
+            work.expect({"compliance": plan.weight / dgemm_rate(threads)})
+            return planned_compliance(plan, work.begin("compliance"))
+        plan = replace(plan, table_itemsize=0)
+        work.expect({"compliance": plan.weight / dgemm_rate(threads)})
+        source = planned_columns(plan, work.begin("compliance"))
+        positions = mesh.nodes[plan.free_surface]
+        return compress(source, positions, settings.tolerance, work.begin("compress"))
 
 
 def _young_scale(
@@ -119,9 +162,8 @@ def _young_scale(
     return None if np.array_equal(scale, np.ones_like(scale)) else scale
 
 
-def _warnings(fit: Fit | None, diagonal: float) -> list[str]:
-    if fit is None:
-        return []
+def _fit_warnings(fit: Fit, mesh: TetMesh) -> list[str]:
+    diagonal = float(np.linalg.norm(np.ptp(mesh.nodes, axis=0)))
     found = []
     if abs(fit.volume_ratio - 1) > NOTABLE_VOLUME_ERROR:
         found.append(

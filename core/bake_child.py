@@ -11,12 +11,15 @@ import json
 import os
 import signal
 import sys
+import time
 import traceback
 from pathlib import Path
+from typing import TextIO
 
 PROGRESS_FILE = "progress.jsonl"
 BODY_FILE = "body.npz"
 OUTCOME_FILE = "outcome.json"
+SECONDS_BETWEEN_LINES = 0.05
 LINUX_PR_SET_PDEATHSIG = 1
 
 
@@ -39,6 +42,22 @@ def load_package(root: Path) -> None:
     spec.loader.exec_module(package)
 
 
+class ProgressLines:
+    """Progress as lines of a file: each new step, and its share some times a second."""
+
+    def __init__(self, lines: TextIO) -> None:
+        self._lines = lines
+        self._step = ""
+        self._next = 0.0
+
+    def tell(self, step: str, share: float | None) -> None:
+        """Write a line, unless one was just written for the same step."""
+        now = time.monotonic()
+        if step != self._step or now >= self._next:
+            self._step, self._next = step, now + SECONDS_BETWEEN_LINES
+            print(json.dumps([step, share]), file=self._lines)
+
+
 def run(folder: Path) -> dict[str, object]:
     """Bake what the folder asks for; the outcome says how it went."""
     from palpate.core import cache
@@ -48,13 +67,10 @@ def run(folder: Path) -> dict[str, object]:
 
     request = BakeRequest.read(folder)
     with (folder / PROGRESS_FILE).open("a", encoding="utf-8", buffering=1) as lines:
+        tell = ProgressLines(lines).tell
         try:
-            body, report = bake(
-                request.source,
-                request.settings,
-                lambda step, share: print(json.dumps([step, share]), file=lines),
-                request.surface,
-            )
+            body, report = bake(request.source, request.settings, tell, request.surface)
+            tell("store", 1.0)
             cache.save(body, folder / BODY_FILE)
         except PalpateError as problem:
             return {"error": str(problem)}
@@ -74,8 +90,8 @@ def main() -> int:
         outcome = run(folder)
     except MemoryError:
         outcome = {
-            "error": "bake: the memory does not suffice for this many surface nodes; use a larger "
-            "edge length"
+            "error": "bake: the memory does not suffice for this many surface nodes; choose the "
+            "compressed form or use a larger edge length"
         }
     except Exception:  # noqa: BLE001  the parent raises it again, with this traceback
         outcome = {"crash": traceback.format_exc()}

@@ -1,18 +1,22 @@
 """What a bake will cost, told before it starts: nodes, time, memory, size of the file.
 
-From a surface these are predictions, since fTetWild does not make the same tetrahedra twice; from
-tetrahedra only the time is. The figures below were fitted to fTetWild's runs on seven shapes, from
-a cube to a plush mouse, with edge lengths from 0.025 to 0.1 of the diagonal.
+From a surface these are predictions, since fTetWild does not make the same tetrahedra twice; once
+the elimination is planned, memory and arithmetic are known exactly. The figures below were fitted
+to fTetWild's runs on seven shapes (cube, plate, bar, sphere, capsule, torus, plush mouse), with
+edge lengths from 0.0175 to 0.1 of the diagonal and epsilons from 0.001 to 0.01, and to the plans of
+their bodies.
 """
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from .bake_settings import BakeSettings
+from .elimination.plan import EliminationPlan
+from .errors import PalpateError
+from .formulation import LINEAR, formulation_for
 from .machine_speed import dgemm_rate
 from .pins import PinBelow, PinNodes, Pins, PinWeights
 from .surface import Surface
@@ -22,12 +26,97 @@ from .winding_volume import enclosed_volume
 # A dense table of more bytes is compressed when the form is left open.
 LARGEST_AUTOMATIC_TABLE = 300_000_000
 
-# How much smaller a compressed table is, typically, at a tolerance of 0.1 %.
-COMPRESSION = 10.0
+# Bytes of a dense table are this times the square of the free surface nodes.
+BYTES_PER_PAIR = 36
+
+# Surface nodes, for an edge length h and an envelope e in metres:
+# ((1.24 area / h^2)^1.6 + (0.31 bending / e)^1.6)^(1/1.6). The first is what equilateral triangles
+# ask for, the second what it takes to stay within the envelope where the surface is curved.
+NODES_PER_AREA = 1.24
+NODES_PER_BENDING = 0.31
+BLENDING = 1.6
+# All nodes are these and volume / h^3, and a layer that grades from the surface inwards.
+GRADED_NODES = 0.23
+# Nine of ten runs had between 0.7 and 1.3 times the nodes so predicted.
+NODE_SPREAD = 1.5
+
+# Edges sharper than this are edges of the shape, which need no finer triangles.
+SHARP_EDGE = np.radians(60.0)
+
+# Seconds of fTetWild: 8e-6 triangles^0.93 epsilon^-0.64 nodes^0.3, within a factor of three.
+TETRAHEDRALIZE_SCALE = 8e-6
+TETRAHEDRALIZE_EXPONENTS = (0.93, -0.64, 0.30)
+TETRAHEDRALIZE_SPREAD = 3.0
+
+# Seconds for each tetrahedron to assemble, for each node to plan; by formulation.
+ASSEMBLY_SECONDS = {LINEAR: 2e-6, "smoothed": 12e-6}
+PLANNING_SECONDS = {LINEAR: 30e-6, "smoothed": 60e-6}
+TETS_PER_NODE = 5.0
+# Comparing with the mesh: seconds for each of its triangles and each surface node.
+CHECK_SECONDS = 1e-4
+
+# Bytes of the stiffness for each node, beside what the elimination holds.
+STIFFNESS_BYTES = {LINEAR: 1_500, "smoothed": 7_000}
+
+# A compressed table has about 3.3 MB for 1,000 free surface nodes at a tolerance of 0.001.
+COMPRESSED_BYTES = 3.3e6
+COMPRESSED_EXPONENTS = (1.3, -0.3)
+# Couplings before they are rounded, as a share of the dense table.
+COMPRESSING_SHARE = 0.1
+# Floating point operations to compress: each cluster of columns multiplies the whole factor.
+COMPRESSING_FLOPS = 0.4
+
+# What a body file holds besides the compliance, for each node of the mesh.
+MESH_BYTES = 300
 
 # Edge lengths that are offered when the one that is set takes too much memory.
 COARSENING = 1.05
 COARSEST_EDGE_LENGTH = 0.5
+
+
+@dataclass(frozen=True)
+class PowerLaw:
+    """``scale * nodes^by_nodes * free_surface_nodes^by_surface``."""
+
+    scale: float
+    by_nodes: float
+    by_surface: float
+
+    def at(self, nodes: int, free_surface_nodes: int) -> float:
+        """Its value for a body."""
+        return float(self.scale * nodes**self.by_nodes * free_surface_nodes**self.by_surface)
+
+
+@dataclass(frozen=True)
+class EliminationLaws:
+    """What eliminations take, fitted to plans; shapes scatter by a factor of two.
+
+    Attributes
+    ----------
+    table_weight, table_peak : time in floating point operations, and bytes, for the dense form.
+    factor_weight, factor_peak : the same for the factor alone.
+    """
+
+    table_weight: PowerLaw
+    table_peak: PowerLaw
+    factor_weight: PowerLaw
+    factor_peak: PowerLaw
+
+
+ELIMINATION = {
+    LINEAR: EliminationLaws(
+        PowerLaw(1700.0, 1.76, 0.23),
+        PowerLaw(5270.0, 0.67, 0.64),
+        PowerLaw(4800.0, 2.13, -0.43),
+        PowerLaw(300.0, 1.15, 0.38),
+    ),
+    "smoothed": EliminationLaws(
+        PowerLaw(435.0, 1.87, 0.44),
+        PowerLaw(3140.0, 0.89, 0.52),
+        PowerLaw(724.0, 2.28, -0.18),
+        PowerLaw(400.0, 1.12, 0.51),
+    ),
+}
 
 
 @dataclass(frozen=True)
@@ -40,12 +129,14 @@ class ShapeSize:
     volume : that it encloses, cubic metres.
     diagonal : of its bounding box, metres.
     triangles : how many it has.
+    bending : see :func:`bending`, metres; None to assume a body as round as its volume allows.
     """
 
     area: float
     volume: float
     diagonal: float
     triangles: int
+    bending: float | None = None
 
     @classmethod
     def of(cls, surface: Surface) -> ShapeSize:
@@ -56,6 +147,7 @@ class ShapeSize:
             enclosed_volume(welded),
             welded.diagonal,
             len(welded.triangles),
+            bending(welded),
         )
 
 
@@ -84,7 +176,8 @@ class BakeCost:
     file_bytes : of the body file.
     form : of the compliance, ``dense`` or ``compressed``.
     spread : the true number of nodes lies within this factor of the predicted one, either way, in
-        nine of ten cases; 1 where it is known. Memory goes with its square, time with its cube.
+        nine of ten cases; 1 where it is known. Memory goes about with its square.
+    seconds_spread : the same for the time.
     """
 
     nodes: int
@@ -94,6 +187,29 @@ class BakeCost:
     file_bytes: int
     form: str
     spread: float = 1.0
+    seconds_spread: float = 1.0
+
+
+def bending(surface: Surface) -> float:
+    """How much the surface curves in all, metres: half of edge length times angle, summed.
+
+    On a smooth surface that is the integral of the mean curvature. Sharp edges do not count.
+    """
+    triangles = surface.triangles
+    i, j, k = (surface.vertices[triangles[:, corner]] for corner in range(3))
+    normals = np.cross(j - i, k - i)
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), np.finfo(float).tiny)
+    edges = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    order = np.lexsort(edges.T)
+    first, second = order[:-1], order[1:]
+    paired = (edges[first] == edges[second]).all(axis=1)
+    first, second = first[paired], second[paired]
+    cosine = np.einsum("ex,ex->e", normals[first // 3], normals[second // 3])
+    # Faces that look opposite ways do so by their winding, as a rule.
+    angle = np.arccos(np.clip(np.abs(cosine), 0.0, 1.0))
+    ends = surface.vertices[edges[first]]
+    lengths = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+    return float(0.5 * (lengths * angle)[angle < SHARP_EDGE].sum())
 
 
 def estimate_cost(
@@ -108,27 +224,85 @@ def estimate_cost(
     available : bytes of memory that can be had; None where ``form="auto"`` need not look at them.
     """
     if isinstance(size, MeshSize):
-        nodes, surface_nodes, seconds, spread = size.nodes, size.surface_nodes, 0.0, 1.0
-    else:
-        nodes, surface_nodes = _predicted_nodes(size, settings)
-        seconds = _tetrahedralize_seconds(size, settings, nodes)
-        spread = 1.5
-    free = max(1, round(surface_nodes * (1 - _pinned_share(settings.pins, surface_nodes))))
-    costs = {
-        form: replace(_compliance_cost(nodes, free, form), spread=spread)
-        for form in ("dense", "compressed")
+        cost = replace(_form_cost(size, settings, available), seconds_spread=2.0)
+        return replace(cost, seconds=cost.seconds + sum(_assembly_seconds(size, settings)))
+    mesh = _predicted_mesh(size, settings)
+    cost = _form_cost(mesh, settings, available)
+    seconds = cost.seconds + sum(_assembly_seconds(mesh, settings))
+    seconds += _tetrahedralize_seconds(size, settings, mesh.nodes)
+    return replace(cost, seconds=seconds, spread=NODE_SPREAD, seconds_spread=TETRAHEDRALIZE_SPREAD)
+
+
+def rest_seconds(size: MeshSize, settings: BakeSettings) -> dict[str, float]:
+    """What each step will take once there are tetrahedra, before their elimination is planned."""
+    assembly, planning = _assembly_seconds(size, settings)
+    cost = _form_cost(size, settings, None)
+    compressing = 0.0
+    if cost.form == "compressed":
+        laws = _laws(settings)
+        factor = laws.factor_peak.at(size.nodes, cost.free_surface_nodes)
+        compressing = _compressing_flops(cost.free_surface_nodes, factor) / dgemm_rate(
+            settings.threads
+        )
+    return {
+        "stiffness": assembly,
+        "plan": planning,
+        "compliance": cost.seconds - compressing,
+        "compress": compressing,
     }
-    chosen = costs[automatic_form(settings.form, costs["dense"], available)]
-    return replace(chosen, seconds=chosen.seconds + seconds)
+
+
+def check_seconds(surface: Surface, mesh: TetMesh) -> float:
+    """What comparing a body with the surface it was made from will take."""
+    return CHECK_SECONDS * (len(surface.triangles) + len(mesh.surface_nodes))
+
+
+def planned_cost(plan: EliminationPlan, form: str, threads: int | None = None) -> BakeCost:
+    """What computing a compliance takes from here on, when its elimination is planned."""
+    nodes, free = plan.matrix.node_count, len(plan.free_surface)
+    table = BYTES_PER_PAIR * free**2
+    if form == "dense":
+        return BakeCost(
+            nodes, free, plan.weight / dgemm_rate(threads), plan.peak_bytes, table, form
+        )
+    factor = replace(plan, table_itemsize=0)
+    flops = factor.weight + _compressing_flops(free, factor.peak_bytes)
+    peak = factor.peak_bytes + int(COMPRESSING_SHARE * table)
+    return BakeCost(nodes, free, flops / dgemm_rate(threads), peak, 0, form)
 
 
 def automatic_form(form: str, dense: BakeCost, available: int | None) -> str:
     """The form that ``auto`` stands for: ``dense`` unless its table is large or does not fit."""
     if form != "auto":
         return form
-    too_large = 36 * dense.free_surface_nodes**2 > LARGEST_AUTOMATIC_TABLE
+    too_large = BYTES_PER_PAIR * dense.free_surface_nodes**2 > LARGEST_AUTOMATIC_TABLE
     does_not_fit = available is not None and dense.peak_bytes > available
     return "compressed" if too_large or does_not_fit else "dense"
+
+
+def affordable_form(
+    plan: EliminationPlan, settings: BakeSettings, available: int
+) -> tuple[str, list[str]]:
+    """The form to compute, and what to tell the maker about its choice.
+
+    Raises
+    ------
+    PalpateError
+        The memory does not suffice; with the remedy.
+    """
+    dense = planned_cost(plan, "dense", settings.threads)
+    chosen = automatic_form(settings.form, dense, available)
+    cost = dense if chosen == "dense" else planned_cost(plan, chosen, settings.threads)
+    refusal = memory_refusal(cost, available)
+    if refusal is not None:
+        raise PalpateError(refusal)
+    warnings = []
+    if settings.form == "auto" and chosen == "compressed" and dense.peak_bytes > available:
+        warnings.append(
+            f"the compliance was compressed, since whole it would have taken "
+            f"{dense.peak_bytes / 1e9:.2g} GB of memory, and {available / 1e9:.2g} GB could be had"
+        )
+    return chosen, warnings
 
 
 def memory_refusal(cost: BakeCost, available: int) -> str | None:
@@ -137,17 +311,17 @@ def memory_refusal(cost: BakeCost, available: int) -> str | None:
         return None
     remedies = "choose the compressed form or " if cost.form == "dense" else ""
     return (
-        f"bake: {cost.free_surface_nodes:,} free surface nodes take {cost.peak_bytes / 1e9:.1f} GB "
-        f"of memory, and {available / 1e9:.1f} GB can be had; {remedies}use a larger edge length"
+        f"bake: {cost.free_surface_nodes:,} free surface nodes take {cost.peak_bytes / 1e9:.2g} GB "
+        f"of memory, and {available / 1e9:.2g} GB can be had; {remedies}use a larger edge length"
     )
 
 
 def edge_length_that_fits(size: ShapeSize, settings: BakeSettings, available: int) -> float | None:
-    """The smallest edge length from the one that is set upwards whose bake fits the memory."""
+    """The smallest edge length, from the one that is set upwards, whose bake fits the memory."""
     edge_length = settings.edge_length
     while edge_length <= COARSEST_EDGE_LENGTH:
         # Two digits are what a person would type.
-        rounded = float(f"{edge_length:.2g}")
+        rounded = max(settings.edge_length, float(f"{edge_length:.2g}"))
         cost = estimate_cost(size, replace(settings, edge_length=rounded), available)
         if memory_refusal(cost, available) is None:
             return rounded
@@ -155,30 +329,72 @@ def edge_length_that_fits(size: ShapeSize, settings: BakeSettings, available: in
     return None
 
 
-def _predicted_nodes(size: ShapeSize, settings: BakeSettings) -> tuple[int, int]:
+def _predicted_mesh(size: ShapeSize, settings: BakeSettings) -> MeshSize:
     """Nodes and surface nodes that fTetWild will make."""
     length = settings.edge_length * size.diagonal
-    surface_nodes = 2.0 * size.area / length**2
-    inside = 2.0 * size.volume / length**3
-    return round(surface_nodes + inside), max(4, round(surface_nodes))
+    # A ball of this area and volume bends by area^2 / (3 volume); boxes less, limbs more.
+    bends = size.area**2 / max(6 * size.volume, 1e-300) if size.bending is None else size.bending
+    # The envelope is not followed more finely than the surface that is handed over.
+    finest = 0.5 * min(size.triangles, settings.decimate_above)
+    curved = min(NODES_PER_BENDING * bends / (settings.epsilon * size.diagonal), finest)
+    flat = NODES_PER_AREA * size.area / length**2
+    surface_nodes = (flat**BLENDING + curved**BLENDING) ** (1 / BLENDING)
+    nodes = (1 + GRADED_NODES) * surface_nodes + size.volume / length**3
+    return MeshSize(max(4, round(nodes)), max(4, round(surface_nodes)))
 
 
 def _tetrahedralize_seconds(size: ShapeSize, settings: BakeSettings, nodes: int) -> float:
     triangles = min(size.triangles, settings.decimate_above)
-    return 1.0 + 5e-4 * triangles + 1e-3 * nodes
+    by_triangles, by_epsilon, by_nodes = TETRAHEDRALIZE_EXPONENTS
+    shell = triangles**by_triangles * settings.epsilon**by_epsilon
+    return float(TETRAHEDRALIZE_SCALE * shell * nodes**by_nodes)
 
 
-def _compliance_cost(nodes: int, free: int, form: str) -> BakeCost:
-    table = 36 * free**2
-    inside = 40.0 * nodes**2
+def _assembly_seconds(size: MeshSize, settings: BakeSettings) -> tuple[float, float]:
+    """To assemble the stiffness, and to plan its elimination."""
+    formulation = formulation_for(settings.formulation, settings.poisson_ratio)
+    tets = TETS_PER_NODE * size.nodes
+    return ASSEMBLY_SECONDS[formulation] * tets, PLANNING_SECONDS[formulation] * size.nodes
+
+
+def _form_cost(size: MeshSize, settings: BakeSettings, available: int | None) -> BakeCost:
+    """The elimination's cost, in the form that is asked for or, by itself, the one that suits."""
+    pinned = _pinned_share(settings.pins, size.surface_nodes)
+    free = max(1, round(size.surface_nodes * (1 - pinned)))
+    dense = _elimination_cost(size.nodes, free, settings, "dense")
+    form = automatic_form(settings.form, dense, available)
+    return dense if form == "dense" else _elimination_cost(size.nodes, free, settings, form)
+
+
+def _elimination_cost(nodes: int, free: int, settings: BakeSettings, form: str) -> BakeCost:
+    laws = _laws(settings)
+    stiffness = STIFFNESS_BYTES[formulation_for(settings.formulation, settings.poisson_ratio)]
+    table = float(BYTES_PER_PAIR * free**2)
     if form == "dense":
-        flops = 27.0 * free**3 + 1e3 * inside
-        peak, file = int(3 * table + 400 * nodes), table
+        flops, peak = laws.table_weight.at(nodes, free), laws.table_peak.at(nodes, free)
     else:
-        flops = 27.0 * free**3 + 2e3 * inside
-        peak, file = int(table + 4000 * nodes), int(table / COMPRESSION)
-    seconds = flops / (0.5 * dgemm_rate()) + 1e-4 * nodes
-    return BakeCost(nodes, free, seconds, peak, file + 300 * nodes, form)
+        factor = laws.factor_peak.at(nodes, free)
+        flops = laws.factor_weight.at(nodes, free) + _compressing_flops(free, factor)
+        peak = factor + COMPRESSING_SHARE * table
+        by_nodes, by_tolerance = COMPRESSED_EXPONENTS
+        fineness = (settings.tolerance / 1e-3) ** by_tolerance
+        table = min(table, COMPRESSED_BYTES * (free / 1000) ** by_nodes * fineness)
+    return BakeCost(
+        nodes,
+        free,
+        flops / dgemm_rate(settings.threads),
+        int(peak + stiffness * nodes),
+        int(table + MESH_BYTES * nodes),
+        form,
+    )
+
+
+def _compressing_flops(free: int, factor_bytes: float) -> float:
+    return COMPRESSING_FLOPS * free * factor_bytes
+
+
+def _laws(settings: BakeSettings) -> EliminationLaws:
+    return ELIMINATION[formulation_for(settings.formulation, settings.poisson_ratio)]
 
 
 def _pinned_share(pins: Pins, surface_nodes: int) -> float:
@@ -190,4 +406,3 @@ def _pinned_share(pins: Pins, surface_nodes: int) -> float:
             return float(np.mean(weights >= 0.5)) if len(weights) else 0.0
         case PinNodes(nodes):
             return min(1.0, len(nodes) / surface_nodes)
-    return math.nan

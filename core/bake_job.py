@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import shutil
 import subprocess
 import sys
@@ -22,6 +21,7 @@ from .bake_request import BakeRequest
 from .errors import PalpateError
 from .ftetwild_log import stage
 from .progress import unwatched
+from .remaining_time import RemainingTime
 from .soft_body import SoftBody
 from .surface import Surface
 from .tet_mesh import TetMesh
@@ -29,15 +29,18 @@ from .tetrahedralize import Fit
 from .whole_file import refuse_unwritable
 
 PACKAGE_ROOT = Path(__file__).resolve().parents[1]
-# Sparse solves call BLAS with small blocks; more threads only fight for the cores.
-ONE_BLAS_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
+# More than any line of progress has.
+LINE_BYTES = 200
 LOG_FILE = "log.txt"
 STEP_TEXTS = {
     "start": "Starting",
     "tetrahedralize": "Filling with tetrahedra",
     "check": "Comparing with the mesh",
     "stiffness": "Assembling the stiffness",
+    "plan": "Planning the elimination",
     "compliance": "Inverting the stiffness",
+    "compress": "Compressing the compliance",
+    "store": "Writing the body file",
 }
 
 
@@ -84,6 +87,7 @@ class BakeJob:
         settings.checked()
         self._time_limit = settings.time_limit
         self._started = time.monotonic()
+        self._remaining = RemainingTime()
         self._folder = Path(tempfile.mkdtemp(prefix="palpate-bake-"))
         try:
             BakeRequest(source, settings, surface).write(self._folder)
@@ -111,7 +115,7 @@ class BakeJob:
                     "edge length or epsilon, decimate the mesh first, or allow more time"
                 )
             text = f"{text}: {stage(self._log())}"
-        return JobProgress(step, text, share, seconds)
+        return JobProgress(step, text, share, seconds, self._remaining.update(seconds, share))
 
     @property
     def finished(self) -> bool:
@@ -131,8 +135,11 @@ class BakeJob:
         try:
             self._child.wait()
             report = self._report()
-            body = cache.load(self._folder / BODY_FILE)
+            # Seen to be sound before it replaces another; read where it stays, since a large one
+            # is not read whole.
+            cache.load(self._folder / BODY_FILE)
             cache.adopt(self._folder / BODY_FILE, target)
+            body = cache.load(target)
         finally:
             self.close()
         return body, report
@@ -172,7 +179,6 @@ class BakeJob:
                     stdin=subprocess.DEVNULL,
                     stdout=log,
                     stderr=subprocess.STDOUT,
-                    env=os.environ | ONE_BLAS_THREAD,
                 )
         except OSError as problem:
             raise PalpateError(
@@ -181,7 +187,7 @@ class BakeJob:
 
     def _newest_progress(self) -> tuple[str, float | None]:
         file = self._folder / PROGRESS_FILE
-        whole_lines = file.read_text(encoding="utf-8").split("\n")[:-1] if file.exists() else []
+        whole_lines = _end_of(file, 2 * LINE_BYTES).split("\n")[:-1] if file.exists() else []
         if not whole_lines:
             return "start", None
         step, share = json.loads(whole_lines[-1])
@@ -208,6 +214,14 @@ class BakeJob:
         report = outcome["report"]
         fit = Fit(**report["fit"]) if report["fit"] else None
         return BakeReport(report["seconds"], fit, report["warnings"])
+
+
+def _end_of(file: Path, count: int) -> str:
+    """The last ``count`` bytes of a text file, or all it has."""
+    with file.open("rb") as stream:
+        stream.seek(0, 2)
+        stream.seek(max(0, stream.tell() - count))
+        return stream.read().decode("utf-8")
 
 
 def run_bake(

@@ -30,7 +30,7 @@ class BakeSettings:
     form : of the compliance, ``dense`` or ``compressed``; ``auto`` compresses large bodies.
     tolerance : largest relative column error that compressing may cause.
     stiffness : where the body is stiffer or softer than elsewhere; None for the same everywhere.
-    threads : of BLAS; None for as many as there are cores for this process.
+    threads : of BLAS at most; None for as many as there are cores for this process.
     """
 
     poisson_ratio: float = 0.3

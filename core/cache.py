@@ -29,6 +29,7 @@ from numpy.typing import NDArray
 
 from .body_key import body_key
 from .compliance import Compliance
+from .compression.compressed_compliance import CompressedCompliance
 from .dense_compliance import DenseCompliance
 from .errors import BodyFileError, PalpateError
 from .formulation import formulation_checked
@@ -143,6 +144,8 @@ def adopt(finished: Path, target: Path) -> None:
 
 def _compliance_arrays(compliance: Compliance) -> Arrays:
     match compliance:
+        case CompressedCompliance():
+            return {"tolerance": np.array(compliance.tolerance), **compliance.arrays()}
         case DenseCompliance(table=given) | MappedCompliance(table=given):
             table = given.astype(np.float32, copy=False)
             stored = DenseCompliance(compliance.free_surface, table)
@@ -185,6 +188,8 @@ def _compliance(
     """The compliance in the form that is stored; a dense table that is read is checked whole."""
     free_surface = stored["free_surface"].astype(np.int64)
     count = len(free_surface)
+    if str(stored["form"]) == "compressed":
+        return CompressedCompliance.from_arrays(free_surface, stored, float(stored["tolerance"]))
     if str(stored["form"]) != "dense":
         raise PalpateError(f"its compliance has the unknown form '{stored['form']}'")
     checksums, diagonal = stored["compliance_checksums"], stored["compliance_diagonal"]

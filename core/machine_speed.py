@@ -6,7 +6,10 @@ import time
 from functools import cache
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg.blas import dgemm
+
+from .blas_threads import blas_threads
 
 # Large enough to run at full speed, small enough to be measured in some hundredths of a second.
 SIZE = 640
@@ -14,18 +17,22 @@ RUNS = 3
 
 
 @cache
-def dgemm_rate() -> float:
-    """Floating point operations a second of BLAS's matrix product, with the threads it uses now.
+def dgemm_rate(threads: int | None = None) -> float:
+    """Floating point operations a second of BLAS's matrix product.
 
-    Measured at the first call, some hundredths of a second, and remembered.
+    Measured at the first call, which takes some hundredths of a second, and remembered.
+
+    Parameters
+    ----------
+    threads : of BLAS; None for as many as there are cores for this process.
     """
-    factor = np.asfortranarray(np.random.default_rng(1999).random((SIZE, SIZE)))
-    dgemm(1.0, factor, factor)
-    fastest = min(_seconds_of_product(factor) for _ in range(RUNS))
-    return float(2 * SIZE**3 / fastest)
+    with blas_threads(threads):
+        factor = np.asfortranarray(np.random.default_rng(1999).random((SIZE, SIZE)))
+        dgemm(1.0, factor, factor)
+        return float(2 * SIZE**3 / min(_seconds_of_product(factor) for _ in range(RUNS)))
 
 
-def _seconds_of_product(factor: np.ndarray) -> float:
+def _seconds_of_product(factor: NDArray[np.float64]) -> float:
     start = time.perf_counter()
     dgemm(1.0, factor, factor)
     return time.perf_counter() - start
