@@ -28,7 +28,7 @@ TET_EDGES = np.array([[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]])
 
 # Tetrahedra around one edge or node whose moduli differ by more than this factor are not averaged
 # with each other: bone and the fat beside it strain differently.
-LARGEST_SPREAD = 2.0
+LARGEST_SPREAD = 4.0
 
 # Moduli that differ by rounding alone stay together, wherever a limit happens to fall.
 ROUNDING = 1e-6
