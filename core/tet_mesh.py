@@ -70,16 +70,18 @@ class TetMesh:
     def surface_triangles(self) -> NDArray[np.int64]:
         """Boundary faces, (S, 3) node numbers, wound so that normals point outward."""
         faces = self.tets[:, OUTWARD_FACES].reshape(-1, 3)
-        _, first, count = np.unique(
-            np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True
-        )
+        corners = np.sort(faces, axis=1)
+        order = np.lexsort(corners.T)
+        differs = (corners[order][1:] != corners[order][:-1]).any(axis=1)
+        starts = np.flatnonzero(np.concatenate([[True], differs]))
+        count = np.diff(starts, append=len(faces))
         if count.max() > 2:
-            crowded = np.sort(faces[first[np.argmax(count)]])
+            crowded = corners[order[starts[np.argmax(count)]]]
             raise PalpateError(
                 f"tetrahedral mesh: the face {tuple(crowded.tolist())} belongs to {count.max()} "
                 "tetrahedra, so they overlap; bake the surface again"
             )
-        boundary: NDArray[np.int64] = faces[np.sort(first[count == 1])]
+        boundary: NDArray[np.int64] = faces[np.sort(order[starts[count == 1]])]
         return boundary
 
     @cached_property
