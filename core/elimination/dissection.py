@@ -124,7 +124,7 @@ def _part(
 
 
 def _pieces(count: int, edges: NDArray[np.int64], enough: int) -> list[NDArray[np.int64]]:
-    """The connected pieces of a region; pieces smaller than ``enough`` bundled up to that size."""
+    """The connected pieces of a region; small ones in bundles of at most ``enough`` nodes."""
     links = coo_array(
         (np.ones(len(edges), dtype=np.int8), (edges[:, 0], edges[:, 1])), (count,) * 2
     )
@@ -132,8 +132,11 @@ def _pieces(count: int, edges: NDArray[np.int64], enough: int) -> list[NDArray[n
     if pieces == 1:
         return [np.arange(count)]
     sizes = np.bincount(label)
-    small = np.cumsum(np.where(sizes < enough, sizes, 0)) // enough
-    bundle = np.where(sizes < enough, small, pieces + np.arange(pieces))[label]
+    # A bundle takes pieces until it is half full, and none that would more than fill the rest.
+    half = max(enough // 2, 1)
+    small = sizes <= half
+    before = np.cumsum(np.where(small, sizes, 0)) - sizes
+    bundle = np.where(small, before // half, pieces + np.arange(pieces))[label]
     return [np.flatnonzero(bundle == which) for which in np.unique(bundle)]
 
 

@@ -50,6 +50,8 @@ def runs_between(
     child_edges, parent_edges : of the tiles of both Schur complements.
     """
     size = len(targets)
+    if not size:
+        return []
     child_tile = np.searchsorted(child_edges, np.arange(size), side="right") - 1
     parent_tile = np.searchsorted(parent_edges, targets - pivot_count, side="right") - 1
     broken = (np.diff(targets) != 1) | (np.diff(child_tile) != 0) | (np.diff(parent_tile) != 0)

@@ -63,7 +63,9 @@ class EliminationPlan:
         """The most bytes that the numeric steps hold at once, the plan and its matrix included."""
         peak, factor = elimination_peak_bytes(self.symbolic.fronts)
         table = inverse_bytes(len(self.ranks), self.table_itemsize)
-        return 2 * self.matrix.nbytes + max(peak, factor + table)
+        # The elimination sorts the upper half of the matrix for itself.
+        sorted_half = self.matrix.nbytes // 2
+        return self.matrix.nbytes + max(sorted_half + peak, factor + table)
 
 
 def plan_surface_inverse(
