@@ -58,7 +58,7 @@ def assemble(
     )
     if formulation_checked(formulation) == LINEAR:
         products = _products(mesh, tet_domains(mesh.tet_volumes, scale))
-        stiffness = _isotropic(products, first_lame, shear_modulus)
+        stiffness = isotropic(products, first_lame, shear_modulus)
     else:
         stiffness = _smoothed(mesh, first_lame, shear_modulus, scale)
     matrix = stiffness.tocsr()
@@ -74,9 +74,9 @@ def _smoothed(
     if first_lame <= 0:
         # Cork and auxetic foam have no volume to keep, and a negative term must not be averaged
         # over other domains than the positive ones that outweigh it.
-        return _isotropic(by_edges, first_lame, shear_modulus)
+        return isotropic(by_edges, first_lame, shear_modulus)
     by_nodes = _products(mesh, node_domains(mesh.tets, mesh.tet_volumes, young_scale))
-    sum_of_both: bsr_array = _isotropic(by_edges, 0.0, shear_modulus) + first_lame * by_nodes
+    sum_of_both: bsr_array = isotropic(by_edges, 0.0, shear_modulus) + first_lame * by_nodes
     return sum_of_both
 
 
@@ -84,8 +84,8 @@ def _products(mesh: TetMesh, domains: SmoothingDomains) -> bsr_array:
     return gradient_products(domains, mesh.tets, shape_gradients(mesh))
 
 
-def _isotropic(products: bsr_array, first_lame: float, shear_modulus: float) -> bsr_array:
-    """Blocks lambda P_ab + mu P_ab^T + mu tr(P_ab) I from gradient products P_ab."""
+def isotropic(products: bsr_array, first_lame: float, shear_modulus: float) -> bsr_array:
+    """Stiffness blocks lambda P_ab + mu P_ab^T + mu tr(P_ab) I from gradient products P_ab, N/m."""
     trace = np.einsum("bii->b", products.data)
     blocks = first_lame * products.data + shear_modulus * products.data.transpose(0, 2, 1)
     for axis in range(3):
