@@ -4,14 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..core.compliance import Compliance
+from ..core.compression.compressed_compliance import CompressedCompliance
 from ..core.soft_body import SoftBody
+
+# Nine float32 numbers tell how one node moves under a force on another.
+DENSE_BYTES_A_PAIR = 36
 
 
 def body_figures(body: SoftBody) -> dict[str, object]:
     """Sizes and identity of a body as plain values for JSON.
 
-    ``compliance_bytes`` is what the stored table takes (float32); the same table in float64, as in
-    the paper's Table 1, takes twice that.
+    ``compliance_bytes`` is what the compliance takes as it is stored; a dense one is float32, so
+    the same table in float64, as in the paper's Table 1, takes twice that.
     """
     return {
         "nodes": len(body.mesh.nodes),
@@ -28,6 +33,7 @@ def body_figures(body: SoftBody) -> dict[str, object]:
         "formulation": body.formulation,
         **_stiffness_range(body),
         "form": body.compliance.form,
+        **_compression(body.compliance),
         "compliance_bytes": body.compliance.nbytes,
         "key": body.key,
     }
@@ -38,6 +44,17 @@ def _stiffness_range(body: SoftBody) -> dict[str, object]:
     if body.young_scale is None:
         return {}
     return {"young_scale": [float(body.young_scale.min()), float(body.young_scale.max())]}
+
+
+def _compression(compliance: Compliance) -> dict[str, object]:
+    """What compressing was allowed to change, and what it did."""
+    if not isinstance(compliance, CompressedCompliance):
+        return {}
+    return {
+        "tolerance": compliance.tolerance,
+        "column_error": float(compliance.column_error),
+        "dense_bytes": DENSE_BYTES_A_PAIR * compliance.node_count**2,
+    }
 
 
 def as_lines(figures: dict[str, object]) -> str:

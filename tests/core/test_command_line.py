@@ -49,7 +49,7 @@ def test_bake_prints_the_papers_table_for_the_cube(cube_file, capsys):
     assert figures["free_surface_nodes"] == 73
     assert figures["surface_triangles"] == 192
     assert figures["compliance_bytes"] == 73 * 73 * 9 * 4
-    assert set(figures["seconds"]) == {"stiffness", "compliance"}
+    assert set(figures["seconds"]) == {"stiffness", "plan", "compliance"}
     _, printed, _ = palpate(capsys, "info", out, "--json")
     again = json.loads(printed)
     assert again["key"] == figures["key"]
@@ -408,3 +408,14 @@ def test_progress_tells_share_and_remaining_time():
     words = bake_status(JobProgress("compliance", "Inverting the stiffness", 0.42, 130.0, 12.4))
     assert words == "Inverting the stiffness 42 %, 2.2 min, about 12 s left"
     assert bake_status(JobProgress("start", "Starting", None, 0.2)) == "Starting, 0 s"
+
+
+def test_a_compressed_body_tells_its_tolerance_and_its_error(tmp_path, capsys):
+    words = ["bake", MOUSE, "-o", tmp_path / "b.npz", "--form", "compressed", "--json"]
+    told = json.loads(palpate(capsys, *words, "--tolerance", "3e-3")[1])
+    again = json.loads(palpate(capsys, "info", tmp_path / "b.npz", "--json")[1])
+    for figures in (told, again):
+        assert (figures["form"], figures["tolerance"]) == ("compressed", 3e-3)
+        assert 1e-4 < figures["column_error"] <= 3e-3
+        assert figures["dense_bytes"] == 36 * 987**2
+        assert figures["compliance_bytes"] < figures["dense_bytes"] / 8
