@@ -13,7 +13,15 @@ if TYPE_CHECKING:
     from platforms import Platform
 
 # What is imported at run time, by the beginning of its wheel's name.
-NEEDED = ("scipy", "pytetwild", "fast_simplification", "psutil", "pyserial", "palpate_servo")
+NEEDED = (
+    "scipy",
+    "pytetwild",
+    "fast_simplification",
+    "psutil",
+    "pyserial",
+    "threadpoolctl",
+    "palpate_servo",
+)
 
 
 def runs_on(wheel_name: str, python_version: str) -> bool:

@@ -26,6 +26,7 @@ WHOLE = [
     "fast_simplification-0.2.0-cp313-cp313-manylinux_2_28_x86_64.whl",
     "psutil-7.2.2-cp36-abi3-manylinux2010_x86_64.manylinux_2_12_x86_64.manylinux_2_28_x86_64.whl",
     "pyserial-3.5-py2.py3-none-any.whl",
+    "threadpoolctl-3.8.0-py3-none-any.whl",
     "palpate_servo-0.1.0-cp311-abi3-manylinux_2_28_x86_64.whl",
 ]
 
@@ -125,9 +126,9 @@ def test_every_bundled_wheel_is_pinned_with_a_hash_for_each_platform():
     for version in ("3.11", "3.13"):
         text = lock_file(version).read_text(encoding="utf-8")
         names = pinned_names(version)
-        assert len(names) == 5
-        # pyserial is the same file everywhere, the others have one for each system.
-        assert text.count("--hash=sha256:") == 4 * len(PLATFORMS) + 1
+        assert len(names) == 6
+        # pyserial and threadpoolctl are the same file everywhere, the others one for each system.
+        assert text.count("--hash=sha256:") == 4 * len(PLATFORMS) + 2
         assert "pytetwild-0.2.3-" in names
         assert not any(name.startswith("numpy-") for name in names)
 
