@@ -1,4 +1,9 @@
-"""Pins without a new bake: the compliance of a body that is held at more of its surface."""
+"""More pins for a body that is baked: its compliance, held at further nodes of its surface.
+
+A dense compliance is downdated, which takes seconds where a bake takes minutes. Where the numbers
+as they are stored do not suffice for that, the body's own tetrahedra are eliminated again; a new
+tetrahedralization is never needed.
+"""
 
 from __future__ import annotations
 
@@ -7,13 +12,30 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.linalg import cho_factor, cho_solve
+from scipy.linalg import LinAlgError, cho_factor, cho_solve
+from scipy.linalg.blas import dgemm
 
+from .compliance import Compliance
+from .compression.compress import compress
+from .compression.compressed_compliance import CompressedCompliance
 from .dense_compliance import DenseCompliance
+from .elimination.surface_columns import factor_for_columns
 from .errors import PalpateError
 from .held_pins import pins_checked
+from .mapped_compliance import MappedCompliance
 from .soft_body import SoftBody
+from .stiffness import assemble
+from .surface_compliance import surface_compliance
 from .tet_mesh import TetMesh
+
+# The largest relative error of a column that a downdate may cause.
+LARGEST_ERROR = 2e-5
+
+# Standard deviation of a rounding error, as a share of the distance between neighbouring numbers.
+ROUNDING_DEVIATION = 0.29
+
+# Columns that are computed at once: large enough for BLAS to run at full speed.
+NODES_PER_PRODUCT = 128
 
 PinsChange = Literal["same", "more", "bake"]
 
@@ -40,10 +62,13 @@ def pins_change(mesh: TetMesh, old: ArrayLike, new: ArrayLike) -> PinsChange:
 
 
 def pin_more(body: SoftBody, added_nodes: ArrayLike) -> SoftBody:
-    """The same body, held at further nodes of its surface.
+    """The same body, held at further nodes of its surface; equal to a bake with these pins.
 
-    L' = L - L_:P L_PP^-1 L_P: for the nodes that stay free: the forces that keep the nodes P where
-    they are, superposed.
+    A dense compliance is downdated, L' = L - L_:P L_PP^-1 L_P: for the nodes that stay free: minus
+    the displacements by the forces that keep the nodes P where they are. Its columns are right to
+    :data:`LARGEST_ERROR`; where rounding in what is stored would cause more, and for a compressed
+    one (whose error L_PP^-1 would amplify beyond its tolerance), the compliance is computed anew
+    from the body's tetrahedra.
 
     Parameters
     ----------
@@ -65,24 +90,87 @@ def pin_more(body: SoftBody, added_nodes: ArrayLike) -> SoftBody:
         )
     if not added.size:
         return body
-    return replace(body, fixed=fixed, compliance=_downdated(body, body.free_index(added)))
+    compliance: Compliance | None = None
+    if isinstance(body.compliance, (DenseCompliance, MappedCompliance)):
+        compliance = _downdated(body.compliance, body.free_index(added))
+    return replace(body, fixed=fixed, compliance=compliance or _computed(body, fixed))
 
 
-def _downdated(body: SoftBody, pinned: NDArray[np.int64]) -> DenseCompliance:
-    """L' where ``pinned`` are the places, among the free surface nodes, of those now held."""
-    if not isinstance(body.compliance, DenseCompliance):
-        raise TypeError(f"no downdate for a compliance of the form {body.compliance.form}")
-    count = body.compliance.node_count
+def _downdated(
+    compliance: DenseCompliance | MappedCompliance, pinned: NDArray[np.int64]
+) -> DenseCompliance | None:
+    """L' where ``pinned`` are the places, among the free surface nodes, of those now held.
+
+    None where the numbers of the table are not exact enough for it.
+    """
+    count = compliance.node_count
     kept = np.setdiff1d(np.arange(count), pinned)
-    pinned_dofs, kept_dofs = (
-        (3 * nodes[:, None] + np.arange(3)).ravel() for nodes in (pinned, kept)
-    )
-    columns = body.compliance.columns(pinned)
-    factor = cho_factor(columns[pinned_dofs])
-    table = body.compliance.table.reshape(3 * count, -1)
-    downdated = table[np.ix_(kept_dofs, kept_dofs)].astype(np.float64)
-    downdated -= columns[kept_dofs] @ cho_solve(factor, columns[kept_dofs].T)
+    pinned_rows, kept_rows = _freedoms(pinned), _freedoms(kept)
+    loaded = compliance.columns(pinned)
+    reach = np.asfortranarray(loaded[kept_rows])
+    try:
+        # (3p, 3k): for 1 N on a kept freedom, the forces that hold the pinned ones.
+        holding = cho_solve(cho_factor(loaded[pinned_rows]), reach.T)
+    except LinAlgError:
+        return None
+    noise = _rounding_noise(compliance.table, pinned_rows, kept_rows, holding)
+    table = np.empty((3 * len(kept), 3 * len(kept)), dtype=np.float32)
+    for start in range(0, len(kept), NODES_PER_PRODUCT):
+        nodes = kept[start : start + NODES_PER_PRODUCT]
+        first, last = 3 * start, 3 * (start + len(nodes))
+        part = compliance.columns(nodes)[kept_rows[:last]]
+        part -= dgemm(1.0, reach[:last], holding[:, first:last])
+        part[first:] = 0.5 * (part[first:] + part[first:].T)
+        # Only one half is computed: so L' is symmetric to the last bit, as L is.
+        table[first:last, :last] = part.T
+        table[:first, first:last] = part[:first]
+    norms = np.linalg.norm(table, axis=1)
+    if (noise > LARGEST_ERROR * norms).any():
+        return None
     return DenseCompliance(
-        body.compliance.free_surface[kept],
-        downdated.astype(np.float32).reshape(len(kept), 3, -1),
+        compliance.free_surface[kept], table.reshape(len(kept), 3, 3 * len(kept))
     )
+
+
+def _rounding_noise(
+    table: NDArray[np.floating],
+    pinned_rows: NDArray[np.int64],
+    kept_rows: NDArray[np.int64],
+    holding: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """What rounding of L makes of the columns of L', 2-norm, (3k,), as far as can be expected.
+
+    L' = Q^T L Q with Q = [I, -H] of the kept and the pinned freedoms. If every L_ab is off by an
+    independent error of deviation r |L_ab|, the squares of the errors of L' are those of Q, L and
+    Q^T multiplied.
+    """
+    weights = np.ones(len(kept_rows) + len(pinned_rows))
+    squares = holding**2
+    weights[pinned_rows] = squares.sum(axis=1)
+    spread = np.empty_like(weights)
+    for node, columns in enumerate(table):
+        spread[3 * node : 3 * node + 3] = np.square(columns, dtype=np.float64) @ weights
+    rounding = ROUNDING_DEVIATION * np.finfo(table.dtype).eps
+    noise: NDArray[np.float64] = rounding * np.sqrt(
+        spread[kept_rows] + spread[pinned_rows] @ squares
+    )
+    return noise
+
+
+def _computed(body: SoftBody, fixed: NDArray[np.int64]) -> Compliance:
+    """The compliance by elimination, in the form that the body has it."""
+    stiffness = assemble(
+        body.mesh,
+        body.poisson_ratio,
+        formulation=body.formulation,
+        young_scale=body.young_scale,
+    )
+    if not isinstance(body.compliance, CompressedCompliance):
+        return surface_compliance(body.mesh, stiffness, fixed)
+    source = factor_for_columns(body.mesh, stiffness, fixed)
+    positions = body.mesh.nodes[source.free_surface]
+    return compress(source, positions, body.compliance.tolerance)
+
+
+def _freedoms(nodes: NDArray[np.int64]) -> NDArray[np.int64]:
+    return (3 * nodes[:, None] + np.arange(3)).ravel()
