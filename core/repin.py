@@ -34,8 +34,8 @@ LARGEST_ERROR = 2e-5
 # Standard deviation of a rounding error, as a share of the distance between neighbouring numbers.
 ROUNDING_DEVIATION = 0.29
 
-# Columns that are computed at once: large enough for BLAS to run at full speed.
-NODES_PER_PRODUCT = 128
+# Rows that are computed at once: large enough for BLAS to run at full speed.
+ROWS_PER_PRODUCT = 384
 
 PinsChange = Literal["same", "more", "bake"]
 
@@ -106,24 +106,24 @@ def _downdated(
     count = compliance.node_count
     kept = np.setdiff1d(np.arange(count), pinned)
     pinned_rows, kept_rows = _freedoms(pinned), _freedoms(kept)
-    loaded = compliance.columns(pinned)
-    reach = np.asfortranarray(loaded[kept_rows])
+    stored = compliance.table.reshape(3 * count, 3 * count)
+    loaded = stored[pinned_rows].astype(np.float64)
+    reach = loaded[:, kept_rows]
     try:
         # (3p, 3k): for 1 N on a kept freedom, the forces that hold the pinned ones.
-        holding = cho_solve(cho_factor(loaded[pinned_rows]), reach.T)
+        holding = cho_solve(cho_factor(loaded[:, pinned_rows]), reach)
     except LinAlgError:
         return None
-    noise = _rounding_noise(compliance.table, pinned_rows, kept_rows, holding)
-    table = np.empty((3 * len(kept), 3 * len(kept)), dtype=np.float32)
-    for start in range(0, len(kept), NODES_PER_PRODUCT):
-        nodes = kept[start : start + NODES_PER_PRODUCT]
-        first, last = 3 * start, 3 * (start + len(nodes))
-        part = compliance.columns(nodes)[kept_rows[:last]]
-        part -= dgemm(1.0, reach[:last], holding[:, first:last])
-        part[first:] = 0.5 * (part[first:] + part[first:].T)
+    noise = _rounding_noise(stored, pinned_rows, kept_rows, holding)
+    table = np.empty((len(kept_rows), len(kept_rows)), dtype=np.float32)
+    for first in range(0, len(kept_rows), ROWS_PER_PRODUCT):
+        rows = slice(first, min(first + ROWS_PER_PRODUCT, len(kept_rows)))
+        part = stored[kept_rows[rows]].take(kept_rows[: rows.stop], axis=1).astype(np.float64)
+        part -= dgemm(1.0, reach.T[: rows.stop], holding[:, rows]).T
         # Only one half is computed: so L' is symmetric to the last bit, as L is.
-        table[first:last, :last] = part.T
-        table[:first, first:last] = part[:first]
+        table[rows, : rows.stop] = part
+        table[:first, rows] = part[:, :first].T
+        table[rows, rows] = 0.5 * (part[:, first:] + part[:, first:].T)
     norms = np.linalg.norm(table, axis=1)
     if (noise > LARGEST_ERROR * norms).any():
         return None
@@ -148,8 +148,9 @@ def _rounding_noise(
     squares = holding**2
     weights[pinned_rows] = squares.sum(axis=1)
     spread = np.empty_like(weights)
-    for node, columns in enumerate(table):
-        spread[3 * node : 3 * node + 3] = np.square(columns, dtype=np.float64) @ weights
+    for first in range(0, len(table), ROWS_PER_PRODUCT):
+        rows = slice(first, first + ROWS_PER_PRODUCT)
+        spread[rows] = np.square(table[rows], dtype=np.float64) @ weights
     rounding = ROUNDING_DEVIATION * np.finfo(table.dtype).eps
     noise: NDArray[np.float64] = rounding * np.sqrt(
         spread[kept_rows] + spread[pinned_rows] @ squares
