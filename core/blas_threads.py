@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import cache
 
+import scipy.linalg.blas  # noqa: F401 - loads the library that is to be found
 from threadpoolctl import ThreadpoolController
 
 from .available_cores import available_cores
+
+# Floating point operations from which on threads are worth waking: ten milliseconds of one. Below,
+# and most of all beside other busy programs, they spend more time on waiting for one another.
+WORTH_THREADS = 5e8
 
 
 @contextmanager
@@ -19,5 +25,37 @@ def blas_threads(wanted: int | None = None) -> Iterator[int]:
     process shares it.
     """
     count = min(wanted or available_cores(), available_cores())
-    with ThreadpoolController().limit(limits=count, user_api="blas"):
+    with _controller().limit(limits=count, user_api="blas"):
         yield count
+
+
+@contextmanager
+def threads_by_work() -> Iterator[Callable[[float], None]]:
+    """Let BLAS use its threads for large pieces of work only, and one for small ones.
+
+    Yields a function to be told the floating point operations that come next.
+    """
+    libraries = [
+        (library, library.num_threads)
+        for library in _controller().lib_controllers
+        if library.user_api == "blas" and library.num_threads > 1
+    ]
+    threaded = True
+
+    def suit(flops: float) -> None:
+        nonlocal threaded
+        if threaded != (flops >= WORTH_THREADS):
+            threaded = not threaded
+            for library, count in libraries:
+                library.set_num_threads(count if threaded else 1)
+
+    try:
+        yield suit
+    finally:
+        suit(WORTH_THREADS)
+
+
+@cache
+def _controller() -> ThreadpoolController:
+    """Of the libraries loaded by now; finding them takes a millisecond."""
+    return ThreadpoolController()

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg.blas import dgemm, dsyrk
 
+from ..blas_threads import threads_by_work
 from .numeric import LoadRows
 from .upper_tiles import tile_edges
 from .work import MOVE_WEIGHT, REAL_BYTES, FrontWork, Meter
@@ -36,11 +37,12 @@ def inverse_table(
     table = np.zeros((count, count), dtype=dtype)
     edges = tile_edges(count, TILE)
     tiles = [slice(start, stop) for start, stop in pairwise(edges)]
-    for index, columns in enumerate(tiles):
-        for rows in tiles[: index + 1]:
-            block = _tile(factor, rows, columns, meter)
-            table[rows, columns] = block
-            table[columns, rows] = table[rows, columns].T
+    with threads_by_work() as suit:
+        for index, columns in enumerate(tiles):
+            for rows in tiles[: index + 1]:
+                block = _tile(factor, rows, columns, suit, meter)
+                table[rows, columns] = block
+                table[columns, rows] = table[rows, columns].T
     _renumber(table, ranks, meter)
     return table.reshape(len(ranks), 3, count)
 
@@ -83,17 +85,24 @@ def inverse_bytes(node_count: int, itemsize: int) -> int:
     return (3 * node_count) ** 2 * itemsize + 3 * tile * REAL_BYTES
 
 
-def _tile(factor: list[LoadRows], rows: slice, columns: slice, meter: Meter) -> NDArray[np.float64]:
+def _tile(
+    factor: list[LoadRows],
+    rows: slice,
+    columns: slice,
+    suit: Callable[[float], None],
+    meter: Meter,
+) -> NDArray[np.float64]:
     """Rows and columns of W^T W; whole, also where both are the same."""
     block = np.zeros((rows.stop - rows.start, columns.stop - columns.start), order="F")
     for part in factor:
         left, right = _meeting(part, rows), _meeting(part, columns)
         if left.start < left.stop and right.start < right.stop:
-            _add_gram(
-                part, left, right, block, (left.start - rows.start, right.start - columns.start)
-            )
-            flops = len(part.rows) * (left.stop - left.start) * (right.stop - right.start)
-            meter.add(flops if rows == columns else 2.0 * flops)
+            half = float(len(part.rows) * (left.stop - left.start) * (right.stop - right.start))
+            flops = half if rows == columns else 2.0 * half
+            suit(flops)
+            corner = (left.start - rows.start, right.start - columns.start)
+            _add_gram(part, left, right, block, corner)
+            meter.add(flops)
     if rows == columns:
         block = np.triu(block)
         block += np.triu(block, 1).T

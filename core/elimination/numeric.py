@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from scipy.linalg.blas import dgemm, dtrsm
 from scipy.linalg.lapack import dpotrf
 
+from ..blas_threads import threads_by_work
 from .block_matrix import BlockMatrix
 from .extend_add import extend_add, runs_between
 from .loose_body import refuse_loose
@@ -66,10 +67,12 @@ def inverse_factor(matrix: BlockMatrix, symbolic: SymbolicFactor, meter: Meter) 
     entries = _EntriesByFront(matrix, symbolic)
     remainders: dict[int, _Remainder] = {}
     result = []
-    for index, front in enumerate(symbolic.fronts):
-        own, remainders[index] = _eliminated(front, index, entries, symbolic, remainders, meter)
-        if own.rows.size:
-            result.append(own)
+    with threads_by_work() as suit:
+        for index, front in enumerate(symbolic.fronts):
+            suit(FrontWork.of(front).flops)
+            own, remainders[index] = _eliminated(front, index, entries, symbolic, remainders, meter)
+            if own.rows.size:
+                result.append(own)
     return result
 
 

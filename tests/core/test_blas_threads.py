@@ -2,7 +2,7 @@ import pytest
 from threadpoolctl import ThreadpoolController
 
 from palpate.core import blas_threads as module
-from palpate.core.blas_threads import blas_threads
+from palpate.core.blas_threads import WORTH_THREADS, blas_threads, threads_by_work
 
 
 def threads_of_blas():
@@ -34,3 +34,26 @@ def test_the_old_number_holds_again_after_an_error():
     with pytest.raises(InterruptedError), blas_threads(1):
         raise InterruptedError
     assert threads_of_blas() == before
+
+
+def test_small_work_has_one_thread_and_large_work_all():
+    controller = ThreadpoolController()
+    with controller.limit(limits=2, user_api="blas"), threads_by_work() as suit:
+        suit(1.0)
+        assert threads_of_blas() == {1}
+        suit(WORTH_THREADS)
+        assert threads_of_blas() == {2}
+        suit(1.0)
+        assert threads_of_blas() == {1}
+    with controller.limit(limits=1, user_api="blas"), threads_by_work() as suit:
+        suit(WORTH_THREADS)
+        assert threads_of_blas() == {1}
+
+
+def test_large_works_threads_hold_again_after_an_error():
+    controller = ThreadpoolController()
+    with controller.limit(limits=2, user_api="blas"):
+        with pytest.raises(InterruptedError), threads_by_work() as suit:
+            suit(1.0)
+            raise InterruptedError
+        assert threads_of_blas() == {2}
