@@ -5,15 +5,44 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 from palpate_servo import Body, Servo, Snapshot
+from palpate_servo import Compliance as NativeCompliance
 
+from .compliance import Compliance
+from .compression.compressed_compliance import CompressedCompliance
+from .dense_compliance import DenseCompliance
 from .errors import PalpateError
+from .mapped_compliance import MappedCompliance
 from .soft_body import SoftBody
 
-__all__ = ["Servo", "Snapshot", "displacements_of", "native_body", "servo_for"]
+__all__ = [
+    "Servo",
+    "Snapshot",
+    "displacements_of",
+    "native_body",
+    "native_compliance",
+    "servo_for",
+]
+
+
+def native_compliance(compliance: Compliance) -> NativeCompliance:
+    """The same compliance as the native thread reads it, in place; its arrays become read-only.
+
+    A table that lies in a file is read there, unchecked: what a tick takes from it is shown and
+    recorded, while the force comes from contact blocks that were checked.
+    """
+    match compliance:
+        case CompressedCompliance():
+            return NativeCompliance.compressed(compliance.arrays())
+        case MappedCompliance():
+            return NativeCompliance.dense(compliance.mapped_table.array)
+        case DenseCompliance():
+            return NativeCompliance.dense(compliance.table)
+        case _:
+            raise TypeError(f"no native form of a {type(compliance).__name__}")
 
 
 def native_body(body: SoftBody) -> Body:
-    """The rest surface and contact blocks of a body as the native thread holds them.
+    """The rest surface, contact blocks and compliance of a body as the native thread holds them.
 
     Raises
     ------
@@ -25,6 +54,8 @@ def native_body(body: SoftBody) -> Body:
             body.mesh.nodes[body.mesh.surface_nodes],
             body.mesh.surface_local_triangles,
             body.contact_blocks,
+            native_compliance(body.compliance),
+            np.searchsorted(body.mesh.surface_nodes, body.compliance.free_surface),
         )
     except ValueError as problem:
         raise PalpateError(

@@ -1,10 +1,10 @@
 """The real-time thread of Palpate: god object, contact force, safety and device link.
 
-SI units everywhere (m, N, Pa, s). Arrays that are handed in are copied; arrays that come out are
-new. Anything with three numbers (list, numpy array, mathutils.Vector) serves as a vector.
+SI units everywhere (m, N, Pa, s). Arrays that are handed in are copied, those of a Compliance
+excepted; arrays that come out are new. Anything with three numbers (list, numpy array, mathutils.Vector) serves as a vector.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Self, TypeAlias, TypedDict, final
 
 import numpy as np
@@ -94,15 +94,63 @@ class ServoCounters(TimingCounters):
     proxy: ProxyCounters
 
 @final
+class Compliance:
+    """The inverse stiffness of the free surface nodes at unit modulus, in either form.
+
+    Its large arrays are not copied: they are made read-only, kept alive, and read in place by the
+    servo's thread. They must be contiguous. A view made writeable before still writes through;
+    then numbers that are read are wrong, and nothing else happens.
+    """
+
+    @staticmethod
+    def dense(table: NDArray[np.floating[Any]]) -> Compliance:
+        """Take table (n, 3, 3n), float32 or float64: ``table[j, c]`` moves all nodes for 1 N on
+        node j along axis c.
+
+        Raises TypeError for another type, ValueError for another shape.
+        """
+
+    @staticmethod
+    def compressed(arrays: Mapping[str, NDArray[np.generic]]) -> Compliance:
+        """Take what `CompressedCompliance.arrays` of core gives.
+
+        Raises KeyError for a missing array, TypeError for one of another type, ValueError when they
+        do not belong together.
+        """
+
+    @property
+    def form(self) -> str:
+        """``dense`` or ``compressed``."""
+
+    @property
+    def node_count(self) -> int: ...
+    def block(self, i: int, j: int) -> NDArray[np.float64]:
+        """L_ij (3, 3): displacement of node i per force on node j."""
+
+    def seconds_per_block(self, pairs: Sequence[tuple[int, int]]) -> float:
+        """How long it takes to read the blocks of these pairs, on average, s."""
+
+@final
 class Body:
     """A soft body's rest surface and contact stiffness; immutable."""
 
-    def __init__(self, nodes: ArrayLike, triangles: ArrayLike, contact_blocks: ArrayLike) -> None:
+    def __init__(
+        self,
+        nodes: ArrayLike,
+        triangles: ArrayLike,
+        contact_blocks: ArrayLike,
+        compliance: Compliance | None = None,
+        free_nodes: ArrayLike | None = None,
+    ) -> None:
         """Take nodes (s, 3) in m, triangles (m, 3) counter-clockwise seen from outside, and
         contact_blocks (s, 3, 3), `L_aa^-1` at unit modulus (9).
 
+        With a compliance, snapshots also tell where the touched point of the surface is. free_nodes
+        (n,) are the numbers of the nodes that it counts, in its order (all unless given); the
+        others are pinned.
+
         Raises ValueError when a number is not finite, an index is out of range, a triangle has no
-        area, or the surface is open or turned inside out.
+        area, the surface is open or turned inside out, or the compliance is of other nodes.
         """
 
     @property
@@ -113,6 +161,12 @@ class Body:
         self, triangle: int, alpha: _Vector, displacement: _Vector, young_modulus: float
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Nodal forces (3, 3) and force on the finger (3,), N: equations (11) to (14)."""
+
+    def surface_displacement(
+        self, triangle: int, alpha: _Vector, nodal_forces: _Matrix, young_modulus: float
+    ) -> NDArray[np.float64] | None:
+        """How far the point at area coordinates alpha moves under forces (3, 3) on the nodes of its
+        triangle, m (15); None without a compliance."""
 
     def closest_point(
         self, p: _Vector
@@ -184,6 +238,12 @@ class Snapshot:
         """N, after safety, body axes."""
 
     @property
+    def surface_point(self) -> NDArray[np.float64] | None:
+        """Where the touched point of the surface is now, m: the god object plus the displacement
+        that the nodal forces cause there (15). None while free, and for a body without a compliance.
+        """
+
+    @property
     def touching(self) -> bool: ...
     @property
     def state(self) -> str:
@@ -253,9 +313,11 @@ class Servo:
         """The newest tick; state "stopped" before the start and after the end."""
 
     def samples(self) -> NDArray[np.void]:
-        """All recorded ticks since the last call: tick, time, probe, proxy, force, output, state.
+        """All recorded ticks since the last call: tick, time, probe, proxy, surface, force, output,
+        state.
 
-        state is an index into STATES.
+        surface is the surface_point of snapshots, not a number where that is None; state is an
+        index into STATES.
         """
 
     def counters(self) -> ServoCounters: ...

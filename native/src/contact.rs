@@ -1,4 +1,5 @@
-//! From a displaced contact point to nodal forces and the felt force, equations (11) to (14).
+//! From a displaced contact point to nodal forces and the felt force, equations (11) to (14),
+//! and on to how the touched point gives way (15).
 
 use glam::DVec3;
 
@@ -34,4 +35,28 @@ pub fn touch(
         nodal_forces,
         force: -(nodal_forces[0] + nodal_forces[1] + nodal_forces[2]),
     }
+}
+
+/// How far the touched point of the surface moves under the forces on its three nodes (15).
+///
+/// `None` for a body without a compliance. A node whose area coordinate is zero neither carries
+/// nor shows anything, so both triangles of an edge give the same displacement.
+#[inline]
+pub fn surface_displacement(
+    body: &Body,
+    triangle: u32,
+    alpha: [f64; 3],
+    nodal_forces: &[DVec3; 3],
+    young_modulus: f64,
+) -> Option<DVec3> {
+    let nodes = body.triangles[triangle as usize];
+    let mut moved = DVec3::ZERO;
+    for (seen, &weight) in alpha.iter().enumerate() {
+        for (loaded, &force) in nodal_forces.iter().enumerate() {
+            if weight != 0.0 && force != DVec3::ZERO {
+                moved += body.compliance_block(nodes[seen], nodes[loaded])? * force * weight;
+            }
+        }
+    }
+    body.has_compliance().then_some(moved / young_modulus)
 }

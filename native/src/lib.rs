@@ -8,6 +8,7 @@
 pub mod clock;
 pub mod closest;
 pub mod codec;
+pub mod compliance;
 pub mod contact;
 pub mod device;
 pub mod link;
@@ -20,5 +21,6 @@ pub mod safety;
 pub mod servo;
 mod sleeper;
 pub mod surface;
+pub mod table;
 pub mod thread;
 pub mod tree;

@@ -6,7 +6,7 @@ use glam::DVec3;
 use rtrb::Producer;
 use triple_buffer::{Input, Output};
 
-use crate::contact::touch;
+use crate::contact::{surface_displacement, touch};
 use crate::device::{Device, DeviceFrame, Fault, LinkReport, Probe, Reading};
 use crate::proxy::Proxy;
 use crate::safety::{Limits, Safety};
@@ -96,6 +96,9 @@ pub struct Snapshot {
     pub nodal_forces: [DVec3; 3],
     /// (14) before safety, N.
     pub contact_force: DVec3,
+    /// Where the touched point of the surface is now, m; known while touching, if the body has a
+    /// compliance.
+    pub surface_point: Option<DVec3>,
     /// Sent to the device, N, body axes.
     pub output_force: DVec3,
     /// Named state.
@@ -137,6 +140,8 @@ pub struct Sample {
     pub probe: [f64; 3],
     /// m.
     pub proxy: [f64; 3],
+    /// Where the touched point of the surface is, m; not a number while free or unknown.
+    pub surface: [f64; 3],
     /// (14), N.
     pub force: [f64; 3],
     /// After safety, N.
@@ -263,6 +268,14 @@ impl<D: Device> Servo<D> {
             shot.triangle = self.body.triangles[hold.triangle as usize];
             shot.nodal_forces = touch.nodal_forces;
             shot.contact_force = touch.force;
+            shot.surface_point = surface_displacement(
+                &self.body,
+                hold.triangle,
+                hold.alpha,
+                &touch.nodal_forces,
+                young_modulus,
+            )
+            .map(|moved| shot.proxy + moved);
         }
     }
 
@@ -301,6 +314,7 @@ impl<D: Device> Servo<D> {
             time: shot.time,
             probe: shot.probe.to_array(),
             proxy: shot.proxy.to_array(),
+            surface: shot.surface_point.unwrap_or(DVec3::NAN).to_array(),
             force: shot.contact_force.to_array(),
             output: shot.output_force.to_array(),
             state: shot.state as u64,

@@ -4,9 +4,11 @@
 
 use std::collections::HashMap;
 use std::fmt;
+use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
 
+use crate::compliance::Compliance;
 use crate::tree::Tree;
 
 /// Why a surface cannot be touched.
@@ -103,6 +105,17 @@ pub struct Corner {
     pub corner: u8,
 }
 
+/// The place of a node that is pinned: it never moves.
+const PINNED: u32 = u32::MAX;
+
+/// How the surface gives way under forces on its nodes.
+#[derive(Debug)]
+struct Response {
+    compliance: Arc<Compliance>,
+    /// Where the compliance counts each node, or [`PINNED`].
+    places: Vec<u32>,
+}
+
 /// A soft body as the servo sees it: rest surface and contact stiffness per node.
 #[derive(Debug)]
 pub struct Body {
@@ -119,6 +132,7 @@ pub struct Body {
     node_normals: Vec<DVec3>,
     tree: Tree,
     size: f64,
+    response: Option<Response>,
 }
 
 impl Body {
@@ -155,7 +169,63 @@ impl Body {
             node_normals,
             tree,
             size,
+            response: None,
         })
+    }
+
+    /// The same body, which now also knows how its surface moves.
+    ///
+    /// `free_nodes` are the numbers of the nodes that the compliance counts, in its order; the
+    /// others are pinned.
+    ///
+    /// # Errors
+    /// [`BodyError`] when there are not as many as in the compliance, or a number is out of range
+    /// or there twice.
+    pub fn with_compliance(
+        mut self,
+        compliance: Arc<Compliance>,
+        free_nodes: &[u32],
+    ) -> Result<Self, BodyError> {
+        if free_nodes.len() != compliance.node_count() {
+            return Err(BodyError(format!(
+                "{} free nodes are named for a compliance of {}",
+                free_nodes.len(),
+                compliance.node_count()
+            )));
+        }
+        let mut places = vec![PINNED; self.nodes.len()];
+        for (place, &node) in free_nodes.iter().enumerate() {
+            match places.get_mut(node as usize) {
+                Some(free @ &mut PINNED) => *free = place as u32,
+                Some(_) => return Err(BodyError(format!("node {node} is named free twice"))),
+                None => {
+                    return Err(BodyError(format!(
+                        "free node {node} is beyond the {} nodes given",
+                        self.nodes.len()
+                    )));
+                }
+            }
+        }
+        self.response = Some(Response { compliance, places });
+        Ok(self)
+    }
+
+    /// Whether the body knows how its surface moves.
+    #[inline]
+    pub fn has_compliance(&self) -> bool {
+        self.response.is_some()
+    }
+
+    /// L_ab at unit modulus for two surface nodes, zero where one is pinned; `None` for a body
+    /// without a compliance.
+    #[inline]
+    pub fn compliance_block(&self, a: u32, b: u32) -> Option<DMat3> {
+        let response = self.response.as_ref()?;
+        let (a, b) = (response.places[a as usize], response.places[b as usize]);
+        if a == PINNED || b == PINNED {
+            return Some(DMat3::ZERO);
+        }
+        Some(response.compliance.block(a as usize, b as usize))
     }
 
     /// All triangles with their geometry.

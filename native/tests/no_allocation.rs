@@ -175,7 +175,7 @@ fn ticks_of<D: Device>(device: D, mut each: impl FnMut(u32)) -> (Published, u64)
     // Smaller than the run: a full ring must not allocate either.
     let (samples_in, _samples) = RingBuffer::new(50_000);
     let mut servo = Servo::new(
-        bodies::cube(),
+        bodies::giving_cube(),
         device,
         OPTIONS,
         settings_out,

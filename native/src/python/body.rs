@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
-use numpy::{AllowTypeChange, PyArray1, PyArrayLike2, PyArrayLike3};
+use numpy::{AllowTypeChange, PyArray1, PyArrayLike1, PyArrayLike2, PyArrayLike3};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use super::vectors::{Matrix, Triple, Vector, array, finite, rows};
+use super::compliance::Compliance;
+use super::vectors::{Matrix, Rows, Triple, Vector, array, finite, rows};
 use crate::{closest, contact, surface};
 
 #[pyclass(frozen, module = "palpate_servo")]
@@ -18,10 +19,13 @@ pub struct Body {
 #[pymethods]
 impl Body {
     #[new]
+    #[pyo3(signature = (nodes, triangles, contact_blocks, compliance=None, free_nodes=None))]
     fn new(
         nodes: PyArrayLike2<'_, f64, AllowTypeChange>,
         triangles: PyArrayLike2<'_, i64, AllowTypeChange>,
         contact_blocks: PyArrayLike3<'_, f64, AllowTypeChange>,
+        compliance: Option<&Compliance>,
+        free_nodes: Option<PyArrayLike1<'_, i64, AllowTypeChange>>,
     ) -> PyResult<Self> {
         let (nodes, triangles, blocks) = (
             nodes.as_array(),
@@ -60,8 +64,17 @@ impl Body {
             .outer_iter()
             .map(|b| DMat3::from_cols_array_2d(&[0, 1, 2].map(|c| [0, 1, 2].map(|r| b[[r, c]]))))
             .collect();
-        let inner = surface::Body::new(nodes, triangles, blocks)
-            .map_err(|e| PyValueError::new_err(e.to_string()))?;
+        let refused = |e: surface::BodyError| PyValueError::new_err(e.to_string());
+        let mut inner = surface::Body::new(nodes, triangles, blocks).map_err(refused)?;
+        if let Some(compliance) = compliance {
+            let free_nodes = match free_nodes {
+                Some(numbers) => node_numbers(&numbers)?,
+                None => (0..inner.nodes.len() as u32).collect(),
+            };
+            inner = inner
+                .with_compliance(compliance.inner.clone(), &free_nodes)
+                .map_err(refused)?;
+        }
         Ok(Self {
             inner: Arc::new(inner),
         })
@@ -85,12 +98,7 @@ impl Body {
         displacement: Triple,
         young_modulus: f64,
     ) -> PyResult<(Matrix<'py>, Vector<'py>)> {
-        if triangle >= self.inner.triangles.len() {
-            return Err(PyValueError::new_err(format!(
-                "triangle {triangle} is beyond the {} triangles of the body",
-                self.inner.triangles.len()
-            )));
-        }
+        self.check_triangle(triangle)?;
         let touch = contact::touch(
             &self.inner,
             triangle as u32,
@@ -99,6 +107,25 @@ impl Body {
             young_modulus,
         );
         Ok((rows(py, &touch.nodal_forces)?, array(py, touch.force)))
+    }
+
+    fn surface_displacement<'py>(
+        &self,
+        py: Python<'py>,
+        triangle: usize,
+        alpha: Triple,
+        nodal_forces: Rows,
+        young_modulus: f64,
+    ) -> PyResult<Option<Vector<'py>>> {
+        self.check_triangle(triangle)?;
+        let moved = contact::surface_displacement(
+            &self.inner,
+            triangle as u32,
+            alpha,
+            &nodal_forces.map(DVec3::from_array),
+            young_modulus,
+        );
+        Ok(moved.map(|moved| array(py, moved)))
     }
 
     fn closest_point<'py>(
@@ -115,4 +142,24 @@ impl Body {
             sign * found.distance,
         ))
     }
+}
+
+impl Body {
+    fn check_triangle(&self, triangle: usize) -> PyResult<()> {
+        if triangle < self.inner.triangles.len() {
+            return Ok(());
+        }
+        Err(PyValueError::new_err(format!(
+            "triangle {triangle} is beyond the {} triangles of the body",
+            self.inner.triangles.len()
+        )))
+    }
+}
+
+fn node_numbers(numbers: &PyArrayLike1<'_, i64, AllowTypeChange>) -> PyResult<Vec<u32>> {
+    let number = |&n: &i64| {
+        u32::try_from(n)
+            .map_err(|_| PyValueError::new_err(format!("free_nodes names the node {n}")))
+    };
+    numbers.as_array().iter().map(number).collect()
 }

@@ -1,6 +1,7 @@
 //! The thin binding: arrays in, arrays out. Nothing of Python reaches the servo thread.
 
 mod body;
+mod compliance;
 mod counters;
 mod frames;
 mod proxy;
@@ -17,6 +18,7 @@ use crate::servo::State;
 fn palpate_servo(module: &Bound<'_, PyModule>) -> PyResult<()> {
     let py = module.py();
     module.add_class::<body::Body>()?;
+    module.add_class::<compliance::Compliance>()?;
     module.add_class::<proxy::Proxy>()?;
     module.add_class::<servo::Servo>()?;
     module.add_class::<snapshot::Snapshot>()?;

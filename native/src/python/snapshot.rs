@@ -60,6 +60,10 @@ impl Snapshot {
         array(py, self.inner.output_force)
     }
     #[getter]
+    fn surface_point<'py>(&self, py: Python<'py>) -> Option<Vector<'py>> {
+        self.inner.surface_point.map(|point| array(py, point))
+    }
+    #[getter]
     fn touching(&self) -> bool {
         self.inner.hold.is_some()
     }
@@ -104,7 +108,7 @@ pub fn structured<'py>(py: Python<'py>, samples: &[Sample]) -> PyResult<Bound<'p
 }
 
 fn sample_fields<'py>(py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
-    const _: () = assert!(size_of::<Sample>() == 15 * 8);
+    const _: () = assert!(size_of::<Sample>() == 18 * 8);
     let number = |name: &str, kind: &str| (name, kind).into_pyobject(py).map(Bound::into_any);
     let vector = |name: &str| (name, "=f8", (3,)).into_pyobject(py).map(Bound::into_any);
     PyList::new(
@@ -114,6 +118,7 @@ fn sample_fields<'py>(py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
             number("time", "=f8")?,
             vector("probe")?,
             vector("proxy")?,
+            vector("surface")?,
             vector("force")?,
             vector("output")?,
             number("state", "=u8")?,

@@ -41,6 +41,10 @@ pub fn rows<'py>(py: Python<'py>, m: &[DVec3; 3]) -> PyResult<Matrix<'py>> {
     Ok(PyArray2::from_vec2(py, &m.map(|v| v.to_array().to_vec()))?)
 }
 
+pub fn square(py: Python<'_>, m: DMat3) -> PyResult<Matrix<'_>> {
+    rows(py, &[m.row(0), m.row(1), m.row(2)])
+}
+
 pub fn matrix(rows: Rows) -> DMat3 {
     DMat3::from_cols_array_2d(&rows).transpose()
 }

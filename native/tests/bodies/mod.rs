@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
+use palpate_servo::compliance::{Compliance, Compressed, CompressedParts, Either};
 use palpate_servo::surface::Body;
 
 pub fn soft(nodes: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Arc<Body> {
@@ -69,6 +70,92 @@ pub fn cube() -> Arc<Body> {
     let body = voxels(&grid(4, 4, 4), 0.0125);
     assert_eq!((body.nodes.len(), body.triangles.len()), (98, 192));
     body
+}
+
+/// The cube with a compressed compliance made of far blocks alone wherever that can be: the form
+/// that costs a tick the most. The lowest nodes are pinned.
+pub fn giving_cube() -> Arc<Body> {
+    let body = Arc::into_inner(cube()).expect("nobody else has it");
+    let free: Vec<u32> = (0..body.nodes.len() as u32)
+        .filter(|&node| body.nodes[node as usize].z > 0.0)
+        .collect();
+    let compliance = compressed(&mut Dice::new(8), free.len(), 4, 2);
+    Arc::new(
+        body.with_compliance(Arc::new(compliance), &free)
+            .expect("it fits"),
+    )
+}
+
+/// Made-up parts of a compressed compliance: clusters that are near to themselves alone, with as
+/// many tiles each as told, every third tile missing and every fifth wide.
+pub fn compressed_parts(
+    dice: &mut Dice,
+    nodes: usize,
+    leaf: usize,
+    tiles: usize,
+) -> CompressedParts {
+    let clusters = nodes.div_ceil(leaf);
+    let (rows, all) = (3 * leaf, clusters * tiles);
+    let mut own_blocks = Vec::new();
+    for _ in 0..nodes {
+        let [a, b, c] = [0, 1, 2].map(|_| dice.within(-0.1, 0.1));
+        own_blocks.extend([1.0, a, b, a, 1.2, c, b, c, 0.8]);
+    }
+    let mut near: Vec<i16> = vec![0; clusters * rows * rows];
+    for block in near.chunks_mut(rows * rows) {
+        for r in 0..rows {
+            for c in 0..=r {
+                let number = dice.below(200) as i16 - 100;
+                (block[r * rows + c], block[c * rows + r]) = (number, number);
+            }
+        }
+    }
+    let mut tile_table = vec![0; all * all];
+    let (mut narrow, mut wide) = (vec![0_i8; 64], Vec::new());
+    for row in 0..all {
+        for column in (row / tiles + 1) * tiles..all {
+            let number = match (row + column) % 15 {
+                0 | 3 | 6 | 9 | 12 => 0,
+                5 | 10 => {
+                    wide.extend((0..64).map(|_| dice.below(2000) as i16 - 1000));
+                    -(wide.len() as i32 / 64)
+                }
+                _ => {
+                    narrow.extend((0..64).map(|_| dice.below(200) as i8));
+                    narrow.len() as i32 / 64 - 1
+                }
+            };
+            (
+                tile_table[row * all + column],
+                tile_table[column * all + row],
+            ) = (number, number);
+        }
+    }
+    let mut floats = |count: usize, low: f64, high: f64| -> Vec<f32> {
+        (0..count).map(|_| dice.within(low, high) as f32).collect()
+    };
+    CompressedParts {
+        places: (0..nodes as u32).rev().collect(),
+        own_blocks: own_blocks.into(),
+        near_scale: floats(clusters * rows, 0.5, 2.0).into(),
+        near_table: (0..clusters * clusters)
+            .map(|k| if k / clusters == k % clusters { k / clusters + 1 } else { 0 } as u32)
+            .collect(),
+        near_steps: floats(clusters, 1e-3, 2e-3).into(),
+        near: Either::Short(near.into()),
+        tile_counts: vec![tiles as u32; clusters],
+        basis: floats(rows * 8 * all, -0.3, 0.3).into(),
+        steps: floats(clusters, 1e-3, 2e-3).into(),
+        tile_table,
+        narrow: narrow.into(),
+        wide: Either::Short(wide.into()),
+    }
+}
+
+/// A compliance of these parts.
+pub fn compressed(dice: &mut Dice, nodes: usize, leaf: usize, tiles: usize) -> Compliance {
+    let parts = compressed_parts(dice, nodes, leaf, tiles);
+    Compliance::Compressed(Box::new(Compressed::new(parts).expect("sound parts")))
 }
 
 /// A bar with an inner corner along y.
