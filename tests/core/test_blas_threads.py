@@ -51,9 +51,12 @@ def test_small_work_has_one_thread_and_large_work_all():
 
 
 def test_large_works_threads_hold_again_after_an_error():
-    controller = ThreadpoolController()
-    with controller.limit(limits=2, user_api="blas"):
-        with pytest.raises(InterruptedError), threads_by_work() as suit:
+    def stopped():
+        with threads_by_work() as suit:
             suit(1.0)
             raise InterruptedError
+
+    with ThreadpoolController().limit(limits=2, user_api="blas"):
+        with pytest.raises(InterruptedError):
+            stopped()
         assert threads_of_blas() == {2}
