@@ -7,7 +7,7 @@ import logging
 import secrets
 from collections.abc import Iterator
 from concurrent.futures import Executor
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -75,7 +75,9 @@ def cluster(address: str) -> Iterator[Cluster]:
                 StillWanted(stop.name),
             )
         except BaseException:
-            stop.set()
+            # A cluster that is gone cannot be told, and has nobody left to tell.
+            with suppress(OSError):
+                stop.set()
             raise
 
 
@@ -89,7 +91,9 @@ def _connected(address: str) -> Iterator[Client]:
             "'pip install palpate[scheduler]'"
         ) from missing
     # What it has to say of connections is said here, in one line.
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)
+    for name in list(logging.root.manager.loggerDict):
+        if name.split(".")[0] == "distributed":
+            logging.getLogger(name).setLevel(logging.CRITICAL)
     where: dict[str, Any] = (
         {"scheduler_file": address} if Path(address).is_file() else {"address": address}
     )

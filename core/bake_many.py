@@ -14,7 +14,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -138,7 +138,7 @@ def bake_many(
             for task in _next_of(waiting, at_once - len(running)):
                 try:
                     future = executor.submit(_bake, task, folder, sign, wanted, python)
-                except BrokenExecutor as problem:
+                except Exception as problem:  # noqa: BLE001  told with the mesh's name
                     note(_failed(task, problem))
                 else:
                     running[future] = task
@@ -171,10 +171,10 @@ def _under_way() -> Iterator[dict[Future[_Answer], BakeTask]]:
 
 
 def _outcome(task: BakeTask, folder: Path, future: Future[_Answer]) -> BakeOutcome:
-    problem = future.exception()
-    if problem is not None:
+    try:
+        answer = future.result()
+    except Exception as problem:  # noqa: BLE001  told with the mesh's name
         return _failed(task, problem)
-    answer = future.result()
     if answer.contents is not None:
         try:
             with whole_file(folder / task.file_name) as file:
@@ -185,11 +185,11 @@ def _outcome(task: BakeTask, folder: Path, future: Future[_Answer]) -> BakeOutco
 
 
 def _failed(task: BakeTask, problem: BaseException) -> BakeOutcome:
-    last_words = (str(problem).strip().splitlines() or ["no reason given"])[-1]
+    last_words = [type(problem).__name__, *str(problem).strip().splitlines()[-1:]]
     return BakeOutcome(
         task.name,
-        error=f"the worker failed ({type(problem).__name__}: {last_words}); bake this mesh alone "
-        "to see whether it is the mesh or the worker",
+        error=f"the worker failed ({': '.join(last_words)}); bake this mesh alone to see whether "
+        "it is the mesh or the worker",
     )
 
 

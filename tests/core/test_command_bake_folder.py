@@ -47,15 +47,8 @@ def long_meshes(tmp_path, monkeypatch):
 
 
 @pytest.fixture(scope="module")
-def quiet_distributed():
+def start_cluster():
     pytest.importorskip("distributed", reason="distributed is not installed (extra 'scheduler')")
-    before = logging.getLogger("distributed").level
-    yield
-    logging.getLogger("distributed").setLevel(before)
-
-
-@pytest.fixture(scope="module")
-def start_cluster(quiet_distributed):
     from distributed import LocalCluster
 
     with contextlib.ExitStack() as clusters:
@@ -174,6 +167,23 @@ def test_a_cluster_with_another_palpate_is_refused(meshes, capsys, two_workers, 
     status, _, said = palpate(capsys, "bake", *words)
     assert status == 2
     assert f"has palpate {here('palpate')}, and this is {here('palpate')}.1; install" in said
+
+
+def test_a_cluster_learns_that_nobody_waits_any_more(two_workers):
+    found = []
+
+    def interrupted():
+        with scheduler.cluster(two_workers) as workers:
+            found.append(workers)
+            assert workers.slots == 2
+            assert workers.executor.submit(workers.wanted).result() is True
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        interrupted()
+    with scheduler.cluster(two_workers) as later:
+        assert later.executor.submit(later.wanted).result() is True
+        assert later.executor.submit(found[0].wanted).result() is False
 
 
 def test_without_dask_one_line_says_what_to_install(meshes, capsys, monkeypatch):
