@@ -37,8 +37,10 @@ NODES_PER_BENDING = 0.31
 BLENDING = 1.6
 # All nodes are these and volume / h^3, and a layer that grades from the surface inwards.
 GRADED_NODES = 0.23
-# Nine of ten runs had between 0.7 and 1.3 times the nodes so predicted.
+# Nine of ten runs had between 0.7 and 1.3 times the nodes so predicted; without the bending, which
+# is nil for boxes and large for limbs, between half and twice of them.
 NODE_SPREAD = 1.5
+NODE_SPREAD_WITHOUT_BENDING = 2.0
 
 # Edges sharper than this are edges of the shape, which need no finer triangles.
 SHARP_EDGE = np.radians(60.0)
@@ -49,7 +51,7 @@ TETRAHEDRALIZE_EXPONENTS = (0.93, -0.64, 0.30)
 TETRAHEDRALIZE_SPREAD = 3.0
 
 # Seconds for each tetrahedron to assemble, for each node to plan; by formulation.
-ASSEMBLY_SECONDS = {LINEAR: 2e-6, "smoothed": 12e-6}
+ASSEMBLY_SECONDS = {LINEAR: 2e-6, "smoothed": 15e-6}
 PLANNING_SECONDS = {LINEAR: 30e-6, "smoothed": 60e-6}
 TETS_PER_NODE = 5.0
 # Comparing with the mesh: seconds for each of its triangles and each surface node.
@@ -105,16 +107,16 @@ class EliminationLaws:
 
 ELIMINATION = {
     LINEAR: EliminationLaws(
-        PowerLaw(1700.0, 1.76, 0.23),
-        PowerLaw(5270.0, 0.67, 0.64),
-        PowerLaw(4800.0, 2.13, -0.43),
-        PowerLaw(300.0, 1.15, 0.38),
+        PowerLaw(2220.0, 1.80, 0.14),
+        PowerLaw(5350.0, 0.71, 0.59),
+        PowerLaw(7010.0, 2.20, -0.58),
+        PowerLaw(400.0, 1.14, 0.34),
     ),
     "smoothed": EliminationLaws(
-        PowerLaw(435.0, 1.87, 0.44),
-        PowerLaw(3140.0, 0.89, 0.52),
-        PowerLaw(724.0, 2.28, -0.18),
-        PowerLaw(400.0, 1.12, 0.51),
+        PowerLaw(676.0, 1.88, 0.35),
+        PowerLaw(3650.0, 0.93, 0.45),
+        PowerLaw(1210.0, 2.30, -0.30),
+        PowerLaw(554.0, 1.10, 0.46),
     ),
 }
 
@@ -199,16 +201,17 @@ def bending(surface: Surface) -> float:
     i, j, k = (surface.vertices[triangles[:, corner]] for corner in range(3))
     normals = np.cross(j - i, k - i)
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), np.finfo(float).tiny)
-    edges = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
-    order = np.lexsort(edges.T)
+    starts, ends = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
+    edge = np.minimum(starts, ends) * len(surface.vertices) + np.maximum(starts, ends)
+    order = np.argsort(edge)
     first, second = order[:-1], order[1:]
-    paired = (edges[first] == edges[second]).all(axis=1)
+    paired = edge[first] == edge[second]
     first, second = first[paired], second[paired]
     cosine = np.einsum("ex,ex->e", normals[first // 3], normals[second // 3])
     # Faces that look opposite ways do so by their winding, as a rule.
     angle = np.arccos(np.clip(np.abs(cosine), 0.0, 1.0))
-    ends = surface.vertices[edges[first]]
-    lengths = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+    along = surface.vertices[ends[first]] - surface.vertices[starts[first]]
+    lengths = np.linalg.norm(along, axis=1)
     return float(0.5 * (lengths * angle)[angle < SHARP_EDGE].sum())
 
 
@@ -291,29 +294,40 @@ def affordable_form(
         The memory does not suffice; with the remedy.
     """
     dense = planned_cost(plan, "dense", settings.threads)
+    compressed = planned_cost(plan, "compressed", settings.threads)
     chosen = automatic_form(settings.form, dense, available)
-    cost = dense if chosen == "dense" else planned_cost(plan, chosen, settings.threads)
-    refusal = memory_refusal(cost, available)
+    cost = dense if chosen == "dense" else compressed
+    refusal = memory_refusal(cost, available, compressed)
     if refusal is not None:
         raise PalpateError(refusal)
     warnings = []
     if settings.form == "auto" and chosen == "compressed" and dense.peak_bytes > available:
         warnings.append(
             f"the compliance was compressed, since whole it would have taken "
-            f"{dense.peak_bytes / 1e9:.2g} GB of memory, and {available / 1e9:.2g} GB could be had"
+            f"{_memory(dense.peak_bytes)} of memory, and {_memory(available)} could be had"
         )
     return chosen, warnings
 
 
-def memory_refusal(cost: BakeCost, available: int) -> str | None:
-    """Why a bake must not start, with the remedy; None where the memory suffices."""
+def memory_refusal(
+    cost: BakeCost, available: int, compressed: BakeCost | None = None
+) -> str | None:
+    """Why a bake must not start, with the remedy; None where the memory suffices.
+
+    ``compressed`` is what the compressed form would cost: it is only offered where it would fit.
+    """
     if cost.peak_bytes <= available:
         return None
-    remedies = "choose the compressed form or " if cost.form == "dense" else ""
+    would_fit = compressed is None or compressed.peak_bytes <= available
+    remedies = "choose the compressed form or " if cost.form == "dense" and would_fit else ""
     return (
-        f"bake: {cost.free_surface_nodes:,} free surface nodes take {cost.peak_bytes / 1e9:.2g} GB "
-        f"of memory, and {available / 1e9:.2g} GB can be had; {remedies}use a larger edge length"
+        f"bake: {cost.free_surface_nodes:,} free surface nodes take {_memory(cost.peak_bytes)} of "
+        f"memory, and {_memory(available)} can be had; {remedies}use a larger edge length"
     )
+
+
+def _memory(count: int) -> str:
+    return f"{count / 1e9:.1f} GB" if count >= 1e9 else f"{max(1, round(count / 1e6))} MB"
 
 
 def edge_length_that_fits(size: ShapeSize, settings: BakeSettings, available: int) -> float | None:

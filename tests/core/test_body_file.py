@@ -7,6 +7,7 @@ import pytest
 
 from palpate.core import cache
 from palpate.core.cache import BodyFileError, body_key
+from palpate.core.compression.compress import compress
 from palpate.core.mapped_compliance import MappedCompliance
 from palpate.core.npz_archive import opened
 from palpate.core.whole_file import UnwritableError
@@ -341,3 +342,71 @@ def test_a_body_as_stiff_everywhere_has_the_key_it_always_had(cube):
     assert cube.key == body_key(cube.mesh, cube.fixed, 0.49)
     assert cube.key == body_key(cube.mesh, cube.fixed, 0.49, "linear", None)
     assert cube.key == "acd1757aa607f98f2d54b0e8c9aa9b0306671bd61eddb1e179dd8f7c003bb070"
+
+
+@pytest.fixture(scope="module")
+def compressed(mouse):
+    positions = mouse.mesh.nodes[mouse.compliance.free_surface]
+    return replace(mouse, compliance=compress(mouse.compliance, positions, 1e-3))
+
+
+def test_a_compressed_body_comes_back_as_it_was(compressed, tmp_path):
+    path = tmp_path / "mouse.npz"
+    cache.save(compressed, path)
+    body = cache.load(path)
+    assert body.compliance.form == "compressed"
+    assert body.compliance.tolerance == 1e-3
+    stored = body.compliance.arrays()
+    for name, array in compressed.compliance.arrays().items():
+        np.testing.assert_array_equal(stored[name], array)
+    assert body.key == compressed.key
+    assert path.stat().st_size < 0.15 * compressed.compliance.node_count**2 * 36
+
+
+def test_the_form_is_not_part_of_the_key(mouse, compressed):
+    assert mouse.key == compressed.key
+
+
+def test_a_damaged_compressed_body_is_refused(compressed, tmp_path, rng):
+    path = tmp_path / "mouse.npz"
+    cache.save(compressed, path)
+    content = path.read_bytes()
+    for place in rng.integers(0, len(content), 20):
+        damaged = bytearray(content)
+        damaged[place] ^= 0x10
+        path.write_bytes(damaged)
+        try:
+            body = cache.load(path)
+        except BodyFileError:
+            continue
+        np.testing.assert_array_equal(body.compliance.diagonal(), compressed.compliance.diagonal())
+        np.testing.assert_array_equal(body.compliance.narrow, compressed.compliance.narrow)
+
+
+@pytest.mark.parametrize("name", ["tolerance", "compressed_basis"])
+def test_a_missing_array_of_a_compressed_body_is_refused(compressed, tmp_path, name):
+    path = tmp_path / "mouse.npz"
+    cache.save(compressed, path)
+    rewrite(path, **{name: None})
+    with pytest.raises(BodyFileError, match="damaged"):
+        cache.load(path)
+
+
+def test_arrays_that_do_not_belong_together_are_refused_with_a_right_checksum(compressed, tmp_path):
+    path = tmp_path / "mouse.npz"
+    shorter = replace(compressed.compliance, tile_counts=compressed.compliance.tile_counts[:-1])
+    cache.save(replace(compressed, compliance=shorter), path)
+    with pytest.raises(BodyFileError, match=r"mouse\.npz.*bake again"):
+        cache.load(path)
+
+
+def test_an_unknown_form_is_refused(cube, tmp_path):
+    path = tmp_path / "cube.npz"
+    cache.save(cube, path)
+    with np.load(path) as stored:
+        arrays = dict(stored)
+    arrays["form"] = np.array("woven")
+    arrays["checksum"] = np.array(cache._checksum(arrays))
+    np.savez(path, **arrays)
+    with pytest.raises(BodyFileError, match="form 'woven'.*bake again"):
+        cache.load(path)
