@@ -16,7 +16,7 @@ from .column_source import ColumnSource
 from .compressed_compliance import CompressedCompliance
 from .coupling import Coupling
 from .packing import packed
-from .tiles import Rounding, rounding
+from .tiles import Rounding
 
 # Calls the task for each cluster number and hands the results over in the same order, as map does.
 MapClusters = Callable[[ClusterTask, Iterable[int]], Iterable[ClusterColumns]]
@@ -89,7 +89,7 @@ def compress(
             progress(start + (end - start) * number / clusters.count)
         chosen = _coarsest(coupling, tolerance)
         if chosen is not None:
-            compressed = packed(source.free_surface, coupling, *chosen, tolerance)
+            compressed = packed(source.free_surface, *chosen, tolerance)
             progress(1.0)
             return compressed
     raise PalpateError(
@@ -106,7 +106,7 @@ def _coarsest(coupling: Coupling, tolerance: float) -> tuple[Rounding, float] | 
     best: tuple[Rounding, float] | None = None
     too_coarse = np.inf
     for _ in range(STEP_TRIALS):
-        trial = rounding(coupling, step)
+        trial = Rounding(coupling, step)
         # Far and near parts are different rows of a column; cut and rounding may add up.
         error = float(np.hypot(near, cut + trial.errors).max()) + SINGLE_PRECISION
         if error <= tolerance:

@@ -157,6 +157,11 @@ class CompressedCompliance:
         return int(self.near.shape[1]) // 3
 
     @cached_property
+    def _rows(self) -> NDArray[np.int64]:
+        """Where each degree of freedom stands among the padded clusters', (3n,)."""
+        return (3 * self.places.astype(np.int64)[:, None] + np.arange(3)).ravel()
+
+    @cached_property
     def _first_tiles(self) -> NDArray[np.int64]:
         return np.concatenate([[0], np.cumsum(self.tile_counts)]).astype(np.int64)
 
@@ -229,21 +234,25 @@ class CompressedCompliance:
         moved *= self.near_scale[:, :, None]
         for clusters, tiles, bases in self._equal_ranks:
             moved[clusters] += bases @ patterns[tiles].reshape(len(bases), -1, width)
-        return moved.reshape(-1, 3, width)[self.places]
+        return moved.reshape(-1, width).take(self._rows, axis=0).reshape(-1, 3, width)
 
     def _add_near(self, moved: NDArray[np.floating], load: _Load) -> None:
         numbers = self.near_table[load.cluster]
         others = np.flatnonzero(numbers)
-        blocks = numbers[others] - 1
+        blocks = numbers[others].astype(np.int64) - 1
         forces = self.near_scale[load.cluster, load.rows, None] * load.forces
         steps = self.near_steps[blocks, None, None]
         # Blocks are stored once: with a later cluster, rows and columns change places.
-        turn = int(np.searchsorted(others, load.cluster, side="right"))
-        straight = self.near.take(blocks[:turn], axis=0)[:, :, load.rows]
-        turned = self.near.take(blocks[turn:], axis=0)[:, load.rows].transpose(0, 2, 1)
+        turn = int(np.searchsorted(others, load.cluster))
+        size = 3 * self._leaf
+        each_row = size * (size * blocks[:turn, None] + np.arange(size))
+        straight = self.near.reshape(-1).take(each_row[:, :, None] + load.rows)
+        turned = self.near.reshape(-1, size).take(size * blocks[turn:, None] + load.rows, axis=0)
         forces = forces.astype(moved.dtype)
         moved[others[:turn]] += steps[:turn] * (straight.astype(moved.dtype) @ forces)
-        moved[others[turn:]] += steps[turn:] * (turned.astype(moved.dtype) @ forces)
+        moved[others[turn:]] += steps[turn:] * (
+            turned.transpose(0, 2, 1).astype(moved.dtype) @ forces
+        )
 
     def _add_far(self, patterns: NDArray[np.floating], load: _Load) -> None:
         dtype, width = patterns.dtype, patterns.shape[2]

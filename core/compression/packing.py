@@ -13,7 +13,6 @@ from .tiles import LARGEST_8_BITS, Rounding
 
 def packed(
     free_surface: NDArray[np.int64],
-    coupling: Coupling,
     chosen: Rounding,
     column_error: float,
     tolerance: float,
@@ -22,7 +21,8 @@ def packed(
 
     Clusters of one rank then stand together, and their bases are multiplied in one go.
     """
-    tile_counts = _tile_counts(coupling, chosen)
+    coupling = chosen.coupling
+    tile_counts = _tile_counts(chosen)
     order = np.argsort(tile_counts, kind="stable")
     number = np.argsort(order)
     clusters = coupling.clusters
@@ -41,7 +41,7 @@ def packed(
         scaled[: len(own)] = own[:, None] * coupling.bases[old][:, : scaled.shape[1]]
         basis.append(scaled.ravel())
     near_table, near, near_steps = _near(coupling, number, leaf)
-    tile_table, narrow, wide = _tiles(coupling, chosen, tile_counts, number)
+    tile_table, narrow, wide = _tiles(chosen, tile_counts, number)
     return CompressedCompliance(
         free_surface=free_surface,
         tolerance=tolerance,
@@ -61,12 +61,14 @@ def packed(
     )
 
 
-def _tile_counts(coupling: Coupling, chosen: Rounding) -> NDArray[np.int64]:
+def _tile_counts(chosen: Rounding) -> NDArray[np.int64]:
     """How many tiles of each cluster's basis any coupling uses, (q,)."""
+    coupling = chosen.coupling
     counts = np.zeros(coupling.clusters.count, np.int64)
     all_tiles = np.array([basis.shape[1] // TILE for basis in coupling.bases])
     firsts = np.concatenate([[0], np.cumsum(all_tiles)])
-    for cluster, rounded in enumerate(chosen.coupled):
+    for cluster in range(coupling.clusters.count):
+        rounded = chosen.rounded(cluster)
         counts[cluster] = max(counts[cluster], _past_last(np.any(rounded.used, axis=0)))
         rows: NDArray[np.bool_] = np.any(rounded.used, axis=1)
         for row in range(cluster):
@@ -101,12 +103,12 @@ def _near(
 
 
 def _tiles(
-    coupling: Coupling,
     chosen: Rounding,
     tile_counts: NDArray[np.int64],
     number: NDArray[np.int64],
 ) -> tuple[NDArray[np.int32], NDArray[np.int8], NDArray[np.int16] | NDArray[np.int32]]:
     """The table of tiles, and the tiles of 8 bits and of more."""
+    coupling = chosen.coupling
     new_counts = np.empty_like(tile_counts)
     new_counts[number] = tile_counts
     new_firsts = np.concatenate([[0], np.cumsum(new_counts)])
@@ -119,10 +121,12 @@ def _tiles(
     )
     firsts = np.concatenate([[0], np.cumsum([basis.shape[1] // TILE for basis in coupling.bases])])
     rows, columns, tiles = [], [], []
-    for cluster, rounded in enumerate(chosen.coupled):
+    for cluster in range(coupling.clusters.count):
+        rounded = chosen.rounded(cluster)
         above, own = np.nonzero(rounded.used)
         shape = (rounded.used.shape[0], TILE, rounded.used.shape[1], TILE)
-        numbers = rounded.numbers.reshape(shape).transpose(0, 2, 1, 3)[above, own]
+        numbers = rounded.numbers.astype(np.int32).reshape(shape)
+        numbers = numbers.transpose(0, 2, 1, 3)[above, own]
         row, column = moved[above], moved[firsts[cluster] + own]
         turned = row > column
         numbers[turned] = numbers[turned].transpose(0, 2, 1)

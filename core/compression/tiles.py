@@ -8,6 +8,7 @@ round to nothing or fit 8 bits; only those of the leading patterns need more (ad
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,67 +29,71 @@ class Rounded:
 
     Attributes
     ----------
-    numbers : int32 (K, k), in steps; zero where a tile is left out.
+    numbers : float32 (K, k), in steps, whole; zero where a tile is left out.
     used : bool (K / 8, k / 8), which tiles are kept.
     """
 
-    numbers: NDArray[np.int32]
+    numbers: NDArray[np.float32]
     used: NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
 class Rounding:
-    """How couplings are rounded, and what that costs.
+    """How couplings are rounded.
 
     Attributes
     ----------
-    step : relative to the softness of the softer of two clusters.
-    steps : float32 (q,). The step between clusters r and c is the smaller one of theirs.
-    coupled : for each cluster, its couplings with earlier ones.
-    errors : (3n,), relative error of each column of L that rounding makes.
+    coupling : what is rounded.
+    step : relative to the scale of the softer of two clusters.
     """
 
+    coupling: Coupling
     step: float
-    steps: NDArray[np.float32]
-    coupled: tuple[Rounded, ...]
-    errors: NDArray[np.float64]
 
+    @cached_property
+    def steps(self) -> NDArray[np.float32]:
+        """For each cluster (q,). The step between two is the smaller one of theirs."""
+        softness = cluster_softness(self.coupling.clusters, self.coupling.scale)
+        return (self.step / softness).astype(np.float32)
 
-def rounding(coupling: Coupling, step: float) -> Rounding:
-    """Round all couplings to ``step`` relative to the softer of both clusters."""
-    clusters, bases = coupling.clusters, coupling.bases
-    softness = cluster_softness(clusters, coupling.scale)
-    steps = (step / softness).astype(np.float32)
-    ranks = [basis.shape[1] for basis in bases]
-    firsts = np.concatenate([[0], np.cumsum(ranks)])
-    # |S B x| = |R x|: how a coupling's error shows in L's columns, without the cluster's size.
-    shown = [_triangle(coupling, cluster) for cluster in range(clusters.count)]
-    squares = [np.zeros((rank, rank), np.float32, order="F") for rank in ranks]
-    coupled = []
-    for cluster, exact in enumerate(coupling.blocks):
-        stepped = np.repeat(np.minimum(steps[:cluster], steps[cluster]), ranks[:cluster])
-        rounded = _rounded(exact / stepped[:, None])
-        coupled.append(rounded)
-        if not exact.size:
-            continue
-        error = exact - stepped[:, None] * rounded.numbers.astype(np.float32)
-        right = blas.sgemm(1.0, shown[cluster], error.T)
-        left = np.zeros(error.T.shape, np.float32, order="F")
-        for row in np.flatnonzero(~clusters.near[:cluster, cluster]):
-            part = slice(firsts[row], firsts[row + 1])
-            if ranks[row]:
-                left[:, part] = blas.sgemm(1.0, error[part].T, shown[row], trans_b=1)
-                squares[row] = blas.ssyrk(
-                    1.0, right[:, part], 1.0, squares[row], trans=1, overwrite_c=1
-                )
-        squares[cluster] = blas.ssyrk(1.0, left, 1.0, squares[cluster], overwrite_c=1)
-    errors = np.empty_like(coupling.norms)
-    for cluster, (basis, square) in enumerate(zip(bases, squares, strict=True)):
-        own = clusters.span(cluster)
-        both = square + np.triu(square, 1).T
-        squared = np.einsum("ij,jk,ik->i", basis, both, basis, optimize=True)
-        errors[own] = coupling.scale[own] * np.sqrt(np.maximum(squared, 0.0))
-    return Rounding(step, steps, tuple(coupled), errors / coupling.norms)
+    def rounded(self, cluster: int) -> Rounded:
+        """The couplings of a cluster with all earlier ones."""
+        return _rounded(self.coupling.blocks[cluster] / self._step_of_rows(cluster))
+
+    def _step_of_rows(self, cluster: int) -> NDArray[np.float32]:
+        ranks = [basis.shape[1] for basis in self.coupling.bases[:cluster]]
+        return np.repeat(np.minimum(self.steps[:cluster], self.steps[cluster]), ranks)[:, None]
+
+    @cached_property
+    def errors(self) -> NDArray[np.float64]:
+        """The relative error of each column of L that rounding makes, (3n,), cluster by cluster."""
+        clusters, bases = self.coupling.clusters, self.coupling.bases
+        ranks = [basis.shape[1] for basis in bases]
+        firsts = np.concatenate([[0], np.cumsum(ranks)])
+        # |S B x| = |R x|: what a coupling's error is in L, without going through all rows of L.
+        shown = [_triangle(self.coupling, cluster) for cluster in range(clusters.count)]
+        squares = [np.zeros((rank, rank), np.float32, order="F") for rank in ranks]
+        for cluster, exact in enumerate(self.coupling.blocks):
+            if not exact.size:
+                continue
+            error = exact - self._step_of_rows(cluster) * self.rounded(cluster).numbers
+            right = blas.sgemm(1.0, shown[cluster], error.T)
+            left = np.zeros(error.T.shape, np.float32, order="F")
+            for row in np.flatnonzero(~clusters.near[:cluster, cluster]):
+                part = slice(firsts[row], firsts[row + 1])
+                if ranks[row]:
+                    left[:, part] = blas.sgemm(1.0, error[part].T, shown[row], trans_b=1)
+                    squares[row] = blas.ssyrk(
+                        1.0, right[:, part], 1.0, squares[row], trans=1, overwrite_c=1
+                    )
+            squares[cluster] = blas.ssyrk(1.0, left, 1.0, squares[cluster], overwrite_c=1)
+        errors = np.empty_like(self.coupling.norms)
+        for cluster, (basis, square) in enumerate(zip(bases, squares, strict=True)):
+            own = clusters.span(cluster)
+            both = square + np.triu(square, 1).T
+            squared = np.einsum("ij,jk,ik->i", basis, both, basis, optimize=True)
+            errors[own] = self.coupling.scale[own] * np.sqrt(np.maximum(squared, 0.0))
+        return errors / self.coupling.norms
 
 
 def _triangle(coupling: Coupling, cluster: int) -> NDArray[np.float32]:
@@ -106,7 +111,7 @@ def _rounded(stepped: NDArray[np.float32]) -> Rounded:
     rows, columns = stepped.shape
     shape = (rows // TILE, TILE, columns // TILE, TILE)
     energy = np.einsum("aibj,aibj->ab", stepped.reshape(shape), stepped.reshape(shape))
-    numbers = np.rint(stepped).astype(np.int32)
+    numbers = np.rint(stepped)
     used = energy > NEGLIGIBLE * TILE * TILE / 12
     used &= numbers.reshape(shape).any(axis=(1, 3))
     numbers.reshape(shape)[...] *= used[:, None, :, None]
