@@ -62,18 +62,24 @@ class DenseCompliance:
         up the columns of up to 32 nodes, float64 the sums of these: nine columns take little longer
         than copying them, and float32 costs about 1e-7 of the largest displacement.
         """
-        loaded = np.arange(self.node_count) if nodes is None else np.asarray(nodes)
+        loaded = np.arange(self.node_count) if nodes is None else nodes
         forces = np.asarray(nodal_forces, dtype=self.table.dtype).reshape(-1, 3)
-        gemv = sgemv if self.table.dtype == np.float32 else dgemv
-        total = np.zeros(3 * self.node_count)
-        for first in range(0, len(loaded), NODES_SUMMED):
-            moved = np.zeros(3 * self.node_count, dtype=self.table.dtype)
-            for node, force in zip(
-                loaded[first : first + NODES_SUMMED],
-                forces[first : first + NODES_SUMMED],
-                strict=True,
-            ):
-                # Each node's columns lie together, as BLAS wants them: (3n, 3) in Fortran order.
-                gemv(1.0, self.table[node].T, force, 1.0, moved, overwrite_y=True)
-            total += moved
+        total = self._moved_by_few(loaded[:NODES_SUMMED], forces[:NODES_SUMMED])
+        for first in range(NODES_SUMMED, len(loaded), NODES_SUMMED):
+            few = slice(first, first + NODES_SUMMED)
+            total += self._moved_by_few(loaded[few], forces[few])
         return total.reshape(-1, 3)
+
+    def _moved_by_few(
+        self, nodes: NDArray[np.int64], forces: NDArray[np.floating]
+    ) -> NDArray[np.float64]:
+        """Displacements (3n,) under forces (k, 3), added up in the table's precision."""
+        if not len(nodes):
+            return np.zeros(3 * self.node_count)
+        gemv = sgemv if self.table.dtype == np.float32 else dgemv
+        # A node's columns lie together, as BLAS wants them: (3n, 3) in Fortran order.
+        first, *others = nodes.tolist()
+        moved = gemv(1.0, self.table[first].T, forces[0])
+        for node, force in zip(others, forces[1:], strict=True):
+            gemv(1.0, self.table[node].T, force, 1.0, moved, overwrite_y=True)
+        return moved.astype(np.float64)
