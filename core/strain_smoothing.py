@@ -93,10 +93,9 @@ def gradient_products(
     bsr_array (3N, 3N) of 3 x 3 blocks, exactly symmetric, metre.
     """
     tet_count, size = len(tets), 3 * (int(tets.max()) + 1)
-    of_tets = bsr_array(
-        (gradients.reshape(-1, 1, 3), tets.ravel(), 4 * np.arange(tet_count + 1)),
-        shape=(tet_count, size),
-    )
+    corners = tets.ravel().astype(np.int32)
+    starts = np.arange(0, 4 * tet_count + 1, 4, dtype=np.int32)
+    of_tets = bsr_array((gradients.reshape(-1, 1, 3), corners, starts), shape=(tet_count, size))
     smoothed = domains.shares.tobsr((1, 1)) @ of_tets
     # Half of the factor on each side: the product is symmetric to the last bit.
     factor = np.sqrt(domains.young_scale / domains.volumes)
@@ -119,7 +118,9 @@ def _domains(
     domain = np.unique(group * (level.max() + 1) + level, return_inverse=True)[1]
     share = np.repeat(volumes / per_tet, per_tet)
     count = int(domain.max()) + 1
-    shares = csr_array((share, (domain, members)), shape=(count, tet_count))
+    # Narrow indices: those of K, the longest there are, take their type from here.
+    places = domain.astype(np.int32), members.astype(np.int32)
+    shares = csr_array((share, places), shape=(count, tet_count))
     total = np.bincount(domain, weights=share)
     scale = np.bincount(domain, weights=share * young_scale[members]) / total
     return SmoothingDomains(shares, scale)
