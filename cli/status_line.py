@@ -9,7 +9,8 @@ from contextlib import contextmanager
 from ..core.bake_job import JobProgress
 
 CLEAR_LINE = "\r\x1b[K"
-LONGEST_SECONDS_AS_SUCH = 120
+LONGEST_AS_SECONDS = 2 * 60
+LONGEST_AS_MINUTES = 2 * 3600
 
 
 @contextmanager
@@ -42,10 +43,12 @@ def bake_status(progress: JobProgress) -> str:
 
 
 def duration(seconds: float) -> str:
-    """Seconds for reading: ``12 s``, ``3.5 min``."""
-    if seconds < LONGEST_SECONDS_AS_SUCH:
+    """Seconds for reading: ``12 s``, ``3.5 min``, ``2.2 h``."""
+    if seconds < LONGEST_AS_SECONDS:
         return f"{seconds:.0f} s"
-    return f"{seconds / 60:.1f} min"
+    if seconds < LONGEST_AS_MINUTES:
+        return f"{seconds / 60:.1f} min"
+    return f"{seconds / 3600:.1f} h"
 
 
 def _with_share(progress: JobProgress) -> str:

@@ -407,6 +407,8 @@ def test_progress_tells_share_and_remaining_time():
     words = bake_status(JobProgress("compliance", "Inverting the stiffness", 0.42, 130.0, 12.4))
     assert words == "Inverting the stiffness 42 %, 2.2 min, about 12 s left"
     assert bake_status(JobProgress("start", "Starting", None, 0.2)) == "Starting, 0 s"
+    words = bake_status(JobProgress("check", "Comparing", 0.01, 7300.0))
+    assert words == "Comparing 1 %, 2.0 h"
 
 
 def test_a_compressed_body_tells_its_tolerance_and_its_error(tmp_path, capsys):
