@@ -1,6 +1,8 @@
 import os
+import re
 import zipfile
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -408,5 +410,24 @@ def test_an_unknown_form_is_refused(cube, tmp_path):
     arrays["form"] = np.array("woven")
     arrays["checksum"] = np.array(cache._checksum(arrays))
     np.savez(path, **arrays)
-    with pytest.raises(BodyFileError, match="form 'woven'.*bake again"):
+    with pytest.raises(BodyFileError, match=r"form 'woven'.*bake again"):
         cache.load(path)
+
+
+@pytest.mark.parametrize("form", ["dense", "compressed"])
+def test_the_documented_example_reads_it_with_plain_numpy(
+    form, mouse, compressed, tmp_path, monkeypatch
+):
+    body = mouse if form == "dense" else compressed
+    cache.save(body, tmp_path / f"{form}.npz")
+    monkeypatch.chdir(tmp_path)
+    document = Path(__file__).resolve().parents[2] / "docs" / "body-file.md"
+    examples = re.findall(r"```python\n(.*?)```", document.read_text(encoding="utf-8"), re.DOTALL)
+    found = {}
+    exec(next(text for text in examples if f"{form}.npz" in text), found)  # noqa: S102  our own
+    node = np.array([17])
+    force = np.linalg.solve(mouse.compliance.diagonal()[17] / 1000, [0, 0, -0.005])
+    np.testing.assert_allclose(found["force"], force, rtol=1e-5)
+    moved = body.compliance.apply(found["force"][None] / 1000, node)
+    np.testing.assert_allclose(found["moved"], moved, atol=1e-6 * np.abs(moved).max())
+    found["body"].close()
