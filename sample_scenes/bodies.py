@@ -2,7 +2,9 @@
 
 mouse-tets.npz is one answer of fTetWild, which gives another mesh each time: edge length and
 tolerance below gave 1,690 to 1,780 nodes and 1,010 to 1,075 free surface nodes in five runs, where
-the paper's mouse has 1,713 and 1,036. Arrays X (m), T, fixed as in the other stored meshes.
+the paper's mouse has 1,713 and 1,036. drumstick-tets.npz is another answer, for meat and
+bone together: 1,896 nodes, 836 of them on the free surface. Arrays X (m), T, fixed as in the other
+stored meshes.
 """
 
 from pathlib import Path
@@ -12,14 +14,16 @@ import numpy as np
 from installed import palpate
 from numpy.typing import NDArray
 
-MOUSE_TETS = Path(__file__).with_name("mouse-tets.npz")
-EDGE_LENGTH, TOLERANCE, TRIANGLES = 0.058, 0.0037, 6000
+HERE = Path(__file__).parent
+# Edge length and tolerance with which fTetWild made them, as shares of the diagonal.
+MOUSE_SIZE, DRUMSTICK_SIZE = (0.058, 0.0037), (0.045, 0.003)
+TRIANGLES = 6000
 Tets = tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]
 
 
-def mouse_tets() -> Tets:
-    """Nodes, tetrahedra and pinned nodes of the mouse."""
-    with np.load(MOUSE_TETS, allow_pickle=False) as stored:
+def stored_tets(name: str) -> Tets:
+    """Nodes, tetrahedra and pinned nodes of the mouse or the drumstick."""
+    with np.load(HERE / f"{name}-tets.npz", allow_pickle=False) as stored:
         return stored["X"], stored["T"], stored["fixed"]
 
 
@@ -30,19 +34,23 @@ def cube_tets() -> Tets:
 
 
 def set_up(
-    thing: bpy.types.Object, pinned: str, *, young_modulus: float, poisson_ratio: float
+    thing: bpy.types.Object, pinned: str, *, material: str, formulation: str = "AUTO"
 ) -> None:
-    """Fill in the panel: material and pin group."""
+    """Fill in the panel: material by its preset, formulation and pin group."""
     settings = thing.palpate
-    settings.material = "CUSTOM"
-    settings.young_modulus, settings.poisson_ratio = young_modulus, poisson_ratio
+    settings.material, settings.formulation = material, formulation
     settings.pin_mode, settings.pin_group = "GROUP", pinned
 
 
-def set_mesh_size(thing: bpy.types.Object) -> None:
-    """What gives the mouse about the paper's number of nodes when it is made soft anew."""
+def set_stiff(thing: bpy.types.Object, group: str, factor: float) -> None:
+    """Fill in the panel: what is stiffer, and how many times."""
+    thing.palpate.stiff_group, thing.palpate.stiff_factor = group, factor
+
+
+def set_mesh_size(thing: bpy.types.Object, size: tuple[float, float]) -> None:
+    """What gives about the stored number of nodes when the object is made soft anew."""
     settings = thing.palpate
-    settings.edge_length, settings.epsilon = EDGE_LENGTH, TOLERANCE
+    settings.edge_length, settings.epsilon = size
     settings.decimate_above = TRIANGLES
 
 
@@ -55,7 +63,8 @@ def attach(thing: bpy.types.Object, tets: Tets) -> None:
         baked[name] = array.astype(kind).ravel()
     surface = palpate("operators.drawn_surface").read(thing, scene)
     rule = palpate("operators.pin_group").pin_rule(thing)
-    baked.fingerprint = surface.fingerprint(rule).to_text()
+    # The stored tetrahedra are equally stiff: Rebuild Body looks up the region that is set.
+    baked.fingerprint = surface.fingerprint(rule, stiffness="").to_text()
     baked.body_key = "stored tetrahedra"
     bpy.context.view_layer.objects.active = thing
     if bpy.ops.palpate.rebuild_body() != {"FINISHED"}:

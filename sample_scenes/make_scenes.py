@@ -1,4 +1,4 @@
-"""Make cube.blend and mouse.blend, soft already: BLENDER_PYTHON make_scenes.py --package ZIP.
+"""Make the sample scenes, soft already: BLENDER_PYTHON make_scenes.py --package ZIP [--only NAME].
 
 BLENDER_PYTHON has the bpy module; use that of the oldest Blender we support, since newer ones read
 older files. The body files that appear in `palpate/` beside the scenes are not kept: the tetrahedra
@@ -15,7 +15,7 @@ sys.path[:0] = [str(HERE), str(HERE.parent / "demo")]
 
 
 def main() -> int:
-    """Write both scenes into the chosen folder, with their bodies' tetrahedra inside."""
+    """Write the scenes into the chosen folder, with their bodies' tetrahedra inside."""
     options = _options()
     options.output.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as home:
@@ -28,10 +28,13 @@ def main() -> int:
         import scenes
 
         bpy.context.preferences.filepaths.save_version = 0
-        for make, tets in (
-            (scenes.cube_scene, bodies.cube_tets),
-            (scenes.mouse_scene, bodies.mouse_tets),
-        ):
+        for name, (make, tets) in {
+            "cube": (scenes.cube_scene, bodies.cube_tets),
+            "mouse": (scenes.mouse_scene, lambda: bodies.stored_tets("mouse")),
+            "drumstick": (scenes.drumstick_scene, lambda: bodies.stored_tets("drumstick")),
+        }.items():
+            if options.only not in {None, name}:
+                continue
             body = make()
             path = options.output / f"{body.name.lower()}.blend"
             # Saved first, so that the body file goes beside it and the user's folder stays clean.
@@ -46,6 +49,9 @@ def _options() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--package", type=Path, required=True, help="the extension's zip")
     parser.add_argument("--output", type=Path, default=HERE)
+    parser.add_argument(
+        "--only", choices=["cube", "mouse", "drumstick"], help="make this one alone"
+    )
     return parser.parse_args()
 
 

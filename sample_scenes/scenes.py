@@ -1,14 +1,16 @@
-"""The two scenes: cube and plush mouse with material, pins, light and camera."""
+"""The scenes: cube, plush mouse and drumstick with material, pins, light and camera."""
 
 import bodies
 import bpy
+import drumstick_shape
 import fabric
 import mouse_shape
 import numpy as np
 import studio
 from numpy.typing import NDArray
 
-PINNED = "Pinned"
+PINNED, BONE = "Pinned", "Bone"
+BONE_FACTOR = 1000.0
 CUBE_EDGE = 0.05
 CUBE_CELLS = 24
 CHECK = 0.0125  # two squares of the check, metres
@@ -72,8 +74,8 @@ def mouse_scene() -> bpy.types.Object:
     paint(mesh, colours)
     mouse = studio.link(scene, "Mouse", mesh)
     pin(mouse, shape.pinned)
-    bodies.set_up(mouse, PINNED, young_modulus=1000.0, poisson_ratio=0.3)
-    bodies.set_mesh_size(mouse)
+    bodies.set_up(mouse, PINNED, material="PLUSH")
+    bodies.set_mesh_size(mouse, bodies.MOUSE_SIZE)
     aim = (-0.004, -0.004, 0.030)
     studio.backdrop(scene, (0.13, 0.27, 0.29), 0.30)
     studio.lights(scene, (0.0, 0.0, 0.03))
@@ -98,7 +100,8 @@ def cube_scene() -> bpy.types.Object:
     paint(mesh, checked(colour, *vertices.T))
     cube = studio.link(scene, "Cube", mesh)
     pin(cube, np.flatnonzero(vertices[:, 2] < 1e-6))
-    bodies.set_up(cube, PINNED, young_modulus=10_000.0, poisson_ratio=0.49)
+    # The paper's own, whose figures the cube is there to show.
+    bodies.set_up(cube, PINNED, material="PAPER_CUBE", formulation="LINEAR")
     aim = (0.0, 0.0, 0.023)
     studio.backdrop(scene, (0.13, 0.27, 0.29), 0.30)
     studio.lights(scene, aim)
@@ -106,3 +109,31 @@ def cube_scene() -> bpy.types.Object:
     studio.render_settings(scene)
     studio.open_view(scene, cube, 0.14, aim)
     return cube
+
+
+def drumstick_scene() -> bpy.types.Object:
+    """A plush drumstick with a bone inside: soft where the meat is thick, firm over the bone."""
+    scene = studio.empty_scene("Drumstick")
+    shape = drumstick_shape.drumstick()
+    mesh = soft_mesh("Drumstick", shape)
+    meat, bone = (0.42, 0.17, 0.06), (0.78, 0.72, 0.60)
+    mesh.materials.append(fabric.felt(meat))
+    mesh.materials.append(fabric.felt(bone))
+    x, y, z = shape.vertices.T
+    colours = checked(meat, x, 0.034 * np.arctan2(y, z - 0.028))
+    inner = drumstick_shape.bone_vertices(shape)
+    colours[inner] = bone
+    paint(mesh, colours)
+    drumstick = studio.link(scene, "Drumstick", mesh)
+    pin(drumstick, shape.pinned)
+    drumstick.vertex_groups.new(name=BONE).add(inner.tolist(), 1.0, "REPLACE")
+    bodies.set_up(drumstick, PINNED, material="JELLY")
+    bodies.set_stiff(drumstick, BONE, BONE_FACTOR)
+    bodies.set_mesh_size(drumstick, bodies.DRUMSTICK_SIZE)
+    aim = (0.016, 0.0, 0.026)
+    studio.backdrop(scene, (0.13, 0.27, 0.29), 0.30)
+    studio.lights(scene, aim)
+    studio.camera(scene, (0.21, -0.33, 0.23), aim, 82.0)
+    studio.render_settings(scene)
+    studio.open_view(scene, drumstick, 0.26, aim)
+    return drumstick
