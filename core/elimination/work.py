@@ -14,8 +14,8 @@ from .upper_tiles import tile_edges
 # and so does every front, whatever its size.
 SOLVE_WEIGHT = 1.6
 CHOLESKY_WEIGHT = 3.0
-MOVE_WEIGHT = 60.0
-FRONT_WEIGHT = 1.2e7
+MOVE_WEIGHT = 250.0
+FRONT_WEIGHT = 1.5e7
 
 REAL_BYTES = 8
 
