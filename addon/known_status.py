@@ -11,11 +11,10 @@ from dataclasses import dataclass, field
 import bpy
 
 from ..core.bake_cost import ShapeSize
-from ..core.bake_settings import BakeSettings
 from ..core.errors import PalpateError
 from ..core.machine_speed import dgemm_rate
-from ..core.pins import PinBelow, Pins
-from ..operators import bake_prediction, drawn_surface, pin_group, soft_object
+from ..core.pins import Pins
+from ..operators import bake_prediction, drawn_surface, soft_object
 from ..operators.bake_prediction import Prediction
 from ..operators.drawn_surface import DrawnSurface
 from ..operators.soft_object import BodyStatus, Fit
@@ -78,17 +77,10 @@ def prediction(thing: bpy.types.Object, scene: bpy.types.Scene) -> Prediction | 
     known = _mesh(thing, scene)
     if known.size is None:
         known.size = bake_prediction.shape_size(known.drawn)
-    chosen = thing.palpate
-    settings = BakeSettings(
-        poisson_ratio=round(chosen.poisson_ratio, 6),
-        pins=_pins(thing, known),
-        edge_length=chosen.edge_length,
-        epsilon=chosen.epsilon,
-        decimate_above=chosen.decimate_above,
-        formulation=chosen.formulation.lower(),
-        form=chosen.form.lower(),
-        tolerance=chosen.compression_tolerance / 100,
-    )
+    question = _values(thing, PIN_SETTINGS)
+    if question not in known.pins:
+        known.pins[question] = bake_prediction.pins_of(thing, known.drawn)
+    settings = bake_prediction.settings_of(thing, known.pins[question])
     return bake_prediction.predict(known.size, settings)
 
 
@@ -103,17 +95,6 @@ def _mesh(thing: bpy.types.Object, scene: bpy.types.Scene) -> _KnownMesh:
     if which not in _known:
         _known[which] = _KnownMesh(drawn_surface.read(thing, scene))
     return _known[which]
-
-
-def _pins(thing: bpy.types.Object, known: _KnownMesh) -> Pins:
-    question = _values(thing, PIN_SETTINGS)
-    if question not in known.pins:
-        try:
-            known.pins[question] = pin_group.pins(thing, known.drawn)
-        except PalpateError:
-            # Said beside the pins; the prediction is one for the whole surface then.
-            known.pins[question] = PinBelow(0.0)
-    return known.pins[question]
 
 
 def _values(thing: bpy.types.Object, names: tuple[str, ...]) -> Values:

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+import bpy
 import numpy as np
 
 from ..core.available_memory import available_memory
 from ..core.bake_cost import BakeCost, ShapeSize, edge_length_that_fits, estimate_cost
 from ..core.bake_settings import BakeSettings
+from ..core.errors import PalpateError
+from ..core.pins import PinBelow, Pins
+from . import pin_group
 from .drawn_surface import DrawnSurface
 
 
@@ -51,6 +55,33 @@ def shape_size(drawn: DrawnSurface) -> ShapeSize:
     i, j, k = (surface.vertices[surface.triangles[:, corner]] - middle for corner in range(3))
     volume = abs(float(np.einsum("fx,fx->", i, np.cross(j, k)))) / 6.0
     return ShapeSize(float(surface.areas.sum()), volume, surface.diagonal, len(surface.triangles))
+
+
+def pins_of(thing: bpy.types.Object, drawn: DrawnSurface) -> Pins:
+    """What is held, as far as a cost depends on it; reads the vertex group if there is one."""
+    settings = thing.palpate
+    if settings.pin_mode == "BELOW":
+        return PinBelow(settings.pin_fraction)
+    try:
+        return pin_group.pins(thing, drawn)
+    except PalpateError:
+        # Said beside the pins; the cost is one for the whole surface then.
+        return PinBelow(0.0)
+
+
+def settings_of(thing: bpy.types.Object, pins: Pins) -> BakeSettings:
+    """What the panel asks of a bake, as far as its cost depends on it."""
+    chosen = thing.palpate
+    return BakeSettings(
+        poisson_ratio=round(chosen.poisson_ratio, 6),
+        pins=pins,
+        edge_length=chosen.edge_length,
+        epsilon=chosen.epsilon,
+        decimate_above=chosen.decimate_above,
+        formulation=chosen.formulation.lower(),
+        form=chosen.form.lower(),
+        tolerance=chosen.compression_tolerance / 100,
+    )
 
 
 def predict(size: ShapeSize, settings: BakeSettings) -> Prediction:

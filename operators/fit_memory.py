@@ -6,8 +6,7 @@ import bpy
 
 from ..core.errors import PalpateError
 from . import drawn_surface, soft_object
-from .bake_prediction import Prediction, predict, shape_size
-from .bake_session import settings_of
+from .bake_prediction import Prediction, pins_of, predict, settings_of, shape_size
 
 
 class PALPATE_OT_fit_memory(bpy.types.Operator):
@@ -36,7 +35,8 @@ class PALPATE_OT_fit_memory(bpy.types.Operator):
         thing = context.object
         try:
             drawn = drawn_surface.read(thing, context.scene)
-            self._change(thing, predict(shape_size(drawn), settings_of(thing, drawn)))
+            settings = settings_of(thing, pins_of(thing, drawn))
+            self._change(thing, predict(shape_size(drawn), settings))
         except PalpateError as problem:
             self.report({"ERROR"}, str(problem))
             return {"CANCELLED"}
