@@ -27,7 +27,7 @@ from measuring.bodies import MeasuredBody, stored_body
 from measuring.quadratic_reference import QuadraticReference
 from measuring.timing import seconds_of
 from numpy.typing import NDArray
-from scipy.sparse import coo_array, csc_array, csr_array, diags_array
+from scipy.sparse import coo_array, csc_array, csr_array, kron
 from scipy.sparse.linalg import eigsh, splu
 from scipy.spatial import Delaunay
 
@@ -239,24 +239,35 @@ def print_locking(trial: Trial) -> dict[float, dict[str, Closeness]]:
 
 
 def print_soundness(trial: Trial) -> None:
-    """Vibrations beside quadratic ones, and how even the compliance of single nodes is."""
-    print(f"\n{trial.name}: is there anything softer than the body itself, any checkerboard")
+    """Vibrations beside quadratic ones, and how far single nodes give, which is what is felt."""
+    print(f"\n{trial.name}: is anything softer than the body itself, is there a checkerboard")
     print("  slowest: least of the first vibrations' stiffness, quadratic = 1")
-    print("  uneven:  scatter of a node's compliance about its neighbours' (size of patch removed)")
+    print("  node:    how far a single loaded node gives, linear = 1")
+    print("  uneven:  scatter of that about the neighbours' (size of patch removed)")
     for poisson_ratio in (0.3, 0.49):
         reference = QuadraticReference(trial.mesh, trial.held, poisson_ratio)
         truth = lowest_vibrations(reference.stiffness, reference.mass)
         print(f"  Poisson's ratio {poisson_ratio}")
+        of_linear = node_gives(trial, stiffness(trial.mesh, poisson_ratio, LINEAR))
         for name in COLUMNS:
             K = stiffness(trial.mesh, poisson_ratio, name)
-            masses = np.bincount(trial.mesh.tets.ravel(), np.repeat(trial.mesh.tet_volumes / 4, 4))
-            lumped = diags_array(np.repeat(masses[trial.free], 3), format="csc")
-            ours = lowest_vibrations(csc_array(K[trial.dofs][:, trial.dofs]), lumped)
+            ours = lowest_vibrations(csc_array(K[trial.dofs][:, trial.dofs]), linear_mass(trial))
+            gives = node_gives(trial, K)
             print(
                 f"    {name:<10} slowest {(ours / truth).min():6.3f}   "
-                f"uneven {100 * unevenness(trial, K):5.1f} %",
+                f"node {np.median(gives / of_linear):5.2f}   "
+                f"uneven {100 * unevenness(trial, gives):5.1f} %",
                 flush=True,
             )
+
+
+def linear_mass(trial: Trial) -> csc_array:
+    """The consistent mass matrix of linear elements, free degrees of freedom, unit density."""
+    tets, count = trial.mesh.tets, len(trial.mesh.nodes)
+    shares = np.einsum("t,ab->tab", trial.mesh.tet_volumes, (1 + np.eye(4)) / 20)
+    rows, columns = np.repeat(tets, 4, axis=1), np.tile(tets, (1, 4))
+    nodal = coo_array((shares.ravel(), (rows.ravel(), columns.ravel())), shape=(count, count))
+    return csc_array(kron(nodal, np.eye(3), "csr")[trial.dofs][:, trial.dofs])
 
 
 def lowest_vibrations(K: csc_array, M: csc_array) -> NDArray[np.float64]:
@@ -266,20 +277,24 @@ def lowest_vibrations(K: csc_array, M: csc_array) -> NDArray[np.float64]:
     return np.sort(found)
 
 
-def unevenness(trial: Trial, K: csr_array) -> float:
-    """Standard deviation of log(compliance x size of a node's patch) about its neighbours' mean."""
+def node_gives(trial: Trial, K: csr_array) -> NDArray[np.float64]:
+    """Trace of L_aa for each free surface node."""
     compliance = surface_compliance(trial.mesh, K, trial.held)
+    return np.trace(compliance.diagonal(), axis1=1, axis2=2)
+
+
+def unevenness(trial: Trial, gives: NDArray[np.float64]) -> float:
+    """Standard deviation of log(give x size of a node's patch) about its neighbours' mean."""
     triangles = trial.mesh.surface_triangles
     i, j, k = (trial.mesh.nodes[triangles[:, corner]] for corner in range(3))
     areas = np.linalg.norm(np.cross(j - i, k - i), axis=1) / 6
     patch = np.bincount(triangles.ravel(), np.repeat(areas, 3), len(trial.mesh.nodes))
-    free = compliance.free_surface
-    give = np.trace(compliance.diagonal(), axis1=1, axis2=2) * np.sqrt(patch[free])
+    free = np.intersect1d(trial.mesh.surface_nodes, trial.free)
+    height = np.log(gives * np.sqrt(patch[free]))
     ends = triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
     links = coo_array((np.ones(len(ends)), ends.T), shape=(len(patch),) * 2)
     neighbours = csr_array(links + links.T)[free][:, free]
-    around = (neighbours @ np.log(give)) / neighbours.sum(axis=1)
-    return float(np.std(np.log(give) - around))
+    return float(np.std(height - (neighbours @ height) / neighbours.sum(axis=1)))
 
 
 def print_bone() -> None:

@@ -13,6 +13,7 @@ from palpate.core.errors import PalpateError
 from palpate.core.formulation import FORMULATIONS, formulation_for
 from palpate.core.paper_cube import paper_cube
 from palpate.core.stiffness import assemble, lame_parameters, shape_gradients
+from palpate.core.surface_compliance import surface_compliance
 from palpate.core.tet_mesh import TetMesh, signed_volumes
 
 POISSON_RATIOS = [-0.9, -0.3, 0.0, 0.3, 0.49, 0.4999]
@@ -265,6 +266,34 @@ def test_layers_side_by_side_add_their_stiffnesses(formulation, stiff):
     top, bottom = mesh.nodes[:, 2] == 1, mesh.nodes[:, 2] == 0
     assert force[top, 2].sum() == pytest.approx(0.5 * (1 + stiff), rel=1e-10)
     assert np.abs(force[~(top | bottom)]).max() < 1e-10 * stiff
+
+
+@both_formulations
+@pytest.mark.parametrize("poisson_ratio", [-0.9, 0.4999, 0.49999])
+@pytest.mark.parametrize("stiff", [1e-6, 1.0, 1e6])
+def test_the_compliance_stays_accurate_in_extreme_materials(
+    jumbled_mesh, formulation, poisson_ratio, stiff
+):
+    """Against a sparse solve that is refined until nothing changes."""
+    mesh = jumbled_mesh
+    fixed = np.flatnonzero(mesh.nodes[:, 2] == 0)
+    scale = layers(mesh, 0, stiff)
+    K = assemble(mesh, poisson_ratio, formulation=formulation, young_scale=scale)
+    ours = surface_compliance(mesh, K, fixed, dtype=np.float64)
+    free = np.setdiff1d(np.arange(len(mesh.nodes)), fixed)
+    dofs = (3 * free[:, None] + np.arange(3)).ravel()
+    inner = K[dofs][:, dofs].tocsc()
+    loaded = np.array([0, ours.node_count // 2, ours.node_count - 1])
+    places = np.searchsorted(free, ours.free_surface)
+    rows = (3 * places[:, None] + np.arange(3)).ravel()
+    loads = np.zeros((len(dofs), 9))
+    loads[(3 * places[loaded][:, None] + np.arange(3)).ravel(), np.arange(9)] = 1.0
+    factor = splu(inner)
+    truth = factor.solve(loads)
+    for _ in range(3):
+        truth += factor.solve(loads - inner @ truth)
+    errors = np.linalg.norm(ours.columns(loaded) - truth[rows], axis=0)
+    assert (errors < 1e-7 * np.linalg.norm(truth[rows], axis=0)).all()
 
 
 @pytest.mark.parametrize(
