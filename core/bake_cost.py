@@ -45,8 +45,8 @@ NODE_SPREAD_WITHOUT_BENDING = 2.0
 # Edges sharper than this are edges of the shape, which need no finer triangles.
 SHARP_EDGE = np.radians(60.0)
 
-# Seconds of fTetWild: 8e-6 triangles^0.93 epsilon^-0.64 nodes^0.3, within a factor of three.
-TETRAHEDRALIZE_SCALE = 8e-6
+# Seconds of fTetWild: 6.5e-6 triangles^0.93 epsilon^-0.64 nodes^0.3, within a factor of three.
+TETRAHEDRALIZE_SCALE = 6.5e-6
 TETRAHEDRALIZE_EXPONENTS = (0.93, -0.64, 0.30)
 TETRAHEDRALIZE_SPREAD = 3.0
 
@@ -55,7 +55,7 @@ ASSEMBLY_SECONDS = {LINEAR: 2e-6, "smoothed": 15e-6}
 PLANNING_SECONDS = {LINEAR: 30e-6, "smoothed": 60e-6}
 TETS_PER_NODE = 5.0
 # Comparing with the mesh: seconds for each of its triangles and each surface node.
-CHECK_SECONDS = 1e-4
+CHECK_SECONDS = 2.5e-5
 
 # Bytes of the stiffness for each node, beside what the elimination holds.
 STIFFNESS_BYTES = {LINEAR: 1_500, "smoothed": 7_000}

@@ -15,6 +15,8 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import LinAlgError, cho_factor, cho_solve
 from scipy.linalg.blas import dgemm
 
+from .bake_cost import MeshSize, estimate_cost
+from .bake_settings import BakeSettings
 from .compliance import Compliance
 from .compression.compress import compress
 from .compression.compressed_compliance import CompressedCompliance
@@ -22,6 +24,7 @@ from .dense_compliance import DenseCompliance
 from .elimination.surface_columns import factor_for_columns
 from .errors import PalpateError
 from .held_pins import pins_checked
+from .machine_speed import dgemm_rate
 from .mapped_compliance import MappedCompliance
 from .soft_body import SoftBody
 from .stiffness import assemble
@@ -36,6 +39,9 @@ ROUNDING_DEVIATION = 0.29
 
 # Rows that are computed at once: large enough for BLAS to run at full speed.
 ROWS_PER_PRODUCT = 384
+
+# Seconds for each number of a table that is read, changed and written, on one core.
+SECONDS_PER_ENTRY = 2e-8
 
 PinsChange = Literal["same", "more", "bake"]
 
@@ -94,6 +100,26 @@ def pin_more(body: SoftBody, added_nodes: ArrayLike) -> SoftBody:
     if isinstance(body.compliance, (DenseCompliance, MappedCompliance)):
         compliance = _downdated(body.compliance, body.free_index(added))
     return replace(body, fixed=fixed, compliance=compliance or _computed(body, fixed))
+
+
+def pin_more_seconds(
+    size: MeshSize, settings: BakeSettings, free_surface_nodes: int, added: int
+) -> float:
+    """About how long :func:`pin_more` will compute, so that a panel can choose another way.
+
+    Parameters
+    ----------
+    size : of the body's tetrahedra.
+    settings : that it was baked with: form, formulation, tolerance. A ``dense`` body is taken to
+        be downdated, a ``compressed`` one is computed anew.
+    free_surface_nodes : before the new pins.
+    added : number of nodes to pin besides.
+    """
+    if settings.form == "compressed":
+        return estimate_cost(size, settings).seconds
+    pinned, rows = 3.0 * added, 3.0 * free_surface_nodes
+    flops = pinned * rows**2 + 2 * pinned**2 * rows
+    return flops / dgemm_rate(settings.threads) + SECONDS_PER_ENTRY * rows**2
 
 
 def _downdated(

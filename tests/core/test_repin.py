@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 
 from palpate.core import cache, repin
+from palpate.core.bake_cost import MeshSize, estimate_cost
+from palpate.core.bake_settings import BakeSettings
 from palpate.core.compression.compress import compress
 from palpate.core.errors import PalpateError
 from palpate.core.mapped_compliance import MappedCompliance
-from palpate.core.repin import LARGEST_ERROR, pin_more, pins_change
+from palpate.core.repin import LARGEST_ERROR, pin_more, pin_more_seconds, pins_change
 from palpate.core.soft_body import SoftBody
 from palpate.core.stiffness import assemble
 from palpate.core.surface_compliance import surface_compliance
@@ -180,3 +182,11 @@ def test_what_changed_pins_ask_for(cube):
         "one inside": (np.append(old, inside), "bake"),
     }.values():
         assert pins_change(cube.mesh, old, new) == wanted
+
+
+def test_the_time_foretold_grows_with_pins_and_is_a_bakes_for_a_compressed_body():
+    size, dense = MeshSize(20_000, 3_400), BakeSettings(form="dense")
+    few, many = (pin_more_seconds(size, dense, 3_000, added) for added in (1, 1_000))
+    assert 0 < few < many
+    compressed = BakeSettings(form="compressed")
+    assert pin_more_seconds(size, compressed, 3_000, 1) == estimate_cost(size, compressed).seconds
