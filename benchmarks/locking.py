@@ -393,7 +393,7 @@ def draw(
     right.set_title("Pressed mouse: error of the surface, %", fontsize=9)
     left.legend(frameon=False, fontsize=9)
     for axes in (left, right):
-        axes.set_xticks(range(len(shown)), [f"{ratio:g}" for ratio in shown], fontsize=8)
+        axes.set_xticks(range(len(shown)), [f"{ratio:g}" for ratio in shown], fontsize=7)
         axes.set_xlabel("Poisson's ratio", fontsize=9)
         axes.set_ylim(bottom=0)
         axes.spines[["top", "right"]].set_visible(False)
