@@ -65,31 +65,38 @@ def inverse_factor(matrix: BlockMatrix, symbolic: SymbolicFactor, meter: Meter) 
         A matrix that is not positive definite: the body is not held.
     """
     entries = _EntriesByFront(matrix, symbolic)
+    works = [FrontWork.of(front) for front in symbolic.fronts]
+    # In one piece: between them, what fronts hold for a while would leave holes when it goes.
+    room = np.zeros(sum(work.loaded_rows * work.loads for work in works))
     remainders: dict[int, _Remainder] = {}
-    result = []
+    result, used = [], 0
     with threads_by_work() as suit:
-        for index, front in enumerate(symbolic.fronts):
-            suit(FrontWork.of(front).flops)
-            own, remainders[index] = _eliminated(front, index, entries, symbolic, remainders, meter)
-            if own.rows.size:
-                result.append(own)
+        for index, (front, work) in enumerate(zip(symbolic.fronts, works, strict=True)):
+            suit(work.flops)
+            shape = work.loaded_rows, work.loads
+            own = room[used : used + shape[0] * shape[1]].reshape(shape, order="F")
+            used += own.size
+            remainders[index] = _eliminated(index, entries, symbolic, remainders, own, meter)
+            if own.size:
+                result.append(LoadRows(3 * front.load_start, 3 * front.load_stop, own))
     return result
 
 
 def _eliminated(
-    front: Front,
     index: int,
     entries: _EntriesByFront,
     symbolic: SymbolicFactor,
     remainders: dict[int, _Remainder],
+    own: NDArray[np.float64],
     meter: Meter,
-) -> tuple[LoadRows, _Remainder]:
+) -> _Remainder:
+    """Eliminate a front; its rows of W are written to ``own``, zeros before."""
+    front = symbolic.fronts[index]
     work = FrontWork.of(front)
     pivots = np.zeros((work.pivots, work.pivots), order="F")
     coupling = np.zeros((work.pivots, work.boundary), order="F")
     schur = UpperTiles.zeros(work.boundary)
     skipped = work.pivots - work.loaded_rows
-    own = np.zeros((work.loaded_rows, work.loads), order="F")
     passed = np.zeros((work.boundary, work.loads), order="F")
 
     entries.add_to(index, front, pivots, coupling)
@@ -120,7 +127,7 @@ def _eliminated(
         coupling = np.asfortranarray(coupling[skipped:])
     _solve_transposed(factor, own, meter)
     _subtract_product(coupling, own, passed, meter)
-    return LoadRows(3 * front.load_start, 3 * front.load_stop, own), _Remainder(schur, passed)
+    return _Remainder(schur, passed)
 
 
 def _targets(child: Front, parent: Front) -> NDArray[np.int64]:

@@ -60,7 +60,10 @@ class EliminationPlan:
 
     @cached_property
     def peak_bytes(self) -> int:
-        """The most bytes that the numeric steps hold at once, the plan and its matrix included."""
+        """The most bytes that the numeric steps ask for at once, the plan's matrix included.
+
+        A process grows by up to a fifth more, measured: freed memory is not all given back at once.
+        """
         peak, factor = elimination_peak_bytes(self.symbolic.fronts)
         table = inverse_bytes(len(self.ranks), self.table_itemsize)
         # The elimination sorts the upper half of the matrix for itself.

@@ -111,12 +111,13 @@ def upper_tiles_size(size: int) -> int:
 def elimination_peak_bytes(fronts: tuple[Front, ...]) -> tuple[int, int]:
     """The most bytes held at once while fronts are eliminated, and the bytes of W at the end."""
     works = [FrontWork.of(front) for front in fronts]
-    held = peak = 0
+    # W has its room from the beginning.
+    factor = held = peak = sum(work.result_bytes for work in works)
     for front, work in zip(fronts, works, strict=True):
-        held += work.factor_bytes + work.remainder_bytes + work.result_bytes
+        held += work.factor_bytes + work.remainder_bytes
         peak = max(peak, held)
         held -= work.factor_bytes + sum(works[child].remainder_bytes for child in front.children)
-    return peak, held
+    return peak, factor
 
 
 class Meter:
