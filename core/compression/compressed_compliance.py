@@ -149,7 +149,7 @@ class CompressedCompliance:
             for cluster, members in self._by_cluster(loaded)
         ]
         moved = self._displacements(loads, 1, np.float32)[:, :, 0].astype(np.float64)
-        np.add.at(moved, loaded, np.einsum("kij,kj->ki", self.own_blocks[loaded], forces))
+        np.add.at(moved, loaded, (self.own_blocks[loaded] @ forces[:, :, None])[:, :, 0])
         return moved
 
     @cached_property
@@ -195,10 +195,10 @@ class CompressedCompliance:
 
     def _by_cluster(self, nodes: NDArray[np.int64]) -> list[tuple[int, NDArray[np.int64]]]:
         """Every cluster that has some of the nodes, and which entries of ``nodes`` these are."""
-        clusters = self.places[nodes] // self._leaf
-        order = np.argsort(clusters, kind="stable")
-        edges = np.flatnonzero(np.diff(clusters[order], prepend=-1, append=-1)).tolist()
-        return [(int(clusters[order[first]]), order[first:last]) for first, last in pairwise(edges)]
+        members: dict[int, list[int]] = {}
+        for entry, cluster in enumerate((self.places[nodes] // self._leaf).tolist()):
+            members.setdefault(cluster, []).append(entry)
+        return [(cluster, np.array(entries)) for cluster, entries in members.items()]
 
     def _load(self, cluster: int, nodes: NDArray[np.int64], forces: NDArray[np.float64]) -> _Load:
         inside = self.places[nodes] - cluster * self._leaf
@@ -244,15 +244,15 @@ class CompressedCompliance:
         steps = self.near_steps[blocks, None, None]
         # Blocks are stored once: with a later cluster, rows and columns change places.
         turn = int(np.searchsorted(others, load.cluster))
-        size = 3 * self._leaf
+        size, width = moved.shape[1:]
         each_row = size * (size * blocks[:turn, None] + np.arange(size))
-        straight = self.near.reshape(-1).take(each_row[:, :, None] + load.rows)
-        turned = self.near.reshape(-1, size).take(size * blocks[turn:, None] + load.rows, axis=0)
+        straight = self.near.reshape(-1).take(each_row.reshape(-1, 1) + load.rows)
+        turned = self.near.reshape(-1, size).take(size * blocks[turn:] + load.rows[:, None], axis=0)
         forces = forces.astype(moved.dtype)
-        moved[others[:turn]] += steps[:turn] * (straight.astype(moved.dtype) @ forces)
-        moved[others[turn:]] += steps[turn:] * (
-            turned.transpose(0, 2, 1).astype(moved.dtype) @ forces
-        )
+        by_columns = straight.astype(moved.dtype) @ forces
+        by_rows = turned.reshape(len(forces), -1).astype(moved.dtype).T @ forces
+        moved[others[:turn]] += steps[:turn] * by_columns.reshape(-1, size, width)
+        moved[others[turn:]] += steps[turn:] * by_rows.reshape(-1, size, width)
 
     def _add_far(self, patterns: NDArray[np.floating], load: _Load) -> None:
         dtype, width = patterns.dtype, patterns.shape[2]
