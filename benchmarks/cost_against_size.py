@@ -16,7 +16,8 @@ import platform
 import tempfile
 import time
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 
 import matplotlib as mpl
@@ -25,7 +26,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter, NullFormatter
 from measuring.bodies import made_body
-from measuring.memory import in_fresh_process
+from measuring.memory import in_fresh_process, with_peak
 from measuring.timing import dgemm_rate, median_seconds
 
 from palpate.core import cache
@@ -87,12 +88,12 @@ QUANTITIES = (
 
 
 def bake_once(size: int, form: str) -> Cost:
-    """Bake, save and touch, for a process of its own; whoever started it knows the memory."""
+    """Bake, save and touch, for a process of its own."""
     measured = made_body(size)
     rate = dgemm_rate()
     settings = BakeSettings(0.3, 1000.0, PinNodes(measured.fixed), form=form, threads=1)
     start = time.perf_counter()
-    body, _ = bake(measured.mesh, settings)
+    (body, _), peak = with_peak(partial(bake, measured.mesh, settings))
     bake_seconds = time.perf_counter() - start
     rng = np.random.default_rng(1999)
     count = body.compliance.node_count
@@ -107,7 +108,7 @@ def bake_once(size: int, form: str) -> Cost:
         free_surface_nodes=count,
         form=form,
         bake_seconds=bake_seconds,
-        peak_bytes=0,
+        peak_bytes=peak,
         file_bytes=file_bytes,
         touch_seconds=touch,
         gemm_rate=rate,
@@ -120,13 +121,12 @@ def cost_of(size: int, form: str, *, again: bool) -> Cost | None:
     if again or not file.exists():
         print(f"baking about {size} nodes, {form} ...", flush=True)
         try:
-            cost, peak = in_fresh_process(bake_once, size, form)
+            cost, _ = in_fresh_process(bake_once, size, form)
         except PalpateError as refusal:
             print(f"  {refusal}")
             return None
         KEPT.mkdir(parents=True, exist_ok=True)
-        kept = asdict(replace(cost, peak_bytes=peak))
-        file.write_text(json.dumps(kept, indent=1), encoding="utf-8")
+        file.write_text(json.dumps(asdict(cost), indent=1), encoding="utf-8")
     return Cost(**json.loads(file.read_text(encoding="utf-8")))
 
 

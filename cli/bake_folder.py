@@ -65,7 +65,7 @@ def run(arguments: argparse.Namespace, stopped: Sequence[int]) -> int:
             workers.executor,
             on_done=note,
             on_wait=watch,
-            # One more than there are workers each, so that none waits for a mesh to be read.
+            # As many in store as there are workers, so that none waits for a mesh to be read.
             at_once=2 * workers.count,
             wanted=workers.wanted,
         )

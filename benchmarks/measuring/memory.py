@@ -6,6 +6,7 @@ import multiprocessing
 import sys
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
+from functools import partial
 from pathlib import Path
 from typing import ParamSpec, TypeVar
 
@@ -29,14 +30,13 @@ def in_fresh_process(
     """
     fresh = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(max_workers=1, mp_context=fresh) as process:
-        return process.submit(_with_peak, work, arguments, options).result()
+        return process.submit(with_peak, partial(work, *arguments, **options)).result()
 
 
-def _with_peak(
-    work: Callable[..., Result], arguments: tuple[object, ...], options: dict[str, object]
-) -> tuple[Result, int]:
+def with_peak(work: Callable[[], Result]) -> tuple[Result, int]:
+    """What ``work`` returns, and the bytes this process grew by at most meanwhile."""
     before = _reset_peak()
-    result = work(*arguments, **options)
+    result = work()
     return result, _peak() - before
 
 
