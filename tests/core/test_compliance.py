@@ -42,6 +42,27 @@ def test_blocks_diagonal_and_columns_agree(body, rng):
     np.testing.assert_allclose(moved[i], compliance.block(i, j) @ force, atol=3e-7 * largest)
 
 
+@pytest.mark.parametrize(("dtype", "error"), [(np.float32, 1e-6), (np.float64, 1e-14)])
+@pytest.mark.parametrize("count", [0, 1, 3, 32, 33, 73])
+def test_displacements_are_the_product_with_the_columns(cube_mesh, rng, dtype, error, count):
+    mesh, fixed = cube_mesh
+    compliance = surface_compliance(mesh, assemble(mesh, 0.49), fixed, dtype=dtype)
+    compliance.table.setflags(write=False)
+    nodes, forces = rng.permutation(73)[:count], rng.normal(size=(count, 3))
+    expected = compliance.columns(nodes) @ forces.ravel()
+    moved = compliance.apply(forces, nodes)
+    assert moved.shape == (73, 3)
+    assert moved.dtype == np.float64
+    largest = np.abs(compliance.columns(nodes)).max(initial=0.0) * max(count, 1)
+    np.testing.assert_allclose(moved.ravel(), expected, rtol=0, atol=error * largest)
+
+
+def test_without_nodes_every_node_is_loaded(cube, rng):
+    forces = rng.normal(size=(73, 3))
+    everywhere = cube.compliance.apply(forces, np.arange(73))
+    np.testing.assert_array_equal(cube.compliance.apply(forces), everywhere)
+
+
 def test_a_stiffer_material_moves_in_proportion_less(cube_mesh):
     mesh, fixed = cube_mesh
     unit = surface_compliance(mesh, assemble(mesh, 0.3), fixed, dtype=np.float64)
