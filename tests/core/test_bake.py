@@ -4,6 +4,7 @@ import os
 import sys
 import tempfile
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -154,6 +155,32 @@ def test_a_scale_of_one_everywhere_is_none(cube_mesh):
     body, _ = bake(mesh, settings)
     assert body.young_scale is None
     assert body.key == body_key(mesh, fixed, 0.3)
+
+
+def test_a_job_tells_a_share_that_never_falls_and_a_time_that_remains(tmp_path, ball):
+    told = []
+    settings = replace(COARSE, edge_length=0.06, form="compressed", tolerance=2e-4)
+    body, report = run_bake(surface_of(ball), settings, tmp_path / "body.npz", told.append)
+    shares = [progress.share for progress in told if progress.share is not None]
+    assert shares == sorted(shares)
+    unknown = {progress.step for progress in told if progress.share is None}
+    assert unknown <= {"start", "tetrahedralize"}
+    assert all(progress.remaining is None or progress.remaining >= 0 for progress in told)
+    assert body.compliance.form == "compressed"
+    assert set(report.seconds) == {"tetrahedralize", "check", "stiffness", "plan", "compliance"}
+
+
+def test_a_job_can_be_stopped_while_it_computes(tmp_path, temporary, mouse_mesh):
+    mesh, fixed = mouse_mesh
+    before = children()
+    settings = BakeSettings(pins=PinNodes(fixed), form="compressed", tolerance=1e-4)
+    job = BakeJob(mesh, settings)
+    while job.poll().step not in {"compliance", "compress"}:
+        assert not job.finished
+        time.sleep(0.005)
+    job.close()
+    assert children() == before
+    assert not list(temporary.iterdir())
 
 
 def test_cancelling_leaves_no_process_no_file_no_folder(tmp_path, temporary):
