@@ -100,14 +100,18 @@ def _workers(arguments: argparse.Namespace, meshes: int) -> Iterator[Workers]:
 
         with cluster(arguments.scheduler) as found:
             # A worker of a cluster has its share of the machine's cores already.
-            yield Workers(found.executor, found.slots, arguments.threads or 1, found.wanted)
+            yield Workers(found.executor, found.slots, _threads(arguments, 1), found.wanted)
         return
     cores = available_cores()
     jobs = min(cores if arguments.jobs is None else arguments.jobs, meshes)
     if jobs < 1:
         raise PalpateError(f"--jobs: {arguments.jobs} bakes do nothing; give 1 or more")
     with ThreadPoolExecutor(jobs) as executor:
-        yield Workers(executor, jobs, arguments.threads or max(1, cores // jobs))
+        yield Workers(executor, jobs, _threads(arguments, max(1, cores // jobs)))
+
+
+def _threads(arguments: argparse.Namespace, share: int) -> int:
+    return share if arguments.threads is None else arguments.threads
 
 
 def _tasks(
