@@ -21,8 +21,6 @@ WORDS = {
         "Die Körperdatei fehlt; „Drücken“ berechnet sie neu"
     ),
     "Press Make Soft Again": "„Neu weich machen“ drücken",
-    "Pins changed since the bake": "Fixierung seit der Berechnung geändert",
-    "Poisson's ratio changed since the bake": "Querkontraktionszahl seit der Berechnung geändert",
     "The body file is missing; press Rebuild Body": (
         "Die Körperdatei fehlt; „Körper neu berechnen“ drücken"
     ),
@@ -87,12 +85,8 @@ WORDS = {
     "These pins would hold the whole surface; pin less": (
         "So wäre die ganze Oberfläche fixiert; weniger fixieren"
     ),
-    "Rebuild Body takes it over and keeps the tetrahedra": (
-        "„Körper neu berechnen“ übernimmt es und behält die Tetraeder"
-    ),
-    "The formulation changed since the bake": "Formulierung seit der Berechnung geändert",
-    "The stiff region changed since the bake": "Steifer Bereich seit der Berechnung geändert",
-    "The compliance is wanted in another form": "Die Nachgiebigkeit wird in anderer Form gewünscht",
+    "Changed since the bake: {names}": "Seit der Berechnung geändert: {names}",
+    "Rebuild Body takes it over": "„Körper neu berechnen“ übernimmt das",
     # A bake
     "The body is ready; leave Edit Mode to receive it": (
         "Der Körper ist fertig; zum Übernehmen den Bearbeitungsmodus verlassen"
@@ -102,12 +96,14 @@ WORDS = {
     "Comparing with the mesh": "Vergleicht mit dem Netz",
     "Assembling the stiffness": "Stellt die Steifigkeit auf",
     "Inverting the stiffness": "Kehrt die Steifigkeit um",
-    "Compressing the response": "Komprimiert die Antwort",
     "reading the mesh": "liest das Netz",
     "simplifying the surface": "vereinfacht die Oberfläche",
     "inserting the surface": "fügt die Oberfläche ein",
     "improving tetrahedra": "verbessert Tetraeder",
     "finishing": "schließt ab",
+    "Compressing the compliance": "Komprimiert die Nachgiebigkeit",
+    "Planning the elimination": "Plant die Elimination",
+    "Writing the body file": "Schreibt die Körperdatei",
     # View
     "Press on the surface and drag": "Auf die Oberfläche drücken und ziehen",
     "Pressing": "Drücken",

@@ -21,8 +21,6 @@ WORDS = {
         "物体ファイルがありません。「押す」で再計算されます"
     ),
     "Press Make Soft Again": "「もう一度柔らかくする」を押してください",
-    "Pins changed since the bake": "ベイク後に固定が変更されました",
-    "Poisson's ratio changed since the bake": "ベイク後にポアソン比が変更されました",
     "The body file is missing; press Rebuild Body": (
         "物体ファイルがありません。「物体を再計算」を押してください"
     ),
@@ -79,12 +77,8 @@ WORDS = {
     "These pins would hold the whole surface; pin less": (
         "表面全体が固定されてしまいます。固定を減らしてください"
     ),
-    "Rebuild Body takes it over and keeps the tetrahedra": (
-        "「物体を再計算」で反映され、四面体は保たれます"
-    ),
-    "The formulation changed since the bake": "ベイク後に定式化が変更されました",
-    "The stiff region changed since the bake": "ベイク後に硬い領域が変更されました",
-    "The compliance is wanted in another form": "コンプライアンスの別の形式が選ばれています",
+    "Changed since the bake: {names}": "ベイク後の変更: {names}",
+    "Rebuild Body takes it over": "「物体を再計算」で反映されます",
     # A bake
     "The body is ready; leave Edit Mode to receive it": (
         "物体の準備ができました。編集モードを終了すると反映されます"
@@ -94,12 +88,14 @@ WORDS = {
     "Comparing with the mesh": "メッシュと比較しています",
     "Assembling the stiffness": "剛性を組み立てています",
     "Inverting the stiffness": "剛性の逆を計算しています",
-    "Compressing the response": "応答を圧縮しています",
     "reading the mesh": "メッシュの読み込み",
     "simplifying the surface": "表面の簡略化",
     "inserting the surface": "表面の挿入",
     "improving tetrahedra": "四面体の改善",
     "finishing": "仕上げ",
+    "Compressing the compliance": "コンプライアンスを圧縮しています",
+    "Planning the elimination": "消去を計画しています",
+    "Writing the body file": "物体ファイルを書き込んでいます",
     # View
     "Press on the surface and drag": "表面を押してドラッグ",
     "Pressing": "押しています",

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 import bpy
 
 from ..core.bake_cost import ShapeSize
+from ..core.bake_settings import BakeSettings
 from ..core.errors import PalpateError
 from ..core.machine_speed import dgemm_rate
 from ..core.pins import Pins
@@ -102,5 +103,5 @@ def _values(thing: bpy.types.Object, names: tuple[str, ...]) -> Values:
 
 
 def _measure() -> None:
-    dgemm_rate()
+    dgemm_rate(BakeSettings.threads)
     redraw_views()

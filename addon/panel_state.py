@@ -83,7 +83,7 @@ def _press_restores(thing: bpy.types.Object, status: BodyStatus) -> bool:
 
 def _pins_alone(status: BodyStatus) -> bool:
     """Whether pins are all that differs from the body."""
-    return status.fit is Fit.READY and not status.notes and status.pins.fit is not PinFit.SAME
+    return status.fit is Fit.READY and not status.changed and status.pins.fit is not PinFit.SAME
 
 
 def _update_suffices(status: BodyStatus) -> bool:
@@ -94,7 +94,7 @@ def _update_suffices(status: BodyStatus) -> bool:
 def _rebuild_helps(status: BodyStatus) -> bool:
     lost = status.fit in {Fit.FILE_MISSING, Fit.FILE_DAMAGED}
     other_pins = status.pins.fit not in {PinFit.SAME, PinFit.UNUSABLE}
-    return lost or bool(status.notes) or other_pins
+    return lost or bool(status.changed) or other_pins
 
 
 def _draw_status(
@@ -126,9 +126,12 @@ def _draw_changes(
         say(layout, context, PIN_TEXTS[pins.fit], "INFO", time=duration(max(1.0, pins.seconds)))
         if _update_suffices(status):
             say(layout, context, "Press does it by itself, too", "BLANK1")
-    elif pins.fit is not PinFit.SAME:
-        say(layout, context, "Pins changed since the bake", "INFO")
-    for note in status.notes:
-        say(layout, context, note, "INFO")
+    names = list(status.changed)
+    if pins.fit not in {PinFit.SAME, PinFit.UNUSABLE} and not _pins_alone(status):
+        names.append("Pins")
+    if names:
+        known = bpy.app.translations.pgettext_iface
+        listed = ", ".join(known(name) for name in names)
+        say(layout, context, "Changed since the bake: {names}", "INFO", names=listed)
     if status.fit is Fit.READY and _rebuild_helps(status) and not _update_suffices(status):
-        say(layout, context, "Rebuild Body takes it over and keeps the tetrahedra", "BLANK1")
+        say(layout, context, "Rebuild Body takes it over", "BLANK1")

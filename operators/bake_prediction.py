@@ -8,7 +8,13 @@ import bpy
 import numpy as np
 
 from ..core.available_memory import available_memory
-from ..core.bake_cost import BakeCost, ShapeSize, edge_length_that_fits, estimate_cost
+from ..core.bake_cost import (
+    BakeCost,
+    ShapeSize,
+    bending,
+    edge_length_that_fits,
+    estimate_cost,
+)
 from ..core.bake_settings import BakeSettings
 from ..core.errors import PalpateError
 from ..core.pins import PinBelow, Pins
@@ -54,7 +60,8 @@ def shape_size(drawn: DrawnSurface) -> ShapeSize:
     middle = surface.vertices.mean(axis=0)
     i, j, k = (surface.vertices[surface.triangles[:, corner]] - middle for corner in range(3))
     volume = abs(float(np.einsum("fx,fx->", i, np.cross(j, k)))) / 6.0
-    return ShapeSize(float(surface.areas.sum()), volume, surface.diagonal, len(surface.triangles))
+    area, triangles = float(surface.areas.sum()), len(surface.triangles)
+    return ShapeSize(area, volume, surface.diagonal, triangles, bending(surface))
 
 
 def pins_of(thing: bpy.types.Object, drawn: DrawnSurface) -> Pins:

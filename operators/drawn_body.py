@@ -101,6 +101,6 @@ def _body(thing: bpy.types.Object, surface: DrawnSurface, status: BodyStatus) ->
         body_store.restore(thing)
         status = replace(status, fit=Fit.READY, pins=pin_change.look(thing, surface))
     # Other settings wait for Rebuild Body, and the pins with them.
-    if status.fit is Fit.READY and status.pins.quick and not status.notes:
+    if status.fit is Fit.READY and status.pins.quick and not status.changed:
         return pin_change.take_over(thing, surface)
     return body_store.load(thing)

@@ -11,13 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core import cache
+from ..core.bake_cost import MeshSize
+from ..core.bake_settings import BakeSettings
 from ..core.body_key import body_key
 from ..core.closest_point import SurfacePoints
 from ..core.errors import PalpateError
 from ..core.pins import pinned_nodes, places_on
-from ..core.repin import pin_more, pins_change
+from ..core.repin import pin_more, pin_more_seconds, pins_change
 from ..core.soft_body import SoftBody
 from ..core.surface import Surface
+from ..core.tet_mesh import TetMesh
 from . import baked_record, body_store, pin_group
 from .body_store import EmbeddedBody
 from .drawn_surface import DrawnSurface
@@ -26,8 +29,8 @@ from .object_handle import ObjectHandle
 
 # A downdate that takes longer is left to Rebuild Body, which has progress and Escape.
 LONGEST_SECONDS = 5.0
-# Measured for dense tables on one core: float operations and stored bytes a second.
-OPERATIONS_PER_SECOND, BYTES_PER_SECOND = 2e10, 2e8
+# A body file is read, written and read again at about this many bytes a second.
+BYTES_PER_SECOND = 2e8
 
 
 class PinFit(Enum):
@@ -83,7 +86,7 @@ def look(thing: bpy.types.Object, drawn: DrawnSurface) -> PinChange:
     if change == "bake":
         only_less = not np.setdiff1d(new, old).size
         return PinChange(PinFit.LESS if only_less else PinFit.OTHER)
-    seconds = _downdate_seconds(thing, len(new) - len(old))
+    seconds = _seconds(thing, within.body.mesh, len(new) - len(old))
     quick = seconds <= LONGEST_SECONDS and body_store.locate(thing) is not None
     return PinChange(PinFit.MORE if quick else PinFit.OTHER, seconds)
 
@@ -149,8 +152,14 @@ def _key(thing: bpy.types.Object, body: EmbeddedBody, fixed: NDArray[np.int64]) 
     return body_key(body.mesh, fixed, ratio, baked.baked_formulation, body.young_scale)
 
 
-def _downdate_seconds(thing: bpy.types.Object, added: int) -> float:
-    """About how long :func:`take_over` computes, and writes and reads the file."""
-    free = thing.palpate.free_surface_count
-    operations = 2 * (3 * added) * (3 * free) ** 2
-    return 0.2 + operations / OPERATIONS_PER_SECOND + 2 * 36 * free**2 / BYTES_PER_SECOND
+def _seconds(thing: bpy.types.Object, mesh: TetMesh, added: int) -> float:
+    """About how long :func:`take_over` computes and stores."""
+    baked = thing.palpate
+    settings = BakeSettings(
+        poisson_ratio=round(baked.baked_poisson_ratio, 6),
+        formulation=baked.baked_formulation,
+        form=baked.baked_form,
+        tolerance=baked.baked_tolerance / 100,
+    )
+    computing = pin_more_seconds(MeshSize.of(mesh), settings, baked.free_surface_count, added)
+    return computing + 1e6 * baked.compliance_megabytes / BYTES_PER_SECOND

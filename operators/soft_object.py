@@ -27,13 +27,13 @@ class Fit(Enum):
 
 @dataclass(frozen=True)
 class BodyStatus:
-    """``text`` says why; ``notes`` are settings changed since the bake, not in the body yet, other
-    than pins, which may not need a bake: ``pins``.
+    """``text`` says why; ``changed`` names settings that are not in the body yet, other than pins,
+    which may not need a bake: ``pins``.
     """
 
     fit: Fit
     text: str = ""
-    notes: tuple[str, ...] = ()
+    changed: tuple[str, ...] = ()
     pins: PinChange = pin_change.SAME
 
 
@@ -93,7 +93,7 @@ def mesh_status(thing: bpy.types.Object, drawn: DrawnSurface) -> BodyStatus:
     if change:
         return BodyStatus(Fit.CHANGED, change)
     return BodyStatus(
-        Fit.READY, notes=_unbaked_settings(thing, old, new), pins=pin_change.look(thing, drawn)
+        Fit.READY, changed=_unbaked_settings(thing, old, new), pins=pin_change.look(thing, drawn)
     )
 
 
@@ -119,19 +119,14 @@ def _unbaked_settings(
     thing: bpy.types.Object, old: Fingerprint, new: Fingerprint
 ) -> tuple[str, ...]:
     settings = thing.palpate
+    ratio = settings.poisson_ratio - settings.baked_poisson_ratio
     changes = (
-        (
-            abs(settings.poisson_ratio - settings.baked_poisson_ratio) > 1e-6,
-            "Poisson's ratio changed since the bake",
-        ),
-        (
-            formulation_now(thing) != settings.baked_formulation,
-            "The formulation changed since the bake",
-        ),
-        (old.stiffness != new.stiffness, "The stiff region changed since the bake"),
-        (_other_form(settings), "The compliance is wanted in another form"),
+        ("Poisson's Ratio", abs(ratio) > 1e-6),
+        ("Formulation", formulation_now(thing) != settings.baked_formulation),
+        ("Stiff Region", old.stiffness != new.stiffness),
+        ("Compliance", _other_form(settings)),
     )
-    return tuple(text for changed, text in changes if changed)
+    return tuple(name for name, changed in changes if changed)
 
 
 def _other_form(settings: bpy.types.PropertyGroup) -> bool:

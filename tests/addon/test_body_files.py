@@ -154,9 +154,10 @@ def test_pins_and_ratio_changed_later_are_said_and_taken_over_without_tetrahedra
     key = saved.palpate.body_key
     saved.palpate.poisson_ratio = 0.4
     saved.palpate.pin_fraction = 0.3
-    assert len(status(saved).notes) == 2
+    assert status(saved).changed == ("Poisson's Ratio",)
+    assert status(saved).pins.fit.name == "MORE"
     assert bpy.ops.palpate.rebuild_body() == {"FINISHED"}
-    assert status(saved).notes == ()
+    assert status(saved).changed == ()
     assert np.array_equal(np.array(saved.palpate["tets"]), tets)
     assert saved.palpate.body_key != key
     body = part("operators.body_store").load(saved)

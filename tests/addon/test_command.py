@@ -39,12 +39,46 @@ def test_bake_saves_a_file_that_can_be_pressed(command, scene, capfd):
     assert keys == ["Basis", pressed["shape_key"]]
 
 
+def test_form_formulation_and_stiff_region_are_chosen_by_options(command, scene, capfd):
+    bpy.ops.wm.open_mainfile(filepath=str(scene))
+    prop = bpy.data.objects["Prop"]
+    prop.vertex_groups.new(name="Hard").add(range(8), 1.0, "REPLACE")
+    bpy.ops.wm.save_mainfile()
+    words = ["bake", str(scene), "--object", "Prop", "--edge-length", "0.1", "--json"]
+    words += ["--formulation", "smoothed", "--form", "compressed", "--tolerance", "0.02"]
+    assert command([*words, "--stiff-group", "Hard", "--stiff-factor", "5"]) == 0
+    figures = json.loads(capfd.readouterr().out.splitlines()[-1])
+    assert (figures["formulation"], figures["form"]) == ("smoothed", "compressed")
+    baked = bpy.data.objects["Prop"].palpate
+    assert baked.baked_formulation == "smoothed"
+    assert baked.column_error <= 2.0
+    scale = part("operators.body_store").load(bpy.data.objects["Prop"]).young_scale
+    assert scale.max() == pytest.approx(5.0, rel=1e-5)
+    words = ["press", str(scene), "--object", "Prop", "--at", "0", "0", "0.025"]
+    assert command([*words, "--by", "0", "0", "-5e-3", "--json"]) == 0
+    assert json.loads(capfd.readouterr().out.splitlines()[-1])["force"][2] > 0
+
+
+def test_a_bake_whose_scene_cannot_be_saved_leaves_no_body(command, scene, capfd):
+    # Blender writes beside the file first, under this name.
+    (scene.parent / f"{scene.name}@").mkdir()
+    before = sorted(scene.parent.iterdir())
+    content = scene.read_bytes()
+    assert command(["bake", str(scene), "--object", "Prop", "--edge-length", "0.2"]) == 2
+    assert "cannot save" in capfd.readouterr().err
+    assert scene.read_bytes() == content
+    assert sorted(scene.parent.iterdir()) == before
+
+
 @pytest.mark.parametrize(
     ("words", "reason"),
     [
         (["bake", "/nowhere.blend", "--object", "Prop"], "no such file"),
         (["bake", "{scene}", "--object", "Nobody"], "Prop"),
         (["bake", "{scene}", "--object", "Prop", "--poisson", "0.7"], "out of range"),
+        (["bake", "{scene}", "--object", "Prop", "--tolerance", "0.5"], "to 0.05"),
+        (["bake", "{scene}", "--object", "Prop", "--form", "tiny"], "compressed"),
+        (["bake", "{scene}", "--object", "Prop", "--stiff-group", "None"], "vertex group"),
         (["bake", "{scene}", "--object", "Prop", "--pin-group", "None"], "vertex group"),
         (
             ["press", "{scene}", "--object", "Prop", "--at", "0", "0", "0", "--by", "0", "0", "1"],

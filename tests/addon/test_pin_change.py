@@ -104,7 +104,7 @@ def test_other_changes_wait_for_rebuild_body_and_pins_with_them(soft):
     soft.palpate.pin_fraction, soft.palpate.poisson_ratio = 0.4, 0.2
     press_down(soft)
     assert soft.palpate.body_key == key
-    assert len(status(soft).notes) == 1
+    assert len(status(soft).changed) == 1
 
 
 def test_another_rule_that_pins_the_same_is_no_change(soft):

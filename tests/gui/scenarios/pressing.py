@@ -2,143 +2,149 @@
 
 from __future__ import annotations
 
-import shutil
 from pathlib import Path
-from typing import Any
 
 import bpy
 import numpy as np
-from stage import MODULE, Pixel, Stage, Wait, takes
+from mouse_scene import (
+    BACK,
+    depth,
+    drag_in,
+    mouse,
+    open_mouse,
+    own_copy,
+    phase,
+    shape_keys,
+    start_press,
+    type_key,
+)
+from stage import MODULE, Stage, Wait, takes
 
 from bl_ext.user_default.palpate.operators import bake_session, body_store, press_session
 from bl_ext.user_default.palpate.operators.press_state import Phase
 
-SCENE, NAME = "sample_scenes/mouse.blend", "Mouse"
-# A place on the back, world coordinates: its inward normal points down and right on the screen.
-BACK = (-0.027, -0.014, 0.057)
-
 
 @takes(150)
 def dragging_dents_the_surface_and_enter_keeps_the_shape(stage: Stage) -> Wait:
-    yield from _open_mouse(stage)
+    yield from open_mouse(stage)
     yield from stage.picture("panel")
-    yield from _press(stage)
-    yield from _drag_in(stage, release=False)
+    yield from start_press(stage)
+    yield from drag_in(stage, release=False)
     force = np.linalg.norm(press_session.current().snapshot.contact_force)
     stage.note(force_newton=float(force))
     assert force > 0.005
     yield from stage.picture("dragging")
     yield from stage.event("LEFTMOUSE", "RELEASE", stage.mouse)
-    yield from stage.until(lambda: _phase() is Phase.HOLDING, "the hold")
+    yield from stage.until(lambda: phase() is Phase.HOLDING, "the hold")
     yield from stage.picture("held")
-    yield from _key(stage, "RET")
+    yield from type_key(stage, "RET")
     yield from stage.until(lambda: press_session.current() is None, "the end of the press")
-    assert _keys() == ["Basis", "Press 1"]
+    assert shape_keys() == ["Basis", "Press 1"]
     yield from stage.picture("kept")
-    yield from _key(stage, "Z", ctrl=True)
-    yield from stage.until(lambda: _keys() == [], "one undo step back to before the press")
-    yield from _key(stage, "Z", ctrl=True, shift=True)
-    yield from stage.until(lambda: _keys() == ["Basis", "Press 1"], "the redo")
+    yield from type_key(stage, "Z", ctrl=True)
+    yield from stage.until(lambda: shape_keys() == [], "one undo step back to before the press")
+    yield from type_key(stage, "Z", ctrl=True, shift=True)
+    yield from stage.until(lambda: shape_keys() == ["Basis", "Press 1"], "the redo")
 
 
 def escape_restores_every_bit(stage: Stage) -> Wait:
-    yield from _open_mouse(stage)
+    yield from open_mouse(stage)
     before = _coordinates()
-    yield from _press(stage)
-    yield from _drag_in(stage)
-    yield from _key(stage, "ESC")
+    yield from start_press(stage)
+    yield from drag_in(stage)
+    yield from type_key(stage, "ESC")
     yield from stage.until(lambda: press_session.current() is None, "the end of the press")
-    assert _keys() == []
+    assert shape_keys() == []
     assert _coordinates() == before
 
 
 def right_click_restores_every_bit(stage: Stage) -> Wait:
-    yield from _open_mouse(stage)
+    yield from open_mouse(stage)
     before = _coordinates()
-    yield from _press(stage)
-    yield from _drag_in(stage)
+    yield from start_press(stage)
+    yield from drag_in(stage)
     yield from stage.click(stage.pixel(BACK), "RIGHTMOUSE")
     yield from stage.until(lambda: press_session.current() is None, "the end of the press")
-    assert _keys() == []
+    assert shape_keys() == []
     assert _coordinates() == before
 
 
 def the_wheel_goes_deeper_while_the_button_is_held(stage: Stage) -> Wait:
-    yield from _open_mouse(stage)
-    yield from _press(stage)
+    yield from open_mouse(stage)
+    yield from start_press(stage)
     here = stage.pixel(BACK)
     yield from stage.drag([here, here], steps=1, release=False)
     for _ in range(5):
         yield from stage.event("WHEELUPMOUSE", "PRESS", here)
     size = press_session.current().drawn.size
-    yield from stage.until(lambda: _depth() > 0.045 * size, "five steps of a hundredth each")
+    yield from stage.until(lambda: depth() > 0.045 * size, "five steps of a hundredth each")
     for _ in range(5):
         yield from stage.event("WHEELDOWNMOUSE", "PRESS", here)
-    yield from stage.until(lambda: _depth() < 0.005 * size, "the way back")
+    yield from stage.until(lambda: depth() < 0.005 * size, "the way back")
     yield from stage.event("LEFTMOUSE", "RELEASE", here)
-    yield from _key(stage, "ESC")
+    yield from type_key(stage, "ESC")
 
 
 def the_view_turns_while_a_dent_is_held_and_another_touch_starts_elsewhere(stage: Stage) -> Wait:
-    yield from _open_mouse(stage)
-    yield from _press(stage)
-    yield from _drag_in(stage)
-    depth = _depth()
+    yield from open_mouse(stage)
+    yield from start_press(stage)
+    yield from drag_in(stage)
+    held = depth()
     before = stage.area.spaces.active.region_3d.view_rotation.copy()
     x, y = stage.pixel(BACK)
     yield from stage.drag([(x, y), (x + 120, y + 20)], "MIDDLEMOUSE")
     yield 0.3
     turned = stage.area.spaces.active.region_3d.view_rotation.rotation_difference(before).angle
     assert turned > 0.05
-    assert abs(_depth() - depth) < 1e-4
+    assert abs(depth() - held) < 1e-4
     yield from stage.picture("turned")
     yield from stage.drag([stage.pixel(BACK), stage.pixel((0.0, -0.02, 0.03))], release=False)
-    yield from stage.until(lambda: _phase() is Phase.DRAGGING, "the next touch")
+    yield from stage.until(lambda: phase() is Phase.DRAGGING, "the next touch")
     yield from stage.event("LEFTMOUSE", "RELEASE", stage.mouse)
-    yield from _key(stage, "ESC")
+    yield from type_key(stage, "ESC")
     yield from stage.until(lambda: press_session.current() is None, "the end of the press")
 
 
 @takes(90)
 def numpad_turns_the_view_and_ctrl_s_saves_while_a_dent_is_held(stage: Stage) -> Wait:
-    yield from _open_mouse(stage)
-    yield from _press(stage)
-    yield from _drag_in(stage)
+    yield from open_mouse(stage)
+    yield from start_press(stage)
+    yield from drag_in(stage)
     before = stage.area.spaces.active.region_3d.view_rotation.copy()
-    yield from _key(stage, "NUMPAD_1")
+    yield from type_key(stage, "NUMPAD_1")
     yield from stage.until(
         lambda: stage.area.spaces.active.region_3d.view_rotation != before, "the front view"
     )
     file = Path(bpy.data.filepath)
     stamp = file.stat().st_mtime_ns
-    yield from _key(stage, "S", ctrl=True)
+    yield from type_key(stage, "S", ctrl=True)
     yield from stage.until(lambda: file.stat().st_mtime_ns != stamp, "the saved file")
-    yield from stage.until(lambda: _keys() == ["Basis", "Palpate live"], "the dent's return")
-    assert _depth() > 0.005
-    yield from _key(stage, "ESC")
-    yield from stage.until(lambda: _keys() == [], "the end of the press")
+    yield from stage.until(lambda: shape_keys() == ["Basis", "Palpate live"], "the dent's return")
+    assert depth() > 0.005
+    yield from type_key(stage, "ESC")
+    yield from stage.until(lambda: shape_keys() == [], "the end of the press")
     # The others shall open the scene as it was.
     file.unlink()
 
 
 def a_probe_led_outward_keeps_no_shape(stage: Stage) -> Wait:
-    yield from _open_mouse(stage)
-    yield from _press(stage)
+    yield from open_mouse(stage)
+    yield from start_press(stage)
     x, y = stage.pixel(BACK)
     yield from stage.drag([(x, y), (x - 25, y + 40)])
-    yield from stage.until(lambda: _phase() is Phase.HOLDING, "the hold")
+    yield from stage.until(lambda: phase() is Phase.HOLDING, "the hold")
     yield from stage.picture("in-the-air")
-    yield from _key(stage, "RET")
+    yield from type_key(stage, "RET")
     yield 0.3
     assert press_session.current() is not None
     assert "no shape" in press_session.current().state.message
-    yield from _key(stage, "ESC")
+    yield from type_key(stage, "ESC")
     yield from stage.until(lambda: press_session.current() is None, "the end of the press")
-    assert _keys() == []
+    assert shape_keys() == []
 
 
 def closing_the_window_in_which_is_pressed_ends_the_press(stage: Stage) -> Wait:
-    yield from _open_mouse(stage)
+    yield from open_mouse(stage)
     before = _coordinates()
     with stage.view():
         bpy.ops.wm.window_new()
@@ -151,70 +157,70 @@ def closing_the_window_in_which_is_pressed_ends_the_press(stage: Stage) -> Wait:
         bpy.ops.wm.window_close()
     yield from stage.until(lambda: press_session.current() is None, "the end of the press")
     assert not servo.running
-    assert _keys() == []
+    assert shape_keys() == []
     assert _coordinates() == before
 
 
 def a_hidden_object_is_refused_with_a_remedy(stage: Stage) -> Wait:
-    yield from _open_mouse(stage)
-    _mouse().hide_set(True)
+    yield from open_mouse(stage)
+    mouse().hide_set(True)
     assert "show it" in _refusal(stage)
     assert press_session.current() is None
     yield
 
 
 def the_modulus_slider_is_felt_while_pressing(stage: Stage) -> Wait:
-    yield from _open_mouse(stage)
-    yield from _press(stage)
-    yield from _drag_in(stage)
+    yield from open_mouse(stage)
+    yield from start_press(stage)
+    yield from drag_in(stage)
     soft = _force()
-    _mouse().palpate.young_modulus *= 2
+    mouse().palpate.young_modulus *= 2
     yield from stage.until(lambda: np.isclose(_force(), 2 * soft, rtol=0.01), "twice the force")
-    yield from _key(stage, "ESC")
+    yield from type_key(stage, "ESC")
 
 
 def deleting_the_object_while_pressing_ends_the_press(stage: Stage) -> Wait:
-    yield from _open_mouse(stage)
-    yield from _press(stage)
-    yield from _drag_in(stage)
+    yield from open_mouse(stage)
+    yield from start_press(stage)
+    yield from drag_in(stage)
     servo = press_session.current().servo
-    bpy.data.objects.remove(_mouse())
+    bpy.data.objects.remove(mouse())
     yield from stage.until(lambda: press_session.current() is None, "the end of the press")
     assert not servo.running
 
 
 def opening_another_file_while_pressing_ends_the_press(stage: Stage) -> Wait:
-    yield from _open_mouse(stage)
-    yield from _press(stage)
-    yield from _drag_in(stage)
+    yield from open_mouse(stage)
+    yield from start_press(stage)
+    yield from drag_in(stage)
     servo = press_session.current().servo
-    stage.open_scene(_own_copy(stage))
+    stage.open_scene(own_copy(stage))
     yield 0.5
     assert press_session.current() is None
     assert not servo.running
-    assert _keys() == []
+    assert shape_keys() == []
 
 
 @takes(120)
 def the_simulated_device_presses_is_unplugged_and_comes_back(stage: Stage) -> Wait:
-    yield from _open_mouse(stage)
+    yield from open_mouse(stage)
     before = _coordinates()
     bpy.context.scene.palpate.source = "SIMULATED"
-    yield from _press(stage)
-    yield from stage.until(lambda: _depth() > 0.008, "the device's press")
+    yield from start_press(stage)
+    yield from stage.until(lambda: depth() > 0.008, "the device's press")
     yield from stage.picture("device")
     session = press_session.current()
     session.simulated.unplug()
-    yield from stage.until(lambda: _phase() is Phase.LOST, "the message")
+    yield from stage.until(lambda: phase() is Phase.LOST, "the message")
     yield 0.3
     assert not np.any(session.snapshot.output_force)
     assert _key_bytes("Palpate live") == _key_bytes("Basis")
     yield from stage.picture("unplugged")
     session.simulated.plug_in()
-    yield from stage.until(lambda: _phase() is Phase.FEELING, "the device's return")
-    yield from stage.until(lambda: _depth() > 0.008, "its next press")
+    yield from stage.until(lambda: phase() is Phase.FEELING, "the device's return")
+    yield from stage.until(lambda: depth() > 0.008, "its next press")
     child = session.simulated.pid
-    yield from _key(stage, "ESC")
+    yield from type_key(stage, "ESC")
     yield from stage.until(lambda: press_session.current() is None, "the end of the press")
     assert _coordinates() == before
     assert not Path(f"/proc/{child}").exists()
@@ -222,7 +228,7 @@ def the_simulated_device_presses_is_unplugged_and_comes_back(stage: Stage) -> Wa
 
 @takes(120)
 def make_soft_shows_progress_and_escape_leaves_nothing(stage: Stage) -> Wait:
-    yield from _open_mouse(stage)
+    yield from open_mouse(stage)
     bpy.ops.palpate.remove_softness()
     files = _files()
     yield from stage.picture("not-soft")
@@ -234,60 +240,60 @@ def make_soft_shows_progress_and_escape_leaves_nothing(stage: Stage) -> Wait:
     yield from stage.picture("baking")
     session = bake_session.current()
     child, folder = session.job._child, session.job._folder
-    yield from _key(stage, "ESC")
+    yield from type_key(stage, "ESC")
     yield from stage.until(lambda: bake_session.current() is None, "the end of the bake")
     assert child.poll() is not None
     assert not folder.exists()
     assert _files() == files
-    assert not _mouse().palpate.body_key
-    assert _keys() == []
+    assert not mouse().palpate.body_key
+    assert shape_keys() == []
 
 
 @takes(180)
 def make_soft_beside_blender_makes_the_mouse_pressable(stage: Stage) -> Wait:
-    yield from _open_mouse(stage)
+    yield from open_mouse(stage)
     bpy.ops.palpate.remove_softness()
     with stage.view():
         bpy.ops.palpate.make_soft("INVOKE_DEFAULT")
     yield from stage.until(lambda: bake_session.current() is None, "the bake", seconds=150)
-    assert _mouse().palpate.body_key
-    stage.note(nodes=_mouse().palpate.node_count, seconds=_mouse().palpate.bake_seconds)
+    assert mouse().palpate.body_key
+    stage.note(nodes=mouse().palpate.node_count, seconds=mouse().palpate.bake_seconds)
     yield from stage.picture("baked")
-    yield from _press(stage)
-    yield from _drag_in(stage)
-    yield from _key(stage, "RET")
-    yield from stage.until(lambda: _keys() == ["Basis", "Press 1"], "the kept shape")
+    yield from start_press(stage)
+    yield from drag_in(stage)
+    yield from type_key(stage, "RET")
+    yield from stage.until(lambda: shape_keys() == ["Basis", "Press 1"], "the kept shape")
 
 
 def opening_another_file_during_make_soft_ends_it(stage: Stage) -> Wait:
-    yield from _open_mouse(stage)
+    yield from open_mouse(stage)
     with stage.view():
         bpy.ops.palpate.make_soft("INVOKE_DEFAULT")
     child = bake_session.current().job._child
     yield 1.0
-    stage.open_scene(_own_copy(stage))
+    stage.open_scene(own_copy(stage))
     yield 0.5
     assert bake_session.current() is None
     assert child.poll() is not None
 
 
 def switching_the_extension_off_while_pressing_leaves_a_clean_mesh(stage: Stage) -> Wait:
-    yield from _open_mouse(stage)
+    yield from open_mouse(stage)
     before = _coordinates()
-    yield from _press(stage)
-    yield from _drag_in(stage)
+    yield from start_press(stage)
+    yield from drag_in(stage)
     servo = press_session.current().servo
     bpy.ops.preferences.addon_disable(module=MODULE)
     yield 0.5
     bpy.ops.preferences.addon_enable(module=MODULE)
     yield
     assert not servo.running
-    assert _keys() == []
+    assert shape_keys() == []
     assert _coordinates() == before
 
 
 def an_edited_mesh_is_said_in_the_panel(stage: Stage) -> Wait:
-    yield from _open_mouse(stage)
+    yield from open_mouse(stage)
     with stage.view():
         bpy.ops.object.mode_set(mode="EDIT")
         bpy.ops.mesh.select_all(action="SELECT")
@@ -297,53 +303,8 @@ def an_edited_mesh_is_said_in_the_panel(stage: Stage) -> Wait:
     assert "Make Soft" in _refusal(stage)
 
 
-def _mouse() -> Any:
-    return bpy.data.objects[NAME]
-
-
-def _phase() -> Phase | None:
-    session = press_session.current()
-    return session.state.phase if session else None
-
-
 def _force() -> float:
     return float(np.linalg.norm(press_session.current().snapshot.contact_force))
-
-
-def _depth() -> float:
-    """How deep the probe is, in metres."""
-    snapshot = press_session.current().snapshot
-    if snapshot is None or not snapshot.touching:
-        return 0.0
-    return float(np.linalg.norm(snapshot.probe - snapshot.proxy))
-
-
-def _open_mouse(stage: Stage) -> Wait:
-    """Open the mouse as it lies in the repository, without a body file: Press makes one."""
-    stage.open_scene(_own_copy(stage))
-    yield 0.5
-    yield from stage.open_sidebar("Palpate")
-    bpy.context.view_layer.objects.active = _mouse()
-    bpy.ops.ed.undo_push(message="Mouse opened")
-    yield
-
-
-def _own_copy(stage: Stage) -> str:
-    """A copy of the scene, so that no body file is made or removed beside the repository's."""
-    copy = stage.output / "scene" / Path(SCENE).name
-    if not copy.is_file():
-        copy.parent.mkdir(exist_ok=True)
-        shutil.copyfile(stage.repository / SCENE, copy)
-    return str(copy)
-
-
-def _press(stage: Stage) -> Wait:
-    yield from stage.move(stage.pixel(BACK))
-    with stage.view():
-        bpy.ops.palpate.press("INVOKE_DEFAULT")
-    yield from stage.until(
-        lambda: press_session.current() and press_session.current().snapshot, "the first tick"
-    )
 
 
 def _refusal(stage: Stage) -> str:
@@ -356,38 +317,15 @@ def _refusal(stage: Stage) -> str:
     return ""
 
 
-def _drag_in(stage: Stage, *, release: bool = True) -> Wait:
-    """Press the back with the pointer until it is well dented."""
-    x, y = stage.pixel(BACK)
-    yield from stage.drag([(x, y), (x + 25, y - 40)], release=release)
-    yield from stage.until(lambda: _depth() > 0.005, "a depth of 5 mm")
-
-
-def _key(stage: Stage, kind: str, **modifiers: bool) -> Wait:
-    """Type a key with the mouse over the view."""
-    yield from stage.move(_over_the_view(stage))
-    yield from stage.key(kind, **modifiers)
-
-
-def _over_the_view(stage: Stage) -> Pixel:
-    region = stage.region("WINDOW")
-    return (region.x + region.width / 3, region.y + region.height / 3)
-
-
-def _keys() -> list[str]:
-    keys = _mouse().data.shape_keys
-    return keys.key_blocks.keys() if keys else []
-
-
 def _coordinates() -> bytes:
-    mesh = _mouse().data
+    mesh = mouse().data
     flat = np.empty(3 * len(mesh.vertices), dtype=np.float32)
     mesh.attributes["position"].data.foreach_get("vector", flat)
     return flat.tobytes()
 
 
 def _key_bytes(name: str) -> bytes:
-    points = _mouse().data.shape_keys.key_blocks[name].points
+    points = mouse().data.shape_keys.key_blocks[name].points
     flat = np.empty(3 * len(points), dtype=np.float32)
     points.foreach_get("co", flat)
     return flat.tobytes()

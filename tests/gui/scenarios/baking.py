@@ -1,0 +1,200 @@
+"""What the panel says of bakes: before, during and after, at the width a sidebar has."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import partial
+from pathlib import Path
+
+import bpy
+from mouse_scene import depth, drag_in, mouse, open_mouse, start_press, type_key
+from stage import Stage, Wait, takes
+
+from bl_ext.user_default.palpate.addon import known_status, panel_cost, panels, sentence
+from bl_ext.user_default.palpate.operators import (
+    bake_prediction,
+    bake_session,
+    bake_words,
+    body_store,
+    press_session,
+)
+
+GIGABYTE = 1_000_000_000
+
+
+@takes(90)
+def the_panel_predicts_a_bake_and_follows_its_settings(stage: Stage) -> Wait:
+    with _all_panels_open(), _rows_shown() as rows:
+        yield from open_mouse(stage)
+        yield from stage.until(lambda: "Peak Memory" in rows, "the prediction")
+        yield from stage.picture("predicted")
+        coarse = dict(rows)
+        mouse().palpate.edge_length /= 2
+        yield
+        yield from stage.until(lambda: rows["Nodes"] != coarse["Nodes"], "other nodes")
+        assert float(rows["Nodes"].replace(",", "")) > float(coarse["Nodes"].replace(",", ""))
+        mouse().palpate.form = "COMPRESSED"
+        mouse().palpate.poisson_ratio = 0.49
+        yield
+        yield from stage.until(lambda: rows["Compliance"] == "Compressed", "the other form")
+        yield from stage.picture("finer")
+
+
+@takes(90)
+def too_little_memory_is_said_and_one_click_fits_it(stage: Stage) -> Wait:
+    with _all_panels_open(), _little_memory(GIGABYTE), _said() as said:
+        yield from open_mouse(stage)
+        bpy.ops.palpate.remove_softness()
+        mouse().palpate.edge_length = 0.012
+        yield
+        yield from stage.until(partial(_any_has, said, "free"), "the alarm")
+        yield from stage.picture("alarm")
+        before = mouse().palpate.edge_length
+        bpy.ops.palpate.fit_memory(by="COARSER")
+        assert mouse().palpate.edge_length > before
+        assert known_status.prediction(mouse(), bpy.context.scene).fits
+        yield from stage.picture("coarser")
+
+
+@takes(120)
+def the_panel_says_which_pins_need_no_bake(stage: Stage) -> Wait:
+    yield from open_mouse(stage)
+    # What earlier runs computed would be known.
+    shutil.rmtree(body_store.folder_for_new_files(), ignore_errors=True)
+    yield from start_press(stage)
+    yield from type_key(stage, "ESC")
+    yield from stage.until(lambda: press_session.current() is None, "the body's file")
+    with _said() as said:
+        mouse().palpate.pin_mode, mouse().palpate.pin_fraction = "BELOW", 0.3
+        yield
+        yield from stage.until(partial(_any_has, said, "More is pinned"), "the first text")
+        yield from stage.picture("more")
+        for fraction, words in ((0.4, "More"), (0.3, "computed before"), (0.2, "Less is pinned")):
+            bpy.ops.palpate.update_pins()
+            said.clear()
+            mouse().palpate.pin_fraction = fraction
+            yield
+            yield from stage.until(partial(_any_has, said, words), f"'{words}'")
+            yield from stage.picture(f"{100 * fraction:.0f}-percent")
+
+
+@takes(120)
+def a_compressed_body_is_pressed_like_any_other(stage: Stage) -> Wait:
+    with _all_panels_open(), _times_left() as left:
+        yield from open_mouse(stage)
+        # As small a body does not compress to less.
+        mouse().palpate.form, mouse().palpate.compression_tolerance = "COMPRESSED", 2.0
+        with stage.view():
+            bpy.ops.palpate.rebuild_body("INVOKE_DEFAULT")
+        yield from stage.until(lambda: left, "the remaining time")
+        yield from stage.picture("remaining")
+        yield from stage.until(lambda: bake_session.current() is None, "the bake", seconds=90)
+        assert mouse().palpate.baked_form == "compressed"
+        yield from stage.picture("baked")
+    yield from start_press(stage)
+    yield from drag_in(stage)
+    assert depth() > 0.005
+    yield from stage.picture("pressed")
+    yield from type_key(stage, "ESC")
+    yield from stage.until(lambda: press_session.current() is None, "the end of the press")
+
+
+@takes(120)
+def escape_ends_the_bake_and_its_process_while_the_stiffness_is_inverted(stage: Stage) -> Wait:
+    yield from open_mouse(stage)
+    with stage.view():
+        bpy.ops.palpate.rebuild_body("INVOKE_DEFAULT")
+    child = bake_session.current().job._child.pid
+    yield from stage.until(
+        lambda: bake_session.current().progress.step != "start", "the child's first step"
+    )
+    yield from type_key(stage, "ESC")
+    yield from stage.until(lambda: not Path(f"/proc/{child}").exists(), "the end of the process")
+    assert bake_session.current() is None
+
+
+def _any_has(said: list[str], words: str) -> bool:
+    return any(words in text for text in said)
+
+
+@contextmanager
+def _all_panels_open() -> Iterator[None]:
+    """Panels that are closed at first are open, since no operator opens them."""
+    closed = [cls for cls in panels.classes if "DEFAULT_CLOSED" in getattr(cls, "bl_options", ())]
+    _register_anew(closed, set())
+    try:
+        yield
+    finally:
+        _register_anew(closed, {"DEFAULT_CLOSED"})
+
+
+def _register_anew(changed: list[type], options: set[str]) -> None:
+    for cls in reversed(panels.classes):
+        bpy.utils.unregister_class(cls)
+    for cls in changed:
+        cls.bl_options = options
+    for cls in panels.classes:
+        bpy.utils.register_class(cls)
+
+
+@contextmanager
+def _replaced(place: object, name: str, other: Callable[..., object]) -> Iterator[None]:
+    original = getattr(place, name)
+    setattr(place, name, other)
+    try:
+        yield
+    finally:
+        setattr(place, name, original)
+
+
+@contextmanager
+def _rows_shown() -> Iterator[dict[str, str]]:
+    """Names and values of the figures that the panel draws."""
+    shown: dict[str, str] = {}
+    original = panel_cost._draw_rows
+
+    def draw(layout: bpy.types.UILayout, rows: list[tuple[str, str]]) -> None:
+        if any(name == "Peak Memory" for name, _ in rows):
+            shown.update(rows)
+        original(layout, rows)
+
+    with _replaced(panel_cost, "_draw_rows", draw):
+        yield shown
+
+
+@contextmanager
+def _said() -> Iterator[list[str]]:
+    """The sentences that the panel draws."""
+    said: list[str] = []
+    original = sentence.textwrap.wrap
+
+    def wrap(text: str, width: int) -> list[str]:
+        said.append(text)
+        return original(text, width)
+
+    with _replaced(sentence.textwrap, "wrap", wrap):
+        yield said
+
+
+@contextmanager
+def _times_left() -> Iterator[list[str]]:
+    """What the panel has said of the time that is left."""
+    left: list[str] = []
+    original = bake_words.how_far
+
+    def how_far(progress: object) -> str:
+        text = original(progress)
+        if "left" in text:
+            left.append(text)
+        return text
+
+    with _replaced(bake_words, "how_far", how_far):
+        yield left
+
+
+@contextmanager
+def _little_memory(available: int) -> Iterator[None]:
+    with _replaced(bake_prediction, "available_memory", lambda: available):
+        yield
