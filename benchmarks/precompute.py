@@ -136,10 +136,11 @@ class Problem:
 
     def true_columns(self, columns: NDArray[np.int64]) -> NDArray[np.float64]:
         """Columns at the wanted rows, refined until they are as good as float64 allows."""
-        factor, loads = self.superlu(), self.loads(columns)
-        solution = factor.solve(loads)
+        solve = self.cholmod() if cholespy_module() else self.superlu().solve
+        loads = self.loads(columns)
+        solution = solve(loads)
         for _ in range(REFINEMENTS):
-            solution += factor.solve(loads - self.matrix @ solution)
+            solution += solve(loads - self.matrix @ solution)
         return solution[self.wanted]
 
 
