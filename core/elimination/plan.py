@@ -62,7 +62,7 @@ class EliminationPlan:
     def peak_bytes(self) -> int:
         """The most bytes that the numeric steps ask for at once, the plan's matrix included.
 
-        A process grows by up to a fifth more, measured: freed memory is not all given back at once.
+        A process grows by up to a third more, measured: freed memory is not all given back at once.
         """
         peak, factor = elimination_peak_bytes(self.symbolic.fronts)
         table = inverse_bytes(len(self.ranks), self.table_itemsize)
