@@ -98,8 +98,7 @@ class Compliance:
     """The inverse stiffness of the free surface nodes at unit modulus, in either form.
 
     Its large arrays are not copied: they are made read-only, kept alive, and read in place by the
-    servo's thread. They must be contiguous. A view made writeable before still writes through;
-    then numbers that are read are wrong, and nothing else happens.
+    servo's thread. They must be contiguous, and nobody may write to them by views made before.
     """
 
     @staticmethod
@@ -126,6 +125,12 @@ class Compliance:
     def node_count(self) -> int: ...
     def block(self, i: int, j: int) -> NDArray[np.float64]:
         """L_ij (3, 3): displacement of node i per force on node j."""
+
+    def apply(self, nodal_forces: ArrayLike, nodes: ArrayLike) -> NDArray[np.float64]:
+        """Displacements (n, 3) of all nodes under forces (k, 3) on nodes (k,) (15).
+
+        The compressed form is summed in float32, its L_ii in float64.
+        """
 
     def seconds_per_block(self, pairs: Sequence[tuple[int, int]]) -> float:
         """How long it takes to read the blocks of these pairs, on average, s."""

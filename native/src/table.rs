@@ -2,14 +2,15 @@
 
 use std::any::Any;
 use std::fmt;
+use std::ops::Deref;
 use std::ptr::NonNull;
+use std::slice;
 
 /// A table of plain numbers, kept alive by whoever owns it.
 ///
-/// The tables of a body take hundreds of megabytes, so they are not copied. Entries are read one
-/// at a time and by value: no reference into the memory is ever made, so an owner that changes a
-/// number in spite of its promise makes a wrong number, nothing worse. Whatever addresses memory
-/// (places, counts, numbers of blocks) must not be kept in one of these.
+/// The tables of a body take hundreds of megabytes, so they are not copied. Whatever addresses
+/// memory (places, counts, numbers of blocks) does not belong in one of these: it is small, and must
+/// stay as it was checked.
 pub struct Table<T> {
     first: NonNull<T>,
     length: usize,
@@ -33,7 +34,7 @@ impl<T: Copy + Send + Sync + 'static> Table<T> {
     ///
     /// # Safety
     /// `first` is aligned, and `length` numbers of type `T`, of which every pattern of bits is a
-    /// valid one, can be read from it for as long as `owner` is not dropped.
+    /// valid one, can be read from it for as long as `owner` is not dropped. Nobody writes there.
     pub unsafe fn borrowed(
         first: NonNull<T>,
         length: usize,
@@ -45,28 +46,15 @@ impl<T: Copy + Send + Sync + 'static> Table<T> {
             _owner: Box::new(owner),
         }
     }
+}
 
-    /// How many numbers there are.
-    #[inline]
-    pub const fn len(&self) -> usize {
-        self.length
-    }
+impl<T> Deref for Table<T> {
+    type Target = [T];
 
-    /// Whether there are none.
     #[inline]
-    pub const fn is_empty(&self) -> bool {
-        self.length == 0
-    }
-
-    /// The number at `place`.
-    ///
-    /// # Panics
-    /// Beyond the end.
-    #[inline]
-    pub fn at(&self, place: usize) -> T {
-        assert!(place < self.length, "{place} of {}", self.length);
-        // SAFETY: within the table, by the promise of `borrowed`. Volatile: read once, as it is.
-        unsafe { self.first.add(place).read_volatile() }
+    fn deref(&self) -> &[T] {
+        // SAFETY: by the promise of `borrowed`.
+        unsafe { slice::from_raw_parts(self.first.as_ptr(), self.length) }
     }
 }
 

@@ -37,19 +37,19 @@ fn by_definition(parts: &CompressedParts, i: usize, j: usize) -> DMat3 {
     let all = parts.tile_counts.len() * TILES;
     let entry = |x: usize, y: usize| -> f64 {
         if i == j {
-            return parts.own_blocks.at(9 * i + 3 * x + y);
+            return parts.own_blocks[9 * i + 3 * x + y];
         }
         if r == c {
             let Either::Short(near) = &parts.near else {
                 unreachable!()
             };
-            return f64::from(parts.near_steps.at(r))
-                * f64::from(near.at((r * rows + a + x) * rows + b + y))
-                * f64::from(parts.near_scale.at(r * rows + a + x))
-                * f64::from(parts.near_scale.at(c * rows + b + y));
+            return f64::from(parts.near_steps[r])
+                * f64::from(near[(r * rows + a + x) * rows + b + y])
+                * f64::from(parts.near_scale[r * rows + a + x])
+                * f64::from(parts.near_scale[c * rows + b + y]);
         }
         let basis = |cluster: usize, row: usize, pattern: usize| {
-            f64::from(parts.basis.at((cluster * rows + row) * 8 * TILES + pattern))
+            f64::from(parts.basis[(cluster * rows + row) * 8 * TILES + pattern])
         };
         let mut sum = 0.0;
         for m in 0..8 * TILES {
@@ -61,13 +61,13 @@ fn by_definition(parts: &CompressedParts, i: usize, j: usize) -> DMat3 {
                 };
                 let coupled = match number {
                     0 => 0.0,
-                    1.. => f64::from(parts.narrow.at(place(number as usize))),
-                    _ => f64::from(wide.at(place((-number - 1) as usize))),
+                    1.. => f64::from(parts.narrow[place(number as usize)]),
+                    _ => f64::from(wide[place((-number - 1) as usize)]),
                 };
                 sum += basis(r, a + x, m) * coupled * basis(c, b + y, k);
             }
         }
-        sum * f64::from(parts.steps.at(r).min(parts.steps.at(c)))
+        sum * f64::from(parts.steps[r].min(parts.steps[c]))
     };
     DMat3::from_cols_array_2d(&[0, 1, 2].map(|y| [0, 1, 2].map(|x| entry(x, y))))
 }
@@ -100,6 +100,29 @@ fn compressed_blocks_are_what_the_form_says() {
             let block = compliance.block(i, j);
             assert!(close(block, by_definition(&parts, i, j)), "{i} {j}");
             assert_eq!(block, compliance.block(j, i).transpose());
+        }
+    }
+}
+
+#[test]
+fn displacements_are_sums_of_blocks_times_forces() {
+    let mut dice = Dice::new(6);
+    let table: Vec<f64> = (0..9 * NODES * NODES).map(|_| dice.unit()).collect();
+    let dense = Dense::new(NODES, Either::Long(table.into())).expect("n x 3 x 3n");
+    let both = [
+        Compliance::Dense(dense),
+        bodies::compressed(&mut dice, NODES, LEAF, TILES),
+    ];
+    for compliance in both {
+        let loads: Vec<(usize, DVec3)> = [3, 4, 9, 3].map(|j| (j, dice.direction())).to_vec();
+        let moved = compliance.apply(&loads);
+        assert_eq!(moved.len(), NODES);
+        for (i, found) in moved.into_iter().enumerate() {
+            let expected: DVec3 = loads.iter().map(|&(j, f)| compliance.block(i, j) * f).sum();
+            assert!(
+                (found - expected).length() <= 1e-5,
+                "{i}: {found} {expected}"
+            );
         }
     }
 }

@@ -3,7 +3,11 @@
 use std::ptr::NonNull;
 use std::sync::Arc;
 
-use numpy::{Element, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use glam::DVec3;
+use numpy::{
+    AllowTypeChange, Element, PyArray1, PyArrayDyn, PyArrayLike1, PyArrayLike2, PyArrayMethods,
+    PyUntypedArrayMethods,
+};
 use pyo3::exceptions::{PyIndexError, PyKeyError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -82,6 +86,34 @@ impl Compliance {
         square(py, self.inner.block(i, j))
     }
 
+    fn apply<'py>(
+        &self,
+        py: Python<'py>,
+        nodal_forces: PyArrayLike2<'py, f64, AllowTypeChange>,
+        nodes: PyArrayLike1<'py, i64, AllowTypeChange>,
+    ) -> PyResult<Matrix<'py>> {
+        let (forces, nodes) = (nodal_forces.as_array(), nodes.as_array());
+        if forces.ncols() != 3 || forces.nrows() != nodes.len() {
+            return Err(PyValueError::new_err(format!(
+                "nodal_forces has the shape {:?}, not ({}, 3)",
+                forces.shape(),
+                nodes.len()
+            )));
+        }
+        let count = self.inner.node_count();
+        let loads = (nodes.iter().zip(forces.rows()))
+            .map(|(&node, force)| match usize::try_from(node) {
+                Ok(node) if node < count => Ok((node, DVec3::new(force[0], force[1], force[2]))),
+                _ => Err(PyIndexError::new_err(format!(
+                    "node {node} is beyond the {count} nodes"
+                ))),
+            })
+            .collect::<PyResult<Vec<_>>>()?;
+        let moved = self.inner.apply(&loads);
+        let flat: Vec<f64> = moved.iter().flat_map(|v| v.to_array()).collect();
+        PyArray1::from_vec(py, flat).reshape([count, 3])
+    }
+
     fn seconds_per_block(&self, pairs: Vec<(usize, usize)>) -> PyResult<f64> {
         let count = self.inner.node_count();
         if pairs.is_empty() || pairs.iter().any(|&(i, j)| i >= count || j >= count) {
@@ -136,8 +168,8 @@ fn shared<T: Element + Copy + Send + Sync + 'static>(
     array.getattr("flags")?.setattr("writeable", false)?;
     let first = NonNull::new(array.data()).unwrap_or(NonNull::dangling());
     // SAFETY: aligned and without gaps, as checked; numpy neither moves nor frees the memory of an
-    // array that somebody refers to. The table makes no references into it and holds nothing that
-    // addresses memory, so even a write through another view of it is harmless.
+    // array that somebody refers to. It can no longer be written to, but for views made before,
+    // through which callers promise not to write; nothing in a table addresses memory.
     Ok(unsafe { Table::borrowed(first, array.len(), array.clone().unbind()) })
 }
 

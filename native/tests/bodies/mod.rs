@@ -105,7 +105,12 @@ pub fn compressed_parts(
     for block in near.chunks_mut(rows * rows) {
         for r in 0..rows {
             for c in 0..=r {
-                let number = dice.below(200) as i16 - 100;
+                // The blocks L_ii are kept apart.
+                let number = if r / 3 == c / 3 {
+                    0
+                } else {
+                    dice.below(200) as i16 - 100
+                };
                 (block[r * rows + c], block[c * rows + r]) = (number, number);
             }
         }

@@ -1,3 +1,6 @@
+import sys
+from copy import deepcopy
+
 import numpy as np
 import pytest
 
@@ -46,8 +49,13 @@ def test_columns_are_made_of_blocks(compressed, rng):
         np.testing.assert_allclose(columns[i, :, k], compressed.block(i, j), atol=1e-13 * scale)
 
 
+@pytest.mark.parametrize("native", [True, False])
 @pytest.mark.parametrize("count", [1, 3, 40])
-def test_displacements_are_columns_times_forces(compressed, rng, count):
+def test_displacements_are_columns_times_forces(compressed, rng, count, native, monkeypatch):
+    if not native:
+        monkeypatch.setitem(sys.modules, "palpate_servo", None)
+        compressed = deepcopy(compressed)
+    assert (compressed._native is not None) == native
     nodes = rng.integers(0, compressed.node_count, count)  # some of them twice
     forces = rng.normal(size=(count, 3))
     expected = (compressed.columns(nodes) @ forces.ravel()).reshape(-1, 3)
@@ -59,6 +67,12 @@ def test_forces_on_all_nodes_need_no_numbers(compressed, mouse, rng):
     forces = rng.normal(size=(compressed.node_count, 3))
     expected = mouse.compliance.apply(forces)
     assert np.linalg.norm(compressed.apply(forces) - expected) < 1e-3 * np.linalg.norm(expected)
+
+
+def test_a_copy_that_was_sent_elsewhere_works_as_well(compressed):
+    compressed.apply(np.ones((1, 3)), np.array([5]))
+    copied = deepcopy(compressed)
+    np.testing.assert_array_equal(copied.columns(np.array([5])), compressed.columns(np.array([5])))
 
 
 def test_no_forces_move_nothing(compressed):
