@@ -43,7 +43,7 @@ WORDS = {
     ),
     "Nodes": "Knoten",
     "Tetrahedra": "Tetraeder",
-    "Free Surface Nodes": "Freie Oberflächenknoten",
+    "Free Surface Nodes": "Freie Knoten",
     "Memory": "Speicher",
     "Bake Time": "Rechenzeit",
     "Young's (Pa)": "E-Modul (Pa)",
@@ -80,7 +80,7 @@ WORDS = {
     "Less is pinned than before: needs a bake": (
         "Weniger ist fixiert als vorher: braucht eine Berechnung"
     ),
-    "Other places are pinned: needs a bake": "Andere Stellen sind fixiert: braucht eine Berechnung",
+    "The pins changed and need a bake": "Die Fixierung ist anders und braucht eine Berechnung",
     "Press does it by itself, too": "„Drücken“ tut es auch von selbst",
     "These pins would hold the whole surface; pin less": (
         "So wäre die ganze Oberfläche fixiert; weniger fixieren"
@@ -193,7 +193,7 @@ WORDS = {
         "Wie weit der Körper vom Netz abweichen darf, als Anteil der Diagonale. "
         "Kleiner dauert länger"
     ),
-    "Simplify Above": "Vereinfachen über",
+    "Simplify Above": "Dreiecke bis",
     "Denser meshes are simplified to this many triangles before the bake. "
     "What you see stays as dense as it is": (
         "Dichtere Netze werden vorher auf so viele Dreiecke vereinfacht. "
@@ -324,9 +324,9 @@ WORDS = {
     "Keep": "Behalten",
     "Keep the shape as a shape key": "Die Form als Formschlüssel behalten",
     "Compute the body again from the tetrahedra stored in this file, with the pins and "
-    "Poisson's ratio set now. For a body file that is missing or damaged": (
-        "Den Körper aus den Tetraedern dieser Datei neu berechnen, mit jetziger Fixierung und "
-        "Querkontraktion. Für eine fehlende oder beschädigte Körperdatei"
+    "the material set now. Also for a body file that is missing or damaged": (
+        "Den Körper aus den Tetraedern dieser Datei neu berechnen, mit jetziger Fixierung "
+        "und jetzigem Material. Auch für eine fehlende oder beschädigte Körperdatei"
     ),
     "Look for serial ports again": "Erneut nach Schnittstellen suchen",
     "Delete the body and its file. Mesh, pins and kept shapes stay": (

@@ -14,7 +14,7 @@ from .reading import reading
 Color = tuple[float, float, float, float]
 
 FONT = 0
-MARGIN, PADDING = 20, 14
+MARGIN, PADDING, NARROWEST = 20, 14, 150
 LARGE, NORMAL, SMALL = 26, 14, 12
 LINE = 1.5
 WHITE, GREY, WARNING = (1.0, 1.0, 1.0, 1.0), (0.8, 0.8, 0.8, 1.0), (1.0, 0.72, 0.2, 1.0)
@@ -47,10 +47,12 @@ def draw(context: bpy.types.Context, session: PressSession) -> None:
     left = _covered(context, "TOOLS", "LEFT") + MARGIN * scale
     padding = PADDING * scale
     right = context.region.width - _covered(context, "UI", "RIGHT") - MARGIN * scale
+    # In a view that has no room even for words, they are cut rather than broken into letters.
+    width = max(NARROWEST * scale, right - left - 2 * padding)
     lines = [
         (part, size, color)
         for text, size, color in _lines(context, session)
-        for part in _wrapped(text, size * scale, right - left - 2 * padding)
+        for part in _wrapped(text, size * scale, width)
     ]
     heights = [size * scale * LINE for _, size, _ in lines]
     widths = [_width(text, size * scale) for text, size, _ in lines]

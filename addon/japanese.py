@@ -72,7 +72,7 @@ WORDS = {
         "固定が増えました。約 {time} で反映され、ベイクは不要です"
     ),
     "Less is pinned than before: needs a bake": "固定が減りました。ベイクが必要です",
-    "Other places are pinned: needs a bake": "別の場所が固定されています。ベイクが必要です",
+    "The pins changed and need a bake": "固定が変わりました。ベイクが必要です",
     "Press does it by itself, too": "「押す」でも自動で反映されます",
     "These pins would hold the whole surface; pin less": (
         "表面全体が固定されてしまいます。固定を減らしてください"
@@ -295,7 +295,7 @@ WORDS = {
     "Keep": "保存",
     "Keep the shape as a shape key": "形をシェイプキーとして保存します",
     "Compute the body again from the tetrahedra stored in this file, with the pins and "
-    "Poisson's ratio set now. For a body file that is missing or damaged": (
+    "the material set now. Also for a body file that is missing or damaged": (
         "このファイル内の四面体から、今の固定とポアソン比で物体を計算し直します。"
         "物体ファイルがない、または壊れているときに使います"
     ),

@@ -23,6 +23,7 @@ from ..operators.viewport import redraw_views
 
 # The panel appears first, then the machine's speed is measured, a tenth of a second.
 SECONDS_TO_MEASURING = 0.2
+SECONDS_OF_REST = 0.6
 PIN_SETTINGS = ("pin_mode", "pin_group", "pin_fraction")
 # What a status depends on, besides what the mesh has in it.
 STATUS_SETTINGS = (
@@ -43,12 +44,13 @@ class _KnownMesh:
     """A mesh as it was read, and what was concluded from it, by the settings of the time."""
 
     drawn: DrawnSurface
-    size: ShapeSize | None = None
     statuses: dict[Values, BodyStatus] = field(default_factory=dict)
     pins: dict[Values, Pins] = field(default_factory=dict)
 
 
 _known: dict[Values, _KnownMesh] = {}
+# Kept while meshes change, and measured again once they rest: it takes a second for large ones.
+_sizes: dict[Values, ShapeSize] = {}
 
 
 def body_status(thing: bpy.types.Object, scene: bpy.types.Scene) -> BodyStatus:
@@ -75,24 +77,41 @@ def prediction(thing: bpy.types.Object, scene: bpy.types.Scene) -> Prediction | 
         if not bpy.app.timers.is_registered(_measure):
             bpy.app.timers.register(_measure, first_interval=SECONDS_TO_MEASURING)
         return None
-    known = _mesh(thing, scene)
-    if known.size is None:
-        known.size = bake_prediction.shape_size(known.drawn)
+    known, which = _mesh(thing, scene), _which(thing, scene)
+    if which not in _sizes:
+        _sizes[which] = bake_prediction.shape_size(known.drawn)
     question = _values(thing, PIN_SETTINGS)
     if question not in known.pins:
         known.pins[question] = bake_prediction.pins_of(thing, known.drawn)
     settings = bake_prediction.settings_of(thing, known.pins[question])
-    return bake_prediction.predict(known.size, settings)
+    return bake_prediction.predict(_sizes[which], settings)
 
 
 def forget() -> None:
     """Look everything up again: a mesh, a transform or a file changed."""
     _known.clear()
+    if bpy.app.background:
+        # Timers do not fire there, and nobody drags anything.
+        _sizes.clear()
+        return
+    if bpy.app.timers.is_registered(_forget_sizes):
+        bpy.app.timers.unregister(_forget_sizes)
+    if _sizes:
+        bpy.app.timers.register(_forget_sizes, first_interval=SECONDS_OF_REST)
+
+
+def _forget_sizes() -> None:
+    _sizes.clear()
+    redraw_views()
+
+
+def _which(thing: bpy.types.Object, scene: bpy.types.Scene) -> Values:
+    # No handler tells of a changed unit scale.
+    return (thing.session_uid, drawn_surface.metres_per_unit(scene))
 
 
 def _mesh(thing: bpy.types.Object, scene: bpy.types.Scene) -> _KnownMesh:
-    # No handler tells of a changed unit scale.
-    which = (thing.session_uid, drawn_surface.metres_per_unit(scene))
+    which = _which(thing, scene)
     if which not in _known:
         _known[which] = _KnownMesh(drawn_surface.read(thing, scene))
     return _known[which]

@@ -19,7 +19,7 @@ PIN_TEXTS = {
     PinFit.KNOWN: "These pins were computed before: no bake needed",
     PinFit.MORE: "More is pinned: takes effect in about {time}, no bake needed",
     PinFit.LESS: "Less is pinned than before: needs a bake",
-    PinFit.OTHER: "Other places are pinned: needs a bake",
+    PinFit.OTHER: "The pins changed and need a bake",
 }
 
 

@@ -1,6 +1,7 @@
 """Sentences in a panel: translated, and on as many lines as the sidebar's width needs."""
 
 import textwrap
+import unicodedata
 
 import bpy
 
@@ -8,6 +9,8 @@ import bpy
 LETTER_PIXELS = 7
 # Letters that icon and margins take.
 MARGIN_LETTERS, FEWEST_LETTERS = 5, 20
+# Marks that do not begin a line in Japanese.
+NEVER_FIRST = "、。」)・"
 
 
 def say(
@@ -26,5 +29,22 @@ def say(
     if figures:
         said = said.format(**figures)
     letters = max(FEWEST_LETTERS, across - MARGIN_LETTERS)
-    for number, line in enumerate(textwrap.wrap(said, letters)):
+    for number, line in enumerate(wrapped(said, letters)):
         column.label(text=line, icon=icon if number == 0 else "BLANK1", translate=False)
+
+
+def wrapped(text: str, letters: int) -> list[str]:
+    """The text on lines of so many letters. Wide letters count twice, and break anywhere."""
+    if not any(_letters(letter) == 2 for letter in text):
+        return textwrap.wrap(text, letters)
+    lines = [""]
+    for letter in text:
+        full = sum(map(_letters, lines[-1])) + _letters(letter) > letters
+        if full and letter not in NEVER_FIRST:
+            lines.append("")
+        lines[-1] += letter
+    return [line.strip() for line in lines]
+
+
+def _letters(letter: str) -> int:
+    return 2 if unicodedata.east_asian_width(letter) in {"W", "F"} else 1

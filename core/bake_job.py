@@ -122,10 +122,11 @@ class BakeJob:
         """Whether the child has ended, well or not."""
         return self._child.poll() is not None
 
-    def result(self, target: Path) -> tuple[SoftBody, BakeReport]:
+    def result(self, target: Path | Callable[[SoftBody], Path]) -> tuple[SoftBody, BakeReport]:
         """The body and what to know about its bake; its file is put at ``target`` in one step.
 
-        Waits until the job has finished and closes it.
+        Waits until the job has finished and closes it. The target may depend on the body: some
+        systems do not let a file be renamed once its numbers are in use.
 
         Raises
         ------
@@ -137,9 +138,11 @@ class BakeJob:
             report = self._report()
             # Seen to be sound before it replaces another; read where it stays, since a large one
             # is not read whole.
-            cache.load(self._folder / BODY_FILE)
-            cache.adopt(self._folder / BODY_FILE, target)
-            body = cache.load(target)
+            found = cache.load(self._folder / BODY_FILE)
+            place = target(found) if callable(target) else target
+            del found
+            cache.adopt(self._folder / BODY_FILE, place)
+            body = cache.load(place)
         finally:
             self.close()
         return body, report

@@ -67,10 +67,11 @@ class BakeSession:
         """
         try:
             thing = self._unchanged_object(scene)
-            target = body_store.folder_for_new_files() / f".{self.job_name}.npz"
-            body, report = self.job.result(target)
+            folder = body_store.folder_for_new_files()
+            body, report = self.job.result(
+                lambda found: folder / body_store.file_name(thing, found.key)
+            )
             name = body_store.file_name(thing, body.key)
-            target.replace(target.with_name(name))
             baked_record.record(thing, body, name, self.surface, self.fingerprint)
             thing.palpate.bake_seconds = sum(report.seconds.values())
             thing.palpate.bake_warnings = "\n".join(report.warnings)
@@ -84,11 +85,6 @@ class BakeSession:
         self.job.close()
         if _current is self:
             _current = None
-
-    @property
-    def job_name(self) -> str:
-        """A file name nobody else uses, for the moment between two renames."""
-        return f"{bpy.path.clean_name(self.handle.name)}-{id(self):x}"
 
     def _unchanged_object(self, scene: bpy.types.Scene) -> bpy.types.Object:
         thing = self.handle.find()

@@ -40,7 +40,7 @@ class PinFit(Enum):
     KNOWN = "known"  # the body with these pins lies in its file
     MORE = "more"  # computed from the body in seconds
     LESS = "less"  # some were let go: needs a bake
-    OTHER = "other"  # more, but too many for a quick answer, or elsewhere: needs a bake
+    OTHER = "other"  # elsewhere, or too many more for a quick answer: needs a bake
     UNUSABLE = "unusable"  # they pin nothing, or everything
 
 

@@ -1,4 +1,4 @@
-"""Rebuild Body: the body again from the tetrahedra in the .blend, also with new pins and ratio."""
+"""Rebuild Body: the body again from the tetrahedra in the .blend, with what is set now."""
 
 import bpy
 
@@ -10,7 +10,7 @@ class PALPATE_OT_rebuild_body(BakingOperator, bpy.types.Operator):
     bl_label = "Rebuild Body"
     bl_description = (
         "Compute the body again from the tetrahedra stored in this file, with the pins and "
-        "Poisson's ratio set now. For a body file that is missing or damaged"
+        "the material set now. Also for a body file that is missing or damaged"
     )
     bl_options = {"UNDO"}
     rebuild = True

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
+import json
+
 import numpy as np
 import pytest
 from soft_scene import part
@@ -104,9 +107,9 @@ def prints(installed):
     return part("operators.fingerprint")
 
 
-def fingerprint(prints, local, body, corners=(0, 1, 2), pins="below 0.1000"):
+def fingerprint(prints, local, body, corners=(0, 1, 2)):
     starts = np.arange(0, len(corners), 3)
-    return prints.take(local, body, np.array(corners), starts, pins)
+    return prints.take(local, body, np.array(corners), starts)
 
 
 def test_a_fingerprint_survives_rounding_and_storage_but_no_edit(prints, rng):
@@ -128,4 +131,11 @@ def test_a_fingerprint_tells_scale_from_shape_from_topology(prints, rng):
     assert "51 vertices" in prints.changed_body(
         old, fingerprint(prints, *(np.vstack([local, [[0, 0, 0]]]),) * 2)
     )
-    assert prints.changed_pins(old, fingerprint(prints, local, local, pins="below 0.2000"))
+
+
+def test_a_fingerprint_of_before_there_were_stiff_regions_can_be_read(prints, rng):
+    local = rng.standard_normal((50, 3))
+    old = dataclasses.replace(fingerprint(prints, local, local), pins="below 0.1000")
+    fields = json.loads(old.to_text())
+    del fields["stiffness"]
+    assert prints.Fingerprint.from_text(json.dumps(fields)) == old

@@ -76,3 +76,14 @@ def test_no_word_of_the_interface_is_missing(palpate, language):
 
 def test_the_languages_know_the_same_words(palpate):
     assert part("addon.german").WORDS.keys() == part("addon.japanese").WORDS.keys()
+
+
+def test_sentences_fill_lines_also_where_there_are_no_spaces(palpate):
+    wrapped = part("addon.sentence").wrapped
+    assert wrapped("Less is pinned than before", 12) == ["Less is", "pinned than", "before"]
+    text = part("addon.japanese").WORDS["Less is pinned than before: needs a bake"]
+    lines = wrapped(text, 12)
+    assert "".join(lines) == text
+    assert len(lines) > 2
+    assert max(map(len, lines)) <= 7
+    assert not any(line.startswith("。") for line in lines)

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 
 import bpy
 from mouse_scene import depth, drag_in, mouse, open_mouse, start_press, type_key
+from shown import all_panels_open, replaced
 from stage import Stage, Wait, takes
 
-from bl_ext.user_default.palpate.addon import known_status, panel_cost, panels, sentence
+from bl_ext.user_default.palpate.addon import known_status, panel_cost, sentence
 from bl_ext.user_default.palpate.operators import (
     bake_prediction,
     bake_session,
@@ -26,7 +27,7 @@ GIGABYTE = 1_000_000_000
 
 @takes(90)
 def the_panel_predicts_a_bake_and_follows_its_settings(stage: Stage) -> Wait:
-    with _all_panels_open(), _rows_shown() as rows:
+    with all_panels_open(), _rows_shown() as rows:
         yield from open_mouse(stage)
         yield from stage.until(lambda: "Peak Memory" in rows, "the prediction")
         yield from stage.picture("predicted")
@@ -44,7 +45,7 @@ def the_panel_predicts_a_bake_and_follows_its_settings(stage: Stage) -> Wait:
 
 @takes(90)
 def too_little_memory_is_said_and_one_click_fits_it(stage: Stage) -> Wait:
-    with _all_panels_open(), _little_memory(GIGABYTE), _said() as said:
+    with all_panels_open(), _little_memory(GIGABYTE), _said() as said:
         yield from open_mouse(stage)
         bpy.ops.palpate.remove_softness()
         mouse().palpate.edge_length = 0.012
@@ -67,11 +68,11 @@ def the_panel_says_which_pins_need_no_bake(stage: Stage) -> Wait:
     yield from type_key(stage, "ESC")
     yield from stage.until(lambda: press_session.current() is None, "the body's file")
     with _said() as said:
-        mouse().palpate.pin_mode, mouse().palpate.pin_fraction = "BELOW", 0.3
+        mouse().palpate.pin_mode, mouse().palpate.pin_fraction = "BELOW", 0.08
         yield
         yield from stage.until(partial(_any_has, said, "More is pinned"), "the first text")
         yield from stage.picture("more")
-        for fraction, words in ((0.4, "More"), (0.3, "computed before"), (0.2, "Less is pinned")):
+        for fraction, words in ((0.12, "More"), (0.08, "computed before"), (0.04, "Less")):
             bpy.ops.palpate.update_pins()
             said.clear()
             mouse().palpate.pin_fraction = fraction
@@ -82,7 +83,7 @@ def the_panel_says_which_pins_need_no_bake(stage: Stage) -> Wait:
 
 @takes(120)
 def a_compressed_body_is_pressed_like_any_other(stage: Stage) -> Wait:
-    with _all_panels_open(), _times_left() as left:
+    with all_panels_open(), _times_left() as left:
         yield from open_mouse(stage)
         # As small a body does not compress to less.
         mouse().palpate.form, mouse().palpate.compression_tolerance = "COMPRESSED", 2.0
@@ -120,36 +121,6 @@ def _any_has(said: list[str], words: str) -> bool:
 
 
 @contextmanager
-def _all_panels_open() -> Iterator[None]:
-    """Panels that are closed at first are open, since no operator opens them."""
-    closed = [cls for cls in panels.classes if "DEFAULT_CLOSED" in getattr(cls, "bl_options", ())]
-    _register_anew(closed, set())
-    try:
-        yield
-    finally:
-        _register_anew(closed, {"DEFAULT_CLOSED"})
-
-
-def _register_anew(changed: list[type], options: set[str]) -> None:
-    for cls in reversed(panels.classes):
-        bpy.utils.unregister_class(cls)
-    for cls in changed:
-        cls.bl_options = options
-    for cls in panels.classes:
-        bpy.utils.register_class(cls)
-
-
-@contextmanager
-def _replaced(place: object, name: str, other: Callable[..., object]) -> Iterator[None]:
-    original = getattr(place, name)
-    setattr(place, name, other)
-    try:
-        yield
-    finally:
-        setattr(place, name, original)
-
-
-@contextmanager
 def _rows_shown() -> Iterator[dict[str, str]]:
     """Names and values of the figures that the panel draws."""
     shown: dict[str, str] = {}
@@ -160,7 +131,7 @@ def _rows_shown() -> Iterator[dict[str, str]]:
             shown.update(rows)
         original(layout, rows)
 
-    with _replaced(panel_cost, "_draw_rows", draw):
+    with replaced(panel_cost, "_draw_rows", draw):
         yield shown
 
 
@@ -168,13 +139,13 @@ def _rows_shown() -> Iterator[dict[str, str]]:
 def _said() -> Iterator[list[str]]:
     """The sentences that the panel draws."""
     said: list[str] = []
-    original = sentence.textwrap.wrap
+    original = sentence.wrapped
 
-    def wrap(text: str, width: int) -> list[str]:
+    def wrapped(text: str, letters: int) -> list[str]:
         said.append(text)
-        return original(text, width)
+        return original(text, letters)
 
-    with _replaced(sentence.textwrap, "wrap", wrap):
+    with replaced(sentence, "wrapped", wrapped):
         yield said
 
 
@@ -190,11 +161,11 @@ def _times_left() -> Iterator[list[str]]:
             left.append(text)
         return text
 
-    with _replaced(bake_words, "how_far", how_far):
+    with replaced(bake_words, "how_far", how_far):
         yield left
 
 
 @contextmanager
 def _little_memory(available: int) -> Iterator[None]:
-    with _replaced(bake_prediction, "available_memory", lambda: available):
+    with replaced(bake_prediction, "available_memory", lambda: available):
         yield

@@ -3,10 +3,16 @@
 from __future__ import annotations
 
 import bpy
+from shown import all_panels_open
 from stage import Stage, Wait
 
 
 def panel_and_view_speak_japanese_and_german(stage: Stage) -> Wait:
+    with all_panels_open():
+        yield from _in_languages(stage)
+
+
+def _in_languages(stage: Stage) -> Wait:
     stage.open_scene("sample_scenes/mouse.blend")
     yield 0.3
     yield from stage.open_sidebar("Palpate")

@@ -18,8 +18,10 @@ from mouse_scene import (
     start_press,
     type_key,
 )
+from shown import replaced
 from stage import MODULE, Stage, Wait, takes
 
+from bl_ext.user_default.palpate.addon import hud
 from bl_ext.user_default.palpate.operators import bake_session, body_store, press_session
 from bl_ext.user_default.palpate.operators.press_state import Phase
 
@@ -159,6 +161,32 @@ def closing_the_window_in_which_is_pressed_ends_the_press(stage: Stage) -> Wait:
     assert not servo.running
     assert shape_keys() == []
     assert _coordinates() == before
+
+
+def the_figures_fit_a_narrow_view(stage: Stage) -> Wait:
+    yield from open_mouse(stage)
+    with stage.view():
+        bpy.ops.screen.area_split(direction="VERTICAL", factor=0.75)
+    narrow = min((a for a in stage.window.screen.areas if a.type == "VIEW_3D"), key=_width)
+    narrow.spaces.active.show_region_ui = narrow.spaces.active.show_region_toolbar = False
+    yield
+    beyond: list[float] = []
+    drawn: list[float] = []
+    draw = hud._rectangle
+
+    def rectangle(x: float, y: float, width: float, height: float) -> None:
+        drawn.append(bpy.context.region.width)
+        beyond.append(x + width - bpy.context.region.width)
+        draw(x, y, width, height)
+
+    with replaced(hud, "_rectangle", rectangle):
+        yield from start_press(stage)
+        yield from drag_in(stage)
+        yield from stage.picture("narrow")
+    assert min(drawn) < 0.4 * max(drawn)
+    assert max(beyond) <= 0
+    yield from type_key(stage, "ESC")
+    yield from stage.until(lambda: press_session.current() is None, "the end of the press")
 
 
 def a_hidden_object_is_refused_with_a_remedy(stage: Stage) -> Wait:
@@ -301,6 +329,10 @@ def an_edited_mesh_is_said_in_the_panel(stage: Stage) -> Wait:
         bpy.ops.object.mode_set(mode="OBJECT")
     yield from stage.picture("panel")
     assert "Make Soft" in _refusal(stage)
+
+
+def _width(area: bpy.types.Area) -> int:
+    return int(area.width)
 
 
 def _force() -> float:
