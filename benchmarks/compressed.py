@@ -6,8 +6,8 @@ For ``mouse-1.7k`` and ``mouse-20k`` and several tolerances: bytes and their rat
 form in float32; the largest relative error of any column, against all columns of the elimination in
 float64 and, for some, against iteratively refined sparse solves; the time to compress, by columns
 that are in memory and by columns that the factored stiffness gives; what memory the latter takes;
-a touch of nine columns, each time somewhere else; and the time in which the servo's native code reads a block. ``--quick``
-leaves out ``mouse-20k``.
+a touch of nine columns, each time somewhere else; and the time in which the servo's native code
+reads a block. ``--quick`` leaves out ``mouse-20k``.
 """
 
 from __future__ import annotations
@@ -141,8 +141,8 @@ def report(body: MeasuredBody) -> None:
             share = at_most(ours / LONGEST_TOUCH, 1.0)
             times = at_most(ours / theirs, LONGEST_TOUCH_RATIO)
         print(
-            f"    nine columns {1e6 * ours:.0f} us, times {LONGEST_TOUCH * 1e6:.0f} us {share}; dense "
-            f"{1e6 * theirs:.0f} us, times that {times}"
+            f"    nine columns {1e6 * ours:.0f} us, times {LONGEST_TOUCH * 1e6:.0f} us {share}; "
+            f"dense {1e6 * theirs:.0f} us, times that {times}"
         )
         print(
             f"    native: {block_nanoseconds(compressed, beside):.0f} ns a block of neighbours, "
