@@ -164,7 +164,8 @@ demo: $(VENV)/.servo-installed build/packages/.made ## the main job on a plush m
 	  --package build/packages/palpate-[0-9]*.zip --output build/demo
 
 .PHONY: bench
-bench: $(VENV)/.servo-installed | build/reports ## how long things take on this machine; see build/reports/bench.txt
+bench: $(VENV)/.servo-installed | build/reports ## how long things take on this machine, beside others; see build/reports/bench.txt
+	$(BIN)/pip install --quiet --editable '.[dev,bench]'
 	for script in benchmarks/*.py; do $(BIN)/python "$$script"; done $(REPORT)
 
 # ------------------------------------------------------------------------------------------ rest
