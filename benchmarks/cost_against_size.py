@@ -1,11 +1,11 @@
 """What bodies of one to fifty thousand nodes cost, as a table and a plot in the docs.
 
-    python benchmarks/cost_against_size.py [--sizes N ...] [--again] [--docs FOLDER]
+    python benchmarks/cost_against_size.py [--sizes N ...] [--again] [--docs]
 
-Bakes the mouse in six sizes and both forms, each in a process of its own, and rewrites the table in
-docs/cost.md and the plot docs/images/cost.png. What was measured is kept in build/cost, so that a
-run that was stopped goes on where it was; ``--again`` measures anew. Best on a machine that does
-nothing else.
+Bakes the mouse in six sizes and both forms, each in a process of its own, prints the table and draws
+build/reports/cost.png. With ``--docs`` it rewrites docs/cost.md and docs/images/cost.png too. What
+was measured is kept in build/cost, so that a run that was stopped goes on where it was; ``--again``
+measures anew. Best on a machine that does nothing else.
 """
 
 from __future__ import annotations
@@ -186,9 +186,8 @@ def machine(costs: list[Cost]) -> str:
     )
 
 
-def rewrite_table(docs: Path, costs: list[Cost]) -> None:
+def rewrite_table(page: Path, costs: list[Cost]) -> None:
     """Put the table between its marks in cost.md."""
-    page = docs / "cost.md"
     text = page.read_text(encoding="utf-8")
     before, rest = text.split(TABLE_BEGINS)
     _, after = rest.split(TABLE_ENDS)
@@ -212,7 +211,7 @@ def draw_line(
     )
 
 
-def draw(docs: Path, costs: list[Cost]) -> None:
+def draw(picture: Path, costs: list[Cost]) -> None:
     """Four panels over the number of nodes, all logarithmic."""
     mpl.rcParams.update({"font.size": 11, "axes.spines.top": False, "axes.spines.right": False})
     figure, axes = plt.subplots(2, 2, figsize=(9, 6.4), sharex=True, layout="constrained")
@@ -236,9 +235,8 @@ def draw(docs: Path, costs: list[Cost]) -> None:
     figure.legend(handles, labels, loc="outside upper right", ncols=2, frameon=False)
     for panel in axes[1]:
         panel.set_xlabel("nodes N")
-    images = docs / "images"
-    images.mkdir(parents=True, exist_ok=True)
-    figure.savefig(images / "cost.png", dpi=130)
+    picture.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(picture, dpi=130)
 
 
 def main() -> None:
@@ -246,15 +244,17 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--sizes", type=int, nargs="+", default=SIZES, metavar="NODES")
     parser.add_argument("--again", action="store_true", help="measure what is kept anew")
-    parser.add_argument("--docs", type=Path, default=PROJECT / "docs", help="where to write")
+    parser.add_argument("--docs", action="store_true", help="rewrite the docs' table and plot too")
     arguments = parser.parse_args()
     found = [
         cost_of(size, form, again=arguments.again) for size in arguments.sizes for form in FORMS
     ]
     costs = [cost for cost in found if cost is not None]
-    rewrite_table(arguments.docs, costs)
-    draw(arguments.docs, costs)
-    print(table(costs))
+    print(machine(costs), table(costs), sep="\n\n")
+    draw(PROJECT / "build" / "reports" / "cost.png", costs)
+    if arguments.docs:
+        rewrite_table(PROJECT / "docs" / "cost.md", costs)
+        draw(PROJECT / "docs" / "images" / "cost.png", costs)
 
 
 if __name__ == "__main__":
