@@ -54,6 +54,10 @@ class StoredColumns:
         """The columns of L for forces on ``nodes`` (k,), as a matrix (3n, 3k)."""
         return _opened(self.folder).columns(nodes)
 
+    def diagonal(self) -> NDArray[np.float64]:
+        """All blocks L_ii, (n, 3, 3)."""
+        return _opened(self.folder).diagonal()
+
 
 def store(columns: SurfaceColumns, folder: Path) -> StoredColumns:
     """Write the factor into ``folder``, one array a file so that each can be mapped."""

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import blas, eigh
 
+from ..errors import PalpateError
 from .clusters import Clusters
 from .column_source import ColumnSource
 
@@ -20,6 +21,9 @@ from .column_source import ColumnSource
 TILE = 8
 
 LARGEST_16_BITS = 32_767
+
+# Clusters whose scale is estimated together: as many columns as the largest cluster has.
+SAMPLED_AT_ONCE = 32
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,6 +84,11 @@ class ClusterTask:
         nodes, own = self.clusters.members[cluster], self.clusters.span(cluster)
         exact = self.source.columns(nodes)[self.clusters.freedoms]
         norms = np.sqrt(np.einsum("ij,ij->j", exact, exact))
+        if not (np.isfinite(norms).all() and norms.all()):
+            raise PalpateError(
+                "compliance: columns vanish or are not finite, so they cannot be compressed; take "
+                "another mesh or stiffness factors less far apart"
+            )
         corners = exact[own].reshape(len(nodes), 3, len(nodes), 3)
         each = np.arange(len(nodes))
         diagonal = corners[each, :, each, :]
@@ -180,11 +189,23 @@ def cluster_softness(clusters: Clusters, scale: NDArray[np.float64]) -> NDArray[
 def estimated_scale(source: ColumnSource, clusters: Clusters) -> NDArray[np.float64]:
     """About the norm of every column of L, (3n,), cluster after cluster, from one node a cluster.
 
-    L is symmetric, so a row over a sample of columns tells the norm of a whole column. Only
-    the choice of bases and steps rests on it; what is promised is measured on exact columns.
+    L is symmetric, so a row over a sample of columns tells what a column has in far clusters. What
+    it has in near ones is a peak that such a row may miss or hit; so that part is the sampled
+    column's, as many times as L_ii is larger. Only the choice of bases and steps rests on it; what
+    is promised is measured on exact columns.
     """
     sample = np.array([nodes[len(nodes) // 2] for nodes in clusters.members])
-    counts = np.repeat([float(len(nodes)) for nodes in clusters.members], 3)
-    sampled = source.columns(sample)[clusters.freedoms]
-    squares: NDArray[np.float64] = (sampled * sampled) @ counts
-    return np.sqrt(squares)
+    sizes = np.diff(clusters.starts) // 3
+    peaks = np.sum(source.diagonal() ** 2, axis=1)
+    far = np.zeros(len(clusters.freedoms))
+    near = np.empty((clusters.count, 3))
+    for first in range(0, clusters.count, SAMPLED_AT_ONCE):
+        part = slice(first, first + SAMPLED_AT_ONCE)
+        squares = source.columns(sample[part])[clusters.freedoms] ** 2
+        is_near = np.repeat(clusters.near[:, part], 3 * sizes, axis=0).repeat(3, axis=1)
+        near[part] = squares.sum(axis=0, where=is_near).reshape(-1, 3)
+        squares[is_near] = 0.0
+        far += squares @ np.repeat(sizes[part].astype(np.float64), 3)
+    near_to_peak = np.repeat(near / peaks[sample], sizes, axis=0).ravel()
+    estimated: NDArray[np.float64] = np.sqrt(far + near_to_peak * peaks.ravel()[clusters.freedoms])
+    return estimated

@@ -49,6 +49,10 @@ class Clusters:
         """The part of ``freedoms`` that is this cluster's."""
         return slice(int(self.starts[cluster]), int(self.starts[cluster + 1]))
 
+    def all_near(self) -> Clusters:
+        """The same partition with all clusters neighbours."""
+        return Clusters(self.members, np.ones_like(self.near))
+
     def spread(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
         """One value a cluster (q,) repeated for each of its degrees of freedom, (3n,)."""
         return np.repeat(values, np.diff(self.starts))

@@ -28,3 +28,7 @@ class ColumnSource(Protocol):
     def columns(self, nodes: NDArray[np.int64]) -> NDArray[np.float64]:
         """The columns of L for forces on ``nodes`` (k,), as a matrix (3n, 3k)."""
         ...
+
+    def diagonal(self) -> NDArray[np.float64]:
+        """All blocks L_ii, (n, 3, 3)."""
+        ...

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -21,16 +22,16 @@ from .tiles import Rounding
 # Calls the task for each cluster number and hands the results over in the same order, as map does.
 MapClusters = Callable[[ClusterTask, Iterable[int]], Iterable[ClusterColumns]]
 
-SMALLEST_TOLERANCE, LARGEST_TOLERANCE = 1e-5, 0.1
+SMALLEST_TOLERANCE, LARGEST_TOLERANCE = 1e-6, 0.1
 
 # Share of the tolerance that cutting bases may use. Rounding, whose error is cheaper to buy, gets
-# the rest; where a body is harder than the estimate, the pass is repeated with the next share.
-CUT_SHARES = (0.3, 0.1, 0.03)
+# the rest. The second is for a second pass, where a body is harder than the estimate.
+CUT_SHARES = (0.3, 0.05)
 
 # Near blocks of 16 bits err by about 1e-4 of a column; below this tolerance they are float32.
 SMALLEST_FOR_16_BITS = 3e-4
 
-# Where progress stands when the passes begin and end; a second one is rare.
+# Where progress stands when the passes begin and end; more than one is rare.
 PASS_PROGRESS = (0.0, 0.85, 0.95, 0.98)
 
 # The search for the coarsest step: about where it ends as a rule (times the tolerance over the root
@@ -63,14 +64,14 @@ def compress(
     ----------
     source : exact columns of L.
     positions : (n, 3), of the free surface nodes, metres.
-    tolerance : the largest relative error of any column of L, 2-norm, 1e-5 to 0.1.
+    tolerance : the largest relative error of any column of L, 2-norm, 1e-6 to 0.1.
     progress : called with the share done, 0 to 1; may raise to cancel.
     map_clusters : works on the clusters, an executor's ``map`` for instance.
 
     Raises
     ------
     PalpateError
-        A tolerance out of its range; numbers that cannot be compressed so far.
+        A tolerance out of its range; columns with numbers that are not finite.
     """
     if not SMALLEST_TOLERANCE <= tolerance <= LARGEST_TOLERANCE:
         raise PalpateError(
@@ -78,37 +79,68 @@ def compress(
             f"{LARGEST_TOLERANCE:g}; 0.001 keeps every column to a tenth of a percent"
         )
     clusters = cluster_nodes(np.asarray(positions, dtype=np.float64))
-    scale = estimated_scale(source, clusters)
-    for share, (start, end) in zip(CUT_SHARES, pairwise(PASS_PROGRESS), strict=True):
-        task = ClusterTask(
-            source, clusters, scale, share * tolerance, tolerance >= SMALLEST_FOR_16_BITS
-        )
-        coupling = Coupling(clusters, scale)
-        for number, part in enumerate(map_clusters(task, range(clusters.count)), start=1):
-            coupling.add(part)
-            progress(start + (end - start) * number / clusters.count)
-        chosen = _coarsest(coupling, tolerance)
-        if chosen is not None:
-            compressed = packed(source.free_surface, *chosen, tolerance)
-            progress(1.0)
-            return compressed
-    raise PalpateError(
-        f"tolerance: this body's compliance does not compress to {tolerance:g}; take the dense "
-        "form or a larger tolerance"
+    first, second = (share * tolerance for share in CUT_SHARES)
+    task = ClusterTask(
+        source=source,
+        clusters=clusters,
+        scale=estimated_scale(source, clusters),
+        cut=first,
+        near_in_16_bits=tolerance >= SMALLEST_FOR_16_BITS,
     )
+    spans = iter(pairwise(PASS_PROGRESS))
+    coupling = _coupled(task, map_clusters, progress, next(spans))
+    chosen = _coarsest(coupling, tolerance)
+    if chosen is None:
+        # By then all norms are known.
+        task = replace(task, scale=coupling.norms, cut=second, near_in_16_bits=False)
+        coupling = _coupled(task, map_clusters, progress, next(spans))
+        chosen = _coarsest(coupling, tolerance)
+    if chosen is None:
+        # Nothing to cut or to round but to float32.
+        task = replace(task, clusters=clusters.all_near())
+        chosen = _finest(_coupled(task, map_clusters, progress, next(spans)))
+    compressed = packed(source.free_surface, *chosen, tolerance)
+    progress(1.0)
+    return compressed
+
+
+def _coupled(
+    task: ClusterTask,
+    map_clusters: MapClusters,
+    progress: Progress,
+    span: tuple[float, float],
+) -> Coupling:
+    """One pass over all columns."""
+    coupling, (start, end) = Coupling(task.clusters, task.scale), span
+    count = task.clusters.count
+    for number, part in enumerate(map_clusters(task, range(count)), start=1):
+        coupling.add(part)
+        progress(start + (end - start) * number / count)
+    return coupling
+
+
+def _column_error(trial: Rounding) -> float:
+    """A bound of the largest relative column error."""
+    coupling = trial.coupling
+    near = np.sqrt(coupling.near_error) / coupling.norms
+    # Far and near parts are different rows of a column; cut and rounding may add up.
+    return float(np.hypot(near, coupling.cut_errors() + trial.errors).max()) + SINGLE_PRECISION
+
+
+def _finest(coupling: Coupling) -> tuple[Rounding, float]:
+    """For neighbours only, whose couplings are all empty."""
+    nothing = Rounding(coupling, 1.0)
+    return nothing, _column_error(nothing)
 
 
 def _coarsest(coupling: Coupling, tolerance: float) -> tuple[Rounding, float] | None:
     """About the coarsest rounding that keeps the tolerance, and its largest column error."""
-    cut = coupling.cut_errors()
-    near = np.sqrt(coupling.near_error) / coupling.norms
-    step = FIRST_STEP * tolerance / np.sqrt(len(cut))
+    step = FIRST_STEP * tolerance / np.sqrt(len(coupling.norms))
     best: tuple[Rounding, float] | None = None
     too_coarse = np.inf
     for _ in range(STEP_TRIALS):
         trial = Rounding(coupling, step)
-        # Far and near parts are different rows of a column; cut and rounding may add up.
-        error = float(np.hypot(near, cut + trial.errors).max()) + SINGLE_PRECISION
+        error = _column_error(trial)
         if error <= tolerance:
             best = trial, error
             if error > CLOSE_ENOUGH * tolerance:
@@ -116,7 +148,7 @@ def _coarsest(coupling: Coupling, tolerance: float) -> tuple[Rounding, float] | 
         else:
             too_coarse = step
         # Rounding errors grow with the step, cut ones do not.
-        guess = step * min(max(tolerance / error, 0.5), 2.0)
+        guess = step * min(max(tolerance / error, 0.1), 2.0)
         finest = 0.0 if best is None else best[0].step
         step = guess if finest < guess < too_coarse else 0.5 * (finest + too_coarse)
     return best

@@ -18,6 +18,8 @@ from .cluster_columns import TILE, cluster_softness
 from .coupling import Coupling
 
 LARGEST_8_BITS = 127
+# The largest float32 that is an int32.
+LARGEST_32_BITS = np.float32(2**31 - 128)
 
 # A tile is left out when all that it holds is below this many times the error of rounding it.
 NEGLIGIBLE = 1.0
@@ -111,7 +113,8 @@ def _rounded(stepped: NDArray[np.float32]) -> Rounded:
     rows, columns = stepped.shape
     shape = (rows // TILE, TILE, columns // TILE, TILE)
     energy = np.einsum("aibj,aibj->ab", stepped.reshape(shape), stepped.reshape(shape))
-    numbers = np.rint(stepped)
+    # Beyond 32 bits they are wrong, and count as such.
+    numbers = np.clip(np.rint(stepped), -LARGEST_32_BITS, LARGEST_32_BITS)
     used = energy > NEGLIGIBLE * TILE * TILE / 12
     used &= numbers.reshape(shape).any(axis=(1, 3))
     numbers.reshape(shape)[...] *= used[:, None, :, None]

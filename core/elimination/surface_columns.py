@@ -57,7 +57,7 @@ class SurfaceColumns:
             reached = np.flatnonzero((wanted >= part.start) & (wanted < part.stop))
             if reached.size:
                 loaded = part.rows[:, wanted[reached] - part.start]
-                moved = dgemm(1.0, loaded, part.rows, trans_a=True).T
+                moved = dgemm(1.0, part.rows, loaded, trans_a=True)
                 target = eliminated[part.start : part.stop]
                 if len(reached) == len(wanted):
                     target += moved
@@ -65,6 +65,14 @@ class SurfaceColumns:
                     target[:, reached] += moved
         by_node = eliminated.reshape(self.node_count, 3, -1)
         return by_node[order].reshape(3 * self.node_count, -1)
+
+    def diagonal(self) -> NDArray[np.float64]:
+        """All blocks L_ii, (n, 3, 3), without any whole column."""
+        eliminated = np.zeros((self.node_count, 3, 3))
+        for part in self.factor:
+            loads = part.rows.T.reshape((part.stop - part.start) // 3, 3, -1)
+            eliminated[part.start // 3 : part.stop // 3] += loads @ loads.transpose(0, 2, 1)
+        return eliminated[np.argsort(self.ranks)]
 
 
 def factor_for_columns(

@@ -122,14 +122,15 @@ def test_simulate_presses_from_above_and_reports(body_file, capsys):
 
 def test_a_firmer_body_is_pressed_with_no_more_force_than_the_hand_has(cube):
     soft = servo_command.press_from_above(cube, 1_000.0)
-    firm = servo_command.press_from_above(cube, 1e6)
+    firm = servo_command.press_from_above(cube, 1e8)
     assert soft.at == firm.at
     assert soft.at[2] == pytest.approx(0.05)
     assert soft.rest[2] > soft.at[2]
     # Along the normal of the flat top, straight down.
     assert soft.by[:2] == pytest.approx((0.0, 0.0))
     assert -0.006 < soft.by[2] < -0.005
-    assert firm.by[2] == pytest.approx(-servo_command.HAND_FORCE / 500.0, rel=0.05)
+    # So firm that nothing but the hand's own spring gives way.
+    assert firm.by[2] == pytest.approx(-servo_command.HAND_FORCE / firm.hand_stiffness, rel=1e-3)
 
 
 def test_ctrl_c_zeroes_the_force_and_still_reports(body_file, device):
