@@ -100,8 +100,7 @@ def bake(
             mesh, settings.poisson_ratio, formulation=formulation, young_scale=scale
         )
     with _timed(report.seconds, "plan"):
-        work.begin("plan")
-        plan = plan_surface_inverse(mesh, stiffness, fixed)
+        plan = plan_surface_inverse(mesh, stiffness, fixed, progress=work.begin("plan"))
         form, warnings = affordable_form(plan, settings, available())
     with _timed(report.seconds, "compliance"):
         compliance = _compliance(plan, form, mesh, settings, work)

@@ -37,7 +37,8 @@ def surface_compliance(
     PalpateError
         Pins that do not hold the body, or leave nothing to touch.
     """
-    return planned_compliance(plan_surface_inverse(mesh, stiffness, fixed, dtype), progress, dtype)
+    plan = plan_surface_inverse(mesh, stiffness, fixed, dtype, lambda _: progress(0.0))
+    return planned_compliance(plan, progress, dtype)
 
 
 def planned_compliance(

@@ -7,6 +7,7 @@ to couple. The sides are cut again, until they are small.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +15,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from ..progress import Progress, unwatched
 from .vertex_cover import minimum_vertex_cover
 
 # Regions of so few nodes are eliminated as one dense front: cutting them on would cost more in
@@ -55,6 +57,7 @@ def dissect(
     positions: NDArray[np.float64],
     last: NDArray[np.bool_],
     leaf_nodes: int = LEAF_NODES,
+    progress: Progress = unwatched,
 ) -> Dissection:
     """An order of elimination that keeps fronts small.
 
@@ -64,7 +67,17 @@ def dissect(
     positions : (n, 3), where the nodes are; the cuts' quality depends on it, their validity not.
     last : (n,), nodes that come last within their leaf, because loads will act on them alone.
     leaf_nodes : regions of at most so many nodes are not cut.
+    progress : called before every cut that is tried, with about the share of the work done; may
+        raise to cancel.
     """
+    expected = len(edges) * max(_cuts_expected(len(positions), leaf_nodes), 1.0)
+    sorted_edges = 0
+
+    def tried(count: int) -> None:
+        nonlocal sorted_edges
+        sorted_edges += count
+        progress(min(sorted_edges / max(expected, 1.0), 1.0))
+
     # Numbered along a curve that fills space, nodes of one separator stand beside their neighbours.
     # A front's boundary then meets the fronts above it in few unbroken runs.
     curve = _along_z_curve(positions)
@@ -87,7 +100,7 @@ def dissect(
             pieces = _pieces(len(nodes), inside, leaf_nodes)
             if len(pieces) > 1:
                 return [top for piece in pieces for top in add_region(*_part(nodes, inside, piece))]
-            cut = _best_cut(positions[nodes], inside)
+            cut = _best_cut(positions[nodes], inside, tried)
             if len(cut.first) and len(cut.second):
                 below = add_region(*_part(nodes, inside, cut.first))
                 below += add_region(*_part(nodes, inside, cut.second))
@@ -150,18 +163,30 @@ class _Cut:
     cost: float
 
 
-def _best_cut(positions: NDArray[np.float64], edges: NDArray[np.int64]) -> _Cut:
-    """The cheapest of the cuts tried."""
+def _cuts_expected(nodes: int, leaf_nodes: int) -> float:
+    """How many cuts each edge is sorted for, if every cut halves its region."""
+    several = max(0.0, np.log2(nodes / TRY_SEVERAL_CUTS_ABOVE))
+    single = max(0.0, np.log2(min(nodes, TRY_SEVERAL_CUTS_ABOVE) / leaf_nodes))
+    return float(3 * len(HEIGHTS_TRIED) * np.ceil(several) + np.ceil(single))
+
+
+def _best_cut(
+    positions: NDArray[np.float64], edges: NDArray[np.int64], tried: Callable[[int], None]
+) -> _Cut:
+    """The cheapest of the cuts tried; each is announced by the number of edges it sorted."""
     centred = positions - positions.mean(axis=0)
     directions = np.linalg.eigh(centred.T @ centred)[1].T[::-1]
     if len(positions) <= TRY_SEVERAL_CUTS_ABOVE:
+        tried(len(edges))
         return _cut(_ranks(centred @ directions[0]), edges, 0.5)
-    cuts = (
-        _cut(ranks, edges, height)
-        for ranks in (_ranks(centred @ direction) for direction in directions)
-        for height in HEIGHTS_TRIED
-    )
-    return min(cuts, key=lambda cut: cut.cost)
+
+    def cuts() -> Iterator[_Cut]:
+        for ranks in (_ranks(centred @ direction) for direction in directions):
+            for height in HEIGHTS_TRIED:
+                tried(len(edges))
+                yield _cut(ranks, edges, height)
+
+    return min(cuts(), key=lambda cut: cut.cost)
 
 
 def _ranks(heights: NDArray[np.float64]) -> NDArray[np.int64]:

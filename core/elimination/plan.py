@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from ..held_pins import pins_checked
+from ..progress import Progress, unwatched
 from ..tet_mesh import TetMesh
 from .block_matrix import BlockMatrix, free_blocks
 from .dissection import dissect
@@ -76,32 +77,48 @@ def plan_surface_inverse(
     stiffness: csr_array,
     fixed: NDArray[np.int64],
     dtype: type[np.floating] = np.float32,
+    progress: Progress = unwatched,
 ) -> EliminationPlan:
     """Plan the whole compliance of the free surface, stored as ``dtype``.
+
+    ``progress`` is called with about the share of the planning done; it may raise to cancel.
 
     Raises
     ------
     PalpateError
         Pins that do not hold the body, or leave nothing to touch.
     """
-    return _planned(mesh, stiffness, fixed, np.dtype(dtype).itemsize)
+    return _planned(mesh, stiffness, fixed, np.dtype(dtype).itemsize, progress)
 
 
-def plan_factor(mesh: TetMesh, stiffness: csr_array, fixed: NDArray[np.int64]) -> EliminationPlan:
-    """Plan the factor alone, from which single columns follow; errors as for the whole."""
-    return _planned(mesh, stiffness, fixed, 0)
+def plan_factor(
+    mesh: TetMesh,
+    stiffness: csr_array,
+    fixed: NDArray[np.int64],
+    progress: Progress = unwatched,
+) -> EliminationPlan:
+    """Plan the factor alone, from which single columns follow; the rest as for the whole."""
+    return _planned(mesh, stiffness, fixed, 0, progress)
 
 
 def _planned(
-    mesh: TetMesh, stiffness: csr_array, fixed: NDArray[np.int64], itemsize: int
+    mesh: TetMesh,
+    stiffness: csr_array,
+    fixed: NDArray[np.int64],
+    itemsize: int,
+    progress: Progress,
 ) -> EliminationPlan:
     pins = pins_checked(mesh, fixed)
     free = np.setdiff1d(np.arange(len(mesh.nodes)), pins)
     free_surface = np.setdiff1d(mesh.surface_nodes, pins)
     loaded = np.zeros(len(free), dtype=bool)
     loaded[np.searchsorted(free, free_surface)] = True
+    progress(0.0)
     matrix = free_blocks(stiffness, free)
+    progress(0.0)
     edges = matrix.edges
-    symbolic = analyse(dissect(edges, mesh.nodes[free], loaded), edges, loaded)
+    dissection = dissect(edges, mesh.nodes[free], loaded, progress=progress)
+    symbolic = analyse(dissection, edges, loaded)
+    progress(1.0)
     ranks = np.searchsorted(free_surface, free[symbolic.loaded])
     return EliminationPlan(free_surface, matrix, symbolic, ranks, itemsize)

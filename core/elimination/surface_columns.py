@@ -95,7 +95,8 @@ def factor_for_columns(
     PalpateError
         Pins that do not hold the body, or leave nothing to touch.
     """
-    return planned_columns(plan_factor(mesh, stiffness, fixed), progress)
+    plan = plan_factor(mesh, stiffness, fixed, lambda _: progress(0.0))
+    return planned_columns(plan, progress)
 
 
 def planned_columns(plan: EliminationPlan, progress: Progress = unwatched) -> SurfaceColumns:

@@ -7,9 +7,9 @@ import pytest
 
 from palpate.core.elimination import inverse, numeric, upper_tiles
 from palpate.core.elimination.plan import plan_factor, plan_surface_inverse
-from palpate.core.elimination.surface_columns import planned_columns
+from palpate.core.elimination.surface_columns import factor_for_columns, planned_columns
 from palpate.core.stiffness import assemble
-from palpate.core.surface_compliance import planned_compliance
+from palpate.core.surface_compliance import planned_compliance, surface_compliance
 
 
 @pytest.fixture(scope="module")
@@ -110,3 +110,38 @@ def test_a_plan_tells_the_smaller_cost_of_the_factor_alone(whole, factor_alone):
     assert factor_alone.flops < whole.flops
     assert factor_alone.peak_bytes < whole.peak_bytes
     np.testing.assert_array_equal(factor_alone.free_surface, whole.free_surface)
+
+
+def test_planning_tells_its_progress_and_can_be_cancelled(mouse_mesh):
+    mesh, fixed = mouse_mesh
+    stiffness = assemble(mesh, 0.3)
+    heard = []
+    plan_surface_inverse(mesh, stiffness, fixed, progress=heard.append)
+    assert heard == sorted(heard)
+    assert heard[-1] == 1.0
+    # It is told of the cuts, not only of the beginning and the end.
+    assert len(set(heard)) > 20
+    assert 0.5 < heard[-2] <= 1.0
+
+    def stop(share):
+        if share > 0.3:
+            raise InterruptedError
+
+    for plan in (plan_surface_inverse, plan_factor):
+        with pytest.raises(InterruptedError):
+            plan(mesh, stiffness, fixed, progress=stop)
+
+
+def test_a_whole_inverse_can_be_cancelled_while_it_is_planned(mouse_mesh):
+    mesh, fixed = mouse_mesh
+    calls = []
+
+    def stop(share):
+        calls.append(share)
+        raise InterruptedError
+
+    stiffness = assemble(mesh, 0.3)
+    for make in (surface_compliance, factor_for_columns):
+        with pytest.raises(InterruptedError):
+            make(mesh, stiffness, fixed, stop)
+    assert calls == [0.0, 0.0]

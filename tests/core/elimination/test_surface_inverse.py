@@ -10,6 +10,7 @@ from palpate.core.elimination.surface_columns import factor_for_columns
 from palpate.core.elimination.upper_tiles import UpperTiles
 from palpate.core.elimination.work import Meter
 from palpate.core.paper_cube import paper_cube
+from palpate.core.progress import unwatched
 from palpate.core.stiffness import assemble
 from palpate.core.surface_compliance import surface_compliance
 
@@ -74,7 +75,7 @@ def held_body(request):
 @pytest.fixture
 def small_parts(monkeypatch):
     """Fronts and tiles so small that even a small body has many of each."""
-    monkeypatch.setattr(dissect, "__defaults__", (8,))
+    monkeypatch.setattr(dissect, "__defaults__", (8, unwatched))
     monkeypatch.setattr(UpperTiles.zeros.__func__, "__defaults__", (20,))
     monkeypatch.setattr(inverse, "TILE", 50)
     monkeypatch.setattr(inverse, "ROWS_RENUMBERED", 11)
