@@ -57,6 +57,10 @@ TETS_PER_NODE = 5.0
 # Comparing with the mesh: seconds for each of its triangles and each surface node.
 CHECK_SECONDS = 2.5e-5
 
+# A process grows by more than is asked for at once: freed memory is not all given back. Measured,
+# from 1,000 to 46,000 nodes: by up to 1.31 times as much.
+PROCESS_GROWTH = 1.35
+
 # Bytes of the stiffness for each node, beside what the elimination holds.
 STIFFNESS_BYTES = {LINEAR: 1_500, "smoothed": 7_000}
 
@@ -266,11 +270,16 @@ def planned_cost(plan: EliminationPlan, form: str, threads: int | None = None) -
     table = BYTES_PER_PAIR * free**2
     if form == "dense":
         return BakeCost(
-            nodes, free, plan.weight / dgemm_rate(threads), plan.peak_bytes, table, form
+            nodes,
+            free,
+            plan.weight / dgemm_rate(threads),
+            int(PROCESS_GROWTH * plan.peak_bytes),
+            table,
+            form,
         )
     factor = replace(plan, table_itemsize=0)
     flops = factor.weight + _compressing_flops(free, factor.peak_bytes)
-    peak = factor.peak_bytes + int(COMPRESSING_SHARE * table)
+    peak = int(PROCESS_GROWTH * factor.peak_bytes + COMPRESSING_SHARE * table)
     return BakeCost(nodes, free, flops / dgemm_rate(threads), peak, 0, form)
 
 
@@ -384,10 +393,12 @@ def _elimination_cost(nodes: int, free: int, settings: BakeSettings, form: str) 
     laws = _laws(settings)
     stiffness = STIFFNESS_BYTES[formulation_for(settings.formulation, settings.poisson_ratio)]
     table = float(BYTES_PER_PAIR * free**2)
+    factor = laws.factor_peak.at(nodes, free)
     if form == "dense":
-        flops, peak = laws.table_weight.at(nodes, free), laws.table_peak.at(nodes, free)
+        flops = laws.table_weight.at(nodes, free)
+        # Of sheets and bars, nearly all nodes are free surface nodes: the table outweighs the rest.
+        peak = max(laws.table_peak.at(nodes, free), table + factor)
     else:
-        factor = laws.factor_peak.at(nodes, free)
         flops = laws.factor_weight.at(nodes, free) + _compressing_flops(free, factor)
         peak = factor + COMPRESSING_SHARE * table
         by_nodes, by_tolerance = COMPRESSED_EXPONENTS
@@ -397,7 +408,7 @@ def _elimination_cost(nodes: int, free: int, settings: BakeSettings, form: str) 
         nodes,
         free,
         flops / dgemm_rate(settings.threads),
-        int(peak + stiffness * nodes),
+        int(PROCESS_GROWTH * peak + stiffness * nodes),
         int(table + MESH_BYTES * nodes),
         form,
     )

@@ -112,6 +112,26 @@ def test_the_plan_of_a_body_agrees_with_its_estimate(mouse):
     assert 0.5 < estimate.peak_bytes / exact.peak_bytes < 2.0
 
 
+# Nodes, free surface nodes, and by how many million bytes a process grew while it made the dense
+# compliance (docs/cost.md).
+GROWN = [(969, 677, 44.9), (4275, 1194, 162), (19430, 3019, 843), (46034, 5487, 2624)]
+
+
+@pytest.mark.parametrize(("nodes", "free", "megabytes"), GROWN)
+def test_memory_is_not_foretold_too_small(nodes, free, megabytes):
+    settings = BakeSettings(pins=PinBelow(0.0), form="dense")
+    foretold = estimate_cost(MeshSize(nodes, free), settings).peak_bytes
+    assert 1e6 * megabytes < foretold < 2.2e6 * megabytes
+
+
+@pytest.mark.parametrize("poisson_ratio", [0.3, 0.49])
+@pytest.mark.parametrize(("nodes", "free"), [(40_000, 32_000), (20_402, 19_998), (5_202, 4_998)])
+def test_sheets_take_more_memory_than_their_table(nodes, free, poisson_ratio):
+    settings = BakeSettings(poisson_ratio, pins=PinBelow(0.0), form="dense")
+    cost = estimate_cost(MeshSize(nodes, free), settings)
+    assert cost.peak_bytes > cost.file_bytes > 36 * free**2
+
+
 def test_the_compliance_is_about_as_large_as_foretold(mouse):
     for form in ("dense", "compressed"):
         settings = BakeSettings(pins=PinNodes(mouse.fixed), form=form)
