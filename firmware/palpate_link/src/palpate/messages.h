@@ -1,0 +1,224 @@
+// Messages and their payloads, both directions.
+#pragma once
+
+#include <math.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+namespace palpate {
+
+constexpr uint8_t protocol_version = 1;
+
+enum class Type : uint8_t { hello = 1, state = 2, force = 3, fault = 4 };
+
+constexpr uint8_t state_ready = 1;
+constexpr uint8_t state_fault = 2;
+constexpr uint8_t force_enable = 1;
+constexpr uint8_t force_damp = 2;
+
+constexpr uint8_t fault_limp = 1;
+constexpr uint8_t fault_protocol = 2;
+constexpr uint8_t fault_first_of_maker = 128;
+
+constexpr size_t host_hello_size = 2;
+constexpr size_t device_hello_size = 37;
+constexpr size_t state_size = 21;
+constexpr size_t force_size = 10;
+constexpr size_t fault_size = 4;
+
+struct DeviceHello {
+  uint8_t protocol = protocol_version;
+  char name[16] = {};  // UTF-8, padded with zeros; all sixteen bytes may be used.
+  uint8_t axes = 3;
+  float largest_force_n = 0.0F;  // Zero: the device only measures.
+  float half_extents_m[3] = {0.0F, 0.0F, 0.0F};
+  uint16_t rate_hz = 1000;
+
+  // Whether its figures can be those of a device. NaN compares false.
+  bool is_sound() const {
+    return is_amount(largest_force_n) && is_amount(half_extents_m[0]) &&
+           is_amount(half_extents_m[1]) && is_amount(half_extents_m[2]);
+  }
+
+ private:
+  static bool is_amount(float value) { return value >= 0.0F && value <= 3.4028234e38F; }
+};
+
+struct State {
+  uint16_t sequence = 0;
+  uint32_t time_us = 0;
+  int32_t position_um[3] = {0, 0, 0};
+  uint8_t buttons = 0;
+  uint8_t flags = 0;
+};
+
+struct Force {
+  uint16_t sequence = 0;
+  int16_t force_mn[3] = {0, 0, 0};
+  uint8_t flags = 0;
+};
+
+struct Fault {
+  uint8_t code = 0;
+  uint16_t detail = 0;
+};
+
+// Writes numbers one after the other, low byte first, whatever the board's own order.
+class Packer {
+ public:
+  explicit Packer(uint8_t* to) : to_(to) {}
+
+  void u8(uint8_t value) { to_[size_++] = value; }
+  void u16(uint16_t value) {
+    u8(static_cast<uint8_t>(value & 0xFFU));
+    u8(static_cast<uint8_t>(value >> 8));
+  }
+  void u32(uint32_t value) {
+    u16(static_cast<uint16_t>(value & 0xFFFFU));
+    u16(static_cast<uint16_t>(value >> 16));
+  }
+  void f32(float value) {
+    static_assert(sizeof value == 4, "the link's numbers are IEEE 754 of four bytes");
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    u32(bits);
+  }
+  size_t size() const { return size_; }
+
+ private:
+  uint8_t* to_;
+  size_t size_ = 0;
+};
+
+// The inverse of Packer; the caller has compared the length.
+class Unpacker {
+ public:
+  explicit Unpacker(const uint8_t* from) : from_(from) {}
+
+  uint8_t u8() { return *from_++; }
+  uint16_t u16() {
+    const uint16_t low = u8();
+    return static_cast<uint16_t>(low | (static_cast<uint16_t>(u8()) << 8));
+  }
+  uint32_t u32() {
+    const uint32_t low = u16();
+    return low | (static_cast<uint32_t>(u16()) << 16);
+  }
+  // By way of memcpy, since a cast of what does not fit is up to the compiler before C++20.
+  int16_t i16() { return as<int16_t>(u16()); }
+  int32_t i32() { return as<int32_t>(u32()); }
+  float f32() { return as<float>(u32()); }
+
+ private:
+  template <class To, class From>
+  static To as(From bits) {
+    static_assert(sizeof(To) == sizeof(From), "the same bits read otherwise");
+    To value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+  }
+
+  const uint8_t* from_;
+};
+
+inline size_t pack_host_hello(uint8_t protocol, uint8_t* payload) {
+  Packer out(payload);
+  out.u8(static_cast<uint8_t>(Type::hello));
+  out.u8(protocol);
+  return out.size();
+}
+
+inline size_t pack(const DeviceHello& hello, uint8_t* payload) {
+  Packer out(payload);
+  out.u8(static_cast<uint8_t>(Type::hello));
+  out.u8(hello.protocol);
+  for (const char letter : hello.name) out.u8(static_cast<uint8_t>(letter));
+  out.u8(hello.axes);
+  out.f32(hello.largest_force_n);
+  for (const float extent : hello.half_extents_m) out.f32(extent);
+  out.u16(hello.rate_hz);
+  return out.size();
+}
+
+inline size_t pack(const State& state, uint8_t* payload) {
+  Packer out(payload);
+  out.u8(static_cast<uint8_t>(Type::state));
+  out.u16(state.sequence);
+  out.u32(state.time_us);
+  for (const int32_t um : state.position_um) out.u32(static_cast<uint32_t>(um));
+  out.u8(state.buttons);
+  out.u8(state.flags);
+  return out.size();
+}
+
+inline size_t pack(const Force& force, uint8_t* payload) {
+  Packer out(payload);
+  out.u8(static_cast<uint8_t>(Type::force));
+  out.u16(force.sequence);
+  for (const int16_t mn : force.force_mn) out.u16(static_cast<uint16_t>(mn));
+  out.u8(force.flags);
+  return out.size();
+}
+
+inline size_t pack(const Fault& fault, uint8_t* payload) {
+  Packer out(payload);
+  out.u8(static_cast<uint8_t>(Type::fault));
+  out.u8(fault.code);
+  out.u16(fault.detail);
+  return out.size();
+}
+
+inline bool is(const uint8_t* payload, size_t size, Type type, size_t wanted) {
+  return size == wanted && payload[0] == static_cast<uint8_t>(type);
+}
+
+// True for any HELLO, whatever follows its first two bytes: these are all that may be read of a
+// protocol other than one's own.
+inline bool read_protocol(const uint8_t* payload, size_t size, uint8_t& protocol) {
+  if (size < 2 || payload[0] != static_cast<uint8_t>(Type::hello)) return false;
+  protocol = payload[1];
+  return true;
+}
+
+inline bool unpack(const uint8_t* payload, size_t size, DeviceHello& hello) {
+  if (!is(payload, size, Type::hello, device_hello_size)) return false;
+  Unpacker in(payload + 1);
+  hello.protocol = in.u8();
+  for (char& letter : hello.name) letter = static_cast<char>(in.u8());
+  hello.axes = in.u8();
+  hello.largest_force_n = in.f32();
+  for (float& extent : hello.half_extents_m) extent = in.f32();
+  hello.rate_hz = in.u16();
+  return hello.protocol == protocol_version && hello.is_sound();
+}
+
+inline bool unpack(const uint8_t* payload, size_t size, State& state) {
+  if (!is(payload, size, Type::state, state_size)) return false;
+  Unpacker in(payload + 1);
+  state.sequence = in.u16();
+  state.time_us = in.u32();
+  for (int32_t& um : state.position_um) um = in.i32();
+  state.buttons = in.u8();
+  state.flags = in.u8();
+  return true;
+}
+
+inline bool unpack(const uint8_t* payload, size_t size, Force& force) {
+  if (!is(payload, size, Type::force, force_size)) return false;
+  Unpacker in(payload + 1);
+  force.sequence = in.u16();
+  for (int16_t& mn : force.force_mn) mn = in.i16();
+  force.flags = in.u8();
+  return true;
+}
+
+inline bool unpack(const uint8_t* payload, size_t size, Fault& fault) {
+  if (!is(payload, size, Type::fault, fault_size)) return false;
+  Unpacker in(payload + 1);
+  fault.code = in.u8();
+  fault.detail = in.u16();
+  return true;
+}
+
+}  // namespace palpate
