@@ -2,7 +2,7 @@
 
     python benchmarks/cost_against_size.py [--sizes N ...] [--again] [--docs]
 
-Bakes the mouse in six sizes and both forms, each in a process of its own, prints the table and draws
+Bakes the mouse in six sizes and both forms, each in its own process, prints the table and draws
 build/reports/cost.png. With ``--docs`` it rewrites docs/cost.md and docs/images/cost.png too. What
 was measured is kept in build/cost, so that a run that was stopped goes on where it was; ``--again``
 measures anew. Best on a machine that does nothing else.
