@@ -1,0 +1,253 @@
+"""The servo and the firmware's protocol part, which has never heard of it, on a pseudo-terminal."""
+
+import contextlib
+import json
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from palpate_servo import Body, Servo
+
+from palpate.core.devices import link
+
+# Corners, triangles and stiffness of a cube of 50 mm: 100 N/m at 10 kPa everywhere.
+SQUARES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+CUBE = (
+    [[x, y, z] for x in (0.0, 0.05) for y in (0.0, 0.05) for z in (0.0, 0.05)],
+    [half for a, b, c, d in SQUARES for half in ((a, b, c), (a, c, d))],
+    [[[0.01, 0.0, 0.0], [0.0, 0.01, 0.0], [0.0, 0.0, 0.01]]] * 8,
+)
+ABOVE = (0.026, 0.024, 0.06)
+DEEP = (0.026, 0.024, 0.044)
+
+
+class Board:
+    """The host program: the port is its first line."""
+
+    def __init__(self, talk):
+        self.tell, self._ask = talk.tell, talk.ask
+        self.port = talk.answer()
+
+    def report(self):
+        return json.loads(self._ask("report"))
+
+    def move(self, metres, milliseconds=0):
+        x, y, z = np.multiply(metres, 1e6)
+        self.tell(f"move {x:.9g} {y:.9g} {z:.9g} {milliseconds}")
+
+
+@pytest.fixture
+def start_board(board_program, start_talk):
+    started = []
+
+    def start(*arguments):
+        talk = start_talk(board_program, *arguments)
+        started.append(talk)
+        board = Board(talk)
+        board.move(ABOVE)
+        return board
+
+    yield start
+    for talk in started:
+        talk.__exit__()
+
+
+@pytest.fixture
+def board(start_board):
+    return start_board()
+
+
+@pytest.fixture(scope="module")
+def body():
+    return Body(*map(np.array, CUBE))
+
+
+@pytest.fixture
+def servo(body):
+    with Servo(body, young_modulus=10_000.0, ramp_seconds=0.05) as servo:
+        yield servo
+
+
+def state_is(servo, state):
+    return lambda: servo.snapshot().state == state
+
+
+@pytest.fixture
+def press(board, servo, eventually):
+    servo.start_serial(board.port)
+    eventually(state_is(servo, "free"), servo.snapshot)
+    board.move(DEEP, 300)
+    eventually(lambda: board.report()["force"][2] > 0.3, board.report)
+
+
+def test_hello_states_and_forces_go_through(press, board, servo, eventually):
+    eventually(lambda: np.allclose(servo.snapshot().probe, DEEP, atol=1e-6), servo.snapshot)
+    eventually(lambda: np.allclose(servo.snapshot().output_force, servo.snapshot().contact_force))
+    force = servo.snapshot().output_force
+    assert force[2] > 0.3
+    eventually(lambda: np.allclose(board.report()["force"], force, atol=0.6e-3), board.report)
+    assert not board.report()["damp"]
+    assert servo.counters()["link"]["device"] == {
+        "name": "Reference",
+        "protocol": 1,
+        "axes": 3,
+        "max_force": 3.0,
+        "half_extents": pytest.approx([0.1, 0.1, 0.1]),
+        "rate_hz": 1000,
+    }
+
+
+def test_a_clean_line_loses_nothing_either_way(press, board, servo, eventually):
+    eventually(lambda: servo.counters()["link"]["forces"] > 300)
+    servo.stop()
+    seen = servo.counters()["link"]
+    eventually(lambda: board.report()["forces"] == seen["forces"], board.report)
+    report = board.report()
+    for name in ("lost", "duplicates", "late", "unknown", "unexpected", "crc_errors", "malformed"):
+        assert report[name] == 0, name
+    for name in ("duplicates", "out_of_order", "unknown", "crc_errors", "cobs_errors", "oversize"):
+        assert seen[name] == 0, name
+    # What the servo said last was: let go.
+    assert (report["enabled"], report["force"]) == (False, [0.0, 0.0, 0.0])
+
+
+def test_the_devices_largest_force_holds_at_both_ends(body, start_board, eventually):
+    board = start_board("--largest", "0.25")
+    with Servo(body, young_modulus=10_000.0) as servo:
+        servo.start_serial(board.port)
+        eventually(state_is(servo, "free"), servo.snapshot)
+        board.move(DEEP, 300)
+        eventually(lambda: np.linalg.norm(board.report()["force"]) > 0.249, board.report)
+        assert np.linalg.norm(servo.snapshot().output_force) <= 0.25 + 1e-6
+    assert board.report()["strongest"] <= 0.25 + 1e-6
+
+
+def test_a_board_that_hears_nothing_goes_limp_and_says_so(press, board, servo, eventually):
+    before = board.report()["limp"]
+    board.tell("deaf 1")
+    eventually(lambda: board.report()["mode"] == "limp", board.report)
+    assert board.report()["force"] == [0.0, 0.0, 0.0]
+    times = board.report()["limp"]
+    assert times > before
+    eventually(lambda: servo.counters()["link"]["last_fault"] == (1, times), servo.counters)
+    # STATE goes on meanwhile, and the next FORCE is obeyed whatever its number.
+    states = board.report()["states"]
+    eventually(lambda: board.report()["states"] > states + 20, board.report)
+    board.tell("deaf 0")
+    eventually(lambda: board.report()["force"][2] > 0.3, board.report)
+    assert servo.counters()["faults"]["device fault"] >= 1
+
+
+HOST = """
+import json, sys, time
+import numpy as np
+from palpate_servo import Body, Servo
+servo = Servo(Body(*map(np.array, json.loads(sys.argv[2]))), young_modulus=1e4)
+servo.start_serial(sys.argv[1])
+time.sleep(60)
+"""
+
+
+def test_a_host_that_is_killed_leaves_the_board_limp(board, servo, eventually):
+    def starts():
+        # The killed host's lock on the port lasts until the board has noticed.
+        with contextlib.suppress(OSError):
+            servo.start_serial(board.port)
+        return servo.running
+
+    with subprocess.Popen([sys.executable, "-c", HOST, board.port, json.dumps(CUBE)]) as host:
+        try:
+            eventually(lambda: board.report()["enabled"], board.report)
+            board.move(DEEP, 300)
+            eventually(lambda: board.report()["force"][2] > 0.3, board.report)
+        finally:
+            host.kill()
+    eventually(lambda: board.report()["mode"] == "limp", board.report)
+    assert board.report()["force"] == [0.0, 0.0, 0.0]
+    board.move(ABOVE)
+    eventually(starts)
+    eventually(state_is(servo, "free"), servo.snapshot)
+    board.move(DEEP, 300)
+    eventually(lambda: board.report()["force"][2] > 0.3, board.report)
+
+
+def test_damaged_forces_are_counted_and_change_nothing(board, eventually):
+    line = os.open(board.port, os.O_RDWR | os.O_NOCTTY)
+    try:
+        os.write(line, link.encode(link.HostHello()))
+        eventually(lambda: board.report()["mode"] == "limp", board.report)
+        damaged = bytearray(link.encode(link.Force(1, (0, 0, 1000))))
+        damaged[1] ^= 0x10
+        os.write(line, bytes(damaged))
+        os.write(line, b"\x09\x01\0" + b"\x33" * 100 + b"\0" + link.frame(b"\x09\x09"))
+        eventually(lambda: board.report()["unknown"] == 1, board.report)
+        report = board.report()
+        assert (report["crc_errors"], report["malformed"], report["forces"]) == (1, 2, 0)
+        assert (report["mode"], report["strongest"]) == ("limp", 0.0)
+        os.write(line, link.encode(link.Force(2, (0, 0, 1000))))
+        eventually(lambda: board.report()["forces"] == 1, board.report)
+    finally:
+        os.close(line)
+
+
+def test_damage_in_the_middle_of_a_press_is_counted_and_survived(press, board, eventually):
+    board.tell("hit 40")
+    eventually(lambda: board.report()["crc_errors"] + board.report()["malformed"] > 0, board.report)
+    forces = board.report()["forces"]
+    eventually(lambda: board.report()["forces"] > forces + 20, board.report)
+    eventually(lambda: board.report()["force"][2] > 0.3, board.report)
+    assert board.report()["strongest"] <= 3.0 + 1e-6
+
+
+def test_a_board_of_another_protocol_gets_no_force(body, start_board, eventually):
+    board = start_board("--protocol", "2")
+    with Servo(body, young_modulus=10_000.0) as servo:
+        servo.start_serial(board.port)
+        eventually(lambda: servo.snapshot().fault == "wrong protocol", servo.snapshot)
+        eventually(lambda: servo.counters()["link"]["last_fault"] == (2, 1), servo.counters)
+        assert servo.counters()["link"]["device"]["protocol"] == 2
+    report = board.report()
+    assert (report["mode"], report["states"], report["forces"]) == ("waiting", 0, 0)
+
+
+def test_a_fault_of_the_board_silences_and_passes(press, board, servo, eventually):
+    told = servo.counters()["link"]["device_faults"]
+    board.tell("fail 130 7")
+    eventually(lambda: servo.snapshot().fault == "device fault", servo.snapshot)
+    eventually(lambda: servo.counters()["link"]["device_faults"] > told, servo.counters)
+    assert not servo.snapshot().output_force.any()
+    report = board.report()
+    assert (report["mode"], report["force"]) == ("failed", [0.0, 0.0, 0.0])
+    board.tell("recover")
+    eventually(lambda: board.report()["force"][2] > 0.3, board.report)
+
+
+def test_a_board_that_is_not_ready_or_whose_button_is_held_gets_no_force(
+    press, board, servo, eventually
+):
+    for before, state, after in (
+        ("ready 0", "waiting", "ready 1"),
+        ("buttons 1", "disabled", "buttons 0"),
+    ):
+        board.tell(before)
+        eventually(state_is(servo, state), servo.snapshot)
+        # It still hears the host: what has gone is the force, not the line.
+        eventually(
+            lambda: (board.report()["mode"], board.report()["enabled"]) == ("driven", False),
+            board.report,
+        )
+        board.tell(after)
+        eventually(lambda: board.report()["force"][2] > 0.3, board.report)
+
+
+def test_a_board_that_falls_silent_is_stale_and_greeted_again(press, board, servo, eventually):
+    hellos = board.report()["hellos"]
+    board.tell("mute 1")
+    eventually(lambda: servo.snapshot().fault == "stale", servo.snapshot)
+    assert not servo.snapshot().output_force.any()
+    eventually(lambda: board.report()["hellos"] > hellos, board.report)
+    board.tell("mute 0")
+    eventually(lambda: board.report()["force"][2] > 0.3, board.report)
+    assert servo.counters()["faults"]["stale"] >= 1
