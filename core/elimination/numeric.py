@@ -108,6 +108,9 @@ def _eliminated(
         runs = runs_between(_targets(below, front), work.pivots, remainder.schur.edges, schur.edges)
         extend_add(remainder.schur, runs, pivots, coupling, schur)
         meter.add(MOVE_WEIGHT * remainder.schur.size)
+        if not below.load_count:
+            # Where no load comes from below, W may leave out the pivots before the first loaded.
+            continue
         first = 3 * (below.load_start - front.load_start)
         columns = slice(first, first + remainder.loads.shape[1])
         for run in runs:

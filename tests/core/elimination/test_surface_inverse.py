@@ -48,6 +48,18 @@ def pinned_inside():
     return mesh, inside[::3]
 
 
+def one_node_to_touch():
+    """Fronts without any load lie below one whose loads begin on its own pivots."""
+    mesh = block_of_cubes(8, 8, 8)
+    return mesh, mesh.surface_nodes[:-1]
+
+
+def one_patch_to_touch():
+    mesh = block_of_cubes(7, 7, 7)
+    near = np.linalg.norm(mesh.nodes - mesh.nodes.max(axis=0), axis=1) < 0.025
+    return mesh, np.setdiff1d(mesh.surface_nodes, np.flatnonzero(near))
+
+
 def pins_across():
     mesh = block_of_cubes(12, 3, 3)
     return mesh, np.flatnonzero(np.abs(mesh.nodes[:, 0] - 0.06) < 1e-9)
@@ -61,6 +73,8 @@ BODIES = {
         two_pieces,
         a_piece_with_its_surface_pinned,
         pinned_inside,
+        one_node_to_touch,
+        one_patch_to_touch,
         pins_across,
         paper_cube,
     )
