@@ -31,6 +31,8 @@ def refuse_loose(
     """
     if breakdown or not (pivots > SMALLEST_PIVOT_SHARE * stiffness).all():
         raise PalpateError(
-            "stiffness: the body is not held by its pins (parts that meet only in a node or an "
-            "edge can swing); pin each part, or bake with a finer edge length so that they join"
+            "stiffness: the body is not held by its pins, as far as its numbers tell (parts that "
+            "meet only in a node or an edge can swing; stiff parts on ones a billion times softer, "
+            "or a bar a thousand times as long as thick, seem to); pin each part, bake with a "
+            "finer edge length so that they join, or bring factors of stiffness closer together"
         )
