@@ -111,8 +111,8 @@ def add_bake_options(parser: argparse.ArgumentParser) -> None:
         "--threads",
         type=int,
         metavar="N",
-        help="threads of BLAS for each bake (default: the cores this program may use, divided "
-        "among the bakes at once)",
+        help="threads of BLAS for each bake (default: the idle cores; for many meshes the cores "
+        "this program may use, divided among the bakes at once)",
     )
 
 

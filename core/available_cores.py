@@ -1,9 +1,14 @@
-"""How many of the machine's cores this process may use."""
+"""How many of the machine's cores this process may use, and how many of them are idle."""
 
 from __future__ import annotations
 
 import os
 import sys
+
+import psutil
+
+# How long to look: long enough for the system's clock ticks, which are hundredths of a second.
+LOOK_SECONDS = 0.1
 
 
 def available_cores() -> int:
@@ -15,3 +20,18 @@ def available_cores() -> int:
     if sys.platform == "linux":
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
+
+
+def idle_cores() -> int:
+    """Cores this process may use that no other program works on just now, at least 1.
+
+    Looks for a tenth of a second, in which this thread sleeps. The load average would count what
+    this process itself did in the minute before.
+    """
+    cores = available_cores()
+    if cores == 1:
+        return 1
+    busy = [percent / 100 for percent in psutil.cpu_percent(LOOK_SECONDS, percpu=True)]
+    if sys.platform == "linux" and (allowed := os.sched_getaffinity(0)) <= set(range(len(busy))):
+        busy = [busy[core] for core in allowed]
+    return max(1, min(cores, round(len(busy) - sum(busy))))

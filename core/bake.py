@@ -139,7 +139,7 @@ def _compliance(
 ) -> Compliance:
     """The compliance by the plan, which is what most of a bake's time goes into."""
     threads = settings.threads if plan.weight >= WORTH_THREADS else 1
-    with blas_threads(threads):
+    with blas_threads(threads) as threads:
         if form == "dense":
             work.forget("compress")
             work.expect({"compliance": plan.weight / dgemm_rate(threads)})

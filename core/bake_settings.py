@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from .errors import PalpateError
 from .formulation import AUTOMATIC, formulation_for
-from .pins import PinBelow, Pins
+from .pins import PinBelow, Pins, fraction_checked
 from .regional_stiffness import StiffRegion, TetScale
 from .stiffness import lame_parameters
 
@@ -30,7 +30,7 @@ class BakeSettings:
     form : of the compliance, ``dense`` or ``compressed``; ``auto`` compresses large bodies.
     tolerance : largest relative column error that compressing may cause.
     stiffness : where the body is stiffer or softer than elsewhere; None for the same everywhere.
-    threads : of BLAS at most; None for as many as there are cores for this process.
+    threads : of BLAS at most; None for as many as there are idle cores for this process.
     """
 
     poisson_ratio: float = 0.3
@@ -72,6 +72,8 @@ class BakeSettings:
                     f"{high:g}"
                 )
         formulation_for(self.formulation, self.poisson_ratio)
+        if isinstance(self.pins, PinBelow):
+            fraction_checked(self.pins.fraction)
         if self.form not in FORMS:
             raise PalpateError(
                 f"bake: the form is '{self.form}', but must be one of {', '.join(FORMS)}"

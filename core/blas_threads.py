@@ -9,7 +9,7 @@ from functools import cache
 import scipy.linalg.blas  # noqa: F401 - loads the library that is to be found
 from threadpoolctl import ThreadpoolController
 
-from .available_cores import available_cores
+from .available_cores import available_cores, idle_cores
 
 # Floating point operations from which on threads are worth waking: ten milliseconds of one. Below,
 # and most of all beside other busy programs, they spend more time on waiting for one another.
@@ -18,13 +18,14 @@ WORTH_THREADS = 5e8
 
 @contextmanager
 def blas_threads(wanted: int | None = None) -> Iterator[int]:
-    """Let BLAS use ``wanted`` threads, or as many as there are cores for this process if None.
+    """Let BLAS use ``wanted`` threads, or as many as there are idle cores for this process if None.
 
     Never more than those cores: threads that wait for one another's core make products slower than
-    one thread alone. Yields the number; what was set before holds again afterwards. All of a
-    process shares it.
+    one thread alone. Cores that other programs keep busy count as much: beside them two threads
+    were measured to take three times as long as one. Yields the number; what was set before holds
+    again afterwards. All of a process shares it.
     """
-    count = min(wanted or available_cores(), available_cores())
+    count = idle_cores() if wanted is None else min(wanted, available_cores())
     with _controller().limit(limits=count, user_api="blas"):
         yield count
 

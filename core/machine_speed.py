@@ -24,7 +24,7 @@ def dgemm_rate(threads: int | None = None) -> float:
 
     Parameters
     ----------
-    threads : of BLAS; None for as many as there are cores for this process.
+    threads : of BLAS; None for as many as there are idle cores for this process.
     """
     with blas_threads(threads):
         factor = np.asfortranarray(np.random.default_rng(1999).random((SIZE, SIZE)))

@@ -67,12 +67,24 @@ def places_on(surface: Surface, mesh: TetMesh) -> SurfacePoints:
     return ClosestPoints(surface.vertices, surface.triangles).query(mesh.nodes[mesh.surface_nodes])
 
 
-def _below(pins: PinBelow, mesh: TetMesh) -> NDArray[np.int64]:
-    if not 0 <= pins.fraction <= 1:
+def fraction_checked(fraction: float) -> float:
+    """``fraction`` of a :class:`PinBelow`, if it can be one.
+
+    Raises
+    ------
+    PalpateError
+        It does not lie between 0 and 1.
+    """
+    if not 0 <= fraction <= 1:
         raise PalpateError(
-            f"pins: the fraction is {pins.fraction}, but must lie between 0 (only the very bottom) "
+            f"pins: the fraction is {fraction}, but must lie between 0 (only the very bottom) "
             "and 1 (everything)"
         )
+    return fraction
+
+
+def _below(pins: PinBelow, mesh: TetMesh) -> NDArray[np.int64]:
+    fraction_checked(pins.fraction)
     height = mesh.nodes[mesh.surface_nodes, pins.axis]
     # The last term keeps exactly level bottoms whole despite rounding.
     limit = height.min() + (pins.fraction + 1e-9) * np.ptp(height)
