@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.metadata
+import json
 import logging
 import secrets
 from collections.abc import Iterator
@@ -10,7 +11,7 @@ from concurrent.futures import Executor
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ..core.errors import PalpateError
 
@@ -94,11 +95,9 @@ def _connected(address: str) -> Iterator[Client]:
     for name in list(logging.root.manager.loggerDict):
         if name.split(".")[0] == "distributed":
             logging.getLogger(name).setLevel(logging.CRITICAL)
-    where: dict[str, Any] = (
-        {"scheduler_file": address} if Path(address).is_file() else {"address": address}
-    )
+    where = _address_in(Path(address)) if Path(address).is_file() else address
     try:
-        client = Client(**where, timeout=CONNECT_SECONDS)
+        client = Client(where, timeout=CONNECT_SECONDS)
     except (OSError, ValueError) as problem:
         reason = str(problem) or type(problem).__name__
         raise PalpateError(
@@ -113,6 +112,18 @@ def _connected(address: str) -> Iterator[Client]:
                 f"--scheduler: {address} has no workers; start some with 'dask worker {address}'"
             ) from problem
         yield client
+
+
+def _address_in(file: Path) -> str:
+    """The address in a scheduler file, as ``dask scheduler --scheduler-file`` writes it."""
+    try:
+        address = json.loads(file.read_text(encoding="utf-8"))["address"]
+    except (ValueError, LookupError, TypeError) as problem:
+        raise PalpateError(
+            f"--scheduler: {file} is no scheduler file; give the one that "
+            "'dask scheduler --scheduler-file' wrote, or the address it prints"
+        ) from problem
+    return str(address)
 
 
 def _refuse_other_palpates(client: Client, address: str) -> None:

@@ -214,3 +214,22 @@ def test_what_cannot_be_is_refused_before_any_work(meshes, capsys, words, said):
 
 def test_cores_are_those_this_process_may_use():
     assert 1 <= available_cores() <= (os.cpu_count() or 1)
+
+
+@pytest.mark.parametrize("contents", ["no json", "[1]", "{}", '"text"'])
+def test_a_file_that_is_no_schedulers_is_refused_in_one_line(meshes, capsys, contents):
+    pytest.importorskip("distributed", reason="distributed is not installed (extra 'scheduler')")
+    Path("scheduler.json").write_text(contents, encoding="utf-8")
+    words = ["cube.npz", "--output-folder", "bodies", "--scheduler", "scheduler.json"]
+    status, printed, said = palpate(capsys, "bake", *words)
+    assert (status, printed, len(said.splitlines())) == (2, "", 1)
+    assert "scheduler.json is no scheduler file" in said
+
+
+@pytest.mark.parametrize("fraction", ["nan", "-0.1", "1.5"])
+def test_pins_that_no_bake_would_take_are_not_predicted(meshes, capsys, fraction):
+    status, printed, said = palpate(
+        capsys, "bake", "cube.npz", "--predict", "--pin-below", fraction
+    )
+    assert (status, printed) == (2, "")
+    assert "must lie between 0" in said
