@@ -95,6 +95,17 @@ class MappedCompliance:
     def _is_checked(self) -> NDArray[np.bool_]:
         return np.zeros(self.node_count, dtype=bool)
 
+    def check_length(self) -> None:
+        """Make sure that the file still has the whole table.
+
+        Raises
+        ------
+        BodyFileError
+            It was cut short.
+        """
+        if not self.mapped_table.is_whole:
+            raise BodyFileError(f"{self.file}: it was cut short while in use; bake again")
+
     def _check(self, nodes: NDArray[np.int64]) -> None:
         """Make sure that the columns of ``nodes`` are what was stored.
 
@@ -103,8 +114,7 @@ class MappedCompliance:
         BodyFileError
             They are not, or the file was cut short.
         """
-        if not self.mapped_table.is_whole:
-            raise BodyFileError(f"{self.file}: it was cut short while in use; bake again")
+        self.check_length()
         if self._is_checked[nodes].all():
             return
         for node in np.unique(nodes[~self._is_checked[nodes]]):

@@ -97,8 +97,9 @@ class ServoCounters(TimingCounters):
 class Compliance:
     """The inverse stiffness of the free surface nodes at unit modulus, in either form.
 
-    Its large arrays are not copied: they are made read-only, kept alive, and read in place by the
-    servo's thread. They must be contiguous, and nobody may write to them by views made before.
+    Its large arrays are not copied: they are made read-only, kept alive and read in place. They must
+    be contiguous, and nobody may write to them by views made before. A body takes copies of what the
+    servo's thread needs of them.
     """
 
     @staticmethod

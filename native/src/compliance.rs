@@ -1,7 +1,7 @@
 //! The compliance in both of its forms, `dense` and `compressed`, block by block.
 //!
-//! L_ij is the displacement of free surface node i per force on node j at unit modulus. A tick
-//! reads a few blocks where they lie, among hundreds of megabytes; nothing is allocated or copied.
+//! L_ij is the displacement of free surface node i per force on node j at unit modulus. Blocks are
+//! read where they lie, among hundreds of megabytes; nothing is allocated or copied for one.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -175,6 +175,9 @@ impl Compressed {
             first_tile[cluster + 1] = first_tile[cluster] + count as usize;
         }
         let tiles = first_tile[clusters];
+        let Some(tile_pairs) = tiles.checked_mul(tiles) else {
+            return refuse("tile_counts are too large".into());
+        };
         let near_blocks = parts.near_steps.len();
         let narrow = parts.narrow.len() / (TILE * TILE);
         let wide = parts.wide.len() / (TILE * TILE);
@@ -184,7 +187,7 @@ impl Compressed {
             ("near", parts.near.len(), near_blocks * rows * rows),
             ("basis", parts.basis.len(), rows * TILE * tiles),
             ("steps", parts.steps.len(), clusters),
-            ("tile_table", parts.tile_table.len(), tiles * tiles),
+            ("tile_table", parts.tile_table.len(), tile_pairs),
             ("narrow", parts.narrow.len(), narrow.max(1) * TILE * TILE),
             ("wide", parts.wide.len(), wide * TILE * TILE),
         ] {

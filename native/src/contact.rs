@@ -49,12 +49,11 @@ pub fn surface_displacement(
     nodal_forces: &[DVec3; 3],
     young_modulus: f64,
 ) -> Option<DVec3> {
-    let nodes = body.triangles[triangle as usize];
     let mut moved = DVec3::ZERO;
     for (seen, &weight) in alpha.iter().enumerate() {
         for (loaded, &force) in nodal_forces.iter().enumerate() {
             if weight != 0.0 && force != DVec3::ZERO {
-                moved += body.compliance_block(nodes[seen], nodes[loaded])? * force * weight;
+                moved += body.compliance_block(triangle, seen, loaded)? * force * weight;
             }
         }
     }

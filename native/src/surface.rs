@@ -4,7 +4,6 @@
 
 use std::collections::HashMap;
 use std::fmt;
-use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
 
@@ -108,12 +107,18 @@ pub struct Corner {
 /// The place of a node that is pinned: it never moves.
 const PINNED: u32 = u32::MAX;
 
-/// How the surface gives way under forces on its nodes.
+/// How the surface gives way under forces on the nodes of one triangle.
+///
+/// Copied from the compliance once: a tick must not wait for pages of a table of hundreds of
+/// megabytes, nor end with the file that such a table may lie in.
 #[derive(Debug)]
 struct Response {
-    compliance: Arc<Compliance>,
-    /// Where the compliance counts each node, or [`PINNED`].
-    places: Vec<u32>,
+    /// L_aa of each node, zero where it is pinned.
+    own: Vec<DMat3>,
+    /// L_ab of each edge, a < b.
+    between: Vec<DMat3>,
+    /// For each triangle which of `between` its three edges are.
+    edges: Vec<[u32; 3]>,
 }
 
 /// A soft body as the servo sees it: rest surface and contact stiffness per node.
@@ -183,7 +188,7 @@ impl Body {
     /// or there twice.
     pub fn with_compliance(
         mut self,
-        compliance: Arc<Compliance>,
+        compliance: &Compliance,
         free_nodes: &[u32],
     ) -> Result<Self, BodyError> {
         if free_nodes.len() != compliance.node_count() {
@@ -206,8 +211,37 @@ impl Body {
                 }
             }
         }
-        self.response = Some(Response { compliance, places });
+        self.response = Some(self.gather_response(compliance, &places));
         Ok(self)
+    }
+
+    /// Reads the blocks of all nodes and edges.
+    fn gather_response(&self, compliance: &Compliance, places: &[u32]) -> Response {
+        let block = |a: u32, b: u32| match (places[a as usize], places[b as usize]) {
+            (PINNED, _) | (_, PINNED) => DMat3::ZERO,
+            (a, b) => compliance.block(a as usize, b as usize),
+        };
+        let mut between = Vec::new();
+        let mut numbers = HashMap::new();
+        let edges = (self.triangles.iter())
+            .map(|triangle| {
+                [0, 1, 2].map(|k| {
+                    let (a, b) = edge_nodes(triangle, k);
+                    let (low, high) = (a.min(b), a.max(b));
+                    *numbers.entry((low, high)).or_insert_with(|| {
+                        between.push(block(low, high));
+                        between.len() as u32 - 1
+                    })
+                })
+            })
+            .collect();
+        Response {
+            own: (0..places.len() as u32)
+                .map(|node| block(node, node))
+                .collect(),
+            between,
+            edges,
+        }
     }
 
     /// Whether the body knows how its surface moves.
@@ -216,16 +250,20 @@ impl Body {
         self.response.is_some()
     }
 
-    /// L_ab at unit modulus for two surface nodes, zero where one is pinned; `None` for a body
-    /// without a compliance.
+    /// L_ab at unit modulus for two corners of a triangle, zero where one is pinned; `None` for a
+    /// body without a compliance.
     #[inline]
-    pub fn compliance_block(&self, a: u32, b: u32) -> Option<DMat3> {
+    pub fn compliance_block(&self, triangle: u32, a: usize, b: usize) -> Option<DMat3> {
         let response = self.response.as_ref()?;
-        let (a, b) = (response.places[a as usize], response.places[b as usize]);
-        if a == PINNED || b == PINNED {
-            return Some(DMat3::ZERO);
+        let nodes = self.triangles[triangle as usize];
+        if a == b {
+            return Some(response.own[nodes[a] as usize]);
         }
-        Some(response.compliance.block(a as usize, b as usize))
+        // Edge k runs from corner k to the next one: the edges without the corners 2, 0, 1.
+        let edge = (4 - a - b) % 3;
+        let block = response.between[response.edges[triangle as usize][edge] as usize];
+        let straight = nodes[a] < nodes[b];
+        Some(if straight { block } else { block.transpose() })
     }
 
     /// All triangles with their geometry.

@@ -1,13 +1,16 @@
 """The native compliance against core's, block by block, and what snapshots tell of the surface."""
 
-from functools import cache
+import os
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
 import pytest
 from palpate_servo import Body, Compliance
 
+from palpate.core import cache
 from palpate.core.bake import BakeSettings, bake
+from palpate.core.errors import BodyFileError
 from palpate.core.pins import PinNodes
 from palpate.core.servo_session import native_body, native_compliance, servo_for
 from palpate.core.tet_mesh import TetMesh
@@ -15,7 +18,7 @@ from palpate.core.tet_mesh import TetMesh
 MOUSE = Path(__file__).resolve().parents[1] / "meshes" / "mouse-1.7k.npz"
 
 
-@cache
+@lru_cache
 def baked(form, tolerance):
     with np.load(MOUSE) as file:
         mesh, fixed = TetMesh.checked(file["X"], file["T"]), file["fixed"]
@@ -109,6 +112,28 @@ def test_tables_are_read_in_place_and_kept(cube):
     assert native.block(0, 0)[2, 1] == 5.0
     del table, view
     assert native.block(0, 0)[2, 1] == 5.0
+
+
+def test_the_thread_reads_nothing_that_may_be_written_to_or_lie_in_a_file(cube):
+    count = len(cube.nodes)
+    table = np.random.default_rng(3).normal(size=(count, 3, 3 * count))
+    view = table[:]
+    body = Body(cube.nodes, cube.triangles, cube.blocks, Compliance.dense(table))
+    before = body.surface_displacement(7, [0.5, 0.25, 0.25], np.eye(3), 1.0)
+    view[:] = np.nan
+    after = body.surface_displacement(7, [0.5, 0.25, 0.25], np.eye(3), 1.0)
+    np.testing.assert_array_equal(after, before)
+    assert np.isfinite(after).all()
+
+
+def test_a_table_whose_file_was_cut_short_is_not_read(tmp_path):
+    file = tmp_path / "mouse.npz"
+    cache.save(baked("dense", 1e-3), file)
+    body = cache.load(file, mapped_from_bytes=0)
+    assert native_body(body).surface_displacement(7, [1, 0, 0], np.eye(3), 1.0) is not None
+    os.truncate(file, 1_000_000)
+    with pytest.raises(BodyFileError, match=r"mouse\.npz.*cut short"):
+        native_body(body)
 
 
 @pytest.mark.parametrize(

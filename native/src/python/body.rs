@@ -72,7 +72,7 @@ impl Body {
                 None => (0..inner.nodes.len() as u32).collect(),
             };
             inner = inner
-                .with_compliance(compliance.inner.clone(), &free_nodes)
+                .with_compliance(&compliance.inner, &free_nodes)
                 .map_err(refused)?;
         }
         Ok(Self {

@@ -1,7 +1,6 @@
 //! `Compliance`: the arrays of either form, held and not copied.
 
 use std::ptr::NonNull;
-use std::sync::Arc;
 
 use glam::DVec3;
 use numpy::{
@@ -21,7 +20,7 @@ const PREFIX: &str = "compressed_";
 
 #[pyclass(frozen, module = "palpate_servo")]
 pub struct Compliance {
-    pub inner: Arc<compliance::Compliance>,
+    pub inner: compliance::Compliance,
 }
 
 #[pymethods]
@@ -133,9 +132,7 @@ fn made(
     result: Result<compliance::Compliance, compliance::ComplianceError>,
 ) -> PyResult<Compliance> {
     match result {
-        Ok(inner) => Ok(Compliance {
-            inner: Arc::new(inner),
-        }),
+        Ok(inner) => Ok(Compliance { inner }),
         Err(reason) => Err(PyValueError::new_err(reason.to_string())),
     }
 }

@@ -75,15 +75,18 @@ pub fn cube() -> Arc<Body> {
 /// The cube with a compressed compliance made of far blocks alone wherever that can be: the form
 /// that costs a tick the most. The lowest nodes are pinned.
 pub fn giving_cube() -> Arc<Body> {
+    Arc::new(giving_cube_in_parts().0)
+}
+
+/// The same, its compliance, and the nodes that this counts.
+pub fn giving_cube_in_parts() -> (Body, Compliance, Vec<u32>) {
     let body = Arc::into_inner(cube()).expect("nobody else has it");
     let free: Vec<u32> = (0..body.nodes.len() as u32)
         .filter(|&node| body.nodes[node as usize].z > 0.0)
         .collect();
     let compliance = compressed(&mut Dice::new(8), free.len(), 4, 2);
-    Arc::new(
-        body.with_compliance(Arc::new(compliance), &free)
-            .expect("it fits"),
-    )
+    let body = body.with_compliance(&compliance, &free).expect("it fits");
+    (body, compliance, free)
 }
 
 /// Made-up parts of a compressed compliance: clusters that are near to themselves alone, with as

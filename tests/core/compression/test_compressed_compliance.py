@@ -3,6 +3,7 @@ from copy import deepcopy
 
 import numpy as np
 import pytest
+from palpate_servo import Compliance
 
 from palpate.core.compression.compress import compress
 from palpate.core.compression.compressed_compliance import CompressedCompliance
@@ -139,3 +140,45 @@ def test_damaged_arrays_are_refused(compressed, reason):
         CompressedCompliance.from_arrays(
             compressed.free_surface, DAMAGE[reason](compressed.arrays()), compressed.tolerance
         )
+
+
+def spoiled(array, rng):
+    """One of many ways in which an array of a file can be wrong."""
+    match rng.integers(6):
+        case 0:
+            return array[: rng.integers(len(array) + 1)] if array.ndim else array[None]
+        case 1:
+            return array.astype([np.int8, np.int64, np.float64, ">i4", ">f4"][rng.integers(5)])
+        case 2:
+            return np.swapaxes(array, 0, -1) if array.ndim > 1 else array[..., None]
+        case _:
+            kinds = {"i": [-(2**31), -1, 0, 1, 40, 2**31 - 1], "f": [np.nan, np.inf, -1.0, 1e-40]}
+            values = np.array(kinds[array.dtype.kind]).astype(array.dtype)
+            array = array.copy()
+            array.reshape(-1)[rng.integers(array.size)] = rng.choice(values)
+            return array
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_whatever_a_file_holds_is_refused_or_can_be_touched(compressed, seed):
+    rng = np.random.default_rng(seed)
+    refused = 0
+    for _ in range(100):
+        arrays = compressed.arrays()
+        for name in rng.choice(list(arrays), 2, replace=False):
+            arrays[name] = spoiled(arrays[name], rng)
+        nodes = rng.integers(0, compressed.node_count, 3)
+        try:
+            found = CompressedCompliance.from_arrays(compressed.free_surface, arrays, 1e-3)
+        except PalpateError:
+            refused += 1
+            try:
+                native = Compliance.compressed(arrays)
+            except (TypeError, ValueError):
+                continue
+            # What native code lets pass stays within its arrays.
+            native.apply(np.ones((3, 3)), nodes % native.node_count)
+        else:
+            assert found.apply(np.ones((3, 3)), nodes).shape == (compressed.node_count, 3)
+            assert found._applied(np.ones((3, 3)), nodes).shape == (compressed.node_count, 3)
+    assert refused > 50

@@ -160,6 +160,8 @@ def test_columns_on_demand_are_the_tables(held_body):
         assert found.dtype == np.float64
         assert found.shape == expected.shape
         np.testing.assert_allclose(found, expected, atol=1e-13 * np.abs(expected).max())
+    expected = table.diagonal()
+    np.testing.assert_allclose(source.diagonal(), expected, atol=1e-13 * np.abs(expected).max())
 
 
 def test_columns_take_less_memory_than_the_inverse(mouse_mesh):
