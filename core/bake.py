@@ -65,7 +65,8 @@ def bake(
 ) -> tuple[SoftBody, BakeReport]:
     """Make a body, in this process.
 
-    Tetrahedralization cannot be interrupted here; programs with a person in front use
+    Tetrahedralization cannot be interrupted here, nor can the assembly of the stiffness (seconds
+    for tens of thousands of nodes, smoothed); programs with a person in front use
     :class:`palpate.core.bake_job.BakeJob`, which runs this function in a child process.
 
     Parameters
