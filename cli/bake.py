@@ -56,6 +56,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 def run(arguments: argparse.Namespace) -> int:
     """Bake and print figures. Whoever asks it to stop finds nothing unfinished."""
     if arguments.predict:
+        _refuse_options_for_many(arguments)
         return bake_prediction.run(arguments)
     # From the first import on: readers of meshes swallow the exception that Ctrl-C is.
     with stopped_by_signals() as stopped:
@@ -75,17 +76,22 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
+def _refuse_options_for_many(arguments: argparse.Namespace) -> None:
+    for option in ("jobs", "scheduler"):
+        if getattr(arguments, option) is not None:
+            raise PalpateError(
+                f"--{option}: is for baking many meshes into an --output-folder; name one instead "
+                "of -o or --predict, or leave the option out"
+            )
+
+
 def _bake(arguments: argparse.Namespace, stopped: Sequence[int]) -> tuple[SoftBody, BakeReport]:
     if len(arguments.meshes) > 1:
         raise PalpateError(
             f"-o: {len(arguments.meshes)} meshes do not fit in one body file; name a folder with "
             "--output-folder"
         )
-    for option in ("jobs", "scheduler"):
-        if getattr(arguments, option) is not None:
-            raise PalpateError(
-                f"--{option}: is for many meshes; name a folder with --output-folder instead of -o"
-            )
+    _refuse_options_for_many(arguments)
     folder = arguments.output.absolute().parent
     if not folder.exists():
         raise PalpateError(f"{arguments.output}: there is no folder {folder}; make it first")

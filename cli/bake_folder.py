@@ -76,6 +76,8 @@ def run(arguments: argparse.Namespace, stopped: Sequence[int]) -> int:
 
 def _file_names(meshes: Sequence[Path], folder: Path) -> dict[Path, str]:
     """The body file of each mesh, if they do not get into each other's way."""
+    if folder.exists() and not folder.is_dir():
+        raise PalpateError(f"--output-folder: {folder} is a file; name a folder, existing or new")
     names: dict[Path, str] = {}
     makers: dict[str, Path] = {}
     for mesh in meshes:

@@ -198,10 +198,11 @@ def test_without_dask_one_line_says_what_to_install(meshes, capsys, monkeypatch)
     ("words", "said"),
     [
         (["cube.npz", "large.npz", "-o", "out.npz"], "--output-folder"),
-        (["cube.npz", "-o", "out.npz", "--jobs", "2"], "--jobs: is for many meshes"),
+        (["cube.npz", "-o", "out.npz", "--jobs", "2"], "--jobs: is for baking many meshes"),
+        (["cube.npz", "--predict", "--jobs", "2"], "--jobs: is for baking many meshes"),
         (["cube.npz", "cube.stl", "--output-folder", "bodies"], "rename one"),
         (["cube.npz", "--output-folder", "."], "take its place"),
-        (["cube.npz", "--output-folder", "broken.obj"], "broken.obj is not a folder"),
+        (["cube.npz", "--output-folder", "broken.obj"], "broken.obj is a file; name a folder"),
         (["cube.npz", "--output-folder", "bodies", "--jobs", "0"], "--jobs"),
     ],
 )
