@@ -60,6 +60,10 @@ def compress(
     L is compared with its exact value meanwhile. Besides them the couplings before rounding are
     held, about a tenth of a dense float32 L.
 
+    Where that does not reach the tolerance, which very stiff beside very soft parts may cause, a
+    second pass knows all norms and keeps near blocks in float32; after it a third one keeps every
+    block so, which takes half of a dense float32 L and is always exact enough.
+
     Parameters
     ----------
     source : exact columns of L.

@@ -28,6 +28,7 @@ def test_stored_columns_are_the_same(columns, tmp_path, rng):
     np.testing.assert_allclose(
         stored.columns(nodes), columns.columns(nodes), rtol=1e-12, atol=1e-18
     )
+    np.testing.assert_allclose(stored.diagonal(), columns.diagonal(), rtol=1e-12, atol=1e-18)
 
 
 def test_worker_processes_compress_what_one_process_does(columns, mouse_mesh, tmp_path):
