@@ -21,7 +21,7 @@ import bpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
-from stage import DEFAULT_LIMIT_SECONDS, MODULE, Stage, Wait
+from stage import LIMIT_SECONDS, MODULE, Stage, Wait
 
 STEP_SECONDS = 0.01
 # A redraw that does not come is not worth more than this: the scenario's own asserts will say it.
@@ -41,9 +41,8 @@ class Player:
         self.stage = Stage(Path(job["repository"]), Path(job["output"]), "")
         self.scenario: Wait | None = None
         self.wake: Callable[[], bool] = lambda: True
-        self.limit = DEFAULT_LIMIT_SECONDS
         self.deadline = 0.0
-        self.draws = 0
+        self.draws = self.draws_before = 0
 
     def count_draw(self) -> None:
         """Note that the viewport has been drawn."""
@@ -58,7 +57,7 @@ class Player:
             self.begin(self.waiting.pop(0))
         elif time.monotonic() > self.deadline:
             self.scenario.close()
-            self.end(f"the scenario was not over after {self.limit:g} s")
+            self.end(f"the scenario was not over after {LIMIT_SECONDS:g} s")
         elif self.wake():
             self.advance()
         return STEP_SECONDS
@@ -70,13 +69,13 @@ class Player:
         self.report[name] = {"state": "running", "failure": "", "pictures": [], "figures": {}}
         self.write_report()
         mark(f"scenario begins: {name}")
+        self.deadline, self.draws_before = time.monotonic() + LIMIT_SECONDS, self.draws
         try:
             self.scenario = self.prepare(name)
         except Exception:  # noqa: BLE001 -- whatever it is, pytest shows it
             self.end(traceback.format_exc())
             return
-        self.deadline = time.monotonic() + self.limit
-        faulthandler.dump_traceback_later(self.limit + GRACE_SECONDS, exit=True)
+        faulthandler.dump_traceback_later(LIMIT_SECONDS + GRACE_SECONDS, exit=True)
         self.wake_after(None)
 
     def prepare(self, name: str) -> Wait:
@@ -84,7 +83,6 @@ class Player:
         bpy.ops.wm.read_homefile(use_factory_startup=True)
         file, _, function_name = name.partition("::")
         function = getattr(load(Path(__file__).parent / "scenarios" / f"{file}.py"), function_name)
-        self.limit = getattr(function, "limit_seconds", DEFAULT_LIMIT_SECONDS)
         return function(self.stage)
 
     def advance(self) -> None:
@@ -121,7 +119,10 @@ class Player:
         }
         self.scenario = None
         self.write_report()
-        mark(f"scenario ends: {self.name}")
+        seconds = time.monotonic() - (self.deadline - LIMIT_SECONDS)
+        mark(
+            f"scenario ends: {self.name}, {seconds:.0f} s, {self.draws - self.draws_before} frames"
+        )
 
     def write_report(self) -> None:
         """Write result.json whole, or not at all."""

@@ -13,26 +13,16 @@ from collections.abc import Callable, Generator, Sequence
 from contextlib import AbstractContextManager
 from itertools import pairwise
 from pathlib import Path
-from typing import TypeVar
 
 import bpy
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 
 MODULE = "bl_ext.user_default.palpate"
-DEFAULT_LIMIT_SECONDS = 60.0
+# Against hanging only: a scenario takes some seconds, and many times that on a busy machine.
+LIMIT_SECONDS = 300.0
+LONGEST_WAIT_SECONDS = 150.0
 Wait = Generator[float | None, None, None]
 Pixel = tuple[float, float]
-Function = TypeVar("Function", bound=Callable[..., object])
-
-
-def takes(seconds: float) -> Callable[[Function], Function]:
-    """Give a scenario another limit than the usual one."""
-
-    def mark(function: Function) -> Function:
-        function.limit_seconds = seconds  # type: ignore[attr-defined]  # read by the player
-        return function
-
-    return mark
 
 
 class Stage:
@@ -150,11 +140,11 @@ class Stage:
 
     # ---- what a user sees
 
-    def until(self, condition: Callable[[], object], what: str, *, seconds: float = 20.0) -> Wait:
+    def until(self, condition: Callable[[], object], what: str) -> Wait:
         """Wait until a condition holds; fail with `what` was awaited when it never does."""
-        end = time.monotonic() + seconds
+        end = time.monotonic() + LONGEST_WAIT_SECONDS
         while not condition():
-            assert time.monotonic() < end, f"waited {seconds:g} s in vain for {what}"
+            assert time.monotonic() < end, f"waited {LONGEST_WAIT_SECONDS:g} s in vain for {what}"
             yield 0.02
 
     def picture(self, name: str) -> Wait:

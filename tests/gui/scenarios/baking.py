@@ -11,7 +11,7 @@ from pathlib import Path
 import bpy
 from mouse_scene import depth, drag_in, mouse, open_mouse, start_press, type_key
 from shown import all_panels_open, replaced
-from stage import Stage, Wait, takes
+from stage import Stage, Wait
 
 from bl_ext.user_default.palpate.addon import known_status, panel_cost, sentence
 from bl_ext.user_default.palpate.operators import (
@@ -25,7 +25,6 @@ from bl_ext.user_default.palpate.operators import (
 GIGABYTE = 1_000_000_000
 
 
-@takes(90)
 def the_panel_predicts_a_bake_and_follows_its_settings(stage: Stage) -> Wait:
     with all_panels_open(), _rows_shown() as rows:
         yield from open_mouse(stage)
@@ -43,7 +42,6 @@ def the_panel_predicts_a_bake_and_follows_its_settings(stage: Stage) -> Wait:
         yield from stage.picture("finer")
 
 
-@takes(90)
 def too_little_memory_is_said_and_one_click_fits_it(stage: Stage) -> Wait:
     with all_panels_open(), _little_memory(GIGABYTE), _said() as said:
         yield from open_mouse(stage)
@@ -59,7 +57,6 @@ def too_little_memory_is_said_and_one_click_fits_it(stage: Stage) -> Wait:
         yield from stage.picture("coarser")
 
 
-@takes(120)
 def the_panel_says_which_pins_need_no_bake(stage: Stage) -> Wait:
     yield from open_mouse(stage)
     # What earlier runs computed would be known.
@@ -81,7 +78,6 @@ def the_panel_says_which_pins_need_no_bake(stage: Stage) -> Wait:
             yield from stage.picture(f"{100 * fraction:.0f}-percent")
 
 
-@takes(120)
 def a_compressed_body_is_pressed_like_any_other(stage: Stage) -> Wait:
     with all_panels_open(), _times_left() as left:
         yield from open_mouse(stage)
@@ -91,7 +87,7 @@ def a_compressed_body_is_pressed_like_any_other(stage: Stage) -> Wait:
             bpy.ops.palpate.rebuild_body("INVOKE_DEFAULT")
         yield from stage.until(lambda: left, "the remaining time")
         yield from stage.picture("remaining")
-        yield from stage.until(lambda: bake_session.current() is None, "the bake", seconds=90)
+        yield from stage.until(lambda: bake_session.current() is None, "the bake")
         assert mouse().palpate.baked_form == "compressed"
         yield from stage.picture("baked")
     yield from start_press(stage)
@@ -102,7 +98,6 @@ def a_compressed_body_is_pressed_like_any_other(stage: Stage) -> Wait:
     yield from stage.until(lambda: press_session.current() is None, "the end of the press")
 
 
-@takes(120)
 def escape_ends_the_bake_and_its_process_while_the_stiffness_is_inverted(stage: Stage) -> Wait:
     yield from open_mouse(stage)
     with stage.view():

@@ -19,14 +19,13 @@ from mouse_scene import (
     type_key,
 )
 from shown import replaced
-from stage import MODULE, Stage, Wait, takes
+from stage import MODULE, Stage, Wait
 
 from bl_ext.user_default.palpate.addon import hud
 from bl_ext.user_default.palpate.operators import bake_session, body_store, press_session
 from bl_ext.user_default.palpate.operators.press_state import Phase
 
 
-@takes(150)
 def dragging_dents_the_surface_and_enter_keeps_the_shape(stage: Stage) -> Wait:
     yield from open_mouse(stage)
     yield from stage.picture("panel")
@@ -107,7 +106,6 @@ def the_view_turns_while_a_dent_is_held_and_another_touch_starts_elsewhere(stage
     yield from stage.until(lambda: press_session.current() is None, "the end of the press")
 
 
-@takes(90)
 def numpad_turns_the_view_and_ctrl_s_saves_while_a_dent_is_held(stage: Stage) -> Wait:
     yield from open_mouse(stage)
     yield from start_press(stage)
@@ -229,7 +227,6 @@ def opening_another_file_while_pressing_ends_the_press(stage: Stage) -> Wait:
     assert shape_keys() == []
 
 
-@takes(120)
 def the_simulated_device_presses_is_unplugged_and_comes_back(stage: Stage) -> Wait:
     yield from open_mouse(stage)
     before = _coordinates()
@@ -254,7 +251,6 @@ def the_simulated_device_presses_is_unplugged_and_comes_back(stage: Stage) -> Wa
     assert not Path(f"/proc/{child}").exists()
 
 
-@takes(120)
 def make_soft_shows_progress_and_escape_leaves_nothing(stage: Stage) -> Wait:
     yield from open_mouse(stage)
     bpy.ops.palpate.remove_softness()
@@ -277,13 +273,12 @@ def make_soft_shows_progress_and_escape_leaves_nothing(stage: Stage) -> Wait:
     assert shape_keys() == []
 
 
-@takes(180)
 def make_soft_beside_blender_makes_the_mouse_pressable(stage: Stage) -> Wait:
     yield from open_mouse(stage)
     bpy.ops.palpate.remove_softness()
     with stage.view():
         bpy.ops.palpate.make_soft("INVOKE_DEFAULT")
-    yield from stage.until(lambda: bake_session.current() is None, "the bake", seconds=150)
+    yield from stage.until(lambda: bake_session.current() is None, "the bake")
     assert mouse().palpate.body_key
     stage.note(nodes=mouse().palpate.node_count, seconds=mouse().palpate.bake_seconds)
     yield from stage.picture("baked")
