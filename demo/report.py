@@ -72,6 +72,7 @@ def _body(figures: dict[str, Any]) -> str:
     return (
         f"{figures['nodes']} nodes, {figures['tets']} tetrahedra, "
         f"{figures['free_surface_nodes']} free surface nodes of {figures['surface_nodes']}, "
-        f"L {figures['compliance_bytes'] / 1e6:.1f} MB, "
+        f"{figures['formulation']}, "
+        f"L {figures['form']} in {figures['compliance_bytes'] / 1e6:.1f} MB, "
         f"baked in {sum(figures['seconds'].values()):.2g} s"
     )

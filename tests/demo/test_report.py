@@ -13,6 +13,8 @@ BODY = {
     "surface_nodes": 98,
     "free_surface_nodes": 73,
     "surface_triangles": 192,
+    "formulation": "linear",
+    "form": "dense",
     "compliance_bytes": 191844,
     "seconds": {"stiffness": 0.1, "compliance": 0.2},
     "key": "0",
@@ -67,7 +69,16 @@ def test_the_report_has_exactly_the_promised_shape(raw: dict[str, Any]) -> None:
 
 def test_the_summary_says_what_was_measured(raw: dict[str, Any]) -> None:
     text = summary(report(raw, ["a.png"]))
-    for part in ("125 nodes", "8000 ticks", "fifo 20", "8.0 mm", "0.060 N", "390", "a.png"):
+    for part in (
+        "125 nodes",
+        "linear, L dense",
+        "8000 ticks",
+        "fifo 20",
+        "8.0 mm",
+        "0.060 N",
+        "390",
+        "a.png",
+    ):
         assert part in text
 
 
