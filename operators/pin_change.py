@@ -104,7 +104,7 @@ def take_over(thing: bpy.types.Object, drawn: DrawnSurface) -> SoftBody:
     if change.fit is PinFit.SAME:
         raise PalpateError(f"{thing.name}: it is pinned like this already; press Press")
     if change.fit is PinFit.UNUSABLE:
-        raise PalpateError(f"{thing.name}: {change.reason}")
+        raise PalpateError(change.reason)
     if change.fit in {PinFit.LESS, PinFit.OTHER}:
         raise PalpateError(f"{thing.name}: these pins need a bake; press Rebuild Body")
     within = _placed(drawn, ObjectHandle.of(thing), thing.palpate.body_key)

@@ -77,7 +77,9 @@ def test_pins_elsewhere_need_a_bake(soft):
 def test_pins_that_hold_nothing_or_everything_are_refused_with_a_remedy(soft):
     soft.palpate.pin_mode, soft.palpate.pin_group = "GROUP", "Nothing"
     assert fit(soft) == "UNUSABLE"
-    assert "vertex group" in error_of(bpy.ops.palpate.update_pins)
+    message = error_of(bpy.ops.palpate.update_pins)
+    assert "vertex group" in message
+    assert message.count(soft.name) == 1
     soft.vertex_groups.new(name="All").add(range(len(soft.data.vertices)), 1.0, "REPLACE")
     soft.palpate.pin_group = "All"
     assert "pin less" in error_of(bpy.ops.palpate.update_pins)
