@@ -84,11 +84,17 @@ def bake(arguments: argparse.Namespace) -> dict[str, object]:
         "surface_triangles": len(body.mesh.surface_triangles),
         "formulation": body.formulation,
         "form": body.compliance.form,
+        **_error(thing.palpate),
         "compliance_bytes": body.compliance.nbytes,
         "seconds": report.seconds,
         "key": thing.palpate.body_key,
         "body": str(body_store.locate(thing)),
     }
+
+
+def _error(baked: bpy.types.PropertyGroup) -> dict[str, object]:
+    """What compressing did to the body."""
+    return {"column_error": baked.column_error / 100} if baked.baked_form == "compressed" else {}
 
 
 def press(arguments: argparse.Namespace) -> dict[str, object]:
@@ -122,6 +128,8 @@ def _set_up(settings: bpy.types.PropertyGroup, arguments: argparse.Namespace) ->
         settings.pin_mode, settings.pin_group = "GROUP", arguments.pin_group
     if arguments.stiff_group is not None:
         settings.stiff_group = arguments.stiff_group
+    if arguments.stiff_factor is not None and not settings.stiff_group:
+        raise PalpateError("--stiff-factor: nothing is stiff; name a group by --stiff-group")
     for name in ("formulation", "form"):
         if getattr(arguments, name) is not None:
             setattr(settings, name, getattr(arguments, name).upper())
@@ -222,7 +230,10 @@ def _within(
     silently clamp it.
     """
     allowed = settings.bl_rna.properties[name]
-    if not allowed.hard_min <= value / unit <= allowed.hard_max:
+    # The bounds are float32, and belong to the range.
+    rounding = 1e-6
+    lowest, highest = allowed.hard_min * (1 - rounding), allowed.hard_max * (1 + rounding)
+    if not lowest <= value / unit <= highest:
         raise PalpateError(
             f"--{option.replace('_', '-')}: {value:g} is out of range; give a number from "
             f"{unit * allowed.hard_min:g} to {unit * allowed.hard_max:g}"

@@ -49,6 +49,7 @@ def test_form_formulation_and_stiff_region_are_chosen_by_options(command, scene,
     assert command([*words, "--stiff-group", "Hard", "--stiff-factor", "5"]) == 0
     figures = json.loads(capfd.readouterr().out.splitlines()[-1])
     assert (figures["formulation"], figures["form"]) == ("smoothed", "compressed")
+    assert 0 < figures["column_error"] <= 0.02
     baked = bpy.data.objects["Prop"].palpate
     assert baked.baked_formulation == "smoothed"
     assert baked.column_error <= 2.0
@@ -70,6 +71,14 @@ def test_a_bake_whose_scene_cannot_be_saved_leaves_no_body(command, scene, capfd
     assert sorted(scene.parent.iterdir()) == before
 
 
+@pytest.mark.parametrize(("tolerance", "percent"), [(1e-5, 0.001), (0.05, 5.0)])
+def test_the_ends_of_a_range_belong_to_it(palpate, tolerance, percent):
+    within = part("addon.command")._within
+    settings = bpy.context.object.palpate
+    found = within(settings, "compression_tolerance", "tolerance", tolerance, 0.01)
+    assert found == pytest.approx(percent)
+
+
 @pytest.mark.parametrize(
     ("words", "reason"),
     [
@@ -78,6 +87,7 @@ def test_a_bake_whose_scene_cannot_be_saved_leaves_no_body(command, scene, capfd
         (["bake", "{scene}", "--object", "Prop", "--poisson", "0.7"], "out of range"),
         (["bake", "{scene}", "--object", "Prop", "--tolerance", "0.5"], "to 0.05"),
         (["bake", "{scene}", "--object", "Prop", "--form", "tiny"], "compressed"),
+        (["bake", "{scene}", "--object", "Prop", "--stiff-factor", "5"], "--stiff-group"),
         (["bake", "{scene}", "--object", "Prop", "--stiff-group", "None"], "vertex group"),
         (["bake", "{scene}", "--object", "Prop", "--pin-group", "None"], "vertex group"),
         (
