@@ -51,7 +51,7 @@ WORDS = {
     "Update Pins": "Fixierung übernehmen",
     "Fit Memory": "An den Speicher anpassen",
     "Compress It": "Komprimieren",
-    "Edge Length {length}": "Kantenlänge {length}",
+    "Use Edge Length {length}": "Kantenlänge {length} nehmen",
     "{time} left": "noch {time}",
     "About {nodes} nodes in {time}": "Etwa {nodes} Knoten in {time}",
     "Takes {needed} of memory; {available} are free": (
@@ -87,6 +87,7 @@ WORDS = {
     ),
     "Changed since the bake: {names}": "Seit der Berechnung geändert: {names}",
     "Rebuild Body takes it over": "„Körper neu berechnen“ übernimmt das",
+    "Make Soft Again takes it over": "„Neu weich machen“ übernimmt das",
     # A bake
     "The body is ready; leave Edit Mode to receive it": (
         "Der Körper ist fertig; zum Übernehmen den Bearbeitungsmodus verlassen"

@@ -49,7 +49,7 @@ WORDS = {
     "Update Pins": "固定を反映",
     "Fit Memory": "メモリに合わせる",
     "Compress It": "圧縮する",
-    "Edge Length {length}": "辺の長さ {length}",
+    "Use Edge Length {length}": "辺の長さを {length} にする",
     "{time} left": "残り {time}",
     "About {nodes} nodes in {time}": "約 {nodes} 節点、{time}",
     "Takes {needed} of memory; {available} are free": (
@@ -79,6 +79,7 @@ WORDS = {
     ),
     "Changed since the bake: {names}": "ベイク後の変更: {names}",
     "Rebuild Body takes it over": "「物体を再計算」で反映されます",
+    "Make Soft Again takes it over": "「もう一度柔らかくする」で反映されます",
     # A bake
     "The body is ready; leave Edit Mode to receive it": (
         "物体の準備ができました。編集モードを終了すると反映されます"

@@ -1,11 +1,14 @@
 """How meshes fit their bodies, and what a bake would cost, as last looked up.
 
-A panel is drawn many times a second, and reading a large mesh takes a tenth of one: it is read
-again only after something changed that a handler tells of.
+A panel is drawn many times a second, and reading a large mesh takes a second: it is read again only
+after something changed that a handler tells of, and where that takes long only once it rests.
 """
 
 from __future__ import annotations
 
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 import bpy
@@ -24,6 +27,8 @@ from ..operators.viewport import redraw_views
 # The panel appears first, then the machine's speed is measured, a tenth of a second.
 SECONDS_TO_MEASURING = 0.2
 SECONDS_OF_REST = 0.6
+# A mesh that was read in less is read again while it changes: dragging stays smooth then.
+QUICK_SECONDS = 0.05
 PIN_SETTINGS = ("pin_mode", "pin_group", "pin_fraction")
 # What a status depends on, besides what the mesh has in it.
 STATUS_SETTINGS = (
@@ -41,11 +46,22 @@ Values = tuple[object, ...]
 
 @dataclass(eq=False)
 class _KnownMesh:
-    """A mesh as it was read, and what was concluded from it, by the settings of the time."""
+    """A mesh as it was read, and what was concluded from it, by the settings of the time.
+
+    ``seconds`` is the longest that one of these steps took.
+    """
 
     drawn: DrawnSurface
+    seconds: float = 0.0
     statuses: dict[Values, BodyStatus] = field(default_factory=dict)
     pins: dict[Values, Pins] = field(default_factory=dict)
+
+    @contextmanager
+    def timed(self) -> Iterator[None]:
+        """Watch how long a step takes."""
+        begun = time.perf_counter()
+        yield
+        self.seconds = max(self.seconds, time.perf_counter() - begun)
 
 
 _known: dict[Values, _KnownMesh] = {}
@@ -61,7 +77,8 @@ def body_status(thing: bpy.types.Object, scene: bpy.types.Scene) -> BodyStatus:
         return BodyStatus(Fit.CHANGED if thing.palpate.body_key else Fit.NEVER_BAKED, str(problem))
     question = _values(thing, STATUS_SETTINGS)
     if question not in known.statuses:
-        known.statuses[question] = soft_object.mesh_status(thing, known.drawn)
+        with known.timed():
+            known.statuses[question] = soft_object.mesh_status(thing, known.drawn)
     return soft_object.with_file(thing, known.statuses[question])
 
 
@@ -82,25 +99,29 @@ def prediction(thing: bpy.types.Object, scene: bpy.types.Scene) -> Prediction | 
         _sizes[which] = bake_prediction.shape_size(known.drawn)
     question = _values(thing, PIN_SETTINGS)
     if question not in known.pins:
-        known.pins[question] = bake_prediction.pins_of(thing, known.drawn)
+        with known.timed():
+            known.pins[question] = bake_prediction.pins_of(thing, known.drawn)
     settings = bake_prediction.settings_of(thing, known.pins[question])
     return bake_prediction.predict(_sizes[which], settings)
 
 
 def forget() -> None:
     """Look everything up again: a mesh, a transform or a file changed."""
-    _known.clear()
     if bpy.app.background:
         # Timers do not fire there, and nobody drags anything.
+        _known.clear()
         _sizes.clear()
         return
-    if bpy.app.timers.is_registered(_forget_sizes):
-        bpy.app.timers.unregister(_forget_sizes)
-    if _sizes:
-        bpy.app.timers.register(_forget_sizes, first_interval=SECONDS_OF_REST)
+    for which in [which for which, known in _known.items() if known.seconds < QUICK_SECONDS]:
+        del _known[which]
+    if bpy.app.timers.is_registered(_forget_what_is_slow):
+        bpy.app.timers.unregister(_forget_what_is_slow)
+    if _known or _sizes:
+        bpy.app.timers.register(_forget_what_is_slow, first_interval=SECONDS_OF_REST)
 
 
-def _forget_sizes() -> None:
+def _forget_what_is_slow() -> None:
+    _known.clear()
     _sizes.clear()
     redraw_views()
 
@@ -112,8 +133,12 @@ def _which(thing: bpy.types.Object, scene: bpy.types.Scene) -> Values:
 
 def _mesh(thing: bpy.types.Object, scene: bpy.types.Scene) -> _KnownMesh:
     which = _which(thing, scene)
-    if which not in _known:
-        _known[which] = _KnownMesh(drawn_surface.read(thing, scene))
+    known = _known.get(which)
+    # Weights of other vertices than were read would not fit them.
+    if known is None or len(known.drawn.local) != len(thing.data.vertices):
+        begun = time.perf_counter()
+        drawn = drawn_surface.read(thing, scene)
+        _known[which] = _KnownMesh(drawn, time.perf_counter() - begun)
     return _known[which]
 
 

@@ -91,7 +91,7 @@ def _draw_alarm(
     if prediction.compressed_fits:
         column.operator("palpate.fit_memory", text="Compress It").by = "COMPRESSED"
     if prediction.edge_length is not None:
-        text = _interface("Edge Length {length}").format(length=f"{prediction.edge_length:g}")
+        text = _interface("Use Edge Length {length}").format(length=f"{prediction.edge_length:g}")
         column.operator("palpate.fit_memory", text=text, translate=False).by = "COARSER"
 
 

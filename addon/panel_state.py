@@ -129,9 +129,12 @@ def _draw_changes(
     names = list(status.changed)
     if pins.fit not in {PinFit.SAME, PinFit.UNUSABLE} and not _pins_alone(status):
         names.append("Pins")
+    names += status.meshing
     if names:
         known = bpy.app.translations.pgettext_iface
         listed = ", ".join(known(name) for name in names)
         say(layout, context, "Changed since the bake: {names}", "INFO", names=listed)
-    if status.fit is Fit.READY and _rebuild_helps(status) and not _update_suffices(status):
+    if status.meshing:
+        say(layout, context, "Make Soft Again takes it over", "BLANK1")
+    elif status.fit is Fit.READY and _rebuild_helps(status) and not _update_suffices(status):
         say(layout, context, "Rebuild Body takes it over", "BLANK1")

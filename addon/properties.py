@@ -192,6 +192,9 @@ class PalpateObject(bpy.types.PropertyGroup):
     body_key: bpy.props.StringProperty(name="Body Key", options={"HIDDEN"})
     body_file: bpy.props.StringProperty(name="Body File", options={"HIDDEN"})
     fingerprint: bpy.props.StringProperty(name="Fingerprint", options={"HIDDEN"})
+    # 0 where nobody knows any more.
+    baked_edge_length: bpy.props.FloatProperty(options={"HIDDEN"})
+    baked_epsilon: bpy.props.FloatProperty(options={"HIDDEN"})
     baked_poisson_ratio: bpy.props.FloatProperty(precision=3, options={"HIDDEN"})
     # What bodies of files from before there was a choice have.
     baked_formulation: bpy.props.StringProperty(default="linear", options={"HIDDEN"})

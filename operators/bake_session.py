@@ -32,6 +32,7 @@ class BakeSession:
     settings: BakeSettings
     job: BakeJob
     progress: JobProgress
+    rebuild: bool
 
     def poll(self) -> bool:
         """Look how far it is; True when there is a result to :meth:`commit`.
@@ -73,6 +74,9 @@ class BakeSession:
             )
             name = body_store.file_name(thing, body.key)
             baked_record.record(thing, body, name, self.surface, self.fingerprint)
+            if not self.rebuild:
+                thing.palpate.baked_edge_length = self.settings.edge_length
+                thing.palpate.baked_epsilon = self.settings.epsilon
             thing.palpate.bake_seconds = sum(report.seconds.values())
             thing.palpate.bake_warnings = "\n".join(report.warnings)
         finally:
@@ -137,7 +141,9 @@ def start(thing: bpy.types.Object, scene: bpy.types.Scene, *, rebuild: bool = Fa
         job = _rebuild_job(thing, fingerprint, settings, surface, python)
     else:
         job = BakeJob(surface, settings, python=python)
-    _current = BakeSession(ObjectHandle.of(thing), drawn, fingerprint, settings, job, job.poll())
+    _current = BakeSession(
+        ObjectHandle.of(thing), drawn, fingerprint, settings, job, job.poll(), rebuild
+    )
     return _current
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from enum import Enum
 
@@ -28,13 +29,14 @@ class Fit(Enum):
 @dataclass(frozen=True)
 class BodyStatus:
     """``text`` says why; ``changed`` names settings that are not in the body yet, other than pins,
-    which may not need a bake: ``pins``.
+    which may not need a bake: ``pins``; ``meshing`` names those that ask for other tetrahedra.
     """
 
     fit: Fit
     text: str = ""
     changed: tuple[str, ...] = ()
     pins: PinChange = pin_change.SAME
+    meshing: tuple[str, ...] = ()
 
 
 def refusal(thing: bpy.types.Object | None) -> str:
@@ -74,6 +76,7 @@ def with_file(thing: bpy.types.Object, status: BodyStatus) -> BodyStatus:
     """A :func:`mesh_status` together with what is known of the body file; quick."""
     if status.fit is not Fit.READY:
         return status
+    status = replace(status, meshing=_other_meshing(thing.palpate))
     path = body_store.locate(thing)
     if path is None:
         return replace(status, fit=Fit.FILE_MISSING, text="the body file is missing")
@@ -127,6 +130,16 @@ def _unbaked_settings(
         ("Compliance", _other_form(settings)),
     )
     return tuple(name for name, changed in changes if changed)
+
+
+def _other_meshing(settings: bpy.types.PropertyGroup) -> tuple[str, ...]:
+    baked = (
+        ("Edge Length", settings.edge_length, settings.baked_edge_length),
+        ("Tolerance", settings.epsilon, settings.baked_epsilon),
+    )
+    return tuple(
+        name for name, now, then in baked if then and not math.isclose(now, then, rel_tol=1e-5)
+    )
 
 
 def _other_form(settings: bpy.types.PropertyGroup) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from types import SimpleNamespace
 
 import bpy
 import numpy as np
@@ -138,6 +139,28 @@ def test_the_panel_sees_a_lost_file_and_another_unit_scale_though_no_handler_tel
     assert known(saved, scene).fit.name == "FILE_MISSING"
 
 
+def test_with_a_window_what_is_slow_to_read_is_read_again_once_it_rests(saved, monkeypatch):
+    known, scene, waiting = part("addon.known_status"), bpy.context.scene, []
+    timers = SimpleNamespace(
+        is_registered=lambda call: call in waiting,
+        register=lambda call, **_: waiting.append(call),
+        unregister=waiting.remove,
+    )
+    app = SimpleNamespace(background=False, timers=timers)
+    monkeypatch.setattr(known, "bpy", SimpleNamespace(app=app))
+    monkeypatch.setattr(known, "redraw_views", lambda: None)
+    for seconds, kept in ((known.QUICK_SECONDS / 2, False), (known.QUICK_SECONDS * 2, True)):
+        known.body_status(saved, scene)
+        mesh = known._mesh(saved, scene)
+        mesh.seconds = seconds
+        known.forget()
+        assert (known._mesh(saved, scene) is mesh) == kept
+    known.forget()
+    assert len(waiting) == 1, "one timer waits for the end of the changes"
+    waiting.pop()()
+    assert known._mesh(saved, scene) is not mesh
+
+
 def test_applying_the_scale_leaves_the_body_valid(palpate):
     thing = cube(1.0)
     thing.scale = (0.05, 0.04, 0.06)
@@ -163,6 +186,15 @@ def test_pins_and_ratio_changed_later_are_said_and_taken_over_without_tetrahedra
     body = part("operators.body_store").load(saved)
     assert body.poisson_ratio == 0.35
     assert body.mesh.nodes[body.fixed, 2].max() > -0.025 + 0.2 * 0.05
+
+
+def test_another_edge_length_is_said_until_there_are_other_tetrahedra(saved):
+    saved.palpate.edge_length = 0.25
+    assert status(saved).meshing == ("Edge Length",)
+    assert bpy.ops.palpate.rebuild_body() == {"FINISHED"}
+    assert status(saved).meshing == ("Edge Length",)
+    assert bpy.ops.palpate.make_soft() == {"FINISHED"}
+    assert status(saved).meshing == ()
 
 
 def test_a_copied_object_brings_its_body(saved):
