@@ -1,7 +1,8 @@
 """The real-time thread of Palpate: god object, contact force, safety and device link.
 
 SI units everywhere (m, N, Pa, s). Arrays that are handed in are copied, those of a Compliance
-excepted; arrays that come out are new. Anything with three numbers (list, numpy array, mathutils.Vector) serves as a vector.
+excepted; arrays that come out are new. Anything with three numbers (list, numpy array,
+mathutils.Vector) serves as a vector.
 """
 
 from collections.abc import Mapping, Sequence
@@ -97,9 +98,9 @@ class ServoCounters(TimingCounters):
 class Compliance:
     """The inverse stiffness of the free surface nodes at unit modulus, in either form.
 
-    Its large arrays are not copied: they are made read-only, kept alive and read in place. They must
-    be contiguous, and nobody may write to them by views made before. A body takes copies of what the
-    servo's thread needs of them.
+    Its large arrays are not copied: they are made read-only, kept alive and read in place. They
+    must be contiguous, and nobody may write to them by views made before. A body takes copies of
+    what the servo's thread needs of them.
     """
 
     @staticmethod
@@ -172,7 +173,8 @@ class Body:
         self, triangle: int, alpha: _Vector, nodal_forces: _Matrix, young_modulus: float
     ) -> NDArray[np.float64] | None:
         """How far the point at area coordinates alpha moves under forces (3, 3) on the nodes of its
-        triangle, m (15); None without a compliance."""
+        triangle, m (15); None without a compliance.
+        """
 
     def closest_point(
         self, p: _Vector
@@ -246,7 +248,8 @@ class Snapshot:
     @property
     def surface_point(self) -> NDArray[np.float64] | None:
         """Where the touched point of the surface is now, m: the god object plus the displacement
-        that the nodal forces cause there (15). None while free, and for a body without a compliance.
+        that the nodal forces cause there (15). None while free, and for a body without a
+        compliance.
         """
 
     @property
