@@ -37,7 +37,7 @@ WORDS = {
     "Enter keeps the shape, Escape restores it": (
         "Eingabe behält die Form, Escape stellt sie wieder her"
     ),
-    "There is no such vertex group": "Diese Vertexgruppe gibt es nicht",
+    "There is no such vertex group": "Diese Punktgruppe gibt es nicht",
     "Only the base mesh is baked: apply the Mirror modifier first": (
         "Nur das Grundnetz wird berechnet: zuerst den Spiegeln-Modifikator anwenden"
     ),
@@ -45,7 +45,7 @@ WORDS = {
     "Tetrahedra": "Tetraeder",
     "Free Surface Nodes": "Freie Knoten",
     "Memory": "Speicher",
-    "Bake Time": "Rechenzeit",
+    "Bake Time": "Backzeit",
     "Young's (Pa)": "E-Modul (Pa)",
     "Select a mesh object": "Ein Netzobjekt auswählen",
     "Update Pins": "Fixierung übernehmen",
@@ -62,10 +62,10 @@ WORDS = {
     "File": "Datei",
     "Uncompressed": "Unkomprimiert",
     "Stiff Region": "Steifer Bereich",
-    "Method": "Verfahren",
+    "Method": "Methode",
     "Baked Body": "Berechneter Körper",
     "Bone in flesh: a closed shell inside the mesh, as a vertex group": (
-        "Knochen im Fleisch: eine geschlossene Hülle im Netz, als Vertexgruppe"
+        "Knochen im Fleisch: eine geschlossene Hülle im Netz, als Punktgruppe"
     ),
     "Linear: as in the paper, right up to about 0.4": (
         "Linear: wie im Aufsatz, richtig bis etwa 0,4"
@@ -156,7 +156,7 @@ WORDS = {
     "Soft silicone (Shore 00-30)": "Weiches Silikon (Shore 00-30)",
     "Firm silicone (Shore A 20)": "Festes Silikon (Shore A 20)",
     "Rubber (Shore A 50)": "Gummi (Shore A 50)",
-    "Custom": "Eigenes",
+    "Custom": "Benutzerdefiniert",
     "Young's modulus and Poisson's ratio as set below": (
         "Elastizitätsmodul und Querkontraktionszahl wie unten eingestellt"
     ),
@@ -182,7 +182,7 @@ WORDS = {
     "Share of the object's height in world Z below which vertices are pinned": (
         "Anteil der Höhe in Welt-Z, unter dem Vertices fixiert sind"
     ),
-    "Vertex group that is pinned": "Vertexgruppe, die fixiert ist",
+    "Vertex group that is pinned": "Punktgruppe, die fixiert ist",
     "Edge Length": "Kantenlänge",
     "Wanted edge length of the tetrahedra, as a share of the object's diagonal. "
     "Half the length: about eight times the nodes": (
@@ -200,7 +200,7 @@ WORDS = {
         "Dichtere Netze werden vorher auf so viele Dreiecke vereinfacht. "
         "Das Sichtbare bleibt, wie es ist"
     ),
-    "Time Limit": "Zeitgrenze",
+    "Time Limit": "Zeitlimit",
     "Give up filling with tetrahedra after this many seconds": (
         "Das Füllen mit Tetraedern nach so vielen Sekunden aufgeben"
     ),
@@ -236,9 +236,9 @@ WORDS = {
         "Auch für Gummi und Silikon richtig. Die Berechnung dauert länger"
     ),
     "Full while it is small, compressed where it would be large": (
-        "Vollständig, solange sie klein ist, komprimiert, wo sie groß würde"
+        "Voll, solange sie klein ist, komprimiert, wo sie groß würde"
     ),
-    "Full": "Vollständig",
+    "Full": "Voll",
     "Every number is kept. Memory grows with the square of the surface": (
         "Jede Zahl bleibt. Der Speicher wächst mit dem Quadrat der Oberfläche"
     ),
@@ -248,7 +248,7 @@ WORDS = {
     ),
     "Vertex group that is stiffer or softer than the material. A closed shell inside the mesh "
     "makes all that it encloses stiff: bone in flesh. Needs Rebuild Body": (
-        "Vertexgruppe, die steifer oder weicher ist als das Material. Eine geschlossene Hülle "
+        "Punktgruppe, die steifer oder weicher ist als das Material. Eine geschlossene Hülle "
         "im Netz macht alles steif, was sie umschließt: Knochen im Fleisch. Braucht „Körper "
         "neu berechnen“"
     ),
@@ -309,7 +309,7 @@ WORDS = {
     "Put all vertices below this share of the object's height, as it stands now, "
     "into the vertex group Pinned": (
         "Alle Vertices unter diesem Anteil der Höhe, wie es jetzt steht, "
-        "in die Vertexgruppe Pinned aufnehmen"
+        "in die Punktgruppe Pinned aufnehmen"
     ),
     "Press the soft object with the pointer or a device. Enter keeps the shape, "
     "Escape restores it. From scripts: EXEC_DEFAULT with at and by": (

@@ -39,11 +39,11 @@ WORDS = {
     "Only the base mesh is baked: apply the Mirror modifier first": (
         "元のメッシュだけがベイクされます。先にミラーモディファイアーを適用してください"
     ),
-    "Nodes": "節点",
+    "Nodes": "ノード",
     "Tetrahedra": "四面体",
-    "Free Surface Nodes": "自由な表面節点",
+    "Free Surface Nodes": "自由な表面ノード",
     "Memory": "メモリ",
-    "Bake Time": "ベイク時間",
+    "Bake Time": "ベイクタイム",
     "Young's (Pa)": "ヤング率 (Pa)",
     "Select a mesh object": "メッシュオブジェクトを選択してください",
     "Update Pins": "固定を反映",
@@ -51,7 +51,7 @@ WORDS = {
     "Compress It": "圧縮する",
     "Use Edge Length {length}": "辺の長さを {length} にする",
     "{time} left": "残り {time}",
-    "About {nodes} nodes in {time}": "約 {nodes} 節点、{time}",
+    "About {nodes} nodes in {time}": "約 {nodes} ノード、{time}",
     "Takes {needed} of memory; {available} are free": (
         "メモリ {needed} が必要です。空きは {available} です"
     ),
@@ -60,12 +60,12 @@ WORDS = {
     "File": "ファイル",
     "Uncompressed": "非圧縮時",
     "Stiff Region": "硬い領域",
-    "Method": "手法",
+    "Method": "方式",
     "Baked Body": "ベイク済みの物体",
     "Bone in flesh: a closed shell inside the mesh, as a vertex group": (
         "肉の中の骨: メッシュ内の閉じた殻を頂点グループにします"
     ),
-    "Linear: as in the paper, right up to about 0.4": "線形: 論文どおり。約 0.4 まで正確です",
+    "Linear: as in the paper, right up to about 0.4": "リニア: 論文どおり。約 0.4 まで正確です",
     "Smoothed: does not lock near 0.5": "平滑化: 0.5 付近でも硬くなりません",
     "These pins were computed before: no bake needed": "この固定は計算済みです。ベイクは不要です",
     "More is pinned: takes effect in about {time}, no bake needed": (
@@ -171,9 +171,9 @@ WORDS = {
     "Edge Length": "辺の長さ",
     "Wanted edge length of the tetrahedra, as a share of the object's diagonal. "
     "Half the length: about eight times the nodes": (
-        "四面体の辺の目標長さ (対角線に対する割合)。半分にすると節点は約 8 倍"
+        "四面体の辺の目標長さ (対角線に対する割合)。半分にするとノードは約 8 倍"
     ),
-    "Tolerance": "許容差",
+    "Tolerance": "許容範囲",
     "How far the body may stray from the mesh, as a share of the diagonal. Smaller takes longer": (
         "物体とメッシュのずれの許容値 (対角線に対する割合)。小さいほど時間がかかります"
     ),
@@ -182,13 +182,13 @@ WORDS = {
     "What you see stays as dense as it is": (
         "これより細かいメッシュはこの三角形数まで簡略化してからベイクします。表示は変わりません"
     ),
-    "Time Limit": "制限時間",
+    "Time Limit": "時間制限",
     "Give up filling with tetrahedra after this many seconds": (
         "この秒数で四面体分割をあきらめます"
     ),
     "Press With": "押す手段",
     "Who moves the probe": "プローブを動かすもの",
-    "Pointer": "ポインター",
+    "Pointer": "ポインタ",
     "Mouse, pen or trackpad press on the surface": "マウス、ペン、トラックパッドで押します",
     "Simulated Device": "模擬デバイス",
     "A program that behaves like a haptic device": "力覚デバイスのように振る舞うプログラム",
@@ -207,9 +207,9 @@ WORDS = {
     ),
     "Automatic": "自動",
     "Smoothed where linear tetrahedra would be too stiff, linear elsewhere": (
-        "線形四面体が硬すぎる場合は平滑化、それ以外は線形"
+        "リニア四面体が硬すぎる場合は平滑化、それ以外はリニア"
     ),
-    "Linear": "線形",
+    "Linear": "リニア",
     "The paper's. Too stiff as Poisson's ratio comes near 0.5": (
         "論文の方式。ポアソン比が 0.5 に近いと硬すぎます"
     ),
@@ -218,9 +218,9 @@ WORDS = {
         "ゴムやシリコーンでも正確です。ベイクは長くなります"
     ),
     "Full while it is small, compressed where it would be large": (
-        "小さいうちは完全、大きくなる場合は圧縮"
+        "小さいうちはフル、大きくなる場合は圧縮"
     ),
-    "Full": "完全",
+    "Full": "フル",
     "Every number is kept. Memory grows with the square of the surface": (
         "すべての数値を保持します。メモリは表面の二乗で増えます"
     ),
