@@ -207,7 +207,7 @@ WORDS = {
     ),
     "Automatic": "自動",
     "Smoothed where linear tetrahedra would be too stiff, linear elsewhere": (
-        "リニア四面体が硬すぎる場合は平滑化、それ以外はリニア"
+        "線形の四面体が硬すぎる場合は平滑化、それ以外はリニア"
     ),
     "Linear": "リニア",
     "The paper's. Too stiff as Poisson's ratio comes near 0.5": (
