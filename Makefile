@@ -79,7 +79,7 @@ build/typing/palpate:
 .PRECIOUS: .venv-bpy-%/.installed
 .venv-bpy-%/.installed:
 	python=$$(release/find_python.sh $(PYTHON_OF_$*) $(PYTHON)); "$$python" -m venv .venv-bpy-$*
-	.venv-bpy-$*/bin/pip install --quiet bpy==$* pytest pytest-timeout
+	.venv-bpy-$*/bin/pip install --quiet bpy==$* pytest pytest-timeout pytest-xdist
 	touch $@
 
 # ------------------------------------------------------------------------------------- packages
@@ -108,9 +108,10 @@ build/packages/palpate-windowed.zip: build/servo/.built $(EXTENSION_SOURCES) | $
 # Each part leaves its output in build/reports, so that its closing lines can be read together.
 
 REPORT = 2>&1 | tee build/reports/$@.txt
+ON_ALL_CORES := --numprocesses auto --maxprocesses 4 --dist loadfile
 
 .PHONY: test
-test: lint test-native test-core test-addon test-gui ## everything that must hold, in a few minutes
+test: lint test-native test-core test-servo test-addon test-gui ## everything that must hold, in a few minutes
 
 .PHONY: test-all
 test-all: test $(ALL_BPY:%=test-addon-%) check-systems ## the same, the extension in every Blender, the servo for every system
@@ -132,15 +133,19 @@ test-native: $(VENV)/.installed | build/reports ## the servo's own tests
 	$(CARGO) test --quiet $(CRATE) $(REPORT)
 
 .PHONY: test-core
-test-core: $(VENV)/.servo-installed | build/reports ## core, command line and servo, without Blender
-	$(BIN)/pytest -q $(REPORT)
+test-core: $(VENV)/.servo-installed | build/reports ## core, command line and packages, without Blender
+	$(BIN)/pytest -q $(ON_ALL_CORES) tests/core tests/demo tests/release tests/test_architecture.py $(REPORT)
+
+.PHONY: test-servo
+test-servo: $(VENV)/.servo-installed | build/reports ## servo and firmware: they have deadlines, so one test after the other
+	$(BIN)/pytest -q tests/servo tests/firmware $(REPORT)
 
 .PHONY: test-addon
 test-addon: test-addon-$(BPY) ## the package installed in Blender as a module, driven by its operators
 
 .PHONY: $(ALL_BPY:%=test-addon-%)
 $(ALL_BPY:%=test-addon-%): test-addon-%: .venv-bpy-%/.installed build/packages/.made | build/reports
-	.venv-bpy-$*/bin/pytest -q tests/addon $(REPORT)
+	.venv-bpy-$*/bin/pytest -q $(ON_ALL_CORES) tests/addon $(REPORT)
 
 # Compiles without linking, for those systems whose standard library rustup has put here.
 .PHONY: check-systems
