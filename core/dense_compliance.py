@@ -64,6 +64,8 @@ class DenseCompliance:
         """
         loaded = np.arange(self.node_count) if nodes is None else nodes
         forces = np.asarray(nodal_forces, dtype=self.table.dtype).reshape(-1, 3)
+        if len(loaded) <= NODES_SUMMED:
+            return self._moved_by_few(loaded, forces).reshape(-1, 3)
         total = self._moved_by_few(loaded[:NODES_SUMMED], forces[:NODES_SUMMED])
         for first in range(NODES_SUMMED, len(loaded), NODES_SUMMED):
             few = slice(first, first + NODES_SUMMED)
@@ -78,8 +80,7 @@ class DenseCompliance:
             return np.zeros(3 * self.node_count)
         gemv = sgemv if self.table.dtype == np.float32 else dgemv
         # A node's columns lie together, as BLAS wants them: (3n, 3) in Fortran order.
-        first, *others = nodes.tolist()
-        moved = gemv(1.0, self.table[first].T, forces[0])
-        for node, force in zip(others, forces[1:], strict=True):
+        moved = gemv(1.0, self.table[nodes[0]].T, forces[0])
+        for node, force in zip(nodes[1:], forces[1:], strict=True):
             gemv(1.0, self.table[node].T, force, 1.0, moved, overwrite_y=True)
         return moved.astype(np.float64)
