@@ -27,6 +27,7 @@ from palpate.core.compression.compress import compress
 from palpate.core.compression.compressed_compliance import CompressedCompliance
 from palpate.core.dense_compliance import DenseCompliance
 from palpate.core.elimination.surface_columns import factor_for_columns
+from palpate.core.freedoms import freedoms
 from palpate.core.servo_session import native_compliance
 from palpate.core.stiffness import assemble
 from palpate.core.surface_compliance import surface_compliance
@@ -103,7 +104,7 @@ def report(body: MeasuredBody) -> None:
 
     problem = Problem(body, POISSON_RATIO)
     refined_nodes = np.random.default_rng(2).choice(count, REFINED_NODES, replace=False)
-    refined = problem.true_columns((3 * refined_nodes[:, None] + np.arange(3)).ravel())
+    refined = problem.true_columns(freedoms(refined_nodes))
     corners = body.mesh.surface_triangles
     corners = corners[np.isin(corners, exact.free_surface).all(axis=1)]
     triangles = np.searchsorted(exact.free_surface, corners)

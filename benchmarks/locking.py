@@ -34,6 +34,7 @@ from scipy.spatial import Delaunay
 from palpate.core import strain_smoothing
 from palpate.core.elimination.plan import plan_surface_inverse
 from palpate.core.formulation import FORMULATIONS, LINEAR, SMOOTHED
+from palpate.core.freedoms import freedoms
 from palpate.core.paper_cube import paper_cube
 from palpate.core.stiffness import assemble, isotropic, lame_parameters, shape_gradients
 from palpate.core.strain_smoothing import (
@@ -132,7 +133,7 @@ class Trial:
     @property
     def dofs(self) -> NDArray[np.int64]:
         """Their degrees of freedom."""
-        return (3 * self.free[:, None] + np.arange(3)).ravel()
+        return freedoms(self.free)
 
     def solved(self, K: csr_array, forces: NDArray[np.float64]) -> NDArray[np.float64]:
         """Displacements (k, N, 3) under nodal forces (k, N, 3)."""

@@ -34,6 +34,7 @@ from scipy.sparse.linalg import SuperLU, splu
 
 from palpate.core.blas_threads import blas_threads
 from palpate.core.elimination.plan import plan_surface_inverse
+from palpate.core.freedoms import freedoms
 from palpate.core.stiffness import assemble
 from palpate.core.surface_compliance import surface_compliance
 
@@ -77,10 +78,10 @@ class Problem:
     def __init__(self, body: MeasuredBody, poisson_ratio: float) -> None:
         free = np.setdiff1d(np.arange(len(body.mesh.nodes)), body.fixed)
         surface = np.setdiff1d(body.mesh.surface_nodes, body.fixed)
-        freedoms = (3 * free[:, None] + np.arange(3)).ravel()
+        of_free = freedoms(free)
         stiffness = assemble(body.mesh, poisson_ratio)
-        self.matrix: csc_array = stiffness[freedoms][:, freedoms].tocsc()
-        self.wanted = (3 * np.searchsorted(free, surface)[:, None] + np.arange(3)).ravel()
+        self.matrix: csc_array = stiffness[of_free][:, of_free].tocsc()
+        self.wanted = freedoms(np.searchsorted(free, surface))
 
     def loads(self, columns: NDArray[np.int64]) -> NDArray[np.float64]:
         """Unit loads on some of the wanted freedoms, (rows, k), Fortran order."""
@@ -149,7 +150,7 @@ def largest_column_errors(body: MeasuredBody, poisson_ratio: float) -> tuple[flo
     problem = Problem(body, poisson_ratio)
     count = len(problem.wanted)
     nodes = np.random.default_rng(2).choice(count // 3, CHECKED_NODES, replace=False)
-    true = problem.true_columns((3 * nodes[:, None] + np.arange(3)).ravel())
+    true = problem.true_columns(freedoms(nodes))
     stiffness = assemble(body.mesh, poisson_ratio)
     errors = []
     for dtype in (np.float64, np.float32):

@@ -6,10 +6,8 @@ import numpy as np
 
 from ..core.compliance import Compliance
 from ..core.compression.compressed_compliance import CompressedCompliance
+from ..core.dense_compliance import BYTES_PER_PAIR
 from ..core.soft_body import SoftBody
-
-# Nine float32 numbers tell how one node moves under a force on another.
-DENSE_BYTES_A_PAIR = 36
 
 
 def body_figures(body: SoftBody) -> dict[str, object]:
@@ -53,7 +51,7 @@ def _compression(compliance: Compliance) -> dict[str, object]:
     return {
         "tolerance": compliance.tolerance,
         "column_error": float(compliance.column_error),
-        "dense_bytes": DENSE_BYTES_A_PAIR * compliance.node_count**2,
+        "dense_bytes": BYTES_PER_PAIR * compliance.node_count**2,
     }
 
 

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .bake_settings import BakeSettings
+from .dense_compliance import BYTES_PER_PAIR
 from .elimination.plan import EliminationPlan
 from .errors import PalpateError
 from .formulation import LINEAR, formulation_for
@@ -25,9 +26,6 @@ from .winding_volume import enclosed_volume
 
 # A dense table of more bytes is compressed when the form is left open.
 LARGEST_AUTOMATIC_TABLE = 300_000_000
-
-# Bytes of a dense table are this times the square of the free surface nodes.
-BYTES_PER_PAIR = 36
 
 # Surface nodes, for an edge length h and an envelope e in metres:
 # ((1.24 area / h^2)^1.6 + (0.31 bending / e)^1.6)^(1/1.6). The first is what equilateral triangles

@@ -20,6 +20,7 @@ from .bake_child import BODY_FILE, OUTCOME_FILE, PROGRESS_FILE
 from .bake_request import BakeRequest
 from .errors import PalpateError
 from .ftetwild_log import stage
+from .mapped_compliance import MappedCompliance
 from .progress import unwatched
 from .remaining_time import RemainingTime
 from .soft_body import SoftBody
@@ -140,9 +141,10 @@ class BakeJob:
             # is not read whole.
             found = cache.load(self._folder / BODY_FILE)
             place = target(found) if callable(target) else target
-            del found
             cache.adopt(self._folder / BODY_FILE, place)
-            body = cache.load(place)
+            # Of one that was read whole nothing is left in the folder that goes.
+            in_file = isinstance(found.compliance, MappedCompliance)
+            body = cache.load(place) if in_file else found
         finally:
             self.close()
         return body, report

@@ -8,6 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg.blas import dgemv, sgemv
 
+# Bytes of a stored table are this times the square of the free surface nodes: nine float32 numbers
+# for each pair of them.
+BYTES_PER_PAIR = 36
+
 # Nodes whose columns are added up in the table's precision, before rounding could add up too.
 NODES_SUMMED = 32
 

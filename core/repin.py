@@ -23,6 +23,7 @@ from .compression.compressed_compliance import CompressedCompliance
 from .dense_compliance import DenseCompliance
 from .elimination.surface_columns import factor_for_columns
 from .errors import PalpateError
+from .freedoms import freedoms
 from .held_pins import pins_checked
 from .machine_speed import dgemm_rate
 from .mapped_compliance import MappedCompliance
@@ -131,7 +132,7 @@ def _downdated(
     """
     count = compliance.node_count
     kept = np.setdiff1d(np.arange(count), pinned)
-    pinned_rows, kept_rows = _freedoms(pinned), _freedoms(kept)
+    pinned_rows, kept_rows = freedoms(pinned), freedoms(kept)
     stored = compliance.table.reshape(3 * count, 3 * count)
     loaded = stored[pinned_rows].astype(np.float64)
     reach = loaded[:, kept_rows]
@@ -197,7 +198,3 @@ def _computed(body: SoftBody, fixed: NDArray[np.int64]) -> Compliance:
     source = factor_for_columns(body.mesh, stiffness, fixed)
     positions = body.mesh.nodes[source.free_surface]
     return compress(source, positions, body.compliance.tolerance)
-
-
-def _freedoms(nodes: NDArray[np.int64]) -> NDArray[np.int64]:
-    return (3 * nodes[:, None] + np.arange(3)).ravel()

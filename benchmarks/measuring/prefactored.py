@@ -9,6 +9,7 @@ from types import ModuleType
 import numpy as np
 from numpy.typing import NDArray
 
+from palpate.core.freedoms import freedoms
 from palpate.core.soft_body import SoftBody
 from palpate.core.stiffness import assemble
 
@@ -39,7 +40,7 @@ class PrefactoredSolve:
             young_scale=body.young_scale,
         )
         free = np.setdiff1d(np.arange(len(body.mesh.nodes)), body.fixed)
-        self._dofs = (3 * free[:, None] + np.arange(3)).ravel()
+        self._dofs = freedoms(free)
         matrix = stiffness.tocsr()[self._dofs][:, self._dofs].tocsc()
         self._solver = cholespy.CholeskySolverD(
             matrix.shape[0],

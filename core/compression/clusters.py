@@ -8,6 +8,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ..freedoms import freedoms
+
 # Nodes in a cluster at most. Larger clusters make more of the body near, smaller ones repeat the
 # same patterns in more bases; 32 is the flat minimum on bodies of 1,000 to 6,000 surface nodes.
 LARGEST_CLUSTER = 32
@@ -37,7 +39,7 @@ class Clusters:
     @cached_property
     def freedoms(self) -> NDArray[np.int64]:
         """Degrees of freedom (3n,) cluster after cluster."""
-        return (3 * np.concatenate(self.members)[:, None] + np.arange(3)).ravel()
+        return freedoms(np.concatenate(self.members))
 
     @cached_property
     def starts(self) -> NDArray[np.int64]:

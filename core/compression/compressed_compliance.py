@@ -11,6 +11,8 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 from scipy.linalg import blas
 
+from ..freedoms import freedoms
+
 if TYPE_CHECKING:
     from palpate_servo import Compliance as NativeCompliance
 
@@ -129,7 +131,7 @@ class CompressedCompliance:
         loaded = np.asarray(nodes, dtype=np.int64)
         columns = np.empty((self.node_count, 3, 3 * len(loaded)))
         for cluster, members in self._by_cluster(loaded):
-            own = (3 * members[:, None] + np.arange(3)).ravel()
+            own = freedoms(members)
             load = self._load(cluster, loaded[members], np.eye(len(own)))
             columns[:, :, own] = self._displacements([load], len(own), np.float64)
         each = 3 * np.arange(len(loaded))
@@ -181,7 +183,7 @@ class CompressedCompliance:
     @cached_property
     def _rows(self) -> NDArray[np.int64]:
         """Where each degree of freedom stands among the padded clusters', (3n,)."""
-        return (3 * self.places.astype(np.int64)[:, None] + np.arange(3)).ravel()
+        return freedoms(self.places.astype(np.int64))
 
     @cached_property
     def _first_tiles(self) -> NDArray[np.int64]:
@@ -224,7 +226,7 @@ class CompressedCompliance:
 
     def _load(self, cluster: int, nodes: NDArray[np.int64], forces: NDArray[np.float64]) -> _Load:
         inside = self.places[nodes] - cluster * self._leaf
-        return _Load(cluster, (3 * inside[:, None] + np.arange(3)).ravel(), forces)
+        return _Load(cluster, freedoms(inside), forces)
 
     def _coupling(self, row: int, column: int) -> NDArray[np.float64]:
         """M between two clusters, row <= column, in steps, (k_row, k_column)."""

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.linalg.blas import dgemm, dsyrk
 
 from ..blas_threads import threads_by_work
+from ..freedoms import freedoms
 from .numeric import LoadRows
 from .upper_tiles import tile_edges
 from .work import MOVE_WEIGHT, REAL_BYTES, FrontWork, Meter
@@ -51,10 +52,10 @@ def _renumber(table: NDArray[np.floating], ranks: NDArray[np.int64], meter: Mete
     """Move row and column of each node i to place ``ranks[i]``, without a second table."""
     nodes = len(ranks)
     order = np.argsort(ranks)
-    freedoms = (3 * order[:, None] + np.arange(3)).ravel()
+    columns = freedoms(order)
     for start in range(0, len(table), ROWS_RENUMBERED):
         rows = slice(start, start + ROWS_RENUMBERED)
-        table[rows] = np.take(table[rows], freedoms, axis=1)
+        table[rows] = np.take(table[rows], columns, axis=1)
         meter.add(MOVE_WEIGHT * table[rows].size)
     by_node = table.reshape(nodes, -1)
     pending = np.ones(nodes, dtype=bool)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy.linalg.blas import dgemm
 from scipy.sparse import csr_array
 
+from ..freedoms import freedoms
 from ..progress import Progress, unwatched
 from ..tet_mesh import TetMesh
 from .numeric import LoadRows, inverse_factor
@@ -51,7 +52,7 @@ class SurfaceColumns:
         fronts, so asking for them together is cheapest.
         """
         order = np.argsort(self.ranks)
-        wanted = (3 * order[nodes][:, None] + np.arange(3)).ravel()
+        wanted = freedoms(order[nodes])
         eliminated = np.zeros((3 * self.node_count, len(wanted)))
         for part in self.factor:
             reached = np.flatnonzero((wanted >= part.start) & (wanted < part.stop))
