@@ -315,6 +315,14 @@ class Servo:
     def set_device_frame(self, rotation: _Matrix, translation: _Vector, scale: float) -> None:
         """Map the device elsewhere; the probe is lifted off and set down at its new place."""
 
+    def set_feel(self, *, shading: bool, static_friction: float, dynamic_friction: float) -> None:
+        """Shading and friction of the surface; ValueError unless 0 <= dynamic <= static."""
+
+    def set_coupling(self, *, stiffness: float, damping: float, passivity_control: bool) -> None:
+        """What lies between body and motors: a spring (N/m, inf for none) with a damping (N s/m),
+        and whether energy that the contact would make is taken back.
+        """
+
     def set_enabled(self, enabled: bool) -> None:
         """False: zero force from the next tick on. True: the force ramps up."""
 

@@ -7,6 +7,7 @@
 //! pseudonormal, whether the device is on the free side. Signs decide, not distances; the few
 //! tolerances below only name what rounding cannot tell apart (on an edge, on the surface).
 
+mod feel;
 mod walk;
 
 use glam::DVec3;
@@ -14,6 +15,7 @@ use glam::DVec3;
 use crate::closest::closest_point;
 use crate::surface::{Body, HalfEdge};
 use crate::tree::{Feature, Sweep};
+pub use feel::Feel;
 use walk::Walk;
 
 /// Releases and landings in one tick at most.

@@ -10,8 +10,9 @@ use triple_buffer::{Input, Output, triple_buffer};
 
 use crate::clock::{Pace, Timing};
 use crate::device::{Device, Fault};
-use crate::servo::{Options, Published, Sample, Servo, Settings};
+use crate::servo::{Options, Servo, Settings};
 use crate::sleeper::ask_for_real_time;
+use crate::snapshot::{Published, Sample};
 use crate::surface::Body;
 
 /// A thread that wakes at a fixed rate until it is stopped.

@@ -8,12 +8,15 @@ use std::io::{self, ErrorKind};
 
 use glam::DVec3;
 use palpate_servo::codec::{Decoder, MAX_FRAME, encode};
+use palpate_servo::coupling::Coupling;
 use palpate_servo::device::{Device, DeviceFrame};
 use palpate_servo::link::LinkDevice;
 use palpate_servo::pointer::{Pointer, Target};
 use palpate_servo::port::{Opener, Wire};
+use palpate_servo::proxy::Feel;
 use palpate_servo::safety::Limits;
-use palpate_servo::servo::{Options, Published, Servo, Settings, State};
+use palpate_servo::servo::{Options, Servo, Settings};
+use palpate_servo::snapshot::{Published, State};
 use rtrb::RingBuffer;
 use triple_buffer::triple_buffer;
 
@@ -62,6 +65,8 @@ fn settings() -> Settings {
         young_modulus: 1e4,
         enabled: true,
         frame: DeviceFrame::default(),
+        feel: Feel::default(),
+        coupling: Coupling::default(),
     }
 }
 

@@ -5,9 +5,12 @@ mod bodies;
 use std::sync::{Arc, Mutex};
 
 use glam::DVec3;
+use palpate_servo::coupling::Coupling;
 use palpate_servo::device::{Device, DeviceFrame, Fault, LinkReport, Probe, Reading};
+use palpate_servo::proxy::Feel;
 use palpate_servo::safety::Limits;
-use palpate_servo::servo::{Options, Published, Servo, Settings, Snapshot, State};
+use palpate_servo::servo::{Options, Servo, Settings};
+use palpate_servo::snapshot::{Published, Snapshot, State};
 use palpate_servo::thread::Running;
 use rtrb::{Consumer, RingBuffer};
 use triple_buffer::{Input, Output, triple_buffer};
@@ -67,6 +70,8 @@ fn settings() -> Settings {
         young_modulus: 1e4,
         enabled: true,
         frame: DeviceFrame::default(),
+        feel: Feel::default(),
+        coupling: Coupling::default(),
     }
 }
 
@@ -74,7 +79,7 @@ struct Table {
     servo: Servo<Scripted>,
     settings: Input<Settings>,
     snapshots: Output<Published>,
-    _samples: Consumer<palpate_servo::servo::Sample>,
+    _samples: Consumer<palpate_servo::snapshot::Sample>,
     ticks: u32,
 }
 

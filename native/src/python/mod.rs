@@ -12,7 +12,7 @@ mod vectors;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use crate::servo::State;
+use crate::snapshot::State;
 
 #[pymodule]
 fn palpate_servo(module: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -13,12 +13,15 @@ use super::counters::{link_counters, timing_counters};
 use super::snapshot::{Snapshot, structured};
 use super::vectors::{IDENTITY, Rows, Triple, check_rate, check_seconds, finite, matrix, positive};
 use crate::clock::Timing;
+use crate::coupling::Coupling;
 use crate::device::{DeviceFrame, Fault};
 use crate::link::LinkDevice;
 use crate::pointer::{Pointer, Target};
 use crate::port::SerialPort;
+use crate::proxy::Feel;
 use crate::safety::Limits;
-use crate::servo::{Options, Published, Settings};
+use crate::servo::{Options, Settings};
+use crate::snapshot::Published;
 use crate::surface;
 use crate::thread::Running;
 
@@ -112,6 +115,8 @@ impl Servo {
                 young_modulus: positive("young_modulus", young_modulus)?,
                 enabled: true,
                 frame: DeviceFrame::default(),
+                feel: Feel::default(),
+                coupling: Coupling::default(),
             }),
             running: Mutex::new(None),
             targets: Mutex::new(None),
@@ -207,6 +212,20 @@ impl Servo {
         Ok(())
     }
 
+    #[pyo3(signature = (*, shading, static_friction, dynamic_friction))]
+    fn set_feel(&self, shading: bool, static_friction: f64, dynamic_friction: f64) -> PyResult<()> {
+        let feel = feel(shading, static_friction, dynamic_friction)?;
+        self.change(|s| s.feel = feel);
+        Ok(())
+    }
+
+    #[pyo3(signature = (*, stiffness, damping, passivity_control))]
+    fn set_coupling(&self, stiffness: f64, damping: f64, passivity_control: bool) -> PyResult<()> {
+        let coupling = coupling(stiffness, damping, passivity_control)?;
+        self.change(|s| s.coupling = coupling);
+        Ok(())
+    }
+
     fn set_enabled(&self, enabled: bool) {
         self.change(|s| s.enabled = enabled);
     }
@@ -288,6 +307,38 @@ fn device_frame(rotation: Rows, translation: Triple, scale: f64) -> PyResult<Dev
         translation: finite("translation", translation)?,
         scale: positive("scale", scale)?,
         epoch: 0,
+    })
+}
+
+fn feel(shading: bool, static_friction: f64, dynamic_friction: f64) -> PyResult<Feel> {
+    let are_coefficients = static_friction.is_finite() && dynamic_friction >= 0.0;
+    if !are_coefficients || dynamic_friction > static_friction {
+        return Err(PyValueError::new_err(
+            "friction must be 0 <= dynamic_friction <= static_friction",
+        ));
+    }
+    Ok(Feel {
+        shading,
+        static_friction,
+        dynamic_friction,
+    })
+}
+
+fn coupling(stiffness: f64, damping: f64, passivity_control: bool) -> PyResult<Coupling> {
+    if stiffness.is_nan() || stiffness <= 0.0 {
+        return Err(PyValueError::new_err(
+            "stiffness must be more than 0 N/m; infinite for none",
+        ));
+    }
+    if !damping.is_finite() || damping < 0.0 {
+        return Err(PyValueError::new_err(
+            "damping must be finite and at least 0 N s/m",
+        ));
+    }
+    Ok(Coupling {
+        stiffness,
+        damping,
+        passivity_control,
     })
 }
 

@@ -6,11 +6,11 @@ use pyo3::types::{PyByteArray, PyList};
 
 use super::vectors::{Matrix, Vector, array, rows};
 use crate::device::Fault;
-use crate::servo::Sample;
+use crate::snapshot::Sample;
 
 #[pyclass(frozen, module = "palpate_servo")]
 pub struct Snapshot {
-    pub inner: crate::servo::Snapshot,
+    pub inner: crate::snapshot::Snapshot,
 }
 
 #[pymethods]

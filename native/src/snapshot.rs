@@ -1,0 +1,121 @@
+//! What a tick tells the rest of the world: named state, positions, forces and counters.
+
+use glam::DVec3;
+
+use crate::device::{Fault, LinkReport};
+
+/// What the servo is doing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[repr(u8)]
+pub enum State {
+    /// No device yet, or one that is not ready.
+    Waiting,
+    /// The probe is off the surface.
+    Free,
+    /// The probe presses.
+    Touching,
+    /// Zero force because of a fault.
+    Fault,
+    /// Zero force because the user or the device's button wants it.
+    Disabled,
+    /// The thread does not run.
+    #[default]
+    Stopped,
+}
+
+impl State {
+    /// All states, in the order of their numbers.
+    pub const ALL: [Self; 6] = [
+        Self::Waiting,
+        Self::Free,
+        Self::Touching,
+        Self::Fault,
+        Self::Disabled,
+        Self::Stopped,
+    ];
+
+    /// Name for people and tests.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Waiting => "waiting",
+            Self::Free => "free",
+            Self::Touching => "touching",
+            Self::Fault => "fault",
+            Self::Disabled => "disabled",
+            Self::Stopped => "stopped",
+        }
+    }
+}
+
+/// One tick, whole: all fields belong together.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Snapshot {
+    /// Counts from 1; 0 before the first tick.
+    pub tick: u64,
+    /// Since the start, s.
+    pub time: f64,
+    /// Where the finger is, m.
+    pub probe: DVec3,
+    /// God object, m.
+    pub proxy: DVec3,
+    /// Triangle and area coordinates while touching.
+    pub hold: Option<(u32, [f64; 3])>,
+    /// Node numbers of that triangle.
+    pub triangle: [u32; 3],
+    /// (12), (13), N.
+    pub nodal_forces: [DVec3; 3],
+    /// (14) before safety, N.
+    pub contact_force: DVec3,
+    /// Where the touched point of the surface is now, m; known while touching, if the body has a
+    /// compliance.
+    pub surface_point: Option<DVec3>,
+    /// Sent to the device, N, body axes.
+    pub output_force: DVec3,
+    /// Named state.
+    pub state: State,
+    /// The fault while `state` is [`State::Fault`].
+    pub fault: Option<Fault>,
+    /// Why it waits or is disabled, or empty.
+    pub reason: &'static str,
+    /// A bit a button.
+    pub buttons: u8,
+}
+
+/// A snapshot with the counters of the same tick.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Published {
+    /// The tick.
+    pub snapshot: Snapshot,
+    /// The link.
+    pub link: LinkReport,
+    /// Times each of [`Fault::ALL`] began.
+    pub faults: [u64; Fault::ALL.len()],
+    /// Samples not recorded because nobody emptied the ring.
+    pub samples_lost: u64,
+    /// Most features the proxy visited in one tick.
+    pub most_steps: u32,
+    /// Sweeps corrected by the sign of the distance.
+    pub rescues: u64,
+}
+
+/// One tick in the recording.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(C)]
+pub struct Sample {
+    /// Counts from 1.
+    pub tick: u64,
+    /// Since the start, s.
+    pub time: f64,
+    /// m.
+    pub probe: [f64; 3],
+    /// m.
+    pub proxy: [f64; 3],
+    /// Where the touched point of the surface is, m; not a number while free or unknown.
+    pub surface: [f64; 3],
+    /// (14), N.
+    pub force: [f64; 3],
+    /// After safety, N.
+    pub output: [f64; 3],
+    /// [`State`] as a number.
+    pub state: u64,
+}
