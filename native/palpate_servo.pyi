@@ -89,7 +89,7 @@ class ServoCounters(TimingCounters):
     rate_hz: int
     faults: dict[str, int]
     """Times each fault began: nan, too fast, stale, unplugged, wrong protocol, device fault,
-    internal error."""
+    suspended, internal error."""
     link: LinkCounters
     samples_lost: int
     proxy: ProxyCounters
@@ -264,7 +264,11 @@ class Snapshot:
 
     @property
     def reason(self) -> str:
-        """Why it waits or is disabled, or empty."""
+        """Why it waits, ramps, is disabled or stopped, or empty."""
+
+    @property
+    def limited(self) -> str:
+        """Which limiter shortens the force now: "ramp", "clamp", "slew", or empty."""
 
     @property
     def buttons(self) -> int: ...
@@ -312,6 +316,9 @@ class Servo:
         """Lead the pointer's probe; with restart it is lifted off and set down there."""
 
     def set_young_modulus(self, young_modulus: float) -> None: ...
+    def set_body(self, body: Body, young_modulus: float) -> None:
+        """Touch another body; RuntimeError while the servo runs."""
+
     def set_device_frame(self, rotation: _Matrix, translation: _Vector, scale: float) -> None:
         """Map the device elsewhere; the probe is lifted off and set down at its new place."""
 
@@ -377,4 +384,7 @@ def stop_all() -> None:
     """Stop every servo that still runs; registered with atexit."""
 
 STATES: tuple[str, ...]
+"""Names of the states, in the order of their numbers in samples()."""
+FAULTS: tuple[str, ...]
+"""Names of the faults, the keys of counters()["faults"]."""
 __version__: str

@@ -54,19 +54,22 @@ pub enum Fault {
     Protocol,
     /// The device reported a fault of its own.
     Device,
+    /// The servo's thread did not run for more than 20 ms.
+    Suspended,
     /// The servo itself failed.
     Internal,
 }
 
 impl Fault {
     /// All faults, in the order of their numbers.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Nan,
         Self::TooFast,
         Self::Stale,
         Self::Unplugged,
         Self::Protocol,
         Self::Device,
+        Self::Suspended,
         Self::Internal,
     ];
 
@@ -79,6 +82,7 @@ impl Fault {
             Self::Unplugged => "unplugged",
             Self::Protocol => "wrong protocol",
             Self::Device => "device fault",
+            Self::Suspended => "suspended",
             Self::Internal => "internal error",
         }
     }

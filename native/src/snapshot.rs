@@ -10,6 +10,8 @@ use crate::device::{Fault, LinkReport};
 pub enum State {
     /// No device yet, or one that is not ready.
     Waiting,
+    /// The force is coming back, from nothing.
+    Ramping,
     /// The probe is off the surface.
     Free,
     /// The probe presses.
@@ -25,8 +27,9 @@ pub enum State {
 
 impl State {
     /// All states, in the order of their numbers.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Waiting,
+        Self::Ramping,
         Self::Free,
         Self::Touching,
         Self::Fault,
@@ -38,6 +41,7 @@ impl State {
     pub const fn name(self) -> &'static str {
         match self {
             Self::Waiting => "waiting",
+            Self::Ramping => "ramping",
             Self::Free => "free",
             Self::Touching => "touching",
             Self::Fault => "fault",
@@ -75,8 +79,10 @@ pub struct Snapshot {
     pub state: State,
     /// The fault while `state` is [`State::Fault`].
     pub fault: Option<Fault>,
-    /// Why it waits or is disabled, or empty.
+    /// Why it waits, ramps, is disabled or stopped, or empty.
     pub reason: &'static str,
+    /// Which limiter shortens the force now, or empty.
+    pub limited: &'static str,
     /// A bit a button.
     pub buttons: u8,
 }

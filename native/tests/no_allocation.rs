@@ -9,7 +9,7 @@ use std::io::{self, ErrorKind};
 use glam::DVec3;
 use palpate_servo::codec::{Decoder, MAX_FRAME, encode};
 use palpate_servo::coupling::Coupling;
-use palpate_servo::device::{Device, DeviceFrame};
+use palpate_servo::device::{Device, DeviceFrame, Fault};
 use palpate_servo::link::LinkDevice;
 use palpate_servo::pointer::{Pointer, Target};
 use palpate_servo::port::{Opener, Wire};
@@ -215,7 +215,7 @@ fn a_hundred_thousand_ticks_with_a_device_allocate_nothing() {
         last.link
     );
     assert_eq!(last.samples_lost, 50_000);
-    assert_eq!(last.faults, [0; 7]);
+    assert_eq!(last.faults, [0; Fault::ALL.len()]);
 }
 
 #[test]

@@ -12,6 +12,7 @@ mod vectors;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
+use crate::device::Fault;
 use crate::snapshot::State;
 
 #[pymodule]
@@ -32,5 +33,6 @@ fn palpate_servo(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(stop_all)?;
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("STATES", PyTuple::new(py, State::ALL.map(State::name))?)?;
+    module.add("FAULTS", PyTuple::new(py, Fault::ALL.map(Fault::name))?)?;
     Ok(())
 }

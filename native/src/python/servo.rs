@@ -34,7 +34,7 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 
 #[pyclass(frozen, module = "palpate_servo")]
 pub struct Servo {
-    body: Arc<surface::Body>,
+    body: Mutex<Arc<surface::Body>>,
     options: Options,
     glide_speed: f64,
     record_samples: usize,
@@ -99,7 +99,7 @@ impl Servo {
         check_seconds("ramp_seconds", ramp_seconds)?;
         check_seconds("record_seconds", record_seconds)?;
         Ok(Self {
-            body: body.inner.clone(),
+            body: Mutex::new(body.inner.clone()),
             options: Options {
                 rate_hz,
                 limits: Limits {
@@ -132,7 +132,7 @@ impl Servo {
         let settings = *locked(&self.settings);
         let running = py.detach(|| {
             Running::start(
-                self.body.clone(),
+                locked(&self.body).clone(),
                 pointer,
                 self.options,
                 settings,
@@ -168,7 +168,7 @@ impl Servo {
             })
             .map_err(|e| PyOSError::new_err(format!("cannot open the port {port}: {e}")))?;
             Ok::<_, PyErr>(Running::start(
-                self.body.clone(),
+                locked(&self.body).clone(),
                 device,
                 self.options,
                 settings,
@@ -197,6 +197,14 @@ impl Servo {
 
     fn set_young_modulus(&self, young_modulus: f64) -> PyResult<()> {
         let young_modulus = positive("young_modulus", young_modulus)?;
+        self.change(|s| s.young_modulus = young_modulus);
+        Ok(())
+    }
+
+    fn set_body(&self, body: &Body, young_modulus: f64) -> PyResult<()> {
+        let young_modulus = positive("young_modulus", young_modulus)?;
+        self.refuse_if_running()?;
+        *locked(&self.body) = body.inner.clone();
         self.change(|s| s.young_modulus = young_modulus);
         Ok(())
     }

@@ -80,6 +80,10 @@ impl Snapshot {
         self.inner.reason
     }
     #[getter]
+    fn limited(&self) -> &'static str {
+        self.inner.limited
+    }
+    #[getter]
     fn buttons(&self) -> u8 {
         self.inner.buttons
     }
