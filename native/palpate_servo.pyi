@@ -344,6 +344,29 @@ class Servo:
         index into STATES.
         """
 
+    def start_recording(self, seconds: float = 600.0) -> int:
+        """Record every tick for so long, beside samples(), instead of what was recorded before.
+
+        Before the start: from the first tick on. Returns the memory that it takes at most, bytes
+        (144 a tick: 86 MB for ten minutes at 1 kHz), asked for as the recording grows.
+
+        Raises ValueError for a time without sense, RuntimeError while a recording is on.
+        """
+
+    def stop_recording(self) -> None:
+        """End the recording, which stays until the next one or start; idempotent."""
+
+    def recording(self) -> NDArray[np.void]:
+        """All ticks recorded so far, as in samples(); a copy, also while recording."""
+
+    @property
+    def recording_lost(self) -> int:
+        """Ticks missing in the recording because its ring (10 s) or the memory was full."""
+
+    @property
+    def is_recording(self) -> bool:
+        """Whether ticks are being recorded: started, not stopped, and the time not yet over."""
+
     def counters(self) -> ServoCounters: ...
     def stop(self) -> None:
         """Send zero force and end the thread; nothing happens the second time."""

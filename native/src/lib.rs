@@ -18,6 +18,7 @@ pub mod port;
 pub mod proxy;
 #[cfg(feature = "python")]
 mod python;
+pub mod recorder;
 pub mod safety;
 pub mod servo;
 mod sleeper;

@@ -10,6 +10,7 @@ use crate::contact::{surface_displacement, touch};
 use crate::coupling::Coupling;
 use crate::device::{Device, DeviceFrame, Fault, Probe, Reading};
 use crate::proxy::{Feel, Proxy};
+use crate::recorder::Tape;
 use crate::safety::{Limits, Safety};
 use crate::snapshot::{Published, Sample, Snapshot, State};
 use crate::surface::Body;
@@ -49,6 +50,8 @@ pub struct Servo<D> {
     settings: Output<Settings>,
     snapshots: Input<Published>,
     samples: Producer<Sample>,
+    /// Where ticks go while they are recorded.
+    pub tape: Option<Tape>,
     proxy: Option<Proxy>,
     probe: DVec3,
     frame_epoch: u32,
@@ -74,6 +77,7 @@ impl<D: Device> Servo<D> {
             settings,
             snapshots,
             samples,
+            tape: None,
             proxy: None,
             probe: DVec3::ZERO,
             frame_epoch,
@@ -211,6 +215,9 @@ impl<D: Device> Servo<D> {
         };
         if self.samples.push(sample).is_err() {
             self.published.samples_lost += 1;
+        }
+        if let Some(tape) = &mut self.tape {
+            tape.put(sample);
         }
         self.snapshots.write(self.published);
     }

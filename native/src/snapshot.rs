@@ -105,7 +105,7 @@ pub struct Published {
 }
 
 /// One tick in the recording.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[repr(C)]
 pub struct Sample {
     /// Counts from 1.

@@ -5,11 +5,12 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::thread::JoinHandle;
 
-use rtrb::{Consumer, RingBuffer};
+use rtrb::Consumer;
 use triple_buffer::{Input, Output, triple_buffer};
 
 use crate::clock::{Pace, Timing};
 use crate::device::{Device, Fault};
+use crate::recorder::{RING_SECONDS, Recorder, touched_ring};
 use crate::servo::{Options, Servo, Settings};
 use crate::sleeper::ask_for_real_time;
 use crate::snapshot::{Published, Sample};
@@ -105,10 +106,11 @@ pub struct Running {
     settings: Mutex<Input<Settings>>,
     snapshots: Mutex<Output<Published>>,
     samples: Mutex<Consumer<Sample>>,
+    recorder: Recorder,
 }
 
 impl Running {
-    /// Starts a thread for `device`.
+    /// Starts a thread for `device`; `recorded_ticks` are recorded from the first one on.
     ///
     /// # Errors
     /// When the system gives no thread.
@@ -118,10 +120,15 @@ impl Running {
         options: Options,
         settings: Settings,
         record_samples: usize,
+        recorded_ticks: usize,
     ) -> std::io::Result<Self> {
         let (settings_in, settings_out) = triple_buffer(&settings);
         let (snapshots_in, snapshots_out) = triple_buffer(&Published::default());
-        let (samples_in, samples_out) = RingBuffer::new(record_samples.max(1));
+        let (samples_in, samples_out) = touched_ring(record_samples);
+        let (tape, recorder) = Recorder::new((RING_SECONDS * options.rate_hz) as usize);
+        if recorded_ticks > 0 {
+            recorder.start(recorded_ticks)?;
+        }
         let mut servo = Servo::new(
             body,
             device,
@@ -130,6 +137,7 @@ impl Running {
             snapshots_in,
             samples_in,
         );
+        servo.tape = Some(tape);
         let paced = Paced::spawn("palpate-servo", options.rate_hz, move |wake| {
             let run = catch_unwind(AssertUnwindSafe(|| {
                 while let Some(now) = wake() {
@@ -143,6 +151,7 @@ impl Running {
             settings: Mutex::new(settings_in),
             snapshots: Mutex::new(snapshots_out),
             samples: Mutex::new(samples_out),
+            recorder,
         })
     }
 
@@ -161,6 +170,11 @@ impl Running {
         let mut consumer = locked(&self.samples);
         let count = consumer.slots();
         (0..count).map_while(|_| consumer.pop().ok()).collect()
+    }
+
+    /// The recording of every tick.
+    pub fn recorder(&self) -> &Recorder {
+        &self.recorder
     }
 
     /// The thread.

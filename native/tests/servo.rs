@@ -274,7 +274,7 @@ fn a_servo_that_fails_inside_leaves_the_device_limp_and_says_so() {
         sent: sent.clone(),
         panics: true,
     };
-    let running = Running::start(bodies::cube(), device, OPTIONS, settings(), 10).unwrap();
+    let running = Running::start(bodies::cube(), device, OPTIONS, settings(), 10, 0).unwrap();
     while running.paced().is_running() {
         std::thread::yield_now();
     }

@@ -10,7 +10,7 @@ use triple_buffer::{Input, triple_buffer};
 
 use super::body::Body;
 use super::counters::{link_counters, timing_counters};
-use super::snapshot::{Snapshot, structured};
+use super::snapshot::{Snapshot, structured, structured_pieces};
 use super::vectors::{IDENTITY, Rows, Triple, check_rate, check_seconds, finite, matrix, positive};
 use crate::clock::Timing;
 use crate::coupling::Coupling;
@@ -21,7 +21,7 @@ use crate::port::SerialPort;
 use crate::proxy::Feel;
 use crate::safety::Limits;
 use crate::servo::{Options, Settings};
-use crate::snapshot::Published;
+use crate::snapshot::{Published, Sample};
 use crate::surface;
 use crate::thread::Running;
 
@@ -38,6 +38,8 @@ pub struct Servo {
     options: Options,
     glide_speed: f64,
     record_samples: usize,
+    /// What the next start shall record.
+    armed_ticks: Mutex<usize>,
     settings: Mutex<Settings>,
     running: Mutex<Option<Arc<Running>>>,
     targets: Mutex<Option<(Input<Target>, Target)>>,
@@ -70,6 +72,7 @@ impl Servo {
     }
 
     fn keep(&self, running: Running) {
+        *locked(&self.armed_ticks) = 0;
         let running = Arc::new(running);
         let mut started = locked(&STARTED);
         started.retain(|weak| weak.strong_count() > 0);
@@ -111,6 +114,7 @@ impl Servo {
             },
             glide_speed: positive("glide_speed", glide_speed)?,
             record_samples: (record_seconds * f64::from(rate_hz)).ceil() as usize,
+            armed_ticks: Mutex::new(0),
             settings: Mutex::new(Settings {
                 young_modulus: positive("young_modulus", young_modulus)?,
                 enabled: true,
@@ -130,6 +134,7 @@ impl Servo {
         let (input, output) = triple_buffer(&start);
         let pointer = Pointer::new(start, output, self.glide_speed);
         let settings = *locked(&self.settings);
+        let armed_ticks = *locked(&self.armed_ticks);
         let running = py.detach(|| {
             Running::start(
                 locked(&self.body).clone(),
@@ -137,6 +142,7 @@ impl Servo {
                 self.options,
                 settings,
                 self.record_samples,
+                armed_ticks,
             )
         })?;
         *locked(&self.targets) = Some((input, start));
@@ -161,6 +167,7 @@ impl Servo {
             settings.frame = frame;
             *settings
         };
+        let armed_ticks = *locked(&self.armed_ticks);
         let running = py.detach(|| {
             let device = LinkDevice::open(SerialPort {
                 path: port.clone(),
@@ -173,6 +180,7 @@ impl Servo {
                 self.options,
                 settings,
                 self.record_samples,
+                armed_ticks,
             )?)
         })?;
         *locked(&self.targets) = None;
@@ -249,6 +257,48 @@ impl Servo {
         structured(py, &samples)
     }
 
+    #[pyo3(signature = (seconds=600.0))]
+    fn start_recording(&self, py: Python<'_>, seconds: f64) -> PyResult<usize> {
+        check_seconds("seconds", positive("seconds", seconds)?)?;
+        let ticks = (seconds * f64::from(self.options.rate_hz)).ceil() as usize;
+        match self.current().filter(|r| r.paced().is_running()) {
+            Some(running) if running.recorder().is_on() => {
+                return Err(PyRuntimeError::new_err(
+                    "a recording is on already; call stop_recording first",
+                ));
+            }
+            Some(running) => py.detach(|| running.recorder().start(ticks))?,
+            None => *locked(&self.armed_ticks) = ticks,
+        }
+        Ok(ticks.saturating_mul(size_of::<Sample>()))
+    }
+
+    fn stop_recording(&self, py: Python<'_>) {
+        *locked(&self.armed_ticks) = 0;
+        if let Some(running) = self.current() {
+            py.detach(|| running.recorder().stop());
+        }
+    }
+
+    fn recording<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        match self.current() {
+            Some(running) => running
+                .recorder()
+                .read(|pieces| structured_pieces(py, pieces)),
+            None => structured(py, &[]),
+        }
+    }
+
+    #[getter]
+    fn recording_lost(&self) -> u64 {
+        self.current().map_or(0, |r| r.recorder().lost())
+    }
+
+    #[getter]
+    fn is_recording(&self) -> bool {
+        self.current().is_some_and(|r| r.recorder().is_on())
+    }
+
     fn counters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let running = self.current();
         let counters = match &running {
@@ -276,7 +326,10 @@ impl Servo {
 
     fn stop(&self, py: Python<'_>) {
         if let Some(running) = self.current() {
-            py.detach(|| running.paced().stop());
+            py.detach(|| {
+                running.paced().stop();
+                running.recorder().stop();
+            });
         }
         *locked(&self.targets) = None;
     }

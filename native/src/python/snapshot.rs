@@ -101,14 +101,35 @@ impl Snapshot {
     }
 }
 
-/// Samples as a structured numpy array of their own.
-pub fn structured<'py>(py: Python<'py>, samples: &[Sample]) -> PyResult<Bound<'py, PyAny>> {
+fn bytes_of(samples: &[Sample]) -> &[u8] {
     let length = std::mem::size_of_val(samples);
     // SAFETY: `Sample` is `repr(C)` of 8-byte numbers, without padding.
-    let bytes = unsafe { std::slice::from_raw_parts(samples.as_ptr().cast::<u8>(), length) };
+    unsafe { std::slice::from_raw_parts(samples.as_ptr().cast::<u8>(), length) }
+}
+
+/// Samples as a structured numpy array of their own.
+pub fn structured<'py>(py: Python<'py>, samples: &[Sample]) -> PyResult<Bound<'py, PyAny>> {
+    structured_pieces(py, std::slice::from_ref(&samples))
+}
+
+/// Samples in pieces as one structured numpy array.
+pub fn structured_pieces<'py>(
+    py: Python<'py>,
+    pieces: &[impl AsRef<[Sample]>],
+) -> PyResult<Bound<'py, PyAny>> {
+    let pieces = || pieces.iter().map(|piece| bytes_of(piece.as_ref()));
+    let length = pieces().map(<[u8]>::len).sum();
+    let bytes = PyByteArray::new_with(py, length, |mut bytes| {
+        for piece in pieces() {
+            let (head, rest) = bytes.split_at_mut(piece.len());
+            head.copy_from_slice(piece);
+            bytes = rest;
+        }
+        Ok(())
+    })?;
     let numpy = py.import("numpy")?;
     let dtype = numpy.call_method1("dtype", (sample_fields(py)?,))?;
-    numpy.call_method1("frombuffer", (PyByteArray::new(py, bytes), dtype))
+    numpy.call_method1("frombuffer", (bytes, dtype))
 }
 
 fn sample_fields<'py>(py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
