@@ -76,7 +76,7 @@ def run(arguments: argparse.Namespace) -> int:
         if simulated is not None:
             report["simulated_device"] = simulated.stop()
     report["young_modulus"] = young_modulus
-    print(json.dumps(report) if arguments.json else as_lines(report))
+    print(json.dumps(report) if arguments.json else _for_people(report))
     return 0
 
 
@@ -176,6 +176,16 @@ class _Felt:
         self.depth = max(self.depth, float(depth[contact > 0.0].max(initial=0.0)))
 
 
+def _for_people(report: dict[str, Any]) -> str:
+    """The report one figure a line, and the stages of the tick as a table."""
+    lines = as_lines({name: value for name, value in report.items() if name != "stages_us"})
+    columns = ("mean", "p99", "max")
+    rows = [f"{'tick, us':10}" + "".join(f"{column:>9}" for column in columns)]
+    for stage, times in report["stages_us"].items():
+        rows.append(f"{stage:10}" + "".join(f"{times[column]:9.2f}" for column in columns))
+    return "\n".join([lines, *rows])
+
+
 def _touch(servo: Servo, seconds: float, stopped: Sequence[int]) -> dict[str, Any]:
     felt = _Felt()
     begin = time.monotonic()
@@ -189,7 +199,13 @@ def _touch(servo: Servo, seconds: float, stopped: Sequence[int]) -> dict[str, An
     return {
         **{name: counters[name] for name in ("rate_hz", "ticks", "missed", "late_ticks")},
         "lateness_us": counters["lateness_us"],
-        "longest_gap_us": counters["longest_gap_us"],
+        **{
+            name: counters[name]
+            for name in (
+                *("late_over_10_us", "late_over_50_us", "late_over_200_us", "late_over_1000_us"),
+                *("longest_gap_us", "stages_us", "busy_us"),
+            )
+        },
         "realtime": counters["realtime"],
         "link": counters["link"],
         "faults": counters["faults"],

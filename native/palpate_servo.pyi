@@ -48,6 +48,13 @@ class TimingCounters(TypedDict):
     realtime: str
     """For instance "fifo 20", or "none: " and the reason."""
 
+class StageTime(TypedDict):
+    """Time spent in a stage of the tick, us; p99 to 3 %."""
+
+    mean: float
+    p99: float
+    max: float
+
 class DeviceGreeting(TypedDict):
     """What the device said in its HELLO."""
 
@@ -87,6 +94,11 @@ class ServoCounters(TimingCounters):
     """Timing, faults and link of a servo."""
 
     rate_hz: int
+    stages_us: dict[str, StageTime]
+    """By stage, in the order of the tick: "read" (settings, device), "proxy" (god object),
+    "contact" (force), "write" (what limits the force, and the device). Over all ticks, also those
+    in which a stage had nothing to do.
+    """
     faults: dict[str, int]
     """Times each fault began: nan, too fast, stale, unplugged, wrong protocol, device fault,
     suspended, internal error."""

@@ -1,6 +1,7 @@
 //! One tick: read, proxy, contact, safety, write, publish. No allocation, no lock.
 
 use std::sync::Arc;
+use std::time::Instant;
 
 use glam::DVec3;
 use rtrb::Producer;
@@ -13,6 +14,7 @@ use crate::proxy::{Feel, Proxy};
 use crate::recorder::Tape;
 use crate::safety::{Limits, Safety};
 use crate::snapshot::{Published, Sample, Snapshot, State};
+use crate::stages::{Stage, Stages};
 use crate::surface::Body;
 
 /// What may change while the servo runs.
@@ -57,6 +59,7 @@ pub struct Servo<D> {
     frame_epoch: u32,
     safety: Safety,
     published: Published,
+    stages: Arc<Stages>,
 }
 
 impl<D: Device> Servo<D> {
@@ -83,14 +86,22 @@ impl<D: Device> Servo<D> {
             frame_epoch,
             safety: Safety::default(),
             published: Published::default(),
+            stages: Arc::default(),
         }
+    }
+
+    /// Times of the tick's parts, for other threads to read.
+    pub fn stages(&self) -> Arc<Stages> {
+        self.stages.clone()
     }
 
     /// Does one tick at `now`, s since the start.
     pub fn tick(&mut self, now: f64) {
         let dt = 1.0 / f64::from(self.options.rate_hz);
+        let mut since = Instant::now();
         let settings = *self.settings.read();
         let reading = self.device.read(now, dt, &settings.frame);
+        self.stages.end_of(Stage::Read, &mut since);
         let mut shot = Snapshot {
             tick: self.published.snapshot.tick + 1,
             time: now,
@@ -109,10 +120,13 @@ impl<D: Device> Servo<D> {
             Reading::Waiting(_) => {}
             Reading::Fault(fault) => shot.fault = Some(fault),
         }
+        self.stages.end_of(Stage::Proxy, &mut since);
         let lost_sight = matches!(reading, Reading::Fault(_) | Reading::Waiting(_));
         self.feel(&mut shot, lost_sight, settings.young_modulus);
+        self.stages.end_of(Stage::Contact, &mut since);
         (shot.state, shot.reason) = judge(&reading, &shot, &settings);
         self.send(&mut shot, max_force, dt, &settings.frame);
+        self.stages.end_of(Stage::Write, &mut since);
         self.publish(shot);
     }
 

@@ -14,6 +14,7 @@ use crate::recorder::{RING_SECONDS, Recorder, touched_ring};
 use crate::servo::{Options, Servo, Settings};
 use crate::sleeper::ask_for_real_time;
 use crate::snapshot::{Published, Sample};
+use crate::stages::Stages;
 use crate::surface::Body;
 
 /// A thread that wakes at a fixed rate until it is stopped.
@@ -107,6 +108,7 @@ pub struct Running {
     snapshots: Mutex<Output<Published>>,
     samples: Mutex<Consumer<Sample>>,
     recorder: Recorder,
+    stages: Arc<Stages>,
 }
 
 impl Running {
@@ -138,6 +140,7 @@ impl Running {
             samples_in,
         );
         servo.tape = Some(tape);
+        let stages = servo.stages();
         let paced = Paced::spawn("palpate-servo", options.rate_hz, move |wake| {
             let run = catch_unwind(AssertUnwindSafe(|| {
                 while let Some(now) = wake() {
@@ -152,6 +155,7 @@ impl Running {
             snapshots: Mutex::new(snapshots_out),
             samples: Mutex::new(samples_out),
             recorder,
+            stages,
         })
     }
 
@@ -175,6 +179,11 @@ impl Running {
     /// The recording of every tick.
     pub fn recorder(&self) -> &Recorder {
         &self.recorder
+    }
+
+    /// Times of the tick's parts.
+    pub fn stages(&self) -> &Stages {
+        &self.stages
     }
 
     /// The thread.

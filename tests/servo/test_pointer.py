@@ -189,7 +189,12 @@ def test_counters_agree_with_each_other(servo, eventually):
     assert lateness["p50"] <= lateness["p99"] <= lateness["p99_9"] <= lateness["max"]
     assert counters["late_ticks"] == counters["late_over_200_us"]
     assert counters["late_over_10_us"] >= counters["late_over_50_us"]
-    assert counters["realtime"].startswith(("fifo", "none: ", "multimedia", "time"))
+    assert list(counters["stages_us"]) == ["read", "proxy", "contact", "write"]
+    stages = counters["stages_us"].values()
+    assert all(0.0 < times["mean"] <= times["max"] for times in stages)
+    assert all(0.0 < times["p99"] <= times["max"] for times in stages)
+    assert sum(times["mean"] for times in stages) <= counters["busy_us"]["mean"]
+    assert counters["realtime"].startswith(("fifo", "rtkit", "none: ", "multimedia", "time"))
     assert counters["rate_hz"] == 1000
     assert not any(counters["faults"].values())
     assert servo.snapshot().tick in (counters["ticks"], counters["ticks"] - 1)

@@ -107,6 +107,8 @@ def test_simulate_presses_from_above_and_reports(body_file, capsys):
     assert report["ticks"] > 500
     assert report["late_ticks"] <= report["ticks"]
     assert {"p50", "p99", "max"} <= set(report["lateness_us"])
+    assert {f"late_over_{us}_us" for us in (10, 50, 200, 1000)} <= set(report)
+    assert set(report["stages_us"]["contact"]) == {"mean", "p99", "max"}
     assert {"states", "forces", "lost", "crc_errors"} <= set(report["link"])
     assert report["link"]["states"] > 500
     assert isinstance(report["realtime"], str)
@@ -118,6 +120,18 @@ def test_simulate_presses_from_above_and_reports(body_file, capsys):
     assert report["simulated_device"]["largest_force"] == pytest.approx(
         report["peak_output_force_n"], abs=2e-3
     )
+
+
+def test_people_get_the_stages_of_the_tick_as_a_table():
+    stages = {name: {"mean": 1.234, "p99": 2.0, "max": 34.5} for name in ("read", "write")}
+    text = servo_command._for_people({"ticks": 7, "stages_us": stages, "faults": {}})
+    assert text.splitlines() == [
+        "ticks   7",
+        "faults  {}",
+        "tick, us       mean      p99      max",
+        "read           1.23     2.00    34.50",
+        "write          1.23     2.00    34.50",
+    ]
 
 
 def test_a_firmer_body_is_pressed_with_no_more_force_than_the_hand_has(cube):

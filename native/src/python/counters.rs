@@ -4,9 +4,15 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::vectors::{check_rate, check_seconds};
-use crate::clock::{BUCKETS, LATE_LIMITS_NS, Timing, bucket_limit_ns};
+use crate::clock::{LATE_LIMITS_NS, Timing};
 use crate::device::LinkReport;
+use crate::durations::{BUCKETS, DurationReport, bucket_limit_ns};
+use crate::stages::{Stage, Stages};
 use crate::thread::Paced;
+
+fn us(ns: u64) -> f64 {
+    ns as f64 * 1e-3
+}
 
 pub fn timing_counters<'py>(
     py: Python<'py>,
@@ -15,9 +21,8 @@ pub fn timing_counters<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     const LATE_TICK: usize = 2;
     let report = timing.report();
-    let us = |ns: u64| ns as f64 * 1e-3;
     let counters = PyDict::new(py);
-    counters.set_item("ticks", report.ticks)?;
+    counters.set_item("ticks", report.ticks())?;
     counters.set_item("missed", report.missed)?;
     counters.set_item("late_ticks", report.late[LATE_TICK])?;
     for (limit, count) in LATE_LIMITS_NS.iter().zip(report.late) {
@@ -25,21 +30,39 @@ pub fn timing_counters<'py>(
     }
     let lateness = PyDict::new(py);
     for (name, part) in [("p50", 0.5), ("p99", 0.99), ("p99_9", 0.999)] {
-        lateness.set_item(name, us(report.percentile_ns(part)))?;
+        lateness.set_item(name, us(report.lateness.percentile_ns(part)))?;
     }
-    lateness.set_item("max", us(report.worst_ns))?;
+    lateness.set_item("max", us(report.lateness.largest_ns))?;
     counters.set_item("lateness_us", lateness)?;
-    let filled = (0..BUCKETS).filter(|&i| report.histogram[i] > 0);
+    let filled = (0..BUCKETS).filter(|&i| report.lateness.histogram[i] > 0);
     let histogram: Vec<(f64, u64)> = filled
-        .map(|i| (us(bucket_limit_ns(i)), report.histogram[i]))
+        .map(|i| (us(bucket_limit_ns(i)), report.lateness.histogram[i]))
         .collect();
     counters.set_item("histogram", histogram)?;
     counters.set_item("longest_gap_us", us(report.longest_gap_ns))?;
     let busy = PyDict::new(py);
-    busy.set_item("mean", us(report.busy_ns) / report.ticks.max(1) as f64)?;
-    busy.set_item("max", us(report.busiest_ns))?;
+    busy.set_item("mean", report.busy.mean_ns() * 1e-3)?;
+    busy.set_item("max", us(report.busy.largest_ns))?;
     counters.set_item("busy_us", busy)?;
     counters.set_item("realtime", realtime)?;
+    Ok(counters)
+}
+
+/// Mean, 99 % and largest time of each stage, us.
+pub fn stage_counters<'py>(
+    py: Python<'py>,
+    stages: Option<&Stages>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let counters = PyDict::new(py);
+    for stage in Stage::ALL {
+        let report = stages.map(|s| s.report(stage));
+        let of = |figure: fn(&DurationReport) -> f64| report.as_ref().map_or(0.0, figure);
+        let times = PyDict::new(py);
+        times.set_item("mean", of(|r| r.mean_ns() * 1e-3))?;
+        times.set_item("p99", of(|r| us(r.percentile_ns(0.99))))?;
+        times.set_item("max", of(|r| us(r.largest_ns)))?;
+        counters.set_item(stage.name(), times)?;
+    }
     Ok(counters)
 }
 

@@ -9,7 +9,7 @@ use pyo3::types::PyDict;
 use triple_buffer::{Input, triple_buffer};
 
 use super::body::Body;
-use super::counters::{link_counters, timing_counters};
+use super::counters::{link_counters, stage_counters, timing_counters};
 use super::snapshot::{Snapshot, structured, structured_pieces};
 use super::vectors::{IDENTITY, Rows, Triple, check_rate, check_seconds, finite, matrix, positive};
 use crate::clock::Timing;
@@ -313,6 +313,8 @@ impl Servo {
         for (fault, count) in Fault::ALL.iter().zip(published.faults) {
             faults.set_item(fault.name(), count)?;
         }
+        let stages = running.as_deref().map(Running::stages);
+        counters.set_item("stages_us", stage_counters(py, stages)?)?;
         counters.set_item("rate_hz", self.options.rate_hz)?;
         counters.set_item("faults", faults)?;
         counters.set_item("link", link_counters(py, &published.link)?)?;
