@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import math
+import sys
 import time
 from collections.abc import Sequence
 from contextlib import ExitStack
@@ -14,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
+from palpate_servo import STATES
 
 from ..core import cache
 from ..core.devices.ports import PortError, check_port
@@ -21,6 +23,7 @@ from ..core.devices.simulated_options import SimulatedOptions
 from ..core.devices.simulated_process import SimulatedDevice
 from ..core.devices.stop_signals import stopped_by_signals
 from ..core.errors import PalpateError
+from ..core.recording import check_recording_path, write_recording
 from ..core.servo_session import servo_for
 from ..core.soft_body import SoftBody
 from ..core.stiffness import lame_parameters
@@ -31,6 +34,7 @@ if TYPE_CHECKING:
 
 HELLO_SECONDS = 5.0
 LOOK_EVERY_SECONDS = 0.02
+LONGEST_RECORDING_SECONDS = 3600.0
 HAND_FORCE = 1.5
 """What the simulated hand presses with at most, N: half of what its device can give."""
 
@@ -49,6 +53,9 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     )
     parser.add_argument("--rate", type=int, default=1000, metavar="HZ", help="default: %(default)s")
     parser.add_argument("--young", type=float, metavar="PA", help="default: the body's own")
+    parser.add_argument(
+        "--record", type=Path, metavar="FILE", help="write every tick to FILE.csv or FILE.npz"
+    )
     parser.add_argument("--json", action="store_true", help="print the report as JSON")
     parser.set_defaults(run=run)
 
@@ -57,6 +64,8 @@ def run(arguments: argparse.Namespace) -> int:
     """Load, connect, touch for some seconds, report."""
     if not 0.0 < arguments.seconds < math.inf:
         raise PalpateError("--seconds: the time must be more than 0 s and have an end")
+    if arguments.record is not None:
+        _check_recording(arguments.record, arguments.seconds)
     body = cache.load(arguments.body)
     young_modulus = body.young_modulus if arguments.young is None else arguments.young
     lame_parameters(young_modulus, body.poisson_ratio)
@@ -71,13 +80,35 @@ def run(arguments: argparse.Namespace) -> int:
         stopped = stack.enter_context(stopped_by_signals())
         servo = servo_for(body, young_modulus=young_modulus, rate_hz=arguments.rate)
         stack.callback(servo.stop)
+        if arguments.record is not None:
+            _start_recording(servo, arguments.seconds)
         _connect(servo, port, stopped)
         report = _touch(servo, arguments.seconds, stopped)
         if simulated is not None:
             report["simulated_device"] = simulated.stop()
+        if arguments.record is not None:
+            report["recording"] = _write_recording(arguments.record, servo)
     report["young_modulus"] = young_modulus
     print(json.dumps(report) if arguments.json else _for_people(report))
     return 0
+
+
+def _check_recording(path: Path, seconds: float) -> None:
+    check_recording_path(path)
+    if seconds + HELLO_SECONDS > LONGEST_RECORDING_SECONDS:
+        longest = LONGEST_RECORDING_SECONDS - HELLO_SECONDS
+        raise PalpateError(f"--record: a recording ends after {longest:g} s; give fewer --seconds")
+
+
+def _start_recording(servo: Servo, seconds: float) -> None:
+    most_bytes = servo.start_recording(seconds + HELLO_SECONDS)
+    sys.stderr.write(f"recording; takes up to {most_bytes / 1e6:.0f} MB of memory\n")
+
+
+def _write_recording(path: Path, servo: Servo) -> dict[str, object]:
+    samples = servo.recording()
+    write_recording(path, samples, STATES, servo.counters()["rate_hz"])
+    return {"file": str(path), "ticks": len(samples), "lost": servo.recording_lost}
 
 
 def press_from_above(body: SoftBody, young_modulus: float) -> SimulatedOptions:

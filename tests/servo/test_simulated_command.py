@@ -11,6 +11,7 @@ import time
 import tty
 from contextlib import contextmanager
 
+import numpy as np
 import pytest
 
 from palpate.cli import servo as servo_command
@@ -22,6 +23,7 @@ from palpate.core.devices.simulated_options import SimulatedOptions
 from palpate.core.devices.simulated_process import SimulatedDevice
 from palpate.core.paper_cube import paper_cube
 from palpate.core.pins import PinNodes
+from palpate.core.recording import read_recording
 
 ABOVE, DEEP = (0.026, 0.024, 0.06), (0.026, 0.024, 0.044)
 
@@ -245,3 +247,30 @@ def test_a_time_without_sense_is_an_error(body_file, capsys, seconds):
 def test_a_rate_or_material_out_of_range_is_an_error(body_file, capsys, device):
     assert "rate_hz" in refused(capsys, body_file, "--port", device.port, "--rate", "10")
     assert "modulus" in refused(capsys, body_file, "--simulate", "--young", "-5")
+
+
+def test_a_press_is_recorded_tick_by_tick(body_file, capsys, tmp_path):
+    path = tmp_path / "press.csv"
+    arguments = ["servo", body_file, "--simulate", "--seconds", "2.5", "--json"]
+    assert main([*arguments, "--record", str(path)]) == 0
+    out, told = capsys.readouterr()
+    assert "recording; takes up to 1 MB of memory" in told
+    report = json.loads(out)
+    recording = read_recording(path)
+    assert report["recording"] == {"file": str(path), "ticks": len(recording.samples), "lost": 0}
+    samples = recording.samples
+    assert samples["tick"].tolist() == list(range(1, len(samples) + 1))
+    assert len(samples) > 500
+    strengths = np.linalg.norm(samples["output"], axis=1)
+    assert strengths.max() == report["peak_output_force_n"] > 0.1
+    names = np.array(recording.states)[samples["state"]]
+    assert {"waiting", "free", "touching"} <= set(names)
+    assert names[strengths.argmax()] == "touching"
+
+
+def test_a_recording_that_cannot_be_is_refused_before_the_press(body_file, capsys, tmp_path):
+    simulate = (body_file, "--simulate", "--record")
+    assert "--seconds" in refused(capsys, *simulate, str(tmp_path / "a.csv"), "--seconds", "3600")
+    assert "let the name end" in refused(capsys, *simulate, str(tmp_path / "a.txt"))
+    assert "no folder" in refused(capsys, *simulate, str(tmp_path / "nowhere" / "a.npz"))
+    assert not list(tmp_path.iterdir())
