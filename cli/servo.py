@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from palpate_servo import STATES
 
 from ..core import cache
 from ..core.devices.ports import PortError, check_port
@@ -24,7 +23,7 @@ from ..core.devices.simulated_process import SimulatedDevice
 from ..core.devices.stop_signals import stopped_by_signals
 from ..core.errors import PalpateError
 from ..core.recording import check_recording_path, write_recording
-from ..core.servo_session import servo_for
+from ..core.servo_session import STATES, servo_for
 from ..core.soft_body import SoftBody
 from ..core.stiffness import lame_parameters
 from .body_figures import as_lines

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from palpate_servo import Body, Servo, Snapshot
+from palpate_servo import STATES, Body, Servo, Snapshot
 from palpate_servo import Compliance as NativeCompliance
 
 from .compliance import Compliance
@@ -15,6 +15,7 @@ from .mapped_compliance import MappedCompliance
 from .soft_body import SoftBody
 
 __all__ = [
+    "STATES",
     "Servo",
     "Snapshot",
     "displacements_of",
