@@ -324,6 +324,30 @@ class Servo:
         p_body = scale * rotation @ p_device + translation; the default is the identity.
         """
 
+    def start_haply(
+        self,
+        port: str,
+        *,
+        model: str = "2diy-3.1",
+        angles: tuple[float, float] | None = None,
+        recalibrate: bool = False,
+        baud: int = 115200,
+        rotation: _Matrix = ...,
+        translation: _Vector = ...,
+        scale: float = 1.0,
+    ) -> None:
+        """Start with a Haply 2DIY, whose handle must be in its rest pose unless its board has been in
+        use by Palpate since it was plugged in; docs/haply.md tells why.
+
+        The device's plane is the frame's x and y axes: x to the user's right, y away from the user,
+        from the middle of the workspace. A force normal to it is not felt.
+
+        model is one of "2diy-3.1", "2diy-3.0", "2diy-2", "kit". angles (degrees, arm 1 and arm 2)
+        are those of the rest pose, if it is another than the makers'. With angles or recalibrate
+        the handle counts as resting now. OSError when the port cannot be opened, ValueError for a
+        model or angles without sense.
+        """
+
     def set_target(self, position: _Vector, restart: bool = False) -> None:
         """Lead the pointer's probe; with restart it is lifted off and set down there."""
 

@@ -13,6 +13,7 @@ pub mod contact;
 pub mod coupling;
 pub mod device;
 pub mod durations;
+pub mod haply;
 pub mod link;
 pub mod pointer;
 pub mod port;

@@ -4,6 +4,7 @@ mod body;
 mod compliance;
 mod counters;
 mod frames;
+mod haply;
 mod proxy;
 mod servo;
 mod snapshot;

@@ -10,11 +10,13 @@ use triple_buffer::{Input, triple_buffer};
 
 use super::body::Body;
 use super::counters::{link_counters, stage_counters, timing_counters};
+use super::haply::haply_setup;
 use super::snapshot::{Snapshot, structured, structured_pieces};
 use super::vectors::{IDENTITY, Rows, Triple, check_rate, check_seconds, finite, matrix, positive};
 use crate::clock::Timing;
 use crate::coupling::Coupling;
-use crate::device::{DeviceFrame, Fault};
+use crate::device::{Device, DeviceFrame, Fault};
+use crate::haply::device::HaplyDevice;
 use crate::link::LinkDevice;
 use crate::pointer::{Pointer, Target};
 use crate::port::SerialPort;
@@ -69,6 +71,39 @@ impl Servo {
             )),
             _ => Ok(()),
         }
+    }
+
+    /// Starts with the device that `open` finds at `port`.
+    fn start_at_port<D: Device + 'static>(
+        &self,
+        py: Python<'_>,
+        port: SerialPort,
+        frame: DeviceFrame,
+        open: impl FnOnce(SerialPort) -> std::io::Result<D> + Send,
+    ) -> PyResult<()> {
+        self.refuse_if_running()?;
+        let settings = {
+            let mut settings = locked(&self.settings);
+            settings.frame = frame;
+            *settings
+        };
+        let armed_ticks = *locked(&self.armed_ticks);
+        let running = py.detach(|| {
+            let path = port.path.clone();
+            let device = open(port)
+                .map_err(|e| PyOSError::new_err(format!("cannot open the port {path}: {e}")))?;
+            Ok::<_, PyErr>(Running::start(
+                locked(&self.body).clone(),
+                device,
+                self.options,
+                settings,
+                self.record_samples,
+                armed_ticks,
+            )?)
+        })?;
+        *locked(&self.targets) = None;
+        self.keep(running);
+        Ok(())
     }
 
     fn keep(&self, running: Running) {
@@ -160,32 +195,32 @@ impl Servo {
         translation: Triple,
         scale: f64,
     ) -> PyResult<()> {
-        self.refuse_if_running()?;
         let frame = device_frame(rotation, translation, scale)?;
-        let settings = {
-            let mut settings = locked(&self.settings);
-            settings.frame = frame;
-            *settings
-        };
-        let armed_ticks = *locked(&self.armed_ticks);
-        let running = py.detach(|| {
-            let device = LinkDevice::open(SerialPort {
-                path: port.clone(),
-                baud,
-            })
-            .map_err(|e| PyOSError::new_err(format!("cannot open the port {port}: {e}")))?;
-            Ok::<_, PyErr>(Running::start(
-                locked(&self.body).clone(),
-                device,
-                self.options,
-                settings,
-                self.record_samples,
-                armed_ticks,
-            )?)
-        })?;
-        *locked(&self.targets) = None;
-        self.keep(running);
-        Ok(())
+        self.start_at_port(py, SerialPort { path: port, baud }, frame, LinkDevice::open)
+    }
+
+    #[pyo3(signature = (
+        port, *, model="2diy-3.1", angles=None, recalibrate=false, baud=115_200,
+        rotation=IDENTITY, translation=[0.0; 3], scale=1.0
+    ))]
+    #[allow(clippy::too_many_arguments)] // Keywords in Python.
+    fn start_haply(
+        &self,
+        py: Python<'_>,
+        port: String,
+        model: &str,
+        angles: Option<[f32; 2]>,
+        recalibrate: bool,
+        baud: u32,
+        rotation: Rows,
+        translation: Triple,
+        scale: f64,
+    ) -> PyResult<()> {
+        let (model, calibration) = haply_setup(model, angles, recalibrate, baud)?;
+        let frame = device_frame(rotation, translation, scale)?;
+        self.start_at_port(py, SerialPort { path: port, baud }, frame, |port| {
+            HaplyDevice::open(port, model, calibration)
+        })
     }
 
     #[pyo3(signature = (position, restart=false))]
