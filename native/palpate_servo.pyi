@@ -195,17 +195,45 @@ class Body:
 
 @final
 class Proxy:
-    """The god object alone, by the same code as in the servo."""
+    """God object and contact point alone, by the same code as in the servo.
 
-    def __init__(self, body: Body) -> None: ...
+    The god object judges what touches; the contact point that makes the force follows it: smoothly
+    over the borders of facets, shaded, or held back by friction.
+    """
+
+    def __init__(
+        self,
+        body: Body,
+        *,
+        shading: bool = False,
+        static_friction: float = 0.0,
+        dynamic_friction: float = 0.0,
+        rate_hz: int = 1000,
+    ) -> None:
+        """Feel the body's facets as the smooth surface they stand for (shading), with coefficients
+        of dry friction, moved rate_hz times a second.
+
+        Raises ValueError unless 0 <= dynamic_friction <= static_friction.
+        """
+
     def restart(self, position: _Vector) -> None:
         """Set down at a position; inside the body nothing is felt until it was outside once."""
 
     def move(self, device: _Vector) -> tuple[bool, NDArray[np.float64], int, NDArray[np.float64]]:
-        """Follow the device: touching, position (3,), triangle (-1 if free), alpha (3,)."""
+        """Follow the device: touching, contact point (3,), triangle (-1 if free), alpha (3,)."""
 
     def follow_path(self, devices: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-        """Follow devices (k, 3) in turn: positions (k, 3) and triangles (k,), -1 where free."""
+        """Follow devices (k, 3) in turn: contact points (k, 3) and triangles (k,), -1 where free."""
+
+    @property
+    def god_object(self) -> NDArray[np.float64]:
+        """The locally nearest point that the surface allows, m (3,), before shading, friction and
+        the smoothing of facet borders; the device itself while free.
+        """
+
+    @property
+    def sticking(self) -> bool:
+        """Whether friction holds the contact point where it is."""
 
     @property
     def steps(self) -> int:
@@ -231,7 +259,11 @@ class Snapshot:
 
     @property
     def proxy(self) -> NDArray[np.float64]:
-        """God object, m; the probe itself while free."""
+        """Contact point that makes the force, m; the probe itself while free."""
+
+    @property
+    def sticking(self) -> bool:
+        """Whether friction holds the contact point where it is."""
 
     @property
     def triangle(self) -> NDArray[np.int64]:
@@ -301,6 +333,9 @@ class Servo:
         max_speed: float = 2.0,
         glide_speed: float = 0.5,
         record_seconds: float = 10.0,
+        shading: bool = False,
+        static_friction: float = 0.0,
+        dynamic_friction: float = 0.0,
     ) -> None:
         """Prepare a servo; ValueError for a rate beyond 100 to 8000 Hz or limits without sense.
 

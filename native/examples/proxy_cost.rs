@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use glam::DVec3;
 use palpate_servo::contact::touch;
-use palpate_servo::proxy::Proxy;
+use palpate_servo::proxy::{Feel, Proxy};
 
 #[path = "../tests/bodies/mod.rs"]
 mod bodies;
@@ -31,7 +31,7 @@ fn median_ns(body: &palpate_servo::surface::Body, radius: f64) -> f64 {
     for batch in path.chunks(BATCH) {
         let start = Instant::now();
         for &device in batch {
-            proxy.follow(body, black_box(device));
+            proxy.follow(body, black_box(device), &Feel::default(), 1e-3);
             if let Some(hold) = proxy.hold() {
                 let u = device - proxy.position();
                 black_box(touch(body, hold.triangle, hold.alpha, u, 1e3));

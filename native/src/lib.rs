@@ -15,6 +15,7 @@ pub mod device;
 pub mod durations;
 pub mod haply;
 pub mod link;
+mod normals;
 pub mod pointer;
 pub mod port;
 pub mod proxy;

@@ -6,8 +6,15 @@
 //! cone; the nearest feature of that cone to the device tells both the way down and, by its
 //! pseudonormal, whether the device is on the free side. Signs decide, not distances; the few
 //! tolerances below only name what rounding cannot tell apart (on an edge, on the surface).
+//!
+//! The god object judges; the force comes from the contact point that follows it
+//! ([`contact_point`]).
 
+mod contact_point;
+mod descent;
 mod feel;
+mod friction;
+mod shading;
 mod walk;
 
 use glam::DVec3;
@@ -15,6 +22,7 @@ use glam::DVec3;
 use crate::closest::closest_point;
 use crate::surface::{Body, HalfEdge};
 use crate::tree::{Feature, Sweep};
+use contact_point::{ContactPoint, Judged};
 pub use feel::Feel;
 use walk::Walk;
 
@@ -61,13 +69,16 @@ pub struct Hold {
     pub alpha: [f64; 3],
 }
 
-/// The god object.
+/// The god object and the contact point that follows it.
 #[derive(Debug, Clone)]
 pub struct Proxy {
     place: Place,
     position: DVec3,
     queried: DVec3,
     hold: Hold,
+    entry: Hold,
+    landings: u64,
+    contact: ContactPoint,
     steps: u32,
     rescues: u64,
 }
@@ -75,14 +86,18 @@ pub struct Proxy {
 impl Proxy {
     /// A proxy that was set down at `position`.
     pub fn new(body: &Body, position: DVec3) -> Self {
+        let hold = Hold {
+            triangle: 0,
+            alpha: [1.0, 0.0, 0.0],
+        };
         let mut proxy = Self {
             place: Place::Free { clearance: 0.0 },
             position,
             queried: position,
-            hold: Hold {
-                triangle: 0,
-                alpha: [1.0, 0.0, 0.0],
-            },
+            hold,
+            entry: hold,
+            landings: 0,
+            contact: ContactPoint::new(position, hold),
             steps: 0,
             rescues: 0,
         };
@@ -93,6 +108,7 @@ impl Proxy {
     /// Lifts the proxy off and sets it down at `position` without a sweep between.
     pub fn restart(&mut self, body: &Body, position: DVec3) {
         self.position = position;
+        self.contact.lift(position);
         let (distance, inside) = self.look(body, position);
         self.place = if inside {
             Place::Buried {
@@ -105,19 +121,37 @@ impl Proxy {
         };
     }
 
-    /// Position, m.
+    /// Contact point, m; the device itself while free.
     #[inline]
     pub fn position(&self) -> DVec3 {
+        self.contact.position
+    }
+
+    /// The contact that makes the force, if there is one.
+    #[inline]
+    pub fn hold(&self) -> Option<Hold> {
+        self.god_hold().map(|_| self.contact.hold)
+    }
+
+    /// The god object, m: where the contact point would be at once, without shading and friction.
+    #[inline]
+    pub fn god_object(&self) -> DVec3 {
         self.position
     }
 
-    /// The contact, if there is one.
+    /// Where the god object touches, if it does.
     #[inline]
-    pub fn hold(&self) -> Option<Hold> {
+    pub fn god_hold(&self) -> Option<Hold> {
         match self.place {
             Place::Free { .. } | Place::Buried { .. } => None,
             _ => Some(self.hold),
         }
+    }
+
+    /// Whether friction holds the contact point where it is.
+    #[inline]
+    pub fn is_sticking(&self) -> bool {
+        self.contact.friction.sticking
     }
 
     /// Features visited in the last tick.
@@ -130,8 +164,25 @@ impl Proxy {
         self.rescues
     }
 
-    /// Follows the device to `device`, which must be finite.
-    pub fn follow(&mut self, body: &Body, device: DVec3) {
+    /// Follows the device to `device`, which must be finite, in a tick of `dt` seconds.
+    pub fn follow(&mut self, body: &Body, device: DVec3, feel: &Feel, dt: f64) {
+        self.drag(body, device);
+        match self.god_hold() {
+            Some(hold) => {
+                let god = Judged {
+                    hold,
+                    position: self.position,
+                    entry: self.entry,
+                    landings: self.landings,
+                };
+                self.contact.follow(body, &god, device, feel, dt);
+            }
+            None => self.contact.lift(device),
+        }
+    }
+
+    /// Moves the god object.
+    fn drag(&mut self, body: &Body, device: DVec3) {
         self.steps = 0;
         for _ in 0..MAX_ROUNDS {
             match self.place {
@@ -196,7 +247,7 @@ impl Proxy {
             // A start exactly on the surface, rounded to its inner side, in front of a thin wall.
             self.look(body, start);
             self.rescues += 1;
-            self.land(body);
+            self.enter(body);
             return false;
         }
         if let Some(crossing) = entering {
@@ -204,13 +255,13 @@ impl Proxy {
                 triangle: crossing.triangle,
                 alpha: crossing.alpha,
             };
-            self.land(body);
+            self.enter(body);
             return false;
         }
         let (clearance, inside) = self.look(body, device);
         if inside && clearance > ON_SURFACE * body.size() {
             self.rescues += 1;
-            self.land(body);
+            self.enter(body);
             return false;
         }
         self.position = device;
@@ -218,6 +269,13 @@ impl Proxy {
         let clearance = if inside { 0.0 } else { clearance };
         self.place = Place::Free { clearance };
         true
+    }
+
+    /// Comes from free space onto the surface at `self.hold`.
+    fn enter(&mut self, body: &Body) {
+        self.land(body);
+        self.entry = self.hold;
+        self.landings += 1;
     }
 
     /// Takes hold of the surface at `self.hold`.

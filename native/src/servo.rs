@@ -112,7 +112,7 @@ impl<D: Device> Servo<D> {
             Reading::At(probe) | Reading::Passive(probe, _) => {
                 shot.buttons = probe.buttons;
                 max_force = max_force.min(probe.max_force);
-                shot.fault = self.follow(&probe, settings.frame.epoch);
+                shot.fault = self.follow(&probe, &settings, dt);
                 if shot.fault.is_none() && probe.speed > self.options.max_speed {
                     shot.fault = Some(Fault::TooFast);
                 }
@@ -131,14 +131,17 @@ impl<D: Device> Servo<D> {
     }
 
     /// Moves the proxy after the probe.
-    fn follow(&mut self, probe: &Probe, frame_epoch: u32) -> Option<Fault> {
+    fn follow(&mut self, probe: &Probe, settings: &Settings, dt: f64) -> Option<Fault> {
         if !probe.position.is_finite() || !probe.speed.is_finite() {
             return Some(Fault::Nan);
         }
         self.probe = probe.position;
-        let jumped = std::mem::replace(&mut self.frame_epoch, frame_epoch) != frame_epoch;
+        let epoch = settings.frame.epoch;
+        let jumped = std::mem::replace(&mut self.frame_epoch, epoch) != epoch;
         match &mut self.proxy {
-            Some(proxy) if !probe.restart && !jumped => proxy.follow(&self.body, self.probe),
+            Some(proxy) if !probe.restart && !jumped => {
+                proxy.follow(&self.body, self.probe, &settings.feel, dt);
+            }
             Some(proxy) => proxy.restart(&self.body, self.probe),
             None => self.proxy = Some(Proxy::new(&self.body, self.probe)),
         }
@@ -172,6 +175,7 @@ impl<D: Device> Servo<D> {
                 shot.fault = shot.fault.or(Some(Fault::Nan));
                 return;
             }
+            shot.sticking = proxy.is_sticking();
             shot.hold = Some((hold.triangle, hold.alpha));
             shot.triangle = self.body.triangles[hold.triangle as usize];
             shot.nodal_forces = touch.nodal_forces;

@@ -60,10 +60,12 @@ pub struct Snapshot {
     pub time: f64,
     /// Where the finger is, m.
     pub probe: DVec3,
-    /// God object, m.
+    /// Contact point that makes the force, m: the god object, shaded or held back by friction.
     pub proxy: DVec3,
     /// Triangle and area coordinates while touching.
     pub hold: Option<(u32, [f64; 3])>,
+    /// Whether friction holds the contact point where it is.
+    pub sticking: bool,
     /// Node numbers of that triangle.
     pub triangle: [u32; 3],
     /// (12), (13), N.

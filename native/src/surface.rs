@@ -8,6 +8,7 @@ use std::fmt;
 use glam::{DMat3, DVec3};
 
 use crate::compliance::Compliance;
+use crate::normals::{is_soft, set_fan_normals};
 use crate::tree::Tree;
 
 /// Why a surface cannot be touched.
@@ -95,6 +96,14 @@ pub struct Fan {
     pub normal: DVec3,
 }
 
+impl Fan {
+    #[inline]
+    fn of<'a>(&self, fan_corners: &'a [Corner]) -> &'a [Corner] {
+        let first = self.first as usize;
+        &fan_corners[first..first + self.count as usize]
+    }
+}
+
 /// One corner of one triangle.
 #[derive(Debug, Clone, Copy)]
 pub struct Corner {
@@ -135,6 +144,7 @@ pub struct Body {
     fan_corners: Vec<Corner>,
     edge_normals: Vec<[DVec3; 3]>,
     node_normals: Vec<DVec3>,
+    corner_normals: Vec<[DVec3; 3]>,
     tree: Tree,
     size: f64,
     response: Option<Response>,
@@ -161,6 +171,10 @@ impl Body {
         for fan in &fans {
             node_normals[fan.node as usize] += fan.normal;
         }
+        let mut corner_normals = vec![[DVec3::ZERO; 3]; faces.len()];
+        for fan in &fans {
+            set_fan_normals(&faces, fan.of(&fan_corners), &mut corner_normals);
+        }
         let tree = Tree::new(&faces);
         let size = tree.diagonal();
         Ok(Self {
@@ -172,6 +186,7 @@ impl Body {
             fan_corners,
             edge_normals,
             node_normals,
+            corner_normals,
             tree,
             size,
             response: None,
@@ -282,8 +297,7 @@ impl Body {
     #[inline]
     pub fn fan(&self, fan: u32) -> (&Fan, &[Corner]) {
         let fan = &self.fans[fan as usize];
-        let first = fan.first as usize;
-        (fan, &self.fan_corners[first..first + fan.count as usize])
+        (fan, fan.of(&self.fan_corners))
     }
 
     /// The search tree over the triangles.
@@ -302,6 +316,18 @@ impl Body {
     #[inline]
     pub fn edge_normal(&self, triangle: u32, edge: usize) -> DVec3 {
         self.edge_normals[triangle as usize][edge]
+    }
+
+    /// Unit normals at a triangle's corners, shared with its neighbours across soft edges.
+    #[inline]
+    pub fn corner_normals(&self, triangle: u32) -> &[DVec3; 3] {
+        &self.corner_normals[triangle as usize]
+    }
+
+    /// Whether the corner normals on both sides of an edge are meant to be one.
+    #[inline]
+    pub fn is_soft(&self, edge: HalfEdge) -> bool {
+        is_soft(&self.faces, edge)
     }
 
     /// Angle-weighted normal of a node over all its triangles.

@@ -296,7 +296,7 @@ fn centroid(corners: &[DVec3; 3]) -> DVec3 {
 }
 
 /// Nearest point of a triangle by Voronoi regions (Ericson 2005, section 5.1.5).
-fn closest_on_face(face: &Face, p: DVec3) -> ([f64; 3], DVec3) {
+pub(crate) fn closest_on_face(face: &Face, p: DVec3) -> ([f64; 3], DVec3) {
     let [a, b, c] = face.corners;
     let (ab, ac, ap) = (b - a, c - a, p - a);
     let (d1, d2) = (ab.dot(ap), ac.dot(ap));

@@ -7,7 +7,7 @@ use bodies::{
 };
 use glam::DVec3;
 use palpate_servo::closest::closest_point;
-use palpate_servo::proxy::Proxy;
+use palpate_servo::proxy::{Feel, Proxy};
 use palpate_servo::surface::Body;
 
 const MICROMETRE: f64 = 1e-6;
@@ -72,8 +72,8 @@ fn triangles_here(body: &Body, triangle: u32, alpha: [f64; 3]) -> Vec<u32> {
 
 /// No triangle that meets the proxy's feature leads nearer to the device.
 fn assert_rests(name: &str, body: &Body, proxy: &Proxy, device: DVec3) {
-    let hold = proxy.hold().expect("it touches");
-    let here = proxy.position().distance(device);
+    let hold = proxy.god_hold().expect("it touches");
+    let here = proxy.god_object().distance(device);
     for t in triangles_here(body, hold.triangle, hold.alpha) {
         let corners = body.triangles[t as usize].map(|n| body.nodes[n as usize]);
         let there = nearest_on(corners, device).distance(device);
@@ -115,6 +115,11 @@ fn all_bodies() -> Vec<(&'static str, std::sync::Arc<Body>)> {
         ("touching blocks", touching_blocks()),
         ("touching tips", touching_tips()),
     ]
+}
+
+/// One tick of 1 ms with nothing but the shape.
+fn follow(proxy: &mut Proxy, body: &Body, device: DVec3) {
+    proxy.follow(body, device, &Feel::default(), 1e-3);
 }
 
 fn quantised(p: DVec3, quantum: f64) -> DVec3 {
@@ -201,7 +206,7 @@ fn pushes_at_every_quantum_neither_fall_through_nor_stick() {
             for (count, step) in there_and_back.enumerate() {
                 let device = push.at(step);
                 let was_free = proxy.hold().is_none();
-                proxy.follow(&body, device);
+                follow(&mut proxy, &body, device);
                 if proxy.hold().is_some() {
                     landings += usize::from(was_free);
                     held_in_front |= count == push.steps;
@@ -239,7 +244,7 @@ fn a_device_inside_never_loses_the_surface_whatever_it_does() {
             if step % 3 == 0 {
                 device = quantised(device, 5e-5);
             }
-            proxy.follow(&body, device);
+            follow(&mut proxy, &body, device);
             if proxy.hold().is_some() {
                 touched += 1;
                 assert_rests(name, &body, &proxy, device);
@@ -273,7 +278,7 @@ fn force_begins_and_ends_at_nothing() {
             for nanometres in (-2000..100_i32).rev().chain(-2000..100) {
                 let height = f64::from(nanometres) * 1e-9;
                 let device = goal + face.normal * height;
-                proxy.follow(&body, device);
+                follow(&mut proxy, &body, device);
                 let displacement = proxy.position().distance(device);
                 let expected = if nanometres < 0 { -height } else { 0.0 };
                 assert!((displacement - expected).abs() < 1e-16);
@@ -304,10 +309,10 @@ fn fast_sweeps_stop_at_thin_walls() {
             let up = DVec3::Z * 0.005;
             let mut proxy = Proxy::new(&body, spot - slant + up);
             let device = spot + slant - up;
-            proxy.follow(&body, device);
+            follow(&mut proxy, &body, device);
             assert!(proxy.hold().is_some(), "tunnelled at {spot}");
             assert!((proxy.position().z - thickness).abs() < 1e-12);
-            proxy.follow(&body, spot - slant + up);
+            follow(&mut proxy, &body, spot - slant + up);
             assert!(proxy.hold().is_none());
         }
     }
@@ -321,7 +326,7 @@ fn two_planes_hold_the_proxy_in_an_inner_edge() {
     for step in 0..=100 {
         let t = f64::from(step) / 100.0;
         let device = DVec3::new(0.04 - 0.018 * t, 0.01 + 0.02 * t, 0.04 - 0.017 * t);
-        proxy.follow(&body, device);
+        follow(&mut proxy, &body, device);
     }
     let p = proxy.position();
     assert!(p.distance(DVec3::new(0.025, 0.03, 0.025)) < 1e-15, "{p}");
@@ -334,7 +339,8 @@ fn three_planes_hold_the_proxy_in_an_inner_corner() {
     let mut proxy = Proxy::new(&body, DVec3::splat(0.04));
     for step in 0..=50 {
         let t = f64::from(step) / 50.0;
-        proxy.follow(
+        follow(
+            &mut proxy,
             &body,
             DVec3::new(0.04 - 0.02 * t, 0.04 - 0.019 * t, 0.04 - 0.018 * t),
         );
@@ -353,7 +359,7 @@ fn sliding_under_a_sphere_never_needs_rescue_and_stays_near_the_nearest_point() 
     for _ in 0..5000 {
         device += dice.direction() * 3e-4;
         device = device.normalize() * 0.0235;
-        proxy.follow(&body, device);
+        follow(&mut proxy, &body, device);
         let (closest, inside) = closest_point(&body, device, 0);
         assert!(inside && proxy.hold().is_some());
         // Under facets each has its own nearest point; they differ by less than their sag.
@@ -369,15 +375,15 @@ fn set_down_inside_it_feels_nothing_until_it_was_outside() {
     let body = cube();
     let mut proxy = Proxy::new(&body, DVec3::splat(0.02));
     for z in [0.03, 0.045, 0.0499, 0.02] {
-        proxy.follow(&body, DVec3::new(0.02, 0.02, z));
+        follow(&mut proxy, &body, DVec3::new(0.02, 0.02, z));
         assert!(proxy.hold().is_none());
     }
-    proxy.follow(&body, DVec3::new(0.02, 0.02, 0.051));
+    follow(&mut proxy, &body, DVec3::new(0.02, 0.02, 0.051));
     assert!(proxy.hold().is_none());
-    proxy.follow(&body, DVec3::new(0.02, 0.02, 0.049));
+    follow(&mut proxy, &body, DVec3::new(0.02, 0.02, 0.049));
     assert!(proxy.hold().is_some());
     proxy.restart(&body, DVec3::splat(0.02));
-    proxy.follow(&body, DVec3::splat(0.021));
+    follow(&mut proxy, &body, DVec3::splat(0.021));
     assert!(proxy.hold().is_none());
 }
 

@@ -1,4 +1,4 @@
-//! `Proxy`: the god object alone.
+//! `Proxy`: god object and contact point alone.
 
 use std::sync::Arc;
 
@@ -8,13 +8,16 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use super::body::Body;
-use super::vectors::{Matrix, Triple, Vector, array, finite};
+use super::servo::feel;
+use super::vectors::{Matrix, Triple, Vector, array, check_rate, finite};
 use crate::{proxy, surface};
 
 #[pyclass(module = "palpate_servo")]
 pub struct Proxy {
     body: Arc<surface::Body>,
     inner: Option<proxy::Proxy>,
+    feel: proxy::Feel,
+    dt: f64,
 }
 
 type Held<'py> = (bool, Vector<'py>, i64, Vector<'py>);
@@ -35,11 +38,22 @@ impl Proxy {
 #[pymethods]
 impl Proxy {
     #[new]
-    fn new(body: &Body) -> Self {
-        Self {
+    #[pyo3(signature = (body, *, shading=false, static_friction=0.0, dynamic_friction=0.0,
+        rate_hz=1000))]
+    fn new(
+        body: &Body,
+        shading: bool,
+        static_friction: f64,
+        dynamic_friction: f64,
+        rate_hz: u32,
+    ) -> PyResult<Self> {
+        check_rate(rate_hz)?;
+        Ok(Self {
             body: body.inner.clone(),
             inner: None,
-        }
+            feel: feel(shading, static_friction, dynamic_friction)?,
+            dt: 1.0 / f64::from(rate_hz),
+        })
     }
 
     fn restart(&mut self, position: Triple) -> PyResult<()> {
@@ -52,7 +66,7 @@ impl Proxy {
     fn follow<'py>(&mut self, py: Python<'py>, device: Triple) -> PyResult<Held<'py>> {
         let device = finite("device", device)?;
         match &mut self.inner {
-            Some(inner) => inner.follow(&self.body, device),
+            Some(inner) => inner.follow(&self.body, device, &self.feel, self.dt),
             None => self.inner = Some(proxy::Proxy::new(&self.body, device)),
         }
         Ok(self.place(py))
@@ -73,7 +87,7 @@ impl Proxy {
             let device = finite("devices", [row[0], row[1], row[2]])?;
             let inner = match &mut self.inner {
                 Some(inner) => {
-                    inner.follow(&self.body, device);
+                    inner.follow(&self.body, device, &self.feel, self.dt);
                     inner
                 }
                 empty => empty.insert(proxy::Proxy::new(&self.body, device)),
@@ -85,6 +99,17 @@ impl Proxy {
             PyArray2::from_vec2(py, &positions)?,
             PyArray1::from_vec(py, triangles),
         ))
+    }
+
+    #[getter]
+    fn god_object<'py>(&self, py: Python<'py>) -> Vector<'py> {
+        let inner = self.inner.as_ref();
+        array(py, inner.map_or(DVec3::ZERO, proxy::Proxy::god_object))
+    }
+
+    #[getter]
+    fn sticking(&self) -> bool {
+        self.inner.as_ref().is_some_and(proxy::Proxy::is_sticking)
     }
 
     #[getter]

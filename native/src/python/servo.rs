@@ -120,7 +120,8 @@ impl Servo {
 impl Servo {
     #[new]
     #[pyo3(signature = (body, *, young_modulus, rate_hz=1000, max_force=3.0, max_slew=1000.0,
-        ramp_seconds=0.25, max_speed=2.0, glide_speed=0.5, record_seconds=10.0))]
+        ramp_seconds=0.25, max_speed=2.0, glide_speed=0.5, record_seconds=10.0, shading=false,
+        static_friction=0.0, dynamic_friction=0.0))]
     #[allow(clippy::too_many_arguments)] // Keywords in Python.
     fn new(
         body: &Body,
@@ -132,6 +133,9 @@ impl Servo {
         max_speed: f64,
         glide_speed: f64,
         record_seconds: f64,
+        shading: bool,
+        static_friction: f64,
+        dynamic_friction: f64,
     ) -> PyResult<Self> {
         check_rate(rate_hz)?;
         check_seconds("ramp_seconds", ramp_seconds)?;
@@ -154,7 +158,7 @@ impl Servo {
                 young_modulus: positive("young_modulus", young_modulus)?,
                 enabled: true,
                 frame: DeviceFrame::default(),
-                feel: Feel::default(),
+                feel: feel(shading, static_friction, dynamic_friction)?,
                 coupling: Coupling::default(),
             }),
             running: Mutex::new(None),
@@ -408,7 +412,11 @@ fn device_frame(rotation: Rows, translation: Triple, scale: f64) -> PyResult<Dev
     })
 }
 
-fn feel(shading: bool, static_friction: f64, dynamic_friction: f64) -> PyResult<Feel> {
+pub(super) fn feel(
+    shading: bool,
+    static_friction: f64,
+    dynamic_friction: f64,
+) -> PyResult<Feel> {
     let are_coefficients = static_friction.is_finite() && dynamic_friction >= 0.0;
     if !are_coefficients || dynamic_friction > static_friction {
         return Err(PyValueError::new_err(

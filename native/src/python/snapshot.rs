@@ -68,6 +68,10 @@ impl Snapshot {
         self.inner.hold.is_some()
     }
     #[getter]
+    fn sticking(&self) -> bool {
+        self.inner.sticking
+    }
+    #[getter]
     fn state(&self) -> &'static str {
         self.inner.state.name()
     }
