@@ -223,7 +223,7 @@ class Proxy:
         """Follow the device: touching, contact point (3,), triangle (-1 if free), alpha (3,)."""
 
     def follow_path(self, devices: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-        """Follow devices (k, 3) in turn: contact points (k, 3) and triangles (k,), -1 where free."""
+        """Follow devices (k, 3) in turn: contact points (k, 3), triangles (k,), -1 free."""
 
     @property
     def god_object(self) -> NDArray[np.float64]:

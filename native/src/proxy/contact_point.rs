@@ -19,7 +19,7 @@ use super::{Feel, Hold};
 use crate::surface::Body;
 
 /// How much of the device's own way the contact point may gain on the device in a tick.
-const GAIN: f64 = 0.8;
+const GAIN: f64 = 0.7;
 /// At rest what lags is made up with this time constant, s,
 const CATCH_UP: f64 = 0.005;
 /// and at least at this speed, m/s.

@@ -16,7 +16,7 @@ const MAX_TRIANGLES: u32 = 48;
 /// Newton steps for the cubic; it starts from the last tick's root.
 const MAX_NEWTON: u32 = 8;
 /// A moved triangle that has shrunk below this share of itself is about to fold.
-const LEAST_SHARE: f64 = 0.05;
+const LEAST_SHARE: f64 = 0.01;
 /// Area coordinates this little outside belong to the triangle.
 const OUTSIDE: f64 = 1e-12;
 

@@ -412,11 +412,7 @@ fn device_frame(rotation: Rows, translation: Triple, scale: f64) -> PyResult<Dev
     })
 }
 
-pub(super) fn feel(
-    shading: bool,
-    static_friction: f64,
-    dynamic_friction: f64,
-) -> PyResult<Feel> {
+pub(super) fn feel(shading: bool, static_friction: f64, dynamic_friction: f64) -> PyResult<Feel> {
     let are_coefficients = static_friction.is_finite() && dynamic_friction >= 0.0;
     if !are_coefficients || dynamic_friction > static_friction {
         return Err(PyValueError::new_err(
