@@ -312,7 +312,13 @@ class Snapshot:
 
     @property
     def limited(self) -> str:
-        """Which limiter shortens the force now: "ramp", "clamp", "slew", or empty."""
+        """Which limiter shortens the force now, one of LIMITERS, or empty."""
+
+    @property
+    def body(self) -> int:
+        """How often set_body had exchanged the body since the start: to which one the triangle
+        belongs.
+        """
 
     @property
     def buttons(self) -> int: ...
@@ -388,7 +394,11 @@ class Servo:
 
     def set_young_modulus(self, young_modulus: float) -> None: ...
     def set_body(self, body: Body, young_modulus: float) -> None:
-        """Touch another body; RuntimeError while the servo runs."""
+        """Touch another body, also while the servo runs: zero force in that tick, then a ramp.
+
+        The probe is set down anew: inside of the new body nothing is felt until it was outside.
+        Returns when the thread uses the new body and the old one is freed.
+        """
 
     def set_device_frame(self, rotation: _Matrix, translation: _Vector, scale: float) -> None:
         """Map the device elsewhere; the probe is lifted off and set down at its new place."""
@@ -481,4 +491,8 @@ STATES: tuple[str, ...]
 """Names of the states, in the order of their numbers in samples()."""
 FAULTS: tuple[str, ...]
 """Names of the faults, the keys of counters()["faults"]."""
+REASONS: tuple[str, ...]
+"""All that Snapshot.reason may say, the empty one excepted."""
+LIMITERS: tuple[str, ...]
+"""All that Snapshot.limited may say, the empty one excepted."""
 __version__: str

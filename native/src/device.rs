@@ -116,6 +116,16 @@ pub enum Reading {
     Fault(Fault),
 }
 
+impl Reading {
+    /// The position, where there is one.
+    pub fn probe(&self) -> Option<&Probe> {
+        match self {
+            Self::At(probe) | Self::Passive(probe, _) => Some(probe),
+            Self::Waiting(_) | Self::Fault(_) => None,
+        }
+    }
+}
+
 /// What happened on a link so far; all zero for a pointer.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct LinkReport {

@@ -11,6 +11,7 @@ use crate::codec::{
 use crate::device::{Device, DeviceFrame, Fault, LinkReport, Probe, Reading};
 use crate::port::{Opener, Wire};
 use crate::safety::Speedometer;
+use crate::state::reason;
 
 /// HELLO is repeated this often until it is answered, s.
 const HELLO_SECONDS: f64 = 0.05;
@@ -241,7 +242,7 @@ impl<O: Opener> Device for LinkDevice<O> {
             self.greet(now);
             return match self.greeting {
                 Some(_) => Reading::Fault(Fault::Protocol),
-                None => Reading::Waiting("no sound answer to HELLO yet"),
+                None => Reading::Waiting(reason::NO_ANSWER),
             };
         }
         if std::mem::take(&mut self.device_fault) {
@@ -255,7 +256,7 @@ impl<O: Opener> Device for LinkDevice<O> {
             return Reading::Fault(Fault::Stale);
         }
         let (Some(Newest { state, speed }), Some(greeting)) = (self.newest, self.greeting) else {
-            return Reading::Waiting("no STATE yet");
+            return Reading::Waiting(reason::NO_STATE);
         };
         if state.fault {
             return Reading::Fault(Fault::Device);
@@ -270,7 +271,7 @@ impl<O: Opener> Device for LinkDevice<O> {
         if state.ready {
             Reading::At(probe)
         } else {
-            Reading::Passive(probe, "the device is not ready")
+            Reading::Passive(probe, reason::NOT_READY)
         }
     }
 

@@ -139,6 +139,11 @@ impl Proxy {
         self.position
     }
 
+    /// Whether it was set down inside of the body and was not outside since.
+    pub fn is_buried(&self) -> bool {
+        matches!(self.place, Place::Buried { .. })
+    }
+
     /// Where the god object touches, if it does.
     #[inline]
     pub fn god_hold(&self) -> Option<Hold> {

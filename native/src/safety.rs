@@ -16,6 +16,24 @@ pub struct Limits {
     pub ramp_seconds: f64,
 }
 
+/// Names of the limiters, beside a force that one of them shortens.
+pub const LIMITERS: [&str; 3] = [RAMP, CLAMP, SLEW];
+/// The force is still coming back.
+pub const RAMP: &str = "ramp";
+/// The body gives more than the largest force.
+pub const CLAMP: &str = "clamp";
+/// The force grows or turns faster than allowed.
+pub const SLEW: &str = "slew";
+
+/// A force that may be sent.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limited {
+    /// N.
+    pub force: DVec3,
+    /// What shortened it, one of [`LIMITERS`], or empty; of several the first in that order.
+    pub by: &'static str,
+}
+
 /// Limits the force from tick to tick.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Safety {
@@ -30,9 +48,9 @@ impl Safety {
         DVec3::ZERO
     }
 
-    /// Ramp gain, 0 to 1.
-    pub fn gain(&self) -> f64 {
-        self.gain
+    /// Whether the ramp is through.
+    pub fn is_ramped(&self) -> bool {
+        self.gain >= 1.0
     }
 
     /// The force to send for the force `wanted` (N), `dt` seconds after the last one.
@@ -40,12 +58,13 @@ impl Safety {
     /// None when `wanted` or a limit is not finite: the caller reports the fault, the output is
     /// zero and ramps up again. The output is never larger than `wanted`, so no limit can hold a
     /// force that the body no longer gives.
-    pub fn limit(&mut self, wanted: DVec3, limits: &Limits, dt: f64) -> Option<DVec3> {
+    pub fn limit(&mut self, wanted: DVec3, limits: &Limits, dt: f64) -> Option<Limited> {
         let numbers_are_sound = wanted.is_finite()
             && limits.max_force >= 0.0
             && limits.max_slew >= 0.0
             && limits.ramp_seconds >= 0.0
-            && dt >= 0.0;
+            && dt >= 0.0
+            && dt.is_finite();
         if !numbers_are_sound {
             self.silence();
             return None;
@@ -55,10 +74,29 @@ impl Safety {
         } else {
             1.0
         };
-        let clamped = shorten(wanted, limits.max_force) * self.gain;
-        let change = shorten(clamped - self.output, limits.max_slew * dt);
-        self.output = shorten(self.output + change, clamped.length());
-        Some(self.output)
+        let clamped = shorten(wanted, limits.max_force);
+        let ramped = clamped * self.gain;
+        let change = shorten(ramped - self.output, limits.max_slew * dt);
+        let is_slewed = change != ramped - self.output;
+        // Without slew exactly what is wanted, else what the last force and the change make of it.
+        self.output = if is_slewed {
+            shorten(self.output + change, ramped.length())
+        } else {
+            ramped
+        };
+        let by = if self.output == wanted {
+            ""
+        } else if self.gain < 1.0 {
+            RAMP
+        } else if clamped != wanted {
+            CLAMP
+        } else {
+            SLEW
+        };
+        Some(Limited {
+            force: self.output,
+            by,
+        })
     }
 }
 
@@ -125,11 +163,13 @@ mod tests {
     fn clamp_keeps_the_direction() {
         let force = Safety::default()
             .limit(DVec3::new(30.0, 40.0, 0.0), &OPEN, DT)
-            .unwrap();
+            .unwrap()
+            .force;
         assert!(force.distance(DVec3::new(1.8, 2.4, 0.0)) < 1e-12);
         let huge = Safety::default()
             .limit(DVec3::splat(1e300), &OPEN, DT)
-            .unwrap();
+            .unwrap()
+            .force;
         assert!((huge.length() - 3.0).abs() < 1e-12);
     }
 
@@ -142,12 +182,13 @@ mod tests {
         let mut safety = Safety::default();
         let mut last = 0.0;
         for tick in 1..=100 {
-            let force = safety.limit(DVec3::X, &limits, DT).unwrap().x;
+            let force = safety.limit(DVec3::X, &limits, DT).unwrap().force.x;
             assert!((force - f64::from(tick) * 0.01).abs() < 1e-9);
             assert!(force > last);
             last = force;
         }
-        assert_eq!(safety.limit(DVec3::X, &limits, DT), Some(DVec3::X));
+        let whole = safety.limit(DVec3::X, &limits, DT).unwrap();
+        assert_eq!((whole.force, whole.by), (DVec3::X, ""));
     }
 
     #[test]
@@ -161,7 +202,7 @@ mod tests {
             safety.limit(DVec3::X, &limits, DT);
         }
         assert_eq!(safety.silence(), DVec3::ZERO);
-        assert!(safety.limit(DVec3::X, &limits, DT).unwrap().x < 0.011);
+        assert!(safety.limit(DVec3::X, &limits, DT).unwrap().force.x < 0.011);
     }
 
     #[test]
@@ -171,13 +212,14 @@ mod tests {
             ..OPEN
         };
         let mut safety = Safety::default();
-        assert!((safety.limit(DVec3::X, &limits, DT).unwrap().x - 0.1).abs() < 1e-12);
+        assert!((safety.limit(DVec3::X, &limits, DT).unwrap().force.x - 0.1).abs() < 1e-12);
         for _ in 0..20 {
             safety.limit(DVec3::X, &limits, DT);
         }
-        let turned = safety.limit(DVec3::Y, &limits, DT).unwrap();
+        let turned = safety.limit(DVec3::Y, &limits, DT).unwrap().force;
         assert!(turned.distance(DVec3::X) <= 0.1 + 1e-12);
-        assert_eq!(safety.limit(DVec3::ZERO, &limits, DT), Some(DVec3::ZERO));
+        let gone = safety.limit(DVec3::ZERO, &limits, DT).unwrap();
+        assert_eq!((gone.force, gone.by), (DVec3::ZERO, ""));
     }
 
     #[test]

@@ -10,12 +10,19 @@ use triple_buffer::{Input, Output};
 use crate::contact::{surface_displacement, touch};
 use crate::coupling::Coupling;
 use crate::device::{Device, DeviceFrame, Fault, Probe, Reading};
+use crate::exchange::{Holder, exchange};
 use crate::proxy::{Feel, Proxy};
 use crate::recorder::Tape;
 use crate::safety::{Limits, Safety};
-use crate::snapshot::{Published, Sample, Snapshot, State};
+use crate::snapshot::{Published, Sample, Snapshot};
 use crate::stages::{Stage, Stages};
+use crate::state::{Findings, Standing, State, reason, transition};
 use crate::surface::Body;
+
+/// Two ticks further apart than this were interrupted: the device has gone limp meanwhile, s.
+const SUSPENDED_SECONDS: f64 = 0.02;
+/// A device slower than this part of the largest speed is calm.
+const CALM_PART: f64 = 0.5;
 
 /// What may change while the servo runs.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,7 +52,8 @@ pub struct Options {
 
 /// The loop's body and memory.
 pub struct Servo<D> {
-    body: Arc<Body>,
+    /// The body to touch, and those that come.
+    pub bodies: Holder,
     /// The device in use.
     pub device: D,
     options: Options,
@@ -58,6 +66,9 @@ pub struct Servo<D> {
     probe: DVec3,
     frame_epoch: u32,
     safety: Safety,
+    standing: Standing,
+    /// Time of the last tick, s.
+    ticked_at: Option<f64>,
     published: Published,
     stages: Arc<Stages>,
 }
@@ -74,7 +85,7 @@ impl<D: Device> Servo<D> {
     ) -> Self {
         let frame_epoch = settings.read().frame.epoch;
         Self {
-            body,
+            bodies: exchange(body).1,
             device,
             options,
             settings,
@@ -85,6 +96,8 @@ impl<D: Device> Servo<D> {
             probe: DVec3::ZERO,
             frame_epoch,
             safety: Safety::default(),
+            standing: Standing::default(),
+            ticked_at: None,
             published: Published::default(),
             stages: Arc::default(),
         }
@@ -99,57 +112,108 @@ impl<D: Device> Servo<D> {
     pub fn tick(&mut self, now: f64) {
         let dt = 1.0 / f64::from(self.options.rate_hz);
         let mut since = Instant::now();
+        // The body before the settings that belong to it. The exchange keeps it: the end of this
+        // tick never frees it.
+        let (body, number, body_replaced) = self.bodies.newest();
+        let body = Arc::clone(body);
         let settings = *self.settings.read();
         let reading = self.device.read(now, dt, &settings.frame);
         self.stages.end_of(Stage::Read, &mut since);
+
         let mut shot = Snapshot {
             tick: self.published.snapshot.tick + 1,
             time: now,
+            body: number,
             ..Snapshot::default()
         };
-        let mut max_force = self.options.limits.max_force;
-        match reading {
-            Reading::At(probe) | Reading::Passive(probe, _) => {
-                shot.buttons = probe.buttons;
-                max_force = max_force.min(probe.max_force);
-                shot.fault = self.follow(&probe, &settings, dt);
-                if shot.fault.is_none() && probe.speed > self.options.max_speed {
-                    shot.fault = Some(Fault::TooFast);
-                }
-            }
-            Reading::Waiting(_) => {}
-            Reading::Fault(fault) => shot.fault = Some(fault),
+        let mut found = self.inspect(now, &reading);
+        found.switched_off = !settings.enabled;
+        found.body_replaced = body_replaced;
+        if let Some(probe) = reading.probe() {
+            shot.buttons = probe.buttons;
+            self.follow(&body, probe, &settings, &found, dt);
         }
         self.stages.end_of(Stage::Proxy, &mut since);
-        let lost_sight = matches!(reading, Reading::Fault(_) | Reading::Waiting(_));
-        self.feel(&mut shot, lost_sight, settings.young_modulus);
+        self.feel(&body, &mut shot, &mut found, settings.young_modulus);
         self.stages.end_of(Stage::Contact, &mut since);
-        (shot.state, shot.reason) = judge(&reading, &shot, &settings);
-        self.send(&mut shot, max_force, dt, &settings.frame);
+
+        self.standing = transition(&self.standing, &found, dt);
+        let limits = self.limits_with(&reading);
+        self.send(&mut shot, &found, &limits, dt, &settings.frame);
         self.stages.end_of(Stage::Write, &mut since);
         self.publish(shot);
     }
 
-    /// Moves the proxy after the probe.
-    fn follow(&mut self, probe: &Probe, settings: &Settings, dt: f64) -> Option<Fault> {
-        if !probe.position.is_finite() || !probe.speed.is_finite() {
-            return Some(Fault::Nan);
+    /// What the clock and the device tell.
+    fn inspect(&mut self, now: f64, reading: &Reading) -> Findings {
+        let gap = self.ticked_at.replace(now).map_or(0.0, |last| now - last);
+        // While there is no force, a gap endangers nobody.
+        let was_pushing =
+            self.standing.state.may_push() || self.standing.fault == Some(Fault::Suspended);
+        let fault = match reading {
+            _ if was_pushing && gap > SUSPENDED_SECONDS => Some(Fault::Suspended),
+            Reading::At(probe) | Reading::Passive(probe, _) => self.fault_of(probe),
+            Reading::Waiting(_) => None,
+            Reading::Fault(fault) => Some(*fault),
+        };
+        let probe = reading.probe();
+        Findings {
+            fault,
+            waiting: match reading {
+                Reading::Waiting(reason) | Reading::Passive(_, reason) => Some(reason),
+                _ => None,
+            },
+            blind: probe.is_none(),
+            button: probe.is_some_and(|p| p.buttons != 0),
+            calm: probe.is_none_or(|p| p.speed <= CALM_PART * self.options.max_speed),
+            ramped: self.safety.is_ramped(),
+            ..Findings::default()
+        }
+    }
+
+    fn fault_of(&self, probe: &Probe) -> Option<Fault> {
+        let are_numbers = probe.position.is_finite()
+            && probe.speed.is_finite()
+            && probe.max_force >= 0.0
+            && self.options.max_speed.is_finite();
+        if !are_numbers {
+            Some(Fault::Nan)
+        } else if probe.speed > self.options.max_speed {
+            Some(Fault::TooFast)
+        } else {
+            None
+        }
+    }
+
+    /// Moves the proxy after the probe, or sets it down anew where no sweep leads there.
+    fn follow(
+        &mut self,
+        body: &Body,
+        probe: &Probe,
+        settings: &Settings,
+        found: &Findings,
+        dt: f64,
+    ) {
+        if !probe.position.is_finite() {
+            return;
         }
         self.probe = probe.position;
         let epoch = settings.frame.epoch;
         let jumped = std::mem::replace(&mut self.frame_epoch, epoch) != epoch;
+        // A device beyond the limit may be one whose encoder has lost its place: where it seems to
+        // have gone must not become a depth.
+        let lost_its_place =
+            found.fault == Some(Fault::TooFast) || self.standing.fault == Some(Fault::TooFast);
+        let lifted = probe.restart || jumped || lost_its_place || found.body_replaced;
         match &mut self.proxy {
-            Some(proxy) if !probe.restart && !jumped => {
-                proxy.follow(&self.body, self.probe, &settings.feel, dt);
-            }
-            Some(proxy) => proxy.restart(&self.body, self.probe),
-            None => self.proxy = Some(Proxy::new(&self.body, self.probe)),
+            Some(proxy) if !lifted => proxy.follow(body, self.probe, &settings.feel, dt),
+            Some(proxy) => proxy.restart(body, self.probe),
+            None => self.proxy = Some(Proxy::new(body, self.probe)),
         }
-        None
     }
 
     /// Contact of the proxy and the probe, (11) to (14).
-    fn feel(&mut self, shot: &mut Snapshot, lost_sight: bool, young_modulus: f64) {
+    fn feel(&mut self, body: &Body, shot: &mut Snapshot, found: &mut Findings, young_modulus: f64) {
         shot.probe = self.probe;
         shot.proxy = self.probe;
         let Some(proxy) = &self.proxy else {
@@ -159,58 +223,72 @@ impl<D: Device> Servo<D> {
         let (steps, rescues) = (proxy.steps(), proxy.rescues());
         self.published.most_steps = self.published.most_steps.max(steps);
         self.published.rescues = rescues;
-        if lost_sight {
+        found.inside = proxy.is_buried();
+        if found.blind {
             return;
         }
-        if let Some(hold) = proxy.hold() {
-            let displacement = shot.probe - shot.proxy;
-            let touch = touch(
-                &self.body,
-                hold.triangle,
-                hold.alpha,
-                displacement,
-                young_modulus,
-            );
-            if !touch.force.is_finite() {
-                shot.fault = shot.fault.or(Some(Fault::Nan));
-                return;
-            }
-            shot.sticking = proxy.is_sticking();
-            shot.hold = Some((hold.triangle, hold.alpha));
-            shot.triangle = self.body.triangles[hold.triangle as usize];
-            shot.nodal_forces = touch.nodal_forces;
-            shot.contact_force = touch.force;
-            shot.surface_point = surface_displacement(
-                &self.body,
-                hold.triangle,
-                hold.alpha,
-                &touch.nodal_forces,
-                young_modulus,
-            )
-            .map(|moved| shot.proxy + moved);
+        let Some(hold) = proxy.hold() else {
+            return;
+        };
+        let displacement = shot.probe - shot.proxy;
+        let touch = touch(body, hold.triangle, hold.alpha, displacement, young_modulus);
+        if !touch.force.is_finite() {
+            found.fault = found.fault.or(Some(Fault::Nan));
+            return;
+        }
+        found.touching = true;
+        shot.sticking = proxy.is_sticking();
+        shot.hold = Some((hold.triangle, hold.alpha));
+        shot.triangle = body.triangles[hold.triangle as usize];
+        shot.nodal_forces = touch.nodal_forces;
+        shot.contact_force = touch.force;
+        shot.surface_point = surface_displacement(
+            body,
+            hold.triangle,
+            hold.alpha,
+            &touch.nodal_forces,
+            young_modulus,
+        )
+        .map(|moved| shot.proxy + moved);
+    }
+
+    /// The servo's limits and the device's own, whichever is less.
+    fn limits_with(&self, reading: &Reading) -> Limits {
+        let own = self.options.limits;
+        Limits {
+            max_force: reading
+                .probe()
+                .map_or(own.max_force, |probe| own.max_force.min(probe.max_force)),
+            ..own
         }
     }
 
     /// Safety, then the device.
-    fn send(&mut self, shot: &mut Snapshot, max_force: f64, dt: f64, frame: &DeviceFrame) {
-        let permitted = matches!(shot.state, State::Free | State::Touching);
-        shot.output_force = if permitted {
-            let limits = Limits {
-                max_force,
-                ..self.options.limits
-            };
-            self.safety
-                .limit(shot.contact_force, &limits, dt)
-                .unwrap_or_else(|| {
-                    shot.fault = Some(Fault::Nan);
-                    (shot.state, shot.reason) = (State::Fault, "");
-                    DVec3::ZERO
-                })
-        } else {
-            self.safety.silence()
-        };
-        let enable = matches!(shot.state, State::Free | State::Touching);
-        self.device.write(shot.output_force, enable, frame);
+    fn send(
+        &mut self,
+        shot: &mut Snapshot,
+        found: &Findings,
+        limits: &Limits,
+        dt: f64,
+        frame: &DeviceFrame,
+    ) {
+        if self.standing.may_push(found) {
+            match self.safety.limit(shot.contact_force, limits, dt) {
+                Some(limited) => {
+                    shot.output_force = limited.force;
+                    shot.limited = limited.by;
+                }
+                None => self.standing = Standing::fault(Fault::Nan),
+            }
+        }
+        let may_push = self.standing.may_push(found);
+        if !may_push {
+            shot.output_force = self.safety.silence();
+        }
+        shot.state = self.standing.state;
+        shot.fault = self.standing.fault;
+        shot.reason = self.standing.reason;
+        self.device.write(shot.output_force, may_push, frame);
     }
 
     fn publish(&mut self, shot: Snapshot) {
@@ -246,26 +324,13 @@ impl<D: Device> Servo<D> {
         let shot = &mut self.published.snapshot;
         shot.state = State::Stopped;
         shot.output_force = DVec3::ZERO;
-        shot.reason = "";
+        shot.reason = if fault.is_none() { reason::ASKED } else { "" };
+        shot.limited = "";
         shot.fault = fault;
         if let Some(fault) = fault {
             self.published.faults[fault as usize] += 1;
         }
         self.published.link = self.device.report();
         self.snapshots.write(self.published);
-    }
-}
-
-/// The state that a tick's findings make, and its reason.
-fn judge(reading: &Reading, shot: &Snapshot, settings: &Settings) -> (State, &'static str) {
-    if shot.fault.is_some() {
-        return (State::Fault, "");
-    }
-    match reading {
-        Reading::Waiting(reason) | Reading::Passive(_, reason) => (State::Waiting, reason),
-        _ if !settings.enabled => (State::Disabled, "switched off"),
-        Reading::At(probe) if probe.buttons != 0 => (State::Disabled, "device button"),
-        _ if shot.hold.is_some() => (State::Touching, ""),
-        _ => (State::Free, ""),
     }
 }

@@ -3,53 +3,8 @@
 use glam::DVec3;
 
 use crate::device::{Fault, LinkReport};
-
-/// What the servo is doing.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[repr(u8)]
-pub enum State {
-    /// No device yet, or one that is not ready.
-    Waiting,
-    /// The force is coming back, from nothing.
-    Ramping,
-    /// The probe is off the surface.
-    Free,
-    /// The probe presses.
-    Touching,
-    /// Zero force because of a fault.
-    Fault,
-    /// Zero force because the user or the device's button wants it.
-    Disabled,
-    /// The thread does not run.
-    #[default]
-    Stopped,
-}
-
-impl State {
-    /// All states, in the order of their numbers.
-    pub const ALL: [Self; 7] = [
-        Self::Waiting,
-        Self::Ramping,
-        Self::Free,
-        Self::Touching,
-        Self::Fault,
-        Self::Disabled,
-        Self::Stopped,
-    ];
-
-    /// Name for people and tests.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Waiting => "waiting",
-            Self::Ramping => "ramping",
-            Self::Free => "free",
-            Self::Touching => "touching",
-            Self::Fault => "fault",
-            Self::Disabled => "disabled",
-            Self::Stopped => "stopped",
-        }
-    }
-}
+pub use crate::state::State;
+use crate::state::reason;
 
 /// One tick, whole: all fields belong together.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -83,10 +38,12 @@ pub struct Snapshot {
     pub fault: Option<Fault>,
     /// Why it waits, ramps, is disabled or stopped, or empty.
     pub reason: &'static str,
-    /// Which limiter shortens the force now, or empty.
+    /// Which limiter shortens the force now, one of [`LIMITERS`](crate::safety::LIMITERS), or empty.
     pub limited: &'static str,
     /// A bit a button.
     pub buttons: u8,
+    /// Counts the exchanges of the body: to which one the triangles belong.
+    pub body: u32,
 }
 
 /// A snapshot with the counters of the same tick.
@@ -104,6 +61,19 @@ pub struct Published {
     pub most_steps: u32,
     /// Sweeps corrected by the sign of the distance.
     pub rescues: u64,
+}
+
+impl Published {
+    /// What is told before the first tick.
+    pub fn before_the_start() -> Self {
+        Self {
+            snapshot: Snapshot {
+                reason: reason::NOT_STARTED,
+                ..Snapshot::default()
+            },
+            ..Self::default()
+        }
+    }
 }
 
 /// One tick in the recording.

@@ -4,18 +4,23 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
 
 use rtrb::Consumer;
 use triple_buffer::{Input, Output, triple_buffer};
 
 use crate::clock::{Pace, Timing};
 use crate::device::{Device, Fault};
+use crate::exchange::{Hand, exchange};
 use crate::recorder::{RING_SECONDS, Recorder, touched_ring};
 use crate::servo::{Options, Servo, Settings};
 use crate::sleeper::ask_for_real_time;
 use crate::snapshot::{Published, Sample};
 use crate::stages::Stages;
 use crate::surface::Body;
+
+/// How long an exchange of the body waits for the thread.
+const EXCHANGE_SECONDS: Duration = Duration::from_millis(200);
 
 /// A thread that wakes at a fixed rate until it is stopped.
 #[derive(Debug)]
@@ -104,6 +109,7 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 /// A running servo, seen from outside.
 pub struct Running {
     paced: Paced,
+    bodies: Mutex<Hand>,
     settings: Mutex<Input<Settings>>,
     snapshots: Mutex<Output<Published>>,
     samples: Mutex<Consumer<Sample>>,
@@ -124,8 +130,9 @@ impl Running {
         record_samples: usize,
         recorded_ticks: usize,
     ) -> std::io::Result<Self> {
+        let (hand, holder) = exchange(body.clone());
         let (settings_in, settings_out) = triple_buffer(&settings);
-        let (snapshots_in, snapshots_out) = triple_buffer(&Published::default());
+        let (snapshots_in, snapshots_out) = triple_buffer(&Published::before_the_start());
         let (samples_in, samples_out) = touched_ring(record_samples);
         let (tape, recorder) = Recorder::new((RING_SECONDS * options.rate_hz) as usize);
         if recorded_ticks > 0 {
@@ -139,6 +146,7 @@ impl Running {
             snapshots_in,
             samples_in,
         );
+        servo.bodies = holder;
         servo.tape = Some(tape);
         let stages = servo.stages();
         let paced = Paced::spawn("palpate-servo", options.rate_hz, move |wake| {
@@ -151,6 +159,7 @@ impl Running {
         })?;
         Ok(Self {
             paced,
+            bodies: Mutex::new(hand),
             settings: Mutex::new(settings_in),
             snapshots: Mutex::new(snapshots_out),
             samples: Mutex::new(samples_out),
@@ -162,6 +171,26 @@ impl Running {
     /// Hands new settings to the thread.
     pub fn set(&self, settings: Settings) {
         locked(&self.settings).write(settings);
+    }
+
+    /// Hands another body and the settings that belong to it to the thread, waits until that uses
+    /// them, and frees the body that it used before.
+    ///
+    /// Should the thread not get to it within [`EXCHANGE_SECONDS`], the old body is freed with the
+    /// next exchange or the end.
+    pub fn set_body(&self, body: Arc<Body>, settings: Settings) {
+        let mut bodies = locked(&self.bodies);
+        let number = bodies.give(body);
+        self.set(settings);
+        bodies.settle();
+        let since = Instant::now();
+        while self.published().snapshot.body != number {
+            if since.elapsed() > EXCHANGE_SECONDS || !self.paced.is_running() {
+                return;
+            }
+            std::thread::sleep(Duration::from_micros(200));
+        }
+        bodies.forget_older();
     }
 
     /// The newest tick.

@@ -5,11 +5,13 @@ mod bodies;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::io::{self, ErrorKind};
+use std::sync::Arc;
 
 use glam::DVec3;
 use palpate_servo::codec::{Decoder, MAX_FRAME, encode};
 use palpate_servo::coupling::Coupling;
 use palpate_servo::device::{Device, DeviceFrame, Fault};
+use palpate_servo::exchange::exchange;
 use palpate_servo::link::LinkDevice;
 use palpate_servo::pointer::{Pointer, Target};
 use palpate_servo::port::{Opener, Wire};
@@ -242,4 +244,45 @@ fn a_hundred_thousand_ticks_with_a_pointer_allocate_nothing() {
     assert!(touching > 5_000);
     assert!(matches!(last.snapshot.state, State::Free | State::Touching));
     assert!(last.most_steps >= 2);
+}
+
+#[test]
+fn a_body_is_exchanged_without_allocating_or_freeing_in_the_tick() {
+    let start = Target::first(DVec3::new(0.02, 0.02, 0.045));
+    let (_targets_in, targets) = triple_buffer(&start);
+    let (_settings_in, settings_out) = triple_buffer(&settings());
+    let (snapshots_in, mut snapshots) = triple_buffer(&Published::default());
+    let (samples_in, _samples) = RingBuffer::new(50_000);
+    let first = bodies::cube();
+    let mut old = Arc::downgrade(&first);
+    let (mut hand, holder) = exchange(first.clone());
+    let pointer = Pointer::new(start, targets, 0.5);
+    let mut servo = Servo::new(
+        first,
+        pointer,
+        OPTIONS,
+        settings_out,
+        snapshots_in,
+        samples_in,
+    );
+    servo.bodies = holder;
+    let mut now = 0.0;
+    let mut tick = || {
+        now += 1e-3;
+        assert_eq!(counted(|| servo.tick(now)), 0);
+        snapshots.read().snapshot.body
+    };
+    for round in 1..=100 {
+        let body = bodies::giving_cube();
+        let new = Arc::downgrade(&body);
+        let number = hand.give(body);
+        assert_eq!((number, tick()), (round, round));
+        hand.settle();
+        tick();
+        assert_eq!(old.strong_count(), 1, "its last holder is out of the tick");
+        assert!(counted(|| hand.forget_older()) > 0);
+        assert_eq!(old.strong_count(), 0);
+        tick();
+        old = new;
+    }
 }

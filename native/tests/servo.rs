@@ -1,195 +1,133 @@
 //! Whole ticks with a scripted device: what goes wrong gives zero force, a name, and a ramp.
 
 mod bodies;
+mod scripted;
 
 use std::sync::{Arc, Mutex};
 
-use glam::DVec3;
-use palpate_servo::coupling::Coupling;
-use palpate_servo::device::{Device, DeviceFrame, Fault, LinkReport, Probe, Reading};
-use palpate_servo::proxy::Feel;
+use glam::{DMat3, DVec3};
+use palpate_servo::device::{DeviceFrame, Fault, Probe, Reading};
 use palpate_servo::safety::Limits;
-use palpate_servo::servo::{Options, Servo, Settings};
-use palpate_servo::snapshot::{Published, Snapshot, State};
+use palpate_servo::servo::{Options, Settings};
+use palpate_servo::snapshot::State;
+use palpate_servo::state::reason;
 use palpate_servo::thread::Running;
-use rtrb::{Consumer, RingBuffer};
-use triple_buffer::{Input, Output, triple_buffer};
+use scripted::{ABOVE, DT, OPTIONS, PRESSED, Scripted, Table, probe, settings};
 
-const ABOVE: DVec3 = DVec3::new(0.02, 0.03, 0.055);
-const PRESSED: DVec3 = DVec3::new(0.02, 0.03, 0.047);
-const DT: f64 = 1e-3;
-
-#[derive(Clone)]
-struct Scripted {
-    reading: Reading,
-    sent: Arc<Mutex<Vec<(DVec3, bool)>>>,
-    panics: bool,
-}
-
-impl Device for Scripted {
-    fn read(&mut self, _now: f64, _dt: f64, _frame: &DeviceFrame) -> Reading {
-        assert!(!self.panics, "as the test wants it");
-        self.reading
-    }
-
-    fn write(&mut self, force: DVec3, enable: bool, _frame: &DeviceFrame) {
-        self.sent.lock().unwrap().push((force, enable));
-    }
-
-    fn park(&mut self) {
-        self.sent.lock().unwrap().push((DVec3::ZERO, false));
-    }
-
-    fn report(&self) -> LinkReport {
-        LinkReport::default()
-    }
-}
-
-fn probe(position: DVec3) -> Probe {
-    Probe {
-        position,
-        speed: 0.0,
-        restart: false,
-        buttons: 0,
-        max_force: 3.0,
-    }
-}
-
-const OPTIONS: Options = Options {
-    rate_hz: 1000,
-    limits: Limits {
-        max_force: 3.0,
-        max_slew: 1e6,
-        ramp_seconds: 0.1,
-    },
-    max_speed: 2.0,
-};
-
-fn settings() -> Settings {
-    Settings {
-        young_modulus: 1e4,
-        enabled: true,
-        frame: DeviceFrame::default(),
-        feel: Feel::default(),
-        coupling: Coupling::default(),
-    }
-}
-
-struct Table {
-    servo: Servo<Scripted>,
-    settings: Input<Settings>,
-    snapshots: Output<Published>,
-    _samples: Consumer<palpate_servo::snapshot::Sample>,
-    ticks: u32,
-}
-
-impl Table {
-    /// A servo that presses with its full force.
-    fn pressing() -> Self {
-        let (settings_in, settings_out) = triple_buffer(&settings());
-        let (snapshots_in, snapshots) = triple_buffer(&Published::default());
-        let (samples_in, samples) = RingBuffer::new(10);
-        let device = Scripted {
-            reading: Reading::At(probe(ABOVE)),
-            sent: Arc::default(),
-            panics: false,
-        };
-        let body = bodies::cube();
-        let servo = Servo::new(
-            body,
-            device,
-            OPTIONS,
-            settings_out,
-            snapshots_in,
-            samples_in,
-        );
-        let mut table = Self {
-            servo,
-            settings: settings_in,
-            snapshots,
-            _samples: samples,
-            ticks: 0,
-        };
-        assert_eq!(table.tick(Reading::At(probe(ABOVE))).state, State::Free);
-        for _ in 0..200 {
-            table.tick(Reading::At(probe(PRESSED)));
+#[test]
+fn numbers_of_the_probe_that_are_none_give_no_force() {
+    let nan = |position: DVec3| probe(position);
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        for axis in 0..3 {
+            let mut position = PRESSED;
+            position[axis] = bad;
+            let reading = Reading::At(nan(position));
+            Table::pressing().silences(reading, State::Fault, Some(Fault::Nan));
         }
-        let shot = table.tick(Reading::At(probe(PRESSED)));
-        assert_eq!(shot.state, State::Touching);
-        assert_eq!(shot.output_force, shot.contact_force);
-        assert!(shot.output_force.length() > 0.5);
-        table
-    }
-
-    fn tick(&mut self, reading: Reading) -> Snapshot {
-        self.servo.device.reading = reading;
-        self.ticks += 1;
-        self.servo.tick(f64::from(self.ticks) * DT);
-        self.snapshots.read().snapshot
-    }
-
-    fn sent(&self) -> (DVec3, bool) {
-        *self.servo.device.sent.lock().unwrap().last().unwrap()
-    }
-
-    /// After this reading there is no force at once, and then a ramp from nothing.
-    fn silences(&mut self, reading: Reading, state: State, fault: Option<Fault>) {
-        for _ in 0..3 {
-            let shot = self.tick(reading);
-            assert_eq!((shot.state, shot.fault), (state, fault));
-            assert_eq!(shot.output_force, DVec3::ZERO);
-            assert_eq!(self.sent(), (DVec3::ZERO, false));
-        }
-        self.ramps();
-        if let Some(fault) = fault {
-            let counted = self.snapshots.read().faults;
-            assert_eq!(counted[fault as usize], 1, "an episode counts once");
-        }
-    }
-
-    fn ramps(&mut self) {
-        let mut last = 0.0;
-        for tick in 1..=100 {
-            let shot = self.tick(Reading::At(probe(PRESSED)));
-            assert_eq!(shot.state, State::Touching);
-            let gain = shot.output_force.length() / shot.contact_force.length();
-            assert!((gain - f64::from(tick) * 0.01).abs() < 1e-9);
-            assert!(gain > last);
-            assert_eq!(self.sent(), (shot.output_force, true));
-            last = gain;
-        }
+        let speed = Reading::At(Probe {
+            speed: bad,
+            ..probe(PRESSED)
+        });
+        Table::pressing().silences(speed, State::Fault, Some(Fault::Nan));
     }
 }
 
 #[test]
-fn positions_that_are_not_numbers_give_no_force() {
-    for bad in [f64::NAN, f64::INFINITY] {
-        let reading = Reading::At(probe(DVec3::new(0.0, bad, 0.0)));
+fn a_largest_force_of_the_device_that_is_none_gives_no_force() {
+    for max_force in [f64::NAN, -1.0, f64::NEG_INFINITY] {
+        let reading = Reading::At(Probe {
+            max_force,
+            ..probe(PRESSED)
+        });
         Table::pressing().silences(reading, State::Fault, Some(Fault::Nan));
     }
 }
 
 #[test]
-fn a_modulus_that_is_not_a_number_gives_no_force() {
-    let mut table = Table::pressing();
-    table.settings.write(Settings {
-        young_modulus: f64::NAN,
-        ..settings()
-    });
-    let shot = table.tick(Reading::At(probe(PRESSED)));
-    assert_eq!((shot.state, shot.fault), (State::Fault, Some(Fault::Nan)));
-    assert_eq!(table.sent(), (DVec3::ZERO, false));
-    table.settings.write(settings());
-    table.ramps();
+fn settings_that_are_no_numbers_give_no_force() {
+    for bad in [f64::NAN, f64::INFINITY] {
+        let turned = |rotation| Settings {
+            frame: DeviceFrame {
+                rotation,
+                ..DeviceFrame::default()
+            },
+            ..settings()
+        };
+        let bad_settings = [
+            Settings {
+                young_modulus: bad,
+                ..settings()
+            },
+            turned(DMat3::from_diagonal(DVec3::new(1.0, bad, 1.0))),
+        ];
+        for bad in bad_settings {
+            let mut table = Table::pressing();
+            table.settings.write(bad);
+            // The scripted device knows no frame: what a device would make of it.
+            let position = bad.frame.to_body(PRESSED);
+            let shot = table.tick(Reading::At(probe(position)));
+            assert_eq!((shot.state, shot.fault), (State::Fault, Some(Fault::Nan)));
+            table.is_silent(&shot);
+            table.settings.write(settings());
+            assert_eq!(table.ramps(), "after nan");
+        }
+    }
 }
 
 #[test]
-fn a_device_that_is_too_fast_gets_no_force() {
-    let fast = Probe {
-        speed: 2.1,
-        ..probe(PRESSED)
+fn limits_that_are_no_numbers_give_no_force() {
+    let limits = |edit: fn(&mut Limits)| {
+        let mut options = OPTIONS;
+        edit(&mut options.limits);
+        options
     };
-    Table::pressing().silences(Reading::At(fast), State::Fault, Some(Fault::TooFast));
+    let speed = Options {
+        max_speed: f64::NAN,
+        ..OPTIONS
+    };
+    // A rate of zero makes the time between ticks infinite.
+    let rate = Options {
+        rate_hz: 0,
+        ..OPTIONS
+    };
+    for options in [
+        limits(|l| l.max_force = f64::NAN),
+        limits(|l| l.max_slew = f64::NAN),
+        limits(|l| l.ramp_seconds = f64::NAN),
+        limits(|l| l.max_force = -1.0),
+        speed,
+        rate,
+    ] {
+        let mut table = Table::new(bodies::cube(), options);
+        table.tick(Reading::At(probe(ABOVE)));
+        for _ in 0..10 {
+            let shot = table.press();
+            assert_eq!(
+                (shot.state, shot.fault),
+                (State::Fault, Some(Fault::Nan)),
+                "{options:?}"
+            );
+            table.is_silent(&shot);
+        }
+    }
+}
+
+#[test]
+fn contact_blocks_that_are_no_numbers_are_refused_and_too_large_ones_give_no_force() {
+    let cube = bodies::cube();
+    let with = |value: f64| {
+        let blocks = vec![DMat3::from_diagonal(DVec3::splat(value)); cube.nodes.len()];
+        palpate_servo::surface::Body::new(cube.nodes.clone(), cube.triangles.clone(), blocks)
+    };
+    for bad in [f64::NAN, f64::INFINITY] {
+        assert!(with(bad).is_err());
+    }
+    let huge = Arc::new(with(1e308).expect("finite"));
+    let mut table = Table::new(huge, OPTIONS);
+    table.tick(Reading::At(probe(ABOVE)));
+    let shot = table.press();
+    assert_eq!((shot.state, shot.fault), (State::Fault, Some(Fault::Nan)));
+    table.is_silent(&shot);
 }
 
 #[test]
@@ -212,11 +150,14 @@ fn what_the_device_reports_gives_no_force() {
 
 #[test]
 fn the_button_gives_no_force() {
-    let held = Probe {
+    let held = Reading::At(Probe {
         buttons: 2,
         ..probe(PRESSED)
-    };
-    Table::pressing().silences(Reading::At(held), State::Disabled, None);
+    });
+    let mut table = Table::pressing();
+    let shot = table.tick(held);
+    assert_eq!((shot.reason, shot.buttons), (reason::BUTTON, 2));
+    table.silences(held, State::Disabled, None);
 }
 
 #[test]
@@ -226,11 +167,25 @@ fn switching_off_gives_no_force() {
         enabled: false,
         ..settings()
     });
-    let shot = table.tick(Reading::At(probe(PRESSED)));
+    let shot = table.press();
     assert_eq!((shot.state, shot.reason), (State::Disabled, "switched off"));
-    assert_eq!(table.sent(), (DVec3::ZERO, false));
+    table.is_silent(&shot);
     table.settings.write(settings());
-    table.ramps();
+    assert_eq!(table.ramps(), reason::SWITCHED_ON);
+}
+
+#[test]
+fn the_force_ramps_after_the_start_even_if_the_device_is_pressed_at_once() {
+    let mut table = Table::new(bodies::cube(), OPTIONS);
+    let mut first = probe(ABOVE);
+    first.restart = true;
+    // In contact with the second tick, 2 mm deep: the ramp has hardly begun.
+    let shot = table.tick(Reading::At(first));
+    assert_eq!((shot.state, shot.reason), (State::Ramping, reason::STARTED));
+    let shot = table.press();
+    assert_eq!((shot.state, shot.limited), (State::Ramping, "ramp"));
+    let gain = shot.output_force.length() / shot.contact_force.length();
+    assert!((gain - 0.02).abs() < 1e-9);
 }
 
 #[test]
@@ -242,7 +197,7 @@ fn leaving_the_body_gives_no_force_in_the_same_tick() {
 }
 
 #[test]
-fn the_devices_own_limit_is_kept() {
+fn the_clamp_and_the_devices_own_limit_are_kept_and_told() {
     let mut table = Table::pressing();
     let weak = Probe {
         max_force: 0.2,
@@ -250,6 +205,45 @@ fn the_devices_own_limit_is_kept() {
     };
     let shot = table.tick(Reading::At(weak));
     assert!((shot.output_force.length() - 0.2).abs() < 1e-12);
+    assert_eq!((shot.state, shot.limited), (State::Touching, "clamp"));
+    let only_measures = Probe {
+        max_force: 0.0,
+        ..probe(PRESSED)
+    };
+    let shot = table.tick(Reading::At(only_measures));
+    assert_eq!(shot.output_force, DVec3::ZERO);
+
+    let mut options = OPTIONS;
+    options.limits.max_force = 0.3;
+    let mut table = Table::new(bodies::cube(), options);
+    table.tick(Reading::At(probe(ABOVE)));
+    for _ in 0..200 {
+        let shot = table.press();
+        assert!(shot.output_force.length() <= 0.3 * (1.0 + 1e-12));
+    }
+    assert!((table.press().output_force.length() - 0.3).abs() < 1e-12);
+}
+
+#[test]
+fn a_force_that_grows_or_turns_suddenly_is_slewed_and_one_that_ends_is_not() {
+    let mut options = OPTIONS;
+    options.limits.max_slew = 20.0;
+    let mut table = Table::pressing_with(options);
+    let mut last = table.press().output_force;
+    let mut deeper = PRESSED;
+    deeper.z -= 0.004;
+    let mut slewed = 0;
+    for _ in 0..100 {
+        let shot = table.tick(Reading::At(probe(deeper)));
+        assert!(shot.output_force.distance(last) <= 20.0 * DT + 1e-12);
+        slewed += u32::from(shot.limited == "slew");
+        last = shot.output_force;
+    }
+    assert!(slewed > 10, "{slewed}");
+    let shot = table.tick(Reading::At(probe(deeper)));
+    assert_eq!((shot.output_force, shot.limited), (shot.contact_force, ""));
+    let shot = table.tick(Reading::At(probe(ABOVE)));
+    assert_eq!(shot.output_force, DVec3::ZERO);
 }
 
 #[test]
@@ -262,17 +256,19 @@ fn another_device_frame_sets_the_probe_down_anew() {
         },
         ..settings()
     });
-    let shot = table.tick(Reading::At(probe(PRESSED)));
+    let shot = table.press();
     assert_eq!((shot.state, shot.output_force), (State::Free, DVec3::ZERO));
+    assert_eq!(table.press().reason, reason::INSIDE);
+    table.presses();
 }
 
 #[test]
 fn a_servo_that_fails_inside_leaves_the_device_limp_and_says_so() {
     let sent = Arc::<Mutex<Vec<(DVec3, bool)>>>::default();
     let device = Scripted {
-        reading: Reading::At(probe(ABOVE)),
         sent: sent.clone(),
         panics: true,
+        ..Scripted::above()
     };
     let running = Running::start(bodies::cube(), device, OPTIONS, settings(), 10, 0).unwrap();
     while running.paced().is_running() {
@@ -283,5 +279,16 @@ fn a_servo_that_fails_inside_leaves_the_device_limp_and_says_so() {
         (shot.state, shot.fault),
         (State::Stopped, Some(Fault::Internal))
     );
+    assert_eq!(sent.lock().unwrap().last(), Some(&(DVec3::ZERO, false)));
+}
+
+#[test]
+fn a_servo_that_was_asked_to_stop_says_so() {
+    let device = Scripted::above();
+    let sent = device.sent.clone();
+    let running = Running::start(bodies::cube(), device, OPTIONS, settings(), 10, 0).unwrap();
+    running.paced().stop();
+    let shot = running.published().snapshot;
+    assert_eq!((shot.state, shot.reason), (State::Stopped, reason::ASKED));
     assert_eq!(sent.lock().unwrap().last(), Some(&(DVec3::ZERO, false)));
 }

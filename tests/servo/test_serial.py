@@ -206,8 +206,8 @@ def test_silence_is_stale_and_the_force_ramps_on_return(device, servo, eventuall
     eventually(lambda: np.allclose(servo.snapshot().output_force, servo.snapshot().contact_force))
     samples = servo.samples()
     assert not samples["output"][samples["state"] == STATES.index("fault")].any()
-    touching = samples[samples["state"] == STATES.index("touching")]
-    gain = np.linalg.norm(touching["output"], axis=1) / np.linalg.norm(touching["force"], axis=1)
+    ramping = samples[samples["state"] == STATES.index("ramping")]
+    gain = np.linalg.norm(ramping["output"], axis=1) / np.linalg.norm(ramping["force"], axis=1)
     assert gain[0] < 0.03
     assert servo.counters()["faults"]["stale"] >= 1
 

@@ -159,7 +159,7 @@ def test_ctrl_c_zeroes_the_force_and_still_reports(body_file, device):
         process.wait()
     assert process.returncode == 0
     assert report["interrupted"] is True
-    assert report["last_state"] == "touching"
+    assert report["last_state"] in ("ramping", "touching")
     assert report["peak_output_force_n"] > 0.2
     assert device.report()["felt_force"] == [0.0, 0.0, 0.0]
 

@@ -14,7 +14,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
 use crate::device::Fault;
-use crate::snapshot::State;
+use crate::safety::LIMITERS;
+use crate::state::{State, after, reason};
 
 #[pymodule]
 fn palpate_servo(module: &Bound<'_, PyModule>) -> PyResult<()> {
@@ -34,6 +35,9 @@ fn palpate_servo(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(stop_all)?;
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("STATES", PyTuple::new(py, State::ALL.map(State::name))?)?;
+    let reasons = reason::ALL.into_iter().chain(Fault::ALL.map(after));
+    module.add("REASONS", PyTuple::new(py, reasons.collect::<Vec<_>>())?)?;
+    module.add("LIMITERS", PyTuple::new(py, LIMITERS)?)?;
     module.add("FAULTS", PyTuple::new(py, Fault::ALL.map(Fault::name))?)?;
     Ok(())
 }

@@ -53,7 +53,8 @@ impl Servo {
     }
 
     fn published(&self) -> Published {
-        self.current().map(|r| r.published()).unwrap_or_default()
+        self.current()
+            .map_or_else(Published::before_the_start, |r| r.published())
     }
 
     fn change(&self, edit: impl FnOnce(&mut Settings)) {
@@ -248,11 +249,18 @@ impl Servo {
         Ok(())
     }
 
-    fn set_body(&self, body: &Body, young_modulus: f64) -> PyResult<()> {
+    fn set_body(&self, py: Python<'_>, body: &Body, young_modulus: f64) -> PyResult<()> {
         let young_modulus = positive("young_modulus", young_modulus)?;
-        self.refuse_if_running()?;
-        *locked(&self.body) = body.inner.clone();
-        self.change(|s| s.young_modulus = young_modulus);
+        let body = body.inner.clone();
+        // Whoever waits for a lock in here may hold the interpreter's.
+        py.detach(|| {
+            let mut settings = locked(&self.settings);
+            settings.young_modulus = young_modulus;
+            (*locked(&self.body)).clone_from(&body);
+            if let Some(running) = self.current() {
+                running.set_body(body, *settings);
+            }
+        });
         Ok(())
     }
 

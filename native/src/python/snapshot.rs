@@ -88,6 +88,10 @@ impl Snapshot {
         self.inner.limited
     }
     #[getter]
+    fn body(&self) -> u32 {
+        self.inner.body
+    }
+    #[getter]
     fn buttons(&self) -> u8 {
         self.inner.buttons
     }
