@@ -252,15 +252,15 @@ impl<D: Device> Servo<D> {
         .map(|moved| shot.proxy + moved);
     }
 
-    /// The servo's limits and the device's own, whichever is less.
+    /// The servo's limits and the device's own, whichever is less; what is no number stays none.
     fn limits_with(&self, reading: &Reading) -> Limits {
-        let own = self.options.limits;
-        Limits {
-            max_force: reading
-                .probe()
-                .map_or(own.max_force, |probe| own.max_force.min(probe.max_force)),
-            ..own
+        let mut limits = self.options.limits;
+        if let Some(probe) = reading.probe()
+            && probe.max_force < limits.max_force
+        {
+            limits.max_force = probe.max_force;
         }
+        limits
     }
 
     /// Safety, then the device.

@@ -65,6 +65,17 @@ pub mod reason {
     pub const NO_STATE: &str = "no STATE yet";
     /// Waiting: the device says that it would not obey.
     pub const NOT_READY: &str = "the device is not ready";
+    /// Waiting: no hAPI board has answered.
+    pub const NO_BOARD: &str = "no answer from a hAPI board yet";
+    /// Waiting: a board is told what it has on which port.
+    pub const SETTING_UP: &str = "the board is being set up";
+    /// Waiting: a board was reset and its angles have no zero.
+    pub const LOST_PLACE: &str = "the board has forgotten where its handle is: \
+        put the handle in its rest pose and start again";
+    /// Waiting: set up, but no position yet.
+    pub const NO_ANGLES: &str = "no angles yet";
+    /// Waiting: near its limit the device's force has no certain direction.
+    pub const STRETCHED: &str = "the arms are stretched: bring the handle back to the middle";
     /// Ramping: the thread has just started.
     pub const STARTED: &str = "started";
     /// Ramping: the device has just become ready.
@@ -87,10 +98,15 @@ pub mod reason {
     pub const ASKED: &str = "asked to stop";
 
     /// All of them but the empty one and those of [`super::after`].
-    pub const ALL: [&str; 13] = [
+    pub const ALL: [&str; 18] = [
         NO_ANSWER,
         NO_STATE,
         NOT_READY,
+        NO_BOARD,
+        SETTING_UP,
+        LOST_PLACE,
+        NO_ANGLES,
+        STRETCHED,
         STARTED,
         READY,
         SWITCHED_ON,

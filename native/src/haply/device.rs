@@ -18,6 +18,7 @@ use super::pantograph::Pose;
 use crate::codec::Greeting;
 use crate::device::{Device, DeviceFrame, Fault, LinkReport, Probe, Reading};
 use crate::port::{Opener, Wire};
+use crate::state::reason;
 
 /// A board is asked whether it knows this device this often, s.
 const ASK_SECONDS: f64 = 0.05;
@@ -47,10 +48,6 @@ const READS_PER_TICK: usize = 16;
 /// Completes whatever a board still waits for: the end of the longest message.
 const FILL_BYTES: usize = 18;
 const OUTBOX: usize = 64;
-
-const LOST_PLACE: &str = "the board has forgotten where its handle is: \
-    put the handle in its rest pose and start again";
-const STRETCHED: &str = "the arms are stretched: bring the handle back to the middle";
 
 /// How the angles get their zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -451,10 +448,10 @@ impl<O: Opener> Device for HaplyDevice<O> {
         match self.phase {
             Phase::Asking { asked } => {
                 self.ask(asked);
-                return Reading::Waiting("no answer from a hAPI board yet");
+                return Reading::Waiting(reason::NO_BOARD);
             }
             Phase::SettingUp { since } if now - since < SETTLE_SECONDS => {
-                return Reading::Waiting("the board is being set up");
+                return Reading::Waiting(reason::SETTING_UP);
             }
             Phase::SettingUp { .. } => {
                 self.phase = Phase::Running;
@@ -463,13 +460,13 @@ impl<O: Opener> Device for HaplyDevice<O> {
             Phase::Running => {}
         }
         if !self.calibrated {
-            return Reading::Waiting(LOST_PLACE);
+            return Reading::Waiting(reason::LOST_PLACE);
         }
         if now - self.heard > STALE_SECONDS {
             return Reading::Fault(Fault::Stale);
         }
         let Some(newest) = self.newest else {
-            return Reading::Waiting("no angles yet");
+            return Reading::Waiting(reason::NO_ANGLES);
         };
         let Some(pose) = newest.pose else {
             return Reading::Fault(Fault::Device);
@@ -483,7 +480,7 @@ impl<O: Opener> Device for HaplyDevice<O> {
             max_force: pose.largest_force(TORQUE_LIMIT),
         };
         if stretched {
-            Reading::Passive(probe, STRETCHED)
+            Reading::Passive(probe, reason::STRETCHED)
         } else {
             Reading::At(probe)
         }
