@@ -47,6 +47,8 @@ def run(arguments: argparse.Namespace) -> int:
         print("no serial ports; plug a device in, or try 'palpate devices simulate'")
     for port in ports:
         print(_line(port))
+        if port.warning:
+            print(f"  {port.warning}")
     return 0
 
 

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core import cache
+from ..core.devices.latency_timer import explain
 from ..core.devices.ports import PortError, check_port
 from ..core.devices.simulated_options import SimulatedOptions
 from ..core.devices.simulated_process import SimulatedDevice
@@ -82,7 +83,7 @@ def run(arguments: argparse.Namespace) -> int:
         if arguments.record is not None:
             _start_recording(servo, arguments.seconds)
         _connect(servo, port, stopped)
-        report = _touch(servo, arguments.seconds, stopped)
+        report = _touch(servo, port, arguments.seconds, stopped)
         if simulated is not None:
             report["simulated_device"] = simulated.stop()
         if arguments.record is not None:
@@ -216,7 +217,7 @@ def _for_people(report: dict[str, Any]) -> str:
     return "\n".join([lines, *rows])
 
 
-def _touch(servo: Servo, seconds: float, stopped: Sequence[int]) -> dict[str, Any]:
+def _touch(servo: Servo, port: str, seconds: float, stopped: Sequence[int]) -> dict[str, Any]:
     felt = _Felt()
     begin = time.monotonic()
     while not stopped and time.monotonic() < begin + seconds and servo.running:
@@ -238,6 +239,7 @@ def _touch(servo: Servo, seconds: float, stopped: Sequence[int]) -> dict[str, An
         },
         "realtime": counters["realtime"],
         "link": counters["link"],
+        "warning": explain(counters["link"], port) or "",
         "faults": counters["faults"],
         "samples_lost": counters["samples_lost"],
         "seconds": time.monotonic() - begin,

@@ -65,6 +65,15 @@ class DeviceGreeting(TypedDict):
     half_extents: list[float]
     rate_hz: int
 
+class StateInterval(TypedDict):
+    """Time between STATE messages, us."""
+
+    mean: float
+    """From one tick with new ones to the next; silence beyond 0.5 s is left out."""
+    max: float
+    device: float
+    """From one to the next on the device's own clock, on average."""
+
 class LinkCounters(TypedDict):
     """What happened on the serial link."""
 
@@ -81,6 +90,13 @@ class LinkCounters(TypedDict):
     device_faults: int
     unsent: int
     reopened: int
+    state_interval_us: StateInterval
+    bursts: int
+    """Pauses of more than 3.5 ms that ended with STATE messages made all along: held back."""
+    burst_ms: float
+    """Mean length of these pauses, ms."""
+    burst_states: int
+    """STATE messages that came in bursts."""
     last_fault: tuple[int, int] | None
     device: DeviceGreeting | None
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import dataclasses
 import errno
 import os
 import struct
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
@@ -16,11 +17,14 @@ from serial.tools.list_ports import comports
 
 from ..errors import PalpateError
 from . import link
+from .latency_timer import ask_for_low_latency, explain_readings
 
 BAUD = 115200
 ANSWER_SECONDS = 2.5
 """Boards that restart when their port is opened need up to two seconds before they listen."""
 HELLO_EVERY_SECONDS = 0.1
+LISTEN_SECONDS = 0.4
+"""So long STATE is watched: 25 bursts of an adapter with its timer as delivered."""
 
 # Linux tells whether somebody holds the terminal alone; Python 3.11 has no name for the request.
 _TIOCGEXCL = 0x80045440
@@ -61,13 +65,16 @@ class Port:
     """The device's answer."""
     reason: str = ""
     """Why there is no answer."""
+    warning: str = ""
+    """What keeps the device from being felt as it should, and what helps."""
 
 
 def list_ports(extra: Sequence[str] = (), seconds: float = ANSWER_SECONDS) -> list[Port]:
     """All ports of this computer, then `extra` paths, each asked for HELLO for up to `seconds`.
 
     A port that is no USB device is asked only when it is among `extra`: it may be the console, or
-    a machine that does not expect to be spoken to.
+    a machine that does not expect to be spoken to. Those of `extra` are listened to a little
+    longer, for the `warning`.
     """
     found = [
         Port(
@@ -86,15 +93,16 @@ def list_ports(extra: Sequence[str] = (), seconds: float = ANSWER_SECONDS) -> li
 
 
 def _asked(port: Port, named: bool, seconds: float) -> Port:
-    hello, reason = None, ""
+    hello, reason, warning = None, "", ""
     if port.usb_id or named:
         try:
-            hello = say_hello(port.path, seconds)
+            hello, readings = _ask(port.path, seconds, LISTEN_SECONDS if named else 0.0)
+            warning = explain_readings(readings, port.path) or ""
         except PortError as error:
             reason = error.reason
     else:
         reason = "not asked, as it is no USB device; name it with --port to ask it"
-    return Port(port.path, port.description, port.vendor, port.product, port.usb_id, hello, reason)
+    return dataclasses.replace(port, hello=hello, reason=reason, warning=warning)
 
 
 def say_hello(path: str, seconds: float = ANSWER_SECONDS) -> link.DeviceHello:
@@ -103,10 +111,17 @@ def say_hello(path: str, seconds: float = ANSWER_SECONDS) -> link.DeviceHello:
     Raises PortError when the port cannot be opened or is in use, when nothing answers within
     `seconds`, and when the device speaks another version of the link.
     """
+    return _ask(path, seconds, 0.0)[0]
+
+
+def _ask(
+    path: str, seconds: float, listen_seconds: float
+) -> tuple[link.DeviceHello, list[tuple[float, list[int]]]]:
+    """The answer to HELLO, and readings of STATE as `explain_readings` takes them."""
     _look_at(path, even_if_taken=False)
     try:
         with serial.Serial(path, BAUD, timeout=0.02, write_timeout=0.5, exclusive=True) as port:
-            return _exchange(path, port, seconds)
+            return _exchange(path, port, seconds), list(_listen(port, listen_seconds))
     except serial.SerialTimeoutException as error:
         raise PortError(path, _silence(seconds)) from error
     except serial.SerialException as error:
@@ -114,7 +129,10 @@ def say_hello(path: str, seconds: float = ANSWER_SECONDS) -> link.DeviceHello:
 
 
 def check_port(path: str) -> None:
-    """Raises PortError when `path` is no port that may be opened; says nothing to it."""
+    """Raises PortError when `path` is no port that may be opened; says nothing to it.
+
+    The port's driver is asked for low latency on the way.
+    """
     _look_at(path, even_if_taken=True)
 
 
@@ -136,6 +154,8 @@ def _look_at(path: str, *, even_if_taken: bool) -> None:
             taken = fcntl.ioctl(descriptor, _TIOCGEXCL, struct.pack("i", 0))
             if struct.unpack("i", taken)[0]:
                 raise PortError(path, _REASONS[errno.EBUSY])
+        # Asked while the port is open anyway: to open it once more may restart a board.
+        ask_for_low_latency(descriptor)
     finally:
         os.close(descriptor)
 
@@ -159,6 +179,18 @@ def _exchange(path: str, port: serial.Serial, seconds: float) -> link.DeviceHell
                         f"{link.PROTOCOL}; update the older of the two",
                     )
     raise PortError(path, _silence(seconds))
+
+
+def _listen(port: serial.Serial, seconds: float) -> Iterator[tuple[float, list[int]]]:
+    decoder = link.Decoder()
+    port.timeout = 1e-3
+    deadline = time.monotonic() + seconds
+    while time.monotonic() < deadline:
+        data = port.read(max(1, port.in_waiting))
+        stamps = [m.device_time_us for m in decoder.feed(data) if isinstance(m, link.State)]
+        # A part of a frame is neither a STATE nor a reading in vain.
+        if stamps or not data:
+            yield time.monotonic(), stamps
 
 
 def _silence(seconds: float) -> str:

@@ -34,7 +34,13 @@ class SimulatedBoard:
         self.plant = Plant(options.impedance, 1.0 / options.rate_hz, start, options.brake)
         self._lowest, self._highest = start, start
         self._to_device = BadWire(options.loss, options.noise, options.delay, 2 * options.seed)
-        self._to_host = BadWire(options.loss, options.noise, options.delay, 2 * options.seed + 1)
+        self._to_host = BadWire(
+            options.loss,
+            options.noise,
+            options.delay,
+            2 * options.seed + 1,
+            options.latency_timer,
+        )
         self.terminal = PseudoTerminal(Path(options.link) if options.link else None)
 
     def tick(self, now: float, steps: int) -> None:

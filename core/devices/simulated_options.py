@@ -75,6 +75,10 @@ class SimulatedOptions:
     )
     noise: float = field(default=0.0, metadata=_about("FRACTION", "of the bits flips, both ways"))
     delay: float = field(default=0.0, metadata=_about("S", "on the way, each way"))
+    latency_timer: float = field(
+        default=0.0,
+        metadata=_about("S", "bytes to the host are held back so long, as FTDI's adapters do"),
+    )
     seed: int = field(default=1, metadata=_about("N", "of loss and noise"))
     unplug_at: float | None = field(
         default=None, metadata=_about("S", "when the plug is pulled (needs a link to return)")
@@ -92,7 +96,15 @@ class SimulatedOptions:
 
     def __post_init__(self) -> None:
         positive = ("rate_hz", "largest_force", "resolution_um", "mass")
-        not_negative = ("damping", "brake", "hand_stiffness", "hand_damping", "delay", "unplug_for")
+        not_negative = (
+            "damping",
+            "brake",
+            "hand_stiffness",
+            "hand_damping",
+            "delay",
+            "latency_timer",
+            "unplug_for",
+        )
         for name in positive:
             if not (0 < getattr(self, name) < math.inf):
                 raise PalpateError(f"simulated device: {_flag(name)} must be more than 0")

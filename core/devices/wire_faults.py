@@ -11,13 +11,18 @@ class BadWire:
     """One direction of the link. Every frame that goes in comes out, unless it meets its fate.
 
     loss: fraction of frames that vanish. noise: fraction of bits that flip. delay: seconds.
+    latency_timer: what arrives is held back and handed over only at multiples of this, seconds, as
+    FTDI's adapters do; 0 for at once.
     """
 
-    def __init__(self, loss: float, noise: float, delay: float, seed: int) -> None:
+    def __init__(
+        self, loss: float, noise: float, delay: float, seed: int, latency_timer: float = 0.0
+    ) -> None:
         self.lost = 0
         self.flipped = 0
         self._loss = loss
         self._delay = delay
+        self._latency_timer = latency_timer
         self._random = random.Random(seed)  # noqa: S311 - dice for a simulation, not secrets
         self._noise = noise
         self._clean_bits = self._draw_clean_bits()
@@ -33,7 +38,7 @@ class BadWire:
             if self._random.random() < self._loss:
                 self.lost += 1
             else:
-                self._on_the_way.append((now + self._delay, self._flip(whole)))
+                self._on_the_way.append((self._handed_over(now), self._flip(whole)))
         self._begun += rest
 
     def take(self, now: float) -> bytes:
@@ -42,6 +47,12 @@ class BadWire:
         while self._on_the_way and self._on_the_way[0][0] <= now:
             arrived += self._on_the_way.popleft()[1]
         return bytes(arrived)
+
+    def _handed_over(self, now: float) -> float:
+        arrives = now + self._delay
+        if self._latency_timer > 0.0:
+            arrives = math.ceil(arrives / self._latency_timer) * self._latency_timer
+        return arrives
 
     def _flip(self, whole: bytes) -> bytes:
         bits = 8 * len(whole)

@@ -2,6 +2,8 @@
 
 use glam::{DMat3, DVec3};
 
+use crate::rhythm::Rhythm;
+
 /// How device coordinates lie in the body: `p_body = scale * rotation * p_device + translation`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DeviceFrame {
@@ -157,6 +159,8 @@ pub struct LinkReport {
     pub reopened: u64,
     /// Code and detail of the device's last FAULT.
     pub last_fault: Option<(u8, u16)>,
+    /// When STATE messages arrived.
+    pub rhythm: Rhythm,
     /// The device's greeting.
     pub greeting: Option<crate::codec::Greeting>,
 }

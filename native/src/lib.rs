@@ -23,6 +23,7 @@ pub mod proxy;
 #[cfg(feature = "python")]
 mod python;
 pub mod recorder;
+pub mod rhythm;
 pub mod safety;
 pub mod servo;
 mod sleeper;

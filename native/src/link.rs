@@ -10,6 +10,7 @@ use crate::codec::{
 };
 use crate::device::{Device, DeviceFrame, Fault, LinkReport, Probe, Reading};
 use crate::port::{Opener, Wire};
+use crate::rhythm::Arrivals;
 use crate::safety::Speedometer;
 use crate::state::reason;
 
@@ -48,6 +49,7 @@ pub struct LinkDevice<O: Opener> {
     unseen: bool,
     device_fault: bool,
     speedometer: Speedometer,
+    arrivals: Arrivals,
     sequence: u16,
     /// The rest of a frame that did not fit.
     pending: [u8; MAX_FRAME],
@@ -76,6 +78,7 @@ impl<O: Opener> LinkDevice<O> {
             unseen: true,
             device_fault: false,
             speedometer: Speedometer::default(),
+            arrivals: Arrivals::default(),
             sequence: 0,
             pending: [0; MAX_FRAME],
             pending_from: 0,
@@ -98,6 +101,7 @@ impl<O: Opener> LinkDevice<O> {
         self.unseen = true;
         self.decoder.resynchronise();
         self.speedometer.reset();
+        self.arrivals.forget();
         (self.pending_from, self.pending_to) = (0, 0);
     }
 
@@ -183,6 +187,7 @@ impl<O: Opener> LinkDevice<O> {
             }
         }
         self.report.states += 1;
+        self.arrivals.take(state.time_us);
         let speed = self.speedometer.speed(state.position(), state.time_us, now);
         self.newest = Some(Newest { state, speed });
         self.heard = now;
@@ -235,6 +240,7 @@ impl<O: Opener> Device for LinkDevice<O> {
             self.reopen(now);
         }
         self.drain(now);
+        self.arrivals.end_of_tick(now);
         if self.wire.is_none() {
             return Reading::Fault(Fault::Unplugged);
         }
@@ -303,6 +309,7 @@ impl<O: Opener> Device for LinkDevice<O> {
             crc_errors: self.decoder.errors.crc,
             cobs_errors: self.decoder.errors.cobs,
             oversize: self.decoder.errors.oversize,
+            rhythm: self.arrivals.rhythm,
             ..self.report
         }
     }

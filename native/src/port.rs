@@ -83,12 +83,36 @@ mod on_unix {
                 flags >= 0 && libc::fcntl(fd, libc::F_SETFL, flags | libc::O_NONBLOCK) >= 0
             };
             if done {
+                shorten_latency(fd);
                 Ok(Self { port })
             } else {
                 Err(io::Error::last_os_error())
             }
         }
     }
+
+    /// Asks the driver to hand bytes over at once, which any user may do: an FTDI adapter's latency
+    /// timer goes from 16 to 1 ms. Here, as a port that is plugged in again starts with its default.
+    #[cfg(target_os = "linux")]
+    fn shorten_latency(fd: std::os::fd::RawFd) {
+        /// `ASYNC_LOW_LATENCY` of linux/tty_flags.h.
+        const LOW_LATENCY: i32 = 1 << 13;
+        /// Where linux/serial.h has `flags` in `struct serial_struct`, of 18 words at most.
+        const FLAGS: usize = 4;
+        let mut serial = [0_i32; 32];
+        // SAFETY: the descriptor is open and the buffer larger than what the kernel writes or reads.
+        // What knows no such mode, such as a pseudo-terminal, says so and stays as it is; whether
+        // bytes are held back nevertheless is seen in how STATE arrives.
+        unsafe {
+            if libc::ioctl(fd, libc::TIOCGSERIAL as _, serial.as_mut_ptr()) == 0 {
+                serial[FLAGS] |= LOW_LATENCY;
+                let _ = libc::ioctl(fd, libc::TIOCSSERIAL as _, serial.as_ptr());
+            }
+        }
+    }
+
+    #[cfg(not(target_os = "linux"))]
+    fn shorten_latency(_fd: std::os::fd::RawFd) {}
 
     impl Drop for SerialWire {
         /// Gives the terminal back: its exclusive mode outlasts this descriptor for as long as

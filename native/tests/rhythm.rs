@@ -1,0 +1,124 @@
+//! Wires that hold bytes back are told apart from slow devices and busy hosts.
+
+use palpate_servo::rhythm::{Arrivals, Rhythm};
+
+/// A host that looks at the times `looks` (us), and STATEs made and arriving at `(made, came)`.
+fn seen(looks: impl IntoIterator<Item = u32>, states: &[(u32, u32)]) -> Rhythm {
+    let mut arrivals = Arrivals::default();
+    let mut coming = states.iter().peekable();
+    for now in looks {
+        while let Some((made, _)) = coming.next_if(|(_, came)| *came <= now) {
+            // Near its end, so that the device's clock wraps.
+            arrivals.take(made.wrapping_sub(500_000));
+        }
+        arrivals.end_of_tick(f64::from(now) * 1e-6);
+    }
+    arrivals.rhythm
+}
+
+fn every(period: u32) -> impl Iterator<Item = u32> {
+    (0..1_000_000).step_by(period as usize)
+}
+
+/// Made every `period`, let through every `latency` (us).
+fn held_back(period: u32, latency: u32) -> Vec<(u32, u32)> {
+    let through = |made: u32| (made / latency + 1) * latency;
+    every(period).map(|made| (made, through(made))).collect()
+}
+
+/// Repeatable dice, 0 to `limit`.
+fn jitter(number: u32, limit: u32) -> u32 {
+    (u64::from(number).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 40) as u32 % limit
+}
+
+fn mean_ms(rhythm: &Rhythm) -> f64 {
+    rhythm.burst_seconds * 1e3 / rhythm.bursts as f64
+}
+
+#[test]
+fn a_latency_timer_of_16_ms_makes_62_bursts_a_second() {
+    for looks in [1_000, 125, 10_000] {
+        let rhythm = seen(every(looks), &held_back(1_000, 16_000));
+        let all = 1_000_000 / 16_000;
+        assert!((all * 5 / 10..=all).contains(&rhythm.bursts), "{rhythm:?}");
+        assert!(rhythm.burst_states * 2 > rhythm.states, "{rhythm:?}");
+        if looks <= 1_000 {
+            assert!((rhythm.bursts + 2) > all, "{rhythm:?}");
+            assert!((mean_ms(&rhythm) - 16.0).abs() < 0.5, "{rhythm:?}");
+        }
+        assert!((rhythm.device_seconds / rhythm.states as f64 - 1e-3).abs() < 2e-5);
+    }
+}
+
+#[test]
+fn other_latencies_are_told_with_their_length() {
+    for latency in [5_000, 10_000, 255_000] {
+        let rhythm = seen(every(1_000), &held_back(1_000, latency));
+        assert!((mean_ms(&rhythm) - f64::from(latency) * 1e-3).abs() < 0.5);
+        assert!(rhythm.burst_states * 10 >= rhythm.states * 9, "{rhythm:?}");
+    }
+    // A device of 500 Hz is held back just so.
+    assert!(seen(every(1_000), &held_back(2_000, 16_000)).bursts > 55);
+}
+
+#[test]
+fn a_healthy_line_has_no_bursts() {
+    for latency in [1, 1_000, 2_000] {
+        assert_eq!(seen(every(1_000), &held_back(1_000, latency)).bursts, 0);
+        assert_eq!(seen(every(125), &held_back(1_000, latency)).bursts, 0);
+    }
+    // Full-speed USB hands over what came within a millisecond.
+    assert_eq!(seen(every(125), &held_back(125, 1_000)).bursts, 0);
+    let shaken: Vec<(u32, u32)> = every(1_000)
+        .map(|made| (made, made + jitter(made, 2_500)))
+        .collect();
+    let looks = every(1_000).map(|look| look + jitter(look, 900));
+    let rhythm = seen(looks, &shaken);
+    assert_eq!(rhythm.bursts, 0, "{rhythm:?}");
+    assert!(rhythm.longest_pause < 4.5e-3 && rhythm.pauses > 500);
+}
+
+#[test]
+fn a_device_of_62_hz_is_slow_and_not_held_back() {
+    let rhythm = seen(every(1_000), &held_back(16_000, 1));
+    assert_eq!((rhythm.bursts, rhythm.burst_states), (0, 0));
+    assert!((rhythm.pause_seconds / rhythm.pauses as f64 - 16e-3).abs() < 1e-4);
+    assert!((rhythm.device_seconds / rhythm.states as f64 - 16e-3).abs() < 1e-4);
+}
+
+#[test]
+fn a_host_that_was_held_up_does_not_blame_the_wire() {
+    let away = |look: &u32| !(200_000..230_000).contains(&(look % 300_000));
+    let rhythm = seen(every(1_000).filter(away), &held_back(1_000, 1));
+    assert_eq!(rhythm.bursts, 0);
+    assert!(rhythm.longest_pause > 0.025);
+    // Nor does one that looks seldom.
+    assert_eq!(seen(every(10_000), &held_back(1_000, 1)).bursts, 0);
+}
+
+#[test]
+fn a_device_that_was_held_up_is_no_burst() {
+    let states: Vec<(u32, u32)> = every(1_000)
+        .filter(|made| !(200_000..230_000).contains(made))
+        .map(|made| (made, made))
+        .collect();
+    assert_eq!(seen(every(1_000), &states).bursts, 0);
+}
+
+#[test]
+fn silence_and_a_new_line_are_no_pauses() {
+    let mut arrivals = Arrivals::default();
+    let mut arrive = |now: f64, forget: bool| {
+        arrivals.take((now * 1e6) as u32);
+        arrivals.end_of_tick(now);
+        if forget {
+            arrivals.forget();
+        }
+        arrivals.rhythm.pauses
+    };
+    assert_eq!(arrive(0.000, false), 0);
+    assert_eq!(arrive(0.001, false), 1);
+    assert_eq!(arrive(0.600, true), 1);
+    assert_eq!(arrive(0.601, false), 1);
+    assert_eq!(arrive(0.602, false), 2);
+}
