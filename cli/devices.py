@@ -30,6 +30,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help="be a device on a pseudo-terminal until Ctrl-C",
         description="Be a device on a pseudo-terminal, held by a hand that moves by itself.",
     )
+    simulated.add_haply_option(simulate)
     add_simulated_options(simulate)
     simulate.add_argument(
         "--json", action="store_true", default=argparse.SUPPRESS, help="print as JSON lines"
@@ -54,7 +55,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 def run_simulate(arguments: argparse.Namespace) -> int:
     """Simulate until somebody says stop."""
-    simulated.run(simulated_options(arguments), json_lines=arguments.json)
+    options = simulated_options(arguments)
+    simulated.run(options, haply=arguments.haply, json_lines=arguments.json)
     return 0
 
 

@@ -393,8 +393,8 @@ class Servo:
         translation: _Vector = ...,
         scale: float = 1.0,
     ) -> None:
-        """Start with a Haply 2DIY, whose handle must be in its rest pose unless its board has been in
-        use by Palpate since it was plugged in; docs/haply.md tells why.
+        """Start with a Haply 2DIY, whose handle must be in its rest pose unless its board has been
+        in use by Palpate since it was plugged in; docs/haply.md tells why.
 
         The device's plane is the frame's x and y axes: x to the user's right, y away from the user,
         from the middle of the workspace. A force normal to it is not felt.

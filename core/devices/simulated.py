@@ -24,12 +24,16 @@ import os
 import time
 
 from ..errors import PalpateError
+from .haply_board import HaplyBoard
+from .haply_models import DEFAULT_MODEL, HAPLY_MODELS
 from .simulated_board import SimulatedBoard
 from .simulated_options import SimulatedOptions, add_simulated_options, simulated_options
 from .stop_signals import stopped_by_signals
 
 LATE_SECONDS = 200e-6
 PRIORITY = 1
+
+Board = SimulatedBoard | HaplyBoard
 MOST_STEPS_AT_ONCE = 50
 """After a longer hole the device's world has stood still for the rest, rather than jump."""
 
@@ -76,15 +80,23 @@ class Clock:
         }
 
 
-def run(options: SimulatedOptions, *, commands: bool = False, json_lines: bool = True) -> None:
+def run(
+    options: SimulatedOptions,
+    *,
+    haply: str | None = None,
+    commands: bool = False,
+    json_lines: bool = True,
+) -> None:
     """Be the device until SIGTERM, SIGINT or, with `commands`, the end of standard input.
+
+    `haply` names the model of a Haply 2DIY to be; without it the device speaks the link.
 
     Prints where the port is at the start and what was counted at the end, a JSON line each.
     `commands` reads lines from standard input: `unplug`, `plug`, `buttons MASK`,
     `move X Y Z SECONDS`, `report` (prints a JSON line).
     Raises PalpateError when there can be no such port.
     """
-    board = SimulatedBoard(options)
+    board = SimulatedBoard(options) if haply is None else HaplyBoard(options, haply)
     try:
         with stopped_by_signals() as stopped:
             _say_where(board, options, json_lines)
@@ -112,7 +124,7 @@ class _Commands:
         self._parent = os.getppid()
         self._begun = b""
 
-    def obey(self, board: SimulatedBoard, clock: Clock) -> bool:
+    def obey(self, board: Board, clock: Clock) -> bool:
         """False when standard input has ended or the parent process has."""
         try:
             data = os.read(0, 4096)
@@ -124,7 +136,7 @@ class _Commands:
         return bool(data)
 
     @staticmethod
-    def _do(words: list[str], board: SimulatedBoard, clock: Clock) -> None:
+    def _do(words: list[str], board: Board, clock: Clock) -> None:
         match words:
             case ["unplug"]:
                 board.unplug()
@@ -151,7 +163,7 @@ def _ask_for_real_time() -> bool:
     return True
 
 
-def _say_where(board: SimulatedBoard, options: SimulatedOptions, json_lines: bool) -> None:
+def _say_where(board: Board, options: SimulatedOptions, json_lines: bool) -> None:
     if json_lines:
         path = board.terminal.path
         _print_json({"port": path, "link": options.link or None, "pid": os.getpid()}, True)
@@ -173,10 +185,23 @@ def _print(line: str) -> None:
     sys.stdout.flush()
 
 
+def add_haply_option(parser: argparse.ArgumentParser) -> None:
+    """Give `parser` the option to be a Haply 2DIY."""
+    parser.add_argument(
+        "--haply",
+        nargs="?",
+        const=DEFAULT_MODEL,
+        metavar="MODEL",
+        help="be a Haply 2DIY on a hAPI board instead of a device that speaks the link: "
+        f"{', '.join(HAPLY_MODELS)} (default: {DEFAULT_MODEL})",
+    )
+
+
 def main() -> int:
     """The command line of this file."""
     parser = argparse.ArgumentParser(description="A simulated haptic device on a pseudo-terminal.")
     add_simulated_options(parser)
+    add_haply_option(parser)
     parser.add_argument(
         "--commands",
         action="store_true",
@@ -184,7 +209,7 @@ def main() -> int:
     )
     arguments = parser.parse_args()
     try:
-        run(simulated_options(arguments), commands=arguments.commands)
+        run(simulated_options(arguments), haply=arguments.haply, commands=arguments.commands)
     except PalpateError as error:
         sys.stderr.write(f"palpate: {error}\n")
         return 2

@@ -29,6 +29,8 @@ class SimulatedDevice:
     """The simulated device as a child process. It ends with `stop`, with the `with` block, and by
     itself when this process dies.
 
+    `haply` names the model of a Haply 2DIY to be; without it the device speaks the link.
+
     `python` and `python_args` say how to start Python; inside Blender these are `sys.executable`
     and `bpy.app.python_args`. Raises PalpateError where there are no pseudo-terminals and when the
     device does not start.
@@ -38,6 +40,7 @@ class SimulatedDevice:
         self,
         options: SimulatedOptions | None = None,
         *,
+        haply: str | None = None,
         python: str = sys.executable,
         python_args: Sequence[str] = (),
     ) -> None:
@@ -49,11 +52,12 @@ class SimulatedDevice:
             self._folder = tempfile.TemporaryDirectory(prefix="palpate-device-")
             options = replace(options, link=str(Path(self._folder.name) / "port"))
         self.options = options
+        model = [] if haply is None else [f"--haply={haply}"]
         self._unread = b""
         self._last_report: dict[str, Any] | None = None
         try:
             self._process = subprocess.Popen(  # noqa: S603 - our own script, no shell
-                [python, *python_args, str(SCRIPT), "--commands", *options.arguments()],
+                [python, *python_args, str(SCRIPT), "--commands", *model, *options.arguments()],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
