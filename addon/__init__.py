@@ -9,8 +9,11 @@ from ..operators import (
     pin_below,
     press,
     rebuild_body,
+    record,
     refresh_devices,
     remove_softness,
+    save_recording,
+    switch_force,
     update_pins,
 )
 from . import command, handlers, overlay, panels, preferences, properties, translations
@@ -26,6 +29,9 @@ modules = (
     update_pins,
     fit_memory,
     press,
+    switch_force,
+    record,
+    save_recording,
     refresh_devices,
     remove_softness,
     panels,

@@ -1,6 +1,9 @@
 """The interface in German."""
 
+from .german_force import WORDS as FORCE_WORDS
+
 WORDS = {
+    **FORCE_WORDS,
     # Panel
     "Pins": "Fixierung",
     "Device": "Gerät",
@@ -108,42 +111,15 @@ WORDS = {
     # View
     "Press on the surface and drag": "Auf die Oberfläche drücken und ziehen",
     "Pressing": "Drücken",
-    "Waiting for the device: check its port, cable and power": (
-        "Warte auf das Gerät: Anschluss, Kabel und Strom prüfen"
-    ),
     "Above the surface: drag inward, or turn the wheel": (
         "Über der Oberfläche: nach innen ziehen oder am Rad drehen"
     ),
     "Held: look around, keep it, or press elsewhere": (
         "Gehalten: umsehen, behalten oder anderswo drücken"
     ),
-    "The device presses": "Das Gerät drückt",
-    "Device away": "Gerät fehlt",
     "Esc  Leave": "Esc  Verlassen",
     "Wheel  Deeper": "Rad  Tiefer",
     "Enter  Keep shape      Esc  Restore": "Eingabe  Form behalten      Esc  Wiederherstellen",
-    "The device gives": "Das Gerät gibt",
-    "The device is unplugged; plug it in again and pressing goes on": (
-        "Das Gerät ist abgezogen; wieder anstecken, dann geht es weiter"
-    ),
-    "The device is silent; check its cable and power, pressing goes on when it speaks": (
-        "Das Gerät schweigt; Kabel und Strom prüfen, es geht weiter, sobald es antwortet"
-    ),
-    "The device moved too fast and was let go; hold still and pressing goes on": (
-        "Das Gerät war zu schnell und wurde losgelassen; stillhalten, dann geht es weiter"
-    ),
-    "The device sent a position that is no number; pressing goes on when it recovers": (
-        "Das Gerät meldete eine ungültige Position; es geht weiter, sobald es sich erholt"
-    ),
-    "The device speaks another version of the link; update its firmware": (
-        "Das Gerät spricht eine andere Protokollversion; seine Firmware aktualisieren"
-    ),
-    "The device reports a fault of its own; see its manual, or plug it in again": (
-        "Das Gerät meldet einen eigenen Fehler; siehe Handbuch, oder neu anstecken"
-    ),
-    "The force loop has failed; leave with Escape and press again": (
-        "Die Kraftschleife ist ausgefallen; mit Escape verlassen und erneut drücken"
-    ),
     "Nothing is pressed yet, so there is no shape to keep": (
         "Noch ist nichts eingedrückt, also gibt es keine Form zu behalten"
     ),

@@ -1,6 +1,7 @@
 """Force, depth, state and keys, in the lower left of the view."""
 
 import re
+from dataclasses import dataclass, replace
 
 import blf
 import bpy
@@ -8,17 +9,29 @@ import gpu
 from gpu_extras.batch import batch_for_shader
 
 from ..operators.press_session import PressSession
-from ..operators.press_state import Phase
+from ..operators.press_state import Phase, Source
+from ..operators.servo_words import FORCEFUL, Signal, standing
 from .reading import reading
 
 Color = tuple[float, float, float, float]
 
 FONT = 0
-MARGIN, PADDING, NARROWEST = 20, 14, 150
-LARGE, NORMAL, SMALL = 26, 14, 12
+MARGIN, PADDING, NARROWEST, BADGE_PADDING = 20, 14, 150, 8
+LARGE, BADGE, NORMAL, SMALL = 26, 20, 14, 12
 LINE = 1.5
 WHITE, GREY, WARNING = (1.0, 1.0, 1.0, 1.0), (0.8, 0.8, 0.8, 1.0), (1.0, 0.72, 0.2, 1.0)
+BLACK = (0.0, 0.0, 0.0, 1.0)
 BACKGROUND = (0.05, 0.05, 0.06, 0.72)
+
+# Grey: no force. Green: it may come. Orange: it is there. Yellow: it comes back. Red: a fault.
+FILLS = {
+    Signal.OFF: (0.62, 0.62, 0.62, 1.0),
+    Signal.WAITING: (0.62, 0.62, 0.62, 1.0),
+    Signal.READY: (0.35, 0.78, 0.35, 1.0),
+    Signal.FORCE: (1.0, 0.58, 0.15, 1.0),
+    Signal.RETURNING: (0.98, 0.85, 0.25, 1.0),
+    Signal.FAULT: (0.95, 0.3, 0.3, 1.0),
+}
 
 # A word with what belongs to it (keys have two spaces behind them), and the space where it may end.
 BREAKS = re.compile(r"(\S+(?:  \S+)*)( *)")
@@ -27,11 +40,8 @@ STATES = {
     Phase.READY: "Press on the surface and drag",
     Phase.DRAGGING: "Pressing",
     Phase.HOLDING: "Held: look around, keep it, or press elsewhere",
-    Phase.FEELING: "The device presses",
-    Phase.LOST: "Device away",
 }
 ABOVE = "Above the surface: drag inward, or turn the wheel"
-WAITING = "Waiting for the device: check its port, cable and power"
 KEYS = {
     Phase.READY: "Esc  Leave",
     Phase.DRAGGING: "Wheel  Deeper",
@@ -39,6 +49,16 @@ KEYS = {
     Phase.FEELING: "Enter  Keep shape      Esc  Restore",
     Phase.LOST: "Esc  Leave",
 }
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line of the HUD; ``fill`` is the colour behind it, for what must be seen at a glance."""
+
+    text: str
+    size: float
+    color: Color
+    fill: Color | None = None
 
 
 def draw(context: bpy.types.Context, session: PressSession) -> None:
@@ -50,45 +70,61 @@ def draw(context: bpy.types.Context, session: PressSession) -> None:
     # In a view that has no room even for words, they are cut rather than broken into letters.
     width = max(NARROWEST * scale, right - left - 2 * padding)
     lines = [
-        (part, size, color)
-        for text, size, color in _lines(context, session)
-        for part in _wrapped(text, size * scale, width)
+        replace(line, text=part, size=line.size * scale)
+        for line in _lines(context, session)
+        for part in _wrapped(line.text, line.size * scale, width)
     ]
-    heights = [size * scale * LINE for _, size, _ in lines]
-    widths = [_width(text, size * scale) for text, size, _ in lines]
+    heights = [line.size * LINE for line in lines]
+    widths = [_width(line.text, line.size) for line in lines]
     bottom = MARGIN * scale
-    _rectangle(left, bottom, max(widths) + 2 * padding, sum(heights) + 2 * padding)
+    _rectangle(left, bottom, max(widths) + 2 * padding, sum(heights) + 2 * padding, BACKGROUND)
     y = bottom + padding + sum(heights)
-    for (text, size, color), height in zip(lines, heights, strict=True):
+    for line, height, across in zip(lines, heights, widths, strict=True):
         y -= height
-        blf.size(FONT, size * scale)
-        blf.color(FONT, *color)
+        if line.fill is not None:
+            beside = BADGE_PADDING * scale
+            _rectangle(left + padding - beside, y, across + 2 * beside, height, line.fill)
+        blf.size(FONT, line.size)
+        blf.color(FONT, *line.color)
         blf.position(FONT, left + padding, y + 0.28 * height, 0)
-        blf.draw(FONT, text)
+        blf.draw(FONT, line.text)
 
 
-def _lines(context: bpy.types.Context, session: PressSession) -> list[tuple[str, float, Color]]:
-    """Text, size and colour of each line, from the top."""
+def _lines(context: bpy.types.Context, session: PressSession) -> list[Line]:
+    """What the HUD says, from the top."""
     figures = reading(session)
     phase, say = _phase(session, touching=figures.touching), bpy.app.translations.pgettext_iface
-    snapshot = session.snapshot
-    lines: list[tuple[str, float, Color]] = [
-        (f"{figures.force:.3f} N     {1000 * figures.depth:.1f} mm", LARGE, WHITE)
-    ]
-    if phase is Phase.LOST:
-        lines.append((say(session.state.message), NORMAL, WARNING))
-    else:
-        above = phase is Phase.DRAGGING and not figures.touching
-        text = WAITING if session.awaits_device else ABOVE if above else STATES.get(phase, "")
-        lines.append((say(text), NORMAL, WHITE))
-        if session.state.message:
-            lines.append((say(session.state.message), NORMAL, WARNING))
-    if phase is Phase.FEELING and snapshot is not None:
+    force = Line(f"{figures.force:.3f} N     {1000 * figures.depth:.1f} mm", LARGE, WHITE)
+    if session.state.source is Source.DEVICE:
+        switch = "Space  Force Off" if session.state.force_on else "Space  Force On"
+        keys = f"{say(switch)}      {say(KEYS.get(phase, ''))}"
+        return [*_device_lines(session, force), Line(keys, SMALL, GREY)]
+    above = phase is Phase.DRAGGING and not figures.touching
+    lines = [force, Line(say(ABOVE if above else STATES.get(phase, "")), NORMAL, WHITE)]
+    if session.state.message:
+        lines.append(Line(say(session.state.message), NORMAL, WARNING))
+    return [*lines, Line(say(KEYS.get(phase, "")), SMALL, GREY)]
+
+
+def _device_lines(session: PressSession, force: Line) -> list[Line]:
+    """Whether the motors push, first of all, and why."""
+    say, snapshot = bpy.app.translations.pgettext_iface, session.snapshot
+    if snapshot is None:
+        return [Line(say("Starting"), NORMAL, WHITE)]
+    now = standing(snapshot)
+    fault = now.signal is Signal.FAULT
+    lines = [Line(say(now.word), BADGE, BLACK, FILLS[now.signal])]
+    if not session.awaits_device and not fault:
+        lines.append(force)
+    if now.why:
+        lines.append(Line(say(now.why), NORMAL, WARNING if fault else WHITE))
+    if now.signal in FORCEFUL and not session.awaits_device:
         given = sum(component**2 for component in snapshot.output_force) ** 0.5
-        state = snapshot.reason or snapshot.state
-        text = f"{say('The device gives')} {given:.3f} N, {say(state)}"
-        lines.append((text, SMALL, GREY))
-    lines.append((say(KEYS.get(phase, "")), SMALL, GREY))
+        lines.append(Line(f"{say('The device gives')} {given:.3f} N", NORMAL, WHITE))
+    if now.limit:
+        lines.append(Line(say(now.limit), NORMAL, WARNING))
+    if session.state.message and session.state.phase is not Phase.LOST:
+        lines.append(Line(say(session.state.message), NORMAL, WARNING))
     return lines
 
 
@@ -129,12 +165,12 @@ def _covered(context: bpy.types.Context, kind: str, side: str) -> float:
     )
 
 
-def _rectangle(x: float, y: float, width: float, height: float) -> None:
+def _rectangle(x: float, y: float, width: float, height: float, color: Color) -> None:
     corners = [(x, y), (x + width, y), (x + width, y + height), (x, y + height)]
     shader = gpu.shader.from_builtin("UNIFORM_COLOR")
     batch = batch_for_shader(shader, "TRIS", {"pos": corners}, indices=[(0, 1, 2), (0, 2, 3)])
     gpu.state.blend_set("ALPHA")
     shader.bind()
-    shader.uniform_float("color", BACKGROUND)
+    shader.uniform_float("color", color)
     batch.draw(shader)
     gpu.state.blend_set("NONE")

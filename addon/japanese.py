@@ -1,6 +1,9 @@
 """The interface in Japanese."""
 
+from .japanese_force import WORDS as FORCE_WORDS
+
 WORDS = {
+    **FORCE_WORDS,
     # Panel
     "Pins": "固定",
     "Device": "デバイス",
@@ -100,40 +103,13 @@ WORDS = {
     # View
     "Press on the surface and drag": "表面を押してドラッグ",
     "Pressing": "押しています",
-    "Waiting for the device: check its port, cable and power": (
-        "デバイスの応答を待っています: ポート、ケーブル、電源を確認してください"
-    ),
     "Above the surface: drag inward, or turn the wheel": (
         "表面の外です: 内側へドラッグするか、ホイールを回してください"
     ),
     "Held: look around, keep it, or press elsewhere": "保持中: 視点移動、保存、別の場所を押す",
-    "The device presses": "デバイスが押しています",
-    "Device away": "デバイスなし",
     "Esc  Leave": "Esc  終了",
     "Wheel  Deeper": "ホイール  深く",
     "Enter  Keep shape      Esc  Restore": "Enter  形を保存      Esc  元に戻す",
-    "The device gives": "デバイスの力",
-    "The device is unplugged; plug it in again and pressing goes on": (
-        "デバイスが外れました。つなぎ直すと続けられます"
-    ),
-    "The device is silent; check its cable and power, pressing goes on when it speaks": (
-        "デバイスの応答がありません。ケーブルと電源を確認してください。応答すると続きます"
-    ),
-    "The device moved too fast and was let go; hold still and pressing goes on": (
-        "デバイスが速すぎるため力を切りました。静止させると続きます"
-    ),
-    "The device sent a position that is no number; pressing goes on when it recovers": (
-        "デバイスの位置が数値ではありません。回復すると続きます"
-    ),
-    "The device speaks another version of the link; update its firmware": (
-        "デバイスの通信の版が異なります。ファームウェアを更新してください"
-    ),
-    "The device reports a fault of its own; see its manual, or plug it in again": (
-        "デバイス自身の異常です。説明書を見るか、つなぎ直してください"
-    ),
-    "The force loop has failed; leave with Escape and press again": (
-        "力の計算が停止しました。Esc で終了し、もう一度押してください"
-    ),
     "Nothing is pressed yet, so there is no shape to keep": (
         "まだ押されていないので、保存する形がありません"
     ),

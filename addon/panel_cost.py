@@ -6,11 +6,11 @@ from ..core.errors import PalpateError
 from ..operators.bake_prediction import Prediction
 from ..operators.quantities import about, duration, memory, percent
 from . import known_status
+from .panel_base import draw_rows, interface
 from .sentence import say
 
 FORM_NAMES = {"dense": "Full", "compressed": "Compressed"}
 FORMULATION_NAMES = {"linear": "Linear", "smoothed": "Smoothed"}
-NAME_SHARE = 0.55
 
 
 def draw_summary(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
@@ -40,9 +40,9 @@ def draw_prediction(layout: bpy.types.UILayout, context: bpy.types.Context) -> N
         ("Bake Time", duration(cost.seconds)),
         ("Peak Memory", memory(cost.peak_bytes)),
         ("File", memory(cost.file_bytes)),
-        ("Compliance", _interface(FORM_NAMES[cost.form])),
+        ("Compliance", interface(FORM_NAMES[cost.form])),
     ]
-    _draw_rows(box, rows)
+    draw_rows(box, rows)
     if not prediction.fits:
         _draw_alarm(box, context, prediction)
 
@@ -50,13 +50,13 @@ def draw_prediction(layout: bpy.types.UILayout, context: bpy.types.Context) -> N
 def draw_figures(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """What the last bake made."""
     baked = context.object.palpate
-    form = _interface(FORM_NAMES.get(baked.baked_form, baked.baked_form))
+    form = interface(FORM_NAMES.get(baked.baked_form, baked.baked_form))
     box = layout.column(align=True)
     rows = [
         ("Nodes", f"{baked.node_count:,}"),
         ("Tetrahedra", f"{baked.tet_count:,}"),
         ("Free Surface Nodes", f"{baked.free_surface_count:,}"),
-        ("Formulation", _interface(FORMULATION_NAMES.get(baked.baked_formulation, ""))),
+        ("Formulation", interface(FORMULATION_NAMES.get(baked.baked_formulation, ""))),
         ("Compliance", form),
         ("Memory", memory(1e6 * baked.compliance_megabytes)),
     ]
@@ -64,7 +64,7 @@ def draw_figures(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
         rows.append(("Uncompressed", memory(36.0 * baked.free_surface_count**2)))
         rows.append(("Largest Error", percent(baked.column_error / 100)))
     rows.append(("Bake Time", f"{baked.bake_seconds:.1f} s"))
-    _draw_rows(box, rows)
+    draw_rows(box, rows)
     for warning in filter(None, baked.bake_warnings.split("\n")):
         say(layout, context, warning[:1].upper() + warning[1:], "ERROR")
 
@@ -91,16 +91,5 @@ def _draw_alarm(
     if prediction.compressed_fits:
         column.operator("palpate.fit_memory", text="Compress It").by = "COMPRESSED"
     if prediction.edge_length is not None:
-        text = _interface("Use Edge Length {length}").format(length=f"{prediction.edge_length:g}")
+        text = interface("Use Edge Length {length}").format(length=f"{prediction.edge_length:g}")
         column.operator("palpate.fit_memory", text=text, translate=False).by = "COARSER"
-
-
-def _draw_rows(layout: bpy.types.UILayout, rows: list[tuple[str, str]]) -> None:
-    for name, value in rows:
-        row = layout.split(factor=NAME_SHARE)
-        row.label(text=name)
-        row.label(text=value, translate=False)
-
-
-def _interface(text: str) -> str:
-    return str(bpy.app.translations.pgettext_iface(text))

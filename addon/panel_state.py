@@ -7,10 +7,10 @@ from ..operators.bake_session import BakeSession
 from ..operators.drawn_body import restores_quickly
 from ..operators.pin_change import PinFit
 from ..operators.press_session import PressSession
-from ..operators.press_state import Phase
+from ..operators.press_state import Phase, Source
 from ..operators.quantities import duration
 from ..operators.soft_object import BodyStatus, Fit
-from . import known_status, panel_cost
+from . import known_status, panel_cost, panel_force
 from .reading import reading
 from .sentence import say
 
@@ -37,7 +37,9 @@ def draw_bake(layout: bpy.types.UILayout, context: bpy.types.Context, bake: Bake
 def draw_press(layout: bpy.types.UILayout, context: bpy.types.Context, press: PressSession) -> None:
     """While somebody presses."""
     layout.label(text=press.handle.name, icon="MOD_SOFT", translate=False)
-    if press.state.message:
+    if press.state.source is Source.DEVICE:
+        panel_force.draw(layout, context, press)
+    elif press.state.message:
         say(layout, context, press.state.message, "ERROR")
     figures = reading(press)
     row = layout.row()

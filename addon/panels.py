@@ -3,7 +3,8 @@
 import bpy
 
 from ..operators import bake_session, press_session, soft_object
-from . import panel_cost, panel_state
+from . import panel_cost, panel_loop, panel_recording, panel_state
+from .panel_base import PalpatePanel, named_properties
 from .sentence import say
 
 # What the chosen formulation is for, in a line.
@@ -11,24 +12,6 @@ FORMULATION_TEXTS = {
     "linear": "Linear: as in the paper, right up to about 0.4",
     "smoothed": "Smoothed: does not lock near 0.5",
 }
-
-
-class PalpatePanel:
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "Palpate"
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return context.object is not None and context.object.type == "MESH"
-
-
-def _properties(panel: bpy.types.Panel) -> bpy.types.UILayout:
-    """The panel's layout, for properties with their names on the left."""
-    layout = panel.layout
-    layout.use_property_split = True
-    layout.use_property_decorate = False
-    return layout
 
 
 class PALPATE_PT_main(bpy.types.Panel):
@@ -54,7 +37,7 @@ class PALPATE_PT_material(PalpatePanel, bpy.types.Panel):
     bl_parent_id = "PALPATE_PT_main"
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = _properties(self)
+        layout = named_properties(self)
         settings = context.object.palpate
         layout.prop(settings, "material")
         column = layout.column(align=True)
@@ -70,7 +53,7 @@ class PALPATE_PT_stiff_region(PalpatePanel, bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = _properties(self)
+        layout = named_properties(self)
         layout.enabled = press_session.current() is None
         thing = context.object
         settings = thing.palpate
@@ -84,12 +67,25 @@ class PALPATE_PT_stiff_region(PalpatePanel, bpy.types.Panel):
             say(layout, context, "There is no such vertex group", "ERROR")
 
 
+class PALPATE_PT_touch(PalpatePanel, bpy.types.Panel):
+    bl_label = "Touch"
+    bl_parent_id = "PALPATE_PT_material"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = named_properties(self)
+        settings = context.object.palpate
+        layout.prop(settings, "shading")
+        column = layout.column(align=True)
+        column.prop(settings, "static_friction", text="Friction: At Rest")
+        column.prop(settings, "dynamic_friction", text="Sliding")
+
+
 class PALPATE_PT_pins(PalpatePanel, bpy.types.Panel):
     bl_label = "Pins"
     bl_parent_id = "PALPATE_PT_main"
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = _properties(self)
+        layout = named_properties(self)
         layout.enabled = press_session.current() is None
         thing = context.object
         settings = thing.palpate
@@ -104,11 +100,12 @@ class PALPATE_PT_pins(PalpatePanel, bpy.types.Panel):
 
 
 class PALPATE_PT_press(PalpatePanel, bpy.types.Panel):
+    bl_idname = "PALPATE_PT_press"
     bl_label = "Device"
     bl_parent_id = "PALPATE_PT_main"
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = _properties(self)
+        layout = named_properties(self)
         chosen = context.scene.palpate
         idle = press_session.current() is None
         row = layout.row()
@@ -131,7 +128,7 @@ class PALPATE_PT_bake(PalpatePanel, bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = _properties(self)
+        layout = named_properties(self)
         thing = context.object
         idle = bake_session.current() is None and press_session.current() is None
         column = layout.column()
@@ -150,7 +147,7 @@ class PALPATE_PT_method(PalpatePanel, bpy.types.Panel):
     bl_parent_id = "PALPATE_PT_bake"
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = _properties(self)
+        layout = named_properties(self)
         layout.enabled = bake_session.current() is None and press_session.current() is None
         thing = context.object
         settings = thing.palpate
@@ -178,9 +175,12 @@ class PALPATE_PT_body(PalpatePanel, bpy.types.Panel):
 classes = (
     PALPATE_PT_main,
     PALPATE_PT_material,
+    PALPATE_PT_touch,
     PALPATE_PT_stiff_region,
     PALPATE_PT_pins,
     PALPATE_PT_press,
+    *panel_loop.classes,
+    *panel_recording.classes,
     PALPATE_PT_bake,
     PALPATE_PT_method,
     PALPATE_PT_body,

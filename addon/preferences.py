@@ -3,7 +3,7 @@
 import bpy
 
 from ..operators.package_preferences import PACKAGE
-from .properties import SOURCE_ITEMS
+from .scene_properties import SOURCE_ITEMS
 
 
 class PalpatePreferences(bpy.types.AddonPreferences):

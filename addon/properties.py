@@ -1,4 +1,4 @@
-"""What an object and a scene remember: the material, the pins, the baked body, the device."""
+"""What an object remembers: the material, its feel, the pins, the baked body."""
 
 import math
 from collections.abc import Callable
@@ -6,7 +6,7 @@ from collections.abc import Callable
 import bpy
 
 from ..core.materials import MATERIALS
-from ..operators import refresh_devices
+from .scene_properties import PalpateScene
 
 # Files hold the numbers of these items: add new ones at the end only.
 CUSTOM = "CUSTOM"
@@ -35,11 +35,6 @@ FORM_ITEMS = [
     ("DENSE", "Full", "Every number is kept. Memory grows with the square of the surface"),
     ("COMPRESSED", "Compressed", "Takes a tenth of the memory or less, for large bodies"),
 ]
-SOURCE_ITEMS = [
-    ("POINTER", "Pointer", "Mouse, pen or trackpad press on the surface"),
-    ("SIMULATED", "Simulated Device", "A program that behaves like a haptic device"),
-    ("SERIAL", "Serial Device", "A haptic device on a serial port"),
-]
 
 
 def _take_material(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
@@ -58,6 +53,20 @@ def _leave_material(name: str) -> Callable[[bpy.types.PropertyGroup, bpy.types.C
             getattr(settings, name), getattr(material, name), rel_tol=1e-5
         ):
             settings.material = CUSTOM
+
+    return update
+
+
+def _keep_order(changed: str) -> Callable[[bpy.types.PropertyGroup, bpy.types.Context], None]:
+    """An update that lets the other friction follow: sliding never holds better than resting."""
+
+    def update(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+        if settings.dynamic_friction <= settings.static_friction:
+            return
+        if changed == "static_friction":
+            settings.dynamic_friction = settings.static_friction
+        else:
+            settings.static_friction = settings.dynamic_friction
 
     return update
 
@@ -150,6 +159,34 @@ class PalpateObject(bpy.types.PropertyGroup):
         step=1,
         subtype="PERCENTAGE",
     )
+    shading: bpy.props.BoolProperty(
+        name="Smooth Facets",
+        description="Feel the smooth surface that the facets stand for, instead of their edges",
+        default=True,
+    )
+    static_friction: bpy.props.FloatProperty(
+        name="Static Friction",
+        description="How well the surface holds a resting finger: sideways force over pressing "
+        "force. 0 is slippery, felt is about 0.5, rubber 1",
+        default=0.0,
+        min=0.0,
+        max=5.0,
+        soft_max=1.5,
+        precision=2,
+        step=5,
+        update=_keep_order("static_friction"),
+    )
+    dynamic_friction: bpy.props.FloatProperty(
+        name="Dynamic Friction",
+        description="The same while the finger slides; never more than the static one",
+        default=0.0,
+        min=0.0,
+        max=5.0,
+        soft_max=1.5,
+        precision=2,
+        step=5,
+        update=_keep_order("dynamic_friction"),
+    )
     edge_length: bpy.props.FloatProperty(
         name="Edge Length",
         description="Wanted edge length of the tetrahedra, as a share of the object's diagonal. "
@@ -208,47 +245,6 @@ class PalpateObject(bpy.types.PropertyGroup):
     compliance_megabytes: bpy.props.FloatProperty(options={"HIDDEN"})
     bake_seconds: bpy.props.FloatProperty(options={"HIDDEN"})
     bake_warnings: bpy.props.StringProperty(options={"HIDDEN"})
-
-
-def _is_empty(scene_settings: bpy.types.PropertyGroup, candidate: bpy.types.Object) -> bool:
-    return candidate.type == "EMPTY"
-
-
-def _suggest_ports(
-    settings: bpy.types.PropertyGroup, context: bpy.types.Context, edit_text: str
-) -> list[str]:
-    return [f"{path} ({text})" if text else path for path, text in refresh_devices.known_ports()]
-
-
-class PalpateScene(bpy.types.PropertyGroup):
-    """``scene.palpate``: who presses."""
-
-    source: bpy.props.EnumProperty(
-        name="Press With",
-        description="Who moves the probe",
-        items=SOURCE_ITEMS,
-        default="POINTER",
-    )
-    port: bpy.props.StringProperty(
-        name="Port",
-        description="Serial port of the device: one from the list, or a path typed in",
-        search=_suggest_ports,
-        search_options={"SUGGESTION"},
-    )
-    device_frame: bpy.props.PointerProperty(
-        name="Device Frame",
-        description="Empty that says where the device's origin and axes are. "
-        "Without one they are the object's",
-        type=bpy.types.Object,
-        poll=_is_empty,
-    )
-    device_scale: bpy.props.FloatProperty(
-        name="Motion Scale",
-        description="How far the probe moves per movement of the device",
-        default=1.0,
-        min=0.01,
-        max=100.0,
-    )
 
 
 classes = (PalpateObject, PalpateScene)

@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import NDArray
 from palpate_servo import STATES, Body, Servo, Snapshot
 from palpate_servo import Compliance as NativeCompliance
+
+if TYPE_CHECKING:
+    # Types only: the module itself does not have them.
+    from palpate_servo import LinkCounters as LinkCounters  # noqa: PLC0414
+    from palpate_servo import ServoCounters as ServoCounters  # noqa: PLC0414
 
 from .compliance import Compliance
 from .compression.compressed_compliance import CompressedCompliance

@@ -37,8 +37,8 @@ STATUS = {
     Phase.READY: "Drag on the surface: Press     [Enter] Keep     [Esc] Restore",
     Phase.DRAGGING: "Drag: In and along     [Wheel] Deeper",
     Phase.HOLDING: "Drag on the surface: Press again     [Enter] Keep     [Esc] Restore",
-    Phase.FEELING: "The device presses     [Enter] Keep     [Esc] Restore",
-    Phase.LOST: "The device is away     [Esc] Restore",
+    Phase.FEELING: "The device presses     [Space] Force Off     [Enter] Keep     [Esc] Restore",
+    Phase.LOST: "The device is away     [Space] Force Off     [Esc] Restore",
 }
 
 
@@ -130,6 +130,11 @@ class PALPATE_OT_press(bpy.types.Operator):
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         try:
             passed = self._handle(context, event)
+        except PalpateError as problem:
+            press_session.give_way("")
+            self._leave(context)
+            self.report({"ERROR"}, str(problem))
+            return {"CANCELLED"}
         except BaseException:
             # A fault of ours must not leave a servo running and a live key in the mesh.
             press_session.give_way("Pressing has ended because of an error")
@@ -159,7 +164,11 @@ class PALPATE_OT_press(bpy.types.Operator):
             if session.tick():
                 redraw_views()
             return True
-        if _is_blenders(event):
+        # First of all, wherever the pointer is.
+        if _strikes_force_key(event) and session.state.source is Source.DEVICE:
+            session.switch_force()
+            return False
+        if _is_blenders(event) or viewport.over_file_browser(context.window, event):
             return True
         here = viewport.under_pointer(context.window, event.mouse_x, event.mouse_y)
         last = _ending(event, over_view=here is not None, dented=session.displacements is not None)
@@ -246,6 +255,11 @@ def _is_blenders(event: bpy.types.Event) -> bool:
     """What Blender tells itself (smooth view, playback, banners), and saving, opening, quitting."""
     internal = event.type.startswith("TIMER") or event.type in {"NONE", "WINDOW_DEACTIVATE"}
     return internal or (event.type in FILE_KEYS and (event.ctrl or event.oskey))
+
+
+def _strikes_force_key(event: bpy.types.Event) -> bool:
+    """A first strike; a key that is held goes on striking."""
+    return event.type == "SPACE" and event.value == "PRESS" and not event.is_repeat
 
 
 def _ending(event: bpy.types.Event, *, over_view: bool, dented: bool) -> Cancel | Keep | None:

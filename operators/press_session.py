@@ -6,9 +6,10 @@ zero force and the mesh is as it was found.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from contextlib import ExitStack
-from dataclasses import dataclass, field
+import time
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass, field, replace
 
 import bpy
 import numpy as np
@@ -17,12 +18,15 @@ from numpy.typing import NDArray
 from ..core.devices.simulated_process import SimulatedDevice
 from ..core.errors import PalpateError
 from ..core.servo_session import Servo, Snapshot, displacements_of, servo_for
-from . import device_source, drawn_surface, live_shape
+from . import device_source, drawn_surface, live_shape, recording, servo_words
 from .device_source import DeviceFrame
 from .drawn_body import DrawnBody, open_body
+from .live_settings import Feel, LiveSettings
+from .loop_figures import LoopFigures
 from .object_handle import ObjectHandle
 from .package_preferences import preferences
 from .press_state import (
+    BringBack,
     DrawRest,
     Effect,
     Event,
@@ -30,6 +34,7 @@ from .press_state import (
     GiveWay,
     HangLiveShape,
     KeepShape,
+    LetGo,
     MoveProbe,
     Phase,
     PlaceProbe,
@@ -41,8 +46,10 @@ from .press_state import (
     Start,
     StartServo,
     StopServo,
+    SwitchForce,
     transition,
 )
+from .recording import Recorder
 
 Array = NDArray[np.float64]
 
@@ -54,16 +61,18 @@ class PressSession:
     handle: ObjectHandle
     scene_name: str
     drawn: DrawnBody
-    young_modulus: float
+    settings: LiveSettings
     state: PressState = field(default_factory=PressState)
     servo: Servo | None = None
     simulated: SimulatedDevice | None = None
-    device_frame: DeviceFrame | None = None
     snapshot: Snapshot | None = None
+    figures: LoopFigures = field(default_factory=LoopFigures)
+    recorder: Recorder | None = None
     displacements: Array | None = None
     kept_name: str = ""
     said: list[Say] = field(default_factory=list)
     _drawn_contact: tuple[object, ...] = ()
+    _warned: str = ""
 
     def post(self, event: Event) -> None:
         """Let an event happen: the only way in which a press changes its state."""
@@ -79,19 +88,44 @@ class PressSession:
                 _current = None
 
     def tick(self) -> bool:
-        """Follow object, settings and servo, and draw what is new; True if the view changed."""
+        """Follow object, settings and servo, and draw what is new; True if the view changed.
+
+        Raises
+        ------
+        PalpateError
+            The press cannot go on.
+        """
         thing = self._object_as_it_is()
         if thing is None or self.servo is None:
             return True
         self._follow_settings(thing)
         snapshot = self.servo.snapshot()
+        self.figures.look(self.servo, time.monotonic())
+        if self.recorder is not None:
+            self.recorder.follow(snapshot.time)
         moved = self.snapshot is None or snapshot.tick != self.snapshot.tick
         self.snapshot = snapshot
-        if self.state.source is Source.DEVICE:
-            self._watch_device(snapshot)
+        self._watch_faults(snapshot)
         if self.state.phase is not Phase.LOST and not self.state.withdrawn:
             self._draw(thing, snapshot)
         return moved
+
+    def switch_force(self) -> None:
+        """Let the device's force go at once, or let it rise again."""
+        now = time.monotonic()
+        self.post(LetGo(now) if self.state.force_on else BringBack(now))
+
+    def start_recording(self) -> None:
+        """Record from here on.
+
+        Raises
+        ------
+        PalpateError
+            One is going on, or the servo refuses.
+        """
+        if self.recorder is not None:
+            now = 0.0 if self.snapshot is None else self.snapshot.time
+            self.recorder.start(60.0 * self._scene().palpate.record_minutes, now)
 
     @property
     def awaits_device(self) -> bool:
@@ -113,10 +147,8 @@ class PressSession:
                 self._drawn_contact = ()
             case StartServo(source):
                 self._start_servo(source)
-            case PlaceProbe(point):
-                self._servo.set_target(point, restart=True)
-            case MoveProbe(point):
-                self._servo.set_target(point)
+            case PlaceProbe() | MoveProbe() | SwitchForce():
+                self._tell_servo(effect)
             case DrawRest():
                 self.displacements, self._drawn_contact = None, ()
                 self._with_object(lambda thing: live_shape.write(thing.data, self.drawn.rest))
@@ -129,6 +161,15 @@ class PressSession:
                 self._with_object(self._keep)
             case Say():
                 self.said.append(effect)
+
+    def _tell_servo(self, effect: PlaceProbe | MoveProbe | SwitchForce) -> None:
+        match effect:
+            case PlaceProbe(point):
+                self._servo.set_target(point, restart=True)
+            case MoveProbe(point):
+                self._servo.set_target(point)
+            case SwitchForce(on):
+                self._servo.set_enabled(on)
 
     @property
     def _servo(self) -> Servo:
@@ -146,31 +187,33 @@ class PressSession:
         thing.data.update()
 
     def _start_servo(self, source: Source) -> None:
+        scene = self._scene()
         servo = servo_for(
             self.drawn.body,
-            young_modulus=self.young_modulus,
+            young_modulus=self.settings.young_modulus,
+            rate_hz=scene.palpate.rate,
             max_force=preferences().max_force,
         )
         self.servo = servo
-        if source is Source.POINTER:
-            servo.start_pointer(self._above())
-            return
-        scene = self._scene()
-        self.device_frame = device_source.device_frame(scene, self.drawn.frame)
+        self.recorder = Recorder(servo, scene.palpate.rate)
+        if scene.palpate.record_from_start:
+            self.start_recording()
+        with _servo_errors():
+            self.settings.hand_over(servo)
+            if source is Source.POINTER:
+                servo.start_pointer(self._above())
+                return
+        frame = device_source.device_frame(scene, self.drawn.frame)
+        self.settings = replace(self.settings, device=frame)
         if scene.palpate.source == "SIMULATED":
-            self.simulated = device_source.start_simulated(self.drawn, self.device_frame)
+            self.simulated = device_source.start_simulated(self.drawn, frame)
             port = self.simulated.port
         else:
             port = device_source.port_of(scene)
-        frame = self.device_frame
-        try:
+        with _servo_errors():
             servo.start_serial(
                 port, rotation=frame.rotation, translation=frame.translation, scale=frame.scale
             )
-        except OSError as problem:
-            raise PalpateError(
-                f"device: {problem}; plug it in, or choose another port"
-            ) from problem
 
     def _above(self) -> Array:
         """A place outside the body, where the pointer's probe waits."""
@@ -181,6 +224,8 @@ class PressSession:
     def _stop_servo(self) -> None:
         if self.servo is not None:
             self.servo.stop()
+            recording.keep(self.recorder)
+        self.recorder = None
         if self.simulated is not None:
             self.simulated.stop()
         self.servo = self.simulated = None
@@ -216,20 +261,37 @@ class PressSession:
         return moved is not None
 
     def _follow_settings(self, thing: bpy.types.Object) -> None:
-        if thing.palpate.young_modulus != self.young_modulus:
-            self.young_modulus = thing.palpate.young_modulus
-            self._servo.set_young_modulus(self.young_modulus)
-        if self.device_frame is None:
-            return
-        frame = device_source.device_frame(self._scene(), self.drawn.frame)
-        if not frame.same_as(self.device_frame):
-            self.device_frame = frame
-            self._servo.set_device_frame(frame.rotation, frame.translation, frame.scale)
+        before = self.settings
+        frame = before.device
+        if frame is not None:
+            frame = self._device_frame(frame)
+        self.settings = LiveSettings(thing.palpate.young_modulus, Feel.of(thing), frame)
+        with _servo_errors():
+            self.settings.hand_over(self._servo, before)
 
-    def _watch_device(self, snapshot: Snapshot) -> None:
+    def _device_frame(self, before: DeviceFrame) -> DeviceFrame:
+        """Where the device is now; where it was, while its Empty says nothing that can be used."""
+        try:
+            frame = device_source.device_frame(self._scene(), self.drawn.frame)
+        except PalpateError as problem:
+            self._warn(str(problem))
+            return before
+        self._warned = ""
+        return frame
+
+    def _warn(self, text: str) -> None:
+        """Say something once, not in every frame."""
+        if text != self._warned:
+            self._warned = text
+            self.said.append(Say(text, warning=True))
+
+    def _watch_faults(self, snapshot: Snapshot) -> None:
         if snapshot.fault:
-            text = FAULTS.get(snapshot.fault, f"The device reports a fault: {snapshot.fault}")
-            if text != self.state.message:
+            text = servo_words.fault_text(snapshot.fault)
+            if snapshot.state == "stopped":
+                # Nothing brings it back.
+                self.post(GiveWay(text))
+            elif text != self.state.message:
                 self.post(Fault(text))
         elif self.state.phase is Phase.LOST:
             self.post(Recovered())
@@ -243,23 +305,13 @@ class PressSession:
         if contact == self._drawn_contact:
             return
         self._drawn_contact = contact
-        self.displacements = displacements_of(self.drawn.body, snapshot, self.young_modulus)
+        modulus = self.settings.young_modulus
+        self.displacements = displacements_of(self.drawn.body, snapshot, modulus)
         if self.displacements is None:
             live_shape.write(thing.data, self.drawn.rest)
         else:
             live_shape.write(thing.data, self.drawn.local_coordinates(self.displacements))
 
-
-# The servo's words for a fault, as sentences with a remedy.
-FAULTS = {
-    "unplugged": "The device is unplugged; plug it in again and pressing goes on",
-    "stale": "The device is silent; check its cable and power, pressing goes on when it speaks",
-    "too fast": "The device moved too fast and was let go; hold still and pressing goes on",
-    "nan": "The device sent a position that is no number; pressing goes on when it recovers",
-    "wrong protocol": "The device speaks another version of the link; update its firmware",
-    "device fault": "The device reports a fault of its own; see its manual, or plug it in again",
-    "internal error": "The force loop has failed; leave with Escape and press again",
-}
 
 _current: PressSession | None = None
 
@@ -280,9 +332,8 @@ def begin(thing: bpy.types.Object, scene: bpy.types.Scene, source: Source) -> Pr
     global _current  # noqa: PLW0603  see PressSession.post
     if _current is not None:
         raise PalpateError(f"{_current.handle.name} is being pressed; end that first (Escape)")
-    session = PressSession(
-        ObjectHandle.of(thing), scene.name, open_body(thing, scene), thing.palpate.young_modulus
-    )
+    settings = LiveSettings(thing.palpate.young_modulus, Feel.of(thing))
+    session = PressSession(ObjectHandle.of(thing), scene.name, open_body(thing, scene), settings)
     _current = session
     try:
         session.post(Start(source))
@@ -296,6 +347,19 @@ def give_way(reason: str) -> None:
     """End the press that is going on, if one is, leaving the mesh clean."""
     if _current is not None:
         _current.post(GiveWay(reason))
+
+
+@contextmanager
+def _servo_errors() -> Iterator[None]:
+    """What the servo refuses, as a sentence with a remedy."""
+    try:
+        yield
+    except OSError as problem:
+        raise PalpateError(f"device: {problem}; plug it in, or choose another port") from problem
+    except (ValueError, OverflowError) as problem:
+        raise PalpateError(f"servo: {problem}; set it back and press again") from problem
+    except RuntimeError as problem:
+        raise PalpateError(f"servo: {problem}; leave with Escape and press again") from problem
 
 
 def _leave_edit_mode(thing: bpy.types.Object) -> None:

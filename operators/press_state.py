@@ -6,10 +6,14 @@ and carries out the effects, in order, in one place.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from enum import Enum
 
 Point = tuple[float, float, float]
+
+# Somebody who strikes the key twice in alarm wants the force off, not on again.
+CALM_SECONDS = 0.6
 
 
 class Source(Enum):
@@ -39,6 +43,9 @@ class PressState:
     source: Source = Source.POINTER
     withdrawn: bool = False
     message: str = ""
+    # The device's force, as the user wants it, and when it was last let go (s, any clock).
+    force_on: bool = True
+    let_go_at: float = -math.inf
 
     @property
     def active(self) -> bool:
@@ -91,6 +98,20 @@ class Recovered:
 
 
 @dataclass(frozen=True)
+class LetGo:
+    """The user wants no force from the device, at once."""
+
+    at: float
+
+
+@dataclass(frozen=True)
+class BringBack:
+    """The user wants the device's force again."""
+
+    at: float
+
+
+@dataclass(frozen=True)
 class SaveBegins:
     """Blender is about to write the file."""
 
@@ -126,6 +147,8 @@ Event = (
     | Release
     | Fault
     | Recovered
+    | LetGo
+    | BringBack
     | SaveBegins
     | SaveEnds
     | Keep
@@ -151,6 +174,13 @@ class PlaceProbe:
 @dataclass(frozen=True)
 class MoveProbe:
     point: Point
+
+
+@dataclass(frozen=True)
+class SwitchForce:
+    """Off: zero from the next tick on. On: the servo lets it rise slowly."""
+
+    on: bool
 
 
 @dataclass(frozen=True)
@@ -190,6 +220,7 @@ Effect = (
     StartServo
     | PlaceProbe
     | MoveProbe
+    | SwitchForce
     | StopServo
     | HangLiveShape
     | DrawRest
@@ -214,12 +245,12 @@ def transition(state: PressState, event: Event) -> Step:
             return _end(state, "")
         case Keep(dented):
             return _keep(state, dented=dented)
-        case SaveBegins() if not state.withdrawn:
-            return replace(state, withdrawn=True), (RemoveLiveShape(),)
-        case SaveEnds() if state.withdrawn:
-            return replace(state, withdrawn=False), (HangLiveShape(),)
+        case SaveBegins() | SaveEnds():
+            return _save(state, event)
         case Fault() | Recovered() if state.source is Source.DEVICE:
             return _device(state, event)
+        case LetGo() | BringBack() if state.source is Source.DEVICE:
+            return _switch_force(state, event)
         case SetDown() | Move() | Release() if state.source is Source.POINTER:
             return _pointer(state, event)
     return state, ()
@@ -254,6 +285,24 @@ def _device(state: PressState, event: Fault | Recovered) -> Step:
             text = "The device is back"
             return replace(state, phase=Phase.FEELING, message=""), (Say(text),)
     return state, ()
+
+
+def _switch_force(state: PressState, event: LetGo | BringBack) -> Step:
+    match event:
+        case LetGo(at):
+            # Also when it is off already: what is asked for in alarm is done again.
+            return replace(state, force_on=False, let_go_at=at), (SwitchForce(on=False),)
+        case BringBack(at) if not state.force_on and at - state.let_go_at >= CALM_SECONDS:
+            return replace(state, force_on=True), (SwitchForce(on=True),)
+    return state, ()
+
+
+def _save(state: PressState, event: SaveBegins | SaveEnds) -> Step:
+    begins = isinstance(event, SaveBegins)
+    if state.withdrawn == begins:
+        return state, ()
+    effect = RemoveLiveShape() if begins else HangLiveShape()
+    return replace(state, withdrawn=begins), (effect,)
 
 
 def _keep(state: PressState, *, dented: bool) -> Step:

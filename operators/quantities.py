@@ -24,6 +24,13 @@ def memory(count: float) -> str:
     return f"{count / 1e3:.0f} kB"
 
 
+def microseconds(time: float) -> str:
+    """A short time in us: ``0.4 us``, ``12 us``, ``1.2 ms``."""
+    if time >= 1000.0:
+        return f"{time / 1000:.1f} ms"
+    return f"{time:.{1 if time < 10.0 else 0}f} us"
+
+
 def about(count: float) -> str:
     """A predicted number, two digits of it: ``1,700``."""
     return f"{float(f'{count:.2g}'):,.0f}"

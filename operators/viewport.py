@@ -93,6 +93,14 @@ def under_pointer(window: bpy.types.Window, x: int, y: int) -> Viewport | None:
     return None
 
 
+def over_file_browser(window: bpy.types.Window, event: bpy.types.Event) -> bool:
+    """Whether an event belongs to a file browser that lies in this window."""
+    return any(
+        area.type == "FILE_BROWSER" and _contains(area, event.mouse_x, event.mouse_y)
+        for area in window.screen.areas
+    )
+
+
 def redraw_views() -> None:
     """Have every 3D view, with its sidebar, drawn again."""
     for window in bpy.context.window_manager.windows:
@@ -101,7 +109,7 @@ def redraw_views() -> None:
                 area.tag_redraw()
 
 
-def _contains(region: bpy.types.Region, x: int, y: int) -> bool:
+def _contains(region: bpy.types.Region | bpy.types.Area, x: int, y: int) -> bool:
     # A closed region has a size of one pixel.
     return (
         region.width > 1

@@ -12,13 +12,24 @@ import pytest
 from soft_scene import part
 
 # Blender translates these itself, or they are the same everywhere.
-BLENDERS_OWN = {"Palpate", "Material", "Height", "Group", "Port", "Vertex Group", ""}
+BLENDERS_OWN = {
+    "CSV",
+    "npz",
+    "Format",
+    "Palpate",
+    "Material",
+    "Height",
+    "Group",
+    "Port",
+    "Vertex Group",
+    "",
+}
 
 
 def shown_by_blender():
     """Names and tooltips of all properties and operators."""
     properties = part("addon.properties")
-    types = [properties.PalpateObject, properties.PalpateScene]
+    types = [properties.PalpateObject, part("addon.scene_properties").PalpateScene]
     types.append(part("addon.preferences").PalpatePreferences)
     structs = [cls.bl_rna for cls in types]
     structs += [getattr(bpy.ops.palpate, name).get_rna_type() for name in dir(bpy.ops.palpate)]
@@ -62,8 +73,18 @@ def said_in_code(palpate):
     hud = part("addon.hud")
     yield from hud.STATES.values()
     yield from hud.KEYS.values()
-    yield from (hud.ABOVE, hud.WAITING)
-    yield from part("operators.press_session").FAULTS.values()
+    yield from (hud.ABOVE, "Space  Force Off", "Space  Force On", "Starting")
+    yield from said_of_the_servo()
+
+
+def said_of_the_servo():
+    """Its states, faults, reasons and limits, in words."""
+    words = part("operators.servo_words")
+    for standing in words.STATES.values():
+        yield from (standing.word, standing.why)
+    for table in (words.FAULTS, words.FAULT_NAMES, words.REASONS, words.LIMITS):
+        yield from table.values()
+    yield words.AFTER_FAULT
 
 
 @pytest.mark.parametrize("language", ["german", "japanese"])
@@ -72,6 +93,17 @@ def test_no_word_of_the_interface_is_missing(palpate, language):
     shown = set(itertools.chain(shown_by_blender(), said_in_code(palpate)))
     assert len(shown) > 90
     assert not {text for text in shown - BLENDERS_OWN if text not in known}
+
+
+def test_every_state_fault_reason_and_limit_of_the_servo_has_its_words(palpate):
+    import palpate_servo
+
+    words = part("operators.servo_words")
+    assert set(words.STATES) == set(palpate_servo.STATES)
+    assert set(words.FAULTS) == set(words.FAULT_NAMES) == set(palpate_servo.FAULTS)
+    told = {reason for reason in palpate_servo.REASONS if not reason.startswith("after ")}
+    assert set(words.REASONS) >= told
+    assert set(words.LIMITS) >= set(palpate_servo.LIMITERS)
 
 
 def test_the_languages_know_the_same_words(palpate):

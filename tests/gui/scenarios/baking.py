@@ -119,14 +119,14 @@ def _any_has(said: list[str], words: str) -> bool:
 def _rows_shown() -> Iterator[dict[str, str]]:
     """Names and values of the figures that the panel draws."""
     shown: dict[str, str] = {}
-    original = panel_cost._draw_rows
+    original = panel_cost.draw_rows
 
     def draw(layout: bpy.types.UILayout, rows: list[tuple[str, str]]) -> None:
         if any(name == "Peak Memory" for name, _ in rows):
             shown.update(rows)
         original(layout, rows)
 
-    with replaced(panel_cost, "_draw_rows", draw):
+    with replaced(panel_cost, "draw_rows", draw):
         yield shown
 
 

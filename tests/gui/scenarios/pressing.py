@@ -172,10 +172,10 @@ def the_figures_fit_a_narrow_view(stage: Stage) -> Wait:
     drawn: list[float] = []
     draw = hud._rectangle
 
-    def rectangle(x: float, y: float, width: float, height: float) -> None:
+    def rectangle(x: float, y: float, width: float, *others: object) -> None:
         drawn.append(bpy.context.region.width)
         beyond.append(x + width - bpy.context.region.width)
-        draw(x, y, width, height)
+        draw(x, y, width, *others)
 
     with replaced(hud, "_rectangle", rectangle):
         yield from start_press(stage)

@@ -1,0 +1,38 @@
+"""What all panels of the tab share."""
+
+import bpy
+
+NAME_SHARE = 0.55
+
+
+class PalpatePanel:
+    """In the tab Palpate, while a mesh object is active."""
+
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "Palpate"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return context.object is not None and context.object.type == "MESH"
+
+
+def named_properties(panel: bpy.types.Panel) -> bpy.types.UILayout:
+    """The panel's layout, for properties with their names on the left."""
+    layout = panel.layout
+    layout.use_property_split = True
+    layout.use_property_decorate = False
+    return layout
+
+
+def draw_rows(layout: bpy.types.UILayout, rows: list[tuple[str, str]]) -> None:
+    """Figures below each other, their names on the left."""
+    for name, value in rows:
+        row = layout.split(factor=NAME_SHARE)
+        row.label(text=name)
+        row.label(text=value, translate=False)
+
+
+def interface(text: str) -> str:
+    """A word of the interface in the user's language."""
+    return str(bpy.app.translations.pgettext_iface(text))

@@ -1,0 +1,108 @@
+"""The force loop: how fast it shall run, and while somebody presses how well it does."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import bpy
+
+from ..operators import press_session
+from ..operators.quantities import microseconds
+from ..operators.servo_words import FAULT_NAMES
+from .panel_base import PalpatePanel, draw_rows, named_properties
+from .sentence import say
+
+if TYPE_CHECKING:
+    from ..core.servo_session import LinkCounters, ServoCounters
+
+STAGE_NAMES = {"read": "Read", "proxy": "Proxy", "contact": "Contact", "write": "Write"}
+NO_PRIORITY = "none: "
+
+
+class PALPATE_PT_loop(PalpatePanel, bpy.types.Panel):
+    bl_idname = "PALPATE_PT_loop"
+    bl_label = "Force Loop"
+    bl_parent_id = "PALPATE_PT_press"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = named_properties(self)
+        session = press_session.current()
+        row = layout.row()
+        row.enabled = session is None
+        row.prop(context.scene.palpate, "rate")
+        counters = session.figures.counters if session is not None else None
+        if counters is None:
+            say(layout, context, "While you press, its figures appear here", "INFO")
+            return
+        _draw_timing(layout, context, counters)
+        _draw_stages(layout, counters)
+        _draw_faults(layout, counters)
+        link = counters["link"]
+        if link["hellos"]:
+            _draw_link(layout, link)
+
+
+def _draw_timing(
+    layout: bpy.types.UILayout, context: bpy.types.Context, counters: ServoCounters
+) -> None:
+    priority = counters["realtime"]
+    has_priority = not priority.startswith(NO_PRIORITY)
+    rows = [
+        ("Ticks", f"{counters['ticks']:,}"),
+        ("Late by 0.2 ms", f"{counters['late_over_200_us']:,}"),
+        ("Late by 1 ms", f"{counters['late_over_1000_us']:,}"),
+        ("Longest Gap", microseconds(counters["longest_gap_us"])),
+    ]
+    if has_priority:
+        rows.append(("Priority", priority))
+    draw_rows(layout.column(align=True), rows)
+    if not has_priority:
+        reason = priority.removeprefix(NO_PRIORITY)
+        say(layout, context, "No real-time priority: {reason}", "INFO", reason=reason)
+
+
+def _draw_stages(layout: bpy.types.UILayout, counters: ServoCounters) -> None:
+    """Where the time of a tick goes: mean, and what 99 of 100 ticks keep below."""
+    stages = counters["stages_us"]
+    rows = [
+        (name, f"{microseconds(stages[stage]['mean'])}, {microseconds(stages[stage]['p99'])}")
+        for stage, name in STAGE_NAMES.items()
+    ]
+    box = layout.box().column(align=True)
+    box.label(text="Time in a Tick: Mean, 99 %")
+    draw_rows(box, rows)
+
+
+def _draw_faults(layout: bpy.types.UILayout, counters: ServoCounters) -> None:
+    rows = [
+        (FAULT_NAMES.get(name, name), f"{count:,}")
+        for name, count in counters["faults"].items()
+        if count
+    ]
+    if rows:
+        box = layout.box().column(align=True)
+        box.label(text="Faults", icon="ERROR")
+        draw_rows(box, rows)
+
+
+def _draw_link(layout: bpy.types.UILayout, link: LinkCounters) -> None:
+    damaged = link["crc_errors"] + link["cobs_errors"] + link["oversize"] + link["unknown"]
+    rows = [
+        ("Received", f"{link['states']:,}"),
+        ("Sent", f"{link['forces']:,}"),
+        ("Lost", f"{link['lost']:,}"),
+        ("Damaged", f"{damaged:,}"),
+        ("Out of Order", f"{link['duplicates'] + link['out_of_order']:,}"),
+        ("Not Sent", f"{link['unsent']:,}"),
+        ("Opened Again", f"{link['reopened']:,}"),
+    ]
+    device = link["device"]
+    if device is not None:
+        rows.insert(0, ("Device", device["name"]))
+    box = layout.box().column(align=True)
+    box.label(text="Connection")
+    draw_rows(box, rows)
+
+
+classes = (PALPATE_PT_loop,)

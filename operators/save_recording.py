@@ -1,0 +1,82 @@
+"""Save Recording: what was recorded, to CSV or npz; also while the press goes on."""
+
+from pathlib import Path
+
+import bpy
+
+from ..core.errors import PalpateError
+from ..core.recording import SUFFIXES
+from . import press_session, recording
+from .recording import Kept, Recorder
+
+FORMAT_ITEMS = [
+    (".csv", "CSV", "A table for spreadsheets and most other programs"),
+    (".npz", "npz", "Arrays for numpy; smaller, and written at once"),
+]
+DEFAULT_NAME = "recording"
+
+
+def _recorder() -> Recorder | None:
+    """That of the press that is going on, if it records or has recorded."""
+    session = press_session.current()
+    recorder = session.recorder if session is not None else None
+    return recorder if recorder is not None and recorder.wanted else None
+
+
+def recorded() -> Kept | None:
+    """What can be saved now."""
+    recorder = _recorder()
+    return recording.last() if recorder is None else recorder.kept()
+
+
+class PALPATE_OT_save_recording(bpy.types.Operator):
+    bl_idname = "palpate.save_recording"
+    bl_label = "Save Recording..."
+    bl_description = "Write the recorded ticks to a file, also while pressing goes on"
+
+    filepath: bpy.props.StringProperty(subtype="FILE_PATH", options={"HIDDEN", "SKIP_SAVE"})
+    filter_glob: bpy.props.StringProperty(default="*.csv;*.npz", options={"HIDDEN"})
+    check_existing: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
+    suffix: bpy.props.EnumProperty(
+        name="Format", description="How the file is written", items=FORMAT_ITEMS, default=".csv"
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        there = _recorder() is not None or recording.last() is not None
+        if not there:
+            cls.poll_message_set("Nothing is recorded yet; press Record while you press")
+        return there
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        beside = Path(bpy.data.filepath).parent if bpy.data.filepath else Path.home()
+        self.filepath = str(beside / f"{DEFAULT_NAME}{self.suffix}")
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def check(self, context: bpy.types.Context) -> bool:
+        """Let the name in the file browser follow the format."""
+        path = Path(self.filepath)
+        if path.suffix.lower() == self.suffix or not path.name:
+            return False
+        stem = path.stem if path.suffix.lower() in SUFFIXES else path.name
+        self.filepath = str(path.with_name(stem + self.suffix))
+        return True
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        kept = recorded()
+        if kept is None:
+            self.report({"ERROR"}, "Nothing is recorded yet; press Record while you press")
+            return {"CANCELLED"}
+        try:
+            path = Path(bpy.path.abspath(self.filepath))
+            recording.write(path, kept)
+        except PalpateError as problem:
+            self.report({"ERROR"}, str(problem))
+            return {"CANCELLED"}
+        seconds = len(kept.samples) / kept.rate_hz
+        self.report({"INFO"}, f"{len(kept.samples):,} ticks ({seconds:.1f} s) saved to {path}")
+        return {"FINISHED"}
+
+
+classes = (PALPATE_OT_save_recording,)
