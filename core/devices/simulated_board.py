@@ -105,6 +105,8 @@ class SimulatedBoard:
             "clamped": seen.clamped,
             "limp_count": seen.limp,
             "limp": self.firmware.limp,
+            "limp_after": seen.limp_after,
+            "limp_look": seen.limp_look,
             "plugged": self.terminal.plugged,
             "unplugged": self._unplugged,
             "largest_force": seen.largest_force,

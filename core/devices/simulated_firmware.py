@@ -34,6 +34,10 @@ class FirmwareCounters:
     clamped: int = 0
     limp: int = 0
     """How often the watchdog ran out after the host had been driving."""
+    limp_after: float = 0.0
+    """From the last valid FORCE to letting go, the last time, s."""
+    limp_look: float = 0.0
+    """How long the board had not looked before that, s: as much over 20 ms `limp_after` may be."""
     largest_force: float = 0.0
 
 
@@ -48,6 +52,7 @@ class Firmware:
         self._sequence = 0
         self._force = ZERO
         self._braked = False
+        self._looked_at = -math.inf
         self._heard_at: float | None = None
         """When the last valid FORCE came; None while limp."""
         self._heard_sequence = 0
@@ -70,8 +75,11 @@ class Firmware:
 
     def watch(self, now: float) -> bytes:
         """Go limp when the host has been silent for too long; returns the FAULT that tells it."""
+        looked_at, self._looked_at = self._looked_at, now
         if self._heard_at is None or now - self._heard_at <= WATCHDOG_SECONDS:
             return b""
+        self.counters.limp_after = now - self._heard_at
+        self.counters.limp_look = now - max(looked_at, self._heard_at)
         self._heard_at = None
         self.counters.limp += 1
         return link.encode(link.Fault(FAULT_LIMP, self.counters.limp % (1 << 16)))
@@ -106,6 +114,9 @@ class Firmware:
                 return link.encode(self.hello)
             case link.OtherHello():
                 self.counters.hellos += 1
+                # That host could not read what is streamed, and what it sends may mean anything.
+                self.streaming = False
+                self._heard_at = None
                 fault = link.Fault(FAULT_PROTOCOL, message.protocol)
                 return link.encode(self.hello) + link.encode(fault)
             case link.Force() if self.streaming:

@@ -114,38 +114,82 @@ fn shorten(v: DVec3, length: f64) -> DVec3 {
     }
 }
 
-/// Measures a device's speed from its own clock.
+/// A device's clock is compared with the host's over this time, s.
+const CLOCK_SECONDS: f64 = 0.25;
+/// A device's clock that goes faster or slower than the host's by more than this factor is wrong.
+const CLOCK_FACTOR: f64 = 2.0;
+/// What comes together may have been this long on its way, s: more time than that and what the host
+/// saw go by, the device cannot have taken.
+const DELAY_SECONDS: f64 = 0.05;
+
+/// Where a device was, by both clocks.
+#[derive(Debug, Clone, Copy)]
+struct Seen {
+    position: DVec3,
+    device_us: u32,
+    now: f64,
+}
+
+/// Measures a device's speed from its own clock, as long as that can be believed.
+///
+/// The device's clock knows nothing of delays on the line; but one that stands still, runs backwards
+/// or too fast would hide a speed that is too large. Then the host's clock serves: a jump on the line
+/// may look faster by it than it was, never slower.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Speedometer {
-    last: Option<(DVec3, u32, f64)>,
+    last: Option<Seen>,
+    compared: Option<Seen>,
+    is_wrong: bool,
 }
 
 impl Speedometer {
-    /// Forgets the last position, for after a gap.
+    /// Forgets the last position, for after a gap; not what was found of the clock.
     pub fn reset(&mut self) {
         self.last = None;
+        self.compared = None;
     }
 
     /// Speed (m/s) at `position` (m), reached at `device_us` by the device's clock and `now`
-    /// seconds by the host's, which serves when the device's stands still.
+    /// seconds by the host's.
     pub fn speed(&mut self, position: DVec3, device_us: u32, now: f64) -> f64 {
-        let last = self.last.replace((position, device_us, now));
-        let Some((from, from_us, from_now)) = last else {
+        let here = Seen {
+            position,
+            device_us,
+            now,
+        };
+        self.compare_clocks(&here);
+        let Some(last) = self.last.replace(here) else {
             return 0.0;
         };
-        let device_seconds = f64::from(device_us.wrapping_sub(from_us)) * 1e-6;
-        let seconds = if device_seconds > 0.0 && device_seconds < 1.0 {
-            device_seconds
-        } else {
-            now - from_now
-        };
-        let way = position.distance(from);
+        let way = position.distance(last.position);
         if way == 0.0 {
-            0.0
+            return 0.0;
+        }
+        let (device, host) = elapsed(&last, &here);
+        let can_be = device > 0.0 && device <= host + DELAY_SECONDS;
+        let seconds = if can_be && !self.is_wrong {
+            device
         } else {
-            way / seconds.max(1e-6)
+            host
+        };
+        way / seconds.max(1e-6)
+    }
+
+    fn compare_clocks(&mut self, here: &Seen) {
+        let since = *self.compared.get_or_insert(*here);
+        let (device, host) = elapsed(&since, here);
+        if host >= CLOCK_SECONDS {
+            let ratio = device / host;
+            self.is_wrong = !(1.0 / CLOCK_FACTOR..=CLOCK_FACTOR).contains(&ratio);
+            self.compared = Some(*here);
         }
     }
+}
+
+/// Time between two places by the device's clock, which wraps, and by the host's, s.
+fn elapsed(from: &Seen, to: &Seen) -> (f64, f64) {
+    let device = f64::from(to.device_us.wrapping_sub(from.device_us)) * 1e-6;
+    (device, to.now - from.now)
 }
 
 #[cfg(test)]
@@ -240,9 +284,46 @@ mod tests {
     fn speed_uses_the_devices_clock_and_survives_its_wrap() {
         let mut meter = Speedometer::default();
         assert_eq!(meter.speed(DVec3::ZERO, u32::MAX - 499, 0.0), 0.0);
-        let speed = meter.speed(DVec3::X * 1e-3, 500, 5.0);
+        let speed = meter.speed(DVec3::X * 1e-3, 500, 0.005);
         assert!((speed - 1.0).abs() < 1e-9);
-        let by_host = meter.speed(DVec3::X * 3e-3, 500, 5.001);
+        let by_host = meter.speed(DVec3::X * 3e-3, 500, 0.006);
         assert!((by_host - 2.0).abs() < 1e-6);
+    }
+
+    /// Speeds of a device that goes at 5 m/s, by a clock of its own.
+    fn measured(clock: impl Fn(u32) -> u32) -> Vec<f64> {
+        let mut meter = Speedometer::default();
+        (0..2000)
+            .map(|ms| {
+                let position = DVec3::X * 5e-3 * f64::from(ms);
+                meter.speed(position, clock(ms), f64::from(ms) * 1e-3)
+            })
+            .collect()
+    }
+
+    #[test]
+    fn a_device_with_a_wrong_clock_is_not_taken_for_a_slow_one() {
+        let right = |ms: u32| 4_294_000_000_u32.wrapping_add(1000 * ms);
+        assert!(measured(right)[1..].iter().all(|v| (v - 5.0).abs() < 1e-6));
+        let stands_still = measured(|_| 77);
+        let backwards = measured(|ms| 4_000_000_u32.wrapping_sub(1000 * ms));
+        for speeds in [stands_still, backwards] {
+            assert!(speeds[1..].iter().all(|v| (v - 5.0).abs() < 1e-6));
+        }
+        // A clock that only goes too fast is found out after a quarter of a second.
+        let too_fast = measured(|ms| 30_000 * ms);
+        assert!(too_fast[..250].iter().all(|v| *v < 1.0));
+        assert!(too_fast[252..].iter().all(|v| (v - 5.0).abs() < 1e-6));
+    }
+
+    #[test]
+    fn bursts_of_an_ordinary_device_are_no_speed() {
+        let mut meter = Speedometer::default();
+        for ms in 0..2000_u32 {
+            // A line that hands over what it has every 16 ms.
+            let now = f64::from(ms.div_ceil(16) * 16) * 1e-3;
+            let speed = meter.speed(DVec3::X * 1e-3 * f64::from(ms), 1000 * ms, now);
+            assert!(speed < 1.0 + 1e-6, "{ms}: {speed}");
+        }
     }
 }

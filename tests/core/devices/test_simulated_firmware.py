@@ -52,6 +52,17 @@ def test_another_protocol_is_answered_with_hello_and_fault_but_no_stream(firmwar
     assert firmware.state(0.0, (0, 0, 0), 0) == b""
 
 
+def test_another_protocol_in_between_ends_stream_and_force_until_it_is_greeted_again(greeted):
+    tell(greeted, force(0), 1.0)
+    assert greeted.force == (0.0, 0.0, 1.0)
+    assert tell(greeted, link.HostHello(7), 1.001) == [HELLO, link.Fault(FAULT_PROTOCOL, 7)]
+    assert (greeted.force, greeted.state(1.002, (0, 0, 0), 0)) == (ZERO, b"")
+    tell(greeted, force(1), 1.003)
+    assert (greeted.force, greeted.watch(1.1)) == (ZERO, b"")
+    tell(greeted, link.HostHello(), 2.0)
+    assert greeted.state(2.001, (0, 0, 0), 0)
+
+
 def test_sequence_and_clock_wrap(greeted):
     greeted._sequence = 65535
     first, second = link.Decoder().feed(
@@ -85,6 +96,8 @@ def test_twenty_milliseconds_of_silence_make_the_device_limp_and_it_says_so_once
     assert (greeted.force, greeted.braked, greeted.limp) == (ZERO, False, True)
     assert greeted.watch(1.03) == b""
     assert greeted.counters.limp == 1
+    assert greeted.counters.limp_after == pytest.approx(0.0201)
+    assert greeted.counters.limp_look == pytest.approx(0.0002)
 
 
 def test_a_limp_device_takes_up_again_at_any_sequence(greeted):
