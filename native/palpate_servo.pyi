@@ -241,6 +241,11 @@ class Proxy:
     def follow_path(self, devices: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
         """Follow devices (k, 3) in turn: contact points (k, 3), triangles (k,), -1 free."""
 
+    def time_path(self, devices: ArrayLike, batch: int) -> NDArray[np.float64]:
+        """Follow devices (k, 3) and compute the contact force at each: seconds a tick, averaged
+        over batches of so many ticks each, (ceil(k / batch),).
+        """
+
     @property
     def god_object(self) -> NDArray[np.float64]:
         """The locally nearest point that the surface allows, m (3,), before shading, friction and

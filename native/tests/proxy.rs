@@ -1,6 +1,7 @@
 //! The god object never enters the body, never sticks, and rests where the device is nearest.
 
 mod bodies;
+mod pushing;
 
 use bodies::{
     Dice, angle_bar, cube, inner_corner, lentil, sphere, touching_blocks, touching_tips, wall,
@@ -9,49 +10,7 @@ use glam::DVec3;
 use palpate_servo::closest::closest_point;
 use palpate_servo::proxy::{Feel, Proxy};
 use palpate_servo::surface::Body;
-
-const MICROMETRE: f64 = 1e-6;
-
-/// Winding number of the surface about `p`: 1 inside, 0 outside (van Oosterom and Strackee 1983).
-/// A referee that shares no code with the crate.
-fn winding(body: &Body, p: DVec3) -> f64 {
-    let mut sum = 0.0;
-    for triangle in &body.triangles {
-        let [a, b, c] = triangle.map(|n| body.nodes[n as usize] - p);
-        let (la, lb, lc) = (a.length(), b.length(), c.length());
-        let below = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
-        sum += 2.0 * a.dot(b.cross(c)).atan2(below);
-    }
-    sum / (4.0 * std::f64::consts::PI)
-}
-
-/// Nearest point of one triangle to `p` by projecting and clamping, as a referee.
-fn nearest_on(corners: [DVec3; 3], p: DVec3) -> DVec3 {
-    let [a, b, c] = corners;
-    let n = (b - a).cross(c - a);
-    let q = p - n * (n.dot(p - a) / n.length_squared());
-    let is_in = [(a, b), (b, c), (c, a)]
-        .iter()
-        .all(|&(s, e)| n.cross(e - s).dot(q - s) >= 0.0);
-    if is_in {
-        return q;
-    }
-    [(a, b), (b, c), (c, a)]
-        .map(|(s, e)| {
-            let t = ((p - s).dot(e - s) / (e - s).length_squared()).clamp(0.0, 1.0);
-            s + (e - s) * t
-        })
-        .into_iter()
-        .min_by(|x, y| x.distance(p).total_cmp(&y.distance(p)))
-        .unwrap()
-}
-
-fn distance_to_surface(body: &Body, p: DVec3) -> f64 {
-    body.triangles
-        .iter()
-        .map(|t| nearest_on(t.map(|n| body.nodes[n as usize]), p).distance(p))
-        .fold(f64::INFINITY, f64::min)
-}
+use pushing::{distance_to_surface, nearest_on, quantised, target, winding};
 
 /// Triangles on the proxy's own sheet of the surface that meet its feature. Where the surface
 /// touches itself the other sheet belongs to another free space.
@@ -87,23 +46,6 @@ fn assert_rests(name: &str, body: &Body, proxy: &Proxy, device: DVec3) {
     }
 }
 
-/// A proxy may hold on only if the way to the device leads into the body at once.
-fn assert_held_back(name: &str, body: &Body, proxy: &Proxy, device: DVec3) {
-    let way = device - proxy.position();
-    if way.length() < 1e-12 {
-        return; // The device is on the surface: holding and free are the same.
-    }
-    let a_bit_on = proxy.position() + way * (2e-6 / way.length()).min(0.5);
-    if distance_to_surface(body, a_bit_on) < 1e-12 {
-        return; // The way runs in the surface: no referee can tell its sides apart.
-    }
-    assert!(
-        winding(body, a_bit_on) > 0.5,
-        "{name}: sticks at {} with the device free at {device}",
-        proxy.position()
-    );
-}
-
 fn all_bodies() -> Vec<(&'static str, std::sync::Arc<Body>)> {
     vec![
         ("cube", cube()),
@@ -120,114 +62,6 @@ fn all_bodies() -> Vec<(&'static str, std::sync::Arc<Body>)> {
 /// One tick of 1 ms with nothing but the shape.
 fn follow(proxy: &mut Proxy, body: &Body, device: DVec3) {
     proxy.follow(body, device, &Feel::default(), 1e-3);
-}
-
-fn quantised(p: DVec3, quantum: f64) -> DVec3 {
-    (p / quantum).round() * quantum
-}
-
-/// A place on the surface: in a triangle, on an edge, or a node.
-fn target(body: &Body, dice: &mut Dice) -> (DVec3, DVec3) {
-    let t = dice.below(body.triangles.len()) as u32;
-    let face = body.face(t);
-    let mut alpha = [dice.unit(), dice.unit(), dice.unit()];
-    let zeros = dice.below(3);
-    let first = dice.below(3);
-    for k in 0..zeros {
-        alpha[(first + k) % 3] = 0.0;
-    }
-    let sum: f64 = alpha.iter().sum();
-    (face.at(alpha.map(|a| a / sum)), face.normal)
-}
-
-/// The device's way in one push: in along `inwards` and out again, quantised.
-struct Push {
-    from: DVec3,
-    inwards: DVec3,
-    quantum: f64,
-    steps: usize,
-}
-
-impl Push {
-    const LENGTH: f64 = 0.009;
-
-    fn at(&self, step: usize) -> DVec3 {
-        let part = step as f64 / self.steps as f64;
-        quantised(
-            self.from + self.inwards * (Self::LENGTH * part),
-            self.quantum,
-        )
-    }
-
-    fn random(body: &Body, dice: &mut Dice, number: usize) -> Self {
-        let quantum = [1.0, 10.0, 20.0, 50.0, 60.0][number % 5] * MICROMETRE;
-        let (goal, normal) = target(body, dice);
-        // Every kind of direction: the normal, an axis, a diagonal, anything.
-        let inwards = match number % 4 {
-            0 => -normal,
-            1 => {
-                let axis = normal.abs().max_position();
-                let mut d = DVec3::ZERO;
-                d[axis] = -normal[axis].signum();
-                d
-            }
-            2 => (-normal.signum()).normalize(),
-            _ => {
-                let d = dice.direction();
-                if d.dot(normal) > 0.0 { -d } else { d }
-            }
-        };
-        Self {
-            from: quantised(goal, quantum) - inwards * 0.004,
-            inwards,
-            quantum,
-            steps: 40 + dice.below(200),
-        }
-    }
-}
-
-#[test]
-fn pushes_at_every_quantum_neither_fall_through_nor_stick() {
-    const PUSHES: usize = 2000;
-    for (name, body) in all_bodies() {
-        let mut dice = Dice::new(7);
-        let mut pushed = 0;
-        for number in 0..PUSHES {
-            let push = Push::random(&body, &mut dice, number);
-            let start = push.at(0);
-            if closest_point(&body, start, 0).1 {
-                continue;
-            }
-            pushed += 1;
-            let mut proxy = Proxy::new(&body, start);
-            let mut landings = 0;
-            let mut held_in_front = false;
-            let there_and_back = (0..=push.steps).chain((0..=push.steps).rev());
-            for (count, step) in there_and_back.enumerate() {
-                let device = push.at(step);
-                let was_free = proxy.hold().is_none();
-                follow(&mut proxy, &body, device);
-                if proxy.hold().is_some() {
-                    landings += usize::from(was_free);
-                    held_in_front |= count == push.steps;
-                    if step % 8 == 0 {
-                        assert_rests(name, &body, &proxy, device);
-                    }
-                } else {
-                    let (closest, inside) = closest_point(&body, device, 0);
-                    assert!(
-                        !inside || closest.distance < 1e-12,
-                        "{name}: push {number} fell through to {device}"
-                    );
-                }
-            }
-            // Whoever went round or through free space comes back from behind and is held there.
-            if proxy.hold().is_some() && landings == 1 && held_in_front {
-                assert_held_back(name, &body, &proxy, start);
-            }
-        }
-        assert!(pushed > PUSHES / 4, "{name}: only {pushed} pushes");
-    }
 }
 
 #[test]

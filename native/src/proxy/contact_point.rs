@@ -29,6 +29,9 @@ const LARGEST_LAG: f64 = 0.35;
 /// Farthest shaded point from the god object, in depths.
 const FARTHEST_SHADE: f64 = 1.0;
 
+/// Farthest contact point from the device in depths of the god object, without friction.
+const LONGEST_REACH: f64 = 2.0;
+
 /// Contact point and its memory.
 #[derive(Debug, Clone)]
 pub(super) struct ContactPoint {
@@ -78,6 +81,17 @@ impl ContactPoint {
         feel: &Feel,
         dt: f64,
     ) {
+        self.follow_aim(body, god, device, feel, dt);
+        // What is felt ends with the touch: no force without depth, however thin the triangles.
+        let reach = device.distance_squared(self.position);
+        let allowed = LONGEST_REACH * (1.0 + feel.static_friction);
+        let is_within = reach <= allowed * allowed * device.distance_squared(god.position);
+        if !is_within {
+            (self.hold, self.position) = (god.hold, god.position);
+        }
+    }
+
+    fn follow_aim(&mut self, body: &Body, god: &Judged, device: DVec3, feel: &Feel, dt: f64) {
         let moved = device - std::mem::replace(&mut self.device, device);
         let is_new = self.landing != Some(god.landings);
         self.landing = Some(god.landings);
@@ -134,7 +148,7 @@ impl ContactPoint {
         let depth = device.distance(god.position);
         // A contact point may trail by its cone, widened for blocks that are stiffer one way than
         // another; what trails farther belongs to a surface that has passed.
-        let farthest = depth * (3.0 * feel.static_friction + 2.0);
+        let farthest = depth * (2.0 * feel.static_friction + 1.0);
         let behind = self.position - god.position;
         if behind.length() > farthest {
             let nearer = god.position + behind * (farthest / behind.length());

@@ -55,7 +55,7 @@ impl Friction {
         dt: f64,
     ) -> Option<Slip> {
         let first = Pull::at(body, hold, device, feel.shading)?;
-        let ratio = first.sideways.length() / first.pressing;
+        let ratio = first.ratio();
         let stays = Slip {
             hold,
             broke_away: false,
@@ -72,16 +72,22 @@ impl Friction {
         }
         (self.sticking, self.quiet) = (false, 0.0);
         let aim = coefficient * (1.0 + ON_CONE);
-        let mut pull = first;
+        let (mut from, mut pull, mut excess) = (hold, first, ratio - aim);
         let mut reached = hold;
+        let mut part = 1.0;
         for _ in 0..MAX_ROUNDS {
-            let shift = pull.to_cone(aim)?;
-            let here = body.face(reached.triangle).at(reached.alpha);
-            reached = descend(body, reached, here + shift);
-            pull = Pull::at(body, reached, device, feel.shading)?;
-            let ratio = pull.sideways.length() / pull.pressing;
-            if (ratio - aim).abs() <= ON_CONE * aim {
+            let start = body.face(from.triangle).at(from.alpha);
+            reached = descend(body, from, start + pull.to_cone(aim)? * part);
+            let there = Pull::at(body, reached, device, feel.shading)?;
+            let excess_there = there.ratio() - aim;
+            if excess_there.abs() <= ON_CONE * aim {
                 break;
+            }
+            if excess_there > 0.0 {
+                (from, pull, excess, part) = (reached, there, excess_there, 1.0);
+            } else {
+                // Into the cone: where walls meet for good, elsewhere a little less will do.
+                part *= excess / (excess - excess_there);
             }
         }
         Some(Slip {
@@ -111,6 +117,10 @@ impl Pull {
         })
     }
 
+    fn ratio(&self) -> f64 {
+        self.sideways.length() / self.pressing
+    }
+
     /// How far the contact point must move in the tangent plane to come onto the cone.
     fn to_cone(&self, coefficient: f64) -> Option<DVec3> {
         let (x, y) = self.normal.any_orthonormal_pair();
@@ -133,7 +143,7 @@ impl Pull {
         } else {
             1.0
         };
-        let shift = all_the_way * part.clamp(-1.0, 1.0);
+        let shift = all_the_way * part.clamp(0.0, 1.0);
         shift.is_finite().then_some(shift)
     }
 }

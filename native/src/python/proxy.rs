@@ -1,6 +1,8 @@
 //! `Proxy`: god object and contact point alone.
 
+use std::hint::black_box;
 use std::sync::Arc;
+use std::time::Instant;
 
 use glam::DVec3;
 use numpy::{AllowTypeChange, PyArray1, PyArray2, PyArrayLike2};
@@ -10,6 +12,7 @@ use pyo3::prelude::*;
 use super::body::Body;
 use super::servo::feel;
 use super::vectors::{Matrix, Triple, Vector, array, check_rate, finite};
+use crate::contact::touch;
 use crate::{proxy, surface};
 
 #[pyclass(module = "palpate_servo")]
@@ -77,14 +80,10 @@ impl Proxy {
         py: Python<'py>,
         devices: PyArrayLike2<'_, f64, AllowTypeChange>,
     ) -> PyResult<(Matrix<'py>, Bound<'py, PyArray1<i64>>)> {
-        let devices = devices.as_array();
-        if devices.ncols() != 3 {
-            return Err(PyValueError::new_err("devices must have three columns"));
-        }
-        let mut positions = Vec::with_capacity(devices.nrows());
-        let mut triangles = Vec::with_capacity(devices.nrows());
-        for row in devices.rows() {
-            let device = finite("devices", [row[0], row[1], row[2]])?;
+        let devices = rows_of(&devices)?;
+        let mut positions = Vec::with_capacity(devices.len());
+        let mut triangles = Vec::with_capacity(devices.len());
+        for device in devices {
             let inner = match &mut self.inner {
                 Some(inner) => {
                     inner.follow(&self.body, device, &self.feel, self.dt);
@@ -99,6 +98,36 @@ impl Proxy {
             PyArray2::from_vec2(py, &positions)?,
             PyArray1::from_vec(py, triangles),
         ))
+    }
+
+    fn time_path<'py>(
+        &mut self,
+        py: Python<'py>,
+        devices: PyArrayLike2<'_, f64, AllowTypeChange>,
+        batch: usize,
+    ) -> PyResult<Vector<'py>> {
+        if batch == 0 {
+            return Err(PyValueError::new_err("batch must be at least 1"));
+        }
+        let devices = rows_of(&devices)?;
+        let (body, feel, dt) = (&*self.body, self.feel, self.dt);
+        let first = devices.first().copied().unwrap_or(DVec3::ZERO);
+        let inner = (self.inner).get_or_insert_with(|| proxy::Proxy::new(body, first));
+        let seconds: Vec<f64> = devices
+            .chunks(batch)
+            .map(|batch| {
+                let start = Instant::now();
+                for &device in batch {
+                    inner.follow(body, black_box(device), &feel, dt);
+                    if let Some(hold) = inner.hold() {
+                        let displacement = device - inner.position();
+                        black_box(touch(body, hold.triangle, hold.alpha, displacement, 1e3));
+                    }
+                }
+                start.elapsed().as_secs_f64() / batch.len() as f64
+            })
+            .collect();
+        Ok(PyArray1::from_vec(py, seconds))
     }
 
     #[getter]
@@ -121,4 +150,16 @@ impl Proxy {
     fn rescues(&self) -> u64 {
         self.inner.as_ref().map_or(0, proxy::Proxy::rescues)
     }
+}
+
+fn rows_of(devices: &PyArrayLike2<'_, f64, AllowTypeChange>) -> PyResult<Vec<DVec3>> {
+    let devices = devices.as_array();
+    if devices.ncols() != 3 {
+        return Err(PyValueError::new_err("devices must have three columns"));
+    }
+    devices
+        .rows()
+        .into_iter()
+        .map(|row| finite("devices", [row[0], row[1], row[2]]))
+        .collect()
 }

@@ -269,6 +269,121 @@ pub fn lentil() -> Arc<Body> {
     soft(nodes, ball.triangles.clone())
 }
 
+/// A sphere of 51 meridians and 24 bands: 2,346 triangles, long and thin at the poles.
+pub fn globe(radius: f64) -> Arc<Body> {
+    let (meridians, bands) = (51_u32, 24_u32);
+    let mut nodes = vec![DVec3::Z * radius];
+    for band in 1..bands {
+        let polar = std::f64::consts::PI * f64::from(band) / f64::from(bands);
+        for meridian in 0..meridians {
+            let azimuth = std::f64::consts::TAU * f64::from(meridian) / f64::from(meridians);
+            let (s, c) = azimuth.sin_cos();
+            nodes.push(DVec3::new(c * polar.sin(), s * polar.sin(), polar.cos()) * radius);
+        }
+    }
+    nodes.push(-DVec3::Z * radius);
+    let at = |band: u32, meridian: u32| 1 + (band - 1) * meridians + meridian % meridians;
+    let south = nodes.len() as u32 - 1;
+    let mut triangles = Vec::new();
+    for m in 0..meridians {
+        triangles.push([0, at(1, m), at(1, m + 1)]);
+        for band in 1..bands - 1 {
+            let (a, b) = (at(band, m), at(band + 1, m));
+            let (c, d) = (at(band + 1, m + 1), at(band, m + 1));
+            triangles.extend([[a, b, c], [a, c, d]]);
+        }
+        triangles.push([south, at(bands - 1, m + 1), at(bands - 1, m)]);
+    }
+    assert_eq!(triangles.len(), 2346);
+    soft(nodes, triangles)
+}
+
+/// A block cut into 200 slices: triangles 200 times longer than wide.
+pub fn needles() -> Arc<Body> {
+    let body = voxels(&grid(1, 1, 200), 1.0);
+    let scale = DVec3::new(0.05, 0.05, 0.05 / 200.0);
+    let nodes = body.nodes.iter().map(|&p| p * scale).collect();
+    soft(nodes, body.triangles.clone())
+}
+
+/// The cube, every triangle split at a point `gap` beside its first edge: caps with an angle of
+/// nearly 180 degrees.
+pub fn caps(gap: f64) -> Arc<Body> {
+    let cube = cube();
+    let mut nodes = cube.nodes.clone();
+    let mut triangles = Vec::new();
+    for (t, &[a, b, c]) in cube.triangles.iter().enumerate() {
+        let face = cube.face(t as u32);
+        let middle = (face.corners[0] * 0.4 + face.corners[1] * 0.6) + face.inward[0] * gap;
+        let d = nodes.len() as u32;
+        nodes.push(middle);
+        triangles.extend([[a, b, d], [b, c, d], [c, a, d]]);
+    }
+    soft(nodes, triangles)
+}
+
+/// The cube with a triangle of `edge` in each of its triangles, `height` above them.
+pub fn speckled(edge: f64, height: f64) -> Arc<Body> {
+    let cube = cube();
+    let mut nodes = cube.nodes.clone();
+    let mut triangles = Vec::new();
+    for (t, &corners) in cube.triangles.iter().enumerate() {
+        let face = cube.face(t as u32);
+        let middle = face.at([1.0 / 3.0; 3]) + face.normal * height;
+        let first = nodes.len() as u32;
+        nodes.extend(
+            face.corners
+                .map(|p| middle + (p - middle).normalize() * edge),
+        );
+        let inner = [first, first + 1, first + 2];
+        triangles.push(inner);
+        for k in 0..3 {
+            let l = (k + 1) % 3;
+            triangles.extend([
+                [corners[k], corners[l], inner[k]],
+                [corners[l], inner[l], inner[k]],
+            ]);
+        }
+    }
+    soft(nodes, triangles)
+}
+
+/// Turned by odd angles and scaled: nothing lies along an axis any more.
+pub fn turned(body: &Body, scale: f64) -> Arc<Body> {
+    let turn = DMat3::from_rotation_x(0.7123) * DMat3::from_rotation_y(-1.1931);
+    let turn = turn * DMat3::from_rotation_z(2.4173);
+    let nodes = body.nodes.iter().map(|&p| turn * p * scale).collect();
+    soft(nodes, body.triangles.clone())
+}
+
+/// Every kind of body that a push may meet, under its name.
+pub fn pushed_bodies() -> Vec<(&'static str, Arc<Body>)> {
+    vec![
+        ("cube", cube()),
+        ("sphere", sphere(0.025, 3)),
+        ("globe", globe(0.025)),
+        ("angle bar", angle_bar()),
+        ("inner corner", inner_corner()),
+        ("lentil", lentil()),
+        ("wall 0.5 mm", wall(5e-4)),
+        ("wall 10 um", wall(1e-5)),
+        ("touching blocks", touching_blocks()),
+        ("touching tips", touching_tips()),
+        ("needles", needles()),
+        ("caps", caps(1e-7)),
+        ("caps 1 nm", caps(1e-9)),
+        ("specks 0.3 um", speckled(3e-7, 1e-7)),
+        ("dents 0.3 um", speckled(3e-7, -1e-7)),
+        ("turned cube", turned(&cube(), 1.0)),
+        ("turned needles", turned(&needles(), 1.0)),
+        ("turned caps", turned(&caps(1e-7), 1.0)),
+        ("turned specks", turned(&speckled(3e-7, 1e-7), 1.0)),
+        ("turned lentil", turned(&lentil(), 1.0)),
+        ("1 mm", turned(&angle_bar(), 0.02)),
+        ("10 m", turned(&angle_bar(), 200.0)),
+    ]
+}
+
 /// The same numbers on every machine.
 pub struct Dice(u64);
 
