@@ -152,8 +152,12 @@ impl<O: Opener> LinkDevice<O> {
                 self.report.unknown += 1;
             }
             Some(Message::Hello(greeting)) => {
-                if self.greeting.is_none() {
+                if !self.is_greeted() {
+                    // A new session: where the device was before, and its sequence, are over.
                     self.heard = now;
+                    self.newest = None;
+                    self.device_fault = false;
+                    self.speedometer.reset();
                 }
                 self.greeting = Some(greeting);
                 self.report.greeting = Some(greeting);

@@ -252,6 +252,22 @@ fn a_greeting_with_figures_that_cannot_be_gets_no_force() {
 }
 
 #[test]
+fn a_new_session_knows_nothing_of_the_last_one() {
+    let (bench, mut device) = greeted();
+    assert!(matches!(read(&mut device, 0.001), Reading::At(_)));
+    bench.send(&[4, 2, 7, 0]);
+    bench.hello(7, 2.5);
+    assert_eq!(read(&mut device, 0.002), Reading::Fault(Fault::Protocol));
+    bench.hello(1, 2.5);
+    // Neither the place of 498 ms ago nor the fault of the session before.
+    assert!(matches!(read(&mut device, 0.500), Reading::Waiting(_)));
+    // Its sequence is behind that of the session before.
+    bench.state(10, 3000, 0, 1);
+    assert_eq!(position(read(&mut device, 0.501)), 3e-3);
+    assert_eq!(device.report().out_of_order, 0);
+}
+
+#[test]
 fn faults_flags_and_buttons_of_the_device_are_passed_on() {
     let (bench, mut device) = greeted();
     read(&mut device, 0.001);

@@ -2,6 +2,8 @@
 // a line on standard output. With `fuzz SEED BYTES` it throws damage at itself instead.
 //
 // Bytes are hexadecimal, none of them a dash. Times are microseconds.
+#include "damage.h"
+
 #include <palpate_link.h>
 
 #include <inttypes.h>
@@ -274,22 +276,7 @@ int serve() {
 
 // ------------------------------------------------------------------------------------- fuzzing
 
-// xorshift64*: the same dice on every system.
-class Dice {
- public:
-  explicit Dice(uint64_t seed) : state_(seed * 0x9E3779B97F4A7C15U + 1) {}
-
-  uint32_t below(uint32_t limit) {
-    state_ ^= state_ >> 12;
-    state_ ^= state_ << 25;
-    state_ ^= state_ >> 27;
-    return static_cast<uint32_t>((state_ * 0x2545F4914F6CDD1DU) >> 33) % limit;
-  }
-  uint8_t byte() { return static_cast<uint8_t>(below(256)); }
-
- private:
-  uint64_t state_;
-};
+using damage::Dice;
 
 struct Tally {
   uint64_t bytes = 0;
@@ -382,7 +369,7 @@ size_t random_frame(Dice& dice, uint16_t& sequence, uint8_t (&frame)[max_frame])
   return palpate::write_frame(payload, size, frame);
 }
 
-size_t damage(Dice& dice, uint8_t (&bytes)[2 * max_frame], size_t size) {
+size_t damaged(Dice& dice, uint8_t (&bytes)[2 * max_frame], size_t size) {
   const size_t at = dice.below(static_cast<uint32_t>(size));
   switch (dice.below(5)) {
     case 0:
@@ -411,7 +398,7 @@ void hit_and_follow(Dice& dice, Target& target) {
   uint8_t bytes[2 * max_frame];
   size_t size = random_frame(dice, target.sequence, frame);
   memcpy(bytes, frame, size);
-  size = damage(dice, bytes, size);
+  size = damaged(dice, bytes, size);
   for (size_t i = 0; i < size; ++i) target.take(bytes[i]);
   ++target.tally.damaged;
   const bool ended = size > 0 && bytes[size - 1] == 0;
@@ -456,12 +443,62 @@ int fuzz(uint64_t seed, uint64_t count) {
   return 0;
 }
 
+// ------------------------------------------------------------------ streams shared with Rust
+
+// Reads a stream beside what was sent: a sound frame after a delimiter must be read, and what is read
+// should have been sent. Prints the line of tests/vectors/damage.csv.
+int read_damage(uint64_t seed, uint64_t count) {
+  Dice dice(seed);
+  palpate::Receiver receiver;
+  damage::Digest sent, read;
+  uint64_t bytes = 0, payloads = 0, phantoms = 0;
+  uint8_t last_byte = 0;
+  while (bytes < count) {
+    const damage::Chunk chunk = damage::next_chunk(dice);
+    const bool owed = chunk.sound && last_byte == 0;
+    uint64_t right = 0, wrong = 0;
+    sent.take(chunk.bytes.data(), chunk.bytes.size());
+    for (const uint8_t byte : chunk.bytes) {
+      if (!receiver.take(byte)) continue;
+      const damage::Payload payload(receiver.payload(), receiver.payload() + receiver.size());
+      read.take(static_cast<uint8_t>(payload.size()));
+      read.take(payload.data(), payload.size());
+      bool was_sent = false;
+      for (const damage::Payload& expected : chunk.payloads) was_sent |= expected == payload;
+      ++(was_sent ? right : wrong);
+    }
+    require(!owed || (right == 1 && wrong == 0), "a sound frame after a delimiter was lost");
+    bytes += chunk.bytes.size();
+    payloads += right + wrong;
+    phantoms += wrong;
+    if (!chunk.bytes.empty()) last_byte = chunk.bytes.back();
+  }
+  printf("%" PRIu64 ",%" PRIu64 ",%016" PRIx64 ",%" PRIu64 ",%016" PRIx64 ",%" PRIu32 ",%" PRIu32
+         ",%" PRIu64 "\n",
+         seed, bytes, sent.value, payloads, read.value, receiver.crc_errors, receiver.malformed,
+         phantoms);
+  return 0;
+}
+
+int write_damage(uint64_t seed, uint64_t count) {
+  Dice dice(seed);
+  for (uint64_t bytes = 0; bytes < count;) {
+    const damage::Chunk chunk = damage::next_chunk(dice);
+    bytes += fwrite(chunk.bytes.data(), 1, chunk.bytes.size(), stdout);
+  }
+  return 0;
+}
+
 }  // namespace
 
 int main(int count, char** words) {
-  if (count == 4 && strcmp(words[1], "fuzz") == 0) {
-    return fuzz(strtoull(words[2], nullptr, 10), strtoull(words[3], nullptr, 10));
+  if (count == 4) {
+    const uint64_t seed = strtoull(words[2], nullptr, 10);
+    const uint64_t bytes = strtoull(words[3], nullptr, 10);
+    if (strcmp(words[1], "fuzz") == 0) return fuzz(seed, bytes);
+    if (strcmp(words[1], "read-damage") == 0) return read_damage(seed, bytes);
+    if (strcmp(words[1], "write-damage") == 0) return write_damage(seed, bytes);
   }
-  if (count != 1) give_up("usage: checker [fuzz SEED BYTES]");
+  if (count != 1) give_up("usage: checker [(fuzz | read-damage | write-damage) SEED BYTES]");
   return serve();
 }

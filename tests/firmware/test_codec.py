@@ -1,7 +1,6 @@
 """The firmware's codec: the shared vectors both ways, and the other codecs on the same bytes."""
 
 import json
-import random
 import re
 import struct
 import subprocess
@@ -121,30 +120,6 @@ def test_payloads_that_fit_no_frame_are_refused(checker, size):
 def test_more_than_one_cobs_block_is_refused(checker):
     assert checker.ask(f"stuff {bytes(253).hex()}") == "01" * 254
     assert checker.ask(f"stuff {bytes(254).hex()}") == "-"
-
-
-def test_three_codecs_read_a_long_damaged_stream_alike_and_count_alike(checker):
-    dice = random.Random(27)  # noqa: S311 - dice for damage, not secrets
-    for _ in range(40):
-        stream = bytearray()
-        for _ in range(100):
-            stream += link.frame(dice.randbytes(dice.randint(1, link.MAX_PAYLOAD)))
-        for _ in range(80):
-            place = dice.randrange(len(stream))
-            match dice.randrange(4):
-                case 0:
-                    stream[place] ^= 1 << dice.randrange(8)
-                case 1:
-                    del stream[place]
-                case 2:
-                    stream.insert(place, dice.choice([0, 1, 61, 62, 63, 255]))
-                case 3:
-                    stream[place] = 0
-        python, native = link.Decoder(), palpate_servo.Decoder()
-        payloads = [payload.hex() for payload in python.feed_payloads(bytes(stream))]
-        assert [payload.hex() for payload in native.feed(bytes(stream))] == payloads
-        expected = (payloads, python.errors.crc_errors, python.errors.malformed)
-        assert read_stream(checker, bytes(stream)) == expected
 
 
 @pytest.mark.parametrize("seed", [1, 2])
