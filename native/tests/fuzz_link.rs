@@ -209,7 +209,9 @@ fn a_device_that_sends_rubbish_is_survived_and_believed_again() {
                 }
                 device.read(now, 1e-3, &frame);
                 now += 0.03;
-                device.read(now, 1e-3, &frame);
+                if let Reading::Fault(fault) = device.read(now, 1e-3, &frame) {
+                    faults[fault as usize] += 1;
+                }
                 let micrometres = number as i32;
                 put(&mut alone, &hello());
                 put(&mut alone, &state(dice.below(65_536) as u16, micrometres));
