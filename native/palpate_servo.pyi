@@ -6,7 +6,7 @@ mathutils.Vector) serves as a vector.
 """
 
 from collections.abc import Mapping, Sequence
-from typing import Any, Self, TypeAlias, TypedDict, final
+from typing import Any, NotRequired, Self, TypeAlias, TypedDict, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -428,8 +428,12 @@ class Servo:
         """Shading and friction of the surface; ValueError unless 0 <= dynamic <= static."""
 
     def set_coupling(self, *, stiffness: float, damping: float, passivity_control: bool) -> None:
-        """What lies between body and motors: a spring (N/m, inf for none) with a damping (N s/m),
-        and whether energy that the contact would make is taken back.
+        """What lies between body and motors: the most stiffness that the device may see (N/m, inf
+        for the body as it is), the damping that goes with it (N s/m; a softer body has its share),
+        and whether energy that the contact would make is taken back. A pointer has no motors.
+
+        Unless told otherwise it is `device_coupling` of the servo's rate. ValueError for a
+        stiffness that is not more than 0, or a damping that is negative or not finite.
         """
 
     def set_enabled(self, enabled: bool) -> None:
@@ -498,6 +502,91 @@ class Decoder:
     def cobs_errors(self) -> int: ...
     @property
     def oversize(self) -> int: ...
+
+class DeviceCoupling(TypedDict):
+    """Keywords of Servo.set_coupling."""
+
+    stiffness: float
+    damping: float
+    passivity_control: bool
+
+def device_coupling(rate_hz: int = 1000) -> DeviceCoupling:
+    """The coupling for devices with motors that nothing is known of: see docs/stability.md."""
+
+def coupled_forces(
+    displacements: NDArray[np.float64],
+    *,
+    rate_hz: int,
+    body_stiffness: float,
+    stiffness: float,
+    damping: float,
+    passivity_control: bool,
+) -> NDArray[np.float64]:
+    """Forces (n,), N, that the servo's coupling gives for displacements (n,), m into the body, of
+    successive ticks on a body of one stiffness (N/m); negative is out of the body.
+    """
+
+class ContactOutcome(TypedDict):
+    """Energies in J: start + motor + hand = kinetic + viscous + coulomb."""
+
+    start: float
+    """Kinetic energy at the start."""
+    kinetic: float
+    """Kinetic energy at the end."""
+    motor: float
+    """Work of the motor."""
+    hand: float
+    """Work of the hand on the device."""
+    viscous: float
+    coulomb: float
+    """Taken by friction."""
+    extracted: float
+    """The most that the hand had got at any time beyond what hand and device had put in."""
+    made_late: float
+    """Work of the motor in the last quarter beyond that of an ideal spring."""
+    swing_before: float
+    swing_late: float
+    """Highest minus lowest position (m) in the third and the last quarter."""
+    position: float
+    largest_force: float
+    trace: NotRequired[NDArray[np.float64]]
+    """Time (s), position (m into the body) and held force (N) of every tick (n, 3), if wanted."""
+
+def simulate_contact(
+    *,
+    mass: float,
+    damping: float,
+    coulomb: float,
+    encoder_step: float,
+    force_step: float,
+    delay: float,
+    jitter: float,
+    hand_stiffness: float,
+    hand_damping: float,
+    hand_push: float,
+    hand_target: float,
+    rate_hz: int,
+    body_stiffness: float,
+    stiffness: float,
+    coupling_damping: float,
+    passivity_control: bool,
+    start: float,
+    speed: float,
+    seconds: float,
+    max_force: float = 3.0,
+    max_slew: float = 1000.0,
+    seed: int = 1,
+    trace: bool = False,
+) -> ContactOutcome:
+    """Let a device and a hand press a body with the servo's own coupling and limits, on one axis
+    (positive into the body), without a servo. SI units.
+
+    mass, damping (viscous) and coulomb friction are the device's; encoder_step (m) and
+    force_step (N) may be 0. delay (s) is all that lies between reading and obeying besides the
+    holding of a tick, jitter its random part. The hand is a spring and a damper to hand_target and
+    a constant push. stiffness, coupling_damping and passivity_control are those of
+    Servo.set_coupling. ValueError for numbers without sense.
+    """
 
 def bare_timer(rate_hz: int, seconds: float) -> TimingCounters:
     """Run a BareTimer for some seconds."""

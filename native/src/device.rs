@@ -101,8 +101,15 @@ pub struct Probe {
     pub restart: bool,
     /// A bit a button.
     pub buttons: u8,
-    /// Largest force of the device, N.
+    /// Largest force of the device, N; infinite for a pointer, which has no motors.
     pub max_force: f64,
+}
+
+impl Probe {
+    /// Whether the force reaches a motor, which may make energy with it.
+    pub fn has_motors(&self) -> bool {
+        self.max_force.is_finite()
+    }
 }
 
 /// What a device answers each tick.

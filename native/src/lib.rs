@@ -1,11 +1,12 @@
 //! The real-time thread of Palpate: a probe meets a soft body at 1 kHz.
 //!
 //! One tick reads a [`device`], moves the [`proxy`] (god object) on the rest [`surface`], computes
-//! the [`contact`] force (11) to (14), passes it through [`safety`], gives it to the device and
+//! the [`contact`] force (11) to (14), passes it through [`coupling`] and [`safety`], gives it to the device and
 //! publishes a snapshot ([`servo`]). The tick allocates nothing, takes no lock and knows nothing
 //! of Python; the optional `python` feature adds the thin binding.
 
 pub mod clock;
+pub mod closed_loop;
 pub mod closest;
 pub mod codec;
 pub mod compliance;
@@ -17,6 +18,7 @@ pub mod exchange;
 pub mod haply;
 pub mod link;
 mod normals;
+pub mod passivity;
 pub mod pointer;
 pub mod port;
 pub mod proxy;

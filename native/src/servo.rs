@@ -8,7 +8,7 @@ use rtrb::Producer;
 use triple_buffer::{Input, Output};
 
 use crate::contact::{surface_displacement, touch};
-use crate::coupling::Coupling;
+use crate::coupling::{Contact, Coupler, Coupling, contact_stiffness};
 use crate::device::{Device, DeviceFrame, Fault, Probe, Reading};
 use crate::exchange::{Holder, exchange};
 use crate::proxy::{Feel, Proxy};
@@ -65,6 +65,7 @@ pub struct Servo<D> {
     proxy: Option<Proxy>,
     probe: DVec3,
     frame_epoch: u32,
+    coupler: Coupler,
     safety: Safety,
     standing: Standing,
     /// Time of the last tick, s.
@@ -95,6 +96,7 @@ impl<D: Device> Servo<D> {
             proxy: None,
             probe: DVec3::ZERO,
             frame_epoch,
+            coupler: Coupler::default(),
             safety: Safety::default(),
             standing: Standing::default(),
             ticked_at: None,
@@ -135,11 +137,16 @@ impl<D: Device> Servo<D> {
         }
         self.stages.end_of(Stage::Proxy, &mut since);
         self.feel(&body, &mut shot, &mut found, settings.young_modulus);
+        let wanted = if reading.probe().is_some_and(Probe::has_motors) {
+            self.couple(&body, &mut shot, &settings, dt)
+        } else {
+            shot.contact_force
+        };
         self.stages.end_of(Stage::Contact, &mut since);
 
         self.standing = transition(&self.standing, &found, dt);
         let limits = self.limits_with(&reading);
-        self.send(&mut shot, &found, &limits, dt, &settings.frame);
+        self.send(&mut shot, wanted, &found, &limits, dt, &settings.frame);
         self.stages.end_of(Stage::Write, &mut since);
         self.publish(shot);
     }
@@ -263,17 +270,46 @@ impl<D: Device> Servo<D> {
         limits
     }
 
+    /// The force for a device with motors; the surface shown becomes the one that belongs to it.
+    fn couple(&mut self, body: &Body, shot: &mut Snapshot, settings: &Settings, dt: f64) -> DVec3 {
+        let Some((triangle, alpha)) = shot.hold else {
+            self.coupler.release();
+            return shot.contact_force;
+        };
+        let young_modulus = settings.young_modulus;
+        let contact = Contact {
+            stiffness: contact_stiffness(body, triangle, alpha, young_modulus),
+            displacement: shot.probe - shot.proxy,
+            force: shot.contact_force,
+        };
+        let coupled = self
+            .coupler
+            .couple(&contact, &settings.coupling, settings.frame.scale, dt);
+        let spared = contact.displacement - coupled.body_displacement;
+        if spared != DVec3::ZERO {
+            let relief = touch(body, triangle, alpha, spared, young_modulus);
+            for (force, less) in shot.nodal_forces.iter_mut().zip(relief.nodal_forces) {
+                *force -= less;
+            }
+            shot.surface_point =
+                surface_displacement(body, triangle, alpha, &shot.nodal_forces, young_modulus)
+                    .map(|moved| shot.proxy + moved);
+        }
+        coupled.force
+    }
+
     /// Safety, then the device.
     fn send(
         &mut self,
         shot: &mut Snapshot,
+        wanted: DVec3,
         found: &Findings,
         limits: &Limits,
         dt: f64,
         frame: &DeviceFrame,
     ) {
         if self.standing.may_push(found) {
-            match self.safety.limit(shot.contact_force, limits, dt) {
+            match self.safety.limit(wanted, limits, dt) {
                 Some(limited) => {
                     shot.output_force = limited.force;
                     shot.limited = limited.by;
@@ -288,6 +324,7 @@ impl<D: Device> Servo<D> {
         shot.state = self.standing.state;
         shot.fault = self.standing.fault;
         shot.reason = self.standing.reason;
+        self.coupler.sent(shot.output_force);
         self.device.write(shot.output_force, may_push, frame);
     }
 

@@ -118,7 +118,8 @@ def test_simulate_presses_from_above_and_reports(body_file, capsys):
     assert report["interrupted"] is False
     # A tenth of the height is 5 mm; the hand's spring gives way to the body's force.
     assert 3.0 < report["deepest_mm"] < 6.5
-    assert 0.3 < report["peak_output_force_n"] <= report["peak_contact_force_n"] < 2.0
+    # On the way in, the coupling's damping adds a little to what the body gives.
+    assert 0.3 < report["peak_output_force_n"] < 1.1 * report["peak_contact_force_n"] < 2.0
     assert report["simulated_device"]["largest_force"] == pytest.approx(
         report["peak_output_force_n"], abs=2e-3
     )

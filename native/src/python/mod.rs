@@ -1,6 +1,7 @@
 //! The thin binding: arrays in, arrays out. Nothing of Python reaches the servo thread.
 
 mod body;
+mod closed_loop;
 mod compliance;
 mod counters;
 mod frames;
@@ -29,6 +30,9 @@ fn palpate_servo(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<frames::Decoder>()?;
     module.add_function(wrap_pyfunction!(counters::bare_timer, module)?)?;
     module.add_function(wrap_pyfunction!(frames::encode_frame, module)?)?;
+    module.add_function(wrap_pyfunction!(closed_loop::simulate_contact, module)?)?;
+    module.add_function(wrap_pyfunction!(closed_loop::coupled_forces, module)?)?;
+    module.add_function(wrap_pyfunction!(closed_loop::device_coupling, module)?)?;
     let stop_all = wrap_pyfunction!(servo::stop_all, module)?;
     py.import("atexit")?
         .call_method1("register", (&stop_all,))?;

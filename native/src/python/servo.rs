@@ -160,7 +160,7 @@ impl Servo {
                 enabled: true,
                 frame: DeviceFrame::default(),
                 feel: feel(shading, static_friction, dynamic_friction)?,
-                coupling: Coupling::default(),
+                coupling: Coupling::for_devices(rate_hz),
             }),
             running: Mutex::new(None),
             targets: Mutex::new(None),
@@ -434,7 +434,11 @@ pub(super) fn feel(shading: bool, static_friction: f64, dynamic_friction: f64) -
     })
 }
 
-fn coupling(stiffness: f64, damping: f64, passivity_control: bool) -> PyResult<Coupling> {
+pub(super) fn coupling(
+    stiffness: f64,
+    damping: f64,
+    passivity_control: bool,
+) -> PyResult<Coupling> {
     if stiffness.is_nan() || stiffness <= 0.0 {
         return Err(PyValueError::new_err(
             "stiffness must be more than 0 N/m; infinite for none",
