@@ -8,6 +8,7 @@ use std::io::{self, ErrorKind};
 use std::sync::Arc;
 
 use glam::DVec3;
+use palpate_servo::clock::{Pace, Timing};
 use palpate_servo::codec::{Decoder, MAX_FRAME, encode};
 use palpate_servo::coupling::Coupling;
 use palpate_servo::device::{Device, DeviceFrame, Fault};
@@ -16,9 +17,11 @@ use palpate_servo::link::LinkDevice;
 use palpate_servo::pointer::{Pointer, Target};
 use palpate_servo::port::{Opener, Wire};
 use palpate_servo::proxy::Feel;
+use palpate_servo::recorder::Recorder;
 use palpate_servo::safety::Limits;
 use palpate_servo::servo::{Options, Servo, Settings};
 use palpate_servo::snapshot::{Published, State};
+use palpate_servo::stages::Stage;
 use rtrb::RingBuffer;
 use triple_buffer::triple_buffer;
 
@@ -176,8 +179,24 @@ impl Opener for InMemory {
     }
 }
 
+/// Settings as a user changes them, other ones at each tick.
+fn changed(tick: u32) -> Settings {
+    let mut changed = settings();
+    changed.young_modulus *= f64::from(1 + tick % 5);
+    changed.feel.shading = tick % 2 == 0;
+    changed.feel.static_friction = 0.1 * f64::from(tick % 3);
+    changed.coupling.passivity_control = tick % 7 == 0;
+    changed.enabled = tick % 1000 > 10;
+    changed.frame.epoch = tick / 5000;
+    changed
+}
+
 fn ticks_of<D: Device>(device: D, mut each: impl FnMut(u32)) -> (Published, u64) {
-    let (_settings_in, settings_out) = triple_buffer(&settings());
+    const TICKS: u32 = 100_000;
+    let (mut settings_in, settings_out) = triple_buffer(&settings());
+    // Full long before the end, and emptied by a thread that allocates on its own account.
+    let (tape, recorder) = Recorder::new(1000);
+    recorder.start(TICKS as usize / 2).expect("a thread");
     let (snapshots_in, mut snapshots) = triple_buffer(&Published::default());
     // Smaller than the run: a full ring must not allocate either.
     let (samples_in, _samples) = RingBuffer::new(50_000);
@@ -189,18 +208,40 @@ fn ticks_of<D: Device>(device: D, mut each: impl FnMut(u32)) -> (Published, u64)
         snapshots_in,
         samples_in,
     );
+    servo.tape = Some(tape);
     let allocations = counted(|| {
-        for tick in 1..=100_000_u32 {
+        for tick in 1..=TICKS {
             each(tick);
+            if tick % 3 == 0 {
+                settings_in.write(changed(tick));
+            }
             servo.tick(f64::from(tick) * 1e-3);
         }
     });
+    recorder.stop();
+    assert!(recorder.count() >= 1000 && recorder.lost() > 0);
+    for stage in Stage::ALL {
+        assert_eq!(servo.stages().report(stage).count, u64::from(TICKS));
+    }
     (*snapshots.read(), allocations)
 }
 
 #[test]
 fn the_counter_counts() {
     assert!(counted(|| drop(std::hint::black_box(Box::new(1)))) >= 2);
+}
+
+#[test]
+fn waking_and_counting_allocate_nothing() {
+    let timing = Timing::default();
+    let mut pace = Pace::new(8000);
+    let mut woken = 0.0;
+    assert_eq!(
+        counted(|| (0..200).for_each(|_| woken = pace.wait(&timing).seconds)),
+        0
+    );
+    assert!(woken > 0.02);
+    assert_eq!(timing.report().ticks(), 200);
 }
 
 #[test]
