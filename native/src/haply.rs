@@ -6,6 +6,8 @@
 
 pub mod device;
 pub mod flight;
+pub mod line;
 pub mod message;
 pub mod model;
 pub mod pantograph;
+pub mod speed;

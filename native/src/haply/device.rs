@@ -4,50 +4,51 @@
 //! is waited for: what has come by the next tick counts. Boards have no watchdog, so a request with
 //! no torque goes out whenever there is the least doubt.
 
-use std::io::ErrorKind;
 use std::time::Duration;
 
 use glam::DVec3;
 
 use super::flight::Flight;
+use super::line::Line;
 use super::message::{
-    ANSWER_BYTES, FILL, SETUP_BYTES, TORQUE_BYTES, parse_answer, setup_message, torque_message,
+    ANSWER_BYTES, FILL, TORQUE_BYTES, parse_answer, setup_message, torque_message,
 };
 use super::model::{Model, TORQUE_LIMIT};
 use super::pantograph::Pose;
+use super::speed::WindowSpeed;
 use crate::codec::Greeting;
 use crate::device::{Device, DeviceFrame, Fault, LinkReport, Probe, Reading};
-use crate::port::{Opener, Wire};
+use crate::port::Opener;
 use crate::state::reason;
 
 /// A board is asked whether it knows this device this often, s.
 const ASK_SECONDS: f64 = 0.05;
 /// A board that answers with its address alone has said so by then, s.
 const ANSWER_SECONDS: f64 = 0.01;
-/// What a board needs to set itself up, s; it is not spoken to meanwhile.
-const SETTLE_SECONDS: f64 = 0.005;
+/// So often a board that knows this device may answer nonsense before it is set up anew.
+const ASKED_IN_VAIN: u32 = 3;
+/// So many answers of the address alone say that a board has no such device.
+const LONE_ADDRESSES: usize = 3;
 /// Boards lose a little memory with each setup: no oftener than this, s.
-const SETUP_EVERY_SECONDS: f64 = 0.1;
+const SETUP_EVERY_SECONDS: f64 = 0.02;
 /// Without an answer for this long there is no force, s.
 const STALE_SECONDS: f64 = 0.02;
 /// Angles older than this say nothing about where the handle is now, s.
 const RESTORE_SECONDS: f64 = 0.05;
-/// A port that is gone is tried again this often, s.
-const REOPEN_SECONDS: f64 = 0.2;
-/// No hand turns an arm faster, degrees/s: at the handle some 7 m/s.
-const FASTEST_TURN: f64 = 6000.0;
+/// No hand turns an arm faster, degrees/s: at the handle some 3.5 m/s.
+const FASTEST_TURN: f64 = 3000.0;
 /// Answers that come together belong to different moments, degrees.
-const JUMP_DEGREES: f64 = 8.0;
-/// Speeds are measured over at least this time, s: a count is a third of a millimetre.
-const SPEED_SECONDS: f64 = 0.005;
+const JUMP_DEGREES: f64 = 2.0;
+/// How far the arms may turn while they are set up anew, degrees.
+const SETUP_DEGREES: f64 = 8.0;
 /// Below this sine between the forearms the handle can hardly be held.
 const LEAST_SINE: f64 = 0.1;
 /// Requests without torque when parking: one may be lost on the wire.
 const PARKING_REQUESTS: u32 = 3;
+/// Reads in one tick at most, so that a flood of bytes cannot hold it up.
 const READS_PER_TICK: usize = 16;
 /// Completes whatever a board still waits for: the end of the longest message.
 const FILL_BYTES: usize = 18;
-const OUTBOX: usize = 64;
 
 /// How the angles get their zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -61,9 +62,7 @@ pub struct Calibration {
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Phase {
     /// Whether the board knows this device; last asked then, if at all.
-    Asking { asked: Option<f64> },
-    /// It is told what it has on which port since then.
-    SettingUp { since: f64 },
+    Asking { asked: Option<f64>, in_vain: u32 },
     /// Requests and answers.
     Running,
 }
@@ -76,41 +75,16 @@ struct Newest {
     speed: f64,
 }
 
-/// Bytes that arrived and are no answer yet.
-#[derive(Debug, Clone, Copy)]
-struct Inbox {
-    bytes: [u8; 64],
-    length: usize,
-}
-
-impl Inbox {
-    const EMPTY: Self = Self {
-        bytes: [0; 64],
-        length: 0,
+impl Phase {
+    const BEGIN: Self = Self::Asking {
+        asked: None,
+        in_vain: 0,
     };
-
-    /// Takes a byte; true when there are enough for an answer.
-    fn push(&mut self, byte: u8) -> bool {
-        self.bytes[self.length] = byte;
-        self.length += 1;
-        self.length >= ANSWER_BYTES
-    }
-
-    fn answer(&self) -> &[u8; ANSWER_BYTES] {
-        self.bytes.first_chunk().expect("the inbox is longer")
-    }
-
-    fn drop_first(&mut self, count: usize) {
-        self.bytes.copy_within(count..self.length, 0);
-        self.length -= count;
-    }
 }
 
 /// A 2DIY on a line.
 pub struct HaplyDevice<O: Opener> {
-    opener: O,
-    wire: Option<O::Wire>,
-    retry_at: f64,
+    line: Line<O>,
     model: &'static Model,
     calibration: Calibration,
     /// The user has said where the handle rests; once, at the start.
@@ -118,20 +92,18 @@ pub struct HaplyDevice<O: Opener> {
     /// The angles count from a known pose.
     calibrated: bool,
     phase: Phase,
-    inbox: Inbox,
     /// Last angles taken or set, degrees.
     degrees: Option<[f64; 2]>,
     newest: Option<Newest>,
     heard: f64,
     set_up_at: f64,
+    /// The board was set up and has not answered since.
+    unproven: bool,
     now: f64,
     unseen: bool,
-    since_speed: [(f64, DVec3); 2],
+    speed: WindowSpeed,
     flight: Flight,
     limp: bool,
-    pending: [u8; OUTBOX],
-    pending_from: usize,
-    pending_to: usize,
     report: LinkReport,
 }
 
@@ -141,33 +113,27 @@ impl<O: Opener> HaplyDevice<O> {
     /// # Errors
     /// When the line cannot be opened.
     pub fn open(
-        mut opener: O,
+        opener: O,
         model: &'static Model,
         calibration: Calibration,
     ) -> std::io::Result<Self> {
-        let wire = opener.open()?;
         Ok(Self {
-            opener,
-            wire: Some(wire),
-            retry_at: 0.0,
+            line: Line::open(opener)?,
             model,
             calibration,
             may_calibrate: true,
             calibrated: false,
-            phase: Phase::Asking { asked: None },
-            inbox: Inbox::EMPTY,
+            phase: Phase::BEGIN,
             degrees: None,
             newest: None,
             heard: 0.0,
             set_up_at: f64::NEG_INFINITY,
+            unproven: false,
             now: 0.0,
             unseen: true,
-            since_speed: [(0.0, DVec3::ZERO); 2],
+            speed: WindowSpeed::default(),
             flight: Flight::default(),
             limp: false,
-            pending: [0; OUTBOX],
-            pending_from: 0,
-            pending_to: 0,
             report: LinkReport::default(),
         })
     }
@@ -181,79 +147,69 @@ impl<O: Opener> HaplyDevice<O> {
     }
 
     fn unplug(&mut self) {
-        self.wire = None;
-        self.retry_at = self.now + REOPEN_SECONDS;
-        self.phase = Phase::Asking { asked: None };
+        self.line.close(self.now);
+        self.phase = Phase::BEGIN;
         self.calibrated = false;
         self.degrees = None;
         self.newest = None;
         self.unseen = true;
-        self.inbox = Inbox::EMPTY;
+        self.unproven = false;
+        self.speed.reset();
         self.flight = Flight::default();
-        (self.pending_from, self.pending_to) = (0, 0);
-    }
-
-    /// Tries the port again now and then. Opening takes time and memory: nothing is in contact.
-    fn reopen(&mut self) {
-        if self.now < self.retry_at {
-            return;
-        }
-        match self.opener.open() {
-            Ok(wire) => {
-                self.wire = Some(wire);
-                self.report.reopened += 1;
-            }
-            Err(_) => self.retry_at = self.now + REOPEN_SECONDS,
-        }
     }
 
     fn drain(&mut self) {
         let mut buffer = [0; 256];
         for _ in 0..READS_PER_TICK {
-            let Some(wire) = &mut self.wire else { return };
-            match wire.read(&mut buffer) {
-                Ok(0) => return self.unplug(),
-                Ok(length) => {
-                    for &byte in &buffer[..length] {
-                        if self.inbox.push(byte) {
-                            self.take_answer();
-                        }
-                    }
-                    if length < buffer.len() {
-                        return;
-                    }
+            let Some(length) = self.line.read(&mut buffer) else {
+                return self.unplug();
+            };
+            // What came before the first question is left over from somebody else.
+            let fresh = if self.phase == Phase::BEGIN {
+                0
+            } else {
+                length
+            };
+            for &byte in &buffer[..fresh] {
+                if let Some(answer) = self.line.inbox.push(byte) {
+                    self.take_answer(&answer);
                 }
-                Err(e) if e.kind() == ErrorKind::WouldBlock => return,
-                Err(e) if e.kind() == ErrorKind::Interrupted => {}
-                Err(_) => return self.unplug(),
+            }
+            if length < buffer.len() {
+                return;
             }
         }
     }
 
     /// Takes nine bytes for an answer, or the first of them for damage.
-    fn take_answer(&mut self) {
-        let address = self.address();
-        let answer = *self.inbox.answer();
-        match parse_answer(self.model, address, &answer) {
-            Some(degrees) if self.is_near(degrees) => {
-                self.inbox.drop_first(ANSWER_BYTES);
-                self.accept(degrees);
-            }
-            _ if answer == [address; ANSWER_BYTES] => {
-                // A board without this device answers with the address alone.
-                self.inbox = Inbox::EMPTY;
-                self.report.unknown += 1;
+    fn take_answer(&mut self, answer: &[u8; ANSWER_BYTES]) {
+        let answer = parse_answer(self.model, self.address(), answer);
+        let Some(degrees) = answer.filter(|degrees| self.is_near(*degrees)) else {
+            self.line.inbox.drop_first(1);
+            self.report.crc_errors += 1;
+            // Set up with other figures than were sent: the message was damaged.
+            let angles_differ =
+                answer.is_some() && self.unproven && self.now - self.set_up_at > ANSWER_SECONDS;
+            let none_is_sound = self.calibrated
+                && self.phase == Phase::Running
+                && self.now - self.heard > RESTORE_SECONDS;
+            if angles_differ || none_is_sound {
+                self.calibrated = false;
                 self.restore();
             }
-            _ => {
-                self.inbox.drop_first(1);
-                self.report.crc_errors += 1;
-            }
-        }
+            return;
+        };
+        self.line.inbox.drop_first(ANSWER_BYTES);
+        self.accept(degrees);
     }
 
+    /// Whether the arms can have turned to `degrees` since they were last seen.
     fn is_near(&self, degrees: [f64; 2]) -> bool {
-        let farthest = JUMP_DEGREES + FASTEST_TURN * (self.now - self.heard);
+        let farthest = if self.unproven {
+            SETUP_DEGREES
+        } else {
+            JUMP_DEGREES + FASTEST_TURN * (self.now - self.heard)
+        };
         self.degrees.is_none_or(|last| {
             let [first, second] = [0, 1].map(|arm| (degrees[arm] - last[arm]).abs());
             first.max(second) <= farthest
@@ -265,6 +221,7 @@ impl<O: Opener> HaplyDevice<O> {
         self.flight.answer();
         self.heard = self.now;
         self.degrees = Some(degrees);
+        self.unproven = false;
         if matches!(self.phase, Phase::Asking { .. }) {
             self.calibrated = !self.calibration.always || !self.may_calibrate;
             if !self.calibrated {
@@ -280,30 +237,14 @@ impl<O: Opener> HaplyDevice<O> {
         self.newest = Some(Newest {
             position,
             pose,
-            speed: self.speed(position),
+            speed: self.speed.speed(position, self.now),
         });
-    }
-
-    /// Speed over the last five to ten milliseconds, m/s.
-    fn speed(&mut self, position: DVec3) -> f64 {
-        if self.unseen && self.newest.is_none() {
-            self.since_speed = [(self.now, position); 2];
-        }
-        let [_, recent] = self.since_speed;
-        if self.now - recent.0 >= SPEED_SECONDS {
-            self.since_speed = [recent, (self.now, position)];
-        }
-        let [(then, from), _] = self.since_speed;
-        if position == from {
-            return 0.0;
-        }
-        position.distance(from) / (self.now - then).max(SPEED_SECONDS)
     }
 
     /// Sets up a board that has forgotten its device, by the angles of a moment ago if there are any.
     fn restore(&mut self) {
-        let fresh = self.calibrated && self.now - self.heard < RESTORE_SECONDS;
-        self.calibrated = fresh;
+        self.line.inbox.clear();
+        self.calibrated &= self.now - self.heard < RESTORE_SECONDS;
         self.set_up(false);
     }
 
@@ -319,72 +260,50 @@ impl<O: Opener> HaplyDevice<O> {
             _ => self.model.rest_degrees(),
         };
         self.calibrated |= anew;
-        self.phase = Phase::SettingUp { since: self.now };
+        self.phase = Phase::Running;
         let message = setup_message(self.model, self.address(), degrees);
-        if self.send::<SETUP_BYTES>(&message) {
+        if self.line.send(&message) {
             self.may_calibrate = false;
             self.set_up_at = self.now;
             self.degrees = Some(degrees.map(f64::from));
+            self.newest = None;
+            self.unproven = true;
+            self.heard = self.now;
             self.flight = Flight::default();
             if self.calibrated {
                 self.report.greeting = Some(greeting(self.model));
             }
         } else {
             self.calibrated = false;
-            self.phase = Phase::Asking { asked: None };
+            self.phase = Phase::BEGIN;
         }
     }
 
     /// Finds out whether the board knows this device, and sets it up if not.
-    fn ask(&mut self, asked: Option<f64>) {
+    fn ask(&mut self, asked: Option<f64>, in_vain: u32) {
         let waited = asked.map_or(f64::INFINITY, |then| self.now - then);
-        let knows_nothing = self.inbox.length == 1 && self.inbox.bytes[0] == self.model.address;
+        let inbox = self.line.inbox.bytes();
+        let heard = inbox.first() == Some(&self.model.address);
+        // The address alone: not this device. More than that, but no angles: set up by mistake.
+        let knows_nothing = heard && (inbox.len() == 1 || in_vain >= ASKED_IN_VAIN);
         if waited >= ANSWER_SECONDS && knows_nothing {
-            self.inbox = Inbox::EMPTY;
+            self.line.inbox.clear();
             return self.set_up(self.may_calibrate);
         }
         if waited < ASK_SECONDS {
             return;
         }
-        self.inbox = Inbox::EMPTY;
+        let in_vain = if heard { in_vain + 1 } else { 0 };
+        self.line.inbox.clear();
         self.flight = Flight::default();
         let request = torque_message(self.model, self.model.address, [0.0; 2]);
         let mut message = [FILL; FILL_BYTES + TORQUE_BYTES];
         message[FILL_BYTES..].copy_from_slice(&request);
-        self.report.hellos += u64::from(self.send(&message));
+        self.report.hellos += u64::from(self.line.send(&message));
         self.phase = Phase::Asking {
             asked: Some(self.now),
+            in_vain,
         };
-    }
-
-    /// Puts a message on the line; false when it does not fit or the line is gone.
-    fn send<const N: usize>(&mut self, message: &[u8; N]) -> bool {
-        self.flush();
-        if self.wire.is_none() || self.pending_from < self.pending_to {
-            return false;
-        }
-        self.pending[..N].copy_from_slice(message);
-        (self.pending_from, self.pending_to) = (0, N);
-        self.flush();
-        if self.pending_from == 0 && self.pending_to > 0 {
-            // Not begun: better a newer message later than this one.
-            self.pending_to = 0;
-            return false;
-        }
-        true
-    }
-
-    fn flush(&mut self) {
-        while self.pending_from < self.pending_to {
-            let Some(wire) = &mut self.wire else { return };
-            match wire.write(&self.pending[self.pending_from..self.pending_to]) {
-                Ok(written) if written > 0 => self.pending_from += written,
-                Err(e) if e.kind() == ErrorKind::Interrupted => {}
-                // A line that is gone is found by the next read.
-                _ => return,
-            }
-        }
-        (self.pending_from, self.pending_to) = (0, 0);
     }
 
     fn request(&mut self, torques: Option<[f64; 2]>) {
@@ -395,7 +314,7 @@ impl<O: Opener> HaplyDevice<O> {
             return;
         }
         let message = torque_message(self.model, self.address(), torques.unwrap_or_default());
-        if self.send(&message) {
+        if self.line.send(&message) {
             self.flight.send(self.now);
             self.limp = limp;
             self.report.forces += 1;
@@ -437,27 +356,24 @@ fn greeting(model: &Model) -> Greeting {
 impl<O: Opener> Device for HaplyDevice<O> {
     fn read(&mut self, now: f64, _dt: f64, frame: &DeviceFrame) -> Reading {
         self.now = now;
-        if self.wire.is_none() {
-            self.reopen();
+        if !self.line.is_open() {
+            self.report.reopened += u64::from(self.line.reopen(now));
         }
-        self.drain();
+        if self.line.is_open() {
+            self.drain();
+        }
         self.report.lost += self.flight.expire(now);
-        if self.wire.is_none() {
+        if !self.line.is_open() {
             return Reading::Fault(Fault::Unplugged);
         }
-        match self.phase {
-            Phase::Asking { asked } => {
-                self.ask(asked);
-                return Reading::Waiting(reason::NO_BOARD);
-            }
-            Phase::SettingUp { since } if now - since < SETTLE_SECONDS => {
-                return Reading::Waiting(reason::SETTING_UP);
-            }
-            Phase::SettingUp { .. } => {
-                self.phase = Phase::Running;
-                self.heard = now;
-            }
-            Phase::Running => {}
+        if let Phase::Asking { asked, in_vain } = self.phase {
+            self.ask(asked, in_vain);
+            return Reading::Waiting(reason::NO_BOARD);
+        }
+        let (address, inbox) = (self.address(), self.line.inbox.bytes());
+        if inbox.len() >= LONE_ADDRESSES && inbox.iter().all(|byte| *byte == address) {
+            self.report.unknown += 1;
+            self.restore();
         }
         if !self.calibrated {
             return Reading::Waiting(reason::LOST_PLACE);
@@ -466,7 +382,12 @@ impl<O: Opener> Device for HaplyDevice<O> {
             return Reading::Fault(Fault::Stale);
         }
         let Some(newest) = self.newest else {
-            return Reading::Waiting(reason::NO_ANGLES);
+            let settled = !self.unproven;
+            return Reading::Waiting(if settled {
+                reason::NO_ANGLES
+            } else {
+                reason::SETTING_UP
+            });
         };
         let Some(pose) = newest.pose else {
             return Reading::Fault(Fault::Device);
@@ -487,7 +408,7 @@ impl<O: Opener> Device for HaplyDevice<O> {
     }
 
     fn write(&mut self, force: DVec3, enable: bool, frame: &DeviceFrame) {
-        if self.wire.is_none() || self.phase != Phase::Running {
+        if !self.line.is_open() || self.phase != Phase::Running {
             return;
         }
         let torques = self.torques(frame.force_to_device(force));
@@ -497,14 +418,14 @@ impl<O: Opener> Device for HaplyDevice<O> {
     fn park(&mut self) {
         for _ in 0..PARKING_REQUESTS {
             self.flight = Flight::default();
-            if self.wire.is_some() {
+            if self.line.is_open() {
                 self.request(None);
             }
             // Time for the board to read before the line closes.
             std::thread::sleep(Duration::from_millis(2));
         }
-        self.flush();
-        self.wire = None;
+        self.line.flush();
+        self.line.close(self.now);
     }
 
     fn report(&self) -> LinkReport {
@@ -515,7 +436,7 @@ impl<O: Opener> Device for HaplyDevice<O> {
 impl<O: Opener> Drop for HaplyDevice<O> {
     /// Boards keep their torque for ever; whoever drops this without parking leaves none.
     fn drop(&mut self) {
-        if self.wire.is_some() {
+        if self.line.is_open() {
             self.flight = Flight::default();
             self.request(None);
         }

@@ -58,7 +58,7 @@ pub fn torque_message(model: &Model, address: u8, torques: [f64; 2]) -> [u8; TOR
     message
 }
 
-/// A torque (N m) as a float of which no byte is a command, within 1.4 %.
+/// A torque (N m) as a float of which no byte is a command, within 1.6 %.
 ///
 /// The two low bytes are [`FILL`], so that a board which has lost a byte or two reads next to
 /// nothing instead of a wrong torque; in the third, 0, 1 and 2 give way to the nearest other value.

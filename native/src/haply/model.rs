@@ -29,7 +29,8 @@ pub struct Model {
     pub key: &'static str,
     /// Name for people, at most 16 bytes.
     pub name: &'static str,
-    /// Address the board is given: this model, with its angles counted from a known pose.
+    /// Address the board is given: this model, with its angles counted from a known pose. As the high
+    /// byte of a float it makes next to nothing, as a command it is none.
     pub address: u8,
     /// Lengths.
     pub pantograph: Pantograph,
@@ -77,7 +78,7 @@ pub const MODELS: [Model; 4] = [
     Model {
         key: "2diy-3.1",
         name: "Haply 2DIY 3.1",
-        address: 0x50,
+        address: 0x20,
         pantograph: V3,
         arms: [arm(1, 1, 1, 168.0, 4880.0), arm(0, 1, 1, 12.0, 4880.0)],
         centre: DVec2::new(0.019, 0.095),
@@ -86,7 +87,7 @@ pub const MODELS: [Model; 4] = [
     Model {
         key: "2diy-3.0",
         name: "Haply 2DIY 3.0",
-        address: 0x51,
+        address: 0x21,
         pantograph: V3,
         // 2048 * 2.5 * 1.0194, and for the first another factor of 1.0154: calibrated by the makers.
         arms: [
@@ -99,7 +100,7 @@ pub const MODELS: [Model; 4] = [
     Model {
         key: "2diy-2",
         name: "Haply 2DIY 2",
-        address: 0x52,
+        address: 0x22,
         pantograph: V2,
         arms: [arm(1, 1, 1, 241.0, 10752.0), arm(0, 0, 0, -61.0, 10752.0)],
         centre: DVec2::new(0.0, 0.085),
@@ -108,7 +109,7 @@ pub const MODELS: [Model; 4] = [
     Model {
         key: "kit",
         name: "Haply dev kit",
-        address: 0x53,
+        address: 0x23,
         pantograph: KIT,
         arms: [arm(0, 0, 0, 180.0, 13824.0), arm(1, 0, 0, 0.0, 13824.0)],
         centre: DVec2::new(0.01, 0.07),

@@ -1,0 +1,541 @@
+//! The 2DIY: geometry, bytes, and the device against a board in memory.
+
+mod hapi_board;
+
+use std::f64::consts::TAU;
+
+use glam::{DMat3, DVec2, DVec3};
+use hapi_board::{Board, Cable};
+use palpate_servo::device::{Device, DeviceFrame, Fault, Probe, Reading};
+use palpate_servo::haply::device::{Calibration, HaplyDevice};
+use palpate_servo::haply::message::{
+    ANSWER_BYTES, FILL, parse_answer, setup_message, torque_bytes, torque_message,
+};
+use palpate_servo::haply::model::{MODELS, Model, TORQUE_LIMIT};
+use palpate_servo::haply::pantograph::{Pantograph, Pose};
+use palpate_servo::state::reason;
+
+const TICK: f64 = 1e-3;
+
+// ------------------------------------------------------------------------------------ geometry
+
+fn places(model: &Model) -> impl Iterator<Item = DVec2> {
+    let (centre, half) = (model.centre, model.half_extents);
+    (-8..=8).flat_map(move |i| {
+        (-8..=8).map(move |j| centre + half * DVec2::new(f64::from(i), f64::from(j)) / 8.0)
+    })
+}
+
+fn pose_at(pantograph: &Pantograph, place: DVec2) -> ([f64; 2], Pose) {
+    let angles = pantograph.angles(place).unwrap();
+    (angles, pantograph.pose(angles).unwrap())
+}
+
+#[test]
+fn the_handle_is_where_both_forearms_end() {
+    for model in &MODELS {
+        let arm = &model.pantograph;
+        for place in places(model) {
+            let (angles, pose) = pose_at(arm, place);
+            assert!(
+                pose.position.distance(place) < 1e-12,
+                "{} {place}",
+                model.key
+            );
+            let motors = [DVec2::ZERO, DVec2::new(arm.spacing, 0.0)];
+            for (motor, angle) in motors.into_iter().zip(angles) {
+                let elbow = motor + DVec2::from_angle(angle) * arm.proximal;
+                assert!((elbow.distance(place) - arm.distal).abs() < 1e-12);
+            }
+            assert!(pose.sine > 0.5, "{} {place}: {}", model.key, pose.sine);
+        }
+    }
+}
+
+#[test]
+fn the_jacobian_agrees_with_finite_differences_and_virtual_work() {
+    for model in &MODELS {
+        let arm = &model.pantograph;
+        for place in places(model) {
+            let (angles, pose) = pose_at(arm, place);
+            for motor in 0..2 {
+                let [ahead, behind] = [1e-6, -1e-6].map(|turn| {
+                    let mut angles = angles;
+                    angles[motor] += turn;
+                    arm.pose(angles).unwrap().position
+                });
+                let slope = (ahead - behind) / 2e-6;
+                assert!(slope.distance(pose.columns[motor]) < 1e-8);
+            }
+            // tau . dtheta = F . dx for small turns of both motors at once.
+            let (force, turn) = (DVec2::new(0.7, -0.4), [3e-7, -2e-7]);
+            let moved = arm
+                .pose([angles[0] + turn[0], angles[1] + turn[1]])
+                .unwrap();
+            let by_force = force.dot(moved.position - pose.position);
+            let [first, second] = pose.torques(force);
+            let by_motors = first * turn[0] + second * turn[1];
+            assert!((by_force - by_motors).abs() < 1e-5 * by_motors.abs().max(1e-9));
+        }
+    }
+}
+
+#[test]
+fn the_largest_force_can_be_had_in_every_direction_and_no_larger_one() {
+    for model in &MODELS {
+        for place in places(model) {
+            let (_, pose) = pose_at(&model.pantograph, place);
+            let force = pose.largest_force(TORQUE_LIMIT);
+            let needed = (0..3600)
+                .map(|i| DVec2::from_angle(TAU * f64::from(i) / 3600.0) * force)
+                .flat_map(|force| pose.torques(force))
+                .fold(0.0, |most: f64, torque| most.max(torque.abs()));
+            assert!(needed <= TORQUE_LIMIT * (1.0 + 1e-12), "{needed}");
+            assert!(needed > TORQUE_LIMIT * (1.0 - 1e-6), "{needed}");
+        }
+    }
+}
+
+#[test]
+fn poses_that_cannot_be_are_none_and_singular_ones_give_no_force() {
+    let arm = MODELS[0].pantograph;
+    let long = Pantograph {
+        spacing: 0.5,
+        ..arm
+    };
+    assert_eq!(long.pose([3.0, 0.0]), None);
+    assert_eq!(arm.angles(DVec2::new(0.0, 0.2)), None);
+    // Both elbows in one place: the handle may swing round them.
+    assert_eq!(MODELS[2].pantograph.pose([1.5, 1.5]), None);
+    assert_eq!(arm.pose([f64::NAN, 0.0]), None);
+    // Forearms almost on one line.
+    let wide = Pantograph {
+        spacing: 0.3,
+        ..arm
+    };
+    let mut last = f64::INFINITY;
+    for gap in [1e-2_f64, 1e-4, 1e-6, 1e-8] {
+        let angle = ((0.15 - 0.09 + gap * 0.09) / 0.07_f64).acos();
+        let pose = wide.pose([angle, TAU / 2.0 - angle]).unwrap();
+        let force = pose.largest_force(TORQUE_LIMIT);
+        assert!(force < 0.2 * last, "{gap}: {force}");
+        last = force;
+    }
+}
+
+// --------------------------------------------------------------------------------------- bytes
+
+#[test]
+fn a_setup_is_byte_exact() {
+    let message = setup_message(&MODELS[0], 0x20, [168.0, 12.0]);
+    let expected = [
+        0x01, 0x20, 0x03, 0x01, 0x01, 0x03, 0x01, 0x01, 0x00, 0x00, // what is where
+        0x00, 0x00, 0x40, 0x41, 0x00, 0x80, 0x98, 0x45, // port 1: 12 degrees, 4880
+        0x00, 0x00, 0x28, 0x43, 0x00, 0x80, 0x98, 0x45, // port 2: 168 degrees, 4880
+    ];
+    assert_eq!(message, expected);
+    // Senses differ in the older one, and its first arm hangs on the second port.
+    let message = setup_message(&MODELS[2], 0x22, [241.0, -61.0]);
+    assert_eq!(message[..10], [1, 0x22, 3, 0, 1, 3, 0, 1, 0, 0]);
+    assert_eq!(message[10..14], (-61.0_f32).to_le_bytes());
+    assert_eq!(message[18..22], 241.0_f32.to_le_bytes());
+}
+
+#[test]
+fn torques_are_byte_exact_and_in_the_order_of_ports() {
+    let message = torque_message(&MODELS[0], 0x20, [0.05, -0.02]);
+    let expected = [0x02, 0x20, 0x10, 0x10, 0xA4, 0xBC, 0x10, 0x10, 0x4D, 0x3D];
+    assert_eq!(message, expected);
+    let limp = torque_message(&MODELS[0], 0x20, [0.0; 2]);
+    assert_eq!(limp, [0x02, 0x20, 16, 16, 16, 16, 16, 16, 16, 16]);
+}
+
+#[test]
+fn no_byte_of_a_torque_is_a_command_and_none_is_far_off() {
+    let mut worst = 0.0_f64;
+    for step in 0..200_000 {
+        let torque =
+            1e-6 * 1.0001_f64.powi(step % 120_000) * if step % 2 == 0 { 1.0 } else { -1.0 };
+        let bytes = torque_bytes(torque);
+        assert!(bytes.iter().all(|byte| *byte > 2), "{torque}: {bytes:?}");
+        let sent = f64::from(f32::from_le_bytes(bytes));
+        worst = worst.max((sent / torque - 1.0).abs());
+    }
+    assert!(worst < 0.016, "{worst}");
+    assert!(worst > 0.004, "nothing gave way: {worst}");
+    for none in [0.0, -0.0, 1e-9, f64::NAN, f64::INFINITY] {
+        assert_eq!(torque_bytes(none), [FILL; 4]);
+    }
+}
+
+#[test]
+fn a_board_that_missed_a_byte_or_two_reads_next_to_nothing() {
+    for step in 1..2000 {
+        let torque = TORQUE_LIMIT * f64::from(step) / 2000.0;
+        let message = torque_message(&MODELS[0], 0x20, [torque, -torque]);
+        let two: Vec<u8> = [message, message].concat();
+        for missed in [1, 2] {
+            let floats = two[2 + missed..].chunks_exact(4).take(2);
+            for float in floats {
+                let read = f32::from_le_bytes(float.try_into().unwrap());
+                assert!(read.abs() < 1e-18, "{torque} {missed}: {read}");
+            }
+        }
+    }
+}
+
+fn answer(counts: [i32; 2], resolution: f64) -> [u8; ANSWER_BYTES] {
+    let mut answer = [0x20; ANSWER_BYTES];
+    for (port, count) in counts.into_iter().enumerate() {
+        let angle = (360.0 * f64::from(count) / resolution) as f32;
+        answer[1 + 4 * port..5 + 4 * port].copy_from_slice(&angle.to_le_bytes());
+    }
+    answer
+}
+
+#[test]
+fn answers_are_whole_counts_of_either_board() {
+    let model = &MODELS[0];
+    let exact = answer([81, 1138], 2440.0);
+    let [first, second] = parse_answer(model, 0x20, &exact).unwrap();
+    assert!((first - 360.0 * 1138.0 / 2440.0).abs() < 1e-4);
+    assert!((second - 360.0 * 81.0 / 2440.0).abs() < 1e-5);
+    assert!(parse_answer(model, 0x20, &answer([-163, 2277], 4880.0)).is_some());
+    assert!(parse_answer(model, 0x20, &answer([0, 0], 4880.0)).is_some());
+    assert_eq!(parse_answer(model, 0x21, &exact), None);
+    assert_eq!(parse_answer(model, 0x20, &answer([9800, 0], 4880.0)), None);
+}
+
+/// The mantissa's last bits are the only ones that may differ.
+#[test]
+fn damaged_answers_are_told_from_sound_ones() {
+    let model = &MODELS[0];
+    let (mut taken, mut tried) = (0, 0);
+    for count in (-500..2000).step_by(7) {
+        let sound = answer([count, 1138], 2440.0);
+        for bit in 8..8 * ANSWER_BYTES {
+            let mut damaged = sound;
+            damaged[bit / 8] ^= 1 << (bit % 8);
+            tried += 1;
+            taken += u32::from(
+                parse_answer(model, 0x20, &damaged).is_some_and(|[_, second]| {
+                    let truth = 360.0 * f64::from(count) / 2440.0;
+                    (second - truth).abs() > 1e-3
+                }),
+            );
+        }
+        for shift in 1..ANSWER_BYTES {
+            let mut shifted = sound;
+            shifted.rotate_left(shift);
+            shifted[0] = 0x20;
+            tried += 1;
+            taken += u32::from(parse_answer(model, 0x20, &shifted).is_some());
+        }
+    }
+    // A flipped sign or exponent may give a whole count again; the jump gives these away.
+    assert!(taken * 100 < tried * 6, "{taken} of {tried}");
+}
+
+// -------------------------------------------------------------------------------------- device
+
+struct Bench {
+    cable: Cable,
+    device: Option<HaplyDevice<Cable>>,
+    now: f64,
+    force: DVec3,
+    enable: bool,
+}
+
+impl Bench {
+    fn new() -> Self {
+        let mut bench = Self {
+            cable: Cable::default(),
+            device: None,
+            now: 0.0,
+            force: DVec3::ZERO,
+            enable: true,
+        };
+        bench.start(false);
+        bench
+    }
+
+    fn start(&mut self, always: bool) {
+        let degrees = MODELS[0].rest_degrees();
+        let calibration = Calibration { degrees, always };
+        let device = HaplyDevice::open(self.cable.clone(), &MODELS[0], calibration).unwrap();
+        self.device = Some(device);
+    }
+
+    fn device(&mut self) -> &mut HaplyDevice<Cable> {
+        self.device.as_mut().unwrap()
+    }
+
+    fn tick(&mut self) -> Reading {
+        let (now, force, enable) = (self.now, self.force, self.enable);
+        let device = self.device();
+        let reading = device.read(now, TICK, &DeviceFrame::default());
+        let enable = enable && matches!(reading, Reading::At(_));
+        device.write(force, enable, &DeviceFrame::default());
+        self.now += TICK;
+        self.board().work();
+        reading
+    }
+
+    fn ticks(&mut self, count: usize) -> Reading {
+        (1..count).for_each(|_| _ = self.tick());
+        self.tick()
+    }
+
+    fn board(&self) -> std::sync::MutexGuard<'_, Board> {
+        self.cable.board()
+    }
+
+    /// Turns both arms by whole counts, in a tick for each 20 of them.
+    fn turn(&mut self, first: i64, second: i64) {
+        let parts = (first.abs().max(second.abs()) + 19) / 20;
+        for part in 0..parts {
+            let share = |all: i64| all * (part + 1) / parts - all * part / parts;
+            self.board().counts[1] += share(first);
+            self.board().counts[0] += share(second);
+            self.tick();
+        }
+    }
+}
+
+fn at(reading: Reading) -> Probe {
+    match reading {
+        Reading::At(probe) => probe,
+        other => panic!("{other:?}"),
+    }
+}
+
+/// Where the handle is with the arms so many counts from the rest pose.
+fn expected(first: i64, second: i64) -> DVec3 {
+    let angle = |rest: i64, turned: i64| TAU * (rest + turned) as f64 / 2440.0;
+    let pose = MODELS[0]
+        .pantograph
+        .pose([angle(1138, first), angle(81, second)]);
+    MODELS[0].to_device(pose.unwrap().position)
+}
+
+#[test]
+fn a_board_that_knows_nothing_is_set_up_once_and_then_told_where_the_handle_is() {
+    let mut bench = Bench::new();
+    assert_eq!(bench.tick(), Reading::Waiting(reason::NO_BOARD));
+    let probe = at(bench.ticks(20));
+    assert_eq!(bench.board().setups, 1);
+    assert_eq!(bench.board().resets, 0);
+    assert!(probe.position.distance(expected(0, 0)) < 1e-7);
+    assert!(
+        (probe.position - DVec3::new(0.0, 0.059, 0.0))
+            .abs()
+            .max_element()
+            < 5e-4
+    );
+    bench.turn(-200, 200);
+    let probe = at(bench.ticks(2));
+    assert!(probe.position.distance(expected(-200, 200)) < 1e-7);
+    assert_eq!(bench.board().setups, 1);
+    let report = bench.device().report();
+    assert_eq!(report.greeting.unwrap().axes, 2);
+    assert_eq!(report.hellos, 1);
+}
+
+#[test]
+fn a_known_board_keeps_its_angles_unless_the_user_wants_new_ones() {
+    let mut bench = Bench::new();
+    bench.ticks(20);
+    bench.turn(-200, 200);
+    bench.device().park();
+    bench.start(false);
+    let probe = at(bench.ticks(20));
+    assert!(probe.position.distance(expected(-200, 200)) < 1e-7);
+    assert_eq!(bench.board().setups, 1);
+    bench.device().park();
+    bench.start(true);
+    let probe = at(bench.ticks(20));
+    assert!(probe.position.distance(expected(0, 0)) < 1e-7);
+    assert_eq!(bench.board().setups, 2);
+}
+
+#[test]
+fn a_force_becomes_torques_and_what_is_normal_to_the_plane_is_dropped() {
+    let mut bench = Bench::new();
+    bench.ticks(20);
+    bench.turn(-200, 200);
+    bench.force = DVec3::new(0.3, -0.5, 0.8);
+    bench.ticks(3);
+    let angle = |count: f64| TAU * count / 2440.0;
+    let pose = MODELS[0]
+        .pantograph
+        .pose([angle(938.0), angle(281.0)])
+        .unwrap();
+    let [first, second] = pose.torques(DVec2::new(-0.3, 0.5));
+    let told = bench.board().torques;
+    for (told, meant) in told.into_iter().zip([second, first]) {
+        // Within the rounding of torques and a step of the PWM.
+        let allowed = 0.016 * meant.abs() + 0.156 / 1023.0;
+        assert!((f64::from(told) - meant).abs() < allowed, "{told} {meant}");
+    }
+    // In a frame that is turned the plane turns along.
+    let turned = DeviceFrame {
+        rotation: DMat3::from_rotation_x(TAU / 4.0),
+        ..DeviceFrame::default()
+    };
+    let device = bench.device();
+    let seen = at(device.read(1.0, TICK, &turned)).position;
+    assert!(seen.y.abs() < 1e-9 && seen.z < -0.005, "{seen}");
+    device.write(DVec3::Y, true, &turned);
+    bench.board().work();
+    assert_eq!(bench.board().torques, [0.0; 2]);
+}
+
+#[test]
+fn torques_beyond_the_motors_are_shortened_together() {
+    let mut bench = Bench::new();
+    bench.ticks(20);
+    bench.turn(-200, 200);
+    bench.force = DVec3::new(20.0, 30.0, 0.0);
+    bench.ticks(3);
+    let [second, first] = bench.board().torques.map(f64::from);
+    assert!(first.abs().max(second.abs()) <= 1.016 * TORQUE_LIMIT);
+    let pose = MODELS[0]
+        .pantograph
+        .pose([938.0, 281.0].map(|c| TAU * c / 2440.0))
+        .unwrap();
+    let [a, b] = pose.torques(DVec2::new(-20.0, -30.0));
+    assert!((first / second - a / b).abs() < 0.05 * (a / b).abs());
+}
+
+#[test]
+fn a_disabled_a_dropped_and_a_parked_device_are_limp() {
+    for ending in 0..3 {
+        let mut bench = Bench::new();
+        bench.ticks(20);
+        bench.force = DVec3::new(0.0, -1.0, 0.0);
+        bench.ticks(3);
+        assert!(bench.board().torques[0].abs() > 0.01);
+        match ending {
+            0 => {
+                bench.enable = false;
+                bench.tick();
+            }
+            1 => bench.device = None,
+            _ => bench.device().park(),
+        }
+        bench.board().work();
+        assert_eq!(bench.board().torques, [0.0; 2], "{ending}");
+    }
+}
+
+#[test]
+fn silence_is_stale_after_20_ms_and_asks_on_without_torque() {
+    let mut bench = Bench::new();
+    bench.ticks(20);
+    bench.force = DVec3::new(0.0, -1.0, 0.0);
+    bench.ticks(3);
+    bench.board().silent = true;
+    bench.ticks(19);
+    assert_eq!(bench.ticks(3), Reading::Fault(Fault::Stale));
+    assert_eq!(bench.board().torques, [0.0; 2]);
+    bench.board().silent = false;
+    bench.turn(-50, 50);
+    let probe = at(bench.ticks(8));
+    assert!(!probe.restart);
+    assert!(probe.position.distance(expected(-50, 50)) < 1e-7);
+    assert_eq!(bench.board().setups, 1);
+}
+
+#[test]
+fn a_board_that_was_reset_on_the_way_goes_on_from_the_last_angles() {
+    let mut bench = Bench::new();
+    bench.ticks(20);
+    bench.turn(-200, 200);
+    bench.force = DVec3::new(0.0, -1.0, 0.0);
+    bench.ticks(150);
+    assert!(bench.board().torques[0].abs() > 0.01);
+    bench.board().to_board.extend([0, 0]);
+    bench.ticks(4);
+    // Its motors cannot be reached before it is set up again.
+    bench.enable = false;
+    bench.ticks(4);
+    assert_eq!(bench.board().torques, [0.0; 2]);
+    let probe = at(bench.ticks(10));
+    assert_eq!(bench.board().setups, 2);
+    // Converting an angle to counts may lose one.
+    assert!(probe.position.distance(expected(-200, 200)) < 5e-4);
+}
+
+#[test]
+fn a_plug_pulled_means_a_new_start_for_the_angles() {
+    let mut bench = Bench::new();
+    bench.ticks(20);
+    bench.force = DVec3::new(0.0, -1.0, 0.0);
+    bench.ticks(3);
+    *bench.board() = Board {
+        gone: true,
+        ..Board::default()
+    };
+    assert_eq!(bench.ticks(2), Reading::Fault(Fault::Unplugged));
+    bench.board().gone = false;
+    assert_eq!(bench.ticks(400), Reading::Waiting(reason::LOST_PLACE));
+    assert_eq!(bench.board().torques, [0.0; 2]);
+    assert_eq!(bench.board().address, MODELS[0].adrift_address());
+    assert_eq!(bench.device().report().reopened, 1);
+    // Started again by somebody who has read that.
+    bench.device().park();
+    bench.start(false);
+    assert!(at(bench.ticks(80)).position.distance(expected(0, 0)) < 1e-7);
+}
+
+#[test]
+fn a_full_line_holds_nothing_up_and_letting_go_comes_first() {
+    let mut bench = Bench::new();
+    bench.ticks(20);
+    bench.force = DVec3::new(0.0, -1.0, 0.0);
+    bench.ticks(3);
+    bench.board().silent = true;
+    bench.board().full = true;
+    bench.ticks(3);
+    assert!(bench.device().report().unsent >= 3);
+    bench.board().full = false;
+    bench.enable = false;
+    bench.tick();
+    assert_eq!(bench.board().torques, [0.0; 2]);
+}
+
+#[test]
+fn arms_that_cannot_meet_are_a_fault_and_stretched_ones_get_no_force() {
+    let mut bench = Bench::new();
+    bench.ticks(20);
+    bench.force = DVec3::new(0.0, -0.5, 0.0);
+    // Elbows together, in small steps: no hand turns arms any faster.
+    for _ in 0..60 {
+        bench.turn(-8, 8);
+        bench.tick();
+    }
+    assert!(matches!(bench.tick(), Reading::At(_)));
+    for _ in 0..500 {
+        bench.turn(-1, 1);
+        if matches!(bench.tick(), Reading::Passive(_, reason::STRETCHED)) {
+            assert!(matches!(bench.tick(), Reading::Passive(..)));
+            assert_eq!(bench.board().torques, [0.0; 2]);
+            return;
+        }
+    }
+    panic!("never stretched");
+}
+
+#[test]
+fn answers_from_elsewhere_are_not_followed() {
+    let mut bench = Bench::new();
+    bench.ticks(20);
+    let rest = at(bench.tick()).position;
+    // On the grid, with the right address, but half a turn away.
+    let lie = answer([1300, 40], 2440.0);
+    bench.board().to_host.extend(lie);
+    let probe = at(bench.tick());
+    assert_eq!(probe.position, rest);
+    assert!(bench.device().report().crc_errors > 0);
+    assert_eq!(at(bench.ticks(3)).position, rest);
+}
