@@ -114,9 +114,11 @@ fn ten_minutes_at_1_khz_lose_no_tick_while_pressing() {
     let mut touching = 0;
     for (number, sample) in (1..).zip(&all) {
         assert_eq!((sample.tick, sample.time), (number, number as f64 * 1e-3));
-        let presses = sample.state == State::Touching as u64;
-        touching += u64::from(presses);
-        assert_eq!(sample.force != [0.0; 3], presses);
+        let presses = sample.force != [0.0; 3];
+        if sample.state == State::Touching as u64 {
+            touching += 1;
+            assert!(presses);
+        }
         let moved = DVec3::from(sample.probe).distance(DVec3::from(sample.proxy));
         assert_eq!(moved > 0.0, presses, "tick {number}");
     }
