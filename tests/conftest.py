@@ -1,9 +1,34 @@
-"""What every test process needs before it imports numpy."""
+"""What every test process needs before it imports numpy, and patience for what takes its time."""
 
 from __future__ import annotations
 
 import os
+import time
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 # One thread for BLAS: results do not depend on the number of cores, and the servo keeps its own.
 for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[_name] = "1"
+
+
+@pytest.fixture(scope="session")
+def eventually() -> Callable[..., Any]:
+    """Wait until a condition holds, and return its value; fails after `seconds`, telling `what`.
+
+    Long enough for a machine that is busy elsewhere.
+    """
+
+    def wait(condition: Callable[[], Any], what: object = "", seconds: float = 20.0) -> Any:
+        deadline = time.monotonic() + seconds
+        while not (value := condition()):
+            if time.monotonic() > deadline:
+                pytest.fail(f"did not happen in {seconds} s: {what() if callable(what) else what}")
+            time.sleep(0.002)
+        return value
+
+    return wait

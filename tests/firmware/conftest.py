@@ -6,14 +6,13 @@ import os
 import select
 import shutil
 import subprocess
-import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
 import pytest
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Iterator, Sequence
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 FIRMWARE = REPOSITORY / "firmware"
@@ -144,17 +143,3 @@ def sketch_program(compiler: Compiler) -> Path:
 @pytest.fixture(scope="session")
 def start_talk() -> type[Talk]:
     return Talk
-
-
-@pytest.fixture(scope="session")
-def eventually() -> Callable[..., None]:
-    """Wait until something becomes true; long enough for a machine that is busy elsewhere."""
-
-    def wait(condition: Callable[[], bool], what: object = "", seconds: float = 20.0) -> None:
-        deadline = time.monotonic() + seconds
-        while not condition():
-            if time.monotonic() > deadline:
-                pytest.fail(f"did not happen in {seconds} s: {what() if callable(what) else what}")
-            time.sleep(0.005)
-
-    return wait

@@ -1,9 +1,8 @@
-"""Bodies and patience for the servo's tests; nothing of core is needed."""
+"""Bodies for the servo's tests; nothing of core is needed."""
 
 from __future__ import annotations
 
 import itertools
-import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -12,8 +11,6 @@ import pytest
 from palpate_servo import Body
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from numpy.typing import NDArray
 
 YOUNG_MODULUS = 10_000.0
@@ -55,17 +52,3 @@ def cube() -> SoftCube:
     # About 100 N/m at 10 kPa, different from node to node and direction to direction.
     blocks = 0.004 * (factors @ factors.swapaxes(1, 2)) + 0.01 * np.eye(3)
     return SoftCube(nodes, triangles, blocks, Body(nodes, triangles, blocks))
-
-
-@pytest.fixture(scope="session")
-def eventually() -> Callable[..., None]:
-    """Wait until something becomes true; long enough for a machine that is busy elsewhere."""
-
-    def wait(condition: Callable[[], bool], what: object = "", seconds: float = 20.0) -> None:
-        deadline = time.monotonic() + seconds
-        while not condition():
-            if time.monotonic() > deadline:
-                pytest.fail(f"did not happen in {seconds} s: {what() if callable(what) else what}")
-            time.sleep(0.002)
-
-    return wait

@@ -7,7 +7,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 import tty
 from contextlib import contextmanager
 
@@ -54,14 +53,6 @@ def silent_port():
     yield os.ttyname(host_end)
     os.close(device_end)
     os.close(host_end)
-
-
-def eventually(condition, seconds=20.0):
-    deadline = time.monotonic() + seconds
-    while not (value := condition()):
-        assert time.monotonic() < deadline, "this did not happen"
-        time.sleep(0.01)
-    return value
 
 
 @contextmanager
@@ -150,7 +141,7 @@ def test_a_firmer_body_is_pressed_with_no_more_force_than_the_hand_has(cube):
     assert firm.by[2] == pytest.approx(-servo_command.HAND_FORCE / firm.hand_stiffness, rel=1e-3)
 
 
-def test_ctrl_c_zeroes_the_force_and_still_reports(body_file, device):
+def test_ctrl_c_zeroes_the_force_and_still_reports(body_file, device, eventually):
     with host(body_file, device.port) as process:
         eventually(lambda: device.report()["forces"] > 100)
         device.move_hand(DEEP, 0.2)
@@ -165,7 +156,7 @@ def test_ctrl_c_zeroes_the_force_and_still_reports(body_file, device):
     assert device.report()["felt_force"] == [0.0, 0.0, 0.0]
 
 
-def test_a_killed_host_leaves_the_device_limp(body_file, device):
+def test_a_killed_host_leaves_the_device_limp(body_file, device, eventually):
     with host(body_file, device.port) as process:
         eventually(lambda: device.report()["forces"] > 100)
         device.move_hand(DEEP, 0.2)
@@ -176,7 +167,7 @@ def test_a_killed_host_leaves_the_device_limp(body_file, device):
     assert report["limp_count"] >= 1
 
 
-def test_a_killed_host_does_not_keep_the_port_from_the_next_one(body_file, device):
+def test_a_killed_host_does_not_keep_the_port_from_the_next_one(body_file, device, eventually):
     for _ in range(2):
         before = device.report()["forces"]
         with host(body_file, device.port) as process:
@@ -187,7 +178,7 @@ def test_a_killed_host_does_not_keep_the_port_from_the_next_one(body_file, devic
         eventually(lambda: not held_alone(device.port))
 
 
-def test_unplugged_for_good_is_reported_and_no_failure(body_file, device):
+def test_unplugged_for_good_is_reported_and_no_failure(body_file, device, eventually):
     with host(body_file, device.port) as process:
         eventually(lambda: device.report()["forces"] > 100)
         device.unplug()

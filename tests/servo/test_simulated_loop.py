@@ -29,7 +29,7 @@ def cube():
 
 
 @pytest.fixture
-def loop(cube):
+def loop(cube, eventually):
     """Start a device with a hand that waits above the cube, and a servo that has found it."""
     started = []
 
@@ -49,20 +49,12 @@ def loop(cube):
         one.stop()
 
 
-def eventually(condition, seconds=20.0):
-    deadline = time.monotonic() + seconds
-    while not (value := condition()):
-        assert time.monotonic() < deadline, "this did not happen"
-        time.sleep(0.005)
-    return value
-
-
-def press(device, servo):
+def press(device, servo, eventually):
     device.move_hand(DEEP, 0.3)
     eventually(lambda: np.linalg.norm(servo.snapshot().output_force) > 0.3)
 
 
-def settled(device):
+def settled(device, eventually):
     """The device's report once the hand is there and nothing has moved for 20 reports."""
     resting = []
 
@@ -78,11 +70,11 @@ def settled(device):
     return eventually(still)
 
 
-def test_the_felt_force_pushes_the_hand_back_until_both_agree(loop):
+def test_the_felt_force_pushes_the_hand_back_until_both_agree(loop, eventually):
     device, servo = loop()
     servo.set_enabled(False)
     device.move_hand(DEEP, 0.3)
-    alone = settled(device)
+    alone = settled(device, eventually)
     assert alone["felt_force"] == [0.0, 0.0, 0.0]
     assert alone["position"] == pytest.approx(DEEP, abs=1e-5)
 
@@ -95,7 +87,7 @@ def test_the_felt_force_pushes_the_hand_back_until_both_agree(loop):
             and np.linalg.norm(servo.snapshot().contact_force) > 0.3
         )
     )
-    report = settled(device)
+    report = settled(device, eventually)
     force, hand = np.array(report["felt_force"]), np.array(report["hand_force"])
     assert force[2] > 0.5
     np.testing.assert_allclose(hand, -force, atol=0.01)
@@ -108,28 +100,28 @@ def test_the_felt_force_pushes_the_hand_back_until_both_agree(loop):
     assert report["work_of_felt_force"] > 0.0
 
 
-def test_depth_force_and_stiffness_are_those_of_the_body(loop, cube):
+def test_depth_force_and_stiffness_are_those_of_the_body(loop, cube, eventually):
     device, servo = loop()
-    press(device, servo)
+    press(device, servo, eventually)
     eventually(lambda: np.allclose(servo.snapshot().output_force, servo.snapshot().contact_force))
-    report = settled(device)
+    report = settled(device, eventually)
     probe = np.array(report["position"])
     top = np.array([probe[0], probe[1], 0.05])
     expected = cube.touch_nearest(top, probe - top).force
     assert report["felt_force"][2] == pytest.approx(expected[2], rel=0.02)
 
 
-def test_softer_material_gives_way_while_the_servo_runs(loop):
+def test_softer_material_gives_way_while_the_servo_runs(loop, eventually):
     device, servo = loop()
-    press(device, servo)
-    firm = settled(device)
+    press(device, servo, eventually)
+    firm = settled(device, eventually)
     servo.set_young_modulus(2_000.0)
     eventually(lambda: device.report()["felt_force"][2] < 0.5 * firm["felt_force"][2])
-    soft = settled(device)
+    soft = settled(device, eventually)
     assert soft["position"][2] < firm["position"][2] - 2e-4
 
 
-def test_a_clean_link_loses_nothing(loop):
+def test_a_clean_link_loses_nothing(loop, eventually):
     device, servo = loop()
     eventually(lambda: servo.counters()["link"]["forces"] > 1000)
     servo.stop()
@@ -141,7 +133,7 @@ def test_a_clean_link_loses_nothing(loop):
     assert report["forces"] == link["forces"]
 
 
-def test_lost_frames_are_counted_at_both_ends(loop):
+def test_lost_frames_are_counted_at_both_ends(loop, eventually):
     device, servo = loop(loss=0.1)
     eventually(lambda: servo.counters()["link"]["lost"] > 50 and device.report()["lost"] > 50)
     servo.stop()
@@ -152,7 +144,7 @@ def test_lost_frames_are_counted_at_both_ends(loop):
     assert link["lost"] + report["lost"] <= report["frames_lost_on_purpose"]
 
 
-def test_noise_is_caught_at_both_ends_and_never_felt(loop):
+def test_noise_is_caught_at_both_ends_and_never_felt(loop, eventually):
     device, servo = loop(noise=5e-4)
     eventually(
         lambda: servo.counters()["link"]["crc_errors"] > 20 and device.report()["crc_errors"] > 20
@@ -168,9 +160,9 @@ def test_noise_is_caught_at_both_ends_and_never_felt(loop):
     assert report["bits_flipped_on_purpose"] > 40
 
 
-def test_unplugging_while_pressing_gives_zero_and_a_fault_and_replugging_works(loop):
+def test_unplugging_while_pressing_gives_zero_and_a_fault_and_replugging_works(loop, eventually):
     device, servo = loop()
-    press(device, servo)
+    press(device, servo, eventually)
     device.unplug()
     snapshot = eventually(lambda: (s := servo.snapshot()).fault == "unplugged" and s)
     assert snapshot.state == "fault"
@@ -182,15 +174,15 @@ def test_unplugging_while_pressing_gives_zero_and_a_fault_and_replugging_works(l
 
     device.plug_in()
     eventually(lambda: servo.snapshot().state == "free")
-    press(device, servo)
+    press(device, servo, eventually)
     counters = servo.counters()
     assert counters["faults"]["unplugged"] == 1
     assert counters["link"]["reopened"] == 1
 
 
-def test_the_devices_button_silences_it_at_once(loop):
+def test_the_devices_button_silences_it_at_once(loop, eventually):
     device, servo = loop()
-    press(device, servo)
+    press(device, servo, eventually)
     device.press_buttons(1)
     snapshot = eventually(lambda: (s := servo.snapshot()).buttons == 1 and s)
     assert snapshot.state == "disabled"
@@ -200,22 +192,22 @@ def test_the_devices_button_silences_it_at_once(loop):
     eventually(lambda: np.linalg.norm(servo.snapshot().output_force) > 0.3)
 
 
-def test_the_device_is_left_without_force_when_the_servo_stops(loop):
+def test_the_device_is_left_without_force_when_the_servo_stops(loop, eventually):
     device, servo = loop()
-    press(device, servo)
+    press(device, servo, eventually)
     servo.stop()
     report = eventually(lambda: (r := device.report())["felt_force"] == [0.0, 0.0, 0.0] and r)
     assert report["largest_force"] > 0.3
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="asks the C library to keep the interpreter")
-def test_a_press_with_deformation_and_a_busy_interpreter_loses_no_ticks(loop, cube):
+def test_a_press_with_deformation_and_a_busy_interpreter_loses_no_ticks(loop, cube, eventually):
     """Device presses, the shape follows at 60 Hz, then Python is kept for 2 s without a break.
 
     What the machine itself does to a native thread is seen beside, by one that only sleeps.
     """
     device, servo = loop()
-    press(device, servo)
+    press(device, servo, eventually)
     keep_interpreter = ctypes.PyDLL(None).usleep  # PyDLL: the interpreter's lock stays held
     bare = palpate_servo.BareTimer(1000)
     try:

@@ -1,27 +1,12 @@
-"""Waiting for things that happen in their own time."""
+"""Ports with nobody, or somebody else, behind them."""
 
 import os
 import threading
-import time
 import tty
 
 import pytest
 
 from palpate.core.devices import link
-
-
-@pytest.fixture
-def eventually():
-    """Wait until a condition holds; its last value is returned, or the test fails."""
-
-    def wait(condition, seconds=20.0):
-        deadline = time.monotonic() + seconds
-        while not (value := condition()):
-            assert time.monotonic() < deadline, "this did not happen"
-            time.sleep(0.005)
-        return value
-
-    return wait
 
 
 @pytest.fixture

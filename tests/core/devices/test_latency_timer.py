@@ -172,7 +172,7 @@ def no_other_ports(monkeypatch):
 def test_devices_tells_it_of_a_named_port(held_back, no_other_ports, capsys):
     (port,) = list_ports([held_back.port], 20.0)
     assert port.hello.name == "Simulated"
-    assert f"{held_back.port}: STATE arrives in bursts, one every 16" in port.warning
+    assert port.warning.startswith(f"{held_back.port}: STATE arrives in bursts")
     assert main(["devices", "--port", held_back.port, "--json"]) == 0
     assert "bursts" in json.loads(capsys.readouterr().out)["ports"][0]["warning"]
     assert main(["devices", "--port", held_back.port]) == 0
