@@ -6,6 +6,10 @@ use crate::durations::{DurationReport, Durations, keep_largest, raise};
 use crate::sleeper::Sleeper;
 
 const SECOND_NS: u64 = 1_000_000_000;
+/// A thread whose work leaves it no time to sleep goes on like that for this long, ns ...
+const OVERLOAD_NS: u64 = 20_000_000;
+/// ... and then sleeps for this long, so that others live and no watchdog barks, ns.
+const REST_NS: u64 = 2_000_000;
 
 /// Lateness limits that are counted one by one, ns.
 pub const LATE_LIMITS_NS: [u64; 4] = [10_000, 50_000, 200_000, 1_000_000];
@@ -86,6 +90,16 @@ impl Schedule {
         let (seconds, rest) = (elapsed / SECOND_NS, elapsed % SECOND_NS);
         seconds * self.rate_hz + ((rest + 1) * self.rate_hz - 1) / SECOND_NS
     }
+
+    /// The deadline to wait for after number `number`, at `now_ns`, for a thread that last slept
+    /// until `slept_ns`. One that has just passed is kept late; those before it are given up.
+    fn after(&self, number: u64, now_ns: u64, slept_ns: u64) -> u64 {
+        if now_ns.saturating_sub(slept_ns) > OVERLOAD_NS {
+            self.last_before(now_ns + REST_NS) + 1
+        } else {
+            self.last_before(now_ns).max(number + 1)
+        }
+    }
 }
 
 /// Wakes a thread at a fixed rate.
@@ -95,6 +109,7 @@ pub struct Pace {
     schedule: Schedule,
     number: u64,
     woke_ns: u64,
+    slept_ns: u64,
 }
 
 /// One waking.
@@ -119,6 +134,7 @@ impl Pace {
             },
             number: 0,
             woke_ns: now,
+            slept_ns: now,
         }
     }
 
@@ -128,16 +144,15 @@ impl Pace {
         if self.number > 0 {
             timing.busy.record(done_ns - self.woke_ns);
         }
-        self.number += 1;
-        // A deadline that has just passed is kept late; those before it are given up.
-        let missed = self
-            .schedule
-            .last_before(done_ns)
-            .saturating_sub(self.number);
-        self.number += missed;
-        let deadline_ns = self.schedule.deadline_ns(self.number);
+        let next = self.schedule.after(self.number, done_ns, self.slept_ns);
+        let missed = next - self.number - 1;
+        self.number = next;
+        let deadline_ns = self.schedule.deadline_ns(next);
         self.sleeper.sleep_until(deadline_ns);
         let now = self.sleeper.now_ns();
+        if deadline_ns > done_ns {
+            self.slept_ns = now;
+        }
         timing.record(now.saturating_sub(deadline_ns), now - self.woke_ns, missed);
         self.woke_ns = now;
         Wake {
@@ -209,6 +224,35 @@ mod tests {
                 assert_eq!(schedule.last_before(schedule.deadline_ns(n + 1) - 1), n);
             }
         }
+    }
+
+    #[test]
+    fn an_overloaded_thread_sleeps_now_and_then() {
+        let schedule = Schedule {
+            start_ns: 0,
+            rate_hz: 8000,
+        };
+        let (mut now, mut number, mut slept, mut resting) = (187_500, 0, 0, 0);
+        for _ in 0..10_000 {
+            let next = schedule.after(number, now, slept);
+            assert!(next > number);
+            let deadline = schedule.deadline_ns(next);
+            if deadline > now {
+                assert!(deadline - now > REST_NS && deadline - now <= REST_NS + 125_000);
+                resting += deadline - now;
+                slept = deadline;
+            } else {
+                assert!(
+                    now - deadline < 125_000,
+                    "only the last deadline is kept late"
+                );
+            }
+            number = next;
+            // Every tick takes a period and a half.
+            now = now.max(deadline) + 187_500;
+            assert!(now - slept <= OVERLOAD_NS + 187_500);
+        }
+        assert!((0.08..0.11).contains(&(resting as f64 / now as f64)));
     }
 
     #[test]

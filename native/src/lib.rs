@@ -24,6 +24,7 @@ pub mod port;
 pub mod proxy;
 #[cfg(feature = "python")]
 mod python;
+mod realtime;
 pub mod recorder;
 pub mod rhythm;
 pub mod safety;

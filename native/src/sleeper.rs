@@ -1,4 +1,4 @@
-//! The best clock and the best sleep each system gives, and real-time priority where it may be had.
+//! The best clock and the best sleep each system gives.
 
 #[cfg(target_os = "linux")]
 mod system {
@@ -36,44 +36,6 @@ mod system {
                 )
             } == libc::EINTR
             {}
-        }
-    }
-
-    const WANTED_PRIORITY: libc::c_int = 20;
-
-    pub fn ask_for_real_time(_rate_hz: u32) -> String {
-        // SAFETY: sets this thread's timer slack; no memory is involved.
-        unsafe { libc::prctl(libc::PR_SET_TIMERSLACK, 1_usize) };
-        let Err(first) = set_fifo(WANTED_PRIORITY) else {
-            return format!("fifo {WANTED_PRIORITY}");
-        };
-        let mut limit = libc::rlimit {
-            rlim_cur: 0,
-            rlim_max: 0,
-        };
-        // SAFETY: `limit` is valid for writing.
-        let known = unsafe { libc::getrlimit(libc::RLIMIT_RTPRIO, &raw mut limit) } == 0;
-        let allowed = if known {
-            limit.rlim_cur.min(WANTED_PRIORITY as libc::rlim_t) as libc::c_int
-        } else {
-            0
-        };
-        if allowed > 0 && set_fifo(allowed).is_ok() {
-            return format!("fifo {allowed}");
-        }
-        format!("none: {first} (the rtprio limit is {})", limit.rlim_cur)
-    }
-
-    fn set_fifo(priority: libc::c_int) -> std::io::Result<()> {
-        let parameters = libc::sched_param {
-            sched_priority: priority,
-        };
-        let policy = libc::SCHED_FIFO | libc::SCHED_RESET_ON_FORK;
-        // SAFETY: `parameters` is valid for reading; 0 means this thread.
-        if unsafe { libc::sched_setscheduler(0, policy, &raw const parameters) } == 0 {
-            Ok(())
-        } else {
-            Err(std::io::Error::last_os_error())
         }
     }
 }
@@ -151,8 +113,6 @@ mod system {
             }
         }
     }
-
-    pub use super::audio::ask_for_real_time;
 }
 
 #[cfg(target_os = "macos")]
@@ -203,30 +163,9 @@ mod system {
             unsafe { mach_wait_until(ticks as u64) };
         }
     }
-
-    pub use super::audio::ask_for_real_time;
 }
 
 #[cfg(not(any(target_os = "linux", target_os = "macos", windows)))]
 compile_error!("palpate_servo knows the clocks of Linux, macOS and Windows only");
 
-/// Multimedia class on Windows, time constraint on macOS.
-#[cfg(not(target_os = "linux"))]
-mod audio {
-    pub fn ask_for_real_time(rate_hz: u32) -> String {
-        const SAMPLE_RATE: u32 = 48_000;
-        let frames = (SAMPLE_RATE / rate_hz.max(1)).max(1);
-        match audio_thread_priority::promote_current_thread_to_real_time(frames, SAMPLE_RATE) {
-            Ok(_) if cfg!(windows) => "multimedia class".to_owned(),
-            Ok(_) => "time constraint".to_owned(),
-            Err(error) => format!("none: {error}"),
-        }
-    }
-}
-
 pub use system::Sleeper;
-
-/// Asks the system for real-time priority for the calling thread; says what it gave.
-pub fn ask_for_real_time(rate_hz: u32) -> String {
-    system::ask_for_real_time(rate_hz)
-}

@@ -12,9 +12,9 @@ use triple_buffer::{Input, Output, triple_buffer};
 use crate::clock::{Pace, Timing};
 use crate::device::{Device, Fault};
 use crate::exchange::{Hand, exchange};
+use crate::realtime::{Granted, ask_for_real_time};
 use crate::recorder::{RING_SECONDS, Recorder, touched_ring};
 use crate::servo::{Options, Servo, Settings};
-use crate::sleeper::ask_for_real_time;
 use crate::snapshot::{Published, Sample};
 use crate::stages::Stages;
 use crate::surface::Body;
@@ -28,7 +28,7 @@ pub struct Paced {
     stop: Arc<AtomicBool>,
     thread: Mutex<Option<JoinHandle<()>>>,
     timing: Arc<Timing>,
-    realtime: Arc<OnceLock<String>>,
+    realtime: Arc<OnceLock<Granted>>,
 }
 
 impl Paced {
@@ -43,7 +43,8 @@ impl Paced {
         let thread = std::thread::Builder::new().name(name.to_owned()).spawn({
             let (stop, timing, realtime) = (stop.clone(), timing.clone(), realtime.clone());
             move || {
-                let _ = realtime.set(ask_for_real_time(rate_hz));
+                let (granted, _tenure) = ask_for_real_time(rate_hz);
+                let _ = realtime.set(granted);
                 let mut pace = Pace::new(rate_hz);
                 work(&mut || {
                     let wake = pace.wait(&timing);
@@ -73,8 +74,9 @@ impl Paced {
     }
 
     /// What the system said to the wish for real-time priority.
-    pub fn realtime(&self) -> &str {
-        self.realtime.get().map_or("not asked yet", String::as_str)
+    pub fn realtime(&self) -> String {
+        let granted = self.realtime.get();
+        granted.map_or_else(|| "not asked yet".to_owned(), Granted::text)
     }
 
     /// Whether the thread has not been stopped and has not ended.

@@ -128,7 +128,7 @@ impl BareTimer {
     }
 
     fn counters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        timing_counters(py, self.paced.timing(), self.paced.realtime())
+        timing_counters(py, self.paced.timing(), &self.paced.realtime())
     }
 
     fn stop<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {

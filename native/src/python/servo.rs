@@ -351,7 +351,7 @@ impl Servo {
         let counters = match &running {
             Some(running) => {
                 let paced = running.paced();
-                timing_counters(py, paced.timing(), paced.realtime())?
+                timing_counters(py, paced.timing(), &paced.realtime())?
             }
             None => timing_counters(py, &Timing::default(), "not started")?,
         };
