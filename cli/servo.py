@@ -28,6 +28,7 @@ from ..core.servo_session import STATES, servo_for
 from ..core.soft_body import SoftBody
 from ..core.stiffness import lame_parameters
 from .body_figures import as_lines
+from .haply import add_haply_options, connect_haply
 
 if TYPE_CHECKING:
     from ..core.servo_session import Servo
@@ -48,6 +49,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     device.add_argument(
         "--simulate", action="store_true", help="a simulated device that presses from above"
     )
+    add_haply_options(parser, device)
     parser.add_argument(
         "--seconds", type=float, default=10.0, metavar="S", help="default: %(default)g"
     )
@@ -71,7 +73,7 @@ def run(arguments: argparse.Namespace) -> int:
     lame_parameters(young_modulus, body.poisson_ratio)
     with ExitStack() as stack:
         simulated = None
-        port = arguments.port
+        port = arguments.port or arguments.haply
         if arguments.simulate:
             hand = press_from_above(body, young_modulus)
             simulated = stack.enter_context(SimulatedDevice(hand))
@@ -82,7 +84,11 @@ def run(arguments: argparse.Namespace) -> int:
         stack.callback(servo.stop)
         if arguments.record is not None:
             _start_recording(servo, arguments.seconds)
-        _connect(servo, port, stopped)
+        if arguments.haply:
+            _, at, _ = _highest_place(body)
+            connect_haply(servo, arguments, _vector(at), stopped)
+        else:
+            _connect(servo, port, stopped)
         report = _touch(servo, port, arguments.seconds, stopped)
         if simulated is not None:
             report["simulated_device"] = simulated.stop()
@@ -117,20 +123,8 @@ def press_from_above(body: SoftBody, young_modulus: float) -> SimulatedOptions:
     It goes in by a tenth of the body's height or until it takes `HAND_FORCE`, whichever is less.
     """
     mesh = body.mesh
-    corners = mesh.nodes[mesh.surface_triangles]
-    centres = corners.mean(axis=1)
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    pinned = np.isin(mesh.surface_triangles, body.fixed).any(axis=1)
     extents = np.ptp(mesh.nodes, axis=0)
-    # Free places that look up come before steep ones and those before pinned ones; of places as
-    # high as the highest, such as a flat top, the middle.
-    fit = ~pinned & (normals[:, 2] > 0.7)
-    candidates = next(choice for choice in (fit, ~pinned, ~fit) if choice.any())
-    high = candidates & (centres[:, 2] >= centres[candidates, 2].max() - 0.01 * extents[2])
-    off_centre = np.linalg.norm((centres - centres[high].mean(axis=0))[:, :2], axis=1)
-    highest = int(np.where(high, off_centre, np.inf).argmin())
-    at, normal = centres[highest], normals[highest]
+    highest, at, normal = _highest_place(body)
     blocks = body.contact_blocks[mesh.surface_local_triangles[highest]]
     stiffness = young_modulus * float(normal @ blocks.mean(axis=0) @ normal)
     depth = min(0.1 * float(extents[2]), HAND_FORCE / stiffness)
@@ -146,6 +140,25 @@ def press_from_above(body: SoftBody, young_modulus: float) -> SimulatedOptions:
         approach=max(0.5, 4.0 * height),
         period=max(2.0, 8.0 * reach),
     )
+
+
+def _highest_place(body: SoftBody) -> tuple[int, NDArray[np.float64], NDArray[np.float64]]:
+    """The surface triangle to press from above: its index, its centre (m) and its normal."""
+    mesh = body.mesh
+    corners = mesh.nodes[mesh.surface_triangles]
+    centres = corners.mean(axis=1)
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    pinned = np.isin(mesh.surface_triangles, body.fixed).any(axis=1)
+    extents = np.ptp(mesh.nodes, axis=0)
+    # Free places that look up come before steep ones and those before pinned ones; of places as
+    # high as the highest, such as a flat top, the middle.
+    fit = ~pinned & (normals[:, 2] > 0.7)
+    candidates = next(choice for choice in (fit, ~pinned, ~fit) if choice.any())
+    high = candidates & (centres[:, 2] >= centres[candidates, 2].max() - 0.01 * extents[2])
+    off_centre = np.linalg.norm((centres - centres[high].mean(axis=0))[:, :2], axis=1)
+    highest = int(np.where(high, off_centre, np.inf).argmin())
+    return highest, centres[highest], normals[highest]
 
 
 def _vector(values: NDArray[np.float64]) -> tuple[float, float, float]:

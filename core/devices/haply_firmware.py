@@ -97,7 +97,7 @@ class HaplyFirmware:
                     return sent
                 sent += self._go_on(self._wait)
             elif self._unread:
-                sent += self._command(self._read(), now)
+                sent += self._command(self._read(), self._next_loop)
             else:
                 self._next_loop = max(now, self._next_loop)
                 return sent

@@ -98,6 +98,14 @@ HAPLY_MODELS = {
 """By the names that the servo knows them by."""
 DEFAULT_MODEL = "2diy-3.1"
 
+HAPI_USB_IDS = frozenset(
+    # Native ports of the Arduino Due, Zero, M0 and M0 Pro, as which hAPI boards show up.
+    f"{vendor}:{product}"
+    for vendor in ("2341", "2a03")
+    for product in ("003e", "804d", "804e", "804f")
+)
+"""VID:PID of what may be a hAPI board."""
+
 
 def haply_model(name: str) -> HaplyModel:
     """Raises PalpateError for a name that is not known."""

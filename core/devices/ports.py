@@ -17,6 +17,7 @@ from serial.tools.list_ports import comports
 
 from ..errors import PalpateError
 from . import link
+from .haply_models import HAPI_USB_IDS
 from .latency_timer import ask_for_low_latency, explain_readings
 
 BAUD = 115200
@@ -73,8 +74,8 @@ def list_ports(extra: Sequence[str] = (), seconds: float = ANSWER_SECONDS) -> li
     """All ports of this computer, then `extra` paths, each asked for HELLO for up to `seconds`.
 
     A port that is no USB device is asked only when it is among `extra`: it may be the console, or
-    a machine that does not expect to be spoken to. Those of `extra` are listened to a little
-    longer, for the `warning`.
+    a machine that does not expect to be spoken to. So is what may be a Haply 2DIY. Those of
+    `extra` are listened to a little longer, for the `warning`.
     """
     found = [
         Port(
@@ -94,7 +95,13 @@ def list_ports(extra: Sequence[str] = (), seconds: float = ANSWER_SECONDS) -> li
 
 def _asked(port: Port, named: bool, seconds: float) -> Port:
     hello, reason, warning = None, "", ""
-    if port.usb_id or named:
+    if port.usb_id in HAPI_USB_IDS and not named:
+        # A byte of HELLO makes a hAPI board forget its device.
+        reason = (
+            "not asked, as it may be a Haply 2DIY, which HELLO would confuse; try 'palpate servo "
+            f"BODY.npz --haply {port.path}', or name it with --port to ask it"
+        )
+    elif port.usb_id or named:
         try:
             hello, readings = _ask(port.path, seconds, LISTEN_SECONDS if named else 0.0)
             warning = explain_readings(readings, port.path) or ""

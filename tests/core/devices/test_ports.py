@@ -64,6 +64,16 @@ def test_only_usb_devices_are_asked_without_being_named(device, monkeypatch, ter
     assert (second.description, second.vendor, second.product, second.usb_id) == ("",) * 4
 
 
+def test_what_may_be_a_2diy_is_asked_only_when_it_is_named(device, monkeypatch):
+    zero = fake(device.port, vid=0x2341, pid=0x804D)
+    monkeypatch.setattr(ports, "comports", lambda: [zero])
+    (left_alone,) = list_ports(seconds=20.0)
+    assert left_alone.hello is None
+    assert f"--haply {device.port}" in left_alone.reason
+    (asked,) = list_ports([device.port], 20.0)
+    assert asked.hello.name == "Test"
+
+
 def test_a_device_of_another_protocol_is_refused_with_both_versions(foreign_device):
     with pytest.raises(PortError, match=r"speaks version 2 .* speaks version 1"):
         say_hello(foreign_device, 20.0)
