@@ -482,6 +482,49 @@ class Servo:
     def __enter__(self) -> Self: ...
     def __exit__(self, kind: object, value: object, trace: object, /) -> None: ...
 
+class SteppedCounters(TypedDict):
+    """Faults and link of a stepped servo."""
+
+    faults: dict[str, int]
+    link: LinkCounters
+
+@final
+class SteppedServo:
+    """The ticks of a Servo, by hand and in virtual time, with a device on a line in memory.
+
+    For tests and simulations: nothing waits, and the same input gives the same output.
+    """
+
+    def __init__(
+        self,
+        body: Body,
+        *,
+        young_modulus: float,
+        rate_hz: int = 1000,
+        max_force: float = 3.0,
+        max_slew: float = 1000.0,
+        ramp_seconds: float = 0.25,
+        max_speed: float = 2.0,
+    ) -> None:
+        """As Servo; ValueError as there."""
+
+    def tick(self, received: bytes | None = None, seconds: float | None = None) -> bytes:
+        """Tick once, `seconds` (default: a period) after the last time; what the device has sent,
+        and what is sent to it.
+        """
+
+    def unplug(self) -> None: ...
+    def plug_in(self) -> None: ...
+    def set_enabled(self, enabled: bool) -> None: ...
+    def set_young_modulus(self, young_modulus: float) -> None:
+        """Any number, also none: to see what the tick makes of it."""
+
+    def set_body(self, body: Body, young_modulus: float) -> None:
+        """Exchange the body with the next tick; ValueError for a modulus without sense."""
+
+    def snapshot(self) -> Snapshot: ...
+    def counters(self) -> SteppedCounters: ...
+
 @final
 class BareTimer:
     """A native thread that only sleeps and wakes: what the machine can do at best."""

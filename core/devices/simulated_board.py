@@ -59,7 +59,7 @@ class SimulatedBoard:
             self._first_hello = now
             if self._script_begin is None:
                 self._script_begin = now
-        answer += self.firmware.watch(now)
+        answer += self.firmware.watch(now, self.plant.step_seconds)
         self._move(now, steps)
         answer += self.firmware.state(now, self._encoders(), self._buttons(now))
         self._to_host.put(answer, now)

@@ -73,10 +73,13 @@ class Firmware:
         """Read what the host has sent; returns the frames to answer with."""
         return b"".join(self._obey(message, now) for message in self.decoder.feed(data))
 
-    def watch(self, now: float) -> bytes:
-        """Go limp when the host has been silent for too long; returns the FAULT that tells it."""
+    def watch(self, now: float, look_seconds: float = 0.0) -> bytes:
+        """Go limp when the host has been silent for too long; returns the FAULT that tells it.
+
+        A board that looks again only in `look_seconds` lets go when that would be too late.
+        """
         looked_at, self._looked_at = self._looked_at, now
-        if self._heard_at is None or now - self._heard_at <= WATCHDOG_SECONDS:
+        if self._heard_at is None or now - self._heard_at + look_seconds <= WATCHDOG_SECONDS:
             return b""
         self.counters.limp_after = now - self._heard_at
         self.counters.limp_look = now - max(looked_at, self._heard_at)

@@ -44,7 +44,7 @@ impl DeviceFrame {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Fault {
-    /// A position, force or setting was not finite.
+    /// A position, force or setting is no number, or one that cannot be.
     Nan,
     /// The device moved faster than allowed.
     TooFast,

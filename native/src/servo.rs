@@ -131,6 +131,9 @@ impl<D: Device> Servo<D> {
         let mut found = self.inspect(now, &reading);
         found.switched_off = !settings.enabled;
         found.body_replaced = body_replaced;
+        if !(settings.young_modulus > 0.0 && settings.young_modulus.is_finite()) {
+            found.fault = found.fault.or(Some(Fault::Nan));
+        }
         if let Some(probe) = reading.probe() {
             shot.buttons = probe.buttons;
             self.follow(&body, probe, &settings, &found, dt);
@@ -155,11 +158,15 @@ impl<D: Device> Servo<D> {
     fn inspect(&mut self, now: f64, reading: &Reading) -> Findings {
         let gap = self.ticked_at.replace(now).map_or(0.0, |last| now - last);
         // While there is no force, a gap endangers nobody.
-        let was_pushing =
-            self.standing.state.may_push() || self.standing.fault == Some(Fault::Suspended);
+        let is_suspended = self.standing.fault == Some(Fault::Suspended);
+        let was_pushing = is_suspended || self.standing.state.may_push();
         let fault = match reading {
             _ if was_pushing && gap > SUSPENDED_SECONDS => Some(Fault::Suspended),
-            Reading::At(probe) | Reading::Passive(probe, _) => self.fault_of(probe),
+            Reading::At(probe) | Reading::Passive(probe, _) => match self.fault_of(probe) {
+                // What the line had stored has holes, which look like jumps.
+                Some(Fault::TooFast) if is_suspended => Some(Fault::Suspended),
+                fault => fault,
+            },
             Reading::Waiting(_) => None,
             Reading::Fault(fault) => Some(*fault),
         };

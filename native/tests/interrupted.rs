@@ -70,6 +70,26 @@ fn a_suspension_is_named_whatever_the_device_says_of_it() {
 }
 
 #[test]
+fn holes_in_what_the_line_had_stored_are_not_too_fast() {
+    let mut table = Table::pressing();
+    table.tick_after(1.0, Reading::At(probe(PRESSED)));
+    let hole = Reading::At(Probe {
+        speed: 30.0,
+        ..probe(PRESSED)
+    });
+    for _ in 0..10 {
+        let shot = table.tick(hole);
+        assert_eq!(shot.fault, Some(Fault::Suspended));
+        table.is_silent(&shot);
+    }
+    for _ in 0..20 {
+        assert_eq!(table.press().fault, Some(Fault::Suspended));
+    }
+    assert_eq!(table.ramps(), "after suspended");
+    assert_eq!(table.counted(Fault::TooFast), 0);
+}
+
+#[test]
 fn a_starved_thread_gives_no_force_between_its_gaps() {
     let mut table = Table::pressing();
     for _ in 0..20 {

@@ -7,6 +7,7 @@ use std::sync::{Arc, Mutex};
 
 use glam::{DMat3, DVec3};
 use palpate_servo::device::{DeviceFrame, Fault, Probe, Reading};
+use palpate_servo::proxy::Feel;
 use palpate_servo::safety::Limits;
 use palpate_servo::servo::{Options, Settings};
 use palpate_servo::snapshot::State;
@@ -16,12 +17,11 @@ use scripted::{ABOVE, DT, OPTIONS, PRESSED, Scripted, Table, probe, settings};
 
 #[test]
 fn numbers_of_the_probe_that_are_none_give_no_force() {
-    let nan = |position: DVec3| probe(position);
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         for axis in 0..3 {
             let mut position = PRESSED;
             position[axis] = bad;
-            let reading = Reading::At(nan(position));
+            let reading = Reading::At(probe(position));
             Table::pressing().silences(reading, State::Fault, Some(Fault::Nan));
         }
         let speed = Reading::At(Probe {
@@ -45,31 +45,45 @@ fn a_largest_force_of_the_device_that_is_none_gives_no_force() {
 
 #[test]
 fn settings_that_are_no_numbers_give_no_force() {
+    let moduli = [f64::NAN, f64::INFINITY, 0.0, -1.0].map(|young_modulus| Settings {
+        young_modulus,
+        ..settings()
+    });
+    let frames = [f64::NAN, f64::INFINITY].map(|bad| Settings {
+        frame: DeviceFrame {
+            rotation: DMat3::from_diagonal(DVec3::new(1.0, bad, 1.0)),
+            ..DeviceFrame::default()
+        },
+        ..settings()
+    });
+    for bad in moduli.into_iter().chain(frames) {
+        let mut table = Table::pressing();
+        table.settings.write(bad);
+        // The scripted device knows no frame: what a device would make of it.
+        let shot = table.tick(Reading::At(probe(bad.frame.to_body(PRESSED))));
+        assert_eq!((shot.state, shot.fault), (State::Fault, Some(Fault::Nan)));
+        table.is_silent(&shot);
+        table.settings.write(settings());
+        assert_eq!(table.ramps(), "after nan");
+    }
+}
+
+#[test]
+fn friction_that_is_no_number_gives_no_force_or_the_bodys_own() {
     for bad in [f64::NAN, f64::INFINITY] {
-        let turned = |rotation| Settings {
-            frame: DeviceFrame {
-                rotation,
-                ..DeviceFrame::default()
+        let mut table = Table::pressing();
+        table.settings.write(Settings {
+            feel: Feel {
+                static_friction: bad,
+                dynamic_friction: bad,
+                ..Feel::default()
             },
             ..settings()
-        };
-        let bad_settings = [
-            Settings {
-                young_modulus: bad,
-                ..settings()
-            },
-            turned(DMat3::from_diagonal(DVec3::new(1.0, bad, 1.0))),
-        ];
-        for bad in bad_settings {
-            let mut table = Table::pressing();
-            table.settings.write(bad);
-            // The scripted device knows no frame: what a device would make of it.
-            let position = bad.frame.to_body(PRESSED);
-            let shot = table.tick(Reading::At(probe(position)));
-            assert_eq!((shot.state, shot.fault), (State::Fault, Some(Fault::Nan)));
-            table.is_silent(&shot);
-            table.settings.write(settings());
-            assert_eq!(table.ramps(), "after nan");
+        });
+        for _ in 0..20 {
+            let shot = table.press();
+            assert!(shot.output_force.is_finite());
+            assert!(shot.output_force.length() <= 3.0);
         }
     }
 }

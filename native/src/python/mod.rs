@@ -9,6 +9,7 @@ mod haply;
 mod proxy;
 mod servo;
 mod snapshot;
+mod stepped;
 mod vectors;
 
 use pyo3::prelude::*;
@@ -26,6 +27,7 @@ fn palpate_servo(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<proxy::Proxy>()?;
     module.add_class::<servo::Servo>()?;
     module.add_class::<snapshot::Snapshot>()?;
+    module.add_class::<stepped::SteppedServo>()?;
     module.add_class::<counters::BareTimer>()?;
     module.add_class::<frames::Decoder>()?;
     module.add_function(wrap_pyfunction!(counters::bare_timer, module)?)?;

@@ -12,10 +12,11 @@ use super::body::Body;
 use super::counters::{link_counters, stage_counters, timing_counters};
 use super::haply::haply_setup;
 use super::snapshot::{Snapshot, structured, structured_pieces};
+use super::stepped::fault_counters;
 use super::vectors::{IDENTITY, Rows, Triple, check_rate, check_seconds, finite, matrix, positive};
 use crate::clock::Timing;
 use crate::coupling::Coupling;
-use crate::device::{Device, DeviceFrame, Fault};
+use crate::device::{Device, DeviceFrame};
 use crate::haply::device::HaplyDevice;
 use crate::link::LinkDevice;
 use crate::pointer::{Pointer, Target};
@@ -356,14 +357,10 @@ impl Servo {
             None => timing_counters(py, &Timing::default(), "not started")?,
         };
         let published = self.published();
-        let faults = PyDict::new(py);
-        for (fault, count) in Fault::ALL.iter().zip(published.faults) {
-            faults.set_item(fault.name(), count)?;
-        }
         let stages = running.as_deref().map(Running::stages);
         counters.set_item("stages_us", stage_counters(py, stages)?)?;
         counters.set_item("rate_hz", self.options.rate_hz)?;
-        counters.set_item("faults", faults)?;
+        counters.set_item("faults", fault_counters(py, &published)?)?;
         counters.set_item("link", link_counters(py, &published.link)?)?;
         counters.set_item("samples_lost", published.samples_lost)?;
         let proxy = PyDict::new(py);

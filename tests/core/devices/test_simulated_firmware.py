@@ -100,6 +100,13 @@ def test_twenty_milliseconds_of_silence_make_the_device_limp_and_it_says_so_once
     assert greeted.counters.limp_look == pytest.approx(0.0002)
 
 
+def test_a_board_that_looks_seldom_lets_go_before_the_twenty_milliseconds_are_over(greeted):
+    tell(greeted, force(0), 1.0)
+    assert greeted.watch(1.0189, 0.001) == b""
+    assert greeted.watch(1.0191, 0.001)
+    assert greeted.limp
+
+
 def test_a_limp_device_takes_up_again_at_any_sequence(greeted):
     tell(greeted, force(500), 1.0)
     greeted.watch(2.0)

@@ -1,0 +1,230 @@
+//! `SteppedServo`: the servo's own ticks over the link's own bytes, in a time that the caller makes.
+
+use std::io::{self, ErrorKind};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+use rtrb::RingBuffer;
+use triple_buffer::{Input, Output, triple_buffer};
+
+use super::body::Body;
+use super::counters::link_counters;
+use super::snapshot::Snapshot;
+use super::vectors::{check_rate, check_seconds, positive};
+use crate::coupling::Coupling;
+use crate::device::{DeviceFrame, Fault};
+use crate::exchange::{Hand, exchange};
+use crate::link::LinkDevice;
+use crate::port::{Opener, Wire};
+use crate::proxy::Feel;
+use crate::safety::Limits;
+use crate::servo::{Options, Servo, Settings};
+use crate::snapshot::Published;
+
+/// What is on the line in either direction.
+#[derive(Debug, Default)]
+struct Line {
+    to_host: Vec<u8>,
+    from_host: Vec<u8>,
+    is_unplugged: bool,
+}
+
+/// A line in memory.
+#[derive(Clone, Default)]
+struct InMemory(Arc<Mutex<Line>>);
+
+impl InMemory {
+    fn line(&self) -> MutexGuard<'_, Line> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Wire for InMemory {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let mut line = self.line();
+        if line.is_unplugged {
+            return Ok(0);
+        }
+        if line.to_host.is_empty() {
+            return Err(ErrorKind::WouldBlock.into());
+        }
+        let length = buffer.len().min(line.to_host.len());
+        buffer[..length].copy_from_slice(&line.to_host[..length]);
+        line.to_host.drain(..length);
+        Ok(length)
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.line().from_host.extend(bytes);
+        Ok(bytes.len())
+    }
+}
+
+impl Opener for InMemory {
+    type Wire = Self;
+
+    fn open(&mut self) -> io::Result<Self> {
+        if self.line().is_unplugged {
+            Err(ErrorKind::NotFound.into())
+        } else {
+            Ok(self.clone())
+        }
+    }
+}
+
+struct Stepped {
+    servo: Servo<LinkDevice<InMemory>>,
+    hand: Hand,
+    settings: Settings,
+    settings_in: Input<Settings>,
+    snapshots: Output<Published>,
+    period: f64,
+    now: f64,
+}
+
+#[pyclass(frozen, module = "palpate_servo")]
+pub struct SteppedServo {
+    wire: InMemory,
+    stepped: Mutex<Stepped>,
+}
+
+impl SteppedServo {
+    fn stepped(&self) -> MutexGuard<'_, Stepped> {
+        self.stepped.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn change(&self, edit: impl FnOnce(&mut Settings)) {
+        let mut stepped = self.stepped();
+        edit(&mut stepped.settings);
+        let settings = stepped.settings;
+        stepped.settings_in.write(settings);
+    }
+}
+
+#[pymethods]
+impl SteppedServo {
+    #[new]
+    #[pyo3(signature = (body, *, young_modulus, rate_hz=1000, max_force=3.0, max_slew=1000.0,
+        ramp_seconds=0.25, max_speed=2.0))]
+    fn new(
+        body: &Body,
+        young_modulus: f64,
+        rate_hz: u32,
+        max_force: f64,
+        max_slew: f64,
+        ramp_seconds: f64,
+        max_speed: f64,
+    ) -> PyResult<Self> {
+        check_rate(rate_hz)?;
+        check_seconds("ramp_seconds", ramp_seconds)?;
+        let options = Options {
+            rate_hz,
+            limits: Limits {
+                max_force: positive("max_force", max_force)?,
+                max_slew: positive("max_slew", max_slew)?,
+                ramp_seconds,
+            },
+            max_speed: positive("max_speed", max_speed)?,
+        };
+        let settings = Settings {
+            young_modulus: positive("young_modulus", young_modulus)?,
+            enabled: true,
+            frame: DeviceFrame::default(),
+            feel: Feel::default(),
+            coupling: Coupling::default(),
+        };
+        let wire = InMemory::default();
+        let (settings_in, settings_out) = triple_buffer(&settings);
+        let (snapshots_in, snapshots) = triple_buffer(&Published::before_the_start());
+        let (samples_in, _nobody_takes_them) = RingBuffer::new(1);
+        let (hand, holder) = exchange(body.inner.clone());
+        let mut servo = Servo::new(
+            body.inner.clone(),
+            LinkDevice::open(wire.clone())?,
+            options,
+            settings_out,
+            snapshots_in,
+            samples_in,
+        );
+        servo.bodies = holder;
+        Ok(Self {
+            wire,
+            stepped: Mutex::new(Stepped {
+                servo,
+                hand,
+                settings,
+                settings_in,
+                snapshots,
+                period: 1.0 / f64::from(rate_hz),
+                now: 0.0,
+            }),
+        })
+    }
+
+    #[pyo3(signature = (received=None, seconds=None))]
+    fn tick<'py>(
+        &self,
+        py: Python<'py>,
+        received: Option<&[u8]>,
+        seconds: Option<f64>,
+    ) -> Bound<'py, PyBytes> {
+        self.wire.line().to_host.extend(received.unwrap_or(&[]));
+        let mut stepped = self.stepped();
+        stepped.now += seconds.unwrap_or(stepped.period);
+        let now = stepped.now;
+        stepped.servo.tick(now);
+        let sent = std::mem::take(&mut self.wire.line().from_host);
+        PyBytes::new(py, &sent)
+    }
+
+    fn unplug(&self) {
+        *self.wire.line() = Line {
+            is_unplugged: true,
+            ..Line::default()
+        };
+    }
+
+    fn plug_in(&self) {
+        self.wire.line().is_unplugged = false;
+    }
+
+    fn set_enabled(&self, enabled: bool) {
+        self.change(|s| s.enabled = enabled);
+    }
+
+    fn set_young_modulus(&self, young_modulus: f64) {
+        self.change(|s| s.young_modulus = young_modulus);
+    }
+
+    fn set_body(&self, body: &Body, young_modulus: f64) -> PyResult<()> {
+        let young_modulus = positive("young_modulus", young_modulus)?;
+        self.stepped().hand.give(body.inner.clone());
+        self.change(|s| s.young_modulus = young_modulus);
+        self.stepped().hand.settle();
+        Ok(())
+    }
+
+    fn snapshot(&self) -> Snapshot {
+        Snapshot {
+            inner: self.stepped().snapshots.read().snapshot,
+        }
+    }
+
+    fn counters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let published = *self.stepped().snapshots.read();
+        let counters = PyDict::new(py);
+        counters.set_item("faults", fault_counters(py, &published)?)?;
+        counters.set_item("link", link_counters(py, &published.link)?)?;
+        Ok(counters)
+    }
+}
+
+/// Times each fault began.
+pub fn fault_counters<'py>(py: Python<'py>, published: &Published) -> PyResult<Bound<'py, PyDict>> {
+    let faults = PyDict::new(py);
+    for (fault, count) in Fault::ALL.iter().zip(published.faults) {
+        faults.set_item(fault.name(), count)?;
+    }
+    Ok(faults)
+}
