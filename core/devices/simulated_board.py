@@ -33,13 +33,12 @@ class SimulatedBoard:
         start = self._script.at(0.0)
         self.plant = Plant(options.impedance, 1.0 / options.rate_hz, start, options.brake)
         self._lowest, self._highest = start, start
-        self._to_device = BadWire(options.loss, options.noise, options.delay, 2 * options.seed)
-        self._to_host = BadWire(
-            options.loss,
-            options.noise,
-            options.delay,
-            2 * options.seed + 1,
-            options.latency_timer,
+        self._to_device, self._to_host = (
+            BadWire(options.loss, options.noise, options.delay, seed, latency_timer, options.jitter)
+            for seed, latency_timer in (
+                (2 * options.seed, 0.0),
+                (2 * options.seed + 1, options.latency_timer),
+            )
         )
         self.terminal = PseudoTerminal(Path(options.link) if options.link else None)
 
@@ -118,6 +117,10 @@ class SimulatedBoard:
             "position_min": self._lowest,
             "position_max": self._highest,
             "work_of_felt_force": plant.work,
+            "work_of_hand": plant.energy.hand,
+            "taken_by_viscous_friction": plant.energy.viscous,
+            "taken_by_coulomb_friction": plant.energy.coulomb,
+            "kinetic_energy": plant.kinetic,
             "frames_lost_on_purpose": self._to_device.lost + self._to_host.lost,
             "bits_flipped_on_purpose": self._to_device.flipped + self._to_host.flipped,
         }
@@ -136,7 +139,7 @@ class SimulatedBoard:
 
     def _move(self, now: float, steps: int) -> None:
         period = self.plant.step_seconds
-        force, braked = self.firmware.force, self.firmware.braked
+        force, braked = self._motors(self.firmware.force), self.firmware.braked
         for remaining in range(steps - 1, -1, -1):
             target = self._script.at(self._script_time(now) - remaining * period)
             self.plant.step(force, target, braked)
@@ -144,6 +147,13 @@ class SimulatedBoard:
         (x, y, z), (x0, y0, z0), (x1, y1, z1) = here, self._lowest, self._highest
         self._lowest = (min(x, x0), min(y, y0), min(z, z0))
         self._highest = (max(x, x1), max(y, y1), max(z, z1))
+
+    def _motors(self, force: Vector) -> Vector:
+        grain = self._options.force_step
+        if grain == 0.0:
+            return force
+        x, y, z = (round(component / grain) * grain for component in force)
+        return (x, y, z)
 
     def _encoders(self) -> tuple[int, int, int]:
         grain = self._options.resolution_um

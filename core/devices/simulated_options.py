@@ -40,7 +40,14 @@ class SimulatedOptions:
         default=1, metadata=_about("UM", "step of the encoders in micrometres")
     )
     mass: float = field(default=0.1, metadata=_about("KG", "moving mass"))
-    damping: float = field(default=0.5, metadata=_about("NS/M", "friction of the device"))
+    damping: float = field(default=0.5, metadata=_about("NS/M", "viscous friction"))
+    coulomb: float = field(
+        default=0.0, metadata=_about("N", "Coulomb friction of each axis; below it the axis sticks")
+    )
+    force_step: float = field(
+        default=0.0,
+        metadata=_about("N", "step of the motors' force, as of their current (0: none)"),
+    )
     brake: float = field(
         default=20.0, metadata=_about("NS/M", "damping added while the host asks for it")
     )
@@ -79,7 +86,10 @@ class SimulatedOptions:
         default=0.0,
         metadata=_about("S", "bytes to the host are held back so long, as FTDI's adapters do"),
     )
-    seed: int = field(default=1, metadata=_about("N", "of loss and noise"))
+    jitter: float = field(
+        default=0.0, metadata=_about("S", "at most, by chance on top of the delay, each way")
+    )
+    seed: int = field(default=1, metadata=_about("N", "of loss, noise and jitter"))
     unplug_at: float | None = field(
         default=None, metadata=_about("S", "when the plug is pulled (needs a link to return)")
     )
@@ -98,10 +108,13 @@ class SimulatedOptions:
         positive = ("rate_hz", "largest_force", "resolution_um", "mass")
         not_negative = (
             "damping",
+            "coulomb",
+            "force_step",
             "brake",
             "hand_stiffness",
             "hand_damping",
             "delay",
+            "jitter",
             "latency_timer",
             "unplug_for",
         )
@@ -127,7 +140,9 @@ class SimulatedOptions:
     @property
     def impedance(self) -> Impedance:
         """What moves, and who holds it."""
-        return Impedance(self.mass, self.damping, self.hand_stiffness, self.hand_damping)
+        return Impedance(
+            self.mass, self.damping, self.hand_stiffness, self.hand_damping, self.coulomb
+        )
 
     def hand_script(self) -> HandScript:
         """Raises PalpateError when the script's file is unreadable or its times make no sense."""

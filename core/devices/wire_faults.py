@@ -1,4 +1,4 @@
-"""What a bad cable does to a stream of frames: loss, flipped bits, delay."""
+"""What a bad cable does to a stream of frames: loss, flipped bits, delay, jitter."""
 
 from __future__ import annotations
 
@@ -10,18 +10,26 @@ from collections import deque
 class BadWire:
     """One direction of the link. Every frame that goes in comes out, unless it meets its fate.
 
-    loss: fraction of frames that vanish. noise: fraction of bits that flip. delay: seconds.
+    loss: fraction of frames that vanish. noise: fraction of bits that flip. delay: seconds. jitter:
+    at most so many seconds more, by chance for each frame; on a wire no frame overtakes another.
     latency_timer: what arrives is held back and handed over only at multiples of this, seconds, as
     FTDI's adapters do; 0 for at once.
     """
 
     def __init__(
-        self, loss: float, noise: float, delay: float, seed: int, latency_timer: float = 0.0
+        self,
+        loss: float,
+        noise: float,
+        delay: float,
+        seed: int,
+        latency_timer: float = 0.0,
+        jitter: float = 0.0,
     ) -> None:
         self.lost = 0
         self.flipped = 0
         self._loss = loss
         self._delay = delay
+        self._jitter = jitter
         self._latency_timer = latency_timer
         self._random = random.Random(seed)  # noqa: S311 - dice for a simulation, not secrets
         self._noise = noise
@@ -50,9 +58,11 @@ class BadWire:
 
     def _handed_over(self, now: float) -> float:
         arrives = now + self._delay
+        if self._jitter > 0.0:
+            arrives += self._jitter * self._random.random()
         if self._latency_timer > 0.0:
             arrives = math.ceil(arrives / self._latency_timer) * self._latency_timer
-        return arrives
+        return max(arrives, self._on_the_way[-1][0]) if self._on_the_way else arrives
 
     def _flip(self, whole: bytes) -> bytes:
         bits = 8 * len(whole)

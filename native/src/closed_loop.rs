@@ -80,7 +80,8 @@ pub struct Outcome {
     pub viscous: f64,
     /// Taken by Coulomb friction.
     pub coulomb: f64,
-    /// The most that the hand had got at any time beyond what device and hand had put in.
+    /// The most that the motor had given at any time beyond what friction had taken: what a hand
+    /// could have got out. Never more than 0 for a passive device that begins outside the body.
     pub extracted: f64,
     /// Made by the loop in the last quarter: work of the motor beyond that of the ideal spring.
     pub made_late: f64,
@@ -146,7 +147,9 @@ pub fn run(
                 held = on_the_way.pop_front().map_or(held, |(_, force)| force);
             }
             body.advance(held, step);
-            outcome.extracted = outcome.extracted.max(-body.hand - outcome.start);
+            outcome.extracted = outcome
+                .extracted
+                .max(body.motor - body.viscous - body.rubbed);
             if tick >= ticks / 2 {
                 let (low, high) = &mut swings[usize::from(tick >= late)];
                 (*low, *high) = (low.min(body.x), high.max(body.x));

@@ -57,7 +57,7 @@ pub const LAG_SECONDS: f64 = 2.0e-3;
 /// Its stiffness, N/m.
 const MOST_STIFFNESS: f64 = 800.0;
 /// Its damping over its stiffness, s.
-const LEAD_SECONDS: f64 = 4.0e-3;
+const LEAD_SECONDS: f64 = 5.0e-3;
 /// Smoothing of the velocity, s: steps of an encoder come as single jumps.
 const SMOOTHING_SECONDS: f64 = 1.0e-3;
 /// Added force over the spring's own, at most.

@@ -4,11 +4,13 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import expm
 
+from palpate.core.devices.coulomb import Slider
 from palpate.core.devices.plant import ZERO, Impedance, Plant, Transition, exponential
+from palpate.core.errors import PalpateError
 
 STEP = 1e-3
 
@@ -120,3 +122,102 @@ def test_a_hand_that_moves_evenly_is_followed_without_its_damper_holding_back():
     # The spring's target stands still within a step, which leaves a ripple in the velocity.
     assert plant.velocity[0] == pytest.approx(0.1, rel=1e-3)
     assert plant.position[0] == pytest.approx(plant.target[0], abs=1e-8)
+
+
+def test_a_free_mass_is_stopped_by_coulomb_friction_at_the_right_place_and_time():
+    """It slows down evenly: v^2 = 2 f x / m."""
+    free = Impedance(0.2, damping=0.0, hand_stiffness=0.0, hand_damping=0.0, coulomb=0.1)
+    plant = Plant(free, STEP, ZERO)
+    plant.velocity = (0.0305, 0.0, 0.0)
+    while plant.velocity[0] > 0.0:
+        before = plant.velocity[0]
+        plant.step(ZERO, ZERO)
+        assert plant.velocity[0] == pytest.approx(max(0.0, before - 0.5 * STEP), abs=1e-15)
+    assert plant.position[0] == pytest.approx(0.0305**2 * 0.2 / (2 * 0.1), rel=1e-12)
+    assert plant.energy.coulomb == pytest.approx(0.5 * 0.2 * 0.0305**2, rel=1e-12)
+
+
+def test_viscous_and_coulomb_friction_together_stop_it_where_theory_says():
+    """m v' = -b v - f: x = m v0 / b - m f / b^2 ln(1 + b v0 / f)."""
+    m, b, f, v0 = 0.1, 2.0, 0.05, 0.2
+    free = Impedance(m, damping=b, hand_stiffness=0.0, hand_damping=0.0, coulomb=f)
+    plant = Plant(free, STEP, ZERO)
+    plant.velocity = (0.0, -v0, 0.0)
+    for _ in range(300):
+        plant.step(ZERO, ZERO)
+    expected = m * v0 / b - m * f / b**2 * math.log(1 + b * v0 / f)
+    assert plant.velocity[1] == 0.0
+    assert plant.position[1] == pytest.approx(-expected, rel=1e-10)
+
+
+def test_a_spring_with_coulomb_friction_loses_the_same_at_every_swing_and_sticks():
+    """Half a swing takes 2 f / k off the amplitude; within f / k of the middle it sticks."""
+    k, f, start = 500.0, 0.3, 0.01
+    hand = Impedance(0.1, damping=0.0, hand_stiffness=k, hand_damping=0.0, coulomb=f)
+    plant = Plant(hand, STEP, (start, 0.0, 0.0))
+    plant.target = ZERO
+    turns, last = [], -1.0
+    for _ in range(3000):
+        before = plant.velocity[0]
+        plant.step(ZERO, ZERO)
+        if before * plant.velocity[0] < 0.0 or (before != 0.0 and plant.velocity[0] == 0.0):
+            turns.append(plant.position[0])
+        last = plant.position[0]
+    swings = [start - n * 2 * f / k for n in range(1, len(turns) + 1)]
+    assert len(turns) == 8
+    assert np.abs(turns[:-1]) == pytest.approx(swings[:-1], abs=2e-5)  # seen at whole steps
+    assert abs(last) == pytest.approx(swings[-1], abs=1e-12)
+    assert abs(last) <= f / k
+    assert plant.velocity == ZERO
+
+
+@pytest.mark.parametrize("step", [STEP, 7 * STEP])
+def test_it_sticks_until_the_force_exceeds_the_friction_and_then_slides(step):
+    grip = Impedance(0.1, 0.5, hand_stiffness=0.0, hand_damping=0.0, coulomb=0.2)
+    plant = Plant(grip, step, ZERO)
+    for _ in range(50):
+        plant.step((0.2, -0.19999, 0.0), ZERO)
+    assert plant.position == ZERO
+    for _ in range(5000):
+        plant.step((0.25, 0.0, 0.0), ZERO)
+    assert plant.velocity[0] == pytest.approx((0.25 - 0.2) / 0.5, rel=1e-9)
+
+
+@settings(max_examples=30, deadline=None)
+@given(
+    st.lists(st.tuples(*[st.floats(-3.0, 3.0)] * 3), min_size=1, max_size=30),
+    st.lists(st.tuples(*[st.floats(-0.01, 0.01)] * 3), min_size=30, max_size=30),
+    st.floats(0.03, 0.5),
+    st.floats(0.0, 1000.0),
+    st.sampled_from([0.0, 0.05, 0.5]),
+    st.booleans(),
+)
+def test_the_energy_books_balance(forces, targets, mass, stiffness, coulomb, braked):
+    """Work of motor and hand is what moves and what friction took."""
+    grip = Impedance(mass, 0.5, stiffness, 0.005 * stiffness, coulomb)
+    plant = Plant(grip, STEP, ZERO, brake=5.0)
+    for force, target in zip(forces, targets, strict=False):
+        plant.step(force, target, braked)
+    books = plant.energy
+    turned_over = abs(books.motor) + abs(books.hand) + books.viscous + books.coulomb
+    balance = books.motor + books.hand - plant.kinetic - books.viscous - books.coulomb
+    assert abs(balance) <= 1e-7 * turned_over + 1e-15
+    assert (books.coulomb > 0.0) <= (coulomb > 0.0)
+
+
+def test_with_next_to_no_coulomb_friction_the_motion_is_that_without():
+    """Series and matrix exponential are two ways to the same motion."""
+    places = []
+    for coulomb in (0.0, 1e-13):
+        plant = Plant(Impedance(coulomb=coulomb), STEP, (0.01, -0.003, 0.0), brake=20.0)
+        for tick in range(200):
+            plant.step((0.5, 0.1 * (tick % 3), -1.0), (0.0, 1e-5 * tick, 0.02), tick % 2 == 0)
+        places.append((*plant.position, *plant.velocity))
+    assert places[0] == pytest.approx(places[1], abs=1e-10)
+
+
+def test_a_mass_too_small_for_its_step_is_refused_with_coulomb_friction():
+    hand = Impedance(mass=1e-9, hand_stiffness=1e4, coulomb=0.1)
+    assert not Slider(1e-9, 1e4, 10.0, 0.1).can_step(STEP)
+    with pytest.raises(PalpateError, match="mass is too small"):
+        Plant(hand, STEP, ZERO)

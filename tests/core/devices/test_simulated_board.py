@@ -123,6 +123,22 @@ def test_a_constant_force_moves_the_hand_by_force_over_stiffness(bench):
     assert report["work_of_felt_force"] == pytest.approx((1.0 + 4.0) / 400.0, rel=1e-6)
 
 
+def test_forces_come_in_steps_of_the_motor_and_coulomb_friction_holds_below_its_own(bench):
+    device = bench(rest=(0.0, 0.0, 0.0), force_step=0.25, coulomb=0.3, hand_stiffness=500.0)
+    device.greet()
+    for sequence in range(500):
+        device.say(link.Force(sequence, (374, 376, -120)))
+        device.pass_time(STEP)
+    report = device.board.report()
+    # 0.25 N is less than the friction; 0.5 N moves it to where friction and spring hold it.
+    assert report["position"][0] == 0.0
+    assert 0.2 / 500.0 - 1e-9 <= report["position"][1] <= 0.8 / 500.0
+    assert report["position"][2] == 0.0
+    assert report["velocity"] == (0.0, 0.0, 0.0)
+    taken = report["taken_by_viscous_friction"] + report["taken_by_coulomb_friction"]
+    assert report["work_of_felt_force"] + report["work_of_hand"] == pytest.approx(taken, rel=1e-9)
+
+
 def test_a_silent_host_makes_it_limp_and_the_hand_takes_over(bench):
     device = bench(rest=(0.0, 0.0, 0.0))
     device.greet()
@@ -227,6 +243,9 @@ def test_without_pseudo_terminals_the_remedy_is_told(monkeypatch):
         {"loss": 1.5},
         {"noise": -0.1},
         {"delay": -1.0},
+        {"coulomb": -0.1},
+        {"force_step": -1.0},
+        {"jitter": float("nan")},
         {"hand_stiffness": float("nan")},
         {"unplug_at": 1.0, "unplug_for": 1.0},
     ],

@@ -60,3 +60,22 @@ def test_delay_holds_each_frame_for_its_time_and_keeps_the_order():
     assert wire.take(0.009) == b""
     assert wire.take(0.0101) == first
     assert wire.take(0.016) == second
+
+
+def test_jitter_delays_each_frame_by_chance_and_keeps_the_order():
+    wire = BadWire(0.0, 0.0, 0.010, seed=1, jitter=0.004)
+    sent = [link.encode(link.Force(number, (0, 0, 0))) for number in range(400)]
+    arrived, times = b"", []
+    for millisecond in range(430):
+        if millisecond < len(sent):
+            wire.put(sent[millisecond], millisecond * 1e-3)
+        for tenth in range(10):
+            now = (millisecond + 0.1 * tenth) * 1e-3
+            heard = wire.take(now)
+            times += [now] * heard.count(b"\0")
+            arrived += heard
+    assert arrived == b"".join(sent)
+    delays = [time - number * 1e-3 for number, time in enumerate(times)]
+    assert 0.0099 < min(delays) < 0.0103
+    assert 0.0137 < max(delays) < 0.0141
+    assert len({round(delay, 5) for delay in delays}) > 20
