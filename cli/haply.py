@@ -66,7 +66,7 @@ def connect_haply(
             "'palpate devices'"
         ) from error
     deadline = time.monotonic() + ANSWER_SECONDS
-    while servo.snapshot().state == "waiting" and not stopped:
+    while servo.running and servo.snapshot().state in {"stopped", "waiting"} and not stopped:
         if time.monotonic() > deadline:
             raise PortError(
                 port,
