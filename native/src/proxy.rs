@@ -36,11 +36,18 @@ const ON_SURFACE: f64 = 1e-13;
 /// no step of the walk is too short to be told from rounding. It moves along the surface only.
 const BORDER: f64 = 1e-12;
 
+/// A distance to the surface is worth its query when it spares the sweeps of so many ticks.
+const WORTH_LOOKING: f64 = 4.0;
+/// Flights by sweeps alone between two queries.
+const BLIND_FLIGHTS: u8 = 8;
+
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Place {
-    /// In free space; the surface is farther than `clearance` from the last query point.
+    /// In free space; the surface is farther than `clearance` from the last query point, and for
+    /// `blind` more flights sweeps alone may decide.
     Free {
         clearance: f64,
+        blind: u8,
     },
     /// Set down inside the body: feels nothing until it was outside once.
     Buried {
@@ -91,7 +98,10 @@ impl Proxy {
             alpha: [1.0, 0.0, 0.0],
         };
         let mut proxy = Self {
-            place: Place::Free { clearance: 0.0 },
+            place: Place::Free {
+                clearance: 0.0,
+                blind: 0,
+            },
             position,
             queried: position,
             hold,
@@ -117,6 +127,7 @@ impl Proxy {
         } else {
             Place::Free {
                 clearance: distance,
+                blind: 0,
             }
         };
     }
@@ -191,12 +202,12 @@ impl Proxy {
         self.steps = 0;
         for _ in 0..MAX_ROUNDS {
             match self.place {
-                Place::Free { clearance } => {
+                Place::Free { clearance, blind } => {
                     if self.is_clear(device, clearance) {
                         self.position = device;
                         return;
                     }
-                    if self.fly(body, device, &Feature::NONE) {
+                    if self.fly(body, device, &Feature::NONE, blind) {
                         return;
                     }
                 }
@@ -210,7 +221,7 @@ impl Proxy {
                 _ => match self.walk(body, device) {
                     Walk::Rested => return,
                     Walk::Released(feature) => {
-                        if self.fly(body, device, &feature) {
+                        if self.fly(body, device, &feature, 0) {
                             return;
                         }
                     }
@@ -238,7 +249,10 @@ impl Proxy {
     }
 
     /// Moves through free space to the device; false when it landed on the surface.
-    fn fly(&mut self, body: &Body, device: DVec3, left: &Feature) -> bool {
+    ///
+    /// From a place that is outside for certain the sweep's signs are proof enough, so near the
+    /// surface, where the distance to it spares no sweeps, it is asked for now and then only.
+    fn fly(&mut self, body: &Body, device: DVec3, left: &Feature, blind: u8) -> bool {
         let start = self.position;
         let Sweep { entering, leaving } = body.tree().sweep(body, start, device, left);
         let leaves_first = leaving.filter(|l| entering.is_none_or(|e| l.fraction < e.fraction));
@@ -263,6 +277,14 @@ impl Proxy {
             self.enter(body);
             return false;
         }
+        if blind > 0 && leaves_first.is_none() {
+            self.position = device;
+            self.place = Place::Free {
+                clearance: 0.0,
+                blind: blind - 1,
+            };
+            return true;
+        }
         let (clearance, inside) = self.look(body, device);
         if inside && clearance > ON_SURFACE * body.size() {
             self.rescues += 1;
@@ -272,7 +294,16 @@ impl Proxy {
         self.position = device;
         // A device that is on the surface within rounding is free; the next sweep starts there.
         let clearance = if inside { 0.0 } else { clearance };
-        self.place = Place::Free { clearance };
+        let is_certain = clearance > ROUNDING * body.size();
+        let spares_sweeps = clearance > WORTH_LOOKING * start.distance(device);
+        self.place = Place::Free {
+            clearance,
+            blind: if is_certain && !spares_sweeps {
+                BLIND_FLIGHTS
+            } else {
+                0
+            },
+        };
         true
     }
 

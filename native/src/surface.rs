@@ -47,6 +47,8 @@ pub struct Face {
     pub across: [HalfEdge; 3],
     /// The fan each corner belongs to.
     pub fans: [u32; 3],
+    /// How far rounding may turn `normal`, rad, doubled; large for slivers.
+    slack: f64,
 }
 
 impl Face {
@@ -63,6 +65,15 @@ impl Face {
     #[inline]
     pub fn at(&self, alpha: [f64; 3]) -> DVec3 {
         self.corners[0] * alpha[0] + self.corners[1] * alpha[1] + self.corners[2] * alpha[2]
+    }
+
+    /// Whether rounding cannot hide that both points are on one side of the plane.
+    #[inline]
+    pub(crate) fn is_clearly_beside(&self, p: DVec3, q: DVec3) -> bool {
+        let (u, v) = (p - self.corners[0], q - self.corners[0]);
+        let (a, b) = (self.normal.dot(u), self.normal.dot(v));
+        let margin = self.slack * (u.abs().element_sum() + v.abs().element_sum());
+        (a > margin && b > margin) || (a < -margin && b < -margin)
     }
 
     /// Positive outside the plane, negative inside, zero exactly on it: the sign is exact.
@@ -388,6 +399,10 @@ fn measure_faces(nodes: &[DVec3], triangles: &[[u32; 3]]) -> Result<Vec<Face>, B
             let normal = area_vector
                 .try_normalize()
                 .ok_or_else(|| BodyError(format!("triangle {t} has no area")))?;
+            let longest = [0, 1, 2]
+                .map(|k: usize| corners[k].distance_squared(corners[(k + 1) % 3]))
+                .into_iter()
+                .fold(0.0, f64::max);
             let inward = [0, 1, 2]
                 .map(|k: usize| normal.cross((corners[(k + 1) % 3] - corners[k]).normalize()));
             Ok(Face {
@@ -397,6 +412,8 @@ fn measure_faces(nodes: &[DVec3], triangles: &[[u32; 3]]) -> Result<Vec<Face>, B
                 inward,
                 across: [unset; 3],
                 fans: [u32::MAX; 3],
+                // Differences are exact to a rounding, their products to a few (Higham 2002).
+                slack: 16.0 * f64::EPSILON * (1.0 + longest / area_vector.length()),
             })
         })
         .collect()
@@ -419,20 +436,21 @@ fn check_volume(faces: &[Face]) -> Result<(), BodyError> {
     }
 }
 
-fn edges_by_nodes(triangles: &[[u32; 3]]) -> HashMap<(u32, u32), Vec<HalfEdge>> {
-    let mut edges: HashMap<(u32, u32), Vec<HalfEdge>> = HashMap::new();
-    for (t, triangle) in triangles.iter().enumerate() {
-        for k in 0..3_u8 {
-            let (a, b) = edge_nodes(triangle, k);
-            edges
-                .entry((a.min(b), a.max(b)))
-                .or_default()
-                .push(HalfEdge {
+/// All half-edges with the numbers of their nodes, the lower one first; those of one edge together.
+fn edges_by_nodes(triangles: &[[u32; 3]]) -> Vec<((u32, u32), HalfEdge)> {
+    let mut edges: Vec<((u32, u32), HalfEdge)> = (triangles.iter().enumerate())
+        .flat_map(|(t, triangle)| {
+            [0, 1, 2].map(|k: u8| {
+                let (a, b) = edge_nodes(triangle, k);
+                let half_edge = HalfEdge {
                     triangle: t as u32,
                     edge: k,
-                });
-        }
-    }
+                };
+                ((a.min(b), a.max(b)), half_edge)
+            })
+        })
+        .collect();
+    edges.sort_unstable_by_key(|&(nodes, h)| (nodes, h.triangle, h.edge));
     edges
 }
 
@@ -448,19 +466,24 @@ fn edge_nodes(triangle: &[u32; 3], edge: u8) -> (u32, u32) {
 fn join_edges(
     triangles: &[[u32; 3]],
     faces: &mut [Face],
-    edges: &HashMap<(u32, u32), Vec<HalfEdge>>,
+    edges: &[((u32, u32), HalfEdge)],
 ) -> Result<Vec<[DVec3; 3]>, BodyError> {
     let mut normals = vec![[DVec3::ZERO; 3]; faces.len()];
-    for (&(low, high), half_edges) in edges {
+    for edge in edges.chunk_by(|a, b| a.0 == b.0) {
+        let (low, high) = edge[0].0;
+        let half_edges = edge.iter().map(|(_, h)| h);
         let forward = |h: &HalfEdge| edge_nodes(&triangles[h.triangle as usize], h.edge).0 == low;
-        let mut opposite: Vec<HalfEdge> =
-            half_edges.iter().filter(|h| !forward(h)).copied().collect();
-        if low == high || opposite.len() * 2 != half_edges.len() {
+        let mut opposite: Vec<HalfEdge> = half_edges
+            .clone()
+            .filter(|h| !forward(h))
+            .copied()
+            .collect();
+        if low == high || opposite.len() * 2 != edge.len() {
             return Err(BodyError(format!(
                 "the surface is not closed or not oriented at the edge between nodes {low} and {high}"
             )));
         }
-        for half_edge in half_edges.iter().filter(|h| forward(h)) {
+        for half_edge in half_edges.clone().filter(|h| forward(h)) {
             let face = &faces[half_edge.triangle as usize];
             let (x, y) = (face.inward[half_edge.edge as usize], face.normal);
             let turn = |h: &HalfEdge| {
@@ -480,7 +503,7 @@ fn join_edges(
             faces[partner.triangle as usize].across[partner.edge as usize] = *half_edge;
         }
         let sum = half_edges
-            .iter()
+            .clone()
             .map(|h| faces[h.triangle as usize].normal)
             .sum();
         for h in half_edges {

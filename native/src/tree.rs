@@ -219,6 +219,9 @@ impl Node {
 impl Sweep {
     #[inline]
     fn add(&mut self, face: &Face, triangle: u32, start: DVec3, end: DVec3) {
+        if face.is_clearly_beside(start, end) {
+            return;
+        }
         let from = face.side(start);
         let to = face.side(end);
         let enters = from >= 0.0 && to < 0.0;
