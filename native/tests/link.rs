@@ -170,6 +170,20 @@ fn gaps_duplicates_and_old_states_are_counted_across_the_wrap() {
 }
 
 #[test]
+fn half_the_sequences_ahead_is_late() {
+    let (bench, mut device) = greeted();
+    read(&mut device, 0.001);
+    let first = 65_534_u16;
+    bench.state(first.wrapping_add(0x8000), 9000, 0, 1);
+    assert_eq!(position(read(&mut device, 0.002)), 1e-3);
+    assert_eq!(device.report().out_of_order, 1);
+    bench.state(first.wrapping_add(0x7FFF), 3000, 0, 1);
+    assert_eq!(position(read(&mut device, 0.003)), 3e-3);
+    let report = device.report();
+    assert_eq!((report.lost, report.out_of_order), (0x7FFE, 1));
+}
+
+#[test]
 fn silence_is_stale_and_the_return_takes_any_sequence() {
     let (bench, mut device) = greeted();
     read(&mut device, 0.001);

@@ -179,3 +179,15 @@ def test_worked_examples_are_right_to_the_byte(checker, payload, crc, frame, pro
     assert link.frame(payload) == palpate_servo.encode_frame(payload) == frame
     assert checker.ask(f"frame {payload.hex()}") == frame.hex()
     assert read_stream(checker, frame) == ([payload.hex()], 0, 0)
+
+
+def test_the_hit_between_two_frames_costs_both_and_not_the_next(checker):
+    section = PROSE.split("### A hit between two frames costs both\n")[1]
+    hit = bytes.fromhex(next(line for line in section.splitlines() if line.startswith("    ")))
+    stream = hit + link.encode(link.Force(514, (0, -500, 1000)))
+    expected = link.pack(link.Force(514, (0, -500, 1000)))
+    python, native = link.Decoder(), palpate_servo.Decoder()
+    assert python.feed_payloads(stream) == native.feed(stream) == [expected]
+    assert (python.errors.crc_errors, python.errors.malformed) == (0, 1)
+    assert (native.crc_errors, native.cobs_errors, native.oversize) == (0, 1, 0)
+    assert read_stream(checker, stream) == ([expected.hex()], 0, 1)

@@ -135,6 +135,15 @@ def test_repeated_and_late_forces_are_counted_and_do_not_keep_it_going(greeted):
     assert greeted.limp
 
 
+def test_half_the_sequences_ahead_is_late_and_one_less_is_not(greeted):
+    tell(greeted, force(65_000), 1.0)
+    tell(greeted, force((65_000 + 0x8000) % 2**16, 900), 1.0)
+    assert greeted.counters.out_of_order == 1
+    tell(greeted, force((65_000 + 0x7FFF) % 2**16, 700), 1.0)
+    assert greeted.force == (0.0, 0.0, 0.7)
+    assert (greeted.counters.lost, greeted.counters.out_of_order) == (0x7FFE, 1)
+
+
 def test_gaps_are_counted_also_where_the_sequence_wraps(greeted):
     for sequence in (65533, 65534, 1, 2, 5):
         tell(greeted, force(sequence), 1.0)
