@@ -63,7 +63,6 @@ WORDS = {
     "Held back: the force rises slowly": "Zurückgehalten: die Kraft steigt langsam",
     "Held back: the largest force is reached": "Zurückgehalten: die größte Kraft ist erreicht",
     "Held back: the force changes too fast": "Zurückgehalten: die Kraft ändert sich zu schnell",
-    "Held back: contact is kept stable": "Zurückgehalten: die Berührung bleibt stabil",
     # Faults
     "Waiting for the device: check its port, cable and power": (
         "Warte auf das Gerät: Anschluss, Kabel und Strom prüfen"
@@ -154,6 +153,63 @@ WORDS = {
     "Out of Order": "Außer der Reihe",
     "Not Sent": "Nicht gesendet",
     "Opened Again": "Neu geöffnet",
+    "Stable Contact": "Stabile Berührung",
+    "Let the motors feel no contact that is too stiff for them and your hand to hold without "
+    "shaking. The shape stays as it is": (
+        "Die Motoren keine Berührung fühlen lassen, die für sie und deine Hand zu steif ist, um "
+        "ruhig zu bleiben. Die Form bleibt, wie sie ist"
+    ),
+    "Own Values": "Eigene Werte",
+    "Choose yourself what keeps the contact stable, for a device that you know": (
+        "Selbst wählen, was die Berührung stabil hält, für ein bekanntes Gerät"
+    ),
+    "Largest Stiffness": "Größte Steifigkeit",
+    "The stiffest contact that the motors feel, in newtons per metre": (
+        "Die steifste Berührung, die die Motoren fühlen, in Newton je Meter"
+    ),
+    "Damping": "Dämpfung",
+    "What brakes the device in a contact of that stiffness, in newton seconds per metre; "
+    "softer contacts get their share": (
+        "Was das Gerät in einer so steifen Berührung bremst, in Newtonsekunden je Meter; "
+        "weichere bekommen ihren Anteil"
+    ),
+    "Passivity Control": "Passivitätsregelung",
+    "Watch the energy that the motors give, and brake away what no soft body could have stored": (
+        "Die Energie der Motoren beobachten und wegbremsen, was kein weicher Körper gespeichert "
+        "haben kann"
+    ),
+    # Devices
+    "Haply 2DIY": "Haply 2DIY",
+    "A Haply 2DIY on its serial port; it moves in a plane": (
+        "Ein Haply 2DIY an seiner Schnittstelle; er bewegt sich in einer Ebene"
+    ),
+    "Kind": "Art",
+    "Which device is simulated": "Welches Gerät simuliert wird",
+    "Three Axes": "Drei Achsen",
+    "A device that speaks Palpate's serial link": (
+        "Ein Gerät, das Palpates serielles Protokoll spricht"
+    ),
+    "A Haply 2DIY with its board; it moves in a plane": (
+        "Ein Haply 2DIY mit seiner Platine; er bewegt sich in einer Ebene"
+    ),
+    "Model": "Modell",
+    "Which of the 2DIYs it is": "Welcher der 2DIYs es ist",
+    "Motors side by side, the newest boards": "Motoren nebeneinander, neueste Platinen",
+    "Motors side by side, earlier boards": "Motoren nebeneinander, frühere Platinen",
+    "Motors on one axis": "Motoren auf einer Achse",
+    "Dev Kit": "Entwicklersatz",
+    "The small early kit": "Der kleine frühe Bausatz",
+    "Handle at Rest": "Griff in Ruhelage",
+    "The handle lies in its rest pose now: let the board count its angles from there anew, "
+    "also if it was in use before": (
+        "Der Griff liegt jetzt in seiner Ruhelage: die Platine von dort neu zählen lassen, auch "
+        "wenn sie schon in Gebrauch war"
+    ),
+    "Before Press, put the handle in its rest pose and leave it there": (
+        "Vor dem Drücken den Griff in die Ruhelage bringen und dort lassen"
+    ),
+    "Show Workspace": "Arbeitsraum zeigen",
+    "Draw in the view where the device reaches": "In der Ansicht zeichnen, wohin das Gerät reicht",
     # Recording
     "Recording": "Aufzeichnung",
     "Record": "Aufzeichnen",

@@ -59,7 +59,6 @@ WORDS = {
     "Held back: the force rises slowly": "抑制中: 力がゆっくり強くなります",
     "Held back: the largest force is reached": "抑制中: 最大の力に達しました",
     "Held back: the force changes too fast": "抑制中: 力の変化が速すぎます",
-    "Held back: contact is kept stable": "抑制中: 接触を安定に保っています",
     # Faults
     "Waiting for the device: check its port, cable and power": (
         "デバイスの応答を待っています: ポート、ケーブル、電源を確認してください"
@@ -148,6 +147,55 @@ WORDS = {
     "Out of Order": "順序違い",
     "Not Sent": "未送信",
     "Opened Again": "再接続",
+    "Stable Contact": "安定した接触",
+    "Let the motors feel no contact that is too stiff for them and your hand to hold without "
+    "shaking. The shape stays as it is": (
+        "モーターと手が震えずに保てないほど硬い接触を、モーターに伝えません。形は変わりません"
+    ),
+    "Own Values": "値を指定",
+    "Choose yourself what keeps the contact stable, for a device that you know": (
+        "接触を安定させる値を自分で決めます (よく知るデバイス向け)"
+    ),
+    "Largest Stiffness": "最大の剛性",
+    "The stiffest contact that the motors feel, in newtons per metre": (
+        "モーターが感じる最も硬い接触 (N/m)"
+    ),
+    "Damping": "減衰",
+    "What brakes the device in a contact of that stiffness, in newton seconds per metre; "
+    "softer contacts get their share": (
+        "その硬さの接触でデバイスにかかる制動 (N s/m)。柔らかい接触では比例して弱くなります"
+    ),
+    "Passivity Control": "受動性制御",
+    "Watch the energy that the motors give, and brake away what no soft body could have stored": (
+        "モーターが出すエネルギーを監視し、柔らかい物体が蓄えられない分を制動で取り除きます"
+    ),
+    # Devices
+    "Haply 2DIY": "Haply 2DIY",
+    "A Haply 2DIY on its serial port; it moves in a plane": (
+        "シリアルポートの Haply 2DIY。平面内を動きます"
+    ),
+    "Kind": "種類",
+    "Which device is simulated": "シミュレートするデバイス",
+    "Three Axes": "3 軸",
+    "A device that speaks Palpate's serial link": "Palpate のシリアル通信を話すデバイス",
+    "A Haply 2DIY with its board; it moves in a plane": "基板付きの Haply 2DIY。平面内を動きます",
+    "Model": "モデル",
+    "Which of the 2DIYs it is": "2DIY のどれか",
+    "Motors side by side, the newest boards": "モーターが並んだ最新の基板",
+    "Motors side by side, earlier boards": "モーターが並んだ以前の基板",
+    "Motors on one axis": "モーターが同軸",
+    "Dev Kit": "開発キット",
+    "The small early kit": "初期の小型キット",
+    "Handle at Rest": "ハンドルは休止位置",
+    "The handle lies in its rest pose now: let the board count its angles from there anew, "
+    "also if it was in use before": (
+        "ハンドルは今、休止位置にあります。使用済みの基板でも、そこから角度を数え直します"
+    ),
+    "Before Press, put the handle in its rest pose and leave it there": (
+        "押す前に、ハンドルを休止位置に置いたままにしてください"
+    ),
+    "Show Workspace": "可動範囲を表示",
+    "Draw in the view where the device reaches": "デバイスの届く範囲をビューに描きます",
     # Recording
     "Recording": "記録",
     "Record": "記録開始",

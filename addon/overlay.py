@@ -17,7 +17,7 @@ from ..operators import press_session
 from ..operators.package_preferences import preferences
 from ..operators.press_session import PressSession
 from ..operators.press_state import Phase
-from . import hud
+from . import hud, workspace
 from .overlay_shapes import CONE, SPHERE, Lit, lit
 from .reading import Reading, reading
 
@@ -29,6 +29,7 @@ SEEN_THROUGH = 0.5
 # The arrow has half its full length at this force: small ones show, large ones fit the screen.
 HALF_LENGTH_FORCE = 0.3
 CONTACT_SIZE, LINE_PIXELS = 0.6, 2.5
+WORKSPACE_COLOR, WORKSPACE_PIXELS = (0.75, 0.85, 1.0, 0.55), 1.5
 HEAD_LENGTH, HEAD_WIDTH, SHAFT_PIXELS = 20.0, 7.0, 4.0
 
 
@@ -36,13 +37,21 @@ def draw_in_view() -> None:
     """Draw in world coordinates, after the scene."""
     session = press_session.current()
     region, region_3d = bpy.context.region, bpy.context.region_data
-    if session is None or region_3d is None:
+    if region_3d is None:
+        return
+    scale = bpy.context.preferences.system.ui_scale
+    reach: list[Line] = [
+        (start, end, WORKSPACE_COLOR, WORKSPACE_PIXELS * scale)
+        for start, end in workspace.outline(bpy.context, session)
+    ]
+    if reach:
+        _draw([], reach, "LESS_EQUAL", 1.0)
+    if session is None:
         return
     figures = reading(session)
     if session.snapshot is None or not _worth_drawing(session, figures):
         return
     chosen = preferences()
-    scale = bpy.context.preferences.system.ui_scale
     parts = []
     pixel = _world_per_pixel(region, region_3d, figures.probe) * scale
     toward = np.array(region_3d.view_matrix)[:3, :3]

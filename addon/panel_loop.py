@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import bpy
 
+from ..core.devices import latency_timer
 from ..operators import press_session
 from ..operators.quantities import microseconds
 from ..operators.servo_words import FAULT_NAMES
@@ -31,7 +32,9 @@ class PALPATE_PT_loop(PalpatePanel, bpy.types.Panel):
         row = layout.row()
         row.enabled = session is None
         row.prop(context.scene.palpate, "rate")
-        counters = session.figures.counters if session is not None else None
+        _draw_coupling(layout, context.scene)
+        loop = session.loop if session is not None else None
+        counters = loop.figures.counters if loop is not None else None
         if counters is None:
             say(layout, context, "While you press, its figures appear here", "INFO")
             return
@@ -41,6 +44,30 @@ class PALPATE_PT_loop(PalpatePanel, bpy.types.Panel):
         link = counters["link"]
         if link["hellos"]:
             _draw_link(layout, link)
+
+
+def _draw_coupling(layout: bpy.types.UILayout, scene: bpy.types.Scene) -> None:
+    """What keeps the contact of a device with motors stable."""
+    chosen = scene.palpate
+    if chosen.source == "POINTER" or not chosen.stable_contact:
+        return
+    column = layout.column(align=True)
+    column.prop(chosen, "own_coupling")
+    if chosen.own_coupling:
+        column.prop(chosen, "coupling_stiffness")
+        column.prop(chosen, "coupling_damping")
+        column.prop(chosen, "passivity_control")
+
+
+def draw_adapter_warning(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Whether the USB adapter of the device that presses holds bytes back, and what helps."""
+    session = press_session.current()
+    loop = session.loop if session is not None else None
+    if loop is None or loop.figures.counters is None:
+        return
+    warning = latency_timer.explain(loop.figures.counters["link"], loop.port)
+    if warning:
+        say(layout, context, warning, "ERROR")
 
 
 def _draw_timing(

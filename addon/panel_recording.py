@@ -28,9 +28,9 @@ class PALPATE_PT_recording(PalpatePanel, bpy.types.Panel):
 def _draw_now(
     layout: bpy.types.UILayout, context: bpy.types.Context, session: PressSession
 ) -> None:
-    recorder = session.recorder
-    if recorder is None:
+    if session.loop is None:
         return
+    recorder = session.loop.recorder
     row = layout.row()
     row.scale_y = 1.3
     row.alert = recorder.going_on

@@ -3,6 +3,7 @@
 import bpy
 
 from ..operators import bake_session, press_session, soft_object
+from ..operators.device_source import is_planar
 from . import panel_cost, panel_loop, panel_recording, panel_state
 from .panel_base import PalpatePanel, named_properties
 from .sentence import say
@@ -111,14 +112,28 @@ class PALPATE_PT_press(PalpatePanel, bpy.types.Panel):
         row = layout.row()
         row.enabled = idle
         row.prop(chosen, "source")
-        if chosen.source == "SERIAL":
-            row = layout.row(align=True)
-            row.enabled = idle
+        if chosen.source == "POINTER":
+            return
+        column = layout.column()
+        column.enabled = idle
+        if chosen.source == "SIMULATED":
+            column.prop(chosen, "simulated_kind")
+        else:
+            row = column.row(align=True)
             row.prop(chosen, "port")
             row.operator("palpate.refresh_devices", text="", icon="FILE_REFRESH")
-        if chosen.source != "POINTER":
-            layout.prop(chosen, "device_frame")
-            layout.prop(chosen, "device_scale")
+        if is_planar(context.scene):
+            column.prop(chosen, "haply_model")
+        if chosen.source == "HAPLY":
+            column.prop(chosen, "haply_at_rest")
+            if idle:
+                text = "Before Press, put the handle in its rest pose and leave it there"
+                say(layout, context, text, "INFO")
+        layout.prop(chosen, "device_frame")
+        layout.prop(chosen, "device_scale")
+        layout.prop(chosen, "stable_contact")
+        layout.prop(chosen, "show_workspace")
+        panel_loop.draw_adapter_warning(layout, context)
 
 
 class PALPATE_PT_bake(PalpatePanel, bpy.types.Panel):

@@ -9,6 +9,17 @@ SOURCE_ITEMS = [
     ("POINTER", "Pointer", "Mouse, pen or trackpad press on the surface"),
     ("SIMULATED", "Simulated Device", "A program that behaves like a haptic device"),
     ("SERIAL", "Serial Device", "A haptic device on a serial port"),
+    ("HAPLY", "Haply 2DIY", "A Haply 2DIY on its serial port; it moves in a plane"),
+]
+SIMULATED_ITEMS = [
+    ("LINK", "Three Axes", "A device that speaks Palpate's serial link"),
+    ("HAPLY", "Haply 2DIY", "A Haply 2DIY with its board; it moves in a plane"),
+]
+HAPLY_ITEMS = [
+    ("2diy-3.1", "2DIY 3.1", "Motors side by side, the newest boards"),
+    ("2diy-3.0", "2DIY 3.0", "Motors side by side, earlier boards"),
+    ("2diy-2", "2DIY 2", "Motors on one axis"),
+    ("kit", "Dev Kit", "The small early kit"),
 ]
 
 
@@ -31,6 +42,23 @@ class PalpateScene(bpy.types.PropertyGroup):
         items=SOURCE_ITEMS,
         default="POINTER",
     )
+    simulated_kind: bpy.props.EnumProperty(
+        name="Kind",
+        description="Which device is simulated",
+        items=SIMULATED_ITEMS,
+        default="LINK",
+    )
+    haply_model: bpy.props.EnumProperty(
+        name="Model",
+        description="Which of the 2DIYs it is",
+        items=HAPLY_ITEMS,
+        default="2diy-3.1",
+    )
+    haply_at_rest: bpy.props.BoolProperty(
+        name="Handle at Rest",
+        description="The handle lies in its rest pose now: let the board count its angles from "
+        "there anew, also if it was in use before",
+    )
     port: bpy.props.StringProperty(
         name="Port",
         description="Serial port of the device: one from the list, or a path typed in",
@@ -50,6 +78,48 @@ class PalpateScene(bpy.types.PropertyGroup):
         default=1.0,
         min=0.01,
         max=100.0,
+    )
+    show_workspace: bpy.props.BoolProperty(
+        name="Show Workspace",
+        description="Draw in the view where the device reaches",
+        default=True,
+    )
+    stable_contact: bpy.props.BoolProperty(
+        name="Stable Contact",
+        description="Let the motors feel no contact that is too stiff for them and your hand to "
+        "hold without shaking. The shape stays as it is",
+        default=True,
+    )
+    own_coupling: bpy.props.BoolProperty(
+        name="Own Values",
+        description="Choose yourself what keeps the contact stable, for a device that you know",
+    )
+    coupling_stiffness: bpy.props.FloatProperty(
+        name="Largest Stiffness",
+        description="The stiffest contact that the motors feel, in newtons per metre",
+        default=800.0,
+        min=1.0,
+        max=100_000.0,
+        soft_max=5_000.0,
+        precision=0,
+        step=10000,
+    )
+    coupling_damping: bpy.props.FloatProperty(
+        name="Damping",
+        description="What brakes the device in a contact of that stiffness, in newton seconds per "
+        "metre; softer contacts get their share",
+        default=3.2,
+        min=0.0,
+        max=100.0,
+        soft_max=20.0,
+        precision=1,
+        step=10,
+    )
+    passivity_control: bpy.props.BoolProperty(
+        name="Passivity Control",
+        description="Watch the energy that the motors give, and brake away what no soft body "
+        "could have stored",
+        default=True,
     )
     record_from_start: bpy.props.BoolProperty(
         name="Record from Start",

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from palpate_servo import STATES, Body, Servo, Snapshot
+from palpate_servo import STATES, Body, Servo, Snapshot, device_coupling
 from palpate_servo import Compliance as NativeCompliance
 
 if TYPE_CHECKING:
@@ -25,6 +25,7 @@ __all__ = [
     "STATES",
     "Servo",
     "Snapshot",
+    "device_coupling",
     "displacements_of",
     "native_body",
     "native_compliance",

@@ -3,23 +3,27 @@
 from __future__ import annotations
 
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.devices.plant import Vector
 from ..core.devices.simulated_options import SimulatedOptions
 from ..core.devices.simulated_process import SimulatedDevice
 from ..core.errors import PalpateError
 from . import ray
 from .body_frame import BodyFrame
+from .device_plane import half_extents, upright_plane
 from .drawn_body import DrawnBody
 
 Array = NDArray[np.float64]
 
 # The simulated hand starts this far above the body and presses this deep, as shares of its size.
 SIMULATED_REST, SIMULATED_DEPTH = 0.15, 0.12
+# In a plane at most this share of what its arms reach.
+SIMULATED_REACH = 0.8
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,17 +48,52 @@ class DeviceFrame:
         return device
 
 
-def device_frame(scene: bpy.types.Scene, body: BodyFrame) -> DeviceFrame:
-    """Where the device is: at the chosen Empty, else at the object's own origin and axes."""
+def frame_of_matrix(matrix: Array, body: BodyFrame, scale: float) -> DeviceFrame:
+    """A device whose origin and axes are those of a world matrix (4, 4).
+
+    Raises
+    ------
+    PalpateError
+        It flattens to nothing.
+    """
+    device = BodyFrame.of_matrix(matrix, body.metres_per_unit)
+    return DeviceFrame(
+        body.rotation.T @ device.rotation, body.body_from_world(device.origin), scale
+    )
+
+
+def home_of_device(thing: bpy.types.Object, scene: bpy.types.Scene, body: BodyFrame) -> DeviceFrame:
+    """Where a device is that no Empty places: at the object's own origin and axes, or upright
+    through its top if it moves in a plane.
+    """
+    if is_planar(scene):
+        return frame_of_matrix(upright_plane(thing), body, 1.0)
+    return DeviceFrame(np.eye(3), np.zeros(3), 1.0)
+
+
+def device_frame(scene: bpy.types.Scene, body: BodyFrame, home: DeviceFrame) -> DeviceFrame:
+    """Where the device is: at the chosen Empty, else at ``home``.
+
+    Raises
+    ------
+    PalpateError
+        The Empty is flattened to nothing.
+    """
     chosen = scene.palpate
     empty = chosen.device_frame
     if empty is None:
-        return DeviceFrame(np.eye(3), np.zeros(3), chosen.device_scale)
-    device = BodyFrame.of_matrix(np.array(empty.matrix_world), body.metres_per_unit)
-    return DeviceFrame(
-        body.rotation.T @ device.rotation,
-        body.body_from_world(device.origin),
-        chosen.device_scale,
+        return replace(home, scale=chosen.device_scale)
+    try:
+        return frame_of_matrix(np.array(empty.matrix_world), body, chosen.device_scale)
+    except PalpateError as problem:
+        raise PalpateError(f"Device Frame {empty.name}: {problem}") from problem
+
+
+def is_planar(scene: bpy.types.Scene) -> bool:
+    """Whether the chosen device moves in a plane."""
+    chosen = scene.palpate
+    return chosen.source == "HAPLY" or (
+        chosen.source == "SIMULATED" and chosen.simulated_kind == "HAPLY"
     )
 
 
@@ -86,8 +125,13 @@ def _top(drawn: DrawnBody, up: Array) -> Array:
     return point
 
 
-def start_simulated(drawn: DrawnBody, frame: DeviceFrame) -> SimulatedDevice:
+def start_simulated(
+    drawn: DrawnBody, frame: DeviceFrame, haply: str | None = None
+) -> SimulatedDevice:
     """Start the simulated device, whose hand presses on the top of the body, again and again.
+
+    ``haply`` names the model of a Haply 2DIY to simulate: then it presses in the device's plane,
+    as far as its arms reach.
 
     Raises
     ------
@@ -95,10 +139,31 @@ def start_simulated(drawn: DrawnBody, frame: DeviceFrame) -> SimulatedDevice:
         It does not start, or this system has no pseudo-terminals.
     """
     up = drawn.frame.turn_to_body(np.array([0.0, 0.0, 1.0]))
-    top = _top(drawn, up)
-    rest, deep = top + SIMULATED_REST * drawn.size * up, -SIMULATED_DEPTH * drawn.size * up
-    x, y, z = frame.device_from_body(rest).tolist()
-    at = frame.device_from_body(top).tolist()
-    by = (frame.rotation.T @ deep / frame.scale).tolist()
-    options = SimulatedOptions(rest=(x, y, z), at=tuple(at), by=tuple(by), period=3.0, hold=0.5)
-    return SimulatedDevice(options, python=sys.executable, python_args=bpy.app.python_args)
+    above, deep = SIMULATED_REST * drawn.size, SIMULATED_DEPTH * drawn.size
+    if haply is None:
+        options = _hand(frame, _top(drawn, up), above * up, deep * up)
+    else:
+        # Its own rest pose, where it begins, is what its angles are counted from.
+        reach = SIMULATED_REACH * half_extents(haply)[1] * frame.scale
+        above, deep = min(above, reach), min(deep, reach)
+        hand = _hand(frame, frame.translation + above * up, 0.0 * up, (above + deep) * up)
+        options = replace(hand, rest=SimulatedOptions.rest)
+    return SimulatedDevice(
+        options, haply=haply, python=sys.executable, python_args=bpy.app.python_args
+    )
+
+
+def _hand(frame: DeviceFrame, at: Array, above: Array, deep: Array) -> SimulatedOptions:
+    """A hand that rests ``above`` a place and presses ``deep`` there; vectors of the body, m."""
+    return SimulatedOptions(
+        rest=_vector(frame.device_from_body(at + above)),
+        at=_vector(frame.device_from_body(at)),
+        by=_vector(-frame.rotation.T @ deep / frame.scale),
+        period=3.0,
+        hold=0.5,
+    )
+
+
+def _vector(array: Array) -> Vector:
+    x, y, z = array.tolist()
+    return (x, y, z)

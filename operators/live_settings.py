@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import bpy
 
-from ..core.servo_session import Servo
+from ..core.servo_session import Servo, device_coupling
 from .device_source import DeviceFrame
 
 
@@ -27,12 +28,41 @@ class Feel:
 
 
 @dataclass(frozen=True)
+class Coupling:
+    """Between body and motors: the most stiffness that they see (N/m, infinite for the body's own),
+    the damping that goes with it (N s/m), and whether energy that contact makes is taken back.
+    """
+
+    stiffness: float
+    damping: float
+    passivity_control: bool
+
+    @classmethod
+    def of(cls, scene: bpy.types.Scene) -> Coupling:
+        """As chosen in the scene."""
+        chosen = scene.palpate
+        if not chosen.stable_contact:
+            return cls(math.inf, 0.0, passivity_control=False)
+        if not chosen.own_coupling:
+            return cls(**device_coupling(chosen.rate))
+        return cls(chosen.coupling_stiffness, chosen.coupling_damping, chosen.passivity_control)
+
+
+@dataclass(frozen=True)
 class LiveSettings:
     """``young_modulus`` in pascal; ``device`` is where a device is, None for the pointer."""
 
     young_modulus: float
     feel: Feel
+    coupling: Coupling
     device: DeviceFrame | None = None
+
+    @classmethod
+    def of(
+        cls, thing: bpy.types.Object, scene: bpy.types.Scene, device: DeviceFrame | None
+    ) -> LiveSettings:
+        """As set on the object and in the scene now."""
+        return cls(thing.palpate.young_modulus, Feel.of(thing), Coupling.of(scene), device)
 
     def hand_over(self, servo: Servo, before: LiveSettings | None = None) -> None:
         """Tell the servo what is other than before; all of it, if nothing was told."""
@@ -44,6 +74,13 @@ class LiveSettings:
                 shading=feel.shading,
                 static_friction=feel.static_friction,
                 dynamic_friction=feel.dynamic_friction,
+            )
+        if before is None or self.coupling != before.coupling:
+            coupling = self.coupling
+            servo.set_coupling(
+                stiffness=coupling.stiffness,
+                damping=coupling.damping,
+                passivity_control=coupling.passivity_control,
             )
         # A device starts with its frame.
         if before is not None and self.device is not None and self._moved(before):

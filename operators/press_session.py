@@ -7,24 +7,22 @@ zero force and the mesh is as it was found.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable
+from contextlib import ExitStack
+from dataclasses import dataclass, field
 
 import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.devices.simulated_process import SimulatedDevice
 from ..core.errors import PalpateError
-from ..core.servo_session import Servo, Snapshot, displacements_of, servo_for
-from . import device_source, drawn_surface, live_shape, recording, servo_words
+from ..core.servo_session import Snapshot, displacements_of
+from . import device_source, drawn_surface, live_shape, servo_words
 from .device_source import DeviceFrame
 from .drawn_body import DrawnBody, open_body
-from .live_settings import Feel, LiveSettings
-from .loop_figures import LoopFigures
+from .force_loop import ForceLoop
+from .live_settings import LiveSettings
 from .object_handle import ObjectHandle
-from .package_preferences import preferences
 from .press_state import (
     BringBack,
     DrawRest,
@@ -38,6 +36,7 @@ from .press_state import (
     MoveProbe,
     Phase,
     PlaceProbe,
+    Point,
     PressState,
     Recovered,
     RemoveLiveShape,
@@ -49,7 +48,6 @@ from .press_state import (
     SwitchForce,
     transition,
 )
-from .recording import Recorder
 
 Array = NDArray[np.float64]
 
@@ -61,13 +59,10 @@ class PressSession:
     handle: ObjectHandle
     scene_name: str
     drawn: DrawnBody
-    settings: LiveSettings
+    home: DeviceFrame
     state: PressState = field(default_factory=PressState)
-    servo: Servo | None = None
-    simulated: SimulatedDevice | None = None
+    loop: ForceLoop | None = None
     snapshot: Snapshot | None = None
-    figures: LoopFigures = field(default_factory=LoopFigures)
-    recorder: Recorder | None = None
     displacements: Array | None = None
     kept_name: str = ""
     said: list[Say] = field(default_factory=list)
@@ -96,13 +91,11 @@ class PressSession:
             The press cannot go on.
         """
         thing = self._object_as_it_is()
-        if thing is None or self.servo is None:
+        loop = self.loop
+        if thing is None or loop is None:
             return True
-        self._follow_settings(thing)
-        snapshot = self.servo.snapshot()
-        self.figures.look(self.servo, time.monotonic())
-        if self.recorder is not None:
-            self.recorder.follow(snapshot.time)
+        loop.follow(self._settings(thing, loop.settings.device))
+        snapshot = loop.snapshot()
         moved = self.snapshot is None or snapshot.tick != self.snapshot.tick
         self.snapshot = snapshot
         self._watch_faults(snapshot)
@@ -123,9 +116,9 @@ class PressSession:
         PalpateError
             One is going on, or the servo refuses.
         """
-        if self.recorder is not None:
+        if self.loop is not None:
             now = 0.0 if self.snapshot is None else self.snapshot.time
-            self.recorder.start(60.0 * self._scene().palpate.record_minutes, now)
+            self.loop.recorder.start(60.0 * self._scene().palpate.record_minutes, now)
 
     @property
     def awaits_device(self) -> bool:
@@ -146,14 +139,14 @@ class PressSession:
                 self._with_object(live_shape.hang)
                 self._drawn_contact = ()
             case StartServo(source):
-                self._start_servo(source)
+                self._start_loop(source)
             case PlaceProbe() | MoveProbe() | SwitchForce():
-                self._tell_servo(effect)
+                self._running.carry_out(effect)
             case DrawRest():
                 self.displacements, self._drawn_contact = None, ()
                 self._with_object(lambda thing: live_shape.write(thing.data, self.drawn.rest))
             case StopServo():
-                self._stop_servo()
+                self._stop_loop()
             case RemoveLiveShape():
                 self._with_object(_leave_edit_mode)
                 self._with_object(live_shape.remove)
@@ -162,20 +155,11 @@ class PressSession:
             case Say():
                 self.said.append(effect)
 
-    def _tell_servo(self, effect: PlaceProbe | MoveProbe | SwitchForce) -> None:
-        match effect:
-            case PlaceProbe(point):
-                self._servo.set_target(point, restart=True)
-            case MoveProbe(point):
-                self._servo.set_target(point)
-            case SwitchForce(on):
-                self._servo.set_enabled(on)
-
     @property
-    def _servo(self) -> Servo:
-        if self.servo is None:
-            raise RuntimeError("the press has no servo; it was not started")
-        return self.servo
+    def _running(self) -> ForceLoop:
+        if self.loop is None:
+            raise RuntimeError("the press has no force loop; it was not started")
+        return self.loop
 
     def _with_object(self, act: Callable[[bpy.types.Object], object]) -> None:
         thing = self.handle.find()
@@ -186,49 +170,31 @@ class PressSession:
         self.kept_name = live_shape.keep(thing)
         thing.data.update()
 
-    def _start_servo(self, source: Source) -> None:
-        scene = self._scene()
-        servo = servo_for(
-            self.drawn.body,
-            young_modulus=self.settings.young_modulus,
-            rate_hz=scene.palpate.rate,
-            max_force=preferences().max_force,
-        )
-        self.servo = servo
-        self.recorder = Recorder(servo, scene.palpate.rate)
+    def _start_loop(self, source: Source) -> None:
+        scene, thing = self._scene(), self.handle.find()
+        if thing is None:
+            raise PalpateError(f"{self.handle.name} is gone; choose another object")
+        frame = None
+        if source is Source.DEVICE:
+            frame = device_source.device_frame(scene, self.drawn.frame, self.home)
+        settings = LiveSettings.of(thing, scene, frame)
+        self.loop = ForceLoop.prepare(self.drawn, settings, scene.palpate.rate)
         if scene.palpate.record_from_start:
             self.start_recording()
-        with _servo_errors():
-            self.settings.hand_over(servo)
-            if source is Source.POINTER:
-                servo.start_pointer(self._above())
-                return
-        frame = device_source.device_frame(scene, self.drawn.frame)
-        self.settings = replace(self.settings, device=frame)
-        if scene.palpate.source == "SIMULATED":
-            self.simulated = device_source.start_simulated(self.drawn, frame)
-            port = self.simulated.port
+        if source is Source.POINTER:
+            self.loop.start_pointer(self._above())
         else:
-            port = device_source.port_of(scene)
-        with _servo_errors():
-            servo.start_serial(
-                port, rotation=frame.rotation, translation=frame.translation, scale=frame.scale
-            )
+            self.loop.start_device(scene, self.drawn)
 
-    def _above(self) -> Array:
+    def _above(self) -> Point:
         """A place outside the body, where the pointer's probe waits."""
-        nodes = self.drawn.body.mesh.nodes
-        above: Array = nodes.mean(axis=0) + np.array([0.0, 0.0, self.drawn.size])
-        return above
+        x, y, z = self.drawn.body.mesh.nodes.mean(axis=0).tolist()
+        return (x, y, z + self.drawn.size)
 
-    def _stop_servo(self) -> None:
-        if self.servo is not None:
-            self.servo.stop()
-            recording.keep(self.recorder)
-        self.recorder = None
-        if self.simulated is not None:
-            self.simulated.stop()
-        self.servo = self.simulated = None
+    def _stop_loop(self) -> None:
+        loop, self.loop = self.loop, None
+        if loop is not None:
+            loop.stop()
 
     def _scene(self) -> bpy.types.Scene:
         return bpy.data.scenes.get(self.scene_name) or bpy.context.scene
@@ -260,24 +226,16 @@ class PressSession:
             self.drawn = moved
         return moved is not None
 
-    def _follow_settings(self, thing: bpy.types.Object) -> None:
-        before = self.settings
-        frame = before.device
-        if frame is not None:
-            frame = self._device_frame(frame)
-        self.settings = LiveSettings(thing.palpate.young_modulus, Feel.of(thing), frame)
-        with _servo_errors():
-            self.settings.hand_over(self._servo, before)
-
-    def _device_frame(self, before: DeviceFrame) -> DeviceFrame:
-        """Where the device is now; where it was, while its Empty says nothing that can be used."""
-        try:
-            frame = device_source.device_frame(self._scene(), self.drawn.frame)
-        except PalpateError as problem:
-            self._warn(str(problem))
-            return before
-        self._warned = ""
-        return frame
+    def _settings(self, thing: bpy.types.Object, before: DeviceFrame | None) -> LiveSettings:
+        """As they are now; a device stays where it was while its Empty says nothing of use."""
+        scene, frame = self._scene(), before
+        if before is not None:
+            try:
+                frame = device_source.device_frame(scene, self.drawn.frame, self.home)
+                self._warned = ""
+            except PalpateError as problem:
+                self._warn(str(problem))
+        return LiveSettings.of(thing, scene, frame)
 
     def _warn(self, text: str) -> None:
         """Say something once, not in every frame."""
@@ -305,7 +263,7 @@ class PressSession:
         if contact == self._drawn_contact:
             return
         self._drawn_contact = contact
-        modulus = self.settings.young_modulus
+        modulus = self._running.settings.young_modulus
         self.displacements = displacements_of(self.drawn.body, snapshot, modulus)
         if self.displacements is None:
             live_shape.write(thing.data, self.drawn.rest)
@@ -332,8 +290,9 @@ def begin(thing: bpy.types.Object, scene: bpy.types.Scene, source: Source) -> Pr
     global _current  # noqa: PLW0603  see PressSession.post
     if _current is not None:
         raise PalpateError(f"{_current.handle.name} is being pressed; end that first (Escape)")
-    settings = LiveSettings(thing.palpate.young_modulus, Feel.of(thing))
-    session = PressSession(ObjectHandle.of(thing), scene.name, open_body(thing, scene), settings)
+    drawn = open_body(thing, scene)
+    home = device_source.home_of_device(thing, scene, drawn.frame)
+    session = PressSession(ObjectHandle.of(thing), scene.name, drawn, home)
     _current = session
     try:
         session.post(Start(source))
@@ -347,19 +306,6 @@ def give_way(reason: str) -> None:
     """End the press that is going on, if one is, leaving the mesh clean."""
     if _current is not None:
         _current.post(GiveWay(reason))
-
-
-@contextmanager
-def _servo_errors() -> Iterator[None]:
-    """What the servo refuses, as a sentence with a remedy."""
-    try:
-        yield
-    except OSError as problem:
-        raise PalpateError(f"device: {problem}; plug it in, or choose another port") from problem
-    except (ValueError, OverflowError) as problem:
-        raise PalpateError(f"servo: {problem}; set it back and press again") from problem
-    except RuntimeError as problem:
-        raise PalpateError(f"servo: {problem}; leave with Escape and press again") from problem
 
 
 def _leave_edit_mode(thing: bpy.types.Object) -> None:

@@ -24,9 +24,9 @@ class PALPATE_OT_record(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         session = press_session.current()
-        recorder = session.recorder if session is not None else None
-        if recorder is None or session is None:
+        if session is None or session.loop is None:
             return {"CANCELLED"}
+        recorder = session.loop.recorder
         try:
             if recorder.going_on:
                 recorder.stop()

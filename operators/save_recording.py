@@ -19,8 +19,8 @@ DEFAULT_NAME = "recording"
 def _recorder() -> Recorder | None:
     """That of the press that is going on, if it records or has recorded."""
     session = press_session.current()
-    recorder = session.recorder if session is not None else None
-    return recorder if recorder is not None and recorder.wanted else None
+    loop = session.loop if session is not None else None
+    return loop.recorder if loop is not None and loop.recorder.wanted else None
 
 
 def recorded() -> Kept | None:

@@ -101,7 +101,6 @@ LIMITS = {
     "ramp": "Held back: the force rises slowly",
     "clamp": "Held back: the largest force is reached",
     "slew": "Held back: the force changes too fast",
-    "passivity": "Held back: contact is kept stable",
 }
 
 

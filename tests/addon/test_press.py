@@ -180,7 +180,7 @@ def test_a_deleted_object_ends_the_press(sessions, states):
     bpy.data.objects.remove(thing)
     session.tick()
     assert sessions.current() is None
-    assert session.servo is None
+    assert session.loop is None
 
 
 def test_a_renamed_object_is_pressed_on(sessions, states):
@@ -223,7 +223,7 @@ def test_a_save_while_pressing_writes_no_live_shape_and_the_press_goes_on(
 def test_opening_another_file_ends_the_press(sessions, states):
     session = begin(sessions, states, soft_cube())
     press_in(session, states)
-    servo = session.servo
+    servo = session.loop.servo
     bpy.ops.wm.read_homefile(use_factory_startup=True)
     assert sessions.current() is None
     assert not servo.running
@@ -236,7 +236,7 @@ def test_undo_while_pressing_ends_it_and_leaves_the_mesh_clean(sessions, states)
     session = begin(sessions, states, thing)
     press_in(session, states)
     bpy.ops.ed.undo_push(message="something with the live key in it")
-    servo = session.servo
+    servo = session.loop.servo
     bpy.ops.ed.undo()
     assert sessions.current() is None
     assert not servo.running
@@ -250,7 +250,7 @@ def test_switching_the_extension_off_ends_the_press(palpate, sessions, states):
     before = mesh_state(thing)
     session = begin(sessions, states, thing)
     press_in(session, states)
-    servo = session.servo
+    servo = session.loop.servo
     bpy.ops.preferences.addon_disable(module=palpate.__name__)
     assert not servo.running
     assert mesh_state(thing) == before
@@ -310,14 +310,14 @@ def test_a_servo_that_fails_to_stop_does_not_leave_the_live_key(sessions, states
     before = mesh_state(thing)
     session = begin(sessions, states, thing)
     press_in(session, states)
-    servo = session.servo
+    servo = session.loop.servo
 
     class Failing:
         def stop(self):
             servo.stop()
             raise RuntimeError("it did not stop")
 
-    session.servo = Failing()
+    session.loop.servo = Failing()
     with pytest.raises(RuntimeError, match="it did not stop"):
         session.post(states.Cancel())
     assert mesh_state(thing) == before
@@ -331,15 +331,15 @@ def test_the_simulated_device_presses_is_unplugged_and_comes_back(sessions, stat
     session = begin(sessions, states, thing, "DEVICE")
     wait(session, lambda: session.snapshot.touching)
     wait(session, lambda: np.linalg.norm(session.snapshot.output_force) > 0.01)
-    session.simulated.unplug()
+    session.loop.simulated.unplug()
     wait(session, lambda: session.state.phase is states.Phase.LOST)
     assert np.array_equal(key_coordinates(thing, "Palpate live"), key_coordinates(thing, "Basis"))
     assert not np.any(session.snapshot.output_force)
     assert "plug" in session.state.message
-    session.simulated.plug_in()
+    session.loop.simulated.plug_in()
     wait(session, lambda: session.state.phase is states.Phase.FEELING)
     wait(session, lambda: session.snapshot.touching)
-    child = session.simulated._process
+    child = session.loop.simulated._process
     session.post(states.Cancel())
     assert child.poll() is not None
     assert mesh_state(thing) == before
@@ -352,7 +352,8 @@ def test_an_empty_places_the_device(sessions, states):
     scene.palpate.device_frame, scene.palpate.device_scale = bpy.context.object, 2.0
     bpy.context.view_layer.update()
     body = part("operators.drawn_surface").frame_of(thing, scene)
-    frame = part("operators.device_source").device_frame(scene, body)
+    source = part("operators.device_source")
+    frame = source.device_frame(scene, body, source.home_of_device(thing, scene, body))
     device = np.array([0.01, 0.02, 0.03])
     expected = np.array(bpy.context.object.matrix_world.to_3x3()) @ (2 * device) + [0, 0, 0.3]
     mapped = frame.scale * frame.rotation @ device + frame.translation

@@ -78,6 +78,33 @@ def test_a_lost_device_has_no_shape_to_keep(ps):
     assert ps.KeepShape() not in effects
 
 
+def test_the_force_is_let_go_at_once_and_comes_back_only_after_a_calm_moment(ps):
+    state, effects = play(ps, ps.Start(ps.Source.DEVICE), ps.LetGo(10.0))
+    assert not state.force_on
+    assert effects[-1] == ps.SwitchForce(on=False)
+    # A second strike in alarm must not bring it back.
+    alarmed, effects = ps.transition(state, ps.BringBack(10.0 + 0.5 * ps.CALM_SECONDS))
+    assert not alarmed.force_on
+    assert effects == ()
+    calm, effects = ps.transition(alarmed, ps.BringBack(10.1 + ps.CALM_SECONDS))
+    assert calm.force_on
+    assert effects == (ps.SwitchForce(on=True),)
+
+
+def test_the_force_can_be_let_go_while_the_device_is_away_and_stays_off_when_it_returns(ps):
+    walk = (ps.Fault("gone"), ps.LetGo(1.0), ps.Recovered())
+    state, effects = play(ps, ps.Start(ps.Source.DEVICE), *walk)
+    assert not state.force_on
+    assert effects.count(ps.SwitchForce(on=False)) == 1
+    assert ps.SwitchForce(on=True) not in effects
+
+
+def test_a_pointer_has_no_force_to_let_go(ps):
+    state, effects = play(ps, ps.Start(ps.Source.POINTER), ps.LetGo(1.0))
+    assert state.force_on
+    assert not [effect for effect in effects if isinstance(effect, ps.SwitchForce)]
+
+
 def test_a_save_sees_no_live_shape_and_the_press_goes_on(ps):
     state, effects = play(
         ps, ps.Start(ps.Source.POINTER), ps.SetDown(POINT), ps.SaveBegins(), ps.SaveEnds()
@@ -94,6 +121,7 @@ def test_whatever_happened_giving_way_stops_the_servo_and_cleans_the_mesh(ps):
         ps.Release(),
         ps.Fault("gone"),
         ps.Recovered(),
+        ps.LetGo(0.0),
         ps.SaveBegins(),
         ps.SaveEnds(),
         ps.Keep(),

@@ -152,7 +152,7 @@ def closing_the_window_in_which_is_pressed_ends_the_press(stage: Stage) -> Wait:
     with bpy.context.temp_override(window=bpy.context.window_manager.windows[1]):
         bpy.ops.palpate.press("INVOKE_DEFAULT")
     yield from stage.until(lambda: press_session.current().snapshot, "the first tick")
-    servo = press_session.current().servo
+    servo = press_session.current().loop.servo
     with bpy.context.temp_override(window=bpy.context.window_manager.windows[1]):
         bpy.ops.wm.window_close()
     yield from stage.until(lambda: press_session.current() is None, "the end of the press")
@@ -209,7 +209,7 @@ def deleting_the_object_while_pressing_ends_the_press(stage: Stage) -> Wait:
     yield from open_mouse(stage)
     yield from start_press(stage)
     yield from drag_in(stage)
-    servo = press_session.current().servo
+    servo = press_session.current().loop.servo
     bpy.data.objects.remove(mouse())
     yield from stage.until(lambda: press_session.current() is None, "the end of the press")
     assert not servo.running
@@ -219,7 +219,7 @@ def opening_another_file_while_pressing_ends_the_press(stage: Stage) -> Wait:
     yield from open_mouse(stage)
     yield from start_press(stage)
     yield from drag_in(stage)
-    servo = press_session.current().servo
+    servo = press_session.current().loop.servo
     stage.open_scene(own_copy(stage))
     yield 0.5
     assert press_session.current() is None
@@ -235,16 +235,16 @@ def the_simulated_device_presses_is_unplugged_and_comes_back(stage: Stage) -> Wa
     yield from stage.until(lambda: depth() > 0.008, "the device's press")
     yield from stage.picture("device")
     session = press_session.current()
-    session.simulated.unplug()
+    session.loop.simulated.unplug()
     yield from stage.until(lambda: phase() is Phase.LOST, "the message")
     yield 0.3
     assert not np.any(session.snapshot.output_force)
     assert _key_bytes("Palpate live") == _key_bytes("Basis")
     yield from stage.picture("unplugged")
-    session.simulated.plug_in()
+    session.loop.simulated.plug_in()
     yield from stage.until(lambda: phase() is Phase.FEELING, "the device's return")
     yield from stage.until(lambda: depth() > 0.008, "its next press")
-    child = session.simulated.pid
+    child = session.loop.simulated.pid
     yield from type_key(stage, "ESC")
     yield from stage.until(lambda: press_session.current() is None, "the end of the press")
     assert _coordinates() == before
@@ -305,7 +305,7 @@ def switching_the_extension_off_while_pressing_leaves_a_clean_mesh(stage: Stage)
     before = _coordinates()
     yield from start_press(stage)
     yield from drag_in(stage)
-    servo = press_session.current().servo
+    servo = press_session.current().loop.servo
     bpy.ops.preferences.addon_disable(module=MODULE)
     yield 0.5
     bpy.ops.preferences.addon_enable(module=MODULE)

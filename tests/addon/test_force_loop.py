@@ -1,0 +1,246 @@
+"""Whether force may come, letting it go, and what else is set, seen and recorded while pressing."""
+
+from __future__ import annotations
+
+import os
+import time
+from types import SimpleNamespace
+
+import bpy
+import numpy as np
+import pytest
+from soft_scene import cube, error_of, key_names, mesh_state, part, select, soft_cube
+from test_press import DEEP, begin, press_in, sessions, states, wait
+
+__all__ = ["sessions", "states"]
+
+
+def said(session):
+    return part("operators.servo_words").standing(session.snapshot)
+
+
+def simulated_press(sessions, states, thing):
+    bpy.context.scene.palpate.source = "SIMULATED"
+    session = begin(sessions, states, thing, "DEVICE")
+    wait(session, lambda: np.linalg.norm(session.snapshot.output_force) > 0.005)
+    return session
+
+
+def test_force_off_is_zero_at_once_and_force_on_rises_from_nothing(sessions, states):
+    session = simulated_press(sessions, states, soft_cube())
+    assert bpy.ops.palpate.switch_force() == {"FINISHED"}
+    wait(session, lambda: session.snapshot.state == "disabled")
+    assert not np.any(session.snapshot.output_force)
+    assert said(session).word == "Force Off"
+    assert "Space" in said(session).why
+    # Struck once more in alarm: it stays off.
+    bpy.ops.palpate.switch_force()
+    time.sleep(0.1)
+    session.tick()
+    assert session.snapshot.state == "disabled"
+    time.sleep(part("operators.press_state").CALM_SECONDS)
+    bpy.ops.palpate.switch_force()
+    wait(session, lambda: session.snapshot.state != "disabled")
+    wait(session, lambda: np.linalg.norm(session.snapshot.output_force) > 0.005)
+
+
+def test_the_pointer_has_no_force_to_switch_off(sessions, states):
+    begin(sessions, states, soft_cube())
+    assert "device" in error_of(bpy.ops.palpate.switch_force)
+
+
+def test_friction_set_while_pressing_is_felt_sideways(sessions, states):
+    thing = soft_cube()
+    session = begin(sessions, states, thing)
+    press_in(session, states)
+
+    def slope():
+        x, y, z = session.snapshot.contact_force
+        return np.hypot(x, y) / z
+
+    aside = (0.002, 0.0, DEEP[2])
+    session.post(states.Move(aside))
+    wait(session, lambda: np.allclose(session.snapshot.probe, aside, atol=1e-6))
+    smooth = slope()
+    thing.palpate.dynamic_friction = 0.5
+    session.tick()
+    time.sleep(0.05)
+    session.post(states.Move((0.006, 0.0, DEEP[2])))
+    wait(session, lambda: session.snapshot.probe[0] > 0.006 - 1e-6)
+    assert slope() > smooth + 0.1
+
+
+def test_sliding_never_holds_better_than_resting(palpate):
+    settings = cube().palpate
+    settings.dynamic_friction = 0.6
+    assert settings.static_friction == settings.dynamic_friction
+    settings.static_friction = 0.25
+    assert settings.dynamic_friction == settings.static_friction == 0.25
+
+
+def test_the_loop_runs_at_the_chosen_rate_and_tells_its_times(sessions, states):
+    bpy.context.scene.palpate.rate = 500
+    session = begin(sessions, states, soft_cube())
+    session.tick()
+    counters = session.loop.figures.counters
+    assert counters["rate_hz"] == 500
+    assert set(part("addon.panel_loop").STAGE_NAMES) == set(counters["stages_us"])
+
+
+def test_a_recording_misses_no_tick_while_blender_is_busy_and_outlives_the_press(
+    sessions, states, tmp_path
+):
+    bpy.context.scene.palpate.record_from_start = True
+    session = begin(sessions, states, soft_cube())
+    press_in(session, states)
+    end = time.monotonic() + 0.3
+    while time.monotonic() < end:
+        pass
+    session.tick()
+    assert session.loop.recorder.going_on
+    assert session.loop.recorder.seconds > 0.3
+    session.post(states.Cancel())
+    assert sessions.current() is None
+    for name in ("felt.csv", "felt.npz"):
+        path = tmp_path / name
+        assert bpy.ops.palpate.save_recording(filepath=str(path)) == {"FINISHED"}
+        samples = part("core.recording").read_recording(path).samples
+        assert len(samples) > 300
+        assert np.array_equal(samples["tick"], np.arange(1, len(samples) + 1))
+        assert np.linalg.norm(samples["force"], axis=1).max() > 0.01
+
+
+def test_a_recording_is_begun_and_ended_while_pressing_and_saved_meanwhile(
+    sessions, states, tmp_path
+):
+    session = begin(sessions, states, soft_cube())
+    wait(session, lambda: session.snapshot.tick > 50)
+    assert bpy.ops.palpate.record() == {"FINISHED"}
+    wait(session, lambda: session.loop.recorder.seconds > 0.1)
+    path = tmp_path / "meanwhile.npz"
+    bpy.ops.palpate.save_recording(filepath=str(path))
+    assert sessions.current() is session
+    samples = part("core.recording").read_recording(path).samples
+    assert samples["tick"][0] > 50
+    bpy.ops.palpate.record()
+    session.tick()
+    assert not session.loop.recorder.going_on
+    assert not session.loop.recorder.full
+    length = session.loop.recorder.seconds
+    time.sleep(0.05)
+    session.tick()
+    assert session.loop.recorder.seconds == length
+
+
+def test_a_recording_that_has_reached_its_length_says_so(sessions, states):
+    session = begin(sessions, states, soft_cube())
+    session.tick()
+    session.loop.recorder.start(0.1, session.snapshot.time)
+    wait(session, lambda: session.loop.recorder.full)
+    assert session.loop.recorder.seconds == pytest.approx(0.1, abs=0.02)
+
+
+def test_a_recording_that_cannot_be_written_is_refused_with_a_remedy(sessions, states, tmp_path):
+    bpy.context.scene.palpate.record_from_start = True
+    session = begin(sessions, states, soft_cube())
+    session.tick()
+    session.post(states.Cancel())
+    assert ".csv" in error_of(bpy.ops.palpate.save_recording, filepath=str(tmp_path / "a.txt"))
+    nowhere = tmp_path / "nowhere" / "a.csv"
+    assert "folder" in error_of(bpy.ops.palpate.save_recording, filepath=str(nowhere))
+
+
+def test_a_haply_presses_in_the_upright_plane_through_the_top(sessions, states):
+    thing = soft_cube()
+    before = mesh_state(thing)
+    scene = bpy.context.scene
+    scene.palpate.source, scene.palpate.simulated_kind = "SIMULATED", "HAPLY"
+    session = begin(sessions, states, thing, "DEVICE")
+    wait(session, lambda: np.linalg.norm(session.snapshot.output_force) > 0.005)
+    device = session.loop.figures.counters["link"]["device"]
+    assert "2DIY" in device["name"]
+    # The plane is the world's X and Z through the cube's middle.
+    assert abs(session.snapshot.probe[1]) < 1e-6
+    lines = part("addon.workspace").outline(bpy.context, session)
+    ends = np.array(lines).reshape(-1, 3)
+    assert len(lines) == 4
+    assert np.allclose(np.ptp(ends, axis=0), [0.12, 0.0, 0.07], atol=1e-6)
+    session.post(states.Cancel())
+    assert mesh_state(thing) == before
+
+
+def test_an_empty_turns_the_plane_of_a_haply(palpate):
+    thing, scene = soft_cube(), bpy.context.scene
+    scene.palpate.source = "HAPLY"
+    bpy.ops.object.empty_add(location=(0.0, 0.1, 0.3))
+    scene.palpate.device_frame = bpy.context.object
+    select(thing)
+    ends = np.array(part("addon.workspace").outline(bpy.context, None)).reshape(-1, 3)
+    assert np.allclose(ends[:, 2], 0.3)
+    assert np.allclose(ends.mean(axis=0), [0.0, 0.1, 0.3])
+    scene.palpate.show_workspace = False
+    assert part("addon.workspace").outline(bpy.context, None) == []
+
+
+def test_a_flattened_device_frame_is_said_and_the_press_goes_on(sessions, states):
+    thing, scene = soft_cube(), bpy.context.scene
+    bpy.ops.object.empty_add(location=(0.0, 0.0, 0.3))
+    empty = scene.palpate.device_frame = bpy.context.object
+    controller, terminal = os.openpty()
+    try:
+        scene.palpate.source, scene.palpate.port = "SERIAL", os.ttyname(terminal)
+        session = begin(sessions, states, thing, "DEVICE")
+        empty.scale = (0.0, 1.0, 1.0)
+        bpy.context.view_layer.update()
+        for _ in range(3):
+            session.tick()
+        assert sessions.current() is session
+        assert [empty.name in said.text for said in session.said] == [True]
+        sessions.give_way("")
+        with pytest.raises(part("core.errors").PalpateError, match=empty.name):
+            begin(sessions, states, thing, "DEVICE")
+        assert key_names(thing) == []
+    finally:
+        os.close(controller)
+        os.close(terminal)
+
+
+@pytest.mark.parametrize("problem", [ValueError, OSError, RuntimeError, OverflowError])
+def test_what_the_servo_refuses_is_a_sentence_with_a_remedy(palpate, problem):
+    error = part("core.errors").PalpateError
+    with (
+        pytest.raises(error, match=r"(servo|device): why; "),
+        part("operators.force_loop").servo_errors(),
+    ):
+        raise problem("why")
+
+
+def test_a_failed_force_loop_ends_the_press_and_leaves_the_mesh_clean(sessions, states):
+    thing = soft_cube()
+    before = mesh_state(thing)
+    session = begin(sessions, states, thing)
+    press_in(session, states)
+    dead = SimpleNamespace(state="stopped", fault="internal error", reason="", limited="")
+    session._watch_faults(dead)
+    assert sessions.current() is None
+    assert "press again" in session.state.message
+    assert mesh_state(thing) == before
+
+
+@pytest.mark.parametrize(
+    ("shot", "signal", "words"),
+    [
+        ({"state": "free"}, "READY", "Force comes"),
+        ({"state": "touching", "limited": "clamp"}, "FORCE", "largest force"),
+        ({"state": "ramping", "reason": "after stale"}, "RETURNING", "fault is gone"),
+        ({"state": "fault", "fault": "unplugged"}, "FAULT", "plug it in again"),
+        ({"state": "disabled", "reason": "device button"}, "OFF", "let it go"),
+        ({"state": "waiting", "reason": "no STATE yet"}, "WAITING", "no position"),
+        ({"state": "fault", "fault": "unheard of"}, "FAULT", "unheard of"),
+    ],
+)
+def test_each_state_is_told_with_its_reason_and_what_to_do(palpate, shot, signal, words):
+    whole = {"fault": "", "reason": "", "limited": ""} | shot
+    standing = part("operators.servo_words").standing(SimpleNamespace(**whole))
+    assert standing.signal.name == signal
+    assert words in f"{standing.why} {standing.limit}"
