@@ -247,7 +247,7 @@ def _touch(servo: Servo, port: str, seconds: float, stopped: Sequence[int]) -> d
             name: counters[name]
             for name in (
                 *("late_over_10_us", "late_over_50_us", "late_over_200_us", "late_over_1000_us"),
-                *("longest_gap_us", "stages_us", "busy_us"),
+                *("longest_gap_us", "stages_us", "busy_us", "spun_us"),
             )
         },
         "realtime": counters["realtime"],

@@ -23,7 +23,7 @@ class Lateness(TypedDict):
     max: float
 
 class Busy(TypedDict):
-    """Time spent working in a tick, us."""
+    """Time that a tick took of its processor, us."""
 
     mean: float
     max: float
@@ -45,6 +45,9 @@ class TimingCounters(TypedDict):
     """(largest lateness in the bucket in us, ticks) for every bucket that holds any."""
     longest_gap_us: float
     busy_us: Busy
+    """Spent working."""
+    spun_us: Busy
+    """Spent awake and waiting for the deadline; none by a BareTimer."""
     realtime: str
     """For instance "fifo 20", or "none: " and the reason."""
 

@@ -62,6 +62,11 @@ impl Durations {
         raise(&self.histogram[bucket(ns)], 1);
     }
 
+    /// How many were counted so far.
+    pub fn count(&self) -> u64 {
+        self.count.load(Relaxed)
+    }
+
     /// What was counted so far.
     pub fn report(&self) -> DurationReport {
         DurationReport {

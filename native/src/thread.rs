@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use rtrb::Consumer;
 use triple_buffer::{Input, Output, triple_buffer};
 
-use crate::clock::{Pace, Timing};
+use crate::clock::{Pace, Timing, Waking};
 use crate::device::{Device, Fault};
 use crate::exchange::{Hand, exchange};
 use crate::realtime::{Granted, ask_for_real_time};
@@ -35,6 +35,7 @@ impl Paced {
     fn spawn(
         name: &str,
         rate_hz: u32,
+        waking: Waking,
         work: impl FnOnce(&mut dyn FnMut() -> Option<f64>) + Send + 'static,
     ) -> std::io::Result<Self> {
         let stop = Arc::new(AtomicBool::new(false));
@@ -43,9 +44,10 @@ impl Paced {
         let thread = std::thread::Builder::new().name(name.to_owned()).spawn({
             let (stop, timing, realtime) = (stop.clone(), timing.clone(), realtime.clone());
             move || {
+                touch_stack();
                 let (granted, _tenure) = ask_for_real_time(rate_hz);
                 let _ = realtime.set(granted);
-                let mut pace = Pace::new(rate_hz);
+                let mut pace = Pace::new(rate_hz, waking);
                 work(&mut || {
                     let wake = pace.wait(&timing);
                     (!stop.load(Relaxed)).then_some(wake.seconds)
@@ -65,7 +67,9 @@ impl Paced {
     /// # Errors
     /// When the system gives no thread.
     pub fn bare(rate_hz: u32) -> std::io::Result<Self> {
-        Self::spawn("palpate-bare", rate_hz, |wake| while wake().is_some() {})
+        Self::spawn("palpate-bare", rate_hz, Waking::Plain, |wake| {
+            while wake().is_some() {}
+        })
     }
 
     /// Its timing counters.
@@ -100,6 +104,18 @@ impl Paced {
 impl Drop for Paced {
     fn drop(&mut self) {
         self.stop();
+    }
+}
+
+/// Has the system hand out the stack now: each page untouched would stop the tick that reaches it
+/// first.
+#[inline(never)]
+fn touch_stack() {
+    const PAGE: usize = 4096;
+    let mut stack = [0_u8; 64 * PAGE];
+    for place in stack.iter_mut().step_by(PAGE) {
+        // SAFETY: a place of an array of our own; volatile, so that the compiler leaves it there.
+        unsafe { std::ptr::write_volatile(place, 1) };
     }
 }
 
@@ -151,14 +167,19 @@ impl Running {
         servo.bodies = holder;
         servo.tape = Some(tape);
         let stages = servo.stages();
-        let paced = Paced::spawn("palpate-servo", options.rate_hz, move |wake| {
-            let run = catch_unwind(AssertUnwindSafe(|| {
-                while let Some(now) = wake() {
-                    servo.tick(now);
-                }
-            }));
-            servo.park(run.is_err().then_some(Fault::Internal));
-        })?;
+        let paced = Paced::spawn(
+            "palpate-servo",
+            options.rate_hz,
+            Waking::Early,
+            move |wake| {
+                let run = catch_unwind(AssertUnwindSafe(|| {
+                    while let Some(now) = wake() {
+                        servo.tick(now);
+                    }
+                }));
+                servo.park(run.is_err().then_some(Fault::Internal));
+            },
+        )?;
         Ok(Self {
             paced,
             bodies: Mutex::new(hand),

@@ -8,7 +8,7 @@ use std::io::{self, ErrorKind};
 use std::sync::Arc;
 
 use glam::DVec3;
-use palpate_servo::clock::{Pace, Timing};
+use palpate_servo::clock::{Pace, Timing, Waking};
 use palpate_servo::codec::{Decoder, MAX_FRAME, encode};
 use palpate_servo::coupling::Coupling;
 use palpate_servo::device::{Device, DeviceFrame, Fault};
@@ -234,7 +234,7 @@ fn the_counter_counts() {
 #[test]
 fn waking_and_counting_allocate_nothing() {
     let timing = Timing::default();
-    let mut pace = Pace::new(8000);
+    let mut pace = Pace::new(8000, Waking::Early);
     let mut woken = 0.0;
     assert_eq!(
         counted(|| (0..200).for_each(|_| woken = pace.wait(&timing).seconds)),

@@ -44,6 +44,10 @@ pub fn timing_counters<'py>(
     busy.set_item("mean", report.busy.mean_ns() * 1e-3)?;
     busy.set_item("max", us(report.busy.largest_ns))?;
     counters.set_item("busy_us", busy)?;
+    let spun = PyDict::new(py);
+    spun.set_item("mean", report.spun.mean_ns() * 1e-3)?;
+    spun.set_item("max", us(report.spun.largest_ns))?;
+    counters.set_item("spun_us", spun)?;
     counters.set_item("realtime", realtime)?;
     Ok(counters)
 }
