@@ -42,7 +42,7 @@ fn example(title: &str) -> Vec<u8> {
         .iter()
         .filter_map(|&b| decoder.push(b).map(<[u8]>::to_vec))
         .collect();
-    assert_eq!(read, [payload.clone()]);
+    assert_eq!(read, std::slice::from_ref(&payload));
     payload
 }
 

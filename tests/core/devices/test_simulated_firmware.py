@@ -139,8 +139,8 @@ def test_half_the_sequences_ahead_is_late_and_one_less_is_not(greeted):
     tell(greeted, force(65_000), 1.0)
     tell(greeted, force((65_000 + 0x8000) % 2**16, 900), 1.0)
     assert greeted.counters.out_of_order == 1
-    tell(greeted, force((65_000 + 0x7FFF) % 2**16, 700), 1.0)
-    assert greeted.force == (0.0, 0.0, 0.7)
+    tell(greeted, force((65_000 + 0x7FFF) % 2**16, 750), 1.0)
+    assert greeted.force == (0.0, 0.0, 0.75)
     assert (greeted.counters.lost, greeted.counters.out_of_order) == (0x7FFE, 1)
 
 
