@@ -587,8 +587,8 @@ class ContactOutcome(TypedDict):
     coulomb: float
     """Taken by friction."""
     extracted: float
-    """The most that the motor had given at any time beyond what friction had taken: what a hand could
-    have got out. Never more than 0 for a passive device that begins outside the body.
+    """The most that the motor had given at any time beyond what friction had taken: what a hand
+    could have got out. Never more than 0 for a passive device that begins outside the body.
     """
     made_late: float
     """Work of the motor in the last quarter beyond that of an ideal spring."""

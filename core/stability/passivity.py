@@ -94,3 +94,34 @@ def judge(
 def is_passive(plant: DevicePlant, body_stiffness: float, coupling: CouplingSettings) -> bool:
     """Whether `judge` finds nothing."""
     return judge(plant, body_stiffness, coupling, first_failure=True).passive
+
+
+def stiffest_passive_body(
+    plant: DevicePlant,
+    coupling: CouplingSettings,
+    *,
+    least: float = 50.0,
+    most: float = 20_000.0,
+    steps: int = 13,
+    halvings: int = 3,
+) -> float:
+    """The stiffness (N/m) up to which every body is passive: 0 if none is, `most` if all are.
+
+    Goes up in `steps` equal factors to the first body that is not, then halves the last factor.
+    """
+    factor = (most / least) ** (1.0 / steps)
+    passive, stiffness = 0.0, least
+    for step in range(steps + 1):
+        stiffness = least * factor**step
+        if not is_passive(plant, stiffness, coupling):
+            break
+        passive = stiffness
+    if passive in (0.0, stiffness):
+        return passive
+    for _ in range(halvings):
+        middle = (passive * stiffness) ** 0.5
+        if is_passive(plant, middle, coupling):
+            passive = middle
+        else:
+            stiffness = middle
+    return passive
