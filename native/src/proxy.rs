@@ -116,7 +116,11 @@ impl Proxy {
     }
 
     /// Lifts the proxy off and sets it down at `position` without a sweep between.
+    ///
+    /// The body may be another one than before.
     pub fn restart(&mut self, body: &Body, position: DVec3) {
+        // What was held may not exist any more.
+        self.hold.triangle = 0;
         self.position = position;
         self.contact.lift(position);
         let (distance, inside) = self.look(body, position);

@@ -118,6 +118,10 @@ impl<D: Device> Servo<D> {
         // tick never frees it.
         let (body, number, body_replaced) = self.bodies.newest();
         let body = Arc::clone(body);
+        if body_replaced && let Some(proxy) = &mut self.proxy {
+            // Even in a tick without a probe: nothing may be left of the old body.
+            proxy.restart(&body, self.probe);
+        }
         let settings = *self.settings.read();
         let reading = self.device.read(now, dt, &settings.frame);
         self.stages.end_of(Stage::Read, &mut since);

@@ -96,12 +96,12 @@ impl ContactPoint {
         let is_new = self.landing != Some(god.landings);
         self.landing = Some(god.landings);
         let mut spread = !is_new;
+        if is_new {
+            self.friction = Friction::default();
+            self.put(body, god.entry);
+        }
         let (mut aim, mut point) = (god.hold, god.position);
         if feel.static_friction > 0.0 {
-            if is_new {
-                self.friction = Friction::default();
-                self.put(body, god.entry);
-            }
             if let Some((hold, is_smooth)) = self.rub(body, god, device, feel, dt) {
                 (aim, point) = (hold, body.face(hold.triangle).at(hold.alpha));
                 spread &= is_smooth;

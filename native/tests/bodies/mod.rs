@@ -300,8 +300,13 @@ pub fn globe(radius: f64) -> Arc<Body> {
 
 /// A block cut into 200 slices: triangles 200 times longer than wide.
 pub fn needles() -> Arc<Body> {
-    let body = voxels(&grid(1, 1, 200), 1.0);
-    let scale = DVec3::new(0.05, 0.05, 0.05 / 200.0);
+    sliced(200)
+}
+
+/// A block of 50 mm cut into slices along z.
+pub fn sliced(slices: i32) -> Arc<Body> {
+    let body = voxels(&grid(1, 1, slices), 1.0);
+    let scale = DVec3::new(0.05, 0.05, 0.05 / f64::from(slices));
     let nodes = body.nodes.iter().map(|&p| p * scale).collect();
     soft(nodes, body.triangles.clone())
 }
@@ -348,11 +353,15 @@ pub fn speckled(edge: f64, height: f64) -> Arc<Body> {
     soft(nodes, triangles)
 }
 
+/// Turned by odd angles.
+pub fn turned_by(v: DVec3) -> DVec3 {
+    let turn = DMat3::from_rotation_x(0.7123) * DMat3::from_rotation_y(-1.1931);
+    turn * DMat3::from_rotation_z(2.4173) * v
+}
+
 /// Turned by odd angles and scaled: nothing lies along an axis any more.
 pub fn turned(body: &Body, scale: f64) -> Arc<Body> {
-    let turn = DMat3::from_rotation_x(0.7123) * DMat3::from_rotation_y(-1.1931);
-    let turn = turn * DMat3::from_rotation_z(2.4173);
-    let nodes = body.nodes.iter().map(|&p| turn * p * scale).collect();
+    let nodes = body.nodes.iter().map(|&p| turned_by(p) * scale).collect();
     soft(nodes, body.triangles.clone())
 }
 

@@ -198,7 +198,7 @@ impl Push {
 }
 
 /// A proxy may hold on only if the way to the device leads into the body at once.
-fn sticks(body: &Body, proxy: &Proxy, device: DVec3) -> bool {
+pub fn sticks(body: &Body, proxy: &Proxy, device: DVec3) -> bool {
     let way = device - proxy.god_object();
     let small = 1e-11 * body.size();
     if way.length() < small {
