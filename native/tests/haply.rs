@@ -505,7 +505,7 @@ fn a_full_line_holds_nothing_up_and_letting_go_comes_first() {
 }
 
 #[test]
-fn arms_that_cannot_meet_are_a_fault_and_stretched_ones_get_no_force() {
+fn stretched_arms_get_no_force() {
     let mut bench = Bench::new();
     bench.ticks(20);
     bench.force = DVec3::new(0.0, -0.5, 0.0);
@@ -538,4 +538,42 @@ fn answers_from_elsewhere_are_not_followed() {
     assert_eq!(probe.position, rest);
     assert!(bench.device().report().crc_errors > 0);
     assert_eq!(at(bench.ticks(3)).position, rest);
+}
+
+#[test]
+fn letting_go_does_not_wait_for_answers() {
+    let mut bench = Bench::new();
+    bench.ticks(20);
+    bench.force = DVec3::new(0.0, -1.0, 0.0);
+    bench.ticks(3);
+    bench.board().silent = true;
+    // As many requests as may be on the way.
+    bench.ticks(4);
+    assert!(bench.board().torques[0].abs() > 0.01);
+    bench.enable = false;
+    bench.tick();
+    assert_eq!(bench.device().report().unsent, 0);
+    assert_eq!(bench.board().torques, [0.0; 2]);
+}
+
+#[test]
+fn what_was_said_before_the_first_question_is_not_an_answer_to_it() {
+    let mut bench = Bench::new();
+    bench.board().to_host.extend(answer([1138, 1138], 2440.0));
+    let probe = at(bench.ticks(80));
+    assert_eq!(bench.board().setups, 1);
+    assert!(probe.position.distance(expected(0, 0)) < 1e-7);
+}
+
+#[test]
+fn a_board_that_was_set_up_with_other_angles_than_were_sent_is_not_believed() {
+    let mut bench = Bench::new();
+    while bench.board().setups == 0 {
+        bench.tick();
+    }
+    // As if bits of the message had flipped: far from the rest pose, but whole counts.
+    bench.board().zero[0] += 300;
+    bench.board().to_host.clear();
+    assert_eq!(bench.ticks(100), Reading::Waiting(reason::LOST_PLACE));
+    assert_eq!(bench.board().address, MODELS[0].adrift_address());
 }

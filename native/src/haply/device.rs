@@ -187,13 +187,9 @@ impl<O: Opener> HaplyDevice<O> {
         let Some(degrees) = answer.filter(|degrees| self.is_near(*degrees)) else {
             self.line.inbox.drop_first(1);
             self.report.crc_errors += 1;
-            // Set up with other figures than were sent: the message was damaged.
-            let angles_differ =
-                answer.is_some() && self.unproven && self.now - self.set_up_at > ANSWER_SECONDS;
-            let none_is_sound = self.calibrated
-                && self.phase == Phase::Running
-                && self.now - self.heard > RESTORE_SECONDS;
-            if angles_differ || none_is_sound {
+            let running = self.calibrated && self.phase == Phase::Running;
+            if running && self.now - self.heard > RESTORE_SECONDS {
+                // It answers, but with other angles than it was set up with, or counts otherwise.
                 self.calibrated = false;
                 self.restore();
             }
