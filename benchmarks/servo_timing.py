@@ -127,13 +127,13 @@ def ratio(one: float, other: float) -> float:
     return one / other if other else np.inf
 
 
-def is_chance(one: int, other: int) -> bool:
-    """Whether counts that differ like that are no proof of more than `MOST` times as many.
+def is_chance(one: int, other: int, most: float) -> bool:
+    """Whether counts that differ like that are no proof of more than `most` times as many.
 
     An exact binomial test of one against the sum of both, at 5 %. Late ticks come in bursts, so it
     is too strict rather than too lenient.
     """
-    return float(binom.sf(one - 1, one + other, MOST / (1.0 + MOST))) > 0.05
+    return float(binom.sf(one - 1, one + other, most / (1.0 + most))) > 0.05
 
 
 def in_words(factor: float, enough: bool, chance: bool) -> str:
@@ -203,9 +203,9 @@ def main() -> None:
         tail = ratio(servo["lateness_us"]["p99_9"], bare["lateness_us"]["p99_9"])
         print(line(name, "servo", cells_of(servo)))
         print(line("", "bare", cells_of({"rate_hz": arguments.rate, **bare})))
-        few_late = is_chance(servo["late_ticks"], bare["late_ticks"])
+        few_late = is_chance(servo["late_ticks"], bare["late_ticks"], MOST)
         far = MOST * bare["lateness_us"]["p99_9"]
-        few_far = is_chance(beyond(servo, far), beyond(bare, far / MOST))
+        few_far = is_chance(beyond(servo, far), beyond(bare, far / MOST), 1.0)
         verdicts = [in_words(late, enough, few_late), "", "", in_words(tail, enough, few_far)]
         print(line("", "ratio", ["", "", *verdicts]), flush=True)
     print("\nstages of the tick, us")

@@ -18,10 +18,12 @@ pub struct Schedule {
 
 impl Schedule {
     /// Counted from the whole second before `now_ns`, shifted by a part of the period: the kernel's
-    /// own ticks lie at whole milliseconds of the same clock, and other servos elsewhere.
+    /// own ticks lie at whole milliseconds of the same clock, and other servos elsewhere. Those of
+    /// other processes are not known, so a sixteenth to either side is left to chance.
     pub fn new(rate_hz: u32, now_ns: u64, phase: &Phase) -> Self {
         let rate_hz = u64::from(rate_hz.max(1));
-        let shift_ns = SECOND_NS / rate_hz * phase.eighths() / 8;
+        let sixty_fourths = 8 * phase.eighths() + u64::from(std::process::id() % 9) - 4;
+        let shift_ns = SECOND_NS / rate_hz * sixty_fourths / 64;
         Self {
             start_ns: now_ns - now_ns % SECOND_NS - SECOND_NS + shift_ns,
             rate_hz,
@@ -171,7 +173,8 @@ mod tests {
             let schedule = Schedule::new(1000, 5_123_456_789, phase);
             let next = schedule.deadline_ns(schedule.last_before(5_123_456_789) + 1);
             assert!(next > 5_123_456_789 && next <= 5_124_456_789);
-            assert_eq!(next % 1_000_000, 125_000 * phase.eighths());
+            assert!((next % 1_000_000).abs_diff(125_000 * phase.eighths()) <= 62_500);
+            assert!((62_500..=937_500).contains(&(next % 1_000_000)));
         }
     }
 }
