@@ -165,6 +165,13 @@ struct Board {
   uint64_t states = 0;
   uint64_t dropped = 0;
   float strongest_n = 0.0F;
+  // How long the watchdog took, and how long nobody had looked at it before, the last time.
+  uint32_t forces_seen = 0;
+  uint32_t limps_seen = 0;
+  uint64_t forced_us = 0;
+  uint64_t looked_us = 0;
+  uint64_t limp_after_us = 0;
+  uint64_t limp_look_us = 0;
 
   explicit Board(const palpate::DeviceHello& hello) : device(hello) {
     period_us = 1000000U / hello.rate_hz;
@@ -205,11 +212,24 @@ struct Board {
     }
   }
 
+  void time_watchdog(uint64_t now_us) {
+    const palpate::Counters& seen = device.counters();
+    if (seen.forces != forces_seen) forced_us = now_us;
+    if (seen.limp != limps_seen) {
+      limp_after_us = now_us - forced_us;
+      limp_look_us = now_us - looked_us;
+    }
+    forces_seen = seen.forces;
+    limps_seen = seen.limp;
+    looked_us = now_us;
+  }
+
   void tick() {
     const uint64_t now_us = clock_us();
     port.flush();
     listen(now_us);
     drive = device.drive(short_clock(now_us));
+    time_watchdog(now_us);
     const float* force = drive.force_n;
     const float size = sqrtf(force[0] * force[0] + force[1] * force[1] + force[2] * force[2]);
     if (size > strongest_n) strongest_n = size;
@@ -253,10 +273,11 @@ struct Board {
   void report() {
     const palpate::Counters& seen = device.counters();
     printf("{\"mode\": \"%s\", \"enabled\": %s, \"damp\": %s, \"force\": [%.9g, %.9g, %.9g], "
-           "\"strongest\": %.9g, ",
+           "\"strongest\": %.9g, \"limp_after_us\": %" PRIu64 ", \"limp_look_us\": %" PRIu64 ", ",
            name_of(device.mode()), drive.enabled ? "true" : "false", drive.damp ? "true" : "false",
            static_cast<double>(drive.force_n[0]), static_cast<double>(drive.force_n[1]),
-           static_cast<double>(drive.force_n[2]), static_cast<double>(strongest_n));
+           static_cast<double>(drive.force_n[2]), static_cast<double>(strongest_n),
+           limp_after_us, limp_look_us);
     printf("\"states\": %" PRIu64 ", \"dropped\": %" PRIu64 ", \"hellos\": %" PRIu32
            ", \"forces\": %" PRIu32 ", \"lost\": %" PRIu32 ", \"duplicates\": %" PRIu32
            ", \"late\": %" PRIu32 ", \"unknown\": %" PRIu32 ", \"unexpected\": %" PRIu32

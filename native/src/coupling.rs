@@ -185,7 +185,8 @@ impl Coupler {
 /// a force that comes late has to make up for the way already gone.
 fn bounded(added: DVec3, spring: DVec3) -> DVec3 {
     let size = spring.length();
-    if size == 0.0 {
+    // What is no number passes, for safety to find it.
+    if size.is_nan() || size == 0.0 {
         return DVec3::ZERO;
     }
     let way = spring / size;

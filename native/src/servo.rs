@@ -242,7 +242,7 @@ impl<D: Device> Servo<D> {
         self.published.most_steps = self.published.most_steps.max(steps);
         self.published.rescues = rescues;
         found.inside = proxy.is_buried();
-        if found.blind {
+        if found.blind || found.fault == Some(Fault::Nan) {
             return;
         }
         let Some(hold) = proxy.hold() else {

@@ -8,10 +8,11 @@ use std::sync::Arc;
 use glam::DVec3;
 use palpate_servo::device::{Fault, Probe, Reading};
 use palpate_servo::servo::Settings;
-use palpate_servo::snapshot::State;
+use palpate_servo::snapshot::{Published, State};
 use palpate_servo::state::reason;
 use palpate_servo::thread::Running;
 use scripted::{ABOVE, DT, OPTIONS, PRESSED, Scripted, Table, probe, settings};
+use triple_buffer::triple_buffer;
 
 #[test]
 fn a_gap_between_ticks_gives_no_force_in_the_tick_after_it_and_then_a_ramp() {
@@ -212,4 +213,22 @@ fn the_old_body_is_freed_by_whoever_brought_the_new_one() {
     }
     assert_eq!(running.published().snapshot.body, 20);
     running.paced().stop();
+}
+
+#[test]
+fn a_reader_that_holds_its_end_holds_up_nobody_and_then_sees_the_newest() {
+    let mut table = Table::pressing();
+    let (_, nobody) = triple_buffer(&Published::default());
+    let mut reader = std::mem::replace(&mut table.snapshots, nobody);
+    let held = reader.read();
+    let then = *held;
+    // Were the thread to wait for a reader, or for room in the ring, this would never end.
+    for _ in 0..1000 {
+        table.press();
+    }
+    assert_eq!(*held, then, "nothing changes under a reader's eyes");
+    let newest = *reader.read();
+    assert_eq!(newest.snapshot.tick, then.snapshot.tick + 1000);
+    assert_eq!(newest.samples_lost, newest.snapshot.tick - 10);
+    assert_eq!(newest.snapshot.state, State::Touching);
 }

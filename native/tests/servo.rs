@@ -6,6 +6,7 @@ mod scripted;
 use std::sync::{Arc, Mutex};
 
 use glam::{DMat3, DVec3};
+use palpate_servo::coupling::Coupling;
 use palpate_servo::device::{DeviceFrame, Fault, Probe, Reading};
 use palpate_servo::proxy::Feel;
 use palpate_servo::safety::Limits;
@@ -45,8 +46,14 @@ fn a_largest_force_of_the_device_that_is_none_gives_no_force() {
 
 #[test]
 fn settings_that_are_no_numbers_give_no_force() {
+    let coupling = Coupling {
+        stiffness: 500.0,
+        damping: 1.0,
+        passivity_control: true,
+    };
     let moduli = [f64::NAN, f64::INFINITY, 0.0, -1.0].map(|young_modulus| Settings {
         young_modulus,
+        coupling,
         ..settings()
     });
     let frames = [f64::NAN, f64::INFINITY].map(|bad| Settings {

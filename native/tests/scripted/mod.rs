@@ -91,7 +91,7 @@ pub struct Table {
     pub settings: Input<Settings>,
     pub samples: Consumer<Sample>,
     pub now: f64,
-    snapshots: Output<Published>,
+    pub snapshots: Output<Published>,
 }
 
 impl Table {
