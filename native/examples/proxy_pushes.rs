@@ -1,8 +1,8 @@
 //! How many random pushes fall through or stick:
-//! `cargo run --release --example proxy_pushes -- [--pushes 100000] [MESH ...]`.
+//! `cargo run --release --example proxy_pushes -- [--pushes 100000] [NAME or MESH ...]`.
 //!
 //! Pushes so many times at each quantum, with the shape alone and with shading and friction, into
-//! test bodies or, where given, into meshes from text files: a line with the numbers of nodes and
+//! all test bodies or, where given, those of these names and meshes from text files: a line with the numbers of nodes and
 //! of triangles, a line of three coordinates (m) a node, a line of three node numbers a triangle.
 
 use std::sync::Arc;
@@ -53,19 +53,22 @@ fn read_mesh(path: &str) -> Arc<Body> {
 
 fn main() {
     let mut pushes = 100_000;
+    let known = pushed_bodies();
     let mut named: Vec<(String, Arc<Body>)> = Vec::new();
     let mut arguments = env::args().skip(1);
     while let Some(argument) = arguments.next() {
         if argument == "--pushes" {
             let count = arguments.next().expect("--pushes takes a number");
             pushes = count.parse().expect("--pushes takes a number");
+        } else if let Some((name, body)) = known.iter().find(|(name, _)| *name == argument) {
+            named.push(((*name).to_owned(), body.clone()));
         } else {
             let name = argument.rsplit(['/', '.']).nth(1).unwrap_or("mesh");
             named.push((name.to_owned(), read_mesh(&argument)));
         }
     }
     if named.is_empty() {
-        named.extend(pushed_bodies().into_iter().map(|(n, b)| (n.to_owned(), b)));
+        named.extend(known.into_iter().map(|(n, b)| (n.to_owned(), b)));
     }
     let quanta = QUANTA.map(|q| format!("{:>6.0} um", q * 1e6)).concat();
     println!("fell through, stuck or astray of {pushes} pushes at each quantum");
