@@ -106,6 +106,16 @@ fn a_device_that_was_held_up_is_no_burst() {
 }
 
 #[test]
+fn a_device_that_makes_its_states_in_bursts_is_not_held_back_by_the_wire() {
+    let states: Vec<(u32, u32)> = every(16_000)
+        .flat_map(|begin| (0..5).map(move |i| (begin + 100 * i, begin + 900)))
+        .collect();
+    let rhythm = seen(every(1_000), &states);
+    assert!(rhythm.pauses > 50 && rhythm.states > 250);
+    assert_eq!(rhythm.bursts, 0, "{rhythm:?}");
+}
+
+#[test]
 fn silence_and_a_new_line_are_no_pauses() {
     let mut arrivals = Arrivals::default();
     let mut arrive = |now: f64, forget: bool| {

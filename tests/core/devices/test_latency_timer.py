@@ -75,6 +75,14 @@ def test_nothing_else_is_taken_for_it(healthy):
     assert explain_readings(readings(**healthy)) is None
 
 
+def test_a_device_that_makes_its_states_in_bursts_is_not_held_back_by_the_wire():
+    seen = []
+    for begin in range(0, 1_000_000, 16_000):
+        seen.append((begin * 1e-6, [begin - 900 + 100 * i for i in range(5)]))
+        seen += [((begin + 1000 * i) * 1e-6, []) for i in range(1, 16)]
+    assert explain_readings(seen) is None
+
+
 def test_a_few_bursts_are_an_accident():
     assert explain_readings(readings(latency_timer=0.016)[:150]) is None
     assert explain_readings([]) is None
