@@ -64,8 +64,9 @@ class HaplyBoard:
     """The whole device, in steps; what `SimulatedBoard` is for devices that speak the link.
 
     The hand waits in the rest pose, unless `options.rest` is another place than the default, until
-    the first host sets the board up. Heights, axes beyond two, encoder steps, force limit, brake
-    and buttons of the options have no meaning here. `loss` is a fraction of the bytes.
+    the first host sets the board up. Of the options those have a meaning that are about the hand,
+    the moving mass and its friction, the plug, and loss (of bytes here), noise and delay; encoders
+    and motors are those of the model. Heights are 0.
 
     Raises PalpateError for a model that is not known and for options that make no sense.
     """

@@ -260,7 +260,10 @@ impl Bench {
     }
 
     fn start(&mut self, always: bool) {
-        let degrees = MODELS[0].rest_degrees();
+        self.start_at(MODELS[0].rest_degrees(), always);
+    }
+
+    fn start_at(&mut self, degrees: [f32; 2], always: bool) {
         let calibration = Calibration { degrees, always };
         let device = HaplyDevice::open(self.cable.clone(), &MODELS[0], calibration).unwrap();
         self.device = Some(device);
@@ -356,6 +359,15 @@ fn a_known_board_keeps_its_angles_unless_the_user_wants_new_ones() {
     let probe = at(bench.ticks(20));
     assert!(probe.position.distance(expected(0, 0)) < 1e-7);
     assert_eq!(bench.board().setups, 2);
+}
+
+#[test]
+fn the_handle_may_rest_where_the_user_says() {
+    let mut bench = Bench::new();
+    bench.start_at([150.0, 30.0], true);
+    let probe = at(bench.ticks(20));
+    // 150 degrees are 1016.7 counts, 30 are 203.3; whole ones are kept.
+    assert!(probe.position.distance(expected(1016 - 1138, 203 - 81)) < 1e-7);
 }
 
 #[test]

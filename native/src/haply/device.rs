@@ -278,10 +278,12 @@ impl<O: Opener> HaplyDevice<O> {
     /// Finds out whether the board knows this device, and sets it up if not.
     fn ask(&mut self, asked: Option<f64>, in_vain: u32) {
         let waited = asked.map_or(f64::INFINITY, |then| self.now - then);
+        let address = self.model.address;
         let inbox = self.line.inbox.bytes();
-        let heard = inbox.first() == Some(&self.model.address);
+        let heard = inbox.first() == Some(&address);
         // The address alone: not this device. More than that, but no angles: set up by mistake.
-        let knows_nothing = heard && (inbox.len() == 1 || in_vain >= ASKED_IN_VAIN);
+        let alone = inbox.iter().all(|byte| *byte == address);
+        let knows_nothing = heard && (alone || in_vain >= ASKED_IN_VAIN);
         if waited >= ANSWER_SECONDS && knows_nothing {
             self.line.inbox.clear();
             return self.set_up(self.may_calibrate);
