@@ -590,8 +590,9 @@ class ContactOutcome(TypedDict):
     """The most that the motor had given at any time beyond what friction had taken: what a hand
     could have got out. Never more than 0 for a passive device that begins outside the body.
     """
+    made_before: float
     made_late: float
-    """Work of the motor in the last quarter beyond that of an ideal spring."""
+    """Work of the motor in the third and the last quarter beyond that of an ideal spring."""
     swing_before: float
     swing_late: float
     """Highest minus lowest position (m) in the third and the last quarter."""

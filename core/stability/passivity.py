@@ -11,8 +11,11 @@ from .contact_loop import CouplingSettings, DevicePlant, PassiveHand, Press, pre
 MOST_EXTRACTED = 1e-6
 """Energy (J) that the motor may give beyond what friction takes: a hundredth of a key press's."""
 
-MOST_MADE_AT_REST = 1e-7
-"""Energy (J) that may be made in the last half second, when all should have come to rest."""
+MOST_HUM = 1e-7
+"""Energy (J) that may still be made in the last half second without getting less and less."""
+
+DYING = 0.9
+"""What is made in the last half second over what was in the one before, when it gets less."""
 
 PUSHES = (0.05, 0.3, 1.0, 2.5)
 """Hands without any spring or damper: the weight of a finger, N."""
@@ -36,8 +39,8 @@ class Verdict:
 
     extracted: float
     """J beyond what friction took."""
-    made_at_rest: float
-    """J in the last quarter of a trial."""
+    hum: float
+    """J made in the last quarter of a trial, if it was not on the way to silence."""
     hand: PassiveHand
     how: Press
 
@@ -49,7 +52,7 @@ class Verdict:
     @property
     def excess(self) -> float:
         """Energies over what is allowed."""
-        return max(self.extracted / MOST_EXTRACTED, self.made_at_rest / MOST_MADE_AT_REST)
+        return max(self.extracted / MOST_EXTRACTED, self.hum / MOST_HUM)
 
 
 def hands(seen_stiffness: float) -> Iterator[PassiveHand]:
@@ -81,7 +84,9 @@ def judge(
     for hand, speed in itertools.product(hands(coupling.seen_stiffness(body_stiffness)), SPEEDS):
         how = Press(speed=speed, seconds=seconds)
         outcome = press(plant, hand, body_stiffness, coupling, how)
-        found = Verdict(outcome["extracted"], outcome["made_late"], hand, how)
+        late = outcome["made_late"]
+        hum = late if late > DYING * outcome["made_before"] else 0.0
+        found = Verdict(outcome["extracted"], hum, hand, how)
         if worst is None or found.excess > worst.excess:
             worst = found
         if first_failure and not worst.passive:

@@ -83,7 +83,9 @@ pub struct Outcome {
     /// The most that the motor had given at any time beyond what friction had taken: what a hand
     /// could have got out. Never more than 0 for a passive device that begins outside the body.
     pub extracted: f64,
-    /// Made by the loop in the last quarter: work of the motor beyond that of the ideal spring.
+    /// Made by the loop in the third quarter: work of the motor beyond that of the ideal spring.
+    pub made_before: f64,
+    /// The same in the last quarter.
     pub made_late: f64,
     /// Highest minus lowest position in the last quarter, m.
     pub swing_late: f64,
@@ -129,7 +131,7 @@ pub fn run(
     let stored = |x: f64| stored_energy(seen_stiffness(trial), trial.limits.max_force, x);
     let ticks = (trial.seconds / period).round() as u64;
     let late = ticks - ticks / 4;
-    let mut made_before = 0.0;
+    let mut given = [0.0; 2];
     let mut swings = [(f64::INFINITY, f64::NEG_INFINITY); 2];
     for tick in 0..ticks {
         let command = controller.force(rounded(body.x, plant.encoder_step), period);
@@ -139,8 +141,11 @@ pub fn run(
             on_the_way.pop_back();
         }
         on_the_way.push_back((due, command));
+        if tick == ticks / 2 {
+            given[0] = body.motor + stored(body.x);
+        }
         if tick == late {
-            made_before = body.motor + stored(body.x);
+            given[1] = body.motor + stored(body.x);
         }
         for inner in tick * steps..(tick + 1) * steps {
             while on_the_way.front().is_some_and(|&(due, _)| due <= inner) {
@@ -159,7 +164,8 @@ pub fn run(
         trace((tick + 1) as f64 * period, body.x, held);
     }
     outcome.kinetic = 0.5 * plant.mass * body.v * body.v;
-    outcome.made_late = body.motor + stored(body.x) - made_before;
+    outcome.made_before = given[1] - given[0];
+    outcome.made_late = body.motor + stored(body.x) - given[1];
     [outcome.swing_before, outcome.swing_late] =
         swings.map(|(low, high)| if high > low { high - low } else { 0.0 });
     (outcome.motor, outcome.hand) = (body.motor, body.hand);

@@ -120,6 +120,7 @@ pub fn simulate_contact<'py>(
         ("viscous", outcome.viscous),
         ("coulomb", outcome.coulomb),
         ("extracted", outcome.extracted),
+        ("made_before", outcome.made_before),
         ("made_late", outcome.made_late),
         ("swing_before", outcome.swing_before),
         ("swing_late", outcome.swing_late),

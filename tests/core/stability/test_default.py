@@ -52,7 +52,7 @@ def test_the_hardest_corner_hums_and_pushes_without_the_coupling():
     assert LIGHT in CORNERS
     bare = judge(LIGHT, HARD, NONE)
     assert bare.extracted > 1e-3
-    assert bare.made_at_rest > 1e-3
+    assert bare.hum > 1e-3
     assert is_passive(LIGHT, HARD, DEFAULT)
 
 
