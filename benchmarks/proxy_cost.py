@@ -3,10 +3,11 @@
     python benchmarks/proxy_cost.py [--quick]
 
 On the 192-triangle cube and on a sphere of 2,346 triangles (R 25 mm), the finger slides 3 mm deep
-at 100 mm/s, pokes to and fro through the surface at 100 mm/s, and hovers 0.1 mm over it, at 1 kHz;
-then the same on spheres of 200 to 1,000,000 triangles. A figure is the median over batches of 40
-ticks, of god object, contact point and contact force together. And for the sphere how much the
-force jumps per tick while sliding 5 mm deep, beyond what it does on an ideal sphere.
+at 100 mm/s, pokes to and fro through the surface at 100 mm/s, hovers 0.1 mm over it, and strokes to
+and fro over the same 30 mm, at 1 kHz; then the same on spheres of 200 to 1,000,000 triangles. A
+figure is the median over batches of 40 ticks, of god object, contact point and contact force
+together. And for the sphere how much the force jumps per tick while sliding 5 mm deep, beyond what
+it does on an ideal sphere.
 
 Another implementation takes part when ``PALPATE_PROXY_PEER`` names an executable::
 
@@ -157,6 +158,9 @@ def motions(shape: Shape) -> Iterator[tuple[str, Floats]]:
     pokes = ways[(np.arange(TICKS) // 80) * 80]
     yield "poking", pokes * (reach(shape, pokes) + stroke)[:, None]
     yield "hovering", ways * (surface + 1e-4)
+    # To and fro over 30 mm: the same triangles again and again, as fingers do.
+    stroke_of = 300 - np.abs(np.arange(TICKS) % 600 - 300)
+    yield "stroking", (ways * (surface - 0.003))[stroke_of]
 
 
 def entry(path: Floats) -> Floats:

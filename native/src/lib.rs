@@ -17,6 +17,7 @@ pub mod durations;
 mod early;
 pub mod exchange;
 pub mod haply;
+mod joining;
 pub mod link;
 mod normals;
 pub mod passivity;
