@@ -5,6 +5,7 @@
 //! publishes a snapshot ([`servo`]). The tick allocates nothing, takes no lock and knows nothing
 //! of Python; the optional `python` feature adds the thin binding.
 
+mod asleep;
 pub mod clock;
 pub mod closed_loop;
 pub mod closest;

@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 use rtrb::Consumer;
 use triple_buffer::{Input, Output, triple_buffer};
 
+use crate::asleep::Asleep;
 use crate::clock::{Pace, Timing, Waking};
 use crate::device::{Device, Fault};
 use crate::exchange::{Hand, exchange};
@@ -173,8 +174,9 @@ impl Running {
             Waking::Early,
             move |wake| {
                 let run = catch_unwind(AssertUnwindSafe(|| {
+                    let mut asleep = Asleep::default();
                     while let Some(now) = wake() {
-                        servo.tick(now);
+                        servo.tick(now + asleep.seconds());
                     }
                 }));
                 servo.park(run.is_err().then_some(Fault::Internal));
