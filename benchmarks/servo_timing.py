@@ -1,6 +1,6 @@
 """How well the servo keeps its deadlines, beside a bare native thread in the same run.
 
-    python benchmarks/servo_timing.py [--seconds S] [--rate HZ]
+    python benchmarks/servo_timing.py [--seconds S] [--rate HZ] [--load ROW]
 
 Both threads run at once, half a period apart, so that whatever else the machine does hits both and
 neither waits for the other. The bare thread only sleeps, by ``clock_nanosleep`` to the deadline, at
@@ -183,6 +183,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seconds", type=float, default=32.0, help="for each row")
     parser.add_argument("--rate", type=int, default=1000, help="Hz")
+    parser.add_argument("--load", help="part of a row's name; all rows unless given")
     arguments = parser.parse_args()
     seconds = arguments.seconds
     body = ball()
@@ -193,6 +194,9 @@ def main() -> None:
         "Python hogging": lambda servo: hog(servo, seconds),
         "all cores loaded": lambda servo: beside_busy_processes(servo, seconds),
     }
+    loads = {name: run for name, run in loads.items() if (arguments.load or "") in name}
+    if not loads:
+        parser.error(f"no row is called {arguments.load}")
     print(line("load", "thread", COLUMNS))
     measured: dict[str, dict[str, Any]] = {}
     for name, run in loads.items():
