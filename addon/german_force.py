@@ -120,15 +120,14 @@ WORDS = {
         "Wie gut die Oberfläche einen ruhenden Finger hält: Seitenkraft durch Andruck. "
         "0 ist glitschig, Filz etwa 0,5, Gummi 1"
     ),
-    "Friction: At Rest": "Reibung: ruhend",
-    "Sliding": "gleitend",
+    "Sliding": "Gleitreibung",
     "Dynamic Friction": "Gleitreibung",
     "The same while the finger slides; never more than the static one": (
         "Dasselbe, während der Finger gleitet; nie mehr als die Haftreibung"
     ),
     # Force loop
     "Force Loop": "Kraftschleife",
-    "Rate": "Takt",
+    "Rate": "Rate",
     "How often a second the force is computed, in hertz. Firmer bodies want more, "
     "slow devices and computers less": (
         "Wie oft je Sekunde die Kraft berechnet wird, in Hertz. Festere Körper wollen mehr, "
@@ -167,6 +166,7 @@ WORDS = {
     "The stiffest contact that the motors feel, in newtons per metre": (
         "Die steifste Berührung, die die Motoren fühlen, in Newton je Meter"
     ),
+    "Stiffness": "Steifigkeit",
     "Damping": "Dämpfung",
     "What brakes the device in a contact of that stiffness, in newton seconds per metre; "
     "softer contacts get their share": (

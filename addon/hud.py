@@ -10,7 +10,7 @@ from gpu_extras.batch import batch_for_shader
 
 from ..operators.press_session import PressSession
 from ..operators.press_state import Phase, Source
-from ..operators.servo_words import FORCEFUL, Signal, standing
+from ..operators.servo_words import Signal, standing
 from .reading import reading
 
 Color = tuple[float, float, float, float]
@@ -118,7 +118,7 @@ def _device_lines(session: PressSession, force: Line) -> list[Line]:
         lines.append(force)
     if now.why:
         lines.append(Line(say(now.why), NORMAL, WARNING if fault else WHITE))
-    if now.signal in FORCEFUL and not session.awaits_device:
+    if now.signal in {Signal.FORCE, Signal.RETURNING}:
         given = sum(component**2 for component in snapshot.output_force) ** 0.5
         lines.append(Line(f"{say('The device gives')} {given:.3f} N", NORMAL, WHITE))
     if now.limit:

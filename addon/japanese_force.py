@@ -3,7 +3,7 @@
 WORDS = {
     # The servo's states
     "Waiting": "待機中",
-    "Free": "非接触",
+    "Free": "フリー",
     "Touching": "接触中",
     "Force Rises": "力を復帰中",
     "Fault": "異常",
@@ -115,8 +115,7 @@ WORDS = {
         "止まった指を表面が留める強さ (横の力と押す力の比)。0 は滑りやすく、"
         "フェルトは約 0.5、ゴムは 1"
     ),
-    "Friction: At Rest": "摩擦: 静止",
-    "Sliding": "動き",
+    "Sliding": "動摩擦",
     "Dynamic Friction": "動摩擦",
     "The same while the finger slides; never more than the static one": (
         "指が滑っている間の同じ比。静止摩擦を超えません"
@@ -136,9 +135,9 @@ WORDS = {
     "Priority": "優先度",
     "No real-time priority: {reason}": "リアルタイム優先度がありません: {reason}",
     "Time in a Tick: Mean, 99 %": "1 回の時間: 平均、99 %",
-    "Read": "読み込み",
+    "Read": "読込",
     "Proxy": "プロキシ",
-    "Write": "書き込み",
+    "Write": "書込",
     "Connection": "接続",
     "Received": "受信",
     "Sent": "送信",
@@ -160,6 +159,7 @@ WORDS = {
     "The stiffest contact that the motors feel, in newtons per metre": (
         "モーターが感じる最も硬い接触 (N/m)"
     ),
+    "Stiffness": "剛性",
     "Damping": "減衰",
     "What brakes the device in a contact of that stiffness, in newton seconds per metre; "
     "softer contacts get their share": (

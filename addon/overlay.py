@@ -29,7 +29,7 @@ SEEN_THROUGH = 0.5
 # The arrow has half its full length at this force: small ones show, large ones fit the screen.
 HALF_LENGTH_FORCE = 0.3
 CONTACT_SIZE, LINE_PIXELS = 0.6, 2.5
-WORKSPACE_COLOR, WORKSPACE_PIXELS = (0.75, 0.85, 1.0, 0.55), 1.5
+WORKSPACE_COLOR, WORKSPACE_PIXELS = (0.75, 0.85, 1.0, 0.4), 1.5
 HEAD_LENGTH, HEAD_WIDTH, SHAFT_PIXELS = 20.0, 7.0, 4.0
 
 

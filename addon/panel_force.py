@@ -4,7 +4,7 @@ import bpy
 
 from ..operators.press_session import PressSession
 from ..operators.press_state import Phase
-from ..operators.servo_words import Signal, Standing, standing
+from ..operators.servo_words import FORCEFUL, Signal, Standing, standing
 from .sentence import say
 
 # Coloured squares: green, orange and red mean motors on, about to come, and something wrong.
@@ -22,8 +22,9 @@ def draw(layout: bpy.types.UILayout, context: bpy.types.Context, press: PressSes
     """At the top of the panel while a device presses."""
     row = layout.row()
     row.scale_y = 2.0
-    text, icon = ("Force Off", "CANCEL") if press.state.force_on else ("Force On", "PLAY")
-    row.alert = press.state.force_on
+    text, icon = ("Force Off", "COLORSET_01_VEC") if press.state.force_on else ("Force On", "PLAY")
+    # Red behind dark letters, as in the light theme, would hide them.
+    row.alert = press.state.force_on and _has_bright_letters(context)
     row.operator("palpate.switch_force", text=text, icon=icon)
     if press.snapshot is not None:
         _draw_standing(layout, context, standing(press.snapshot))
@@ -35,5 +36,11 @@ def _draw_standing(layout: bpy.types.UILayout, context: bpy.types.Context, now: 
     column = layout.column(align=True)
     column.alert = now.signal is Signal.FAULT
     column.label(text=now.word, icon=ICONS[now.signal])
-    for line in filter(None, (now.why, now.limit)):
-        say(column, context, line, "BLANK1")
+    # What comes and goes many times a second would move everything below: the view tells it.
+    if now.why and now.signal not in FORCEFUL:
+        say(column, context, now.why, "BLANK1")
+
+
+def _has_bright_letters(context: bpy.types.Context) -> bool:
+    red, green, blue = context.preferences.themes[0].user_interface.wcol_tool.text
+    return bool(red + green + blue > 1.5)

@@ -54,7 +54,7 @@ def _draw_coupling(layout: bpy.types.UILayout, scene: bpy.types.Scene) -> None:
     column = layout.column(align=True)
     column.prop(chosen, "own_coupling")
     if chosen.own_coupling:
-        column.prop(chosen, "coupling_stiffness")
+        column.prop(chosen, "coupling_stiffness", text="Stiffness")
         column.prop(chosen, "coupling_damping")
         column.prop(chosen, "passivity_control")
 

@@ -77,7 +77,7 @@ class PALPATE_PT_touch(PalpatePanel, bpy.types.Panel):
         settings = context.object.palpate
         layout.prop(settings, "shading")
         column = layout.column(align=True)
-        column.prop(settings, "static_friction", text="Friction: At Rest")
+        column.prop(settings, "static_friction")
         column.prop(settings, "dynamic_friction", text="Sliding")
 
 

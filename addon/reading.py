@@ -47,7 +47,9 @@ def reading(session: PressSession) -> Reading:
         corners = body.mesh.surface_nodes[np.asarray(snapshot.triangle)]
         moved = session.drawn.node_displacements(session.displacements)[corners]
         contact = proxy + np.asarray(snapshot.alpha) @ moved
-    force = np.asarray(snapshot.contact_force)
+    # A limp device gives nothing, however deep it is.
+    limp = snapshot.state == "disabled"
+    force = np.zeros(3) if limp else np.asarray(snapshot.contact_force)
     return Reading(
         force=float(np.linalg.norm(force)),
         depth=float(np.linalg.norm(probe - proxy)),

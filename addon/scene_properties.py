@@ -130,7 +130,7 @@ class PalpateScene(bpy.types.PropertyGroup):
         description="How long a recording may become, in minutes; then it stops by itself",
         default=10.0,
         min=0.1,
-        max=120.0,
+        max=60.0,
         precision=1,
         step=100,
     )

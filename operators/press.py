@@ -37,8 +37,8 @@ STATUS = {
     Phase.READY: "Drag on the surface: Press     [Enter] Keep     [Esc] Restore",
     Phase.DRAGGING: "Drag: In and along     [Wheel] Deeper",
     Phase.HOLDING: "Drag on the surface: Press again     [Enter] Keep     [Esc] Restore",
-    Phase.FEELING: "The device presses     [Space] Force Off     [Enter] Keep     [Esc] Restore",
-    Phase.LOST: "The device is away     [Space] Force Off     [Esc] Restore",
+    Phase.FEELING: "The device presses     [Space] Force Off/On     [Enter] Keep     [Esc] Restore",
+    Phase.LOST: "The device is away     [Space] Force Off/On     [Esc] Restore",
 }
 
 

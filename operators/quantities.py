@@ -25,10 +25,10 @@ def memory(count: float) -> str:
 
 
 def microseconds(time: float) -> str:
-    """A short time in us: ``0.4 us``, ``12 us``, ``1.2 ms``."""
+    """A short time in µs: ``0.4 µs``, ``12 µs``, ``1.2 ms``."""
     if time >= 1000.0:
         return f"{time / 1000:.1f} ms"
-    return f"{time:.{1 if time < 10.0 else 0}f} us"
+    return f"{time:.{1 if time < 10.0 else 0}f} µs"
 
 
 def about(count: float) -> str:
