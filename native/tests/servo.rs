@@ -96,6 +96,29 @@ fn friction_that_is_no_number_gives_no_force_or_the_bodys_own() {
 }
 
 #[test]
+fn a_coupling_that_is_no_number_gives_no_force_or_the_bodys_own() {
+    for bad in [f64::NAN, f64::INFINITY, -1.0, 0.0] {
+        for (stiffness, damping) in [(bad, 0.0), (500.0, bad), (bad, bad)] {
+            let mut table = Table::pressing();
+            table.settings.write(Settings {
+                coupling: Coupling {
+                    stiffness,
+                    damping,
+                    passivity_control: true,
+                },
+                ..settings()
+            });
+            for deeper in 0..20 {
+                let position = PRESSED - DVec3::Z * 1e-4 * f64::from(deeper);
+                let shot = table.tick(Reading::At(probe(position)));
+                assert!(shot.output_force.is_finite());
+                assert!(shot.output_force.length() <= 3.0 * (1.0 + 1e-12));
+            }
+        }
+    }
+}
+
+#[test]
 fn limits_that_are_no_numbers_give_no_force() {
     let limits = |edit: fn(&mut Limits)| {
         let mut options = OPTIONS;
