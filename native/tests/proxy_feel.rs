@@ -154,12 +154,34 @@ fn without_depth_nothing_lags() {
                     touched += 1;
                     let felt = proxy.position().distance(device);
                     let real = proxy.god_object().distance(device);
-                    assert!(felt <= 2.0 * (1.0 + feel.static_friction) * real + 1e-15);
+                    // A lag of 19 degrees at most makes it 6 % longer.
+                    let longest = match (feel.shading, feel.static_friction > 0.0) {
+                        (false, false) => 1.1,
+                        _ => 2.0 * (1.0 + feel.static_friction),
+                    };
+                    assert!(felt <= longest * real + 1e-15, "{felt} of {real}");
                 }
             }
             assert!(touched > 1000);
         }
     }
+}
+
+#[test]
+fn at_sharp_edges_the_force_lags_by_a_small_angle_only() {
+    // An icosahedron: its sides meet at 41.8 degrees.
+    let body = sphere(0.025, 0);
+    let feel = Feel::default();
+    let ways: Vec<DVec3> = around(0.015, 3000).collect();
+    let mut proxy = pressed(&body, ways[0] * 0.015, ways[0] * 0.02, &feel);
+    let mut largest = 0.0_f64;
+    for way in ways {
+        let device = way * 0.015;
+        proxy.follow(&body, device, &feel, TICK);
+        let (felt, real) = (proxy.position() - device, proxy.god_object() - device);
+        largest = largest.max(felt.angle_between(real));
+    }
+    assert!((0.3..0.36).contains(&largest), "{largest} rad");
 }
 
 #[test]
