@@ -131,6 +131,8 @@ struct Seen {
     position: DVec3,
     device_us: u32,
     now: f64,
+    /// When something had come before that; what comes together was measured since then.
+    before: f64,
 }
 
 /// Measures a device's speed from its own clock, as long as that can be believed.
@@ -160,6 +162,11 @@ impl Speedometer {
             position,
             device_us,
             now,
+            before: match self.last {
+                Some(last) if last.now == now => last.before,
+                Some(last) => last.now,
+                None => now,
+            },
         };
         self.compare_clocks(&here);
         let Some(last) = self.last.replace(here) else {
@@ -170,7 +177,7 @@ impl Speedometer {
             return 0.0;
         }
         let (device, host) = elapsed(&last, &here);
-        let can_be = device > 0.0 && device <= host + DELAY_SECONDS;
+        let can_be = device > 0.0 && device <= now - last.before + DELAY_SECONDS;
         let seconds = if can_be && self.strikes < 2 {
             device
         } else {
@@ -347,6 +354,22 @@ mod tests {
             }
         }
         assert!(worst < 0.5 + 1e-6, "{worst}");
+    }
+
+    #[test]
+    fn a_machine_that_holds_up_both_ends_makes_no_speed() {
+        let mut meter = Speedometer::default();
+        for ms in 0..100_u32 {
+            meter.speed(
+                DVec3::X * 1e-4 * f64::from(ms),
+                1000 * ms,
+                f64::from(ms) * 1e-3,
+            );
+        }
+        // Both stand still for 80 ms: one STATE of before and one of after come together.
+        let before = meter.speed(DVec3::X * 1e-2, 100_000, 0.18);
+        let after = meter.speed(DVec3::X * 1.8e-2, 180_000, 0.18);
+        assert!(before.max(after) < 0.1 + 1e-9, "{before} {after}");
     }
 
     #[test]

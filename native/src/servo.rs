@@ -21,6 +21,8 @@ use crate::surface::Body;
 
 /// Two ticks further apart than this were interrupted: the device has gone limp meanwhile, s.
 const SUSPENDED_SECONDS: f64 = 0.02;
+/// For so long after a gap, what the line had stored may have holes, s.
+const HOLES_SECONDS: f64 = 0.05;
 /// A device slower than this part of the largest speed is calm.
 const CALM_PART: f64 = 0.5;
 
@@ -70,6 +72,8 @@ pub struct Servo<D> {
     standing: Standing,
     /// Time of the last tick, s.
     ticked_at: Option<f64>,
+    /// Time of the last tick after a gap, s.
+    interrupted_at: f64,
     published: Published,
     stages: Arc<Stages>,
 }
@@ -100,6 +104,7 @@ impl<D: Device> Servo<D> {
             safety: Safety::default(),
             standing: Standing::default(),
             ticked_at: None,
+            interrupted_at: f64::NEG_INFINITY,
             published: Published::default(),
             stages: Arc::default(),
         }
@@ -162,13 +167,20 @@ impl<D: Device> Servo<D> {
     fn inspect(&mut self, now: f64, reading: &Reading) -> Findings {
         let gap = self.ticked_at.replace(now).map_or(0.0, |last| now - last);
         // While there is no force, a gap endangers nobody.
+        if gap > SUSPENDED_SECONDS {
+            self.interrupted_at = now;
+        }
         let is_suspended = self.standing.fault == Some(Fault::Suspended);
         let was_pushing = is_suspended || self.standing.state.may_push();
         let fault = match reading {
             _ if was_pushing && gap > SUSPENDED_SECONDS => Some(Fault::Suspended),
             Reading::At(probe) | Reading::Passive(probe, _) => match self.fault_of(probe) {
                 // What the line had stored has holes, which look like jumps.
-                Some(Fault::TooFast) if is_suspended => Some(Fault::Suspended),
+                Some(Fault::TooFast)
+                    if is_suspended || now - self.interrupted_at < HOLES_SECONDS =>
+                {
+                    Some(Fault::Suspended)
+                }
                 fault => fault,
             },
             Reading::Waiting(_) => None,
