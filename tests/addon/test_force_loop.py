@@ -33,6 +33,8 @@ def test_force_off_is_zero_at_once_and_force_on_rises_from_nothing(sessions, sta
     assert not np.any(session.snapshot.output_force)
     assert said(session).word == "Force Off"
     assert "Space" in said(session).why
+    # Neither view nor panel tells a force that nobody feels.
+    assert part("addon.reading").reading(session).force == 0.0
     # Struck once more in alarm: it stays off.
     bpy.ops.palpate.switch_force()
     time.sleep(0.1)
@@ -42,6 +44,50 @@ def test_force_off_is_zero_at_once_and_force_on_rises_from_nothing(sessions, sta
     bpy.ops.palpate.switch_force()
     wait(session, lambda: session.snapshot.state != "disabled")
     wait(session, lambda: np.linalg.norm(session.snapshot.output_force) > 0.005)
+
+
+class Said:
+    """A layout that only notes what is written in it."""
+
+    def __init__(self):
+        self.lines = []
+
+    def column(self, **_):
+        return self
+
+    def label(self, *, text, **_):
+        self.lines.append(text)
+
+
+def test_an_adapter_that_holds_bytes_back_is_explained_in_the_panel(sessions, states, monkeypatch):
+    panel = part("addon.panel_loop")
+    session = begin(sessions, states, soft_cube())
+    session.tick()
+    scaled = SimpleNamespace(system=SimpleNamespace(ui_scale=1.0))
+    context = SimpleNamespace(region=SimpleNamespace(width=260), preferences=scaled)
+    layout = Said()
+    panel.draw_adapter_warning(layout, context)
+    assert layout.lines == []
+    link = {"bursts": 50, "burst_states": 800, "states": 800, "burst_ms": 16.0}
+    link["state_interval_us"] = {"device": 1000.0}
+    monkeypatch.setitem(session.loop.figures.counters, "link", link)
+    panel.draw_adapter_warning(layout, context)
+    assert "62.5 Hz" in " ".join(layout.lines)
+
+
+def test_the_coupling_is_the_default_of_the_rate_until_own_values_are_chosen(palpate):
+    scene, of = bpy.context.scene, part("operators.live_settings").Coupling.of
+    scene.palpate.rate = 2000
+    default = of(scene)
+    assert default.passivity_control
+    assert 0.0 < default.stiffness < np.inf
+    assert vars(default) == part("core.servo_session").device_coupling(2000)
+    scene.palpate.own_coupling = True
+    scene.palpate.coupling_stiffness = 300.0
+    assert of(scene).stiffness == 300.0
+    scene.palpate.stable_contact = False
+    assert of(scene).stiffness == np.inf
+    assert not of(scene).passivity_control
 
 
 def test_the_pointer_has_no_force_to_switch_off(sessions, states):
