@@ -238,3 +238,21 @@ fn at_rest_passivity_control_is_silent_between_two_encoder_steps() {
         assert_eq!(coupled.force, touched.force, "tick {tick}");
     }
 }
+
+#[test]
+fn a_new_touch_knows_nothing_of_the_last_one() {
+    let coupling = Coupling::for_devices(1000);
+    let place = DMat3::from_diagonal(DVec3::splat(700.0));
+    let mut used = Coupler::default();
+    for tick in 1..20 {
+        let touched = contact(place, DVec3::X * (1e-3 * f64::from(tick)));
+        let coupled = used.couple(&touched, &coupling, 1.0, DT);
+        used.sent(coupled.force);
+    }
+    used.release();
+    let touched = contact(place, DVec3::X * 2e-3);
+    assert_eq!(
+        used.couple(&touched, &coupling, 1.0, DT),
+        once(&touched, &coupling, 1.0)
+    );
+}

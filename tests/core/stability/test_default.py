@@ -22,6 +22,7 @@ HARD = 5000.0
 
 
 def test_the_range_is_what_the_document_says():
+    assert CouplingSettings(800.0, 4.0, True) == DEFAULT
     assert len(CORNERS) == 128
     assert {plant.mass for plant in CORNERS} == {0.05, 0.5}
     assert all(plant.coulomb >= 1500.0 * plant.encoder_step for plant in CORNERS)
