@@ -43,11 +43,9 @@ fn is_real_time(policy: libc::c_int) -> bool {
 
 /// Asks for the calling thread. Takes a second at most, while a bus does not answer.
 pub fn ask(_rate_hz: u32) -> Granted {
-    // SAFETY: sets this thread's timer slack and tells its number; no memory is involved.
-    let thread = unsafe {
-        libc::prctl(libc::PR_SET_TIMERSLACK, 1_usize);
-        libc::gettid()
-    };
+    // SAFETY: sets this thread's timer slack; no memory is involved.
+    unsafe { libc::prctl(libc::PR_SET_TIMERSLACK, 1_usize) };
+    let thread = this_thread();
     let text = by_right().unwrap_or_else(|refused| by_service(thread, &refused));
     // SAFETY: asks about this thread.
     let is_real_time = is_real_time(unsafe { libc::sched_getscheduler(0) });
@@ -60,8 +58,13 @@ pub fn ask(_rate_hz: u32) -> Granted {
 
 /// The calling thread ends.
 pub fn leave() {
-    // SAFETY: tells this thread's number.
-    runaway::forget(unsafe { libc::gettid() });
+    runaway::forget(this_thread());
+}
+
+/// The C library has a function for this only since glibc 2.30, and Blender needs but 2.28.
+fn this_thread() -> libc::pid_t {
+    // SAFETY: tells this thread's number; no memory is involved.
+    unsafe { libc::syscall(libc::SYS_gettid) as libc::pid_t }
 }
 
 fn by_right() -> io::Result<String> {

@@ -1,7 +1,7 @@
 //! Real-time priority by what each system gives ordinary users.
 
 #[cfg(target_os = "linux")]
-mod dbus;
+mod bus;
 #[cfg(not(target_os = "linux"))]
 mod elsewhere;
 #[cfg(target_os = "linux")]

@@ -6,13 +6,18 @@
 use std::io;
 use std::time::{Duration, Instant};
 
-use super::dbus::{Bus, Method, Value};
+use super::bus::{Bus, Service};
 use super::runaway;
 
 /// All of it, a start of the service included: a start must not wait for long.
 const PATIENCE: Duration = Duration::from_secs(1);
 const SYSTEM_BUS: &str =
     "unix:path=/run/dbus/system_bus_socket;unix:path=/var/run/dbus/system_bus_socket";
+const KIT: Service = Service {
+    name: "org.freedesktop.RealtimeKit1",
+    path: "/org/freedesktop/RealtimeKit1",
+    interface: "org.freedesktop.RealtimeKit1",
+};
 const WANTED_NICE: i32 = -11;
 
 /// What was had.
@@ -24,15 +29,6 @@ pub enum Granted {
     Nice(i32),
 }
 
-fn method(member: &'static str) -> Method<'static> {
-    Method {
-        destination: "org.freedesktop.RealtimeKit1",
-        path: "/org/freedesktop/RealtimeKit1",
-        interface: "org.freedesktop.RealtimeKit1",
-        member,
-    }
-}
-
 /// Asks for the calling thread, at most for `priority`.
 ///
 /// # Errors
@@ -40,27 +36,26 @@ fn method(member: &'static str) -> Method<'static> {
 pub fn ask(thread: libc::pid_t, priority: i32) -> io::Result<Granted> {
     let address = std::env::var("DBUS_SYSTEM_BUS_ADDRESS");
     let deadline = Instant::now() + PATIENCE;
-    let mut bus = Bus::connect(address.as_deref().unwrap_or(SYSTEM_BUS), deadline)?;
-    let refused = match real_time(&mut bus, thread, priority) {
+    let bus = Bus::connect(address.as_deref().unwrap_or(SYSTEM_BUS), deadline)?;
+    let refused = match real_time(&bus, thread, priority) {
         Ok(granted) => return Ok(granted),
         Err(refused) => refused,
     };
     // The reason for refusing real time says more than the second refusal would.
-    nice(&mut bus, thread).map_err(|_| refused)
+    nice(&bus, thread).map_err(|_| refused)
 }
 
-fn real_time(bus: &mut Bus, thread: libc::pid_t, priority: i32) -> io::Result<Granted> {
-    let properties = method("");
-    let most = bus.integer(&properties, "MaxRealtimePriority")?;
-    let limit_us = bus.integer(&properties, "RTTimeUSecMax")?;
+fn real_time(bus: &Bus, thread: libc::pid_t, priority: i32) -> io::Result<Granted> {
+    let most = bus.integer(&KIT, "MaxRealtimePriority")?;
+    let limit_us = bus.integer(&KIT, "RTTimeUSecMax")?;
     let priority = i64::from(priority).min(most);
     if priority < 1 || limit_us < 1 {
         return Err(io::Error::other("it grants no real-time priority"));
     }
     let guarded = runaway::guard(thread, limit_us as libc::rlim_t)?;
-    let arguments = [Value::Uint64(thread as u64), Value::Uint32(priority as u32)];
-    match bus.call(&method("MakeThreadRealtime"), &arguments) {
-        Ok(_) => Ok(Granted::RealTime(priority as i32)),
+    let arguments = (thread as u64, priority as u32);
+    match bus.call(&KIT, "MakeThreadRealtime", arguments) {
+        Ok(()) => Ok(Granted::RealTime(priority as i32)),
         Err(refused) => {
             guarded.undo();
             Err(refused)
@@ -68,10 +63,9 @@ fn real_time(bus: &mut Bus, thread: libc::pid_t, priority: i32) -> io::Result<Gr
     }
 }
 
-fn nice(bus: &mut Bus, thread: libc::pid_t) -> io::Result<Granted> {
-    let least = bus.integer(&method(""), "MinNiceLevel")?;
+fn nice(bus: &Bus, thread: libc::pid_t) -> io::Result<Granted> {
+    let least = bus.integer(&KIT, "MinNiceLevel")?;
     let level = i64::from(WANTED_NICE).max(least) as i32;
-    let arguments = [Value::Uint64(thread as u64), Value::Int32(level)];
-    bus.call(&method("MakeThreadHighPriority"), &arguments)?;
+    let () = bus.call(&KIT, "MakeThreadHighPriority", (thread as u64, level))?;
     Ok(Granted::Nice(level))
 }
