@@ -6,6 +6,7 @@
 //! of Python; the optional `python` feature adds the thin binding.
 
 mod asleep;
+mod child_thread;
 pub mod clock;
 pub mod closed_loop;
 pub mod closest;

@@ -8,11 +8,11 @@ use std::sync::atomic::{
     Ordering::{Acquire, Relaxed, Release},
 };
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::thread::JoinHandle;
 use std::time::Duration;
 
 use rtrb::{Consumer, Producer, RingBuffer};
 
+use crate::child_thread::ChildThread;
 use crate::snapshot::Sample;
 
 /// How long the thread that empties the ring may be held up without a loss, s.
@@ -104,7 +104,7 @@ impl Store {
 pub struct Recorder {
     shared: Arc<Shared>,
     store: Arc<Mutex<Store>>,
-    thread: Mutex<Option<JoinHandle<()>>>,
+    thread: Mutex<Option<ChildThread>>,
 }
 
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
@@ -148,17 +148,15 @@ impl Recorder {
         self.shared.lost.store(0, Relaxed);
         self.shared.kept.store(0, Relaxed);
         self.shared.on.store(limit > 0, Release);
-        let spawned = std::thread::Builder::new()
-            .name("palpate-recorder".to_owned())
-            .spawn({
-                let (shared, store) = (self.shared.clone(), self.store.clone());
-                move || {
-                    while shared.on.load(Acquire) {
-                        std::thread::park_timeout(PAUSE);
-                        locked(&store).drain(&shared);
-                    }
+        let spawned = ChildThread::spawn("palpate-recorder", {
+            let (shared, store) = (self.shared.clone(), self.store.clone());
+            move || {
+                while shared.on.load(Acquire) {
+                    std::thread::park_timeout(PAUSE);
+                    locked(&store).drain(&shared);
                 }
-            });
+            }
+        });
         match spawned {
             Ok(spawned) => *thread = Some(spawned),
             Err(problem) => {
@@ -175,7 +173,7 @@ impl Recorder {
         if let Some(thread) = locked(&self.thread).take() {
             thread.thread().unpark();
             // It cannot panic: it moves numbers, and asks for memory with a plan for none.
-            let _ = thread.join();
+            thread.join();
         }
         locked(&self.store).drain(&self.shared);
     }

@@ -3,13 +3,13 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
-use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use rtrb::Consumer;
 use triple_buffer::{Input, Output, triple_buffer};
 
 use crate::asleep::Asleep;
+use crate::child_thread::ChildThread;
 use crate::clock::{Pace, Timing, Waking};
 use crate::device::{Device, Fault};
 use crate::exchange::{Hand, exchange};
@@ -27,7 +27,7 @@ const EXCHANGE_SECONDS: Duration = Duration::from_millis(200);
 #[derive(Debug)]
 pub struct Paced {
     stop: Arc<AtomicBool>,
-    thread: Mutex<Option<JoinHandle<()>>>,
+    thread: Mutex<Option<ChildThread>>,
     timing: Arc<Timing>,
     realtime: Arc<OnceLock<Granted>>,
 }
@@ -42,7 +42,7 @@ impl Paced {
         let stop = Arc::new(AtomicBool::new(false));
         let timing = Arc::new(Timing::default());
         let realtime = Arc::new(OnceLock::new());
-        let thread = std::thread::Builder::new().name(name.to_owned()).spawn({
+        let thread = ChildThread::spawn(name, {
             let (stop, timing, realtime) = (stop.clone(), timing.clone(), realtime.clone());
             move || {
                 touch_stack();
@@ -88,7 +88,7 @@ impl Paced {
     pub fn is_running(&self) -> bool {
         locked(&self.thread)
             .as_ref()
-            .is_some_and(|t| !t.is_finished())
+            .is_some_and(ChildThread::is_running)
     }
 
     /// Ends the thread and waits for it; nothing happens the second time.
@@ -97,7 +97,7 @@ impl Paced {
         let thread = locked(&self.thread).take();
         if let Some(thread) = thread {
             // A panic was caught inside and is told in the last snapshot.
-            let _ = thread.join();
+            thread.join();
         }
     }
 }
