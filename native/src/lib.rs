@@ -36,6 +36,7 @@ mod schedule;
 pub mod servo;
 mod sleeper;
 pub mod snapshot;
+mod speedometer;
 pub mod stages;
 pub mod state;
 pub mod surface;

@@ -11,7 +11,7 @@ use crate::codec::{
 use crate::device::{Device, DeviceFrame, Fault, LinkReport, Probe, Reading};
 use crate::port::{Opener, Wire};
 use crate::rhythm::Arrivals;
-use crate::safety::Speedometer;
+use crate::speedometer::{Speedometer, has_begun_anew};
 use crate::state::reason;
 
 /// HELLO is repeated this often until it is answered, s.
@@ -45,8 +45,10 @@ pub struct LinkDevice<O: Opener> {
     heard: f64,
     /// Out of sight for too long: any sequence number is taken next.
     stale: bool,
-    /// The probe was never seen since the line was opened.
+    /// The probe was not seen since the session began: wherever it is then, it was set down there.
     unseen: bool,
+    /// The session before ended in this tick, so there is no force in it, whatever came since.
+    begun_anew: bool,
     device_fault: bool,
     speedometer: Speedometer,
     arrivals: Arrivals,
@@ -76,6 +78,7 @@ impl<O: Opener> LinkDevice<O> {
             heard: 0.0,
             stale: false,
             unseen: true,
+            begun_anew: false,
             device_fault: false,
             speedometer: Speedometer::default(),
             arrivals: Arrivals::default(),
@@ -152,12 +155,9 @@ impl<O: Opener> LinkDevice<O> {
                 self.report.unknown += 1;
             }
             Some(Message::Hello(greeting)) => {
-                if !self.is_greeted() {
-                    // A new session: where the device was before, and its sequence, are over.
-                    self.heard = now;
-                    self.newest = None;
-                    self.device_fault = false;
-                    self.speedometer.reset();
+                // One that says the same was only asked twice; another figure is another device.
+                if self.greeting != Some(greeting) {
+                    self.begin_session(now);
                 }
                 self.greeting = Some(greeting);
                 self.report.greeting = Some(greeting);
@@ -174,7 +174,23 @@ impl<O: Opener> LinkDevice<O> {
         }
     }
 
+    /// Forgets where the device was before, and its sequence.
+    fn begin_session(&mut self, now: f64) {
+        self.heard = now;
+        self.begun_anew = self.newest.take().is_some();
+        self.stale = false;
+        self.unseen = true;
+        self.device_fault = false;
+        self.speedometer.reset();
+    }
+
     fn take_state(&mut self, state: DeviceState, now: f64) {
+        if let Some(last) = &self.newest
+            && self.stale
+            && has_begun_anew(last.state.time_us, state.time_us, now - self.heard)
+        {
+            self.begin_session(now);
+        }
         if let Some(last) = &self.newest
             && !self.stale
         {
@@ -257,6 +273,9 @@ impl<O: Opener> Device for LinkDevice<O> {
         }
         if std::mem::take(&mut self.device_fault) {
             return Reading::Fault(Fault::Device);
+        }
+        if std::mem::take(&mut self.begun_anew) {
+            return Reading::Waiting(reason::NO_STATE);
         }
         if now - self.heard > STALE_SECONDS {
             self.stale = true;

@@ -46,9 +46,19 @@ impl Bench {
     }
 
     fn state(&self, sequence: u16, micrometres: i32, buttons: u8, flags: u8) {
+        self.state_at(
+            u32::from(sequence) * 1000,
+            sequence,
+            micrometres,
+            buttons,
+            flags,
+        );
+    }
+
+    fn state_at(&self, time_us: u32, sequence: u16, micrometres: i32, buttons: u8, flags: u8) {
         let mut payload = vec![2];
         payload.extend(sequence.to_le_bytes());
-        payload.extend((u32::from(sequence) * 1000).to_le_bytes());
+        payload.extend(time_us.to_le_bytes());
         for um in [micrometres, 0, 0] {
             payload.extend(um.to_le_bytes());
         }
@@ -195,12 +205,39 @@ fn silence_is_stale_and_the_return_takes_any_sequence() {
         [[1, 1]],
         "a device that was reset needs HELLO"
     );
-    bench.state(40, 2000, 0, 1);
+    bench.state_at(65_594_000, 40, 2000, 0, 1);
     let Reading::At(probe) = read(&mut device, 0.061) else {
         panic!("did not come back");
     };
     assert!(!probe.restart, "the way it went unseen is swept");
     assert_eq!(device.report().lost, 0);
+}
+
+#[test]
+fn a_device_whose_clock_began_anew_in_a_silence_was_reset_and_is_set_down_anew() {
+    let (bench, mut device) = greeted();
+    assert!(matches!(read(&mut device, 0.001), Reading::At(p) if p.restart));
+    assert_eq!(read(&mut device, 0.300), Reading::Fault(Fault::Stale));
+    bench.hello(1, 2.5);
+    assert_eq!(read(&mut device, 0.301), Reading::Fault(Fault::Stale));
+    bench.state_at(20_000, 0, -20_000, 0, 1);
+    assert!(matches!(read(&mut device, 0.302), Reading::Waiting(_)));
+    bench.state_at(21_000, 1, -20_000, 0, 1);
+    assert!(matches!(read(&mut device, 0.303), Reading::At(p) if p.restart && p.speed == 0.0));
+    bench.state_at(22_000, 2, -20_000, 0, 1);
+    assert!(matches!(read(&mut device, 0.304), Reading::At(p) if !p.restart));
+}
+
+#[test]
+fn a_hello_with_other_figures_ends_the_session_and_one_with_the_same_does_not() {
+    let (bench, mut device) = greeted();
+    assert!(matches!(read(&mut device, 0.001), Reading::At(p) if p.max_force == 2.5));
+    bench.hello(1, 2.5);
+    assert!(matches!(read(&mut device, 0.002), Reading::At(p) if !p.restart));
+    bench.hello(1, 30.0);
+    bench.state(3, 9000, 0, 1);
+    assert!(matches!(read(&mut device, 0.003), Reading::Waiting(_)));
+    assert!(matches!(read(&mut device, 0.004), Reading::At(p) if p.restart && p.max_force == 30.0));
 }
 
 #[test]
@@ -277,7 +314,11 @@ fn a_new_session_knows_nothing_of_the_last_one() {
     assert!(matches!(read(&mut device, 0.500), Reading::Waiting(_)));
     // Its sequence is behind that of the session before.
     bench.state(10, 3000, 0, 1);
-    assert_eq!(position(read(&mut device, 0.501)), 3e-3);
+    let Reading::At(probe) = read(&mut device, 0.501) else {
+        panic!("did not come back");
+    };
+    // No sweep leads here from a place that is forgotten.
+    assert!(probe.restart && probe.position.x == 3e-3);
     assert_eq!(device.report().out_of_order, 0);
 }
 
