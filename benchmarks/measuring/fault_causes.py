@@ -161,6 +161,21 @@ def _unsound_hello(press: VirtualPress, dice: Random) -> list[Shot]:
     return [press.tick(lambda sent: sent + hello)]
 
 
+def _other_figures(press: VirtualPress, dice: Random) -> list[Shot]:
+    """Another device answers, or the same with other limits."""
+    figures = replace(press.device.hello, largest_force=dice.uniform(5.0, 50.0))
+    return [press.tick(lambda sent: sent + link.encode(figures))]
+
+
+def _reset(press: VirtualPress, dice: Random) -> list[Shot]:
+    """Silence, and then clock and encoders begin anew: it seems to be deep inside."""
+    shots = _mute(press, dice)
+    begun = press.now
+    press.clock = lambda time: time - begun
+    press.position = press.position - np.array([0.0, 0.0, dice.uniform(0.001, 0.03)])
+    return shots
+
+
 def _flipped(frame: bytes, dice: Random) -> bytes:
     """One bit wrong, and no frame more or less for it."""
     damaged = bytearray(frame)
@@ -236,6 +251,8 @@ CAUSES = (
     Cause("unplugged, plugged in again", _unplug, Outcome.SILENT, "unplugged", line_gone=True),
     _silent("another protocol", _other_protocol, "wrong protocol"),
     _silent("a HELLO that cannot be", _unsound_hello, "waiting: no sound answer to HELLO yet"),
+    _silent("a HELLO with other figures", _other_figures, "waiting: no STATE yet"),
+    _silent("the device was reset in a silence", _reset, "stale", STALE_TICKS),
     _silent("no STATE for more than 20 ms", _mute, "stale", STALE_TICKS),
     _silent("only damaged STATE", _damaged_for_long, "stale", STALE_TICKS),
     _harmless("one bit flipped", _flip, "damaged"),

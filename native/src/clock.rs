@@ -123,8 +123,9 @@ impl Pace {
         }
     }
 
-    /// Sleeps until the next deadline and books how well it was kept.
-    pub fn wait(&mut self, timing: &Timing) -> Wake {
+    /// Sleeps until the next deadline and books how well it was kept; None, and nothing booked, when
+    /// no tick `is_wanted` any more by then.
+    pub fn wait(&mut self, timing: &Timing, is_wanted: impl FnOnce() -> bool) -> Option<Wake> {
         let done_ns = self.sleeper.now_ns();
         if timing.lateness.count() > 0 {
             timing.busy.record(done_ns - self.woke_ns);
@@ -134,12 +135,15 @@ impl Pace {
         self.number = next;
         let deadline_ns = self.schedule.deadline_ns(next);
         let now = self.reach(deadline_ns, done_ns, timing);
+        if !is_wanted() {
+            return None;
+        }
         timing.record(now.saturating_sub(deadline_ns), now - self.woke_ns, missed);
         self.woke_ns = now;
-        Wake {
+        Some(Wake {
             seconds: (now - self.begun_ns) as f64 * 1e-9,
             missed,
-        }
+        })
     }
 
     /// Sleeps, and turns around for what is left; the time then.
@@ -192,10 +196,10 @@ mod tests {
             let mut pace = Pace::new(rate_hz, Waking::Early);
             let before = pace.number;
             for _ in 0..30 {
-                pace.wait(&timing);
+                pace.wait(&timing, || true);
             }
             std::thread::sleep(std::time::Duration::from_millis(5));
-            let woken = pace.wait(&timing);
+            let woken = pace.wait(&timing, || true).unwrap();
             let report = timing.report();
             assert_eq!(report.ticks(), 31);
             assert!(woken.missed >= 4, "{woken:?} at {rate_hz} Hz");

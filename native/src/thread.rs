@@ -50,8 +50,8 @@ impl Paced {
                 let _ = realtime.set(granted);
                 let mut pace = Pace::new(rate_hz, waking);
                 work(&mut || {
-                    let wake = pace.wait(&timing);
-                    (!stop.load(Relaxed)).then_some(wake.seconds)
+                    let wake = pace.wait(&timing, || !stop.load(Relaxed));
+                    wake.map(|wake| wake.seconds)
                 });
             }
         })?;
