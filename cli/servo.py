@@ -23,7 +23,7 @@ from ..core.devices.simulated_options import SimulatedOptions
 from ..core.devices.simulated_process import SimulatedDevice
 from ..core.devices.stop_signals import stopped_by_signals
 from ..core.errors import PalpateError
-from ..core.recording import check_recording_path, write_recording
+from ..core.recording import check_recording_path, check_room, write_recording
 from ..core.servo_session import STATES, servo_for
 from ..core.soft_body import SoftBody
 from ..core.stiffness import lame_parameters
@@ -83,7 +83,7 @@ def run(arguments: argparse.Namespace) -> int:
         servo = servo_for(body, young_modulus=young_modulus, rate_hz=arguments.rate)
         stack.callback(servo.stop)
         if arguments.record is not None:
-            _start_recording(servo, arguments.seconds)
+            _start_recording(servo, arguments.record, arguments.seconds)
         if arguments.haply:
             _, at, _ = _highest_place(body)
             connect_haply(servo, arguments, _vector(at), stopped)
@@ -106,8 +106,10 @@ def _check_recording(path: Path, seconds: float) -> None:
         raise PalpateError(f"--record: a recording ends after {longest:g} s; give fewer --seconds")
 
 
-def _start_recording(servo: Servo, seconds: float) -> None:
+def _start_recording(servo: Servo, path: Path, seconds: float) -> None:
     most_bytes = servo.start_recording(seconds + HELLO_SECONDS)
+    # Now, for a disk that is full shows only when all has been felt.
+    check_room(path, most_bytes)
     sys.stderr.write(f"recording; takes up to {most_bytes / 1e6:.0f} MB of memory\n")
 
 

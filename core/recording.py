@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import itertools
 import json
+import shutil
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -50,6 +51,8 @@ CSV_HEADER = ",".join(
         "state",
     ]
 )
+CSV_GROWTH = 3.0
+"""A line of CSV takes at most so many times the bytes of its tick in memory."""
 _ROWS_AT_ONCE = 10_000
 _CSV_DTYPE = np.dtype([("tick", "=u8"), ("numbers", "=f8", (16,)), ("state", "U32")])
 
@@ -92,6 +95,23 @@ def check_recording_path(path: Path) -> None:
     if not path.parent.is_dir():
         raise RecordingError(f"{path}: there is no folder {path.parent}; make it first")
     refuse_unwritable(path)
+
+
+def check_room(path: Path, memory_bytes: int) -> None:
+    """Check that a recording that takes so many bytes of memory will fit where it shall be written.
+
+    Raises
+    ------
+    RecordingError
+        The disk has less room.
+    """
+    growth = CSV_GROWTH if path.suffix.lower() == ".csv" else 1.0
+    needed, free = growth * memory_bytes, shutil.disk_usage(path.parent).free
+    if free < needed:
+        raise RecordingError(
+            f"{path}: the recording may take {needed / 1e6:.1f} MB, and {path.parent} has room for "
+            f"{free / 1e6:.1f} MB; record for a shorter time, or choose a folder with more room"
+        )
 
 
 def write_recording(

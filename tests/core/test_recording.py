@@ -1,6 +1,7 @@
 """Recordings as files: exact, whole or not there, and errors that say what to do."""
 
 import json
+import shutil
 
 import numpy as np
 import palpate_servo
@@ -8,10 +9,13 @@ import pytest
 
 from palpate.core.errors import PalpateError
 from palpate.core.recording import (
+    CSV_GROWTH,
     CSV_HEADER,
     DTYPE,
     VECTORS,
+    RecordingError,
     check_recording_path,
+    check_room,
     read_recording,
     write_recording,
 )
@@ -141,6 +145,33 @@ def test_a_full_disk_leaves_the_older_file(tmp_path, samples, suffix):
         resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
     assert path.read_bytes() == before
     assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.parametrize(("suffix", "takes"), [(".npz", 86_000_000), (".csv", 258_000_000)])
+def test_a_disk_without_room_is_told_before_anything_is_felt(tmp_path, monkeypatch, suffix, takes):
+    path, memory = tmp_path / f"press{suffix}", 86_000_000
+    for free, fits in ((takes, True), (takes - 1, False)):
+        usage = shutil.disk_usage(tmp_path)._replace(free=free)
+        with monkeypatch.context() as patch:
+            patch.setattr(shutil, "disk_usage", lambda _, usage=usage: usage)
+            if fits:
+                check_room(path, memory)
+                continue
+            with pytest.raises(RecordingError, match="shorter time, or choose a folder") as told:
+                check_room(path, memory)
+            assert str(tmp_path) in str(told.value)
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".npz"])
+def test_a_csv_of_long_numbers_fits_where_it_was_said_to(tmp_path, samples, suffix):
+    many = np.resize(samples, 2000)
+    rng = np.random.default_rng(1)
+    for name in VECTORS:
+        many[name] = rng.normal(size=(2000, 3)) * 1e-3
+    path = tmp_path / f"press{suffix}"
+    write_recording(path, many, STATES, 1000)
+    growth = CSV_GROWTH if suffix == ".csv" else 1.02
+    assert path.stat().st_size <= growth * many.nbytes
 
 
 def test_samples_of_another_kind_are_refused(tmp_path, samples):
