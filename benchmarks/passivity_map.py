@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 from palpate.core.stability.closed_forms import stable_stiffness
 from palpate.core.stability.contact_loop import NONE, CouplingSettings, DevicePlant
 from palpate.core.stability.passivity import judge, stiffest_passive_body
-from palpate.core.stability.plant_range import RANGE
+from palpate.core.stability.plant_range import COARSE, RANGE
 
 PROJECT = Path(__file__).resolve().parents[1]
 DESKTOP = DevicePlant(mass=0.1, damping=0.5, coulomb=0.09, force_step=1e-3)
@@ -97,7 +97,7 @@ def draw(path: Path, borders: Borders) -> None:
         fontsize=10,
         color="#333333",
     )
-    handles, labels = panels[0, 0].get_legend_handles_labels()
+    handles, labels = panels[1, 1].get_legend_handles_labels()
     figure.legend(handles, labels, loc="lower center", ncols=3, frameon=False, fontsize=10)
     figure.suptitle(
         "Below its line every body is passive, whoever holds the device\n"
@@ -115,7 +115,13 @@ def draw_panel(axes: Axes, name: str, borders: Borders) -> None:
     """One setting."""
     worst = np.min([borders[name, encoder] for encoder in ENCODERS_UM], axis=0)
     axes.fill_between(
-        DELAYS_MS, LEAST, np.maximum(worst, LEAST), color="#009E73", alpha=0.15, linewidth=0.0
+        DELAYS_MS,
+        LEAST,
+        np.maximum(worst, LEAST),
+        color="#009E73",
+        alpha=0.15,
+        linewidth=0.0,
+        label="passive with all three encoders",
     )
     for encoder in ENCODERS_UM:
         colour, mark, line = LOOKS[encoder]
@@ -127,7 +133,7 @@ def draw_panel(axes: Axes, name: str, borders: Borders) -> None:
             markersize=5,
             color=colour,
             clip_on=False,
-            label=f"encoder of {encoder} um"
+            label=f"encoder of {encoder} µm"
             + (" (outside the range)" if encoder * 1e-6 > RANGE.encoder_step[1] else ""),
         )
     delays = np.linspace(0.0, DELAYS_MS[-1], 200)
@@ -141,10 +147,17 @@ def draw_panel(axes: Axes, name: str, borders: Borders) -> None:
         color=LOOKS[ENCODERS_UM[-1]][0],
         linewidth=3.0,
         alpha=0.5,
-        label=f"theory, {ENCODERS_UM[-1]} um: 2 friction / step",
+        label=f"theory, {ENCODERS_UM[-1]} µm: 2 friction / step",
     )
     if SETTINGS[name] == DEFAULT:
-        axes.axvspan(0.0, RANGE.delay[1] * 1e3, color="#56B4E9", alpha=0.18, linewidth=0.0)
+        axes.axvspan(
+            0.0,
+            RANGE.delay[1] * 1e3,
+            color="#56B4E9",
+            alpha=0.18,
+            linewidth=0.0,
+            label="delays of the default's range",
+        )
     if np.isfinite(SETTINGS[name].stiffness):
         axes.axhline(SETTINGS[name].stiffness, color="#666666", linewidth=1.0, linestyle="-.")
         axes.annotate(
@@ -168,7 +181,8 @@ def prove(pool: ThreadPoolExecutor, name: str, plants: Iterable[DevicePlant]) ->
 
     def excess(case: tuple[DevicePlant, float]) -> float:
         plant, body = case
-        return judge(plant, body, CouplingSettings.for_devices(plant.rate_hz)).excess
+        coupling = CouplingSettings.for_devices(plant.rate_hz, plant.encoder_step)
+        return judge(plant, body, coupling).excess
 
     found = list(pool.map(excess, cases))
     failed = [(e, *case) for e, case in zip(found, cases, strict=True) if e > 1.0]
@@ -199,6 +213,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         passive = [
             prove(pool, "corners of the range", RANGE.corners()),
             prove(pool, "inside the range", RANGE.drawn(options.plants, seed=1)),
+            prove(pool, "corners, coarse encoders", COARSE.corners()),
+            prove(pool, "inside, coarse encoders", COARSE.drawn(options.plants, seed=1)),
         ]
     print(f"{time.perf_counter() - begin:.0f} s")
     return 0 if all(passive) else 1

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from palpate_servo import STATES, Body, Servo, Snapshot, device_coupling
+from palpate_servo import STATES, Body, Servo, Snapshot, device_coupling, haply_encoder_step
 from palpate_servo import Compliance as NativeCompliance
 
 if TYPE_CHECKING:
@@ -27,6 +27,7 @@ __all__ = [
     "Snapshot",
     "device_coupling",
     "displacements_of",
+    "haply_encoder_step",
     "native_body",
     "native_compliance",
     "servo_for",

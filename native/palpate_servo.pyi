@@ -435,8 +435,9 @@ class Servo:
         for the body as it is), the damping that goes with it (N s/m; a softer body has its share),
         and whether energy that the contact would make is taken back. A pointer has no motors.
 
-        Unless told otherwise it is `device_coupling` of the servo's rate. ValueError for a
-        stiffness that is not more than 0, or a damping that is negative or not finite.
+        Unless told otherwise it is `device_coupling` of the servo's rate, with `start_haply` of the
+        model's encoders too. ValueError for a stiffness that is not more than 0, or a damping that
+        is negative or not finite.
         """
 
     def set_enabled(self, enabled: bool) -> None:
@@ -522,6 +523,12 @@ class SteppedServo:
     def set_young_modulus(self, young_modulus: float) -> None:
         """Any number, also none: to see what the tick makes of it."""
 
+    def set_coupling(self, *, stiffness: float, damping: float, passivity_control: bool) -> None:
+        """As of Servo; none at the start."""
+
+    def set_device_frame(self, rotation: _Matrix, translation: _Vector, scale: float) -> None:
+        """As of Servo."""
+
     def set_body(self, body: Body, young_modulus: float) -> None:
         """Exchange the body with the next tick; ValueError for a modulus without sense."""
 
@@ -556,8 +563,15 @@ class DeviceCoupling(TypedDict):
     damping: float
     passivity_control: bool
 
-def device_coupling(rate_hz: int = 1000) -> DeviceCoupling:
-    """The coupling for devices with motors that nothing is known of: see docs/stability.md."""
+def device_coupling(rate_hz: int = 1000, *, encoder_step: float = 0.0) -> DeviceCoupling:
+    """The coupling for devices with motors of which nothing but the encoders' step at the handle
+    (m) is known: see docs/stability.md. ValueError for a rate or a step without sense.
+    """
+
+def haply_encoder_step(model: str) -> float:
+    """The farthest that two successive encoder readings of a 2DIY lie apart, m; ValueError for a
+    model that is not known.
+    """
 
 def coupled_forces(
     displacements: NDArray[np.float64],

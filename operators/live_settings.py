@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import bpy
 
-from ..core.servo_session import Servo, device_coupling
-from .device_source import DeviceFrame
+from ..core.servo_session import Servo, device_coupling, haply_encoder_step
+from .device_source import DeviceFrame, is_planar
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,8 @@ class Coupling:
         if not chosen.stable_contact:
             return cls(math.inf, 0.0, passivity_control=False)
         if not chosen.own_coupling:
-            return cls(**device_coupling(chosen.rate))
+            step = haply_encoder_step(chosen.haply_model) if is_planar(scene) else 0.0
+            return cls(**device_coupling(chosen.rate, encoder_step=step))
         return cls(chosen.coupling_stiffness, chosen.coupling_damping, chosen.passivity_control)
 
 

@@ -62,9 +62,9 @@ class CouplingSettings:
     passivity_control: bool = False
 
     @classmethod
-    def for_devices(cls, rate_hz: int = 1000) -> CouplingSettings:
-        """The servo's default for devices with motors."""
-        return cls(**palpate_servo.device_coupling(rate_hz))
+    def for_devices(cls, rate_hz: int = 1000, encoder_step: float = 0.0) -> CouplingSettings:
+        """The servo's default for devices with motors and encoders of such a step (m)."""
+        return cls(**palpate_servo.device_coupling(rate_hz, encoder_step=encoder_step))
 
     def seen_stiffness(self, body_stiffness: float) -> float:
         """What a device at rest sees of a body, N/m."""

@@ -1,4 +1,4 @@
-"""The devices that the servo's default coupling is made for: `docs/stability.md`."""
+"""The devices that the servo's default couplings are made for: `docs/stability.md`."""
 
 from __future__ import annotations
 
@@ -85,3 +85,12 @@ class PlantRange:
 
 RANGE = PlantRange()
 """Hobby and desktop devices."""
+
+COARSE = PlantRange(
+    mass=(0.05, 0.3),
+    coulomb=(0.05, 0.3),
+    encoder_step=(0.08e-3, 0.4e-3),
+    rate_hz=(1000, 2000),
+    coulomb_per_step=0.0,
+)
+"""Devices with coarse encoders, such as Haply's 2DIY."""

@@ -128,7 +128,8 @@ pub fn run(
         start: 0.5 * plant.mass * trial.speed * trial.speed,
         ..Outcome::default()
     };
-    let stored = |x: f64| stored_energy(seen_stiffness(trial), trial.limits.max_force, x);
+    let seen = seen_stiffness(trial);
+    let stored = |x: f64| stored_energy(seen, trial.limits.max_force, plant, x);
     let ticks = (trial.seconds / period).round() as u64;
     let late = ticks - ticks / 4;
     let mut given = [0.0; 2];
@@ -206,9 +207,16 @@ fn coupled(coupler: &mut Coupler, u: f64, stiffness: f64, coupling: &Coupling, d
 }
 
 /// Energy (J) of an ideal spring, cut off at a largest force, pressed by `x` metres.
-fn stored_energy(stiffness: f64, most: f64, x: f64) -> f64 {
-    let (x, full) = (x.max(0.0), most / stiffness);
-    if x <= full {
+///
+/// Seen and answered in the plant's steps it is another spring, but one that gives back all it took.
+fn stored_energy(stiffness: f64, most: f64, plant: &Plant, x: f64) -> f64 {
+    let (x, step) = (x.max(0.0), plant.encoder_step);
+    let (counts, full) = ((x / step).round(), most / stiffness);
+    if step > 0.0 {
+        let force = |n: u64| rounded((stiffness * step * n as f64).min(most), plant.force_step);
+        let whole: f64 = (1..counts as u64).map(force).sum();
+        whole * step + force(counts as u64) * (x - (counts - 0.5) * step)
+    } else if x <= full {
         0.5 * stiffness * x * x
     } else {
         most * (x - 0.5 * full)

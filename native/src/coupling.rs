@@ -46,6 +46,24 @@ impl Coupling {
         }
     }
 
+    /// The coupling for devices with motors whose encoders have steps of `encoder_step` metres at the
+    /// handle; fine ones are no matter.
+    ///
+    /// Passive for the range of coarse encoders in `docs/stability.md`.
+    pub fn for_encoders(rate_hz: u32, encoder_step: f64) -> Self {
+        let usual = Self::for_devices(rate_hz);
+        if encoder_step <= FINE_STEP {
+            return usual;
+        }
+        let stiffness = usual.stiffness.min(FORCE_OF_A_STEP / encoder_step);
+        Self {
+            stiffness,
+            damping: stiffness * usual.lead_seconds(),
+            // It takes each step for a motion, and would brake, that is push, for nothing.
+            passivity_control: false,
+        }
+    }
+
     /// Seconds by which the damping makes the force lead.
     pub fn lead_seconds(&self) -> f64 {
         self.damping / self.stiffness
@@ -58,6 +76,11 @@ pub const LAG_SECONDS: f64 = 2.0e-3;
 const MOST_STIFFNESS: f64 = 800.0;
 /// Its damping over its stiffness, s.
 const LEAD_SECONDS: f64 = 5.0e-3;
+/// Up to this step of the encoders, m, [`Coupling::for_devices`] is passive.
+const FINE_STEP: f64 = 60.0e-6;
+/// What a step of coarser encoders may make of the spring's force, N: Coulomb friction has to swallow
+/// half of it (Diolaiti, Niemeyer, Barbagli and Salisbury 2006), and the damping's part too.
+const FORCE_OF_A_STEP: f64 = 0.06;
 /// Smoothing of the velocity, s: steps of an encoder come as single jumps.
 const SMOOTHING_SECONDS: f64 = 1.0e-3;
 /// Added force over the spring's own, at most.

@@ -82,6 +82,10 @@ def test_the_coupling_is_the_default_of_the_rate_until_own_values_are_chosen(pal
     assert default.passivity_control
     assert 0.0 < default.stiffness < np.inf
     assert vars(default) == part("core.servo_session").device_coupling(2000)
+    scene.palpate.source = "HAPLY"
+    servo = part("core.servo_session")
+    step = servo.haply_encoder_step(scene.palpate.haply_model)
+    assert vars(of(scene)) == servo.device_coupling(2000, encoder_step=step) != vars(default)
     scene.palpate.own_coupling = True
     scene.palpate.coupling_stiffness = 300.0
     assert of(scene).stiffness == 300.0

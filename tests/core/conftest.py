@@ -13,8 +13,9 @@ from palpate.core.stiffness import assemble
 from palpate.core.surface_compliance import surface_compliance
 from palpate.core.tet_mesh import TetMesh
 
-# The same examples in every run, so that a red test means a changed program.
-settings.register_profile("repeatable", derandomize=True)
+# For all that is drawn: the same examples in every run, so that a red test means a changed program,
+# and no limit of time, which a busy machine would break.
+settings.register_profile("repeatable", derandomize=True, deadline=None)
 settings.load_profile("repeatable")
 
 MESHES = Path(__file__).resolve().parents[1] / "meshes"

@@ -7,7 +7,7 @@ from trimesh.triangles import closest_point as referee_closest_point
 from palpate.core.closest_point import ClosestPoints, closest_area_coordinates
 
 
-@settings(deadline=None, max_examples=50)
+@settings(max_examples=50)
 @given(st.integers(0, 2**32 - 1), st.sampled_from([2.0**-10, 1.0, 2.0**10]))
 def test_closest_point_of_one_triangle_equals_an_independent_one(seed, scale):
     rng = np.random.default_rng(seed)

@@ -23,7 +23,7 @@ from palpate.core.devices.simulated_options import SimulatedOptions
 from palpate.core.devices.simulated_process import SimulatedDevice
 from palpate.core.paper_cube import paper_cube
 from palpate.core.pins import PinNodes
-from palpate.core.servo_session import servo_for
+from palpate.core.servo_session import device_coupling, haply_encoder_step, servo_for
 
 MODEL = haply_model(DEFAULT_MODEL)
 TOP = (0.026, 0.024, 0.05)
@@ -38,6 +38,7 @@ PLANES = {
     ),
 }
 DEEP = (0.002, -0.012, 0.0)
+SHALLOW = (0.002, -0.003, 0.0)
 TORQUE_ROUNDING = 0.016
 """What torques lose in bytes that are no commands, at most."""
 
@@ -107,6 +108,35 @@ def corners(degrees):
             math.radians(angle + sign * count)
             for angle, sign, count in zip(degrees, signs, counts, strict=True)
         )
+
+
+def test_coarse_encoders_soften_the_coupling_unless_another_was_chosen(cube):
+    """On a body of some 10,000 N/m, by what is felt at rest for each metre pressed."""
+    limit = device_coupling(encoder_step=haply_encoder_step(DEFAULT_MODEL))["stiffness"]
+    own = device_coupling()
+    for chosen, stiffest in ((None, limit), (own, own["stiffness"])):
+        device = SimulatedDevice(SimulatedOptions(coulomb=0.1), haply=DEFAULT_MODEL)
+        with device, servo_for(cube, young_modulus=1e6) as servo:
+            if chosen:
+                servo.set_coupling(**chosen)
+            servo.start_haply(device.port, rotation=PLANES["upright"], translation=TOP)
+            eventually(lambda: servo.snapshot().state == "free", servo)
+            device.move_hand(SHALLOW, 0.3)
+            eventually(lambda: np.linalg.norm(servo.snapshot().output_force) > 0.15, servo)
+            felt = eventually(lambda: resting_stiffness(servo), servo)
+        assert felt == pytest.approx(stiffest, rel=0.3)
+        assert felt <= stiffest * 1.001
+
+
+def resting_stiffness(servo):
+    """N/m between proxy and probe, once neither has moved for 20 looks; None before."""
+    shot = servo.snapshot()
+    for _ in range(20):
+        time.sleep(0.003)
+        after = servo.snapshot()
+        if shot.limited or not np.array_equal(shot.probe, after.probe):
+            return None
+    return np.linalg.norm(after.output_force) / np.linalg.norm(after.probe - after.proxy)
 
 
 @pytest.mark.parametrize("plane", PLANES)

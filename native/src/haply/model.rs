@@ -1,5 +1,7 @@
 //! What the makers sold, as their public example programs set it up; `docs/haply.md` names them.
 
+use std::f64::consts::TAU;
+
 use glam::{DVec2, DVec3};
 
 use super::pantograph::Pantograph;
@@ -41,6 +43,9 @@ pub struct Model {
     /// Half extents of a rectangle around it in which every pose is good, m.
     pub half_extents: DVec2,
 }
+
+/// Places looked at on either side of the workspace's middle, along each axis.
+const GRID: u32 = 6;
 
 /// Bit of an address that says: angles not counted from a known pose.
 const ADRIFT: u8 = 0x08;
@@ -140,6 +145,24 @@ impl Model {
             .angles(self.centre)
             .and_then(|angles| self.pantograph.pose(angles));
         pose.map_or(0.0, |pose| pose.largest_force(TORQUE_LIMIT))
+    }
+
+    /// The farthest that one reading of the encoders may lie from the next, anywhere in the workspace,
+    /// m: both go on by a step at once. Boards that count half the edges are assumed.
+    pub fn encoder_step(&self) -> f64 {
+        let steps = self.arms.map(|arm| 2.0 * TAU / f64::from(arm.resolution));
+        let places = (0..=2 * GRID).flat_map(|i| (0..=2 * GRID).map(move |j| (i, j)));
+        places
+            .filter_map(|(i, j)| {
+                let part = DVec2::new(f64::from(i), f64::from(j)) / f64::from(GRID) - DVec2::ONE;
+                let angles = self
+                    .pantograph
+                    .angles(self.centre + part * self.half_extents)?;
+                let [first, second] = self.pantograph.pose(angles)?.columns;
+                let (first, second) = (first * steps[0], second * steps[1]);
+                Some((first + second).length().max((first - second).length()))
+            })
+            .fold(0.0, f64::max)
     }
 
     /// Where a point of the pantograph is for the servo, m: from the workspace's middle, x to the

@@ -35,6 +35,7 @@ fn palpate_servo(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(closed_loop::simulate_contact, module)?)?;
     module.add_function(wrap_pyfunction!(closed_loop::coupled_forces, module)?)?;
     module.add_function(wrap_pyfunction!(closed_loop::device_coupling, module)?)?;
+    module.add_function(wrap_pyfunction!(haply::haply_encoder_step, module)?)?;
     let stop_all = wrap_pyfunction!(servo::stop_all, module)?;
     py.import("atexit")?
         .call_method1("register", (&stop_all,))?;

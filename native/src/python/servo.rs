@@ -44,6 +44,8 @@ pub struct Servo {
     /// What the next start shall record.
     armed_ticks: Mutex<usize>,
     settings: Mutex<Settings>,
+    /// The user's, if one was set; else that of the device.
+    own_coupling: Mutex<Option<Coupling>>,
     running: Mutex<Option<Arc<Running>>>,
     targets: Mutex<Option<(Input<Target>, Target)>>,
 }
@@ -81,12 +83,15 @@ impl Servo {
         py: Python<'_>,
         port: SerialPort,
         frame: DeviceFrame,
+        encoder_step: f64,
         open: impl FnOnce(SerialPort) -> std::io::Result<D> + Send,
     ) -> PyResult<()> {
         self.refuse_if_running()?;
         let settings = {
             let mut settings = locked(&self.settings);
             settings.frame = frame;
+            settings.coupling = locked(&self.own_coupling)
+                .unwrap_or_else(|| Coupling::for_encoders(self.options.rate_hz, encoder_step));
             *settings
         };
         let armed_ticks = *locked(&self.armed_ticks);
@@ -163,6 +168,7 @@ impl Servo {
                 feel: feel(shading, static_friction, dynamic_friction)?,
                 coupling: Coupling::for_devices(rate_hz),
             }),
+            own_coupling: Mutex::new(None),
             running: Mutex::new(None),
             targets: Mutex::new(None),
         })
@@ -202,7 +208,8 @@ impl Servo {
         scale: f64,
     ) -> PyResult<()> {
         let frame = device_frame(rotation, translation, scale)?;
-        self.start_at_port(py, SerialPort { path: port, baud }, frame, LinkDevice::open)
+        let port = SerialPort { path: port, baud };
+        self.start_at_port(py, port, frame, 0.0, LinkDevice::open)
     }
 
     #[pyo3(signature = (
@@ -224,7 +231,8 @@ impl Servo {
     ) -> PyResult<()> {
         let (model, calibration) = haply_setup(model, angles, recalibrate, baud)?;
         let frame = device_frame(rotation, translation, scale)?;
-        self.start_at_port(py, SerialPort { path: port, baud }, frame, |port| {
+        let (port, step) = (SerialPort { path: port, baud }, model.encoder_step());
+        self.start_at_port(py, port, frame, step, |port| {
             HaplyDevice::open(port, model, calibration)
         })
     }
@@ -286,6 +294,7 @@ impl Servo {
     #[pyo3(signature = (*, stiffness, damping, passivity_control))]
     fn set_coupling(&self, stiffness: f64, damping: f64, passivity_control: bool) -> PyResult<()> {
         let coupling = coupling(stiffness, damping, passivity_control)?;
+        *locked(&self.own_coupling) = Some(coupling);
         self.change(|s| s.coupling = coupling);
         Ok(())
     }
@@ -400,7 +409,11 @@ impl Servo {
     }
 }
 
-fn device_frame(rotation: Rows, translation: Triple, scale: f64) -> PyResult<DeviceFrame> {
+pub(super) fn device_frame(
+    rotation: Rows,
+    translation: Triple,
+    scale: f64,
+) -> PyResult<DeviceFrame> {
     let rotation = matrix(rotation);
     let error = rotation * rotation.transpose() - DMat3::IDENTITY;
     let is_orthonormal = error.to_cols_array().iter().all(|e| e.abs() < 1e-6);

@@ -10,8 +10,9 @@ use triple_buffer::{Input, Output, triple_buffer};
 
 use super::body::Body;
 use super::counters::link_counters;
+use super::servo::{coupling, device_frame};
 use super::snapshot::Snapshot;
-use super::vectors::{check_rate, check_seconds, positive};
+use super::vectors::{Rows, Triple, check_rate, check_seconds, positive};
 use crate::coupling::Coupling;
 use crate::device::{DeviceFrame, Fault};
 use crate::exchange::{Hand, exchange};
@@ -195,6 +196,24 @@ impl SteppedServo {
 
     fn set_young_modulus(&self, young_modulus: f64) {
         self.change(|s| s.young_modulus = young_modulus);
+    }
+
+    #[pyo3(signature = (*, stiffness, damping, passivity_control))]
+    fn set_coupling(&self, stiffness: f64, damping: f64, passivity_control: bool) -> PyResult<()> {
+        let coupling = coupling(stiffness, damping, passivity_control)?;
+        self.change(|s| s.coupling = coupling);
+        Ok(())
+    }
+
+    fn set_device_frame(&self, rotation: Rows, translation: Triple, scale: f64) -> PyResult<()> {
+        let frame = device_frame(rotation, translation, scale)?;
+        self.change(|s| {
+            s.frame = DeviceFrame {
+                epoch: s.frame.epoch.wrapping_add(1),
+                ..frame
+            };
+        });
+        Ok(())
     }
 
     fn set_body(&self, body: &Body, young_modulus: f64) -> PyResult<()> {

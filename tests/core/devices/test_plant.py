@@ -183,7 +183,7 @@ def test_it_sticks_until_the_force_exceeds_the_friction_and_then_slides(step):
     assert plant.velocity[0] == pytest.approx((0.25 - 0.2) / 0.5, rel=1e-9)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(
     st.lists(st.tuples(*[st.floats(-3.0, 3.0)] * 3), min_size=1, max_size=30),
     st.lists(st.tuples(*[st.floats(-0.01, 0.01)] * 3), min_size=30, max_size=30),

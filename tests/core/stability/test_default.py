@@ -1,9 +1,13 @@
 """The default coupling: passive for the documented range, and hardly felt on what is soft."""
 
+import itertools
+import math
+
 import numpy as np
 import palpate_servo
 import pytest
 
+from palpate.core.devices.haply_models import haply_model
 from palpate.core.stability.closed_forms import stable_stiffness
 from palpate.core.stability.contact_loop import (
     NONE,
@@ -14,7 +18,7 @@ from palpate.core.stability.contact_loop import (
     press,
 )
 from palpate.core.stability.passivity import is_passive, judge, stiffest_passive_body
-from palpate.core.stability.plant_range import RANGE
+from palpate.core.stability.plant_range import COARSE, RANGE
 
 DEFAULT = CouplingSettings.for_devices(1000)
 CORNERS = list(RANGE.corners())
@@ -43,6 +47,62 @@ def test_corners_of_the_range_are_passive(plant):
 def test_plants_inside_the_range_are_passive(plant):
     coupling = CouplingSettings.for_devices(plant.rate_hz)
     assert is_passive(plant, 700.0, coupling)
+
+
+COARSE_CORNERS = list(COARSE.corners())
+
+
+@pytest.mark.parametrize(
+    "plant", [*COARSE_CORNERS[3::26], *COARSE.drawn(4, seed=7)], ids=lambda p: f"{p.mass:.2f}"
+)
+def test_coarse_encoders_have_a_coupling_that_is_passive(plant):
+    assert judge(
+        plant, HARD, CouplingSettings.for_devices(plant.rate_hz, plant.encoder_step)
+    ).passive
+
+
+def test_coarse_encoders_make_the_coupling_for_fine_ones_give_energy():
+    """The 2DIY's step, with much friction."""
+    plant = DevicePlant(0.1, 0.3, 0.1, palpate_servo.haply_encoder_step("2diy-3.1"), 2e-3, 1e-3)
+    assert not is_passive(plant, HARD, DEFAULT)
+    assert is_passive(plant, HARD, CouplingSettings.for_devices(1000, plant.encoder_step))
+
+
+def test_only_coarse_encoders_change_the_coupling():
+    assert CouplingSettings.for_devices(1000, 60e-6) == DEFAULT
+    assert CouplingSettings.for_devices(1000, 0.3e-3) == CouplingSettings(200.0, 1.0, False)
+    # Coarse or not, a slow servo is felt no stiffer than with fine encoders.
+    slow = CouplingSettings.for_devices(100)
+    assert CouplingSettings.for_devices(100, 70e-6).stiffness == slow.stiffness
+    for wrong in (-1e-6, math.nan, math.inf):
+        with pytest.raises(ValueError, match="encoder_step"):
+            palpate_servo.device_coupling(encoder_step=wrong)
+
+
+@pytest.mark.parametrize("model", ["2diy-3.1", "2diy-3.0", "2diy-2", "kit"])
+def test_a_2diy_s_step_is_that_of_its_simulated_arm(model):
+    """Both arms by two counts at the workspace's edges and between; by the other arm's solution."""
+    haply = haply_model(model)
+    half = (0.045, 0.025) if model == "kit" else (0.06, 0.035)
+    turns = [math.radians(720.0 / resolution) for resolution in haply.resolutions]
+    farthest = 0.0
+    for x, y, sign in itertools.product((-1.0, 0.0, 1.0), (-1.0, 0.0, 1.0), (-1.0, 1.0)):
+        place = haply.handle((x * half[0], y * half[1], 0.0))
+        first, second = haply.arm.angles(place)
+        after = haply.arm.handle((first + turns[0], second + sign * turns[1]))
+        farthest = max(farthest, abs(after - place))
+    assert palpate_servo.haply_encoder_step(model) == pytest.approx(farthest, rel=0.02)
+
+
+@pytest.mark.parametrize("seconds", [0.036, 0.038, 0.041])
+def test_a_spring_seen_in_steps_makes_nothing_by_that_alone(seconds):
+    """Crept into, where a force that is a tick late makes a little; a parabola's energy is off by
+    more, either way.
+    """
+    plant = DevicePlant(mass=0.05, damping=2.0, encoder_step=0.3e-3, rate_hz=8000)
+    how = Press(speed=0.5, seconds=seconds, max_slew=1e12)
+    outcome = press(plant, PassiveHand(push=1.0), 160.0, NONE, how)
+    assert 0.0 < outcome["made_late"] < 7e-7
 
 
 LIGHT = DevicePlant(0.05, 0.2, 0.03, 1e-6, 1e-3, 2e-3, 0.0, 1000)
