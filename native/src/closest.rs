@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::surface::Body;
+use crate::surface::{Body, Face};
 use crate::tree::Closest;
 
 /// Nearest surface point and whether `p` lies inside the body.
@@ -13,6 +13,23 @@ pub fn closest_point(body: &Body, p: DVec3, hint: u32) -> (Closest, bool) {
     let closest = body.tree().closest(body.faces(), p, hint);
     let inside = is_behind(body, closest.triangle, closest.alpha, closest.point, p);
     (closest, inside)
+}
+
+/// Another face as near as `distance`, to within `rounding`, that has `p` straight behind it.
+///
+/// Where faces of two parts coincide the nearest face alone cannot tell the sign: outside of the
+/// one part is inside of the other.
+pub(crate) fn coincident_face(
+    body: &Body,
+    p: DVec3,
+    distance: f64,
+    rounding: f64,
+) -> Option<Closest> {
+    let is_behind = |face: &Face, distance: f64| {
+        let height = face.normal.dot(p - face.corners[0]);
+        height <= rounding - distance && face.side(p) < 0.0
+    };
+    (body.tree()).find_within(body.faces(), p, distance + rounding, is_behind)
 }
 
 fn is_behind(body: &Body, triangle: u32, alpha: [f64; 3], point: DVec3, p: DVec3) -> bool {

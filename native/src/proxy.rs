@@ -19,7 +19,7 @@ mod walk;
 
 use glam::DVec3;
 
-use crate::closest::closest_point;
+use crate::closest::{closest_point, coincident_face};
 use crate::surface::{Body, HalfEdge};
 use crate::tree::{Feature, Sweep};
 use contact_point::{ContactPoint, Judged};
@@ -124,7 +124,7 @@ impl Proxy {
         self.position = position;
         self.contact.lift(position);
         let (distance, inside) = self.look(body, position);
-        self.place = if inside {
+        self.place = if inside || self.is_in_other_part(body, position, distance) {
             Place::Buried {
                 clearance: distance,
             }
@@ -252,6 +252,23 @@ impl Proxy {
         (closest.distance, inside)
     }
 
+    /// Whether `p`, outside of the part it is nearest to, is inside of one that coincides there;
+    /// remembers its triangle.
+    fn is_in_other_part(&mut self, body: &Body, p: DVec3, distance: f64) -> bool {
+        let rounding = ON_SURFACE * body.size();
+        if distance <= rounding {
+            return false;
+        }
+        let found = coincident_face(body, p, distance, rounding);
+        if let Some(closest) = found {
+            self.hold = Hold {
+                triangle: closest.triangle,
+                alpha: closest.alpha,
+            };
+        }
+        found.is_some()
+    }
+
     /// Moves through free space to the device; false when it landed on the surface.
     ///
     /// From a place that is outside for certain the sweep's signs are proof enough, so near the
@@ -290,6 +307,10 @@ impl Proxy {
             return true;
         }
         let (clearance, inside) = self.look(body, device);
+        // Only a way that began on the surface can have entered a part without a crossing.
+        let inside = inside
+            || (clearance * (1.0 - ROUNDING) <= start.distance(device)
+                && self.is_in_other_part(body, device, clearance));
         if inside && clearance > ON_SURFACE * body.size() {
             self.rescues += 1;
             self.enter(body);

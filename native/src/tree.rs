@@ -155,6 +155,47 @@ impl Tree {
         }
     }
 
+    /// A point of a triangle no farther from `p` than `reach`, on a triangle that `is_wanted`.
+    pub fn find_within(
+        &self,
+        faces: &[Face],
+        p: DVec3,
+        reach: f64,
+        is_wanted: impl Fn(&Face, f64) -> bool,
+    ) -> Option<Closest> {
+        let mut stack = [0_u32; STACK];
+        let mut depth = 1;
+        while depth > 0 {
+            depth -= 1;
+            let index = stack[depth];
+            let node = &self.nodes[index as usize];
+            if node.distance_squared(p) > reach * reach {
+                continue;
+            }
+            if node.count == 0 {
+                stack[depth] = node.index;
+                stack[depth + 1] = index + 1;
+                depth += 2;
+                continue;
+            }
+            let first = node.index as usize;
+            for &triangle in &self.order[first..first + node.count as usize] {
+                let face = &faces[triangle as usize];
+                let (alpha, point) = closest_on_face(face, p);
+                let distance = point.distance(p);
+                if distance <= reach && is_wanted(face, distance) {
+                    return Some(Closest {
+                        triangle,
+                        alpha,
+                        point,
+                        distance,
+                    });
+                }
+            }
+        }
+        None
+    }
+
     /// First inward and outward crossing of the segment from `start` to `end`.
     pub fn sweep(&self, body: &Body, start: DVec3, end: DVec3, skip: &Feature) -> Sweep {
         let mut found = Sweep::default();

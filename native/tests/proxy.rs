@@ -4,7 +4,8 @@ mod bodies;
 mod pushing;
 
 use bodies::{
-    Dice, angle_bar, cube, inner_corner, lentil, sphere, touching_blocks, touching_tips, wall,
+    Dice, angle_bar, cube, inner_corner, lentil, parts_side_by_side, sphere, touching_blocks,
+    touching_tips, wall,
 };
 use glam::DVec3;
 use palpate_servo::closest::closest_point;
@@ -219,6 +220,55 @@ fn set_down_inside_it_feels_nothing_until_it_was_outside() {
     proxy.restart(&body, DVec3::splat(0.02));
     follow(&mut proxy, &body, DVec3::splat(0.021));
     assert!(proxy.hold().is_none());
+}
+
+#[test]
+fn from_one_part_into_the_next_where_their_faces_coincide_nothing_falls_through() {
+    let body = parts_side_by_side();
+    let mut dice = Dice::new(31);
+    let mut crossed = 0;
+    for round in 0..2000 {
+        let quantum = [1e-6, 5e-5, 1e-3][round % 3];
+        let inside = |dice: &mut Dice| {
+            DVec3::new(
+                dice.within(0.001, 0.024),
+                dice.within(0.001, 0.0115),
+                dice.within(0.001, 0.0115),
+            )
+        };
+        let first = inside(&mut dice);
+        let mut ways = vec![first.with_z(0.014), first];
+        ways.extend((0..3).map(|_| inside(&mut dice)));
+        let mut proxy = Proxy::new(&body, ways[0]);
+        let mut last = ways[0];
+        for way in ways.windows(2) {
+            for tick in 0..12 {
+                let device = quantised(way[0].lerp(way[1], f64::from(tick) / 11.0), quantum);
+                follow(&mut proxy, &body, device);
+                crossed += u32::from((device.x > 0.0125) != (last.x > 0.0125));
+                last = device;
+                let is_inside = device.x != 0.0125 && device.z < 0.0125;
+                assert!(
+                    proxy.hold().is_some() || !is_inside,
+                    "round {round}: free at {device}"
+                );
+            }
+        }
+        follow(&mut proxy, &body, last.with_z(0.014));
+        assert!(proxy.hold().is_none(), "round {round} sticks");
+    }
+    assert!(crossed > 1000);
+}
+
+#[test]
+fn set_down_beside_coinciding_faces_it_feels_nothing_until_it_was_outside() {
+    let body = parts_side_by_side();
+    let mut dice = Dice::new(32);
+    for _ in 0..500 {
+        let x = 0.0125 + dice.within(-1e-3, 1e-3);
+        let device = DVec3::new(x, dice.within(0.002, 0.01), dice.within(0.002, 0.01));
+        assert!(Proxy::new(&body, device).is_buried(), "{device}");
+    }
 }
 
 #[test]

@@ -194,6 +194,19 @@ pub fn touching_tips() -> Arc<Body> {
     voxels(&[[0, 0, 0], [1, 1, 1]], 0.0125)
 }
 
+/// Two blocks beside each other that share no node: their faces coincide at x = 12.5 mm.
+pub fn parts_side_by_side() -> Arc<Body> {
+    let block = voxels(&[[0, 0, 0]], 0.0125);
+    let count = block.nodes.len() as u32;
+    let aside = block.nodes.iter().map(|&p| p + DVec3::X * 0.0125);
+    let nodes = block.nodes.iter().copied().chain(aside).collect();
+    let other = block.triangles.iter().map(|t| t.map(|n| n + count));
+    soft(
+        nodes,
+        block.triangles.iter().copied().chain(other).collect(),
+    )
+}
+
 /// A wall of 50 x 50 mm, `thickness` thick.
 pub fn wall(thickness: f64) -> Arc<Body> {
     let body = voxels(&grid(4, 4, 1), 1.0);
