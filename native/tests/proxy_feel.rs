@@ -309,6 +309,55 @@ fn after_slipping_it_comes_to_rest_and_holds_with_the_static_coefficient() {
 }
 
 #[test]
+fn without_dynamic_friction_the_static_one_still_holds() {
+    let feel = Feel {
+        dynamic_friction: 0.0,
+        ..rubbing(false)
+    };
+    for body in [slab(), bodies::turned(&slab(), 1.0)] {
+        let point = body.face(0).at([0.2, 0.3, 0.5]);
+        let up = body.face(0).normal;
+        let along = up.any_orthonormal_vector();
+        let mut device = point - up * 0.002;
+        let mut proxy = pressed(&body, device, up * 0.01, &feel);
+        let mut slide = |proxy: &mut Proxy, ticks: usize, step: f64| {
+            for _ in 0..ticks {
+                device += along * step;
+                proxy.follow(&body, device, &feel, TICK);
+            }
+            ratio(force(&body, proxy, device), up)
+        };
+        slide(&mut proxy, 30, 0.0);
+        assert!(proxy.is_sticking());
+        let mu = slide(&mut proxy, 20, 2e-5);
+        assert!(proxy.is_sticking() && mu > 0.1, "{mu}");
+        let mu = slide(&mut proxy, 60, 2e-5);
+        assert!(!proxy.is_sticking() && mu < 1e-4, "{mu}");
+    }
+}
+
+#[test]
+fn friction_switched_off_while_it_holds_holds_no_more() {
+    let body = slab();
+    let start = DVec3::new(0.03, 0.05, 0.022);
+    let mut proxy = pressed(&body, start, DVec3::Z * 0.01, &rubbing(false));
+    let aside = start + DVec3::X * 0.0005;
+    proxy.follow(&body, aside, &rubbing(false), TICK);
+    assert!(proxy.is_sticking());
+    for shading in [false, true] {
+        let feel = Feel {
+            shading,
+            ..Feel::default()
+        };
+        for _ in 0..100 {
+            proxy.follow(&body, aside, &feel, TICK);
+        }
+        assert!(!proxy.is_sticking());
+        assert!(proxy.position().distance(aside.with_z(0.025)) < 1e-9);
+    }
+}
+
+#[test]
 fn no_friction_is_exactly_none() {
     let body = slab();
     let feel = Feel::default();

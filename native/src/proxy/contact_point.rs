@@ -109,10 +109,14 @@ impl ContactPoint {
             if aim == self.hold {
                 return;
             }
-        } else if feel.shading
-            && let Some(smooth) = self.shade(body, god, device)
-        {
-            (aim, point) = (smooth, body.face(smooth.triangle).at(smooth.alpha));
+        } else {
+            // Friction that was switched off while it held must not say that it holds.
+            self.friction = Friction::default();
+            if feel.shading
+                && let Some(smooth) = self.shade(body, god, device)
+            {
+                (aim, point) = (smooth, body.face(smooth.triangle).at(smooth.alpha));
+            }
         }
         if !(spread && self.lag(body, (aim, point), device, moved, dt)) {
             (self.hold, self.position) = (aim, point);

@@ -15,8 +15,10 @@ use crate::surface::{Body, HalfEdge};
 
 /// Rounds of slipping in one tick.
 const MAX_ROUNDS: u32 = 8;
-/// Slipping ends this near above the dynamic cone (relative).
+/// Slipping ends this near above the dynamic cone (relative),
 const ON_CONE: f64 = 5e-4;
+/// as if its coefficient were at least this: no rounding comes to rest on a cone of no width.
+const NARROWEST: f64 = 0.01;
 /// Without any slip for this long the contact is at rest again, s.
 const REST: f64 = 0.02;
 
@@ -61,17 +63,18 @@ impl Friction {
             broke_away: false,
         };
         let coefficient = feel.dynamic_friction;
+        let margin = ON_CONE * coefficient.max(NARROWEST);
         let was_sticking = self.sticking;
         if was_sticking && ratio <= feel.static_friction {
             return Some(stays);
         }
-        if ratio <= coefficient * (1.0 + 2.0 * ON_CONE) {
+        if ratio <= coefficient + 2.0 * margin {
             self.quiet += dt;
             self.sticking = ratio <= coefficient || self.quiet >= REST;
             return Some(stays);
         }
         (self.sticking, self.quiet) = (false, 0.0);
-        let aim = coefficient * (1.0 + ON_CONE);
+        let aim = coefficient + margin;
         let (mut from, mut pull, mut excess) = (hold, first, ratio - aim);
         let mut reached = hold;
         let mut part = 1.0;
@@ -80,7 +83,7 @@ impl Friction {
             reached = descend(body, from, start + pull.to_cone(aim)? * part);
             let there = Pull::at(body, reached, device, feel.shading)?;
             let excess_there = there.ratio() - aim;
-            if excess_there.abs() <= ON_CONE * aim {
+            if excess_there.abs() <= margin {
                 break;
             }
             if excess_there > 0.0 {
