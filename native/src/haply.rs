@@ -6,7 +6,7 @@
 
 pub mod device;
 pub mod flight;
-pub mod line;
+pub mod inbox;
 pub mod message;
 pub mod model;
 pub mod pantograph;

@@ -20,6 +20,7 @@ mod early;
 pub mod exchange;
 pub mod haply;
 mod joining;
+mod line;
 pub mod link;
 mod normals;
 pub mod passivity;

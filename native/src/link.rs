@@ -1,7 +1,5 @@
 //! The serial device: link of version 1 as the host speaks it, with all that goes wrong on a wire.
 
-use std::io::ErrorKind;
-
 use glam::DVec3;
 
 use crate::codec::{
@@ -9,7 +7,8 @@ use crate::codec::{
     hello_payload,
 };
 use crate::device::{Device, DeviceFrame, Fault, LinkReport, Probe, Reading};
-use crate::port::{Opener, Wire};
+use crate::line::Line;
+use crate::port::Opener;
 use crate::rhythm::Arrivals;
 use crate::speedometer::{Speedometer, has_begun_anew};
 use crate::state::reason;
@@ -18,8 +17,6 @@ use crate::state::reason;
 const HELLO_SECONDS: f64 = 0.05;
 /// Without a STATE for this long there is no force, s.
 const STALE_SECONDS: f64 = 0.02;
-/// A port that is gone is tried again this often, s.
-const REOPEN_SECONDS: f64 = 0.2;
 /// Zero forces sent when parking: one may be lost on the wire.
 const PARKING_FRAMES: u32 = 3;
 /// Reads in one tick at most, so that a flood of bytes cannot hold it up.
@@ -34,9 +31,7 @@ struct Newest {
 
 /// A device on a line that speaks the link.
 pub struct LinkDevice<O: Opener> {
-    opener: O,
-    wire: Option<O::Wire>,
-    retry_at: f64,
+    line: Line<O>,
     next_hello: f64,
     decoder: Decoder,
     greeting: Option<Greeting>,
@@ -53,10 +48,6 @@ pub struct LinkDevice<O: Opener> {
     speedometer: Speedometer,
     arrivals: Arrivals,
     sequence: u16,
-    /// The rest of a frame that did not fit.
-    pending: [u8; MAX_FRAME],
-    pending_from: usize,
-    pending_to: usize,
     report: LinkReport,
 }
 
@@ -65,12 +56,9 @@ impl<O: Opener> LinkDevice<O> {
     ///
     /// # Errors
     /// When the line cannot be opened.
-    pub fn open(mut opener: O) -> std::io::Result<Self> {
-        let wire = opener.open()?;
+    pub fn open(opener: O) -> std::io::Result<Self> {
         Ok(Self {
-            opener,
-            wire: Some(wire),
-            retry_at: 0.0,
+            line: Line::open(opener)?,
             next_hello: 0.0,
             decoder: Decoder::default(),
             greeting: None,
@@ -83,9 +71,6 @@ impl<O: Opener> LinkDevice<O> {
             speedometer: Speedometer::default(),
             arrivals: Arrivals::default(),
             sequence: 0,
-            pending: [0; MAX_FRAME],
-            pending_from: 0,
-            pending_to: 0,
             report: LinkReport::default(),
         })
     }
@@ -96,8 +81,7 @@ impl<O: Opener> LinkDevice<O> {
 
     /// Closes the line and forgets what was known of the device behind it.
     fn unplug(&mut self, now: f64) {
-        self.wire = None;
-        self.retry_at = now + REOPEN_SECONDS;
+        self.line.close(now);
         self.greeting = None;
         self.newest = None;
         self.stale = false;
@@ -105,21 +89,13 @@ impl<O: Opener> LinkDevice<O> {
         self.decoder.resynchronise();
         self.speedometer.reset();
         self.arrivals.forget();
-        (self.pending_from, self.pending_to) = (0, 0);
     }
 
-    /// Tries the port again now and then. Opening takes time and memory: nothing is in contact.
+    /// Tries the port again now and then.
     fn reopen(&mut self, now: f64) {
-        if now < self.retry_at {
-            return;
-        }
-        match self.opener.open() {
-            Ok(wire) => {
-                self.wire = Some(wire);
-                self.next_hello = now;
-                self.report.reopened += 1;
-            }
-            Err(_) => self.retry_at = now + REOPEN_SECONDS,
+        if self.line.reopen(now) {
+            self.next_hello = now;
+            self.report.reopened += 1;
         }
     }
 
@@ -127,20 +103,14 @@ impl<O: Opener> LinkDevice<O> {
     fn drain(&mut self, now: f64) {
         let mut buffer = [0; 256];
         for _ in 0..READS_PER_TICK {
-            let Some(wire) = &mut self.wire else { return };
-            match wire.read(&mut buffer) {
-                Ok(0) => return self.unplug(now),
-                Ok(length) => {
-                    for &byte in &buffer[..length] {
-                        self.take(byte, now);
-                    }
-                    if length < buffer.len() {
-                        return;
-                    }
-                }
-                Err(e) if e.kind() == ErrorKind::WouldBlock => return,
-                Err(e) if e.kind() == ErrorKind::Interrupted => {}
-                Err(_) => return self.unplug(now),
+            let Some(length) = self.line.read(&mut buffer) else {
+                return self.unplug(now);
+            };
+            for &byte in &buffer[..length] {
+                self.take(byte, now);
+            }
+            if length < buffer.len() {
+                return;
             }
         }
     }
@@ -216,34 +186,8 @@ impl<O: Opener> LinkDevice<O> {
 
     /// Puts a frame on the line; false when it does not fit or the line is gone.
     fn send(&mut self, payload: &[u8]) -> bool {
-        self.flush();
-        if self.wire.is_none() || self.pending_from < self.pending_to {
-            return false;
-        }
-        let Some(length) = codec::encode(payload, &mut self.pending) else {
-            return false;
-        };
-        (self.pending_from, self.pending_to) = (0, length);
-        self.flush();
-        if self.pending_from == 0 && self.pending_to > 0 {
-            // Not begun: better a newer frame later than this one.
-            self.pending_to = 0;
-            return false;
-        }
-        true
-    }
-
-    fn flush(&mut self) {
-        while self.pending_from < self.pending_to {
-            let Some(wire) = &mut self.wire else { return };
-            match wire.write(&self.pending[self.pending_from..self.pending_to]) {
-                Ok(written) if written > 0 => self.pending_from += written,
-                Err(e) if e.kind() == ErrorKind::Interrupted => {}
-                // A line that is gone is found by the next read.
-                _ => return,
-            }
-        }
-        (self.pending_from, self.pending_to) = (0, 0);
+        let mut frame = [0; MAX_FRAME];
+        codec::encode(payload, &mut frame).is_some_and(|length| self.line.send(&frame[..length]))
     }
 
     fn greet(&mut self, now: f64) {
@@ -256,12 +200,14 @@ impl<O: Opener> LinkDevice<O> {
 
 impl<O: Opener> Device for LinkDevice<O> {
     fn read(&mut self, now: f64, _dt: f64, frame: &DeviceFrame) -> Reading {
-        if self.wire.is_none() {
+        if !self.line.is_open() {
             self.reopen(now);
         }
-        self.drain(now);
+        if self.line.is_open() {
+            self.drain(now);
+        }
         self.arrivals.end_of_tick(now);
-        if self.wire.is_none() {
+        if !self.line.is_open() {
             return Reading::Fault(Fault::Unplugged);
         }
         if !self.is_greeted() {
@@ -305,7 +251,7 @@ impl<O: Opener> Device for LinkDevice<O> {
     }
 
     fn write(&mut self, force: DVec3, enable: bool, frame: &DeviceFrame) {
-        if self.wire.is_none() || !self.is_greeted() {
+        if !self.line.is_open() || !self.is_greeted() {
             return;
         }
         let payload = force_payload(self.sequence, frame.force_to_device(force), enable);
@@ -323,8 +269,8 @@ impl<O: Opener> Device for LinkDevice<O> {
             // Time for the device to read before the line closes.
             std::thread::sleep(std::time::Duration::from_millis(2));
         }
-        self.flush();
-        self.wire = None;
+        self.line.flush();
+        self.line.close(0.0);
     }
 
     fn report(&self) -> LinkReport {

@@ -9,7 +9,7 @@ use std::time::Duration;
 use glam::DVec3;
 
 use super::flight::Flight;
-use super::line::Line;
+use super::inbox::Inbox;
 use super::message::{
     ANSWER_BYTES, FILL, TORQUE_BYTES, parse_answer, setup_message, torque_message,
 };
@@ -18,6 +18,7 @@ use super::pantograph::Pose;
 use super::speed::WindowSpeed;
 use crate::codec::Greeting;
 use crate::device::{Device, DeviceFrame, Fault, LinkReport, Probe, Reading};
+use crate::line::Line;
 use crate::port::Opener;
 use crate::state::reason;
 
@@ -85,6 +86,8 @@ impl Phase {
 /// A 2DIY on a line.
 pub struct HaplyDevice<O: Opener> {
     line: Line<O>,
+    /// What has come and is no answer yet.
+    inbox: Inbox,
     model: &'static Model,
     calibration: Calibration,
     /// The user has said where the handle rests; once, at the start.
@@ -119,6 +122,7 @@ impl<O: Opener> HaplyDevice<O> {
     ) -> std::io::Result<Self> {
         Ok(Self {
             line: Line::open(opener)?,
+            inbox: Inbox::EMPTY,
             model,
             calibration,
             may_calibrate: true,
@@ -148,6 +152,7 @@ impl<O: Opener> HaplyDevice<O> {
 
     fn unplug(&mut self) {
         self.line.close(self.now);
+        self.inbox.clear();
         self.phase = Phase::BEGIN;
         self.calibrated = false;
         self.degrees = None;
@@ -171,7 +176,7 @@ impl<O: Opener> HaplyDevice<O> {
                 length
             };
             for &byte in &buffer[..fresh] {
-                if let Some(answer) = self.line.inbox.push(byte) {
+                if let Some(answer) = self.inbox.push(byte) {
                     self.take_answer(&answer);
                 }
             }
@@ -185,7 +190,7 @@ impl<O: Opener> HaplyDevice<O> {
     fn take_answer(&mut self, answer: &[u8; ANSWER_BYTES]) {
         let answer = parse_answer(self.model, self.address(), answer);
         let Some(degrees) = answer.filter(|degrees| self.is_near(*degrees)) else {
-            self.line.inbox.drop_first(1);
+            self.inbox.drop_first(1);
             self.report.crc_errors += 1;
             let running = self.calibrated && self.phase == Phase::Running;
             if running && self.now - self.heard > RESTORE_SECONDS {
@@ -195,7 +200,7 @@ impl<O: Opener> HaplyDevice<O> {
             }
             return;
         };
-        self.line.inbox.drop_first(ANSWER_BYTES);
+        self.inbox.drop_first(ANSWER_BYTES);
         self.accept(degrees);
     }
 
@@ -239,7 +244,7 @@ impl<O: Opener> HaplyDevice<O> {
 
     /// Sets up a board that has forgotten its device, by the angles of a moment ago if there are any.
     fn restore(&mut self) {
-        self.line.inbox.clear();
+        self.inbox.clear();
         self.calibrated &= self.now - self.heard < RESTORE_SECONDS;
         self.set_up(false);
     }
@@ -279,20 +284,20 @@ impl<O: Opener> HaplyDevice<O> {
     fn ask(&mut self, asked: Option<f64>, in_vain: u32) {
         let waited = asked.map_or(f64::INFINITY, |then| self.now - then);
         let address = self.model.address;
-        let inbox = self.line.inbox.bytes();
+        let inbox = self.inbox.bytes();
         let heard = inbox.first() == Some(&address);
         // The address alone: not this device. More than that, but no angles: set up by mistake.
         let alone = inbox.iter().all(|byte| *byte == address);
         let knows_nothing = heard && (alone || in_vain >= ASKED_IN_VAIN);
         if waited >= ANSWER_SECONDS && knows_nothing {
-            self.line.inbox.clear();
+            self.inbox.clear();
             return self.set_up(self.may_calibrate);
         }
         if waited < ASK_SECONDS {
             return;
         }
         let in_vain = if heard { in_vain + 1 } else { 0 };
-        self.line.inbox.clear();
+        self.inbox.clear();
         self.flight = Flight::default();
         let request = torque_message(self.model, self.model.address, [0.0; 2]);
         let mut message = [FILL; FILL_BYTES + TORQUE_BYTES];
@@ -368,7 +373,7 @@ impl<O: Opener> Device for HaplyDevice<O> {
             self.ask(asked, in_vain);
             return Reading::Waiting(reason::NO_BOARD);
         }
-        let (address, inbox) = (self.address(), self.line.inbox.bytes());
+        let (address, inbox) = (self.address(), self.inbox.bytes());
         if inbox.len() >= LONE_ADDRESSES && inbox.iter().all(|byte| *byte == address) {
             self.report.unknown += 1;
             self.restore();

@@ -1,59 +1,20 @@
-//! A port with what has come from it and what has not left yet. Never waits.
+//! A port that may go and come back, with what has not left through it yet. Never waits.
 
 use std::io::ErrorKind;
 
-use super::message::ANSWER_BYTES;
 use crate::port::{Opener, Wire};
 
 /// A port that is gone is tried again this often, s.
 const REOPEN_SECONDS: f64 = 0.2;
+/// Longest message, bytes.
 const OUTBOX: usize = 64;
 
-/// Bytes that arrived and are no answer yet.
-#[derive(Debug, Clone, Copy)]
-pub struct Inbox {
-    bytes: [u8; ANSWER_BYTES],
-    length: usize,
-}
-
-impl Inbox {
-    const EMPTY: Self = Self {
-        bytes: [0; ANSWER_BYTES],
-        length: 0,
-    };
-
-    /// What is there.
-    pub fn bytes(&self) -> &[u8] {
-        &self.bytes[..self.length]
-    }
-
-    /// Takes a byte; all of them when they are as many as an answer has.
-    pub fn push(&mut self, byte: u8) -> Option<[u8; ANSWER_BYTES]> {
-        self.bytes[self.length] = byte;
-        self.length += 1;
-        (self.length == ANSWER_BYTES).then_some(self.bytes)
-    }
-
-    /// Forgets the first `count` bytes.
-    pub fn drop_first(&mut self, count: usize) {
-        self.bytes.copy_within(count..self.length, 0);
-        self.length -= count;
-    }
-
-    /// Forgets all.
-    pub fn clear(&mut self) {
-        *self = Self::EMPTY;
-    }
-}
-
-/// A line to a board.
+/// A line to a device.
 #[derive(Debug)]
 pub struct Line<O: Opener> {
     opener: O,
     wire: Option<O::Wire>,
     retry_at: f64,
-    /// What has come.
-    pub inbox: Inbox,
     pending: [u8; OUTBOX],
     pending_from: usize,
     pending_to: usize,
@@ -70,7 +31,6 @@ impl<O: Opener> Line<O> {
             opener,
             wire: Some(wire),
             retry_at: 0.0,
-            inbox: Inbox::EMPTY,
             pending: [0; OUTBOX],
             pending_from: 0,
             pending_to: 0,
@@ -86,7 +46,6 @@ impl<O: Opener> Line<O> {
     pub fn close(&mut self, now: f64) {
         self.wire = None;
         self.retry_at = now + REOPEN_SECONDS;
-        self.inbox.clear();
         (self.pending_from, self.pending_to) = (0, 0);
     }
 
@@ -111,14 +70,18 @@ impl<O: Opener> Line<O> {
         }
     }
 
-    /// Puts a message on the line; false when it does not fit or the line is gone.
-    pub fn send<const N: usize>(&mut self, message: &[u8; N]) -> bool {
+    /// Puts a message on the line; false when it is longer than any may be, when it does not fit now,
+    /// or when the line is gone.
+    pub fn send(&mut self, message: &[u8]) -> bool {
         self.flush();
         if self.wire.is_none() || self.pending_from < self.pending_to {
             return false;
         }
-        self.pending[..N].copy_from_slice(message);
-        (self.pending_from, self.pending_to) = (0, N);
+        let Some(pending) = self.pending.get_mut(..message.len()) else {
+            return false;
+        };
+        pending.copy_from_slice(message);
+        (self.pending_from, self.pending_to) = (0, message.len());
         self.flush();
         if self.pending_from == 0 && self.pending_to > 0 {
             // Not begun: better a newer message later than this one.
