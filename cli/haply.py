@@ -61,10 +61,7 @@ def connect_haply(
             translation=at,
         )
     except OSError as error:
-        raise PalpateError(
-            f"{port}: cannot be opened ({error}); close the program that uses it, or see "
-            "'palpate devices'"
-        ) from error
+        raise PalpateError(str(error)) from error
     deadline = time.monotonic() + ANSWER_SECONDS
     while servo.running and servo.snapshot().state in {"stopped", "waiting"} and not stopped:
         if time.monotonic() > deadline:

@@ -172,10 +172,7 @@ def _connect(servo: Servo, port: str, stopped: Sequence[int]) -> None:
     try:
         servo.start_serial(port)
     except OSError as error:
-        raise PalpateError(
-            f"{port}: cannot be opened ({error}); close the program that uses it, or see "
-            "'palpate devices'"
-        ) from error
+        raise PalpateError(str(error)) from error
     deadline = time.monotonic() + HELLO_SECONDS
     while servo.counters()["link"]["device"] is None and not stopped:
         if servo.counters()["faults"]["wrong protocol"]:

@@ -97,8 +97,12 @@ impl Servo {
         let armed_ticks = *locked(&self.armed_ticks);
         let running = py.detach(|| {
             let path = port.path.clone();
-            let device = open(port)
-                .map_err(|e| PyOSError::new_err(format!("cannot open the port {path}: {e}")))?;
+            let device = open(port).map_err(|e| {
+                PyOSError::new_err(format!(
+                    "{path}: cannot be opened ({e}); close the program that uses it, or see \
+                         'palpate devices'"
+                ))
+            })?;
             Ok::<_, PyErr>(Running::start(
                 locked(&self.body).clone(),
                 device,
