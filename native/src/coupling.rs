@@ -182,7 +182,7 @@ impl Coupler {
         };
         Coupled {
             body_displacement: share * displacement,
-            force: spring + bounded(lead + brake, spring),
+            force: spring + bounded(lead + brake, spring, displacement),
         }
     }
 
@@ -205,8 +205,10 @@ impl Coupler {
 /// What may be added to the spring's force: nothing at first touch and at release, no pull.
 ///
 /// Against the spring and across it at most as much as its own; with it some times as much, because
-/// a force that comes late has to make up for the way already gone.
-fn bounded(added: DVec3, spring: DVec3) -> DVec3 {
+/// a force that comes late has to make up for the way already gone. Where the body is softer in one
+/// direction than in another its force is not along the displacement, and what goes across it could
+/// draw the finger in: only so much of it that the whole does not.
+fn bounded(added: DVec3, spring: DVec3, displacement: DVec3) -> DVec3 {
     let size = spring.length();
     // What is no number passes, for safety to find it.
     if size.is_nan() || size == 0.0 {
@@ -215,7 +217,13 @@ fn bounded(added: DVec3, spring: DVec3) -> DVec3 {
     let way = spring / size;
     let along = added.dot(way);
     let across = added - way * along;
-    way * along.clamp(-size, MOST_GAIN * size) + shortened(across, size)
+    let added = way * along.clamp(-size, MOST_GAIN * size) + shortened(across, size);
+    let (inward, outward) = (added.dot(displacement), -spring.dot(displacement));
+    if inward > outward {
+        added * (outward.max(0.0) / inward)
+    } else {
+        added
+    }
 }
 
 /// The vector, cut to `length` if it is longer.
