@@ -28,6 +28,8 @@ use walk::Walk;
 
 /// Releases and landings in one tick at most.
 const MAX_ROUNDS: u32 = 16;
+/// Parts that may touch in one point and be left there in one tick.
+const MOST_PARTS: usize = 4;
 /// A start this much behind a surface (relative to the body) counts as inside, not as rounding.
 const ROUNDING: f64 = 1e-9;
 /// A device no deeper than this (relative to the body) is on the surface: its side is rounding.
@@ -204,6 +206,11 @@ impl Proxy {
     /// Moves the god object.
     fn drag(&mut self, body: &Body, device: DVec3) {
         self.steps = 0;
+        // Parts that touch where the proxy is may each have been left here: each says that the way
+        // leads away from it, so all of them together let go.
+        let mut left = [Feature::NONE; MOST_PARTS];
+        let mut count = 0;
+        let mut left_at = self.position;
         for _ in 0..MAX_ROUNDS {
             match self.place {
                 Place::Free { clearance, blind } => {
@@ -211,7 +218,7 @@ impl Proxy {
                         self.position = device;
                         return;
                     }
-                    if self.fly(body, device, &Feature::NONE, blind) {
+                    if self.fly(body, device, &[], blind) {
                         return;
                     }
                 }
@@ -225,7 +232,12 @@ impl Proxy {
                 _ => match self.walk(body, device) {
                     Walk::Rested => return,
                     Walk::Released(feature) => {
-                        if self.fly(body, device, &feature, 0) {
+                        if self.position.distance(left_at) > ON_SURFACE * body.size() {
+                            (left_at, count) = (self.position, 0);
+                        }
+                        count = (count + 1).min(MOST_PARTS);
+                        left[count - 1] = feature;
+                        if self.fly(body, device, &left[..count], 0) {
                             return;
                         }
                     }
@@ -273,7 +285,7 @@ impl Proxy {
     ///
     /// From a place that is outside for certain the sweep's signs are proof enough, so near the
     /// surface, where the distance to it spares no sweeps, it is asked for now and then only.
-    fn fly(&mut self, body: &Body, device: DVec3, left: &Feature, blind: u8) -> bool {
+    fn fly(&mut self, body: &Body, device: DVec3, left: &[Feature], blind: u8) -> bool {
         let start = self.position;
         let Sweep { entering, leaving } = body.tree().sweep(body, start, device, left);
         let leaves_first = leaving.filter(|l| entering.is_none_or(|e| l.fraction < e.fraction));

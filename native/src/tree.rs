@@ -63,7 +63,7 @@ pub struct Sweep {
     pub leaving: Option<Crossing>,
 }
 
-/// Triangles a sweep leaves out: those that contain all nodes of the feature it starts from.
+/// Triangles a sweep leaves out: those that contain all nodes of a feature it starts from.
 #[derive(Debug, Clone, Copy)]
 pub struct Feature {
     nodes: [u32; 3],
@@ -197,7 +197,7 @@ impl Tree {
     }
 
     /// First inward and outward crossing of the segment from `start` to `end`.
-    pub fn sweep(&self, body: &Body, start: DVec3, end: DVec3, skip: &Feature) -> Sweep {
+    pub fn sweep(&self, body: &Body, start: DVec3, end: DVec3, skip: &[Feature]) -> Sweep {
         let mut found = Sweep::default();
         let low = start.min(end);
         let high = start.max(end);
@@ -221,7 +221,7 @@ impl Tree {
             if node.count > 0 {
                 let first = node.index as usize;
                 for &t in &self.order[first..first + node.count as usize] {
-                    if !skip.is_in(&body.triangles[t as usize]) {
+                    if !skip.iter().any(|f| f.is_in(&body.triangles[t as usize])) {
                         found.add(body.face(t), t, start, end);
                     }
                 }

@@ -261,6 +261,30 @@ fn from_one_part_into_the_next_where_their_faces_coincide_nothing_falls_through(
 }
 
 #[test]
+fn leaving_between_parts_that_only_touch_it_is_free() {
+    let body = parts_side_by_side();
+    // Over the corner x = y = z = 12.5 mm of both, behind a side of either, yet outside of both.
+    let ways = [
+        [0.0008, 0.0109, 0.0082],
+        [0.0020, 0.0095, 0.0084],
+        [0.0057, 0.0052, 0.0091],
+        [0.0094, 0.0009, 0.0099],
+        [0.0106, -0.0005, 0.0101],
+        [0.0119, -0.0019, 0.0103],
+    ];
+    let ways = ways.map(|p| DVec3::from(p) * 1.25);
+    let mut proxy = Proxy::new(&body, ways[0]);
+    for device in &ways[1..4] {
+        follow(&mut proxy, &body, *device);
+        assert!(proxy.hold().is_some());
+    }
+    for device in &ways[4..] {
+        follow(&mut proxy, &body, *device);
+    }
+    assert!(proxy.hold().is_none());
+}
+
+#[test]
 fn set_down_beside_coinciding_faces_it_feels_nothing_until_it_was_outside() {
     let body = parts_side_by_side();
     let mut dice = Dice::new(32);
