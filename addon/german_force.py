@@ -230,6 +230,11 @@ WORDS = {
     "Arrays for numpy; smaller, and written at once": (
         "Arrays für numpy; kleiner und sofort geschrieben"
     ),
+    "A recording is being written; wait until it is done": (
+        "Eine Aufzeichnung wird gerade geschrieben; warten, bis sie fertig ist"
+    ),
+    "Writing {name}; go on meanwhile": "{name} wird geschrieben; es geht solange weiter",
+    "Saved: {name}": "Gespeichert: {name}",
     "Record from Start": "Von Anfang an aufzeichnen",
     "Record every tick from the beginning of a press": (
         "Jeden Schritt vom Beginn des Drückens an aufzeichnen"

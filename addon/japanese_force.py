@@ -212,6 +212,11 @@ WORDS = {
     "How the file is written": "ファイルの形式",
     "A table for spreadsheets and most other programs": "表計算ソフトなど多くのソフト向けの表",
     "Arrays for numpy; smaller, and written at once": "numpy の配列。小さく、すぐに書き出せます",
+    "A recording is being written; wait until it is done": (
+        "記録を書き込み中です。終わるまでお待ちください"
+    ),
+    "Writing {name}; go on meanwhile": "{name} を書き込み中。作業は続けられます",
+    "Saved: {name}": "保存済み: {name}",
     "Record from Start": "最初から記録",
     "Record every tick from the beginning of a press": "押し始めから毎回記録します",
     "Longest Recording": "最長の記録",

@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..operators import press_session, recording
+from ..operators import press_session, recording, recording_writer
 from ..operators.press_session import PressSession
 from ..operators.quantities import memory
 from ..operators.recording import BYTES_A_TICK
@@ -23,6 +23,7 @@ class PALPATE_PT_recording(PalpatePanel, bpy.types.Panel):
         else:
             _draw_choice(layout, context)
         layout.operator("palpate.save_recording", icon="EXPORT")
+        _draw_file(layout, context)
 
 
 def _draw_now(
@@ -58,6 +59,19 @@ def _draw_choice(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
         size = memory(kept.samples.nbytes)
         say(layout, context, "Recorded: {seconds} s, {size}", "TIME", seconds=seconds, size=size)
         _draw_lost(layout, context, kept.lost)
+
+
+def _draw_file(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    written = recording_writer.latest()
+    if written is None:
+        return
+    name = written.path.name
+    if written.going_on:
+        say(layout, context, "Writing {name}; go on meanwhile", "SORTTIME", name=name)
+    elif written.problem:
+        say(layout, context, written.problem, "ERROR")
+    else:
+        say(layout, context, "Saved: {name}", "CHECKMARK", name=name)
 
 
 def _draw_lost(layout: bpy.types.UILayout, context: bpy.types.Context, lost: int) -> None:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ..core.errors import PalpateError
 from ..core.servo_session import Snapshot, displacements_of
-from . import device_source, drawn_surface, live_shape, servo_words
+from . import device_source, drawn_surface, live_shape, recording_writer, servo_words
 from .device_source import DeviceFrame
 from .drawn_body import DrawnBody, open_body
 from .force_loop import ForceLoop
@@ -119,6 +119,7 @@ class PressSession:
         if self.loop is not None:
             now = 0.0 if self.snapshot is None else self.snapshot.time
             self.loop.recorder.start(60.0 * self._scene().palpate.record_minutes, now)
+            recording_writer.forget()
 
     @property
     def awaits_device(self) -> bool:

@@ -6,7 +6,7 @@ import bpy
 
 from ..core.errors import PalpateError
 from ..core.recording import SUFFIXES
-from . import press_session, recording
+from . import press_session, recording, recording_writer
 from .recording import Kept, Recorder
 
 FORMAT_ITEMS = [
@@ -41,16 +41,24 @@ class PALPATE_OT_save_recording(bpy.types.Operator):
         name="Format", description="How the file is written", items=FORMAT_ITEMS, default=".csv"
     )
 
+    # Chosen in the file browser, so there is a window that must not stand still.
+    _in_window = False
+
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        there = _recorder() is not None or recording.last() is not None
-        if not there:
-            cls.poll_message_set("Nothing is recorded yet; press Record while you press")
-        return there
+        reason = ""
+        if _recorder() is None and recording.last() is None:
+            reason = "Nothing is recorded yet; press Record while you press"
+        elif recording_writer.going_on():
+            reason = "A recording is being written; wait until it is done"
+        if reason:
+            cls.poll_message_set(reason)
+        return not reason
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         beside = Path(bpy.data.filepath).parent if bpy.data.filepath else Path.home()
         self.filepath = str(beside / f"{DEFAULT_NAME}{self.suffix}")
+        self._in_window = not bpy.app.background
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
@@ -70,6 +78,9 @@ class PALPATE_OT_save_recording(bpy.types.Operator):
             return {"CANCELLED"}
         try:
             path = Path(bpy.path.abspath(self.filepath))
+            if self._in_window:
+                recording_writer.begin(path, kept)
+                return {"FINISHED"}
             recording.write(path, kept)
         except PalpateError as problem:
             self.report({"ERROR"}, str(problem))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import threading
 import time
 from types import SimpleNamespace
 
@@ -198,6 +199,38 @@ def test_a_recording_that_cannot_be_written_is_refused_with_a_remedy(sessions, s
     assert ".csv" in error_of(bpy.ops.palpate.save_recording, filepath=str(tmp_path / "a.txt"))
     nowhere = tmp_path / "nowhere" / "a.csv"
     assert "folder" in error_of(bpy.ops.palpate.save_recording, filepath=str(nowhere))
+
+
+def test_a_long_recording_is_written_while_the_press_goes_on(
+    sessions, states, tmp_path, monkeypatch
+):
+    writer, scene = part("operators.recording_writer"), bpy.context.scene
+    scene.palpate.record_from_start = True
+    session = begin(sessions, states, soft_cube())
+    wait(session, lambda: session.snapshot.tick > 50)
+    may_write, write = threading.Event(), part("operators.recording").write
+    monkeypatch.setattr(
+        part("operators.recording"), "write", lambda *given: may_write.wait(10.0) and write(*given)
+    )
+    path = tmp_path / "felt.csv"
+    try:
+        writer.begin(path, part("operators.save_recording").recorded())
+        assert "is being written" in error_of(bpy.ops.palpate.save_recording, filepath=str(path))
+        before = session.snapshot.tick
+        wait(session, lambda: session.snapshot.tick > before)
+        assert not path.exists()
+    finally:
+        may_write.set()
+        writer.unregister()
+    assert len(part("core.recording").read_recording(path).samples) > 50
+    assert writer.latest().problem == ""
+    session.post(states.Cancel())
+    monkeypatch.undo()
+    (tmp_path / "taken.csv").mkdir()
+    with pytest.raises(part("core.errors").PalpateError, match="folder"):
+        writer.begin(tmp_path / "taken.csv", part("operators.recording").last())
+    begin(sessions, states, soft_cube())
+    assert writer.latest() is None
 
 
 def test_a_haply_presses_in_the_upright_plane_through_the_top(sessions, states):
