@@ -2,7 +2,9 @@
 //!
 //! One tick reads a [`device`], moves the [`proxy`] (god object) on the rest [`surface`], computes
 //! the [`contact`] force (11) to (14), passes it through [`coupling`] and [`safety`], gives it to the device and
-//! publishes a snapshot ([`servo`]). The tick allocates nothing, takes no lock and knows nothing
+//! publishes a snapshot ([`servo`]). [`thread`] runs it at its deadlines ([`clock`]) and [`recorder`] keeps
+//! every tick; devices are [`pointer`], [`link`] and [`haply`]; [`closed_loop`] is the tick's force path
+//! in a simulated plant. The tick allocates nothing, takes no lock and knows nothing
 //! of Python; the optional `python` feature adds the thin binding.
 
 mod asleep;
