@@ -13,6 +13,7 @@ from ..core.bake_job import JobProgress, run_bake
 from ..core.devices.stop_signals import stopped_by_signals
 from ..core.errors import PalpateError
 from ..core.soft_body import SoftBody
+from ..core.whole_file import refuse_missing_folder
 from . import bake_folder, bake_prediction
 from .bake_options import add_bake_options, bake_input
 from .body_figures import as_lines, body_figures
@@ -92,9 +93,7 @@ def _bake(arguments: argparse.Namespace, stopped: Sequence[int]) -> tuple[SoftBo
             "--output-folder"
         )
     _refuse_options_for_many(arguments)
-    folder = arguments.output.absolute().parent
-    if not folder.exists():
-        raise PalpateError(f"{arguments.output}: there is no folder {folder}; make it first")
+    refuse_missing_folder(arguments.output)
     given = bake_input(arguments, arguments.meshes[0], arguments.threads)
 
     def watch(progress: JobProgress) -> None:

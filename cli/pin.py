@@ -15,6 +15,7 @@ from ..core.errors import PalpateError
 from ..core.pins import PinBelow, pinned_nodes
 from ..core.repin import pin_more
 from ..core.soft_body import SoftBody
+from ..core.whole_file import refuse_missing_folder
 from .bake_options import AXES
 from .body_figures import as_lines, body_figures
 
@@ -44,9 +45,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(arguments: argparse.Namespace) -> int:
     """Load, pin, write, describe."""
-    folder = arguments.output.absolute().parent
-    if not folder.exists():
-        raise PalpateError(f"{arguments.output}: there is no folder {folder}; make it first")
+    refuse_missing_folder(arguments.output)
     start = time.perf_counter()
     body = cache.load(arguments.body)
     pinned = pin_more(body, _added(arguments, body))

@@ -40,7 +40,7 @@ NOTABLE_VOLUME_ERROR = 0.1
 
 # Bodies of less arithmetic (in operations) are done within a second by one thread; several, waiting
 # for one another on a machine that is busy otherwise, would take longer.
-WORTH_THREADS = 2e10
+LEAST_WEIGHT_FOR_THREADS = 2e10
 
 
 @dataclass(frozen=True)
@@ -139,7 +139,7 @@ def _compliance(
     plan: EliminationPlan, form: str, mesh: TetMesh, settings: BakeSettings, work: BakeWork
 ) -> Compliance:
     """The compliance by the plan, which is what most of a bake's time goes into."""
-    threads = settings.threads if plan.weight >= WORTH_THREADS else 1
+    threads = settings.threads if plan.weight >= LEAST_WEIGHT_FOR_THREADS else 1
     with blas_threads(threads) as threads:
         if form == "dense":
             work.forget("compress")

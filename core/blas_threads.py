@@ -13,7 +13,7 @@ from .available_cores import available_cores, idle_cores
 
 # Floating point operations from which on threads are worth waking: ten milliseconds of one. Below,
 # and most of all beside other busy programs, they spend more time on waiting for one another.
-WORTH_THREADS = 5e8
+LEAST_FLOPS_FOR_THREADS = 5e8
 
 
 @contextmanager
@@ -45,7 +45,7 @@ def threads_by_work() -> Iterator[Callable[[float], None]]:
 
     def suit(flops: float) -> None:
         nonlocal threaded
-        if threaded != (flops >= WORTH_THREADS):
+        if threaded != (flops >= LEAST_FLOPS_FOR_THREADS):
             threaded = not threaded
             for library, count in libraries:
                 library.set_num_threads(count if threaded else 1)
@@ -53,7 +53,7 @@ def threads_by_work() -> Iterator[Callable[[float], None]]:
     try:
         yield suit
     finally:
-        suit(WORTH_THREADS)
+        suit(LEAST_FLOPS_FOR_THREADS)
 
 
 @cache

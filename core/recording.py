@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from .errors import PalpateError
 from .npz_archive import ArchiveError, read_arrays, write_arrays
-from .whole_file import refuse_unwritable, whole_file
+from .whole_file import refuse_missing_folder, refuse_unwritable, whole_file
 
 FORMAT = "palpate recording 1"
 SUFFIXES = (".csv", ".npz")
@@ -83,17 +83,16 @@ def check_recording_path(path: Path) -> None:
     Raises
     ------
     RecordingError
-        The suffix is neither ``.csv`` nor ``.npz``, or the folder is not there.
+        The suffix is neither ``.csv`` nor ``.npz``.
     UnwritableError
-        The path is a folder or a device, or its folder may not be written.
+        The path is a folder or a device, or its folder is not there or may not be written.
     """
     if path.suffix.lower() not in SUFFIXES:
         raise RecordingError(
             f"{path}: a recording is written as CSV or npz; let the name end in "
             f"{' or '.join(SUFFIXES)}"
         )
-    if not path.parent.is_dir():
-        raise RecordingError(f"{path}: there is no folder {path.parent}; make it first")
+    refuse_missing_folder(path)
     refuse_unwritable(path)
 
 

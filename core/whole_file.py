@@ -41,6 +41,19 @@ def refuse_unwritable(target: Path) -> None:
     )
 
 
+def refuse_missing_folder(target: Path) -> None:
+    """Check that the folder of ``target`` is there, where none is to be made.
+
+    Raises
+    ------
+    UnwritableError
+        It is not.
+    """
+    folder = target.absolute().parent
+    if not folder.exists():
+        raise UnwritableError(f"{target}: there is no folder {folder}; make it first")
+
+
 @contextmanager
 def whole_file(target: Path, *, make_folders: bool = False) -> Iterator[IO[bytes]]:
     """A file that becomes ``target`` in one step when all went well, and vanishes otherwise.

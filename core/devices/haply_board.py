@@ -12,7 +12,7 @@ from collections import deque
 from dataclasses import replace
 from pathlib import Path
 
-from .hand_script import HandScript
+from .hand_schedule import HandSchedule
 from .haply_firmware import PORTS, HaplyCounters, HaplyFirmware
 from .haply_models import DEFAULT_MODEL, haply_model
 from .plant import Plant, Vector
@@ -76,15 +76,11 @@ class HaplyBoard:
         if options.rest == SimulatedOptions().rest:
             options = replace(options, rest=self.model.rest)
         self._options = options
-        self._script = options.hand_script()
-        self._script_begin: float | None = None
-        self._first_setup: float | None = None
-        self._unplug_at = math.inf if options.unplug_at is None else options.unplug_at
-        self._plug_at = self._unplug_at + options.unplug_for
+        self._schedule = HandSchedule(options)
         self._unplugged = 0
         self._last_heard = -math.inf
         self._host_is_there = False
-        start = self._script.at(0.0)
+        start = self._schedule.hand(0.0)
         self.plant = Plant(options.impedance, 1.0 / options.rate_hz, start)
         self._degrees = self.model.angles(start) or self.model.rest_degrees
         self._force: Vector = (0.0, 0.0, 0.0)
@@ -96,7 +92,7 @@ class HaplyBoard:
 
     def tick(self, now: float, steps: int) -> None:
         """Read the host, move by `steps` periods, answer."""
-        self._keep_plug_schedule(now)
+        self._schedule.keep_plug(now, self.unplug, self.plug_in)
         heard = self.terminal.read()
         if heard:
             self._last_heard, self._host_is_there = now, True
@@ -107,18 +103,14 @@ class HaplyBoard:
         self._to_device.put(heard, now)
         self.firmware.receive(self._to_device.take(now))
         self._to_host.put(self.firmware.run(now), now)
-        if self._first_setup is None and self.firmware.counters.setups:
-            self._first_setup = now
-            if self._script_begin is None:
-                self._script_begin = now
+        if self.firmware.counters.setups:
+            self._schedule.host_came(now)
         self._move(now, steps)
         self.terminal.write(self._to_host.take(now))
 
     def move_hand(self, now: float, position: Vector, seconds: float) -> None:
         """Leave the script: go from where the hand is to `position` and stay."""
-        here = self._script.at(self._script_time(now))
-        self._script = HandScript((0.0, max(seconds, 1e-6)), (here, position))
-        self._script_begin = now
+        self._schedule.move_hand(now, position, seconds)
 
     def press_buttons(self, mask: int) -> None:
         """There are none."""
@@ -160,24 +152,12 @@ class HaplyBoard:
             "bits_flipped_on_purpose": self._to_device.flipped + self._to_host.flipped,
         }
 
-    def _script_time(self, now: float) -> float:
-        return 0.0 if self._script_begin is None else now - self._script_begin
-
-    def _keep_plug_schedule(self, now: float) -> None:
-        since = -math.inf if self._first_setup is None else now - self._first_setup
-        if since >= self._unplug_at:
-            self._unplug_at = math.inf
-            self.unplug()
-        if since >= self._plug_at:
-            self._plug_at = math.inf
-            self.plug_in()
-
     def _move(self, now: float, steps: int) -> None:
         period = self.plant.step_seconds
         for remaining in range(steps - 1, -1, -1):
             self._force = self._motor_force()
             self._largest_force = max(self._largest_force, math.hypot(*self._force))
-            x, y, _ = self._script.at(self._script_time(now) - remaining * period)
+            x, y, _ = self._schedule.hand(now, remaining * period)
             self.plant.step(self._force, (x, y, 0.0))
             # Beyond the arms' reach the elbows stay where they were.
             self._degrees = self.model.angles(self.plant.position) or self._degrees

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 
-from .hand_script import HandScript
+from .hand_schedule import HandSchedule
 from .plant import Plant, Vector
 from .pseudo_terminal import PseudoTerminal
 from .simulated_firmware import Firmware
@@ -20,17 +19,13 @@ class SimulatedBoard:
 
     def __init__(self, options: SimulatedOptions) -> None:
         self._options = options
-        self._script = options.hand_script()
-        self._script_begin: float | None = None
-        self._first_hello: float | None = None
+        self._schedule = HandSchedule(options)
         self._buttons_by_command = 0
         self._last_heard = 0.0
         self._host_is_there = False
         self._unplugged = 0
-        self._unplug_at = math.inf if options.unplug_at is None else options.unplug_at
-        self._plug_at = self._unplug_at + options.unplug_for
         self.firmware = Firmware(options.hello)
-        start = self._script.at(0.0)
+        start = self._schedule.hand(0.0)
         self.plant = Plant(options.impedance, 1.0 / options.rate_hz, start, options.brake)
         self._lowest, self._highest = start, start
         self._to_device, self._to_host = (
@@ -44,7 +39,7 @@ class SimulatedBoard:
 
     def tick(self, now: float, steps: int) -> None:
         """Read the host, move by `steps` of the device's period, say where the device is."""
-        self._keep_plug_schedule(now)
+        self._schedule.keep_plug(now, self.unplug, self.plug_in)
         heard = self.terminal.read()
         if heard:
             self._last_heard, self._host_is_there = now, True
@@ -54,10 +49,8 @@ class SimulatedBoard:
             self.terminal.release()
         self._to_device.put(heard, now)
         answer = self.firmware.receive(self._to_device.take(now), now)
-        if self._first_hello is None and self.firmware.counters.hellos:
-            self._first_hello = now
-            if self._script_begin is None:
-                self._script_begin = now
+        if self.firmware.counters.hellos:
+            self._schedule.host_came(now)
         answer += self.firmware.watch(now, self.plant.step_seconds)
         self._move(now, steps)
         answer += self.firmware.state(now, self._encoders(), self._buttons(now))
@@ -66,9 +59,7 @@ class SimulatedBoard:
 
     def move_hand(self, now: float, position: Vector, seconds: float) -> None:
         """Leave the script: go from where the hand is to `position` and stay."""
-        here = self._script.at(self._script_time(now))
-        self._script = HandScript((0.0, max(seconds, 1e-6)), (here, position))
-        self._script_begin = now
+        self._schedule.move_hand(now, position, seconds)
 
     def press_buttons(self, mask: int) -> None:
         """Hold exactly the buttons of `mask` (8 bits) from now on."""
@@ -125,23 +116,11 @@ class SimulatedBoard:
             "bits_flipped_on_purpose": self._to_device.flipped + self._to_host.flipped,
         }
 
-    def _script_time(self, now: float) -> float:
-        return 0.0 if self._script_begin is None else now - self._script_begin
-
-    def _keep_plug_schedule(self, now: float) -> None:
-        since = -math.inf if self._first_hello is None else now - self._first_hello
-        if since >= self._unplug_at:
-            self._unplug_at = math.inf
-            self.unplug()
-        if since >= self._plug_at:
-            self._plug_at = math.inf
-            self.plug_in()
-
     def _move(self, now: float, steps: int) -> None:
         period = self.plant.step_seconds
         force, braked = self._motors(self.firmware.force), self.firmware.braked
         for remaining in range(steps - 1, -1, -1):
-            target = self._script.at(self._script_time(now) - remaining * period)
+            target = self._schedule.hand(now, remaining * period)
             self.plant.step(force, target, braked)
         here = self.plant.position
         (x, y, z), (x0, y0, z0), (x1, y1, z1) = here, self._lowest, self._highest
@@ -162,6 +141,6 @@ class SimulatedBoard:
 
     def _buttons(self, now: float) -> int:
         at, held = self._options.button_at, 0
-        if at is not None and self._first_hello is not None:
-            held = int(at <= now - self._first_hello < at + self._options.button_for)
+        if at is not None:
+            held = int(at <= self._schedule.since_host(now) < at + self._options.button_for)
         return self._buttons_by_command | held

@@ -1,45 +1,14 @@
 //! The 2DIY's part of the tick allocates nothing, whatever its board does.
 
+mod counting;
 mod hapi_board;
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
-
+use counting::counted;
 use glam::DVec3;
 use hapi_board::Cable;
 use palpate_servo::device::{Device, DeviceFrame, Reading};
 use palpate_servo::haply::device::{Calibration, HaplyDevice};
 use palpate_servo::haply::model::MODELS;
-
-thread_local! {
-    static COUNTED: Cell<u64> = const { Cell::new(0) };
-}
-
-struct Counting;
-
-// SAFETY: passes everything on to the system's allocator.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        COUNTED.with(|c| c.set(c.get() + 1));
-        // SAFETY: as asked by the caller.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        COUNTED.with(|c| c.set(c.get() + 1));
-        // SAFETY: as asked by the caller.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
-
-fn counted<T>(work: impl FnOnce() -> T) -> (T, u64) {
-    let before = COUNTED.with(Cell::get);
-    let done = work();
-    (done, COUNTED.with(Cell::get) - before)
-}
 
 #[test]
 fn reading_and_writing_allocate_nothing() {

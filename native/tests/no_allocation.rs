@@ -1,12 +1,12 @@
 //! The tick allocates nothing: counted over 100,000 of them, with a device on a wire.
 
 mod bodies;
+mod counting;
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
 use std::io::{self, ErrorKind};
 use std::sync::Arc;
 
+use counting::counted;
 use glam::DVec3;
 use palpate_servo::clock::{Pace, Timing, Waking};
 use palpate_servo::codec::{Decoder, MAX_FRAME, encode};
@@ -24,36 +24,6 @@ use palpate_servo::snapshot::{Published, State};
 use palpate_servo::stages::Stage;
 use rtrb::RingBuffer;
 use triple_buffer::triple_buffer;
-
-thread_local! {
-    static COUNTED: Cell<u64> = const { Cell::new(0) };
-}
-
-struct Counting;
-
-// SAFETY: passes everything on to the system's allocator.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        COUNTED.with(|c| c.set(c.get() + 1));
-        // SAFETY: as asked by the caller.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        COUNTED.with(|c| c.set(c.get() + 1));
-        // SAFETY: as asked by the caller.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
-
-fn counted(work: impl FnOnce()) -> u64 {
-    let before = COUNTED.with(Cell::get);
-    work();
-    COUNTED.with(Cell::get) - before
-}
 
 const OPTIONS: Options = Options {
     rate_hz: 1000,
@@ -209,7 +179,7 @@ fn ticks_of<D: Device>(device: D, mut each: impl FnMut(u32)) -> (Published, u64)
         samples_in,
     );
     servo.tape = Some(tape);
-    let allocations = counted(|| {
+    let ((), allocations) = counted(|| {
         for tick in 1..=TICKS {
             each(tick);
             if tick % 3 == 0 {
@@ -228,7 +198,7 @@ fn ticks_of<D: Device>(device: D, mut each: impl FnMut(u32)) -> (Published, u64)
 
 #[test]
 fn the_counter_counts() {
-    assert!(counted(|| drop(std::hint::black_box(Box::new(1)))) >= 2);
+    assert!(counted(|| drop(std::hint::black_box(Box::new(1)))).1 >= 2);
 }
 
 #[test]
@@ -237,7 +207,7 @@ fn waking_and_counting_allocate_nothing() {
     let mut pace = Pace::new(8000, Waking::Early);
     let mut woken = 0.0;
     assert_eq!(
-        counted(|| (0..200).for_each(|_| woken = pace.wait(&timing, || true).unwrap().seconds)),
+        counted(|| (0..200).for_each(|_| woken = pace.wait(&timing, || true).unwrap().seconds)).1,
         0
     );
     assert!(woken > 0.02);
@@ -310,7 +280,7 @@ fn a_body_is_exchanged_without_allocating_or_freeing_in_the_tick() {
     let mut now = 0.0;
     let mut tick = || {
         now += 1e-3;
-        assert_eq!(counted(|| servo.tick(now)), 0);
+        assert_eq!(counted(|| servo.tick(now)).1, 0);
         snapshots.read().snapshot.body
     };
     for round in 1..=100 {
@@ -321,7 +291,7 @@ fn a_body_is_exchanged_without_allocating_or_freeing_in_the_tick() {
         hand.settle();
         tick();
         assert_eq!(old.strong_count(), 1, "its last holder is out of the tick");
-        assert!(counted(|| hand.forget_older()) > 0);
+        assert!(counted(|| hand.forget_older()).1 > 0);
         assert_eq!(old.strong_count(), 0);
         tick();
         old = new;

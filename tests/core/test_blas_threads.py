@@ -3,7 +3,7 @@ from threadpoolctl import ThreadpoolController
 
 from palpate.core import available_cores
 from palpate.core import blas_threads as module
-from palpate.core.blas_threads import WORTH_THREADS, blas_threads, threads_by_work
+from palpate.core.blas_threads import LEAST_FLOPS_FOR_THREADS, blas_threads, threads_by_work
 
 
 def threads_of_blas():
@@ -67,12 +67,12 @@ def test_small_work_has_one_thread_and_large_work_all():
     with controller.limit(limits=2, user_api="blas"), threads_by_work() as suit:
         suit(1.0)
         assert threads_of_blas() == {1}
-        suit(WORTH_THREADS)
+        suit(LEAST_FLOPS_FOR_THREADS)
         assert threads_of_blas() == {2}
         suit(1.0)
         assert threads_of_blas() == {1}
     with controller.limit(limits=1, user_api="blas"), threads_by_work() as suit:
-        suit(WORTH_THREADS)
+        suit(LEAST_FLOPS_FOR_THREADS)
         assert threads_of_blas() == {1}
 
 
