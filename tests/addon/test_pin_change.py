@@ -43,14 +43,14 @@ def test_more_pins_take_effect_without_a_bake_as_a_bake_would_have_them(soft):
 
 
 def test_pins_that_were_baked_before_need_nothing(soft):
-    first = soft.palpate.body_file
+    first = soft.palpate.body_key
     soft.palpate.pin_fraction = 0.4
     assert bpy.ops.palpate.update_pins() == {"FINISHED"}
-    assert soft.palpate.body_file != first
+    assert soft.palpate.body_key != first
     soft.palpate.pin_fraction = 0.1
     assert fit(soft) == "KNOWN"
     assert bpy.ops.palpate.update_pins() == {"FINISHED"}
-    assert soft.palpate.body_file == first
+    assert soft.palpate.body_key == first
     assert status(soft).pins.fit.name == "SAME"
 
 
