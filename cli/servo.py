@@ -92,10 +92,13 @@ def run(arguments: argparse.Namespace) -> int:
         report = _touch(servo, port, arguments.seconds, stopped)
         if simulated is not None:
             report["simulated_device"] = simulated.stop()
-        if arguments.record is not None:
-            report["recording"] = _write_recording(arguments.record, servo)
-    report["young_modulus"] = young_modulus
-    print(json.dumps(report) if arguments.json else _for_people(report))
+        report["young_modulus"] = young_modulus
+        try:
+            if arguments.record is not None:
+                report["recording"] = _write_recording(arguments.record, servo)
+        finally:
+            # A file that cannot be written shall not take the report with it.
+            print(json.dumps(report) if arguments.json else _for_people(report))
     return 0
 
 

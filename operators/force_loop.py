@@ -137,7 +137,7 @@ def servo_errors() -> Iterator[None]:
     try:
         yield
     except OSError as problem:
-        raise PalpateError(f"device: {problem}; plug it in, or choose another port") from problem
+        raise PalpateError(f"device: {problem}") from problem
     except (ValueError, OverflowError) as problem:
         raise PalpateError(f"servo: {problem}; set it back and press again") from problem
     except RuntimeError as problem:
