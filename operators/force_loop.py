@@ -137,6 +137,7 @@ def servo_errors() -> Iterator[None]:
     try:
         yield
     except OSError as problem:
+        # It names its remedy itself.
         raise PalpateError(f"device: {problem}") from problem
     except (ValueError, OverflowError) as problem:
         raise PalpateError(f"servo: {problem}; set it back and press again") from problem

@@ -288,14 +288,31 @@ def test_a_flattened_device_frame_is_said_and_the_press_goes_on(sessions, states
         os.close(terminal)
 
 
-@pytest.mark.parametrize("problem", [ValueError, OSError, RuntimeError, OverflowError])
+@pytest.mark.parametrize("problem", [ValueError, RuntimeError, OverflowError])
 def test_what_the_servo_refuses_is_a_sentence_with_a_remedy(palpate, problem):
     error = part("core.errors").PalpateError
     with (
-        pytest.raises(error, match=r"(servo|device): why; "),
+        pytest.raises(error, match=r"servo: why; "),
         part("operators.force_loop").servo_errors(),
     ):
         raise problem("why")
+
+
+def test_a_port_that_cannot_be_opened_has_one_remedy(palpate):
+    import palpate_servo
+
+    body = palpate_servo.Body(
+        [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]],
+        [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]],
+        np.tile(np.eye(3), (4, 1, 1)),
+    )
+    servo = palpate_servo.Servo(body, young_modulus=1000.0)
+    error = part("core.errors").PalpateError
+    with (
+        pytest.raises(error, match=r"^device: /no/such/port: cannot be opened \([^;]*\); [^;]*$"),
+        part("operators.force_loop").servo_errors(),
+    ):
+        servo.start_serial("/no/such/port")
 
 
 def test_a_failed_force_loop_ends_the_press_and_leaves_the_mesh_clean(sessions, states):

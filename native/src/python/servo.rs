@@ -103,14 +103,15 @@ impl Servo {
                          'palpate devices'"
                 ))
             })?;
-            Ok::<_, PyErr>(Running::start(
+            Running::start(
                 locked(&self.body).clone(),
                 device,
                 self.options,
                 settings,
                 self.record_samples,
                 armed_ticks,
-            )?)
+            )
+            .map_err(no_thread)
         })?;
         *locked(&self.targets) = None;
         self.keep(running);
@@ -195,6 +196,7 @@ impl Servo {
                 self.record_samples,
                 armed_ticks,
             )
+            .map_err(no_thread)
         })?;
         *locked(&self.targets) = Some((input, start));
         self.keep(running);
@@ -468,6 +470,12 @@ pub(super) fn coupling(
         damping,
         passivity_control,
     })
+}
+
+fn no_thread(error: std::io::Error) -> PyErr {
+    PyOSError::new_err(format!(
+        "the system gives the servo no thread ({error}); close other programs and start again"
+    ))
 }
 
 /// Stops every servo that still runs; called at the interpreter's exit.
