@@ -82,14 +82,14 @@ def press_with_device(
 
 def _draw_frames(session: Any) -> tuple[Array, NDArray[np.void]]:
     """Tick the session FRAME_RATE times a second; times of frames that drew a dent, seconds."""
-    seconds, samples = [], [session.servo.samples()]
+    seconds, samples = [], [session.loop.servo.samples()]
     start = time.perf_counter()
     due = start
     while (begun := time.perf_counter()) - start < SECONDS:
         session.tick()
         if session.displacements is not None:
             seconds.append(time.perf_counter() - begun)
-        samples.append(session.servo.samples())
+        samples.append(session.loop.servo.samples())
         due = max(due + 1.0 / FRAME_RATE, time.perf_counter())
         time.sleep(due - time.perf_counter() if due > time.perf_counter() else 0.0)
     return np.array(seconds), np.concatenate(samples)
@@ -102,7 +102,7 @@ def _figures(session: Any, thing: bpy.types.Object, frames: Array) -> dict[str, 
         raise RuntimeError(f"the hand holds, but there is no press to keep: {reason}")
     frame = session.drawn.frame
     return {
-        "servo": session.servo.counters(),
+        "servo": session.loop.servo.counters(),
         "press": {
             "object": thing.name,
             "depth_mm": 1e3 * float(np.linalg.norm(snapshot.probe - snapshot.proxy)),
