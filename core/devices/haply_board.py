@@ -78,8 +78,6 @@ class HaplyBoard:
         self._options = options
         self._schedule = HandSchedule(options)
         self._unplugged = 0
-        self._last_heard = -math.inf
-        self._host_is_there = False
         start = self._schedule.hand(0.0)
         self.plant = Plant(options.impedance, 1.0 / options.rate_hz, start)
         self._degrees = self.model.angles(start) or self.model.rest_degrees
@@ -88,19 +86,14 @@ class HaplyBoard:
         self._to_device = ByteFaults(options, 2 * options.seed)
         self._to_host = ByteFaults(options, 2 * options.seed + 1)
         self.firmware = HaplyFirmware(self._counts)
-        self.terminal = PseudoTerminal(Path(options.link) if options.link else None)
+        self.terminal = PseudoTerminal(
+            Path(options.link) if options.link else None, RELEASE_AFTER_SECONDS
+        )
 
     def tick(self, now: float, steps: int) -> None:
         """Read the host, move by `steps` periods, answer."""
         self._schedule.keep_plug(now, self.unplug, self.plug_in)
-        heard = self.terminal.read()
-        if heard:
-            self._last_heard, self._host_is_there = now, True
-        elif self._host_is_there and now - self._last_heard > RELEASE_AFTER_SECONDS:
-            # Once a silence: the next host may be taking the terminal at any later moment.
-            self._host_is_there = False
-            self.terminal.release()
-        self._to_device.put(heard, now)
+        self._to_device.put(self.terminal.read(now), now)
         self.firmware.receive(self._to_device.take(now))
         self._to_host.put(self.firmware.run(now), now)
         if self.firmware.counters.setups:

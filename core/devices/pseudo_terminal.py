@@ -14,6 +14,7 @@ if sys.platform != "win32":
     import termios
     import tty
 
+RELEASE_AFTER_SECONDS = 0.5
 BACKLOG_BYTES = 256
 """Frames that the host does not read are dropped beyond this, as a board's small buffer would."""
 
@@ -28,11 +29,17 @@ def require_pseudo_terminals() -> None:
 
 
 class PseudoTerminal:
-    """The device's end of a serial port. `link` is a path that always leads to the host's end."""
+    """The device's end of a serial port. `link` is a path that always leads to the host's end.
 
-    def __init__(self, link: Path | None) -> None:
+    A host that was silent for `release_after` seconds is taken for gone.
+    """
+
+    def __init__(self, link: Path | None, release_after: float = RELEASE_AFTER_SECONDS) -> None:
         require_pseudo_terminals()
         self.link = link
+        self._release_after = release_after
+        self._heard_at: float | None = None
+        """When the host was heard last; None while there is none."""
         self.dropped = 0
         """Frames that found no room because nobody reads."""
         self._device_end = -1
@@ -78,8 +85,18 @@ class PseudoTerminal:
         os.close(self._device_end)
         self._device_end = self._host_end = -1
 
-    def read(self) -> bytes:
-        """What the host has written since; nothing while unplugged."""
+    def read(self, now: float) -> bytes:
+        """What the host has written since; nothing while unplugged. `now` is in seconds."""
+        heard = self._take()
+        if heard:
+            self._heard_at = now
+        elif self._heard_at is not None and now - self._heard_at > self._release_after:
+            # Once a silence: the next host may be taking the terminal at any later moment.
+            self._heard_at = None
+            self._release()
+        return heard
+
+    def _take(self) -> bytes:
         if not self.plugged:
             return b""
         try:
@@ -101,7 +118,7 @@ class PseudoTerminal:
             return
         self._backlog = self._backlog[sent:]
 
-    def release(self) -> None:
+    def _release(self) -> None:
         """Let the next host open the port, even if the last one locked it and was killed.
 
         Exclusive mode belongs to the terminal and outlives whoever set it, as long as the terminal

@@ -32,10 +32,10 @@ from .stop_signals import stopped_by_signals
 
 LATE_SECONDS = 200e-6
 PRIORITY = 1
-
-Board = SimulatedBoard | HaplyBoard
 MOST_STEPS_AT_ONCE = 50
 """After a longer hole the device's world has stood still for the rest, rather than jump."""
+
+Board = SimulatedBoard | HaplyBoard
 
 
 class Clock:

@@ -11,8 +11,6 @@ from .simulated_firmware import Firmware
 from .simulated_options import SimulatedOptions
 from .wire_faults import BadWire
 
-RELEASE_AFTER_SECONDS = 0.5
-
 
 class SimulatedBoard:
     """Advances by `tick`; times are seconds since it was switched on. Raises PalpateError."""
@@ -21,8 +19,6 @@ class SimulatedBoard:
         self._options = options
         self._schedule = HandSchedule(options)
         self._buttons_by_command = 0
-        self._last_heard = 0.0
-        self._host_is_there = False
         self._unplugged = 0
         self.firmware = Firmware(options.hello)
         start = self._schedule.hand(0.0)
@@ -40,14 +36,7 @@ class SimulatedBoard:
     def tick(self, now: float, steps: int) -> None:
         """Read the host, move by `steps` of the device's period, say where the device is."""
         self._schedule.keep_plug(now, self.unplug, self.plug_in)
-        heard = self.terminal.read()
-        if heard:
-            self._last_heard, self._host_is_there = now, True
-        elif self._host_is_there and now - self._last_heard > RELEASE_AFTER_SECONDS:
-            # Once a silence: the next host may be taking the terminal at any later moment.
-            self._host_is_there = False
-            self.terminal.release()
-        self._to_device.put(heard, now)
+        self._to_device.put(self.terminal.read(now), now)
         answer = self.firmware.receive(self._to_device.take(now), now)
         if self.firmware.counters.hellos:
             self._schedule.host_came(now)

@@ -41,6 +41,16 @@ pub struct Settings {
     pub coupling: Coupling,
 }
 
+impl Settings {
+    /// Maps the device elsewhere: the probe jumps then, and is set down anew.
+    pub fn move_device(&mut self, frame: DeviceFrame) {
+        self.frame = DeviceFrame {
+            epoch: self.frame.epoch.wrapping_add(1),
+            ..frame
+        };
+    }
+}
+
 /// What is fixed when the servo starts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {

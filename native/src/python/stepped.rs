@@ -207,12 +207,7 @@ impl SteppedServo {
 
     fn set_device_frame(&self, rotation: Rows, translation: Triple, scale: f64) -> PyResult<()> {
         let frame = device_frame(rotation, translation, scale)?;
-        self.change(|s| {
-            s.frame = DeviceFrame {
-                epoch: s.frame.epoch.wrapping_add(1),
-                ..frame
-            };
-        });
+        self.change(|s| s.move_device(frame));
         Ok(())
     }
 
