@@ -37,6 +37,7 @@ class WindowedBlender:
 
     def play(self, scenarios: list[str]) -> None:
         """Fill `outcomes` with one for each scenario."""
+        uncover(self.repository)
         output = self.repository / "build" / "gui"
         output.mkdir(parents=True, exist_ok=True)
         waiting = list(scenarios)
@@ -108,6 +109,20 @@ def _outcome(name: str, report: dict[str, object], log: str) -> Outcome:
     assert isinstance(pictures, list)
     assert isinstance(figures, dict)
     return Outcome(failure.strip(), tuple(str(picture) for picture in pictures), figures)
+
+
+def uncover(folder: Path) -> None:
+    """Unmount what an earlier folder of this name left in the windowed Blender's root.
+
+    That root shows a folder by a bind mount, made once for each name. Where the folder has been
+    deleted and made anew since, as a clean checkout is, the mount still shows the deleted one.
+    """
+    root = Path(os.environ.get("BLENDER_ROOT", "~/.cache/blender-gui/root")).expanduser()
+    shown = root / folder.relative_to("/")
+    # Path.is_mount compares devices, and a bind mount is mostly of the same one.
+    mounted = subprocess.run(["mountpoint", "-q", str(shown)], check=False).returncode == 0
+    if mounted and not shown.samefile(folder):
+        subprocess.run(["umount", "--lazy", str(shown)], check=True)
 
 
 def tail(text: str) -> str:
