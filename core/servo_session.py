@@ -57,11 +57,20 @@ def native_compliance(compliance: Compliance) -> NativeCompliance:
             raise TypeError(f"no native form of a {type(compliance).__name__}")
 
 
-def native_body(body: SoftBody) -> Body:
+def _in_memory(compliance: Compliance) -> NativeCompliance:
+    if isinstance(compliance, MappedCompliance):
+        return NativeCompliance.dense(np.array(compliance.table))
+    return native_compliance(compliance)
+
+
+def native_body(body: SoftBody, *, whole: bool = False) -> Body:
     """The rest surface, contact blocks and compliance of a body as the native thread holds them.
 
     The thread gets copies. Of the compliance it takes the blocks of all nodes and edges, a megabyte
     at 20,000 nodes, so that no tick reads a file or waits for memory.
+
+    Several fingers and tools need the compliance of any two nodes. A ``whole`` body keeps it all; a
+    table that lies in a file is checked and read into memory once, here.
 
     Raises
     ------
@@ -73,8 +82,9 @@ def native_body(body: SoftBody) -> Body:
             body.mesh.nodes[body.mesh.surface_nodes],
             body.mesh.surface_local_triangles,
             body.contact_blocks,
-            native_compliance(body.compliance),
+            _in_memory(body.compliance) if whole else native_compliance(body.compliance),
             np.searchsorted(body.mesh.surface_nodes, body.compliance.free_surface),
+            whole=whole,
         )
     except ValueError as problem:
         raise PalpateError(

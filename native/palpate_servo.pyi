@@ -179,13 +179,16 @@ class Body:
         contact_blocks: ArrayLike,
         compliance: Compliance | None = None,
         free_nodes: ArrayLike | None = None,
+        *,
+        whole: bool = False,
     ) -> None:
         """Take nodes (s, 3) in m, triangles (m, 3) counter-clockwise seen from outside, and
         contact_blocks (s, 3, 3), `L_aa^-1` at unit modulus (9).
 
         With a compliance, snapshots also tell where the touched point of the surface is. free_nodes
         (n,) are the numbers of the nodes that it counts, in its order (all unless given); the
-        others are pinned.
+        others are pinned. Contacts that reach over more than one triangle need a whole body, which
+        keeps the compliance and reads it in the tick: it must not lie in a mapped file.
 
         Raises ValueError when a number is not finite, an index is out of range, a triangle has no
         area, the surface is open or turned inside out, or the compliance is of other nodes.
@@ -195,6 +198,8 @@ class Body:
     def node_count(self) -> int: ...
     @property
     def triangle_count(self) -> int: ...
+    @property
+    def is_whole(self) -> bool: ...
     def contact(
         self, triangle: int, alpha: _Vector, displacement: _Vector, young_modulus: float
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -46,3 +46,4 @@ pub mod surface;
 pub mod table;
 pub mod thread;
 pub mod tree;
+mod whole;

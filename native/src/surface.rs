@@ -4,6 +4,7 @@
 
 use std::collections::HashMap;
 use std::fmt;
+use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
 
@@ -11,6 +12,7 @@ use crate::compliance::Compliance;
 use crate::joining::{edge_nodes, edges_by_nodes, gather_fans, join_edges};
 use crate::normals::{is_soft, set_fan_normals};
 use crate::tree::Tree;
+use crate::whole::Whole;
 
 /// Why a surface cannot be touched.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -160,6 +162,7 @@ pub struct Body {
     tree: Tree,
     size: f64,
     response: Option<Response>,
+    whole: Option<Whole>,
 }
 
 impl Body {
@@ -202,6 +205,7 @@ impl Body {
             tree,
             size,
             response: None,
+            whole: None,
         })
     }
 
@@ -269,6 +273,44 @@ impl Body {
             between,
             edges,
         }
+    }
+
+    /// The same body, which also keeps the compliance itself: any two nodes have a block then.
+    ///
+    /// The tick reads it where it lies, so it must not be a file mapped into memory.
+    ///
+    /// # Errors
+    /// As of [`with_compliance`](Self::with_compliance).
+    pub fn with_whole_compliance(
+        self,
+        compliance: Arc<Compliance>,
+        free_nodes: &[u32],
+    ) -> Result<Self, BodyError> {
+        let mut body = self.with_compliance(&compliance, free_nodes)?;
+        body.whole = Some(Whole::new(compliance, free_nodes, body.nodes.len()));
+        Ok(body)
+    }
+
+    /// Whether any two nodes have a block.
+    #[inline]
+    pub fn is_whole(&self) -> bool {
+        self.whole.is_some()
+    }
+
+    /// L_ab at unit modulus for two nodes of the surface; `None` for a body that does not keep its
+    /// whole compliance.
+    ///
+    /// A pinned node gives way to its own force as its contact block says, and to no other.
+    #[inline]
+    pub fn block(&self, a: u32, b: u32) -> Option<DMat3> {
+        let whole = self.whole.as_ref()?;
+        Some(whole.block(a, b).unwrap_or_else(|| {
+            if a == b {
+                self.contact_blocks[a as usize].inverse()
+            } else {
+                DMat3::ZERO
+            }
+        }))
     }
 
     /// Whether the body knows how its surface moves.

@@ -219,3 +219,17 @@ fn a_compliance_of_other_nodes_is_refused() {
     );
     assert!(with(&[5, 0, 5]).unwrap_err().contains("named free twice"));
 }
+
+#[test]
+fn a_whole_body_has_a_block_for_any_two_nodes() {
+    let compliance = Arc::new(bodies::compressed(&mut Dice::new(1), 3, LEAF, TILES));
+    let body = Arc::into_inner(bodies::cube()).expect("nobody else has it");
+    assert_eq!(body.block(5, 0), None);
+    let body = (body.with_whole_compliance(compliance.clone(), &[5, 0, 97])).expect("it fits");
+    assert_eq!(body.block(5, 97), Some(compliance.block(0, 2)));
+    assert_eq!(body.block(0, 0), Some(compliance.block(1, 1)));
+    // Pinned: as firm as its contact block, deaf to the others.
+    let own = body.block(7, 7).expect("it is whole") * body.contact_blocks[7];
+    assert!(close(own, DMat3::IDENTITY));
+    assert_eq!(body.block(7, 5), Some(DMat3::ZERO));
+}

@@ -19,13 +19,15 @@ pub struct Body {
 #[pymethods]
 impl Body {
     #[new]
-    #[pyo3(signature = (nodes, triangles, contact_blocks, compliance=None, free_nodes=None))]
+    #[pyo3(signature = (nodes, triangles, contact_blocks, compliance=None, free_nodes=None, *,
+        whole=false))]
     fn new(
         nodes: PyArrayLike2<'_, f64, AllowTypeChange>,
         triangles: PyArrayLike2<'_, i64, AllowTypeChange>,
         contact_blocks: PyArrayLike3<'_, f64, AllowTypeChange>,
         compliance: Option<&Compliance>,
         free_nodes: Option<PyArrayLike1<'_, i64, AllowTypeChange>>,
+        whole: bool,
     ) -> PyResult<Self> {
         let (nodes, triangles, blocks) = (
             nodes.as_array(),
@@ -71,9 +73,12 @@ impl Body {
                 Some(numbers) => node_numbers(&numbers)?,
                 None => (0..inner.nodes.len() as u32).collect(),
             };
-            inner = inner
-                .with_compliance(&compliance.inner, &free_nodes)
-                .map_err(refused)?;
+            inner = if whole {
+                inner.with_whole_compliance(compliance.inner.clone(), &free_nodes)
+            } else {
+                inner.with_compliance(&compliance.inner, &free_nodes)
+            }
+            .map_err(refused)?;
         }
         Ok(Self {
             inner: Arc::new(inner),
@@ -83,6 +88,11 @@ impl Body {
     #[getter]
     fn node_count(&self) -> usize {
         self.inner.nodes.len()
+    }
+
+    #[getter]
+    fn is_whole(&self) -> bool {
+        self.inner.is_whole()
     }
 
     #[getter]

@@ -1,6 +1,7 @@
 //! `Compliance`: the arrays of either form, held and not copied.
 
 use std::ptr::NonNull;
+use std::sync::Arc;
 
 use glam::DVec3;
 use numpy::{
@@ -20,7 +21,7 @@ const PREFIX: &str = "compressed_";
 
 #[pyclass(frozen, module = "palpate_servo")]
 pub struct Compliance {
-    pub inner: compliance::Compliance,
+    pub inner: Arc<compliance::Compliance>,
 }
 
 #[pymethods]
@@ -132,7 +133,9 @@ fn made(
     result: Result<compliance::Compliance, compliance::ComplianceError>,
 ) -> PyResult<Compliance> {
     match result {
-        Ok(inner) => Ok(Compliance { inner }),
+        Ok(inner) => Ok(Compliance {
+            inner: Arc::new(inner),
+        }),
         Err(reason) => Err(PyValueError::new_err(reason.to_string())),
     }
 }
