@@ -11,6 +11,7 @@ from palpate_servo import Compliance as NativeCompliance
 
 if TYPE_CHECKING:
     # Types only: the module itself does not have them.
+    from palpate_servo import ContactMode
     from palpate_servo import LinkCounters as LinkCounters  # noqa: PLC0414
     from palpate_servo import ServoCounters as ServoCounters  # noqa: PLC0414
 
@@ -100,6 +101,7 @@ def servo_for(
     rate_hz: int = 1000,
     max_force: float = 3.0,
     record_seconds: float = 10.0,
+    mode: ContactMode = "consistent",
 ) -> Servo:
     """A servo for this body, ready to be started with a pointer or a serial device.
 
@@ -109,6 +111,7 @@ def servo_for(
     rate_hz : 100 to 8000.
     max_force : newton; the clamp on what any device is told.
     record_seconds : how long samples are kept until somebody takes them.
+    mode : how a contact inside a triangle becomes a force; can be changed while it runs.
 
     Raises
     ------
@@ -124,6 +127,7 @@ def servo_for(
             rate_hz=rate_hz,
             max_force=max_force,
             record_seconds=record_seconds,
+            mode=mode,
         )
     except (ValueError, OverflowError) as problem:
         raise PalpateError(f"servo: {problem}") from problem

@@ -6,13 +6,15 @@ mathutils.Vector) serves as a vector.
 """
 
 from collections.abc import Mapping, Sequence
-from typing import Any, NotRequired, Self, TypeAlias, TypedDict, final
+from typing import Any, Literal, NotRequired, Self, TypeAlias, TypedDict, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 _Vector: TypeAlias = Sequence[float] | NDArray[np.floating[Any]]
 _Matrix: TypeAlias = Sequence[_Vector] | NDArray[np.floating[Any]]
+
+ContactMode: TypeAlias = Literal["paper", "consistent"]
 
 class Lateness(TypedDict):
     """Time from the deadline to the waking, us; percentiles to 3 %."""
@@ -200,10 +202,21 @@ class Body:
     def triangle_count(self) -> int: ...
     @property
     def is_whole(self) -> bool: ...
+    @property
+    def has_compliance(self) -> bool: ...
     def contact(
-        self, triangle: int, alpha: _Vector, displacement: _Vector, young_modulus: float
+        self,
+        triangle: int,
+        alpha: _Vector,
+        displacement: _Vector,
+        young_modulus: float,
+        mode: ContactMode = "consistent",
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Nodal forces (3, 3) and force on the finger (3,), N: equations (11) to (14)."""
+        """Nodal forces (3, 3) and force on the finger (3,), N: equations (11) to (14), or the force
+        of least energy that moves the contact point by exactly the displacement (consistent).
+
+        Without a compliance both modes are the paper's. ValueError for another mode.
+        """
 
     def surface_displacement(
         self, triangle: int, alpha: _Vector, nodal_forces: _Matrix, young_modulus: float
@@ -233,9 +246,10 @@ class Proxy:
         static_friction: float = 0.0,
         dynamic_friction: float = 0.0,
         rate_hz: int = 1000,
+        mode: ContactMode = "consistent",
     ) -> None:
         """Feel the body's facets as the smooth surface they stand for (shading), with coefficients
-        of dry friction, moved rate_hz times a second.
+        of dry friction, moved rate_hz times a second; friction is judged by the mode's force.
 
         Raises ValueError unless 0 <= dynamic_friction <= static_friction.
         """
@@ -371,10 +385,12 @@ class Servo:
         shading: bool = False,
         static_friction: float = 0.0,
         dynamic_friction: float = 0.0,
+        mode: ContactMode = "consistent",
     ) -> None:
         """Prepare a servo; ValueError for a rate beyond 100 to 8000 Hz or limits without sense.
 
-        max_force N, max_slew N/s, max_speed (device) and glide_speed (pointer) m/s.
+        max_force N, max_slew N/s, max_speed (device) and glide_speed (pointer) m/s. On a body
+        without a compliance both modes are the paper's.
         """
 
     def start_pointer(self, position: _Vector) -> None:
@@ -434,6 +450,9 @@ class Servo:
 
     def set_feel(self, *, shading: bool, static_friction: float, dynamic_friction: float) -> None:
         """Shading and friction of the surface; ValueError unless 0 <= dynamic <= static."""
+
+    def set_mode(self, mode: ContactMode) -> None:
+        """How a contact becomes a force, from the next tick on; ValueError for another mode."""
 
     def set_coupling(self, *, stiffness: float, damping: float, passivity_control: bool) -> None:
         """What lies between body and motors: the most stiffness that the device may see (N/m, inf
@@ -514,6 +533,7 @@ class SteppedServo:
         max_slew: float = 1000.0,
         ramp_seconds: float = 0.25,
         max_speed: float = 2.0,
+        mode: ContactMode = "consistent",
     ) -> None:
         """As Servo; ValueError as there."""
 
@@ -527,6 +547,9 @@ class SteppedServo:
     def set_enabled(self, enabled: bool) -> None: ...
     def set_young_modulus(self, young_modulus: float) -> None:
         """Any number, also none: to see what the tick makes of it."""
+
+    def set_mode(self, mode: ContactMode) -> None:
+        """As of Servo."""
 
     def set_coupling(self, *, stiffness: float, damping: float, passivity_control: bool) -> None:
         """As of Servo; none at the start."""

@@ -9,6 +9,7 @@ use std::sync::Arc;
 use std::{env, fs};
 
 use glam::DVec3;
+use palpate_servo::contact::ContactMode;
 use palpate_servo::proxy::Feel;
 use palpate_servo::surface::Body;
 
@@ -24,11 +25,13 @@ const PLAIN: Feel = Feel {
     shading: false,
     static_friction: 0.0,
     dynamic_friction: 0.0,
+    mode: ContactMode::Consistent,
 };
 const RICH: Feel = Feel {
     shading: true,
     static_friction: 0.5,
     dynamic_friction: 0.4,
+    mode: ContactMode::Consistent,
 };
 
 fn read_mesh(path: &str) -> Arc<Body> {

@@ -7,7 +7,6 @@
 use glam::{DMat3, DVec3};
 
 use crate::passivity::Passivity;
-use crate::surface::Body;
 
 /// How the body is coupled to a device with motors.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -85,16 +84,6 @@ const FORCE_OF_A_STEP: f64 = 0.06;
 const SMOOTHING_SECONDS: f64 = 1.0e-3;
 /// Added force over the spring's own, at most.
 const MOST_GAIN: f64 = 2.0;
-
-/// Stiffness of the touched place, N/m: the matrix of (11) to (14).
-pub fn contact_stiffness(body: &Body, triangle: u32, alpha: [f64; 3], young_modulus: f64) -> DMat3 {
-    let nodes = body.triangles[triangle as usize];
-    let mut sum = DMat3::ZERO;
-    for (node, weight) in nodes.into_iter().zip(alpha) {
-        sum += body.contact_blocks[node as usize] * weight;
-    }
-    sum * young_modulus
-}
 
 /// Largest eigenvalue of a symmetric matrix (Smith 1961).
 fn largest_eigenvalue(matrix: &DMat3) -> f64 {

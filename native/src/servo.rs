@@ -7,8 +7,8 @@ use glam::DVec3;
 use rtrb::Producer;
 use triple_buffer::{Input, Output};
 
-use crate::contact::{surface_displacement, touch};
-use crate::coupling::{Contact, Coupler, Coupling, contact_stiffness};
+use crate::contact::{contact_stiffness, surface_displacement, touch};
+use crate::coupling::{Contact, Coupler, Coupling};
 use crate::device::{Device, DeviceFrame, Fault, Probe, Reading};
 use crate::exchange::{Holder, exchange};
 use crate::proxy::{Feel, Proxy};
@@ -35,7 +35,7 @@ pub struct Settings {
     pub enabled: bool,
     /// Device to body.
     pub frame: DeviceFrame,
-    /// Shading and friction.
+    /// Shading, friction and how a contact becomes a force.
     pub feel: Feel,
     /// Between body and motors.
     pub coupling: Coupling,
@@ -158,7 +158,7 @@ impl<D: Device> Servo<D> {
             self.follow(&body, probe, &settings, &found, dt);
         }
         self.stages.end_of(Stage::Proxy, &mut since);
-        self.feel(&body, &mut shot, &mut found, settings.young_modulus);
+        self.feel(&body, &mut shot, &mut found, &settings);
         let wanted = if reading.probe().is_some_and(Probe::has_motors) {
             self.couple(&body, &mut shot, &settings, dt)
         } else {
@@ -253,7 +253,14 @@ impl<D: Device> Servo<D> {
     }
 
     /// Contact of the proxy and the probe, (11) to (14).
-    fn feel(&mut self, body: &Body, shot: &mut Snapshot, found: &mut Findings, young_modulus: f64) {
+    fn feel(
+        &mut self,
+        body: &Body,
+        shot: &mut Snapshot,
+        found: &mut Findings,
+        settings: &Settings,
+    ) {
+        let young_modulus = settings.young_modulus;
         shot.probe = self.probe;
         shot.proxy = self.probe;
         let Some(proxy) = &self.proxy else {
@@ -271,7 +278,15 @@ impl<D: Device> Servo<D> {
             return;
         };
         let displacement = shot.probe - shot.proxy;
-        let touch = touch(body, hold.triangle, hold.alpha, displacement, young_modulus);
+        let mode = settings.feel.mode;
+        let touch = touch(
+            body,
+            mode,
+            hold.triangle,
+            hold.alpha,
+            displacement,
+            young_modulus,
+        );
         if !touch.force.is_finite() {
             found.fault = found.fault.or(Some(Fault::Nan));
             return;
@@ -311,7 +326,7 @@ impl<D: Device> Servo<D> {
         };
         let young_modulus = settings.young_modulus;
         let contact = Contact {
-            stiffness: contact_stiffness(body, triangle, alpha, young_modulus),
+            stiffness: contact_stiffness(body, settings.feel.mode, triangle, alpha) * young_modulus,
             displacement: shot.probe - shot.proxy,
             force: shot.contact_force,
         };
@@ -320,7 +335,8 @@ impl<D: Device> Servo<D> {
             .couple(&contact, &settings.coupling, settings.frame.scale, dt);
         let spared = contact.displacement - coupled.body_displacement;
         if spared != DVec3::ZERO {
-            let relief = touch(body, triangle, alpha, spared, young_modulus);
+            let mode = settings.feel.mode;
+            let relief = touch(body, mode, triangle, alpha, spared, young_modulus);
             for (force, less) in shot.nodal_forces.iter_mut().zip(relief.nodal_forces) {
                 *force -= less;
             }

@@ -136,8 +136,10 @@ const PINNED: u32 = u32::MAX;
 /// megabytes, nor end with the file that such a table may lie in.
 #[derive(Debug)]
 struct Response {
-    /// L_aa of each node, zero where it is pinned.
+    /// L_aa of each node, the inverse of its contact block where it is pinned.
     own: Vec<DMat3>,
+    /// Where each node stands in the compliance.
+    places: Vec<u32>,
     /// L_ab of each edge, a < b.
     between: Vec<DMat3>,
     /// For each triangle which of `between` its three edges are.
@@ -242,13 +244,14 @@ impl Body {
                 }
             }
         }
-        self.response = Some(self.gather_response(compliance, &places));
+        self.response = Some(self.gather_response(compliance, places));
         Ok(self)
     }
 
     /// Reads the blocks of all nodes and edges.
-    fn gather_response(&self, compliance: &Compliance, places: &[u32]) -> Response {
+    fn gather_response(&self, compliance: &Compliance, places: Vec<u32>) -> Response {
         let block = |a: u32, b: u32| match (places[a as usize], places[b as usize]) {
+            (PINNED, _) | (_, PINNED) if a == b => self.contact_blocks[a as usize].inverse(),
             (PINNED, _) | (_, PINNED) => DMat3::ZERO,
             (a, b) => compliance.block(a as usize, b as usize),
         };
@@ -266,12 +269,12 @@ impl Body {
                 })
             })
             .collect();
+        let own = (0..places.len() as u32).map(|node| block(node, node));
         Response {
-            own: (0..places.len() as u32)
-                .map(|node| block(node, node))
-                .collect(),
+            own: own.collect(),
             between,
             edges,
+            places,
         }
     }
 
@@ -326,13 +329,32 @@ impl Body {
         let response = self.response.as_ref()?;
         let nodes = self.triangles[triangle as usize];
         if a == b {
-            return Some(response.own[nodes[a] as usize]);
+            let is_pinned = response.places[nodes[a] as usize] == PINNED;
+            return Some(if is_pinned {
+                DMat3::ZERO
+            } else {
+                response.own[nodes[a] as usize]
+            });
         }
         // Edge k runs from corner k to the next one: the edges without the corners 2, 0, 1.
         let edge = (4 - a - b) % 3;
         let block = response.between[response.edges[triangle as usize][edge] as usize];
         let straight = nodes[a] < nodes[b];
         Some(if straight { block } else { block.transpose() })
+    }
+
+    /// L at unit modulus of the three corners of a triangle, a pinned one's from its contact block,
+    /// and of its three edges, each between its ends in either order; `None` for a body without a
+    /// compliance.
+    #[inline]
+    pub fn triangle_compliance(&self, triangle: u32) -> Option<[[DMat3; 3]; 2]> {
+        let response = self.response.as_ref()?;
+        let nodes = self.triangles[triangle as usize];
+        let edges = response.edges[triangle as usize];
+        Some([
+            nodes.map(|node| response.own[node as usize]),
+            edges.map(|edge| response.between[edge as usize]),
+        ])
     }
 
     /// All triangles with their geometry.

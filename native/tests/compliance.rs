@@ -7,7 +7,7 @@ use std::sync::Arc;
 use bodies::Dice;
 use glam::{DMat3, DVec3};
 use palpate_servo::compliance::{Compliance, Compressed, CompressedParts, Dense, Either};
-use palpate_servo::contact::{surface_displacement, touch};
+use palpate_servo::contact::{ContactMode, surface_displacement, touch};
 use palpate_servo::surface::Body;
 
 const NODES: usize = 11;
@@ -135,7 +135,15 @@ fn the_touched_point_moves_by_the_blocks_of_its_triangle() {
     for triangle in 0..body.triangles.len() as u32 {
         let (a, b) = (dice.unit(), dice.unit());
         let alpha = [a.min(b), (a - b).abs(), 1.0 - a.max(b)];
-        let forces = touch(&body, triangle, alpha, dice.direction() * 1e-3, 1e4).nodal_forces;
+        let forces = touch(
+            &body,
+            ContactMode::Paper,
+            triangle,
+            alpha,
+            dice.direction() * 1e-3,
+            1e4,
+        )
+        .nodal_forces;
         let mut expected = DVec3::ZERO;
         let corners = body.triangles[triangle as usize];
         for (a, (&i, weight)) in corners.iter().zip(alpha).enumerate() {

@@ -4,10 +4,8 @@ mod bodies;
 
 use bodies::Dice;
 use glam::{DMat3, DVec3};
-use palpate_servo::contact::touch;
-use palpate_servo::coupling::{
-    Contact, Coupled, Coupler, Coupling, contact_stiffness, series_compliance,
-};
+use palpate_servo::contact::{ContactMode, contact_stiffness, touch};
+use palpate_servo::coupling::{Contact, Coupled, Coupler, Coupling, series_compliance};
 
 const DT: f64 = 1e-3;
 const LIMITED: Coupling = Coupling {
@@ -113,15 +111,17 @@ fn a_scaled_device_sees_no_more_than_the_limit() {
 
 #[test]
 fn the_stiffness_is_the_one_of_the_touch() {
-    let body = bodies::cube();
+    let body = bodies::elastic_cube();
     let mut dice = Dice::new(4);
-    for triangle in 0..body.triangles.len() as u32 {
-        let (a, b) = (dice.unit(), dice.unit());
-        let alpha = [a * b, a * (1.0 - b), 1.0 - a];
-        let u = dice.direction() * 0.003;
-        let felt = touch(&body, triangle, alpha, u, 1e4).force;
-        let stiffness = contact_stiffness(&body, triangle, alpha, 1e4);
-        assert!((-(stiffness * u)).distance(felt) < 1e-12);
+    for mode in ContactMode::ALL {
+        for triangle in 0..body.triangles.len() as u32 {
+            let (a, b) = (dice.unit(), dice.unit());
+            let alpha = [a * b, a * (1.0 - b), 1.0 - a];
+            let u = dice.direction() * 0.003;
+            let felt = touch(&body, mode, triangle, alpha, u, 1e4).force;
+            let stiffness = contact_stiffness(&body, mode, triangle, alpha) * 1e4;
+            assert!((-(stiffness * u)).distance(felt) < 1e-12);
+        }
     }
 }
 

@@ -18,6 +18,7 @@ fn feels() -> [Feel; 3] {
         shading,
         static_friction: friction,
         dynamic_friction: 0.8 * friction,
+        ..Feel::default()
     })
 }
 

@@ -6,7 +6,7 @@ mod pushing;
 
 use bodies::{Dice, angle_bar, cube, globe, inner_corner, lentil, sphere, turned, voxels};
 use glam::{DMat3, DVec3};
-use palpate_servo::contact::touch;
+use palpate_servo::contact::{ContactMode, touch};
 use palpate_servo::proxy::{Feel, Proxy};
 use palpate_servo::surface::Body;
 use pushing::target;
@@ -18,6 +18,7 @@ const SHADED: Feel = Feel {
     shading: true,
     static_friction: 0.0,
     dynamic_friction: 0.0,
+    mode: ContactMode::Consistent,
 };
 
 fn rubbing(shading: bool) -> Feel {
@@ -25,6 +26,7 @@ fn rubbing(shading: bool) -> Feel {
         shading,
         static_friction: 0.5,
         dynamic_friction: 0.3,
+        mode: ContactMode::Consistent,
     }
 }
 
@@ -53,7 +55,15 @@ fn pressed(body: &Body, device: DVec3, up: DVec3, feel: &Feel) -> Proxy {
 fn force(body: &Body, proxy: &Proxy, device: DVec3) -> DVec3 {
     let hold = proxy.hold().expect("it touches");
     let displacement = device - proxy.position();
-    touch(body, hold.triangle, hold.alpha, displacement, MODULUS).force
+    touch(
+        body,
+        ContactMode::Paper,
+        hold.triangle,
+        hold.alpha,
+        displacement,
+        MODULUS,
+    )
+    .force
 }
 
 /// Share of the tangential force in the normal one.

@@ -39,6 +39,7 @@ fn no_push_falls_through_or_sticks_with_shading_and_friction() {
         shading: true,
         static_friction: 0.5,
         dynamic_friction: 0.4,
+        ..Feel::default()
     };
     push_everything(&feel, 8);
 }
@@ -49,6 +50,7 @@ fn no_push_falls_through_or_sticks_with_friction_alone() {
         shading: false,
         static_friction: 0.9,
         dynamic_friction: 0.2,
+        ..Feel::default()
     };
     push_everything(&feel, 9);
 }

@@ -1,5 +1,7 @@
 //! What a surface feels like beyond its shape.
 
+use crate::contact::ContactMode;
+
 /// Optional shading and friction of the touched surface; the default is neither.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Feel {
@@ -9,4 +11,6 @@ pub struct Feel {
     pub static_friction: f64,
     /// Coefficient of friction while the finger slips, at most the static one.
     pub dynamic_friction: f64,
+    /// How a contact becomes a force; friction is judged by it.
+    pub mode: ContactMode,
 }

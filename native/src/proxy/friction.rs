@@ -1,7 +1,7 @@
 //! Dry friction: the contact point sticks until the force leaves its cone, then slips along it.
 //!
-//! The cone is one of forces: |F_t| <= mu F_n for the force that the body's own contact blocks
-//! give (14), which stiffness in different directions may turn away from the displacement. Within
+//! The cone is one of forces: |F_t| <= mu F_n for the force that the contact gives (14) in the mode
+//! in use, which stiffness in different directions may turn away from the displacement. Within
 //! a tangent plane that force is linear in the contact point, so where it re-enters the cone on
 //! the way to where nothing pulls sideways any more is solved at once; a few rounds account for
 //! the surface that bends on the way. On edges and nodes every normal between the facets' counts.
@@ -11,6 +11,7 @@ use glam::{DMat3, DVec3};
 use super::descent::descend;
 use super::shading::normal_at;
 use super::{Feel, Hold};
+use crate::contact::contact_stiffness;
 use crate::surface::{Body, HalfEdge};
 
 /// Rounds of slipping in one tick.
@@ -56,7 +57,7 @@ impl Friction {
         feel: &Feel,
         dt: f64,
     ) -> Option<Slip> {
-        let first = Pull::at(body, hold, device, feel.shading)?;
+        let first = Pull::at(body, hold, device, feel)?;
         let ratio = first.ratio();
         let stays = Slip {
             hold,
@@ -81,7 +82,7 @@ impl Friction {
         for _ in 0..MAX_ROUNDS {
             let start = body.face(from.triangle).at(from.alpha);
             reached = descend(body, from, start + pull.to_cone(aim)? * part);
-            let there = Pull::at(body, reached, device, feel.shading)?;
+            let there = Pull::at(body, reached, device, feel)?;
             let excess_there = there.ratio() - aim;
             if excess_there.abs() <= margin {
                 break;
@@ -101,15 +102,13 @@ impl Friction {
 }
 
 impl Pull {
-    fn at(body: &Body, hold: Hold, device: DVec3, shading: bool) -> Option<Self> {
+    fn at(body: &Body, hold: Hold, device: DVec3, feel: &Feel) -> Option<Self> {
         let Hold { triangle, alpha } = hold;
         let face = body.face(triangle);
-        let nodes = body.triangles[triangle as usize];
-        let block = |k: usize| body.contact_blocks[nodes[k] as usize] * alpha[k];
-        let stiffness = block(0) + block(1) + block(2);
+        let stiffness = contact_stiffness(body, feel.mode, triangle, alpha);
         let displacement = device - face.at(alpha);
         let force = stiffness * displacement;
-        let normal = nearest_normal(body, hold, shading, -force);
+        let normal = nearest_normal(body, hold, feel.shading, -force);
         let pressing = -force.dot(normal);
         (pressing > 0.0).then(|| Self {
             stiffness,

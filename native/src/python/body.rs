@@ -8,6 +8,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use super::compliance::Compliance;
+use super::servo::contact_mode;
 use super::vectors::{Matrix, Rows, Triple, Vector, array, finite, rows};
 use crate::{closest, contact, surface};
 
@@ -100,6 +101,12 @@ impl Body {
         self.inner.triangles.len()
     }
 
+    #[getter]
+    fn has_compliance(&self) -> bool {
+        self.inner.has_compliance()
+    }
+
+    #[pyo3(signature = (triangle, alpha, displacement, young_modulus, mode="consistent"))]
     fn contact<'py>(
         &self,
         py: Python<'py>,
@@ -107,10 +114,12 @@ impl Body {
         alpha: Triple,
         displacement: Triple,
         young_modulus: f64,
+        mode: &str,
     ) -> PyResult<(Matrix<'py>, Vector<'py>)> {
         self.check_triangle(triangle)?;
         let touch = contact::touch(
             &self.inner,
+            contact_mode(mode)?,
             triangle as u32,
             alpha,
             DVec3::from_array(displacement),

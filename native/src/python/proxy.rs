@@ -10,7 +10,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use super::body::Body;
-use super::servo::feel;
+use super::servo::{contact_mode, feel};
 use super::vectors::{Matrix, Triple, Vector, array, check_rate, finite};
 use crate::contact::touch;
 use crate::{proxy, surface};
@@ -42,19 +42,25 @@ impl Proxy {
 impl Proxy {
     #[new]
     #[pyo3(signature = (body, *, shading=false, static_friction=0.0, dynamic_friction=0.0,
-        rate_hz=1000))]
+        rate_hz=1000, mode="consistent"))]
     fn new(
         body: &Body,
         shading: bool,
         static_friction: f64,
         dynamic_friction: f64,
         rate_hz: u32,
+        mode: &str,
     ) -> PyResult<Self> {
         check_rate(rate_hz)?;
         Ok(Self {
             body: body.inner.clone(),
             inner: None,
-            feel: feel(shading, static_friction, dynamic_friction)?,
+            feel: feel(
+                shading,
+                static_friction,
+                dynamic_friction,
+                contact_mode(mode)?,
+            )?,
             dt: 1.0 / f64::from(rate_hz),
         })
     }
@@ -121,7 +127,14 @@ impl Proxy {
                     inner.follow(body, black_box(device), &feel, dt);
                     if let Some(hold) = inner.hold() {
                         let displacement = device - inner.position();
-                        black_box(touch(body, hold.triangle, hold.alpha, displacement, 1e3));
+                        black_box(touch(
+                            body,
+                            feel.mode,
+                            hold.triangle,
+                            hold.alpha,
+                            displacement,
+                            1e3,
+                        ));
                     }
                 }
                 start.elapsed().as_secs_f64() / batch.len() as f64

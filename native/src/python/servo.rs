@@ -15,6 +15,7 @@ use super::snapshot::{Snapshot, structured, structured_pieces};
 use super::stepped::fault_counters;
 use super::vectors::{IDENTITY, Rows, Triple, check_rate, check_seconds, finite, matrix, positive};
 use crate::clock::Timing;
+use crate::contact::ContactMode;
 use crate::coupling::Coupling;
 use crate::device::{Device, DeviceFrame};
 use crate::haply::device::HaplyDevice;
@@ -133,7 +134,7 @@ impl Servo {
     #[new]
     #[pyo3(signature = (body, *, young_modulus, rate_hz=1000, max_force=3.0, max_slew=1000.0,
         ramp_seconds=0.25, max_speed=2.0, glide_speed=0.5, record_seconds=10.0, shading=false,
-        static_friction=0.0, dynamic_friction=0.0))]
+        static_friction=0.0, dynamic_friction=0.0, mode="consistent"))]
     #[allow(clippy::too_many_arguments)] // Keywords in Python.
     fn new(
         body: &Body,
@@ -148,6 +149,7 @@ impl Servo {
         shading: bool,
         static_friction: f64,
         dynamic_friction: f64,
+        mode: &str,
     ) -> PyResult<Self> {
         check_rate(rate_hz)?;
         check_seconds("ramp_seconds", ramp_seconds)?;
@@ -170,7 +172,12 @@ impl Servo {
                 young_modulus: positive("young_modulus", young_modulus)?,
                 enabled: true,
                 frame: DeviceFrame::default(),
-                feel: feel(shading, static_friction, dynamic_friction)?,
+                feel: feel(
+                    shading,
+                    static_friction,
+                    dynamic_friction,
+                    contact_mode(mode)?,
+                )?,
                 coupling: Coupling::for_devices(rate_hz),
             }),
             own_coupling: Mutex::new(None),
@@ -287,8 +294,24 @@ impl Servo {
 
     #[pyo3(signature = (*, shading, static_friction, dynamic_friction))]
     fn set_feel(&self, shading: bool, static_friction: f64, dynamic_friction: f64) -> PyResult<()> {
-        let feel = feel(shading, static_friction, dynamic_friction)?;
-        self.change(|s| s.feel = feel);
+        let feel = feel(
+            shading,
+            static_friction,
+            dynamic_friction,
+            ContactMode::default(),
+        )?;
+        self.change(|s| {
+            s.feel = Feel {
+                mode: s.feel.mode,
+                ..feel
+            }
+        });
+        Ok(())
+    }
+
+    fn set_mode(&self, mode: &str) -> PyResult<()> {
+        let mode = contact_mode(mode)?;
+        self.change(|s| s.feel.mode = mode);
         Ok(())
     }
 
@@ -431,7 +454,23 @@ pub(super) fn device_frame(
     })
 }
 
-pub(super) fn feel(shading: bool, static_friction: f64, dynamic_friction: f64) -> PyResult<Feel> {
+pub(super) fn contact_mode(name: &str) -> PyResult<ContactMode> {
+    let found = ContactMode::ALL
+        .into_iter()
+        .find(|mode| mode.name() == name);
+    found.ok_or_else(|| {
+        PyValueError::new_err(format!(
+            "mode is {name:?}; it must be \"paper\" or \"consistent\""
+        ))
+    })
+}
+
+pub(super) fn feel(
+    shading: bool,
+    static_friction: f64,
+    dynamic_friction: f64,
+    mode: ContactMode,
+) -> PyResult<Feel> {
     let are_coefficients = static_friction.is_finite() && dynamic_friction >= 0.0;
     if !are_coefficients || dynamic_friction > static_friction {
         return Err(PyValueError::new_err(
@@ -442,6 +481,7 @@ pub(super) fn feel(shading: bool, static_friction: f64, dynamic_friction: f64) -
         shading,
         static_friction,
         dynamic_friction,
+        mode,
     })
 }
 

@@ -10,7 +10,7 @@ use triple_buffer::{Input, Output, triple_buffer};
 
 use super::body::Body;
 use super::counters::link_counters;
-use super::servo::{coupling, device_frame};
+use super::servo::{contact_mode, coupling, device_frame};
 use super::snapshot::Snapshot;
 use super::vectors::{Rows, Triple, check_rate, check_seconds, positive};
 use crate::coupling::Coupling;
@@ -107,7 +107,8 @@ impl SteppedServo {
 impl SteppedServo {
     #[new]
     #[pyo3(signature = (body, *, young_modulus, rate_hz=1000, max_force=3.0, max_slew=1000.0,
-        ramp_seconds=0.25, max_speed=2.0))]
+        ramp_seconds=0.25, max_speed=2.0, mode="consistent"))]
+    #[allow(clippy::too_many_arguments)] // Keywords in Python.
     fn new(
         body: &Body,
         young_modulus: f64,
@@ -116,6 +117,7 @@ impl SteppedServo {
         max_slew: f64,
         ramp_seconds: f64,
         max_speed: f64,
+        mode: &str,
     ) -> PyResult<Self> {
         check_rate(rate_hz)?;
         check_seconds("ramp_seconds", ramp_seconds)?;
@@ -132,7 +134,10 @@ impl SteppedServo {
             young_modulus: positive("young_modulus", young_modulus)?,
             enabled: true,
             frame: DeviceFrame::default(),
-            feel: Feel::default(),
+            feel: Feel {
+                mode: contact_mode(mode)?,
+                ..Feel::default()
+            },
             coupling: Coupling::default(),
         };
         let wire = InMemory::default();
@@ -196,6 +201,12 @@ impl SteppedServo {
 
     fn set_young_modulus(&self, young_modulus: f64) {
         self.change(|s| s.young_modulus = young_modulus);
+    }
+
+    fn set_mode(&self, mode: &str) -> PyResult<()> {
+        let mode = contact_mode(mode)?;
+        self.change(|s| s.feel.mode = mode);
+        Ok(())
     }
 
     #[pyo3(signature = (*, stiffness, damping, passivity_control))]

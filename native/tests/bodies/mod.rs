@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
-use palpate_servo::compliance::{Compliance, Compressed, CompressedParts, Either};
+use palpate_servo::compliance::{Compliance, Compressed, CompressedParts, Dense, Either};
 use palpate_servo::surface::Body;
 
 pub fn soft(nodes: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Arc<Body> {
@@ -87,6 +87,37 @@ pub fn giving_cube_in_parts() -> (Body, Compliance, Vec<u32>) {
     let compliance = compressed(&mut Dice::new(8), free.len(), 4, 2);
     let body = body.with_compliance(&compliance, &free).expect("it fits");
     (body, compliance, free)
+}
+
+/// The cube with a made-up compliance that a real body could have: symmetric, positive definite,
+/// falling off with distance, contact blocks that belong to it. The lowest nodes are pinned.
+pub fn elastic_cube() -> Arc<Body> {
+    elastic(&cube())
+}
+
+/// The body's surface with such a compliance, pinned where it is lowest.
+pub fn elastic(body: &Body) -> Arc<Body> {
+    let lowest = body.nodes.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
+    let free: Vec<u32> = (0..body.nodes.len() as u32)
+        .filter(|&node| body.nodes[node as usize].z > lowest + 1e-9)
+        .collect();
+    let shape = DMat3::from_cols_array(&[9.0, 1.0, 0.5, 1.0, 7.0, -0.8, 0.5, -0.8, 11.0]);
+    let block = |a: u32, b: u32| {
+        let gap = body.nodes[a as usize].distance(body.nodes[b as usize]);
+        shape * (-gap / 0.02).exp()
+    };
+    let mut table = Vec::new();
+    for &loaded in &free {
+        for axis in 0..3 {
+            let column = |&moved: &u32| block(moved, loaded).col(axis).to_array();
+            table.extend(free.iter().flat_map(column));
+        }
+    }
+    let dense = Dense::new(free.len(), Either::Long(table.into())).expect("n x 3 x 3n");
+    let blocks = vec![shape.inverse(); body.nodes.len()];
+    let body = Body::new(body.nodes.clone(), body.triangles.clone(), blocks).expect("sound");
+    let whole = body.with_compliance(&Compliance::Dense(dense), &free);
+    Arc::new(whole.expect("it fits"))
 }
 
 /// Made-up parts of a compressed compliance: clusters that are near to themselves alone, with as
