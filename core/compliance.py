@@ -42,6 +42,10 @@ class Compliance(Protocol):
         """L_ij, (3, 3): displacement of node i per force on node j."""
         ...
 
+    def blocks(self, rows: NDArray[np.int64], columns: NDArray[np.int64]) -> NDArray[np.float64]:
+        """L_ij for every i of ``rows`` (a,) and j of ``columns`` (b,), (a, b, 3, 3)."""
+        ...
+
     def diagonal(self) -> NDArray[np.float64]:
         """All blocks L_ii, (n, 3, 3)."""
         ...

@@ -1,14 +1,21 @@
 """Touch: the force that would cause a given displacement. Equations (9) to (14) of the paper.
 
-This is the readable reference; the servo computes the same natively, a thousand times a second.
+:mod:`.consistent_contact` and :mod:`.several_contacts` continue them where the paper stops. This
+is the readable reference; the servo computes the same natively, a thousand times a second.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+# How a contact inside a triangle is answered: its point moves by exactly the finger's displacement,
+# or the three nodes share it as in the paper (11), (12).
+ContactMode: TypeAlias = Literal["consistent", "paper"]
+CONTACT_MODES: tuple[ContactMode, ...] = ("consistent", "paper")
 
 
 @dataclass(frozen=True, eq=False)

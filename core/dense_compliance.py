@@ -46,6 +46,12 @@ class DenseCompliance:
         """L_ij, (3, 3): displacement of node i per force on node j."""
         return self.table[j, :, 3 * i : 3 * i + 3].T.astype(np.float64)
 
+    def blocks(self, rows: NDArray[np.int64], columns: NDArray[np.int64]) -> NDArray[np.float64]:
+        """L_ij for every i of ``rows`` (a,) and j of ``columns`` (b,), (a, b, 3, 3)."""
+        seen_by_node = self.table.reshape(self.node_count, 3, self.node_count, 3)
+        found = seen_by_node[np.asarray(columns)[:, None], :, np.asarray(rows)[None, :], :]
+        return found.transpose(1, 0, 3, 2).astype(np.float64, order="C")
+
     def diagonal(self) -> NDArray[np.float64]:
         """All blocks L_ii, (n, 3, 3)."""
         seen_by_node = self.table.reshape(self.node_count, 3, self.node_count, 3)

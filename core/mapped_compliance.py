@@ -68,6 +68,11 @@ class MappedCompliance:
         self._check(np.array([j]))
         return self._unchecked.block(i, j)
 
+    def blocks(self, rows: NDArray[np.int64], columns: NDArray[np.int64]) -> NDArray[np.float64]:
+        """L_ij for every i of ``rows`` (a,) and j of ``columns`` (b,), (a, b, 3, 3)."""
+        self._check(columns)
+        return self._unchecked.blocks(rows, columns)
+
     def diagonal(self) -> NDArray[np.float64]:
         """All blocks L_ii, (n, 3, 3)."""
         return self.stored_diagonal.astype(np.float64)

@@ -107,20 +107,47 @@ class CompressedCompliance:
         # One of both is computed and the other one turned: so L is symmetric to the last bit.
         if self.places[i] > self.places[j]:
             return self.block(j, i).T
-        (row, a), (column, b) = self._place(i), self._place(j)
-        rows, columns = slice(3 * a, 3 * a + 3), slice(3 * b, 3 * b + 3)
+        (row, _), (column, _) = self._place(i), self._place(j)
+        (one,) = self._pair_blocks(row, np.array([i]), column, np.array([j]))[0]
+        return np.asarray(one)
+
+    def blocks(self, rows: NDArray[np.int64], columns: NDArray[np.int64]) -> NDArray[np.float64]:
+        """L_ij for every i of ``rows`` (a,) and j of ``columns`` (b,), (a, b, 3, 3)."""
+        seen, loaded = (np.asarray(nodes, dtype=np.int64) for nodes in (rows, columns))
+        found = np.empty((len(seen), len(loaded), 3, 3))
+        for row, a in self._by_cluster(seen):
+            for column, b in self._by_cluster(loaded):
+                if row <= column:
+                    found[np.ix_(a, b)] = self._pair_blocks(row, seen[a], column, loaded[b])
+                else:
+                    turned = self._pair_blocks(column, loaded[b], row, seen[a])
+                    found[np.ix_(a, b)] = turned.transpose(1, 0, 3, 2)
+        same = np.nonzero(seen[:, None] == loaded)
+        found[same] = self.own_blocks[seen[same[0]]]
+        return found
+
+    def _pair_blocks(
+        self, row: int, seen: NDArray[np.int64], column: int, loaded: NDArray[np.int64]
+    ) -> NDArray[np.float64]:
+        """L_ij between nodes of cluster ``row`` and of ``column`` >= ``row``, (a, b, 3, 3)."""
+        a, b = self.places[seen] - row * self._leaf, self.places[loaded] - column * self._leaf
+        rows, columns = freedoms(a), freedoms(b)
         number = self.near_table[row, column]
-        if number:
-            numbers = self.near[number - 1, rows, columns].astype(np.float64)
-            scale = self.near_scale.astype(np.float64)
-            sides = scale[row, rows, None] * scale[column, columns]
-            near: NDArray[np.float64] = sides * (float(self.near_steps[number - 1]) * numbers)
-            return near
-        left = self._cluster_basis(row)[rows].astype(np.float64)
-        right = self._cluster_basis(column)[columns].astype(np.float64)
-        step = float(min(self.steps[row], self.steps[column]))
-        far: NDArray[np.float64] = step * (left @ self._coupling(row, column) @ right.T)
-        return far
+        if not number:
+            left = self._cluster_basis(row)[rows].astype(np.float64)
+            right = self._cluster_basis(column)[columns].astype(np.float64)
+            step = float(min(self.steps[row], self.steps[column]))
+            return _as_blocks(step * (left @ self._coupling(row, column) @ right.T))
+        near, step = self.near[number - 1], float(self.near_steps[number - 1])
+        scale = self.near_scale.astype(np.float64)
+        sides = scale[row, rows, None] * scale[column, columns]
+        straight = _as_blocks(sides * (step * near[np.ix_(rows, columns)].astype(np.float64)))
+        if row != column:
+            return straight
+        # Within one cluster both orders are stored; as in `block`, that of the places counts.
+        turned = _as_blocks(sides * (step * near[np.ix_(columns, rows)].T.astype(np.float64)))
+        is_turned = (a[:, None] > b)[:, :, None, None]
+        return np.where(is_turned, turned, straight)
 
     def diagonal(self) -> NDArray[np.float64]:
         """All blocks L_ii, (n, 3, 3)."""
@@ -301,6 +328,12 @@ class CompressedCompliance:
         steps = np.minimum(self._tile_steps, self.steps[load.cluster])[:, None, None]
         patterns[:first] += steps[:first] * straight.T.reshape(-1, TILE, width)
         patterns[first:] += steps[first:] * turned.T.reshape(-1, TILE, width)
+
+
+def _as_blocks(matrix: NDArray[np.float64]) -> NDArray[np.float64]:
+    """A matrix (3a, 3b) as its blocks (a, b, 3, 3)."""
+    rows, columns = matrix.shape
+    return matrix.reshape(rows // 3, 3, columns // 3, 3).transpose(0, 2, 1, 3)
 
 
 @dataclass(frozen=True, eq=False)
