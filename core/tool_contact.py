@@ -1,0 +1,445 @@
+"""A rigid tool pressed on a soft body: which points it touches, with what force.
+
+The readable reference of what the servo does a thousand times a second. The contact points are
+those of :mod:`.contact_points`, fixed on the body; the law is that of :mod:`.tool_law`; here are
+the choice of points, the history, and what is felt.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from .contact_points import ContactPoints, contact_points
+from .errors import PalpateError
+from .near_field import point_compliance
+from .soft_body import SoftBody
+from .surface import Surface
+from .tool_law import Candidates, Settled, along_normals, distances_in_body, settle
+from .tools import Pose, Tool
+from .winding_volume import is_inside
+
+# Points at rest within this share of the tool's size are looked at from the start; others when
+# they are found to have moved into the tool.
+MARGIN = 0.1
+
+# Share of the inner radius up to which a tool set on the body at rest needs no path from outside.
+SHALLOW = 0.5
+
+# A point counts as in the tool below this share of its size.
+IN_TOOL = 1e-9
+
+# Eigenvalues of the points' compliance below this share of the largest are rounding.
+SINGULAR = 1e-12
+
+# Rounds of adding points that moved into the tool.
+MOST_ADDITIONS = 20
+
+# Strides within which any tool is outside any body: a path this long leads out.
+MOST_STRIDES = 2000
+
+
+@dataclass(frozen=True, eq=False)
+class Load:
+    """Forces on nodes of a body, such as another finger's.
+
+    ``nodes`` (k,) of the mesh, ``forces`` (k, 3) in newton.
+    """
+
+    nodes: NDArray[np.int64]
+    forces: NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class ToolTouch:
+    """A tool on a body.
+
+    Attributes
+    ----------
+    body, tool : which.
+    surface : all contact points of the body for this tool.
+    pose : where the tool is; behind the pose asked for where that was farther than it may go.
+    young_modulus : pascal.
+    points : int64 (p,), numbers of the contact points that are pressed.
+    forces : float64 (p, 3), on the body, newton.
+    pushes : float64 (p,), their part along the tool's normal, all > 0.
+    normals : float64 (p, 3), outward from the tool, where the points have gone to.
+    displacements : float64 (p, 3), of the points, metres.
+    compliance : float64 (3p, 3p), of the points, m/N.
+    free : whether the tool has been outside since it was set down; until then it feels nothing.
+    exact : whether the equilibrium was found within the bounds on the work.
+    """
+
+    body: SoftBody
+    tool: Tool
+    surface: ContactPoints
+    pose: Pose
+    young_modulus: float
+    points: NDArray[np.int64]
+    forces: NDArray[np.float64]
+    pushes: NDArray[np.float64]
+    normals: NDArray[np.float64]
+    displacements: NDArray[np.float64]
+    compliance: NDArray[np.float64]
+    free: bool = True
+    exact: bool = True
+
+    @property
+    def touching(self) -> bool:
+        """Whether any point is pressed."""
+        return bool(len(self.points))
+
+    @property
+    def places(self) -> NDArray[np.float64]:
+        """Rest places of the pressed points, (p, 3), metres."""
+        return self.surface.positions[self.points]
+
+    @property
+    def pressures(self) -> NDArray[np.float64]:
+        """Push per share of the surface, (p,), pascal."""
+        pressures: NDArray[np.float64] = self.pushes / self.surface.areas[self.points]
+        return pressures
+
+    @property
+    def force(self) -> NDArray[np.float64]:
+        """Force that the tool feels, (3,), newton."""
+        force: NDArray[np.float64] = -self.forces.sum(axis=0)
+        return force
+
+    @property
+    def torque(self) -> NDArray[np.float64]:
+        """Torque that the tool feels about its reference point, (3,), newton metres."""
+        arms = self.places + self.displacements - self.pose.position
+        torque: NDArray[np.float64] = -np.cross(arms, self.forces).sum(axis=0)
+        return torque
+
+    @property
+    def energy(self) -> float:
+        """Elastic energy that the points' own forces hold in the body, joule."""
+        forces = self.forces.reshape(-1)
+        return float(0.5 * forces @ self.compliance @ forces)
+
+    @cached_property
+    def stiffness(self) -> NDArray[np.float64]:
+        """How the force resists a small move of the tool while the pressed points and their normals
+        stay, (3, 3), N/m, symmetric, positive semidefinite.
+        """
+        if not self.touching:
+            return np.zeros((3, 3))
+        matrix = along_normals(self.compliance, self.normals)
+        # More points than the mesh has freedom beneath them make the matrix singular.
+        stiffness: NDArray[np.float64] = (
+            self.normals.T @ np.linalg.pinv(matrix, rcond=SINGULAR, hermitian=True) @ self.normals
+        )
+        return 0.5 * (stiffness + stiffness.T)
+
+    @cached_property
+    def load(self) -> Load:
+        """The forces on the nodes of the mesh, repeats summed; what (15) deforms the body by."""
+        corners = self.body.mesh.surface_triangles[self.surface.triangles[self.points]]
+        shares = self.surface.alphas[self.points][:, :, None] * self.forces[:, None]
+        nodes, place = np.unique(corners, return_inverse=True)
+        forces = np.zeros((len(nodes), 3))
+        np.add.at(forces, place.reshape(-1), shares.reshape(-1, 3))
+        carrying = forces.any(axis=1)
+        return Load(nodes[carrying], forces[carrying])
+
+    @property
+    def nodes(self) -> NDArray[np.int64]:
+        """Nodes of the mesh that carry force, (k,)."""
+        return self.load.nodes
+
+    @property
+    def nodal_forces(self) -> NDArray[np.float64]:
+        """Forces on these nodes, (k, 3), newton."""
+        return self.load.forces
+
+
+def press_tool(
+    body: SoftBody,
+    tool: Tool,
+    pose: Pose,
+    *,
+    young_modulus: float | None = None,
+    start: ToolTouch | None = None,
+    outside: Load | None = None,
+) -> ToolTouch:
+    """Press a tool on a body, from where ``start`` left it or, without one, from outside.
+
+    With ``start`` the tool goes straight to the pose in as many strides as that takes; without, it
+    comes the way the body would push it out. Depths beyond the tool's radius are answered, though
+    no linear body can be right there.
+
+    Parameters
+    ----------
+    young_modulus : pascal; the body's own unless given.
+    start : an earlier touch by the same tool on the same body.
+    outside : forces of other fingers, which move the surface too.
+
+    Raises
+    ------
+    PalpateError
+        Young's modulus is not a positive number; ``start`` is of another body or tool.
+    """
+    if start is None:
+        state = set_down(body, tool, pose, young_modulus=young_modulus)
+        shallow = _overlap(state, pose) <= SHALLOW * tool.inner_radius
+        if shallow and not _is_within(state, pose):
+            return _settled(replace(state, free=True), pose, outside)
+        away = _way_out(state, pose)
+        start = replace(set_down(body, tool, away, young_modulus=young_modulus), free=True)
+    touch = _continued(start, body, tool, young_modulus)
+    for _ in range(MOST_STRIDES):
+        between, arrived = _stride(tool, touch.pose, pose)
+        touch = _settled(touch, between, outside)
+        if arrived:
+            return touch
+    raise PalpateError(
+        f"tool {tool.name}: the pose is more than {MOST_STRIDES} strides away; begin nearer"
+    )
+
+
+def set_down(
+    body: SoftBody, tool: Tool, pose: Pose, *, young_modulus: float | None = None
+) -> ToolTouch:
+    """A tool that appears at a pose. Inside the body it will feel nothing until it was outside."""
+    modulus = body.young_modulus if young_modulus is None else young_modulus
+    if not (np.isfinite(modulus) and modulus > 0.0):
+        raise PalpateError(f"Young's modulus is {modulus} Pa; give a positive number")
+    none, vectors = np.empty(0), np.empty((0, 3))
+    state = ToolTouch(
+        body,
+        tool,
+        surface_for(body, tool),
+        pose,
+        modulus,
+        np.empty(0, dtype=np.int64),
+        vectors,
+        none,
+        vectors,
+        vectors,
+        np.empty((0, 0)),
+    )
+    return replace(state, free=_is_outside(state, pose))
+
+
+def follow_tool(touch: ToolTouch, pose: Pose, *, outside: Load | None = None) -> ToolTouch:
+    """One tick: the tool goes towards a pose by at most one stride, and feels the body there."""
+    between, _ = _stride(touch.tool, touch.pose, pose)
+    return _settled(touch, between, outside)
+
+
+def press_along(
+    body: SoftBody,
+    tool: Tool,
+    poses: Iterable[Pose],
+    *,
+    young_modulus: float | None = None,
+    outside: Load | None = None,
+) -> list[ToolTouch]:
+    """Follow a path, one tick a pose, from where the first one sets the tool down."""
+    touches: list[ToolTouch] = []
+    for pose in poses:
+        last = touches[-1:] or [set_down(body, tool, pose, young_modulus=young_modulus)]
+        touches.append(follow_tool(last[0], pose, outside=outside))
+    return touches
+
+
+# Contact points take long to spread and are the same for every touch of a body by a tool.
+_surfaces: WeakKeyDictionary[SoftBody, dict[float, ContactPoints]] = WeakKeyDictionary()
+
+
+def surface_for(body: SoftBody, tool: Tool) -> ContactPoints:
+    """The contact points of a body for a tool; kept as long as the body lives."""
+    known = _surfaces.setdefault(body, {})
+    if tool.spacing not in known:
+        known[tool.spacing] = contact_points(body, tool.spacing)
+    return known[tool.spacing]
+
+
+def _continued(
+    start: ToolTouch, body: SoftBody, tool: Tool, young_modulus: float | None
+) -> ToolTouch:
+    """The touch to go on from, its forces at the modulus asked for."""
+    if start.body is not body or start.tool is not tool:
+        raise PalpateError(
+            f"tool {tool.name}: the touch to start from is of another body or tool; leave it out"
+        )
+    modulus = body.young_modulus if young_modulus is None else young_modulus
+    ratio = modulus / start.young_modulus
+    return replace(
+        start, young_modulus=modulus, forces=start.forces * ratio, pushes=start.pushes * ratio
+    )
+
+
+def _settled(state: ToolTouch, pose: Pose, outside: Load | None) -> ToolTouch:
+    """The touch with the tool at ``pose``, reached in one step from ``state``."""
+    state = replace(state, pose=pose, free=state.free or _is_outside(state, pose))
+    if not state.free:
+        return state
+    chosen = _looked_at(state, pose)
+    if not chosen.size:
+        return state
+    forces = np.zeros((len(chosen), 3))
+    forces[np.searchsorted(chosen, state.points)] = state.forces
+    for _ in range(MOST_ADDITIONS):
+        candidates = _candidates(state, chosen, outside)
+        settled = settle(candidates, state.tool, pose, forces)
+        entered = _entered(state, pose, chosen, settled, outside)
+        if not entered.size:
+            break
+        grown = np.union1d(chosen, entered)
+        forces = np.zeros((len(grown), 3))
+        forces[np.searchsorted(grown, chosen)] = settled.forces
+        chosen = grown
+    pressed = np.flatnonzero(settled.pushes > 0.0)
+    own = (3 * pressed[:, None] + np.arange(3)).reshape(-1)
+    touch = replace(
+        state,
+        points=chosen[pressed],
+        forces=settled.forces[pressed],
+        pushes=settled.pushes[pressed],
+        normals=settled.normals[pressed],
+        displacements=settled.displacements[pressed],
+        compliance=candidates.compliance[np.ix_(own, own)],
+        exact=settled.exact,
+    )
+    # A tool that lost the surface while in the body would come out at any side: it is let go.
+    lost = state.touching and not touch.touching and not _is_outside(touch, pose)
+    return replace(touch, free=not lost)
+
+
+def _looked_at(state: ToolTouch, pose: Pose) -> NDArray[np.int64]:
+    """Points that may be touched: those in or near the tool at rest, and those pressed before."""
+    tool, positions = state.tool, state.surface.positions
+    margin = MARGIN * tool.size
+    near = np.linalg.norm(positions - pose.position, axis=1) < tool.reach + margin
+    within = np.flatnonzero(near)
+    distances, _ = distances_in_body(tool, pose, positions[within])
+    return np.union1d(within[distances < margin], state.points)
+
+
+def _candidates(state: ToolTouch, chosen: NDArray[np.int64], outside: Load | None) -> Candidates:
+    return Candidates(
+        state.surface.positions[chosen],
+        state.surface.normals[chosen],
+        _compliance(state, chosen, chosen),
+        _offsets(state, chosen, outside),
+    )
+
+
+def _compliance(
+    state: ToolTouch, rows: NDArray[np.int64], columns: NDArray[np.int64]
+) -> NDArray[np.float64]:
+    """Displacements of points ``rows`` (k,) per force on points ``columns`` (l,), (3k, 3l), m/N."""
+    blocks = point_compliance(state.body, state.surface, rows, columns)
+    matrix: NDArray[np.float64] = blocks.transpose(0, 2, 1, 3).reshape(3 * len(rows), -1)
+    return matrix / state.young_modulus
+
+
+def _offsets(
+    state: ToolTouch, chosen: NDArray[np.int64], outside: Load | None
+) -> NDArray[np.float64]:
+    """Displacements (k, 3) of the chosen points under the forces of other fingers."""
+    offsets = np.zeros((len(chosen), 3))
+    if outside is None or not len(outside.nodes):
+        return offsets
+    body = state.body
+    loaded = body.free_index(outside.nodes)
+    held = loaded >= 0
+    moved = body.compliance.apply(outside.forces[held] / state.young_modulus, loaded[held])
+    # The last row stands for pinned nodes, which others do not move.
+    moved = np.vstack([moved, np.zeros((1, 3))])
+    corners = body.free_index(body.mesh.surface_triangles[state.surface.triangles[chosen]])
+    at_points: NDArray[np.float64] = np.einsum(
+        "pc,pcx->px", state.surface.alphas[chosen], moved[corners]
+    )
+    return at_points
+
+
+def _entered(
+    state: ToolTouch,
+    pose: Pose,
+    chosen: NDArray[np.int64],
+    settled: Settled,
+    outside: Load | None,
+) -> NDArray[np.int64]:
+    """Points not looked at so far that have been moved into the tool."""
+    surface, tool = state.surface, state.tool
+    pressed = settled.pushes > 0.0
+    farthest = float(np.linalg.norm(settled.displacements, axis=1).max(initial=0.0))
+    if outside is not None:
+        offsets = _offsets(state, np.arange(len(surface)), outside)
+        farthest += float(np.linalg.norm(offsets, axis=1).max(initial=0.0))
+    away = np.linalg.norm(surface.positions - pose.position, axis=1)
+    others = np.setdiff1d(np.flatnonzero(away < tool.reach + farthest), chosen)
+    rest, _ = distances_in_body(tool, pose, surface.positions[others])
+    others = others[rest < farthest]
+    if not others.size:
+        return others
+    moved = _offsets(state, others, outside)
+    if pressed.any():
+        response = _compliance(state, others, chosen[pressed])
+        moved += (response @ settled.forces[pressed].reshape(-1)).reshape(-1, 3)
+    distances, normals = distances_in_body(tool, pose, surface.positions[others] + moved)
+    facing = np.einsum("px,px->p", normals, surface.normals[others]) < 0.0
+    entered: NDArray[np.int64] = others[(distances < -IN_TOOL * tool.size) & facing]
+    return entered
+
+
+def _overlap(state: ToolTouch, pose: Pose) -> float:
+    """How deep, in metres, the body at rest lies in the tool."""
+    distances, _ = distances_in_body(state.tool, pose, state.surface.positions)
+    return -float(distances.min())
+
+
+def _is_outside(state: ToolTouch, pose: Pose) -> bool:
+    """Whether the tool is clear of the body at rest: no point in it, nor it in the body."""
+    return _overlap(state, pose) <= 0.0 and not _is_within(state, pose)
+
+
+def _is_within(state: ToolTouch, pose: Pose) -> bool:
+    """Whether the middle of the tool is in the body at rest."""
+    middle = pose.position + pose.rotation @ state.tool.core.mean(axis=0)
+    mesh = state.body.mesh
+    return bool(is_inside(middle[None], Surface(mesh.nodes, mesh.surface_triangles))[0])
+
+
+def _way_out(state: ToolTouch, pose: Pose) -> Pose:
+    """The nearest pose outside the body in the direction in which the body would push the tool."""
+    surface = state.surface
+    distances, _ = distances_in_body(state.tool, pose, surface.positions)
+    depths = np.maximum(-distances, 0.0) * surface.areas
+    push = depths @ surface.normals
+    length = float(np.linalg.norm(push))
+    # Pushed alike from all sides: through the nearest one.
+    nearest = int(distances.argmin())
+    direction = push / length if length > 0.0 else surface.normals[nearest]
+    for strides in range(1, MOST_STRIDES):
+        away = pose.position + strides * state.tool.stride * direction
+        if _is_outside(state, Pose(away, pose.rotation)):
+            return Pose(away, pose.rotation)
+    raise PalpateError(
+        f"tool {state.tool.name}: there is no way out of the body from where it is; begin outside"
+    )
+
+
+def _stride(tool: Tool, start: Pose, goal: Pose) -> tuple[Pose, bool]:
+    """The pose one stride from ``start`` towards ``goal``, and whether that is the goal.
+
+    A turn counts as the way of the tool's farthest point.
+    """
+    way = goal.position - start.position
+    turn = Rotation.from_matrix(goal.rotation @ start.rotation.T).as_rotvec()
+    length = float(np.linalg.norm(way) + np.linalg.norm(turn) * tool.reach)
+    if length <= tool.stride * (1.0 + 1e-12):
+        return goal, True
+    share = tool.stride / length
+    turned = Rotation.from_rotvec(share * turn).as_matrix() @ start.rotation
+    return Pose(start.position + share * way, turned), False

@@ -1,0 +1,147 @@
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from palpate.core.errors import PalpateError
+from palpate.core.tool_contact import (
+    Load,
+    follow_tool,
+    press_along,
+    press_tool,
+    set_down,
+    surface_for,
+)
+from palpate.core.tools import Pose, convex, plate, rod, sphere
+
+TOP = 0.05
+BOX = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * 0.007
+# Each tool on the top of the cube with a tilt and a height at which it presses 3 to 4 mm deep.
+PRESSES = {
+    "sphere": (sphere(0.012), [0.3, 0.2, 0.1], TOP + 0.008),
+    "rod": (rod(0.006, 0.03), [0.02, 0.05, 0.4], TOP + 0.002),
+    "plate": (plate(0.03, 0.03), [0.05, -0.08, 0.2], TOP - 0.003),
+    "corner": (convex(BOX, 0.002), [0.5, 0.7, 0.2], TOP + 0.007),
+}
+
+
+@pytest.fixture(scope="module", params=list(PRESSES))
+def pressed(request, cube):
+    tool, turn, height = PRESSES[request.param]
+    pose = Pose.at([0.0262, 0.0243, height], Rotation.from_rotvec(turn).as_matrix())
+    return press_tool(cube, tool, pose)
+
+
+def moved(pose, by=(0, 0, 0), turn=(0, 0, 0)):
+    return Pose.at(pose.position + by, Rotation.from_rotvec(turn).as_matrix() @ pose.rotation)
+
+
+def test_the_force_is_the_slope_of_the_elastic_energy(pressed):
+    def energy(**change):
+        return press_tool(
+            pressed.body, pressed.tool, moved(pressed.pose, **change), start=pressed
+        ).energy
+
+    force, torque = np.empty(3), np.empty(3)
+    for axis, along in enumerate(np.eye(3)):
+        step, angle = 1e-6 * along, 1e-4 * along
+        force[axis] = -(energy(by=step) - energy(by=-step)) / 2e-6
+        torque[axis] = -(energy(turn=angle) - energy(turn=-angle)) / 2e-4
+    assert pressed.force[2] > 0.1
+    np.testing.assert_allclose(pressed.force, force, atol=2e-6 * np.linalg.norm(force))
+    np.testing.assert_allclose(pressed.torque, torque, atol=2e-6 * np.linalg.norm(force) * 0.01)
+
+
+def test_points_are_pushed_out_of_the_tool_and_never_pulled(pressed):
+    surface = surface_for(pressed.body, pressed.tool)
+    assert pressed.exact
+    assert (pressed.pushes > 0).all()
+    assert (pressed.pressures > 0).all()
+    np.testing.assert_allclose(pressed.forces, pressed.pushes[:, None] * pressed.normals)
+    # The pressed points lie on the tool, exactly, and the others nowhere in it.
+    gone_to = pressed.places + pressed.displacements
+    distance, normals = pressed.tool.distance(pressed.pose.to_tool(gone_to))
+    assert np.abs(distance).max() < 1e-11
+    np.testing.assert_allclose(normals @ pressed.pose.rotation.T, pressed.normals, atol=1e-8)
+    assert len(surface.positions) > len(pressed.points)
+
+
+def test_forces_on_nodes_add_up_to_what_the_tool_feels(pressed):
+    np.testing.assert_allclose(pressed.nodal_forces.sum(axis=0), -pressed.force, rtol=1e-12)
+    nodes = pressed.body.mesh.nodes[pressed.nodes]
+    about_origin = np.cross(nodes, pressed.nodal_forces).sum(axis=0)
+    at_points = np.cross(pressed.places, pressed.forces).sum(axis=0)
+    np.testing.assert_allclose(about_origin, at_points, atol=1e-12)
+    assert len(np.unique(pressed.nodes)) == len(pressed.nodes)
+
+
+def test_the_way_there_does_not_matter(pressed):
+    pose = pressed.pose
+    above = moved(pose, by=[0.003, -0.002, 0.01], turn=[0.1, 0.0, 0.3])
+    around = press_tool(
+        pressed.body,
+        pressed.tool,
+        pose,
+        start=press_tool(pressed.body, pressed.tool, above),
+    )
+    np.testing.assert_allclose(around.force, pressed.force, rtol=1e-8, atol=1e-10)
+
+
+def test_the_force_follows_the_modulus(pressed):
+    double = press_tool(
+        pressed.body, pressed.tool, pressed.pose, young_modulus=2 * pressed.young_modulus
+    )
+    np.testing.assert_allclose(double.force, 2 * pressed.force, rtol=1e-9)
+    onwards = press_tool(
+        pressed.body,
+        pressed.tool,
+        pressed.pose,
+        young_modulus=2 * pressed.young_modulus,
+        start=pressed,
+    )
+    np.testing.assert_allclose(onwards.force, 2 * pressed.force, rtol=1e-9)
+    np.testing.assert_allclose(onwards.stiffness, 2 * pressed.stiffness, rtol=1e-6)
+
+
+def test_a_tool_set_down_inside_feels_nothing_until_it_was_outside(cube):
+    tool = sphere(0.004)
+    heights = np.concatenate([np.linspace(0.03, 0.06, 40), np.linspace(0.06, 0.052, 20)])
+    touches = press_along(cube, tool, [Pose.at([0.025, 0.025, height]) for height in heights])
+    assert not any(touch.touching for touch in touches[:40])
+    assert not touches[0].free
+    assert touches[39].free
+    assert touches[-1].touching
+    assert touches[-1].force[2] > 0
+
+
+def test_a_tool_goes_at_most_one_stride_a_tick_and_does_not_jump_through_the_body(cube):
+    tool = sphere(0.004)
+    touch = set_down(cube, tool, Pose.at([0.025, 0.025, 0.06]))
+    through = Pose.at([0.025, 0.025, -0.02])
+    for _ in range(12):
+        last, touch = touch, follow_tool(touch, through)
+        assert np.linalg.norm(touch.pose.position - last.pose.position) <= tool.stride * 1.0001
+    assert touch.touching
+    assert touch.force[2] > 0
+    turned = follow_tool(touch, moved(touch.pose, turn=[3.0, 0, 0]))
+    angle = Rotation.from_matrix(turned.pose.rotation).magnitude()
+    assert 0 < angle * tool.reach <= tool.stride * 1.0001
+
+
+def test_forces_of_others_are_felt_through_the_body_both_ways(cube):
+    tool = sphere(0.01)
+    alone = press_tool(cube, tool, Pose.at([0.02, 0.025, 0.057]))
+    below = np.linalg.norm(cube.mesh.nodes - [0.025, 0.025, TOP], axis=1).argmin()
+    pushed = Load(np.array([below]), np.array([[0.0, 0.0, -0.2]]))
+    nearby = press_tool(cube, tool, alone.pose, outside=pushed)
+    # Another finger that presses the surface down takes load from this one.
+    assert 0 < nearby.force[2] < 0.999 * alone.force[2]
+    np.testing.assert_allclose(
+        press_tool(cube, tool, alone.pose, start=nearby).force, alone.force, rtol=1e-9
+    )
+
+
+def test_another_touch_or_modulus_that_does_not_fit_is_refused(cube, pressed):
+    with pytest.raises(PalpateError, match="of another body or tool"):
+        press_tool(cube, sphere(0.01), pressed.pose, start=pressed)
+    with pytest.raises(PalpateError, match="Young's modulus is nan"):
+        press_tool(cube, pressed.tool, pressed.pose, young_modulus=float("nan"))
