@@ -91,6 +91,12 @@ class LinkCounters(TypedDict):
     cobs_errors: int
     oversize: int
     unknown: int
+    orientations: int
+    """ORIENTATION messages that came with their STATE."""
+    orientations_unpaired: int
+    """Whose STATE did not come, or was not used."""
+    orientations_refused: int
+    """That hold no unit quaternion."""
     hellos: int
     device_faults: int
     unsent: int

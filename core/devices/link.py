@@ -18,15 +18,20 @@ MAX_PAYLOAD = MAX_FRAME - 4
 """Longest payload in bytes: a frame adds the COBS code, two of CRC and the zero."""
 SEQUENCES = 1 << 16
 
-HELLO, STATE, FORCE, FAULT = 0x01, 0x02, 0x03, 0x04
+HELLO, STATE, FORCE, FAULT, ORIENTATION = 0x01, 0x02, 0x03, 0x04, 0x05
 
 _HOST_HELLO = struct.Struct("<BB")
 _DEVICE_HELLO = struct.Struct("<BB16sBffffH")
 _STATE = struct.Struct("<BHI3iBB")
 _FORCE = struct.Struct("<BH3hB")
 _FAULT = struct.Struct("<BBH")
+_ORIENTATION = struct.Struct("<BH4h")
 
 NAME_BYTES = 16
+QUATERNION_UNIT = 32767
+"""What 1 is in an ORIENTATION."""
+QUATERNION_LENGTHS = (32440, 33094)
+"""Shortest and longest quaternion that is believed, in its own steps: 1 % around a unit's."""
 
 
 class LinkError(ValueError):
@@ -101,7 +106,34 @@ class Fault:
     detail: int = 0
 
 
-Message = HostHello | DeviceHello | OtherHello | State | Force | Fault
+@dataclass(frozen=True)
+class Orientation:
+    """How the stylus is turned in the STATE of the same sequence, which follows: unit quaternion
+    w, x, y, z in steps of 1 / 32767, from the stylus' axes to the device's.
+    """
+
+    sequence: int
+    quaternion: tuple[int, int, int, int]
+
+    @property
+    def is_unit(self) -> bool:
+        """Whether its length is that of a rotation, within 1 %."""
+        shortest, longest = QUATERNION_LENGTHS
+        return shortest**2 <= sum(part**2 for part in self.quaternion) <= longest**2
+
+
+Message = HostHello | DeviceHello | OtherHello | State | Force | Fault | Orientation
+
+
+def orientation(sequence: int, quaternion: tuple[float, float, float, float]) -> Orientation:
+    """The ORIENTATION that comes nearest to a unit quaternion w, x, y, z.
+
+    Raises LinkError when it is none: not finite, or its length not 1 within 1 %.
+    """
+    if not all(map(math.isfinite, quaternion)) or abs(math.hypot(*quaternion) - 1.0) > 0.01:
+        raise LinkError(f"{quaternion} is no unit quaternion: divide it by its length")
+    w, x, y, z = (round(part / math.hypot(*quaternion) * QUATERNION_UNIT) for part in quaternion)
+    return Orientation(sequence, (w, x, y, z))
 
 
 def crc16(payload: bytes) -> int:
@@ -157,6 +189,8 @@ def pack(message: Message) -> bytes:
                 return _FORCE.pack(FORCE, message.sequence, *message.force_mn, message.flags)
             case Fault():
                 return _FAULT.pack(FAULT, message.code, message.detail)
+            case Orientation():
+                return _ORIENTATION.pack(ORIENTATION, message.sequence, *message.quaternion)
             case OtherHello():
                 raise LinkError("a HELLO of another protocol can be read, not written")
     except (struct.error, OverflowError) as error:
@@ -182,6 +216,8 @@ def unpack(payload: bytes) -> Message:
         case (b"\x04", _FAULT.size):
             _, code, detail = _FAULT.unpack(payload)
             return Fault(code, detail)
+        case (b"\x05", _ORIENTATION.size):
+            return _unpack_orientation(payload)
     raise LinkError(f"no message of the link: {len(payload)} bytes, type {payload[:1].hex()}")
 
 
@@ -211,6 +247,14 @@ def _unpack_hello(payload: bytes) -> HostHello | DeviceHello | OtherHello:
         raise LinkError("a HELLO with a force or an extent that is negative or no number")
     text = name.rstrip(b"\0").decode(errors="replace")
     return DeviceHello(text, axes, largest, (x, y, z), rate, protocol)
+
+
+def _unpack_orientation(payload: bytes) -> Orientation:
+    _, sequence, w, x, y, z = _ORIENTATION.unpack(payload)
+    message = Orientation(sequence, (w, x, y, z))
+    if not message.is_unit:
+        raise LinkError(f"an ORIENTATION of {message.quaternion}, which is no unit quaternion")
+    return message
 
 
 @dataclass

@@ -7,6 +7,7 @@
 // one a line, and ends with its end:
 //
 //     move X Y Z MS      bring the tip there in a straight line (um) within MS milliseconds
+//     turn W X Y Z       from now on tell this orientation of the stylus with every STATE
 //     buttons MASK       hold exactly these
 //     fail CODE DETAIL   a fault of the device's own
 //     recover            the fault is over
@@ -153,6 +154,8 @@ struct Board {
   Port port;
   Tip tip;
   palpate::Drive drive;
+  float turned[4] = {1.0F, 0.0F, 0.0F, 0.0F};
+  bool tells_orientation = false;
   uint8_t buttons = 0;
   bool ready = true;
   bool deaf = false;
@@ -245,6 +248,9 @@ struct Board {
     int32_t position_um[3];
     tip.position(now_us, position_um);
     uint8_t frame[max_frame];
+    // Both fit where the longest frame does.
+    const size_t turn = tells_orientation ? device.orientation(turned, frame) : 0;
+    if (turn > 0) send(frame, turn);
     const size_t length =
         device.state(short_clock(now_us), position_um, buttons, ready, frame);
     if (length == 0) return;
@@ -295,6 +301,9 @@ struct Board {
     if (sscanf(line, "move %lf %lf %lf %lf", &goal_um[0], &goal_um[1], &goal_um[2],
                &milliseconds) == 4) {
       tip.move(clock_us(), goal_um, milliseconds);
+    } else if (sscanf(line, "turn %f %f %f %f", &turned[0], &turned[1], &turned[2],
+                      &turned[3]) == 4) {
+      tells_orientation = true;
     } else if (sscanf(line, "fail %u %u", &number, &detail) == 2) {
       device.fail(static_cast<uint8_t>(number), static_cast<uint16_t>(detail));
     } else if (sscanf(line, "buttons %u", &number) == 1) {

@@ -7,7 +7,7 @@
 constexpr char device_name[] = "My device";
 
 // STATE per second, and the motors' own rate. A board that hangs on a UART chip instead of native USB
-// gets 25 bytes of ten bits through for each: at 115200 baud that is 400 Hz.
+// gets 25 bytes of ten bits through for each, 40 with an orientation: at 115200 baud 400 or 250 Hz.
 constexpr uint16_t rate_hz = 1000;
 constexpr uint32_t baud = 115200;  // Without meaning on native USB.
 
@@ -21,6 +21,10 @@ constexpr float largest_force_n = 0.0F;
 // How hard the device brakes when the host asks for damping, N s/m. Too much of it makes the motors
 // growl: velocity comes from differences of encoder counts.
 constexpr float damping_ns_per_m = 2.0F;
+
+// Whether the device knows how its stylus is turned: fill in orientation.h then. Once told, it must
+// be told with every STATE, or there is no force.
+constexpr bool tells_orientation = false;
 
 // Buttons to ground, -1 for none. The first one is the host's "let go".
 constexpr int button_pins[] = {-1, -1};

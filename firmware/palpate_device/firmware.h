@@ -8,6 +8,7 @@
 #include "config.h"
 #include "encoders.h"
 #include "motors.h"
+#include "orientation.h"
 
 namespace sketch {
 
@@ -80,9 +81,19 @@ inline void push_tip(const palpate::Drive& drive, const int32_t (&counts)[3]) {
   }
 }
 
+// Before its STATE; room for one whole frame is room for both.
+inline void tell_orientation(const int32_t (&counts)[3]) {
+  static_assert(palpate::orientation_size + 4 + palpate::state_size + 4 <= palpate::max_frame,
+                "an ORIENTATION and its STATE must fit where the longest frame does");
+  float unit[4];
+  uint8_t frame[palpate::max_frame];
+  if (read_orientation(counts, unit)) send(frame, device.orientation(unit, frame));
+}
+
 inline void tick(const palpate::Drive& drive) {
   int32_t counts[3] = {0, 0, 0};
-  if (!find_tip(counts)) {
+  const bool found = find_tip(counts);
+  if (!found) {
     motors_off();
     position_known = false;
     device.fail(fault_encoder, 0);
@@ -90,6 +101,7 @@ inline void tick(const palpate::Drive& drive) {
     push_tip(drive, counts);
   }
   if (!line_has_room()) return;
+  if (tells_orientation && found) tell_orientation(counts);
   uint8_t frame[palpate::max_frame];
   const bool ready = encoders_answer && largest_force_n > 0.0F;
   send(frame, device.state(micros(), position_um, read_buttons(), ready, frame));

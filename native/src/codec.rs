@@ -1,7 +1,7 @@
 //! Frames of the link, version 1: COBS(payload + CRC-16/CCITT-FALSE) and a zero byte.
 
 use crc::{CRC_16_IBM_3740, Crc};
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
 /// Longest frame on the wire, delimiter included.
 pub const MAX_FRAME: usize = 62;
@@ -17,6 +17,12 @@ const HELLO: u8 = 0x01;
 const STATE: u8 = 0x02;
 const FORCE: u8 = 0x03;
 const FAULT: u8 = 0x04;
+const ORIENTATION: u8 = 0x05;
+
+/// What 1 is in an ORIENTATION.
+const QUATERNION_UNIT: f64 = 32_767.0;
+/// Shortest and longest quaternion that is believed, in its own steps: within 1 % of a unit's.
+const QUATERNION_LENGTHS: [i64; 2] = [32_440, 33_094];
 
 /// CRC-16/CCITT-FALSE of a payload.
 pub fn checksum(payload: &[u8]) -> u16 {
@@ -169,6 +175,27 @@ impl DeviceState {
     }
 }
 
+/// How a device's stylus is turned.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct DeviceOrientation {
+    /// That of the STATE which it belongs to.
+    pub sequence: u16,
+    /// w, x, y, z in steps of 1/32767.
+    pub quaternion: [i16; 4],
+}
+
+impl DeviceOrientation {
+    /// Rotation from the stylus' axes to the device's; None unless it is a unit quaternion to 1 %.
+    pub fn rotation(&self) -> Option<DQuat> {
+        let square: i64 = self.quaternion.iter().map(|&c| i64::from(c).pow(2)).sum();
+        let [shortest, longest] = QUATERNION_LENGTHS.map(|length| length.pow(2));
+        (shortest..=longest).contains(&square).then(|| {
+            let [w, x, y, z] = self.quaternion.map(|c| f64::from(c) / QUATERNION_UNIT);
+            DQuat::from_xyzw(x, y, z, w).normalize()
+        })
+    }
+}
+
 /// A message of a device.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Message {
@@ -176,6 +203,8 @@ pub enum Message {
     Hello(Greeting),
     /// One sample of the STATE stream.
     State(DeviceState),
+    /// How the stylus is turned in the STATE that follows.
+    Orientation(DeviceOrientation),
     /// A fault report.
     Fault {
         /// The device's own number.
@@ -231,6 +260,15 @@ pub fn parse(payload: &[u8]) -> Option<Message> {
             code: fields.take::<1>()?[0],
             detail: u16::from_le_bytes(fields.take()?),
         },
+        ORIENTATION => Message::Orientation(DeviceOrientation {
+            sequence: u16::from_le_bytes(fields.take()?),
+            quaternion: [
+                i16::from_le_bytes(fields.take()?),
+                i16::from_le_bytes(fields.take()?),
+                i16::from_le_bytes(fields.take()?),
+                i16::from_le_bytes(fields.take()?),
+            ],
+        }),
         _ => return None,
     };
     fields.0.is_empty().then_some(message)
@@ -346,6 +384,39 @@ mod tests {
         };
         assert_eq!(parse(&[4, 7, 0, 1]), Some(fault));
         assert_eq!(parse(&[9, 1]), None);
+    }
+
+    #[test]
+    fn an_orientation_is_read_and_believed_within_a_percent_of_a_unit() {
+        let read = |quaternion: [i16; 4]| {
+            let mut payload = vec![5, 0x34, 0x12];
+            for component in quaternion {
+                payload.extend(component.to_le_bytes());
+            }
+            let Some(Message::Orientation(orientation)) = parse(&payload) else {
+                panic!("ORIENTATION not understood");
+            };
+            assert_eq!(
+                (orientation.sequence, orientation.quaternion),
+                (0x1234, quaternion)
+            );
+            payload.push(0);
+            assert_eq!(parse(&payload), None);
+            orientation.rotation()
+        };
+        // A quarter turn about z takes x to y.
+        let half = 23_170;
+        let turned = read([half, 0, 0, half]).expect("a unit quaternion");
+        assert!((turned * DVec3::X).distance(DVec3::Y) < 1e-12);
+        assert!((turned.length() - 1.0).abs() < 1e-15);
+        for (length, believed) in [(32_439, false), (32_440, true), (0, false)] {
+            assert_eq!(read([0, 0, -length, 0]).is_some(), believed, "{length}");
+        }
+        // The longest, 33094, is no whole number of steps in more than one direction.
+        assert!(read([0, 26_000, 0, 20_474]).is_some());
+        assert!(read([0, 26_000, 0, 20_475]).is_none());
+        assert!(read([i16::MIN, 0, 0, 0]).is_some());
+        assert!(read([i16::MIN; 4]).is_none());
     }
 
     #[test]

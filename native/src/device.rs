@@ -38,6 +38,11 @@ impl DeviceFrame {
     pub fn force_to_device(&self, force: DVec3) -> DVec3 {
         self.rotation.transpose() * force
     }
+
+    /// Rotation from the stylus' axes to the body's, for one to the device's.
+    pub fn turn_to_body(&self, orientation: DMat3) -> DMat3 {
+        self.rotation * orientation
+    }
 }
 
 /// Why there is no force although there should be.
@@ -95,6 +100,9 @@ impl Fault {
 pub struct Probe {
     /// Position in the body, m.
     pub position: DVec3,
+    /// Rotation from the stylus' axes to the body's; a device that does not tell how it is turned
+    /// has its own axes, and a pointer the body's. Orthonormal.
+    pub orientation: DMat3,
     /// Speed of the device by its own measure, m/s.
     pub speed: f64,
     /// The probe was set down here; no sweep leads from the last position to this one.
@@ -156,6 +164,12 @@ pub struct LinkReport {
     pub oversize: u64,
     /// Sound frames of unknown type or length.
     pub unknown: u64,
+    /// ORIENTATION messages that came with their STATE.
+    pub orientations: u64,
+    /// ORIENTATION messages whose STATE did not come, or was not used.
+    pub orientations_unpaired: u64,
+    /// ORIENTATION messages that hold no unit quaternion.
+    pub orientations_refused: u64,
     /// HELLO messages sent.
     pub hellos: u64,
     /// FAULT messages of the device.

@@ -46,4 +46,5 @@ pub mod surface;
 pub mod table;
 pub mod thread;
 pub mod tree;
+mod turning;
 mod whole;

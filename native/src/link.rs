@@ -12,6 +12,7 @@ use crate::port::Opener;
 use crate::rhythm::Arrivals;
 use crate::speedometer::{Speedometer, has_begun_anew};
 use crate::state::reason;
+use crate::turning::Turning;
 
 /// HELLO is repeated this often until it is answered, s.
 const HELLO_SECONDS: f64 = 0.05;
@@ -46,6 +47,7 @@ pub struct LinkDevice<O: Opener> {
     begun_anew: bool,
     device_fault: bool,
     speedometer: Speedometer,
+    turning: Turning,
     arrivals: Arrivals,
     sequence: u16,
     report: LinkReport,
@@ -69,6 +71,7 @@ impl<O: Opener> LinkDevice<O> {
             begun_anew: false,
             device_fault: false,
             speedometer: Speedometer::default(),
+            turning: Turning::default(),
             arrivals: Arrivals::default(),
             sequence: 0,
             report: LinkReport::default(),
@@ -88,6 +91,8 @@ impl<O: Opener> LinkDevice<O> {
         self.unseen = true;
         self.decoder.resynchronise();
         self.speedometer.reset();
+        self.turning.dismiss();
+        self.turning.forget();
         self.arrivals.forget();
     }
 
@@ -127,6 +132,7 @@ impl<O: Opener> LinkDevice<O> {
             Some(Message::Hello(greeting)) => {
                 // One that says the same was only asked twice; another figure is another device.
                 if self.greeting != Some(greeting) {
+                    self.turning.dismiss();
                     self.begin_session(now);
                 }
                 self.greeting = Some(greeting);
@@ -134,7 +140,10 @@ impl<O: Opener> LinkDevice<O> {
             }
             // A device that streams before it was greeted may speak another version.
             Some(Message::State(state)) if self.is_greeted() => self.take_state(state, now),
-            Some(Message::State(_)) => {}
+            Some(Message::Orientation(orientation)) if self.is_greeted() => {
+                self.turning.tell(orientation);
+            }
+            Some(Message::State(_) | Message::Orientation(_)) => {}
             Some(Message::Fault { code, detail }) => {
                 self.device_fault = true;
                 self.report.device_faults += 1;
@@ -147,11 +156,12 @@ impl<O: Opener> LinkDevice<O> {
     /// Forgets where the device was before, and its sequence.
     fn begin_session(&mut self, now: f64) {
         self.heard = now;
-        self.begun_anew = self.newest.take().is_some();
+        self.begun_anew |= self.newest.take().is_some();
         self.stale = false;
         self.unseen = true;
         self.device_fault = false;
         self.speedometer.reset();
+        self.turning.forget();
     }
 
     fn take_state(&mut self, state: DeviceState, now: f64) {
@@ -167,18 +177,26 @@ impl<O: Opener> LinkDevice<O> {
             match state.sequence.wrapping_sub(last.state.sequence) {
                 0 => {
                     self.report.duplicates += 1;
-                    return;
+                    return self.turning.dismiss();
                 }
                 ahead @ 1..=0x7FFF => self.report.lost += u64::from(ahead) - 1,
                 _ => {
                     self.report.out_of_order += 1;
-                    return;
+                    return self.turning.dismiss();
                 }
             }
         }
         self.report.states += 1;
         self.arrivals.take(state.time_us);
         let speed = self.speedometer.speed(state.position(), state.time_us, now);
+        let was_turned = self.turning.is_known();
+        let swing = self.turning.pair(state.sequence, state.time_us, now);
+        if !was_turned && self.turning.is_known() {
+            // Until now it was taken for upright: no sweep leads from there to how it is turned.
+            self.begun_anew |= self.newest.is_some();
+            self.unseen = true;
+        }
+        let speed = speed.max(swing);
         self.newest = Some(Newest { state, speed });
         self.heard = now;
         self.stale = false;
@@ -226,6 +244,7 @@ impl<O: Opener> Device for LinkDevice<O> {
         if now - self.heard > STALE_SECONDS {
             self.stale = true;
             self.speedometer.reset();
+            self.turning.interrupt();
             // A device that was reset waits for HELLO.
             self.greet(now);
             return Reading::Fault(Fault::Stale);
@@ -236,8 +255,12 @@ impl<O: Opener> Device for LinkDevice<O> {
         if state.fault {
             return Reading::Fault(Fault::Device);
         }
+        if self.turning.is_stale(now) {
+            return Reading::Fault(Fault::Stale);
+        }
         let probe = Probe {
             position: frame.to_body(state.position()),
+            orientation: frame.turn_to_body(self.turning.rotation()),
             speed,
             restart: std::mem::take(&mut self.unseen),
             buttons: state.buttons,
@@ -278,6 +301,9 @@ impl<O: Opener> Device for LinkDevice<O> {
             crc_errors: self.decoder.errors.crc,
             cobs_errors: self.decoder.errors.cobs,
             oversize: self.decoder.errors.oversize,
+            orientations: self.turning.report.paired,
+            orientations_unpaired: self.turning.report.unpaired,
+            orientations_refused: self.turning.report.refused,
             rhythm: self.arrivals.rhythm,
             ..self.report
         }

@@ -1,6 +1,6 @@
 //! The pointer as a device: glides to the newest target, so that 60 Hz input teleports nothing.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use triple_buffer::Output;
 
 use crate::device::{Device, DeviceFrame, LinkReport, Probe, Reading};
@@ -82,6 +82,7 @@ impl Device for Pointer {
         }
         Reading::At(Probe {
             position: self.position,
+            orientation: DMat3::IDENTITY,
             speed: 0.0,
             restart,
             buttons: 0,

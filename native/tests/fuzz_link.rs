@@ -157,6 +157,12 @@ fn hello() -> Vec<u8> {
     frame(&hello)
 }
 
+/// Half a turn about z.
+fn orientation(sequence: u16) -> Vec<u8> {
+    let [low, high] = sequence.to_le_bytes();
+    frame(&[5, low, high, 0, 0, 0, 0, 0, 0, 0xFF, 0x7F])
+}
+
 fn state(sequence: u16, micrometres: i32) -> Vec<u8> {
     let mut state = vec![2];
     state.extend(sequence.to_le_bytes());
@@ -194,6 +200,7 @@ fn a_device_that_sends_rubbish_is_survived_and_believed_again() {
             match device.read(now, 1e-3, &frame) {
                 Reading::At(probe) | Reading::Passive(probe, _) => {
                     assert!(probe.position.is_finite() && !probe.speed.is_nan());
+                    assert!((probe.orientation.determinant() - 1.0).abs() < 1e-9);
                     assert!(probe.max_force.is_finite() && probe.max_force >= 0.0);
                 }
                 Reading::Fault(fault) => faults[fault as usize] += 1,
@@ -215,7 +222,9 @@ fn a_device_that_sends_rubbish_is_survived_and_believed_again() {
                 }
                 let micrometres = number as i32;
                 put(&mut alone, &hello());
-                put(&mut alone, &state(dice.below(65_536) as u16, micrometres));
+                let sequence = dice.below(65_536) as u16;
+                put(&mut alone, &orientation(sequence));
+                put(&mut alone, &state(sequence, micrometres));
                 now += 1e-3;
                 let mut reading = device.read(now, 1e-3, &frame);
                 if reading == Reading::Waiting(reason::NO_STATE) {
@@ -231,6 +240,7 @@ fn a_device_that_sends_rubbish_is_survived_and_believed_again() {
                     probe.position,
                     DVec3::new(f64::from(micrometres) * 1e-6, 0.0, 0.0)
                 );
+                assert!((probe.orientation * DVec3::X).distance(-DVec3::X) < 1e-12);
                 returns += 1;
             }
         }
@@ -242,6 +252,8 @@ fn a_device_that_sends_rubbish_is_survived_and_believed_again() {
     assert_eq!(errors, (expected.crc, expected.cobs, expected.oversize));
     assert!(report.states > 5_000);
     assert!(report.unknown > 10_000 && report.device_faults > 5_000);
+    assert!(report.orientations >= returns && report.orientations_unpaired > 2_000);
+    assert!(report.orientations_refused > 300);
     assert!(returns > 4_000, "{returns}");
     for fault in [Fault::Stale, Fault::Protocol, Fault::Device] {
         assert!(faults[fault as usize] > 0, "{fault:?} never: {faults:?}");

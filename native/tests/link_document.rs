@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 use palpate_servo::codec::{
-    Decoder, DeviceState, Greeting, MAX_FRAME, Message, PROTOCOL, checksum, encode, force_payload,
-    hello_payload, parse,
+    Decoder, DeviceOrientation, DeviceState, Greeting, MAX_FRAME, Message, PROTOCOL, checksum,
+    encode, force_payload, hello_payload, parse,
 };
 
 const PAGE: &str = include_str!("../../docs/link.md");
@@ -109,6 +109,13 @@ fn the_devices_examples_are_read_field_by_field() {
             "The host spoke protocol 7",
             Message::Fault { code: 2, detail: 7 },
         ),
+        (
+            "A stylus tilted by 30 degrees",
+            Message::Orientation(DeviceOrientation {
+                sequence: 258,
+                quaternion: [31_650, 8_481, 0, 0],
+            }),
+        ),
     ] {
         assert_eq!(parse(&example(title)), Some(message), "{title}");
     }
@@ -117,8 +124,8 @@ fn the_devices_examples_are_read_field_by_field() {
 #[test]
 fn no_example_is_left_out() {
     let examples = PAGE.split("## Worked examples").nth(1).unwrap();
-    assert_eq!(examples.matches("\nCRC ").count(), 8);
-    assert_eq!(examples.matches("\n### ").count(), 10);
+    assert_eq!(examples.matches("\nCRC ").count(), 9);
+    assert_eq!(examples.matches("\n### ").count(), 11);
 }
 
 #[test]

@@ -14,7 +14,7 @@ use std::sync::{Arc, Mutex};
 use std::thread::{scope, sleep};
 use std::time::Duration;
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use palpate_servo::codec::{MAX_FRAME, encode};
 use palpate_servo::coupling::Coupling;
 use palpate_servo::device::{Device, DeviceFrame, LinkReport, Probe, Reading};
@@ -166,6 +166,7 @@ impl Device for Dipping {
     fn read(&mut self, now: f64, _dt: f64, _frame: &DeviceFrame) -> Reading {
         Reading::At(Probe {
             position: DVec3::new(0.02, 0.02, 0.05 + 0.005 * (now * 62.8).cos()),
+            orientation: DMat3::IDENTITY,
             speed: 0.1,
             restart: false,
             buttons: 0,

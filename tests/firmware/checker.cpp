@@ -112,6 +112,11 @@ void answer_pack() {
     fault.code = static_cast<uint8_t>(next_number());
     fault.detail = static_cast<uint16_t>(next_number());
     size = palpate::pack(fault, payload);
+  } else if (strcmp(kind, "orientation") == 0) {
+    palpate::Orientation orientation;
+    orientation.sequence = static_cast<uint16_t>(next_number());
+    for (int16_t& part : orientation.quaternion) part = static_cast<int16_t>(next_number());
+    size = palpate::pack(orientation, payload);
   } else {
     give_up("no such message");
   }
@@ -125,6 +130,7 @@ void answer_unpack(const Bytes& payload) {
   palpate::State state;
   palpate::Force force;
   palpate::Fault fault;
+  palpate::Orientation orientation;
   if (palpate::unpack(payload.data, payload.size, hello)) {
     printf("device-hello %u ", hello.protocol);
     print_bytes(reinterpret_cast<const uint8_t*>(hello.name), sizeof hello.name);
@@ -143,6 +149,9 @@ void answer_unpack(const Bytes& payload) {
            force.force_mn[2], force.flags);
   } else if (palpate::unpack(payload.data, payload.size, fault)) {
     printf("fault %u %u", fault.code, fault.detail);
+  } else if (palpate::unpack(payload.data, payload.size, orientation)) {
+    printf("orientation %u", orientation.sequence);
+    for (const int16_t part : orientation.quaternion) printf(" %d", part);
   } else {
     printf("unknown");
   }
@@ -198,6 +207,10 @@ void answer_device(palpate::Device& device, const char* verb) {
     const uint8_t buttons = static_cast<uint8_t>(next_number());
     const bool ready = next_number() != 0;
     print_bytes(frame, device.state(now, position, buttons, ready, frame));
+  } else if (strcmp(verb, "orientation") == 0) {
+    float unit[4];
+    for (float& part : unit) part = next_float();
+    print_bytes(frame, device.orientation(unit, frame));
   } else if (strcmp(verb, "fail") == 0) {
     const uint8_t code = static_cast<uint8_t>(next_number());
     device.fail(code, static_cast<uint16_t>(next_number()));

@@ -45,7 +45,7 @@ inline Payload payload(Dice& dice) {
     for (int i = 0; i < count; ++i) payload.push_back(dice.content());
     return payload;
   };
-  switch (dice.below(8)) {
+  switch (dice.below(9)) {
     case 0:
       return {1, static_cast<uint8_t>(dice.below(3))};
     case 1:
@@ -65,6 +65,19 @@ inline Payload payload(Dice& dice) {
       Payload state = with_content({2}, 19);
       state.push_back(static_cast<uint8_t>(dice.below(4)));
       return state;
+    }
+    case 6: {
+      // Half a turn about an axis, or none; one in three with something beside it.
+      Payload orientation = with_content({5}, 2);
+      orientation.resize(11);
+      const size_t largest = 3 + 2 * dice.below(4);
+      orientation[largest] = 0xFF;
+      orientation[largest + 1] = 0x7F;
+      if (dice.below(3) == 0) {
+        const size_t place = 3 + dice.below(8);
+        orientation[place] = dice.byte();
+      }
+      return orientation;
     }
     default: {
       const int length = static_cast<int>(1 + dice.below(palpate::max_payload));

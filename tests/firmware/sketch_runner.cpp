@@ -56,6 +56,10 @@ void obey(const char* line) {
     printf("%" PRIu32, run(number, true));
   } else if (sscanf(line, "counts %" SCNd32 " %" SCNd32 " %" SCNd32, &fake.counts[0],
                     &fake.counts[1], &fake.counts[2]) == 3) {
+  } else if (sscanf(line, "turned %f %f %f %f", &fake.turned[0], &fake.turned[1],
+                    &fake.turned[2], &fake.turned[3]) == 4) {
+  } else if (sscanf(line, "gimbal %u", &number) == 1) {
+    fake.gimbal_answers = number != 0;
   } else if (sscanf(line, "encoders %u", &number) == 1) {
     fake.encoders_answer = number != 0;
   } else if (sscanf(line, "healthy %u", &number) == 1) {

@@ -42,6 +42,8 @@ def words_of(vector):
             return ["force", fields["sequence"], *fields["force_mn"], fields["flags"]]
         case _, "fault":
             return ["fault", fields["code"], fields["detail"]]
+        case _, "orientation":
+            return ["orientation", fields["sequence"], *fields["quaternion"]]
     raise AssertionError(vector)
 
 
@@ -101,6 +103,11 @@ def test_what_is_no_message_is_not_read_as_one(checker):
     assert checker.ask("unpack 0901") == "unknown"
     # Of another protocol the first two bytes are read, whatever follows.
     assert checker.ask("unpack 01070102030405") == "host-hello 7"
+
+
+@pytest.mark.parametrize("vector", VECTORS["refused"], ids=lambda vector: vector["name"])
+def test_what_is_no_orientation_is_refused(checker, vector):
+    assert checker.ask(f"unpack {vector['payload']}") == "unknown"
 
 
 @pytest.mark.parametrize("figure", [-1.0, float("nan"), float("inf")])
@@ -166,7 +173,7 @@ def worked_examples():
 
 
 def test_the_worked_examples_are_found():
-    assert len(worked_examples()) == 8
+    assert len(worked_examples()) == 9
 
 
 @pytest.mark.parametrize(("payload", "crc", "frame", "prose"), worked_examples())

@@ -45,6 +45,9 @@ class Device:
         x, y, z = position
         return decoded(self.ask(f"state {now_us} {x} {y} {z} {buttons} {ready}"))
 
+    def orientation(self, *unit):
+        return decoded(self.ask("orientation " + " ".join(map(repr, unit))))
+
     def counters(self):
         words = self.ask("counters").split()
         return dict(zip(words[::2], map(int, words[1::2]), strict=True))
@@ -87,6 +90,37 @@ def test_every_hello_is_answered_and_the_stream_begins(device):
     assert device.state(250_000, (1, -2, 3), 1) == [link.State(0, 250_000, (1, -2, 3), 1, ready)]
     assert device.state(500_000, (4, 5, 6)) == [link.State(1, 500_000, (4, 5, 6), 0, ready)]
     assert device.state(600_000, ready=0)[0].flags == 0
+
+
+def test_an_orientation_bears_the_number_of_the_state_to_come(device):
+    assert device.orientation(1.0, 0.0, 0.0, 0.0) == []
+    device.hear(link.HostHello(), 0)
+    for sequence in range(3):
+        # Told twice is told once; it is the STATE that counts on.
+        for _ in range(2):
+            told = device.orientation(0.6, 0.0, -0.8, 0.0)
+            assert told == [link.orientation(sequence, (0.6, 0.0, -0.8, 0.0))]
+        assert device.state(1000 * sequence)[0].sequence == sequence
+    assert device.orientation(0.0, 0.985, 0.0, 0.18) != []
+
+
+@pytest.mark.parametrize("part", [float("nan"), float("inf"), 0.0, 0.985, 1.015, -1e30])
+def test_what_is_no_rotation_is_not_told(greeted, part):
+    assert greeted.orientation(0.0, part, 0.0, 0.0) == []
+
+
+def test_the_board_rounds_orientations_as_this_side_does(greeted):
+    dice = random.Random(3)  # noqa: S311 - no secret
+    for _ in range(100):
+        turn = [dice.gauss(0.0, 1.0) for _ in range(4)]
+        length = sum(part**2 for part in turn) ** 0.5
+        turn = tuple(part / length for part in turn)
+        (told,) = greeted.orientation(*turn)
+        ours = link.orientation(0, turn)
+        # The board's arithmetic is of single precision.
+        parts = zip(told.quaternion, ours.quaternion, strict=True)
+        assert all(abs(a - b) <= 1 for a, b in parts)
+        assert told.is_unit
 
 
 def test_another_protocol_ends_stream_and_force(greeted):

@@ -30,8 +30,12 @@ class Sketch:
     def run(self, microseconds):
         self.ask(f"run {microseconds}")
 
-    def said(self):
+    def said_in_full(self):
         return link.Decoder().feed(bytes.fromhex(self.ask("said")))
+
+    def said(self):
+        """Without how the stylus is turned."""
+        return [m for m in self.said_in_full() if not isinstance(m, link.Orientation)]
 
     def motors(self):
         on, *force = self.ask("motors").split()
@@ -63,7 +67,7 @@ def test_as_delivered_it_compiles_and_only_measures(compiler, start_talk):
         sketch = Sketch(talk)
         sketch.hear(link.HostHello(), link.Force(0, (0, 0, 1000)))
         sketch.run(2000)
-        hello, *states = sketch.said()
+        hello, *states = sketch.said_in_full()
         assert (hello.name, hello.largest_force) == ("My device", 0.0)
         assert [state.flags for state in states] == [0, 0]
 
@@ -78,6 +82,29 @@ def test_it_streams_at_its_rate_where_the_tip_is(greeted):
     assert (last.position_um, last.buttons, last.flags) == ((20, -40, 6000), 2, 1)
     times = [state.device_time_us for state in states]
     assert [later - sooner for sooner, later in itertools.pairwise(times)] == [1000] * 9
+
+
+def test_it_tells_how_the_stylus_is_turned_before_each_state(greeted):
+    greeted.ask("turned 0.99 0 0 0.141")
+    greeted.run(3000)
+    said = greeted.said_in_full()
+    assert [type(message) for message in said] == [link.Orientation, link.State] * 3
+    for orientation, state in zip(said[::2], said[1::2], strict=True):
+        assert orientation.sequence == state.sequence
+        assert orientation == link.orientation(state.sequence, (0.99, 0.0, 0.0, 0.141))
+
+
+@pytest.mark.parametrize("trouble", ["gimbal 0", "turned 0.5 0 0 0", "turned nan 0 0 0"])
+def test_an_orientation_that_is_none_is_not_told_and_the_place_is(greeted, trouble):
+    greeted.ask(trouble)
+    greeted.run(3000)
+    assert [type(message) for message in greeted.said_in_full()] == [link.State] * 3
+
+
+def test_with_encoders_that_do_not_answer_no_orientation_is_told(greeted):
+    greeted.ask("encoders 0")
+    greeted.run(2000)
+    assert [type(m) for m in greeted.said_in_full()] == [link.State, link.Fault, link.State]
 
 
 def test_it_pushes_as_told_within_its_largest(greeted):

@@ -6,7 +6,7 @@
 
 use std::time::Duration;
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use super::flight::Flight;
 use super::inbox::Inbox;
@@ -398,6 +398,7 @@ impl<O: Opener> Device for HaplyDevice<O> {
         let stretched = pose.sine < LEAST_SINE;
         let probe = Probe {
             position: frame.to_body(newest.position),
+            orientation: frame.turn_to_body(DMat3::IDENTITY),
             speed: newest.speed,
             restart: std::mem::take(&mut self.unseen),
             buttons: 0,

@@ -37,7 +37,7 @@ pub struct Chunk {
 }
 
 fn payload(dice: &mut Dice) -> Vec<u8> {
-    match dice.below(8) {
+    match dice.below(9) {
         0 => vec![1, dice.below(3) as u8],
         1 => {
             let mut hello = vec![1, 1];
@@ -60,6 +60,19 @@ fn payload(dice: &mut Dice) -> Vec<u8> {
             state.extend((0..19).map(|_| dice.content()));
             state.push(dice.below(4) as u8);
             state
+        }
+        6 => {
+            // Half a turn about an axis, or none; one in three with something beside it.
+            let mut orientation = vec![5];
+            orientation.extend((0..2).map(|_| dice.content()));
+            orientation.extend([0; 8]);
+            let largest = 3 + 2 * dice.below(4);
+            orientation[largest..largest + 2].copy_from_slice(&i16::MAX.to_le_bytes());
+            if dice.below(3) == 0 {
+                let place = 3 + dice.below(8);
+                orientation[place] = dice.byte();
+            }
+            orientation
         }
         _ => {
             let length = 1 + dice.below(MAX_PAYLOAD);

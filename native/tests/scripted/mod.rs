@@ -3,7 +3,7 @@
 
 use std::sync::{Arc, Mutex};
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use palpate_servo::coupling::Coupling;
 use palpate_servo::device::{Device, DeviceFrame, Fault, LinkReport, Probe, Reading};
 use palpate_servo::exchange::{Hand, exchange};
@@ -58,6 +58,7 @@ impl Device for Scripted {
 pub fn probe(position: DVec3) -> Probe {
     Probe {
         position,
+        orientation: DMat3::IDENTITY,
         speed: 0.0,
         restart: false,
         buttons: 0,

@@ -1,6 +1,7 @@
 """The Python codec of the link: what goes in comes out, and nothing else does."""
 
 import json
+import math
 from pathlib import Path
 
 import pytest
@@ -31,12 +32,18 @@ amounts = st.floats(0.0, 1e6, width=32)
 names = st.text(st.characters(exclude_characters="\0", exclude_categories=["Cs"])).filter(
     lambda name: len(name.encode()) <= link.NAME_BYTES
 )
+rotations = (
+    st.tuples(*[st.floats(-1.0, 1.0)] * 4)
+    .filter(lambda q: math.hypot(*q) > 0.1)
+    .map(lambda q: tuple(part / math.hypot(*q) for part in q))
+)
 messages = st.one_of(
     st.just(link.HostHello()),
     st.builds(link.DeviceHello, names, bits(8), amounts, triples(amounts), bits(16)),
     st.builds(link.State, bits(16), bits(32), triples(bits(32, signed=True)), bits(8), bits(8)),
     st.builds(link.Force, bits(16), triples(bits(16, signed=True)), bits(8)),
     st.builds(link.Fault, bits(8), bits(16)),
+    st.builds(link.orientation, bits(16), rotations),
 )
 
 
@@ -51,6 +58,7 @@ def message_of(vector):
         ("device to host", "state"): link.State,
         ("host to device", "force"): link.Force,
         ("device to host", "fault"): link.Fault,
+        ("device to host", "orientation"): link.Orientation,
     }
     return kinds[vector["direction"], vector["type"]](**fields)
 
@@ -223,6 +231,30 @@ def test_a_hello_without_a_sensible_force_is_no_hello(force):
     payload = link.pack(link.DeviceHello("x", 3, force, (0.1, 0.1, 0.1), 1000))
     with pytest.raises(link.LinkError, match="negative or no number"):
         link.unpack(payload)
+
+
+@pytest.mark.parametrize("vector", **named(VECTORS["refused"]))
+def test_what_is_no_orientation_is_refused_and_counted(vector):
+    decoder = link.Decoder()
+    assert decoder.feed(link.frame(bytes.fromhex(vector["payload"]))) == []
+    assert (decoder.errors.unknown, decoder.errors.total) == (1, 1)
+
+
+@pytest.mark.parametrize("part", [float("nan"), float("inf"), 0.98, 1.02, 0.0])
+def test_what_is_no_unit_quaternion_is_not_sent(part):
+    with pytest.raises(link.LinkError, match="divide it by its length"):
+        link.orientation(0, (part, 0.0, 0.0, 0.0))
+
+
+@given(rotations)
+def test_rounding_turns_a_stylus_by_less_than_its_document_says(unit):
+    sent = link.orientation(0, unit).quaternion
+    cosine = sum(a * b for a, b in zip(unit, sent, strict=True)) / math.hypot(*sent)
+    # Of the part across: the arc cosine of nearly 1 is worthless.
+    across = math.hypot(
+        *(b / math.hypot(*sent) - cosine * a for a, b in zip(unit, sent, strict=True))
+    )
+    assert math.degrees(2.0 * math.asin(across)) < 0.0035
 
 
 def test_long_names_are_cut_between_characters():

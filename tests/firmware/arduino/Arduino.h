@@ -21,7 +21,9 @@ struct FakeBoard {
   size_t said_size = 0;
   int room = 256;
   int32_t counts[3] = {0, 0, 0};
+  float turned[4] = {1, 0, 0, 0};
   bool encoders_answer = true;
+  bool gimbal_answers = true;
   bool motors_healthy = true;
   bool motors_on = false;
   float pushed_n[3] = {0, 0, 0};

@@ -131,6 +131,17 @@ class Device {
     return write_frame(payload, pack(state, payload), frame);
   }
 
+  // How the stylus is turned in the STATE that state() gives next: send this one first. `unit` is the
+  // rotation from the stylus' axes to the device's, w, x, y, z. Returns its length; 0 as long as no
+  // host has said HELLO, and for what is no unit quaternion.
+  size_t orientation(const float (&unit)[4], uint8_t (&frame)[max_frame]) const {
+    Orientation orientation;
+    orientation.sequence = sequence_;
+    if (!streaming_ || !quantise(unit, orientation.quaternion)) return 0;
+    uint8_t payload[max_payload];
+    return write_frame(payload, pack(orientation, payload), frame);
+  }
+
   // A fault of the device's own, told once and shown in each STATE until recover(). Codes of makers
   // begin at fault_first_of_maker.
   void fail(uint8_t code, uint16_t detail) {

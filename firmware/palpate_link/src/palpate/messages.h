@@ -10,7 +10,7 @@ namespace palpate {
 
 constexpr uint8_t protocol_version = 1;
 
-enum class Type : uint8_t { hello = 1, state = 2, force = 3, fault = 4 };
+enum class Type : uint8_t { hello = 1, state = 2, force = 3, fault = 4, orientation = 5 };
 
 constexpr uint8_t state_ready = 1;
 constexpr uint8_t state_fault = 2;
@@ -26,6 +26,12 @@ constexpr size_t device_hello_size = 37;
 constexpr size_t state_size = 21;
 constexpr size_t force_size = 10;
 constexpr size_t fault_size = 4;
+constexpr size_t orientation_size = 11;
+
+constexpr int16_t quaternion_unit = 32767;  // What 1 is in an ORIENTATION.
+// Shortest and longest quaternion that is believed, in its own steps: 1 % around a unit's.
+constexpr int64_t quaternion_shortest = 32440;
+constexpr int64_t quaternion_longest = 33094;
 
 struct DeviceHello {
   uint8_t protocol = protocol_version;
@@ -63,6 +69,33 @@ struct Fault {
   uint8_t code = 0;
   uint16_t detail = 0;
 };
+
+// How the stylus is turned in the State of the same sequence, which follows.
+struct Orientation {
+  uint16_t sequence = 0;
+  int16_t quaternion[4] = {quaternion_unit, 0, 0, 0};  // w, x, y, z; stylus to device.
+
+  // Whether its length is that of a rotation, within 1 %.
+  bool is_unit() const {
+    int64_t square = 0;
+    for (const int16_t part : quaternion) square += static_cast<int32_t>(part) * part;
+    return square >= quaternion_shortest * quaternion_shortest &&
+           square <= quaternion_longest * quaternion_longest;
+  }
+};
+
+// The nearest to a unit quaternion w, x, y, z; false when it is none, which NaN is not either.
+inline bool quantise(const float (&unit)[4], int16_t (&steps)[4]) {
+  const float square =
+      unit[0] * unit[0] + unit[1] * unit[1] + unit[2] * unit[2] + unit[3] * unit[3];
+  if (!(square >= 0.9801F && square <= 1.0201F)) return false;
+  const float scale = static_cast<float>(quaternion_unit) / sqrtf(square);
+  for (int i = 0; i < 4; ++i) {
+    const float part = unit[i] * scale;
+    steps[i] = static_cast<int16_t>(part < 0.0F ? part - 0.5F : part + 0.5F);
+  }
+  return true;
+}
 
 // Writes numbers one after the other, low byte first, whatever the board's own order.
 class Packer {
@@ -169,6 +202,14 @@ inline size_t pack(const Fault& fault, uint8_t* payload) {
   return out.size();
 }
 
+inline size_t pack(const Orientation& orientation, uint8_t* payload) {
+  Packer out(payload);
+  out.u8(static_cast<uint8_t>(Type::orientation));
+  out.u16(orientation.sequence);
+  for (const int16_t part : orientation.quaternion) out.u16(static_cast<uint16_t>(part));
+  return out.size();
+}
+
 inline bool is(const uint8_t* payload, size_t size, Type type, size_t wanted) {
   return size == wanted && payload[0] == static_cast<uint8_t>(type);
 }
@@ -219,6 +260,14 @@ inline bool unpack(const uint8_t* payload, size_t size, Fault& fault) {
   fault.code = in.u8();
   fault.detail = in.u16();
   return true;
+}
+
+inline bool unpack(const uint8_t* payload, size_t size, Orientation& orientation) {
+  if (!is(payload, size, Type::orientation, orientation_size)) return false;
+  Unpacker in(payload + 1);
+  orientation.sequence = in.u16();
+  for (int16_t& part : orientation.quaternion) part = in.i16();
+  return orientation.is_unit();
 }
 
 }  // namespace palpate
