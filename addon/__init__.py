@@ -17,11 +17,21 @@ from ..operators import (
     switch_force,
     update_pins,
 )
-from . import command, handlers, overlay, panels, preferences, properties, translations
+from . import (
+    command,
+    handlers,
+    overlay,
+    panels,
+    preferences,
+    properties,
+    softness_properties,
+    translations,
+)
 
 # In the order of registration; properties first, since all others refer to them.
 modules = (
     properties,
+    softness_properties,
     preferences,
     make_soft,
     rebuild_body,

@@ -1,9 +1,11 @@
 """The interface in German."""
 
 from .german_force import WORDS as FORCE_WORDS
+from .german_softness import WORDS as SOFTNESS_WORDS
 
 WORDS = {
     **FORCE_WORDS,
+    **SOFTNESS_WORDS,
     # Panel
     "Pins": "Fixierung",
     "Device": "Gerät",

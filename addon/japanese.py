@@ -1,9 +1,11 @@
 """The interface in Japanese."""
 
 from .japanese_force import WORDS as FORCE_WORDS
+from .japanese_softness import WORDS as SOFTNESS_WORDS
 
 WORDS = {
     **FORCE_WORDS,
+    **SOFTNESS_WORDS,
     # Panel
     "Pins": "固定",
     "Device": "デバイス",

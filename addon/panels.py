@@ -4,7 +4,7 @@ import bpy
 
 from ..operators import bake_session, press_session, soft_object
 from ..operators.device_source import is_planar
-from . import panel_cost, panel_loop, panel_recording, panel_state
+from . import panel_cost, panel_loop, panel_recording, panel_softness, panel_state
 from .panel_base import PalpatePanel, named_properties
 from .sentence import say
 
@@ -43,6 +43,7 @@ class PALPATE_PT_material(PalpatePanel, bpy.types.Panel):
         layout.prop(settings, "material")
         column = layout.column(align=True)
         column.prop(settings, "young_modulus", text="Young's (Pa)")
+        panel_softness.draw_shore(column, context)
         row = column.row()
         row.enabled = press_session.current() is None
         row.prop(settings, "poisson_ratio")

@@ -10,12 +10,19 @@ from .scene_properties import PalpateScene
 
 # Files hold the numbers of these items: add new ones at the end only.
 CUSTOM = "CUSTOM"
+# Custom came before all materials but the first seven.
+CUSTOM_NUMBER = 7
 MATERIAL_ITEMS = [
     *(
-        (name, material.name, f"{material.young_modulus:,.0f} Pa, {material.poisson_ratio:g}")
-        for name, material in MATERIALS.items()
+        (
+            name,
+            material.name,
+            f"{material.young_modulus:,.0f} Pa, {material.poisson_ratio:g}; {material.basis}",
+            number if number < CUSTOM_NUMBER else number + 1,
+        )
+        for number, (name, material) in enumerate(MATERIALS.items())
     ),
-    (CUSTOM, "Custom", "Young's modulus and Poisson's ratio as set below"),
+    (CUSTOM, "Custom", "Young's modulus and Poisson's ratio as set below", CUSTOM_NUMBER),
 ]
 PIN_ITEMS = [
     ("BELOW", "Below Height", "Everything in the lowest part of the object, as it stands"),

@@ -14,8 +14,10 @@ from ..core.formulation import AUTOMATIC, FORMULATIONS
 from ..core.pins import PinBelow, PinNodes, Pins
 from ..core.read_mesh import TetFile, read_surface, read_tets
 from ..core.regional_stiffness import TetScale
+from ..core.softness.shore import Shore, young_from_shore
 from ..core.surface import Surface
 from ..core.tet_mesh import TetMesh
+from .materials import material_named
 
 DEFAULT_PIN_FRACTION = 0.1
 AXES = {"x": 0, "y": 1, "z": 2}
@@ -73,18 +75,27 @@ def add_bake_options(parser: argparse.ArgumentParser) -> None:
     pins.add_argument("--up", choices=AXES, default="z", help="upward axis (default z)")
     material = parser.add_argument_group("material")
     material.add_argument(
+        "--material",
+        type=material_named,
+        metavar="NAME",
+        help="preset such as ecoflex-30, for what is not given; 'palpate materials' lists them",
+    )
+    modulus = material.add_mutually_exclusive_group()
+    modulus.add_argument(
         "--young",
         type=float,
-        default=default.young_modulus,
         metavar="PA",
-        help="Young's modulus stored as the default for presses (default %(default)g)",
+        help="Young's modulus stored as the default for presses "
+        f"(default {default.young_modulus:g})",
+    )
+    modulus.add_argument(
+        "--shore", metavar="SHORE", help="Young's modulus by its Shore value, such as 00-30 or A20"
     )
     material.add_argument(
         "--poisson",
         type=float,
-        default=default.poisson_ratio,
         metavar="NU",
-        help="Poisson's ratio (default %(default)g)",
+        help=f"Poisson's ratio (default {default.poisson_ratio:g})",
     )
     material.add_argument(
         "--formulation",
@@ -148,9 +159,10 @@ def _settings(
     arguments: argparse.Namespace, tets: TetFile | None, threads: int | None
 ) -> BakeSettings:
     scale = None if tets is None else tets.young_scale
+    young_modulus, poisson_ratio = _material(arguments)
     return BakeSettings(
-        poisson_ratio=arguments.poisson,
-        young_modulus=arguments.young,
+        poisson_ratio=poisson_ratio,
+        young_modulus=young_modulus,
         pins=_pins(arguments, tets),
         edge_length=(
             BakeSettings.edge_length if arguments.edge_length is None else arguments.edge_length
@@ -163,6 +175,15 @@ def _settings(
         stiffness=None if scale is None else TetScale(scale),
         threads=threads,
     ).checked()
+
+
+def _material(arguments: argparse.Namespace) -> tuple[float, float]:
+    """Young's modulus in pascal and Poisson's ratio: as given, else the preset's, else usual."""
+    start = BakeSettings() if arguments.material is None else arguments.material
+    ratio = start.poisson_ratio if arguments.poisson is None else arguments.poisson
+    if arguments.shore is not None:
+        return young_from_shore(Shore.parse(arguments.shore), ratio), ratio
+    return start.young_modulus if arguments.young is None else arguments.young, ratio
 
 
 def _pins(arguments: argparse.Namespace, tets: TetFile | None) -> Pins:

@@ -9,9 +9,9 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from ..core.errors import PalpateError
-from . import bake, devices, info, pin, press, servo
+from . import bake, devices, info, materials, pin, press, servo, shore
 
-COMMANDS = (bake, info, pin, press, servo, devices)
+COMMANDS = (bake, info, pin, press, servo, devices, materials, shore)
 EXIT_ERROR = 2
 
 

@@ -16,6 +16,13 @@ BLENDERS_OWN = {
     "CSV",
     "npz",
     "Format",
+    "Dragon Skin 10",
+    "Dragon Skin 20",
+    "Dragon Skin 30",
+    "Ecoflex 00-10",
+    "Ecoflex 00-20",
+    "Ecoflex 00-30",
+    "Ecoflex 00-50",
     "2DIY 2",
     "2DIY 3.0",
     "2DIY 3.1",
@@ -34,6 +41,7 @@ def shown_by_blender():
     properties = part("addon.properties")
     types = [properties.PalpateObject, part("addon.scene_properties").PalpateScene]
     types.append(part("addon.preferences").PalpatePreferences)
+    types.append(part("addon.softness_properties").PalpateSoftness)
     structs = [cls.bl_rna for cls in types]
     structs += [getattr(bpy.ops.palpate, name).get_rna_type() for name in dir(bpy.ops.palpate)]
     for struct in structs:

@@ -1,0 +1,92 @@
+"""How a Shore value and Young's modulus go together: several relations, each where it is fit.
+
+All say what modulus a large, thick, linear block must have for a durometer to read S on it. They
+are monotonic in S, so each can be asked both ways. Real materials differ by a factor of two.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from .durometer_type import TYPE_00, TYPE_A, DurometerType
+from .half_space import hertz_force, indenter_force
+
+RUBBER_POISSON_RATIO = 0.5
+MEGAPASCAL = 1e6
+
+
+@dataclass(frozen=True)
+class Relation:
+    """One relation between a Shore value and Young's modulus.
+
+    Attributes
+    ----------
+    name : how it is chosen.
+    scale : "A" or "00".
+    lowest, highest : the readings between which it is used.
+    rubber_modulus : Young's modulus in pascal at a reading, for a Poisson's ratio of 0.5.
+    source : where it comes from.
+    """
+
+    name: str
+    scale: str
+    lowest: float
+    highest: float
+    rubber_modulus: Callable[[float], float]
+    source: str
+
+
+def gent(reading: float) -> float:
+    """Young's modulus in pascal at a Shore A reading: a flat punch of 0.516 mm on the spring.
+
+    Gent 1958, Rubber Chemistry and Technology 31, 896; his radius lies halfway between tip and
+    shaft of the indenter.
+    """
+    force = 0.0981 * (56.0 + 7.62336 * reading)
+    return MEGAPASCAL * force / (0.137505 * (254.0 - 2.54 * reading))
+
+
+def boyce(reading: float) -> float:
+    """Young's modulus in pascal at a Shore A reading, from simulations of the test at large strain.
+
+    Qi, Joyce and Boyce 2003, Rubber Chemistry and Technology 76, 419: log10 E = 0.0235 S - 0.6403
+    in MPa, for neo-Hookean rubber.
+    """
+    return float(MEGAPASCAL * 10.0 ** (0.0235 * reading - 0.6403))
+
+
+def mix(reading: float) -> float:
+    """Young's modulus in pascal at a Shore 00 reading: Hertz's ball on the spring.
+
+    Mix and Giacomin 2011, Journal of Testing and Evaluation 39, 696.
+    """
+    area = hertz_force(TYPE_00.shaft, TYPE_00.depth(reading))
+    return _rubber_modulus(TYPE_00, reading, area)
+
+
+def cone(reading: float) -> float:
+    """Young's modulus in pascal at a Shore A reading: the truncated cone as it is (Ejike 1969)."""
+    return _rubber_modulus(TYPE_A, reading, indenter_force(TYPE_A, TYPE_A.depth(reading)))
+
+
+def ball(reading: float) -> float:
+    """Young's modulus in pascal at a Shore 00 reading: the ball as it is (Segedin 1957)."""
+    return _rubber_modulus(TYPE_00, reading, indenter_force(TYPE_00, TYPE_00.depth(reading)))
+
+
+def _rubber_modulus(kind: DurometerType, reading: float, area: float) -> float:
+    return (1.0 - RUBBER_POISSON_RATIO**2) * kind.force(reading) / area
+
+
+RELATIONS = {
+    relation.name: relation
+    for relation in (
+        Relation("gent", "A", 10.0, 90.0, gent, "Gent 1958"),
+        Relation("boyce", "A", 20.0, 80.0, boyce, "Qi, Joyce and Boyce 2003"),
+        Relation("cone", "A", 10.0, 90.0, cone, "Ejike 1969 with the geometry of ASTM D2240"),
+        Relation("mix", "00", 10.0, 90.0, mix, "Mix and Giacomin 2011"),
+        Relation("ball", "00", 10.0, 90.0, ball, "Segedin 1957 with the geometry of ASTM D2240"),
+    )
+}
+USUAL = {"A": "gent", "00": "mix"}
