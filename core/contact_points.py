@@ -299,11 +299,11 @@ def _normals(
     there = np.einsum("pcd,pd->pc", same, places.alphas[on_edge])
     here[on_edge] += np.einsum("pc,pcx->px", there, corner_normals[others])
     at_node = np.flatnonzero(places.is_node)
-    here[at_node] = _node_normals(mesh)
+    here[at_node] = node_normals(mesh)
     return _unit(here)
 
 
-def _node_normals(mesh: TetMesh) -> NDArray[np.float64]:
+def node_normals(mesh: TetMesh) -> NDArray[np.float64]:
     """Angle-weighted mean normals of all faces around each surface node, (s, 3)."""
     weighted = _corner_angles(mesh)[:, :, None] * _face_normals(mesh)[:, None, :]
     mean = np.zeros((len(mesh.surface_nodes), 3))

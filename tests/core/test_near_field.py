@@ -1,0 +1,175 @@
+"""The near field: as a half-space close by, as the finite elements farther away."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from palpate.core.contact_points import ContactPoints, contact_points
+from palpate.core.near_field import near_correction, point_compliance
+from palpate.core.paper_cube import paper_cube
+from palpate.core.soft_body import SoftBody
+from palpate.core.stiffness import assemble
+from palpate.core.surface_compliance import surface_compliance
+from palpate.core.tet_mesh import TetMesh
+
+EDGE = 0.05
+TOP = np.array([0.025, 0.025, EDGE])
+
+
+def cube_of(cells, nu=0.3, formulation="linear", scale=1.0, turn=None):
+    mesh, fixed = paper_cube(EDGE, cells)
+    nodes = scale * mesh.nodes @ (np.eye(3) if turn is None else turn).T
+    return body_of(TetMesh.checked(nodes, mesh.tets), fixed, nu, formulation)
+
+
+def body_of(mesh, fixed, nu, formulation="linear", young_scale=None):
+    stiffness = assemble(mesh, nu, formulation=formulation, young_scale=young_scale)
+    compliance = surface_compliance(mesh, stiffness, fixed, dtype=np.float64)
+    return SoftBody(mesh, np.unique(fixed), nu, compliance, 1.0, formulation, young_scale)
+
+
+def patch(points, place, radius):
+    return np.flatnonzero(np.linalg.norm(points.positions - place, axis=1) < radius)
+
+
+def matrix(blocks):
+    return blocks.transpose(0, 2, 1, 3).reshape(3 * len(blocks), -1)
+
+
+@pytest.fixture(scope="module")
+def cubes():
+    return {cells: cube_of(cells) for cells in (4, 8, 12)}
+
+
+def test_the_correction_is_symmetric(mouse):
+    points = contact_points(mouse, 0.004)
+    some = patch(points, points.positions[500], 0.014)
+    correction = near_correction(mouse, points, 0.02)
+    blocks = matrix(correction.between(some, some))
+    assert np.abs(blocks).max() > 0
+    np.testing.assert_array_equal(blocks, blocks.T)
+
+
+def test_rows_of_the_correction_tell_the_pairs_within_the_span(mouse):
+    points, span = contact_points(mouse, 0.006), 0.02
+    correction = near_correction(mouse, points, span)
+    rows = np.repeat(np.arange(len(points)), np.diff(correction.starts))
+    apart = np.linalg.norm(points.positions[rows] - points.positions[correction.others], axis=1)
+    assert apart.max() <= span
+    assert (np.diff(correction.others)[np.diff(rows) == 0] > 0).all()
+    assert (np.bincount(rows[rows == correction.others]) == 1).all()
+    everyone = np.arange(len(points))
+    dense = correction.between(everyone, everyone)
+    np.testing.assert_array_equal(dense[rows, correction.others], correction.blocks)
+    assert np.count_nonzero(dense.any(axis=(2, 3))) <= len(rows)
+
+
+def test_what_is_far_apart_stays_as_the_finite_elements_have_it(mouse):
+    points = contact_points(mouse, 0.006)
+    correction = near_correction(mouse, points, 0.02)
+    i = np.array([10])
+    far = np.flatnonzero(np.linalg.norm(points.positions - points.positions[10], axis=1) > 0.02)
+    np.testing.assert_array_equal(
+        point_compliance(mouse, points, i, far, correction), point_compliance(mouse, points, i, far)
+    )
+
+
+def lattice_on_top(body, step, radius):
+    """Contact points of one square lattice around the middle of the top face; the first is there.
+
+    Half a step beside a node, as a finger is that does not know the mesh.
+    """
+    line = np.arange(-np.ceil(radius / step), np.ceil(radius / step) + 1) * step
+    x, y = (axis.ravel() for axis in np.meshgrid(line, line))
+    within = np.flatnonzero(np.hypot(x, y) < radius)
+    within = within[np.argsort(np.hypot(x, y)[within], kind="stable")]
+    shift = np.array([0.0007, 0.0003, 0.0])
+    places = TOP + shift + np.column_stack([x, y, 0 * x])[within]
+    found = body.closest_points.query(places)
+    count = len(places)
+    return ContactPoints(
+        places,
+        np.tile([0.0, 0.0, 1.0], (count, 1)),
+        found.triangle,
+        found.alpha,
+        np.full(count, step**2),
+    )
+
+
+def sinking(body, step, radius):
+    """How far the middle of a disc gives way per newton spread over it: plain, corrected, exact."""
+    points = lattice_on_top(body, step, radius)
+    everyone = np.arange(len(points))
+    correction = near_correction(body, points, 3 * radius)
+    plain, near = (
+        point_compliance(body, points, everyone[:1], everyone, which)[0, :, 2, 2].mean()
+        for which in (None, correction)
+    )
+    # A lattice covers a disc but roughly: as one of the same area.
+    equal = np.sqrt(points.areas.sum() / np.pi)
+    return plain, near, 2 * (1 - 0.3**2) / (np.pi * equal)
+
+
+@pytest.mark.parametrize("cells", [4, 8, 12])
+def test_a_small_disc_sinks_as_in_a_half_space(cubes, cells):
+    """2 (1 - nu^2) p a, on a disc of an eighth of the coarsest element."""
+    plain, near, closed_form = sinking(cubes[cells], 0.0002, 0.0015)
+    assert near == pytest.approx(closed_form, rel=0.04)
+    assert plain < 0.6 * near
+
+
+def test_with_a_finer_mesh_there_is_less_and_less_to_correct(cubes):
+    """A disc of two thirds of the coarsest element's edge, of two of the finest."""
+    plain, near, _ = np.array([sinking(cubes[cells], 0.001, 0.0083) for cells in (4, 8, 12)]).T
+    np.testing.assert_allclose(near, near[-1], rtol=0.03)
+    missing = 1 - plain / near
+    assert missing[0] > 0.25
+    assert missing[0] > 2 * missing[1] > 3 * missing[2]
+    assert 0 < missing[2] < 0.07
+
+
+def test_turning_the_body_turns_the_near_field():
+    turn = np.linalg.qr(np.random.default_rng(3).normal(size=(3, 3)))[0]
+    turn *= np.sign(np.linalg.det(turn))
+    straight, turned = cube_of(4), cube_of(4, turn=turn)
+    points = contact_points(straight, 0.005)
+    as_turned = replace(
+        points, positions=points.positions @ turn.T, normals=points.normals @ turn.T
+    )
+    some = patch(points, TOP, 0.012)
+    found = [
+        near_correction(body, where, 0.02).between(some, some)
+        for body, where in ((straight, points), (turned, as_turned))
+    ]
+    expected = turn @ found[0] @ turn.T
+    np.testing.assert_allclose(found[1], expected, atol=1e-9 * np.abs(expected).max())
+
+
+def test_a_body_of_twice_the_size_gives_way_half_as_far():
+    found = []
+    for scale in (1.0, 2.0):
+        body = cube_of(4, scale=scale)
+        points = contact_points(body, 0.005 * scale)
+        some = patch(points, scale * TOP, 0.012 * scale)
+        found.append(near_correction(body, points, 0.02 * scale).between(some, some))
+    np.testing.assert_allclose(found[0], 2 * found[1], atol=1e-9 * np.abs(found[0]).max())
+
+
+def test_a_place_of_twice_the_modulus_gives_way_half_as_far(cubes):
+    mesh, fixed = paper_cube(EDGE, 4)
+    stiff = body_of(mesh, fixed, 0.3, young_scale=np.full(len(mesh.tets), 2.0))
+    points = contact_points(stiff, 0.005)
+    some = patch(points, TOP, 0.012)
+    both = [near_correction(body, points, 0.02).between(some, some) for body in (cubes[4], stiff)]
+    np.testing.assert_allclose(both[0], 2 * both[1], atol=1e-9 * np.abs(both[0]).max())
+
+
+def test_pinned_places_stay_as_firm_as_they_are(cubes):
+    body = cubes[4]
+    points = contact_points(body, 0.004)
+    low = np.flatnonzero(points.positions[:, 2] == 0)[:60]
+    blocks = point_compliance(body, points, low, low, near_correction(body, points, 0.02))
+    firmest = np.linalg.eigvalsh(body.compliance.diagonal()).min()
+    assert np.linalg.eigvalsh(matrix(blocks)).min() > 0.05 * firmest
+    assert np.einsum("iixx->i", blocks).max() / 3 < 1.11 * firmest
