@@ -8,8 +8,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from .hand_script import HandScript
+from .hand_script import HandScript, TurnScript
 from .plant import Vector
+from .quaternion import UPRIGHT, Quaternion
 from .simulated_options import SimulatedOptions
 
 
@@ -19,6 +20,8 @@ class HandSchedule:
     def __init__(self, options: SimulatedOptions) -> None:
         self._script = options.hand_script()
         self._script_begin: float | None = None
+        self._turns = options.turn_script(self._script)
+        self._turns_begin: float | None = None
         self._host_came_at: float | None = None
         self._unplug_at = math.inf if options.unplug_at is None else options.unplug_at
         self._plug_at = self._unplug_at + options.unplug_for
@@ -29,6 +32,8 @@ class HandSchedule:
             self._host_came_at = now
             if self._script_begin is None:
                 self._script_begin = now
+            if self._turns_begin is None:
+                self._turns_begin = now
 
     def since_host(self, now: float) -> float:
         """Seconds since the first host came; minus infinity before."""
@@ -42,6 +47,18 @@ class HandSchedule:
         """Leave the script: go from where the hand is to `position` and stay."""
         self._script = HandScript((0.0, max(seconds, 1e-6)), (self.hand(now), position))
         self._script_begin = now
+
+    def turned(self, now: float) -> Quaternion | None:
+        """How the hand holds the stylus; None for a device that cannot tell."""
+        if self._turns is None:
+            return None
+        return self._turns.at(0.0 if self._turns_begin is None else now - self._turns_begin)
+
+    def turn_hand(self, now: float, rotation: Quaternion, seconds: float) -> None:
+        """Leave the script: turn the stylus from how it is held to `rotation` (unit), and stay."""
+        held = self.turned(now) or UPRIGHT
+        self._turns = TurnScript((0.0, max(seconds, 1e-6)), (held, rotation))
+        self._turns_begin = now
 
     def keep_plug(
         self, now: float, unplug: Callable[[], None], plug_in: Callable[[], None]

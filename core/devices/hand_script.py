@@ -1,4 +1,6 @@
-"""Where the simulated hand wants to be: keyframes with minimum-jerk moves between them."""
+"""Where the simulated hand wants to be, and how it wants to hold the stylus: keyframes with
+minimum-jerk moves between them.
+"""
 
 from __future__ import annotations
 
@@ -7,12 +9,14 @@ import csv
 import io
 import json
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
 from ..errors import PalpateError
 from .plant import Vector
+from .quaternion import UPRIGHT, Quaternion, about, between, unit
 
 
 def minimum_jerk(s: float) -> float:
@@ -22,36 +26,91 @@ def minimum_jerk(s: float) -> float:
 
 
 @dataclass(frozen=True)
+class TurnScript:
+    """Keyframes: times in s, rising; unit quaternions (w, x, y, z), stylus to device. From
+    `repeat_from` on it repeats for ever. Raises PalpateError when they make no sense.
+    """
+
+    times: tuple[float, ...]
+    rotations: tuple[Quaternion, ...]
+    repeat_from: float | None = None
+
+    def __post_init__(self) -> None:
+        _check(self.times, self.rotations, self.repeat_from)
+        if any(abs(math.hypot(*rotation) - 1.0) > 1e-6 for rotation in self.rotations):
+            raise PalpateError("the hand's script has a quaternion that is not of length 1")
+
+    def at(self, time: float) -> Quaternion:
+        """How the stylus is held at `time`, on the shorter way between two keyframes."""
+        before, after, s = _around(time, self.times, self.repeat_from)
+        return between(self.rotations[before], self.rotations[after], s)
+
+
+@dataclass(frozen=True)
 class HandScript:
-    """Keyframes: times in s, rising; positions in m. From `repeat_from` on it repeats for ever."""
+    """Keyframes: times in s, rising; positions in m. From `repeat_from` on it repeats for ever.
+
+    turns : how the stylus is held meanwhile; None for a hand that does not turn it.
+    Raises PalpateError when they make no sense.
+    """
 
     times: tuple[float, ...]
     positions: tuple[Vector, ...]
     repeat_from: float | None = None
+    turns: TurnScript | None = None
 
     def __post_init__(self) -> None:
-        if not self.times or len(self.times) != len(self.positions):
-            raise PalpateError("the hand's script needs a position for every time, at least one")
-        numbers = (*self.times, *(x for position in self.positions for x in position))
-        if not all(map(math.isfinite, numbers)):
-            raise PalpateError("the hand's script has a value that is no number; remove it")
-        if any(later <= earlier for earlier, later in pairwise(self.times)):
-            raise PalpateError("the hand's script has times that do not rise; sort its lines")
-        if self.repeat_from is not None and not self.repeat_from < self.times[-1]:
-            raise PalpateError("the hand's script repeats from after its end; take an earlier time")
+        _check(self.times, self.positions, self.repeat_from)
 
     def at(self, time: float) -> Vector:
         """The target at `time`; before the first keyframe and after the last it stays there."""
-        last = self.times[-1]
-        if self.repeat_from is not None and time > last:
-            time = self.repeat_from + (time - self.repeat_from) % (last - self.repeat_from)
-        after = bisect.bisect_right(self.times, time)
-        if after == 0 or after == len(self.times):
-            return self.positions[0 if after == 0 else -1]
-        begin, end = self.times[after - 1], self.times[after]
-        s = minimum_jerk((time - begin) / (end - begin))
-        a, b = self.positions[after - 1], self.positions[after]
+        before, after, s = _around(time, self.times, self.repeat_from)
+        a, b = self.positions[before], self.positions[after]
         return (a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1]), a[2] + s * (b[2] - a[2]))
+
+
+def _check(
+    times: tuple[float, ...], places: Sequence[tuple[float, ...]], repeat_from: float | None
+) -> None:
+    if not times or len(times) != len(places):
+        raise PalpateError("the hand's script needs a position for every time, at least one")
+    if not all(map(math.isfinite, (*times, *(x for place in places for x in place)))):
+        raise PalpateError("the hand's script has a value that is no number; remove it")
+    if any(later <= earlier for earlier, later in pairwise(times)):
+        raise PalpateError("the hand's script has times that do not rise; sort its lines")
+    if repeat_from is not None and not repeat_from < times[-1]:
+        raise PalpateError("the hand's script repeats from after its end; take an earlier time")
+
+
+def _around(
+    time: float, times: tuple[float, ...], repeat_from: float | None
+) -> tuple[int, int, float]:
+    """The keyframes before and after `time`, and the part of the way between them that is done;
+    before the first and after the last it is that one twice.
+    """
+    last = times[-1]
+    if repeat_from is not None and time > last:
+        time = repeat_from + (time - repeat_from) % (last - repeat_from)
+    after = bisect.bisect_right(times, time)
+    if after == 0 or after == len(times):
+        only = max(after - 1, 0)
+        return only, only, 0.0
+    begin, end = times[after - 1], times[after]
+    return after - 1, after, minimum_jerk((time - begin) / (end - begin))
+
+
+def tilt_script(axis: Vector, degrees: float, period: float) -> TurnScript:
+    """Tilt the stylus about `axis` (device axes) by so much and back in `period` seconds, for ever.
+
+    Raises PalpateError for an axis without direction, half a turn or more, or a time without sense.
+    """
+    if not (abs(degrees) < 180.0 and 0.0 < period < math.inf):
+        raise PalpateError("the hand's turning must be less than 180 degrees, its period over 0 s")
+    try:
+        tilted = about(axis, math.radians(degrees))
+    except ValueError as error:
+        raise PalpateError(f"the hand cannot turn the stylus: {error}") from error
+    return TurnScript((0.0, 0.5 * period, period), (UPRIGHT, tilted, UPRIGHT), repeat_from=0.0)
 
 
 def press_script(
@@ -81,7 +140,8 @@ def press_script(
 
 
 def read_script(path: Path) -> HandScript:
-    """A script from a file: CSV lines `t,x,y,z` (s, m), or JSON.
+    """A script from a file: CSV lines `t,x,y,z` (s, m), or JSON. With `t,x,y,z,qw,qx,qy,qz` in
+    every line the hand turns the stylus too; the quaternions are taken to length 1.
 
     JSON: {"keyframes": [[t, x, y, z], ...], "repeat_from": seconds or null}.
     Raises PalpateError when the file cannot be read or understood.
@@ -94,14 +154,24 @@ def read_script(path: Path) -> HandScript:
         else:
             rows = [row for row in csv.reader(io.StringIO(text)) if row and row[0].strip() != "t"]
             repeat_from = None
-        times = tuple(float(t) for t, _, _, _ in rows)
-        positions = tuple((float(x), float(y), float(z)) for _, x, y, z in rows)
         repeat = None if repeat_from is None else float(repeat_from)
+        times = tuple(float(row[0]) for row in rows)
+        places = tuple((float(x), float(y), float(z)) for _, x, y, z, *_ in rows)
+        turns = _turns([[float(part) for part in row[4:]] for row in rows])
     except OSError as error:
         raise PalpateError(f"{path}: {error.strerror}; give the path of a script") from error
     except (ValueError, KeyError, TypeError) as error:
         raise PalpateError(
             f"{path}: not a script of the hand ({error}); write CSV lines t,x,y,z "
-            'or JSON {"keyframes": [[t, x, y, z], ...]}'
+            "or t,x,y,z,qw,qx,qy,qz, or JSON "
+            '{"keyframes": [[t, x, y, z], ...]}'
         ) from error
-    return HandScript(times, positions, repeat)
+    turning = TurnScript(times, turns, repeat) if turns else None
+    return HandScript(times, places, repeat, turning)
+
+
+def _turns(quaternions: list[list[float]]) -> tuple[Quaternion, ...]:
+    """Unit quaternions of all lines, or nothing if no line has any; raises ValueError."""
+    if not any(quaternions):
+        return ()
+    return tuple(unit((w, x, y, z)) for w, x, y, z in quaternions)

@@ -12,11 +12,13 @@ from collections import deque
 from dataclasses import replace
 from pathlib import Path
 
+from ..errors import PalpateError
 from .hand_schedule import HandSchedule
 from .haply_firmware import PORTS, HaplyCounters, HaplyFirmware
 from .haply_models import DEFAULT_MODEL, haply_model
 from .plant import Plant, Vector
 from .pseudo_terminal import PseudoTerminal
+from .quaternion import Quaternion
 from .simulated_options import SimulatedOptions
 
 RELEASE_AFTER_SECONDS = 0.25
@@ -77,6 +79,8 @@ class HaplyBoard:
             options = replace(options, rest=self.model.rest)
         self._options = options
         self._schedule = HandSchedule(options)
+        if self._schedule.turned(0.0) is not None:
+            raise PalpateError("simulated 2DIY: it cannot tell how it is turned; omit --turning")
         self._unplugged = 0
         start = self._schedule.hand(0.0)
         self.plant = Plant(options.impedance, 1.0 / options.rate_hz, start)
@@ -104,6 +108,9 @@ class HaplyBoard:
     def move_hand(self, now: float, position: Vector, seconds: float) -> None:
         """Leave the script: go from where the hand is to `position` and stay."""
         self._schedule.move_hand(now, position, seconds)
+
+    def turn_hand(self, now: float, rotation: Quaternion, seconds: float) -> None:
+        """It has no sense of that."""
 
     def press_buttons(self, mask: int) -> None:
         """There are none."""

@@ -26,6 +26,7 @@ import time
 from ..errors import PalpateError
 from .haply_board import HaplyBoard
 from .haply_models import DEFAULT_MODEL, HAPLY_MODELS
+from .quaternion import unit
 from .simulated_board import SimulatedBoard
 from .simulated_options import SimulatedOptions, add_simulated_options, simulated_options
 from .stop_signals import stopped_by_signals
@@ -93,7 +94,7 @@ def run(
 
     Prints where the port is at the start and what was counted at the end, a JSON line each.
     `commands` reads lines from standard input: `unplug`, `plug`, `buttons MASK`,
-    `move X Y Z SECONDS`, `report` (prints a JSON line).
+    `move X Y Z SECONDS`, `turn W X Y Z SECONDS`, `report` (prints a JSON line).
     Raises PalpateError when there can be no such port.
     """
     board = SimulatedBoard(options) if haply is None else HaplyBoard(options, haply)
@@ -146,6 +147,9 @@ class _Commands:
                 board.press_buttons(int(mask))
             case ["move", x, y, z, seconds]:
                 board.move_hand(clock.now(), (float(x), float(y), float(z)), float(seconds))
+            case ["turn", w, x, y, z, seconds]:
+                rotation = (float(w), float(x), float(y), float(z))
+                board.turn_hand(clock.now(), unit(rotation), float(seconds))
             case ["report"]:
                 _print_json({**clock.report(), **board.report()}, True)
             case _:

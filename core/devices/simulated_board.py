@@ -7,6 +7,7 @@ from pathlib import Path
 from .hand_schedule import HandSchedule
 from .plant import Plant, Vector
 from .pseudo_terminal import PseudoTerminal
+from .quaternion import Quaternion
 from .simulated_firmware import Firmware
 from .simulated_options import SimulatedOptions
 from .wire_faults import BadWire
@@ -42,6 +43,9 @@ class SimulatedBoard:
             self._schedule.host_came(now)
         answer += self.firmware.watch(now, self.plant.step_seconds)
         self._move(now, steps)
+        turned = self._schedule.turned(now)
+        if turned is not None:
+            answer += self.firmware.orientation(turned)
         answer += self.firmware.state(now, self._encoders(), self._buttons(now))
         self._to_host.put(answer, now)
         self.terminal.write(self._to_host.take(now))
@@ -49,6 +53,13 @@ class SimulatedBoard:
     def move_hand(self, now: float, position: Vector, seconds: float) -> None:
         """Leave the script: go from where the hand is to `position` and stay."""
         self._schedule.move_hand(now, position, seconds)
+
+    def turn_hand(self, now: float, rotation: Quaternion, seconds: float) -> None:
+        """Leave the script: turn the stylus to `rotation` (unit) and stay; from now on it is told.
+
+        The stylus has no inertia against turning: it is held as the hand wants.
+        """
+        self._schedule.turn_hand(now, rotation, seconds)
 
     def press_buttons(self, mask: int) -> None:
         """Hold exactly the buttons of `mask` (8 bits) from now on."""

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 from . import link
 from .plant import ZERO, Vector
+from .quaternion import Quaternion
 
 WATCHDOG_SECONDS = 0.020
 
@@ -106,6 +107,14 @@ class Firmware:
         self._sequence = (self._sequence + 1) % link.SEQUENCES
         self.counters.states += 1
         return link.encode(message)
+
+    def orientation(self, rotation: Quaternion) -> bytes:
+        """How the stylus is turned in the next STATE, to be sent before it; nothing as long as no
+        host has said HELLO.
+        """
+        if not self.streaming:
+            return b""
+        return link.encode(link.orientation(self._sequence, rotation))
 
     def _obey(self, message: link.Message, now: float) -> bytes:
         match message:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import PalpateError
-from .hand_script import HandScript, press_script, read_script
+from .hand_script import HandScript, TurnScript, press_script, read_script, tilt_script
 from .link import DeviceHello
 from .plant import Impedance, Vector
 
@@ -75,7 +75,20 @@ class SimulatedOptions:
         metadata=_about("S", "of which the hand stays at the deepest point; inf: for good"),
     )
     script: str = field(
-        default="", metadata=_about("FILE", "keyframes of the hand instead, CSV t,x,y,z or JSON")
+        default="",
+        metadata=_about("FILE", "keyframes of the hand instead, CSV t,x,y,z[,qw,qx,qy,qz] or JSON"),
+    )
+    turning: float | None = field(
+        default=None,
+        metadata=_about(
+            "DEG", "tell an orientation; the hand tilts the stylus by so much and back (0: upright)"
+        ),
+    )
+    turning_axis: Vector = field(
+        default=(1.0, 0.0, 0.0), metadata=_about("XYZ", "axis of this, in the device's axes")
+    )
+    turning_period: float = field(
+        default=4.0, metadata=_about("S", "time of one tilt, there and back")
     )
     loss: float = field(
         default=0.0, metadata=_about("FRACTION", "of the frames vanishes, both ways")
@@ -151,6 +164,17 @@ class SimulatedOptions:
         at = self.rest if self.at is None else self.at
         timing = {"approach": self.approach, "period": self.period, "hold": self.hold}
         return press_script(self.rest, at, self.by, **timing)
+
+    def turn_script(self, hand: HandScript) -> TurnScript | None:
+        """How the hand holds the stylus; None for a device that tells no orientation.
+
+        Raises PalpateError when there are two answers, or one that makes no sense.
+        """
+        if self.turning is None:
+            return hand.turns
+        if hand.turns is not None:
+            raise PalpateError("simulated device: the script turns the stylus; omit --turning")
+        return tilt_script(self.turning_axis, self.turning, self.turning_period)
 
     def arguments(self) -> list[str]:
         """The command line that says the same."""

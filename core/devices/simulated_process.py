@@ -18,6 +18,7 @@ from typing import IO, Any, Self
 from ..errors import PalpateError
 from .plant import Vector
 from .pseudo_terminal import require_pseudo_terminals
+from .quaternion import Quaternion
 from .simulated_options import SimulatedOptions
 
 SCRIPT = Path(__file__).with_name("simulated.py")
@@ -113,6 +114,13 @@ class SimulatedDevice:
         """Leave the script and bring the hand to `position` (m) in `seconds`."""
         x, y, z = map(float, position)
         self._command(f"move {x!r} {y!r} {z!r} {float(seconds)!r}")
+
+    def turn_hand(self, rotation: Quaternion, seconds: float) -> None:
+        """Leave the script and turn the stylus to a unit quaternion (w, x, y, z) in `seconds`; from
+        then on the device tells how it is turned.
+        """
+        w, x, y, z = map(float, rotation)
+        self._command(f"turn {w!r} {x!r} {y!r} {z!r} {float(seconds)!r}")
 
     def report(self) -> dict[str, Any]:
         """What the device has counted, and where it is now (see `SimulatedBoard.report`)."""

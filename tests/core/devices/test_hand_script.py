@@ -8,7 +8,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from palpate.core.devices.hand_script import HandScript, minimum_jerk, press_script, read_script
+from palpate.core.devices.hand_script import (
+    HandScript,
+    TurnScript,
+    minimum_jerk,
+    press_script,
+    read_script,
+    tilt_script,
+)
 from palpate.core.errors import PalpateError
 
 REST, AT, BY = (0.0, 0.0, 0.05), (0.0, 0.0, 0.03), (0.0, 0.0, -0.01)
@@ -80,6 +87,10 @@ def test_a_json_script_may_repeat(tmp_path):
         ("", "at least one"),
         ("0,0,0,nan\n", "no number"),
         ("1,0,0,0\n1,0,0,0\n", "do not rise"),
+        ("0,0,0,0,1,0,0\n", "not a script"),
+        ("0,0,0,0,0,0,0,0\n", "length must be more than 0"),
+        ("0,0,0,0,1,0,0,0\n1,0,0,0\n", "not a script"),
+        ("0,0,0,0,nan,0,0,0\n", "length must be more than 0"),
         ('{"frames": []}', "not a script"),
         ('{"keyframes": [[0, 0, 0, 0]], "repeat_from": 0}', "after its end"),
         ('{"keyframes": 3}', "not a script"),
@@ -93,6 +104,38 @@ def test_scripts_that_make_no_sense_are_refused_with_the_reason(tmp_path, text, 
         read_script(path)
 
 
+def test_a_tilt_goes_there_and_back_about_its_axis():
+    script = tilt_script((0.0, 2.0, 0.0), 60.0, period=4.0)
+    upright, tilted = (1.0, 0.0, 0.0, 0.0), (math.cos(math.pi / 6), 0.0, 0.5, 0.0)
+    for time, expected in ((0.0, upright), (2.0, tilted), (4.0, upright), (6.0, tilted)):
+        assert script.at(time) == pytest.approx(expected)
+    half_way = (math.cos(math.pi / 12), 0.0, math.sin(math.pi / 12), 0.0)
+    assert script.at(1.0) == script.at(7.0) == pytest.approx(half_way)
+
+
+@given(st.floats(0.0, 3.0))
+def test_a_turn_takes_the_shorter_way_evenly_and_stays_a_rotation(time):
+    """-q is the same rotation: from 170 degrees to 190, not back by 340."""
+    begin, end = math.radians(85.0), math.radians(95.0)
+    rotations = (
+        (math.cos(begin), math.sin(begin), 0.0, 0.0),
+        (-math.cos(end), -math.sin(end), 0.0, 0.0),
+    )
+    w, x, *rest = TurnScript((1.0, 2.0), rotations).at(time)
+    assert rest == [0.0, 0.0]
+    assert math.hypot(w, x) == pytest.approx(1.0, abs=1e-15)
+    expected = begin + minimum_jerk(time - 1.0) * (end - begin)
+    assert math.atan2(x, w) % math.pi == pytest.approx(expected)
+
+
+def test_a_script_may_turn_the_stylus_too(tmp_path):
+    path = tmp_path / "script"
+    path.write_text("t,x,y,z,qw,qx,qy,qz\n0,0,0,0.05,2,0,0,0\n1,0,0,0.03,0,0,3,-4\n")
+    rotations = ((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.6, -0.8))
+    turns = TurnScript((0.0, 1.0), rotations)
+    assert read_script(path) == HandScript((0.0, 1.0), (REST, AT), turns=turns)
+
+
 def test_a_script_that_is_not_there_is_named(tmp_path):
     with pytest.raises(PalpateError, match=r"nowhere\.csv: No such file"):
         read_script(tmp_path / "nowhere.csv")
@@ -102,3 +145,17 @@ def test_a_script_that_is_not_there_is_named(tmp_path):
 def test_a_hold_longer_than_the_press_is_refused(hold):
     with pytest.raises(PalpateError):
         press_script(REST, AT, BY, approach=1.0, period=2.0, hold=hold)
+
+
+@pytest.mark.parametrize(
+    ("axis", "degrees", "period"),
+    [((0.0, 0.0, 0.0), 10.0, 1.0), ((1.0, 0.0, 0.0), 180.0, 1.0), ((1.0, 0.0, 0.0), 10.0, 0.0)],
+)
+def test_a_tilt_that_makes_no_sense_is_refused(axis, degrees, period):
+    with pytest.raises(PalpateError, match="turn"):
+        tilt_script(axis, degrees, period)
+
+
+def test_quaternions_that_are_none_are_refused():
+    with pytest.raises(PalpateError, match="not of length 1"):
+        TurnScript((0.0,), ((1.0, 1.0, 0.0, 0.0),))

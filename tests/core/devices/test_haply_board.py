@@ -133,3 +133,8 @@ def test_an_unknown_model_opens_no_port(tmp_path):
     with pytest.raises(PalpateError, match="no model"):
         HaplyBoard(SimulatedOptions(link=str(tmp_path / "port")), "3diy")
     assert not (tmp_path / "port").exists()
+
+
+def test_a_2diy_that_should_tell_an_orientation_is_refused(tmp_path):
+    with pytest.raises(PalpateError, match="omit --turning"):
+        HaplyBoard(SimulatedOptions(link=str(tmp_path / "port"), turning=10.0))

@@ -84,6 +84,40 @@ def test_hello_starts_one_state_a_tick_without_gaps(bench):
     assert {b.device_time_us - a.device_time_us for a, b in pairwise(heard)} == {1000}
 
 
+def test_without_turning_no_orientation_is_told_and_with_it_one_before_each_state(bench):
+    device = bench()
+    device.greet()
+    assert {type(message) for message in device.pass_time(0.05)} == {link.State}
+    device.board.turn_hand(device.ticks * STEP, (0.0, 0.0, 0.0, 1.0), 0.02)
+    heard = device.pass_time(0.05)
+    assert [type(message) for message in heard] == [link.Orientation, link.State] * 50
+    turns, places = heard[::2], heard[1::2]
+    assert [turn.sequence for turn in turns] == [place.sequence for place in places]
+    assert turns[-1].quaternion == (0, 0, 0, 32767)
+    steps = [turn.quaternion[3] for turn in turns]
+    assert steps == sorted(steps)
+    assert steps[0] < 500
+
+
+def test_the_stylus_is_tilted_from_the_first_host_on(bench):
+    device = bench(turning=90.0, turning_axis=(0.0, 0.0, 1.0), turning_period=1.0)
+    device.pass_time(0.3)
+    _hello, first, state = device.greet()
+    assert (first.sequence, state.sequence) == (0, 0)
+    assert first.quaternion == pytest.approx((32767, 0, 0, 0), abs=1)
+    heard = [m for m in device.pass_time(0.5) if isinstance(m, link.Orientation)]
+    assert heard[-1].quaternion == pytest.approx((23170, 0, 0, 23170), abs=2)
+
+
+def test_a_script_and_an_option_cannot_both_turn_the_stylus(bench, tmp_path):
+    script = tmp_path / "turning.csv"
+    script.write_text("0,0,0,0,0,1,0,0\n")
+    device = bench(script=str(script))
+    assert device.greet()[1].quaternion == (0, 32767, 0, 0)
+    with pytest.raises(PalpateError, match="omit --turning"):
+        SimulatedBoard(SimulatedOptions(script=str(script), turning=10.0))
+
+
 def test_the_hand_waits_for_hello_and_then_follows_its_script(bench):
     device = bench(
         rest=(0.0, 0.0, 0.05), at=(0.0, 0.0, 0.03), by=(0.001, 0.0, -0.01), approach=0.5, period=1.0

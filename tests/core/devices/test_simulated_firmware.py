@@ -47,6 +47,16 @@ def test_hello_is_answered_every_time_and_starts_the_stream(firmware):
     ]
 
 
+def test_an_orientation_bears_the_number_of_the_state_to_come(firmware):
+    assert firmware.orientation((1.0, 0.0, 0.0, 0.0)) == b""
+    tell(firmware, link.HostHello(), 0.0)
+    for sequence in range(3):
+        said = firmware.orientation((0.0, 0.6, 0.0, -0.8)) + firmware.state(0.0, (0, 0, 0), 0)
+        orientation, state = link.Decoder().feed(said)
+        assert orientation == link.Orientation(sequence, (0, 19660, 0, -26214))
+        assert state.sequence == sequence
+
+
 def test_another_protocol_is_answered_with_hello_and_fault_but_no_stream(firmware):
     assert tell(firmware, link.HostHello(9), 0.0) == [HELLO, link.Fault(FAULT_PROTOCOL, 9)]
     assert firmware.state(0.0, (0, 0, 0), 0) == b""
