@@ -97,6 +97,8 @@ class LinkCounters(TypedDict):
     """Whose STATE did not come, or was not used."""
     orientations_refused: int
     """That hold no unit quaternion."""
+    orientations_lost: int
+    """STATE messages without, of a device that has told one."""
     hellos: int
     device_faults: int
     unsent: int

@@ -12,6 +12,7 @@ from random import Random
 import numpy as np
 
 from palpate.core.devices import link
+from palpate.core.devices.quaternion import UPRIGHT, about
 
 from .servo_host import ABOVE, YOUNG_MODULUS, cube
 from .virtual_press import Shot, VirtualPress, state_in
@@ -210,13 +211,75 @@ def _elsewhere(*, is_older: bool) -> Inject:
     return inject
 
 
+def _hold_upright(press: VirtualPress) -> None:
+    """Make it a device that tells how it is turned, if it is none yet."""
+    if press.turned is None:
+        press.turned = UPRIGHT
+        press.press()
+
+
+def _begin_to_tell(press: VirtualPress, dice: Random) -> list[Shot]:
+    """A device that was taken for upright turns out to be turned otherwise."""
+    press.turned = None
+    press.servo.unplug()
+    press.tick(lambda _: b"")
+    press.servo.plug_in()
+    press.device.plug_in()
+    press.press()
+    press.turned = about((0.0, 1.0, 0.0), dice.uniform(-3.0, 3.0))
+    return [press.tick()]
+
+
+def _without_orientation(sent: bytes) -> bytes:
+    return link.encode(state_in(sent))
+
+
+def _untold(press: VirtualPress, dice: Random) -> list[Shot]:
+    _hold_upright(press)
+    ticks = STALE_TICKS + dice.randint(1, 100)
+    return [press.tick(_without_orientation) for _ in range(ticks)]
+
+
+def _twist(press: VirtualPress, dice: Random) -> list[Shot]:
+    """From one tick to the next, about any axis."""
+    _hold_upright(press)
+    axis = (dice.gauss(0.0, 1.0), dice.gauss(0.0, 1.0), dice.gauss(0.0, 1.0))
+    press.turned = about(axis, math.radians(dice.uniform(4.0, 180.0)))
+    shots = [press.tick() for _ in range(dice.randint(1, 150))]
+    press.turned = UPRIGHT
+    return [*shots, press.tick()]
+
+
+def _lose_orientation(press: VirtualPress, dice: Random) -> list[Shot]:
+    _hold_upright(press)
+    return [press.tick(_without_orientation) for _ in range(dice.randint(1, 15))]
+
+
+def _another_orientation(*, of_another_state: bool) -> Inject:
+    """A rotation of another STATE, or for this one what is none; to use it would be `too fast`."""
+
+    def inject(press: VirtualPress, dice: Random) -> list[Shot]:
+        def in_its_place(sent: bytes) -> bytes:
+            state = state_in(sent)
+            wrong = link.Orientation(state.sequence, (0, dice.randint(0, 32_439), 0, 0))
+            if of_another_state:
+                number = (state.sequence + dice.randint(1, link.SEQUENCES - 1)) % link.SEQUENCES
+                wrong = link.Orientation(number, (0, 32_767, 0, 0))
+            return link.encode(wrong) + link.encode(state)
+
+        _hold_upright(press)
+        return [press.tick(in_its_place)]
+
+    return inject
+
+
 def _noise(press: VirtualPress, dice: Random) -> list[Shot]:
     junk = bytes(dice.randrange(1, 256) for _ in range(dice.randint(62, 1500))) + b"\0"
     return [press.tick(lambda sent: junk + sent)]
 
 
 def _unknown(press: VirtualPress, dice: Random) -> list[Shot]:
-    junk = link.frame(bytes([dice.randint(5, 255)]) + dice.randbytes(dice.randint(0, 50)))
+    junk = link.frame(bytes([dice.randint(6, 255)]) + dice.randbytes(dice.randint(0, 50)))
     return [press.tick(lambda sent: junk + sent)]
 
 
@@ -255,10 +318,24 @@ CAUSES = (
     _silent("the device was reset in a silence", _reset, "stale", STALE_TICKS),
     _silent("no STATE for more than 20 ms", _mute, "stale", STALE_TICKS),
     _silent("only damaged STATE", _damaged_for_long, "stale", STALE_TICKS),
+    _silent("its first ORIENTATION in mid-press", _begin_to_tell, "waiting: no STATE yet"),
+    _silent("turned by 4 to 180 degrees at once", _twist, "too fast"),
+    _silent("no ORIENTATION for 20 ms", _untold, "stale", STALE_TICKS),
     _harmless("one bit flipped", _flip, "damaged"),
     _harmless("1 to 15 STATE lost", _lose, "lost"),
     _harmless("a STATE twice", _elsewhere(is_older=False), "duplicates"),
     _harmless("an old STATE after a newer one", _elsewhere(is_older=True), "out_of_order"),
+    _harmless("1 to 15 ORIENTATION lost", _lose_orientation, "orientations_lost"),
+    _harmless(
+        "an ORIENTATION of another STATE",
+        _another_orientation(of_another_state=True),
+        "orientations_unpaired",
+    ),
+    _harmless(
+        "an ORIENTATION that is none",
+        _another_orientation(of_another_state=False),
+        "orientations_refused",
+    ),
     _harmless("62 to 1,500 bytes of noise", _noise, "damaged"),
     _harmless("a message of unknown type", _unknown, "unknown"),
     Cause("10 to 1,000,000 times as stiff", _stiffer, Outcome.LIMITED, named="clamp"),

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from palpate_servo import Body, SteppedServo
 
 from palpate.core.devices import link
+from palpate.core.devices.quaternion import Quaternion
 from palpate.core.devices.simulated_firmware import Firmware
 
 from .servo_host import ABOVE, DEEP, YOUNG_MODULUS
@@ -68,6 +69,8 @@ class VirtualPress:
         self.position = np.array(ABOVE)
         self.buttons = 0
         self.flags = link.StateFlag.READY
+        self.turned: Quaternion | None = None
+        """How the stylus is turned; None for a device that does not tell."""
         self.clock: Callable[[float], float] = float
         """What the device's clock shows at a time, s."""
         self.now = 0.0
@@ -135,10 +138,11 @@ class VirtualPress:
 
     def _state(self) -> bytes:
         x, y, z = (round(metres * 1e6) for metres in self.position)
+        turn = b"" if self.turned is None else self.device.orientation(self.turned)
         frame = self.device.state(self.clock(self.now), (x, y, z), self.buttons)
-        if self.flags == link.StateFlag.READY or not frame:
-            return frame
-        return link.encode(replace(state_in(frame), flags=self.flags))
+        if self.flags != link.StateFlag.READY and frame:
+            frame = link.encode(replace(state_in(frame), flags=self.flags))
+        return turn + frame
 
 
 def state_in(frames: bytes) -> link.State:

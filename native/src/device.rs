@@ -170,6 +170,8 @@ pub struct LinkReport {
     pub orientations_unpaired: u64,
     /// ORIENTATION messages that hold no unit quaternion.
     pub orientations_refused: u64,
+    /// STATE messages without ORIENTATION of a device that has told one.
+    pub orientations_lost: u64,
     /// HELLO messages sent.
     pub hellos: u64,
     /// FAULT messages of the device.

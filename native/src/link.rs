@@ -304,6 +304,7 @@ impl<O: Opener> Device for LinkDevice<O> {
             orientations: self.turning.report.paired,
             orientations_unpaired: self.turning.report.unpaired,
             orientations_refused: self.turning.report.refused,
+            orientations_lost: self.turning.report.lost,
             rhythm: self.arrivals.rhythm,
             ..self.report
         }

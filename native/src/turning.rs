@@ -27,6 +27,8 @@ pub struct TurningReport {
     pub unpaired: u64,
     /// No unit quaternion.
     pub refused: u64,
+    /// Missing: STATE without, of a session that has had one.
+    pub lost: u64,
 }
 
 /// The orientation of one session.
@@ -60,6 +62,7 @@ impl Turning {
     pub fn pair(&mut self, sequence: u16, time_us: u32, now: f64) -> f64 {
         let Some((_, rotation)) = self.told.take_if(|(told, _)| *told == sequence) else {
             self.dismiss();
+            self.report.lost += u64::from(self.is_known());
             return 0.0;
         };
         self.report.paired += 1;
@@ -121,13 +124,14 @@ mod tests {
         });
     }
 
-    fn counts(turning: &Turning) -> (u64, u64, u64) {
+    fn counts(turning: &Turning) -> [u64; 4] {
         let TurningReport {
             paired,
             unpaired,
             refused,
+            lost,
         } = turning.report;
-        (paired, unpaired, refused)
+        [paired, unpaired, refused, lost]
     }
 
     #[test]
@@ -146,7 +150,7 @@ mod tests {
         told(&mut turning, 10, [0; 4]);
         turning.pair(10, 1000, 0.001);
         assert!((turning.rotation() * DVec3::X).distance(DVec3::Y) < 1e-12);
-        assert_eq!(counts(&turning), (1, 2, 1));
+        assert_eq!(counts(&turning), [1, 2, 1, 1]);
     }
 
     #[test]
@@ -176,7 +180,7 @@ mod tests {
                 let expected = if ms % 3 > 0 && ms > 1 { 0.5 } else { 0.0 };
                 assert!((speed - expected).abs() < 0.01, "{ms} {speed}");
             }
-            assert_eq!(counts(&turning), (133, 0, 0));
+            assert_eq!(counts(&turning), [133, 0, 0, 66]);
         }
     }
 
@@ -191,6 +195,6 @@ mod tests {
         assert!(turning.is_known() && turning.is_stale(1.0));
         told(&mut turning, 2, QUARTER);
         assert_eq!(turning.pair(2, 1_001_000, 1.001), 0.0, "no way across");
-        assert_eq!(counts(&turning), (2, 1, 0));
+        assert_eq!(counts(&turning), [2, 1, 0, 1]);
     }
 }

@@ -440,13 +440,15 @@ fn pointing(reading: Reading) -> DVec3 {
     }
 }
 
-fn orientations(device: &LinkDevice<Bench>) -> (u64, u64, u64) {
+/// Paired, unpaired, refused, lost.
+fn orientations(device: &LinkDevice<Bench>) -> [u64; 4] {
     let report = device.report();
-    (
+    [
         report.orientations,
         report.orientations_unpaired,
         report.orientations_refused,
-    )
+        report.orientations_lost,
+    ]
 }
 
 #[test]
@@ -483,7 +485,7 @@ fn an_orientation_comes_with_its_state_and_is_turned_by_the_frame() {
     let expected = DVec3::new(angle.cos(), 0.0, angle.sin());
     assert!(pointing(reading).distance(expected) < 1e-4);
     // The one before HELLO was not looked at.
-    assert_eq!(orientations(&device), (2, 0, 0));
+    assert_eq!(orientations(&device), [2, 0, 0, 0]);
 }
 
 #[test]
@@ -507,7 +509,7 @@ fn damaged_lost_and_late_orientations_leave_the_last_one_for_20_ms() {
         let reading = read(&mut device, f64::from(tick + 1) * 1e-3);
         assert!(pointing(reading).distance(DVec3::Y) < 1e-12, "{tick}");
     }
-    assert_eq!(orientations(&device), (1, 5, 4));
+    assert_eq!(orientations(&device), [1, 5, 4, 19]);
     assert_eq!(device.report().crc_errors, 5);
     bench.state(18, 1000, 0, 1);
     assert_eq!(read(&mut device, 0.0212), Reading::Fault(Fault::Stale));
@@ -537,7 +539,7 @@ fn an_orientation_of_a_state_that_is_not_used_is_not_used_either() {
         assert_eq!(position(reading), 1e-3);
         assert!(pointing(reading).distance(DVec3::Y) < 1e-12);
     }
-    assert_eq!(orientations(&device), (1, 2, 0));
+    assert_eq!(orientations(&device), [1, 2, 0, 0]);
 }
 
 #[test]
@@ -577,7 +579,7 @@ fn a_reset_device_tells_its_orientation_with_its_first_state() {
     let reading = read(&mut device, 0.302);
     assert!(matches!(reading, Reading::At(p) if p.restart && p.speed == 0.0));
     assert!(pointing(reading).distance(DVec3::NEG_X) < 1e-4);
-    assert_eq!(orientations(&device), (2, 0, 0));
+    assert_eq!(orientations(&device), [2, 0, 0, 0]);
 }
 
 #[test]

@@ -85,6 +85,7 @@ pub fn link_counters<'py>(py: Python<'py>, link: &LinkReport) -> PyResult<Bound<
         ("orientations", link.orientations),
         ("orientations_unpaired", link.orientations_unpaired),
         ("orientations_refused", link.orientations_refused),
+        ("orientations_lost", link.orientations_lost),
         ("hellos", link.hellos),
         ("device_faults", link.device_faults),
         ("unsent", link.unsent),
