@@ -67,4 +67,6 @@ def _line(port: Port) -> str:
     if port.hello is not None:
         hello = port.hello
         answer = f"{hello.name}: {hello.axes} axes, {hello.largest_force:g} N, {hello.rate_hz} Hz"
+        if port.tells_orientation:
+            answer += ", tells its orientation"
     return f"{port.path}  {f'[{what}]  ' if what else ''}{answer}"

@@ -64,6 +64,8 @@ class Port:
     """VID:PID in hexadecimal."""
     hello: link.DeviceHello | None = None
     """The device's answer."""
+    tells_orientation: bool = False
+    """Whether it told how its stylus is turned while it was listened to."""
     reason: str = ""
     """Why there is no answer."""
     warning: str = ""
@@ -75,7 +77,7 @@ def list_ports(extra: Sequence[str] = (), seconds: float = ANSWER_SECONDS) -> li
 
     A port that is no USB device is asked only when it is among `extra`: it may be the console, or
     a machine that does not expect to be spoken to. So is what may be a Haply 2DIY. Those of
-    `extra` are listened to a little longer, for the `warning`.
+    `extra` are listened to a little longer, for the `warning` and the orientation.
     """
     found = [
         Port(
@@ -94,7 +96,7 @@ def list_ports(extra: Sequence[str] = (), seconds: float = ANSWER_SECONDS) -> li
 
 
 def _asked(port: Port, named: bool, seconds: float) -> Port:
-    hello, reason, warning = None, "", ""
+    hello, turns, reason, warning = None, False, "", ""
     if port.usb_id in HAPI_USB_IDS and not named:
         # A byte of HELLO makes a hAPI board forget its device.
         reason = (
@@ -103,13 +105,16 @@ def _asked(port: Port, named: bool, seconds: float) -> Port:
         )
     elif port.usb_id or named:
         try:
-            hello, readings = _ask(port.path, seconds, LISTEN_SECONDS if named else 0.0)
-            warning = explain_readings(readings, port.path) or ""
+            hello, heard = _ask(port.path, seconds, LISTEN_SECONDS if named else 0.0)
+            turns = any(isinstance(m, link.Orientation) for _, said in heard for m in said)
+            warning = explain_readings(list(_readings(heard)), port.path) or ""
         except PortError as error:
             reason = error.reason
     else:
         reason = "not asked, as it is no USB device; name it with --port to ask it"
-    return dataclasses.replace(port, hello=hello, reason=reason, warning=warning)
+    return dataclasses.replace(
+        port, hello=hello, tells_orientation=turns, reason=reason, warning=warning
+    )
 
 
 def say_hello(path: str, seconds: float = ANSWER_SECONDS) -> link.DeviceHello:
@@ -121,10 +126,12 @@ def say_hello(path: str, seconds: float = ANSWER_SECONDS) -> link.DeviceHello:
     return _ask(path, seconds, 0.0)[0]
 
 
-def _ask(
-    path: str, seconds: float, listen_seconds: float
-) -> tuple[link.DeviceHello, list[tuple[float, list[int]]]]:
-    """The answer to HELLO, and readings of STATE as `explain_readings` takes them."""
+Heard = list[tuple[float, list[link.Message]]]
+"""When it was read, s, and what: nothing where nothing was there."""
+
+
+def _ask(path: str, seconds: float, listen_seconds: float) -> tuple[link.DeviceHello, Heard]:
+    """The answer to HELLO, and what was heard after it."""
     _look_at(path, even_if_taken=False)
     try:
         with serial.Serial(path, BAUD, timeout=0.02, write_timeout=0.5, exclusive=True) as port:
@@ -188,16 +195,26 @@ def _exchange(path: str, port: serial.Serial, seconds: float) -> link.DeviceHell
     raise PortError(path, _silence(seconds))
 
 
-def _listen(port: serial.Serial, seconds: float) -> Iterator[tuple[float, list[int]]]:
+def _listen(port: serial.Serial, seconds: float) -> Iterator[tuple[float, list[link.Message]]]:
+    """What is heard when; without messages where nothing was there."""
     decoder = link.Decoder()
     port.timeout = 1e-3
     deadline = time.monotonic() + seconds
     while time.monotonic() < deadline:
         data = port.read(max(1, port.in_waiting))
-        stamps = [m.device_time_us for m in decoder.feed(data) if isinstance(m, link.State)]
-        # A part of a frame is neither a STATE nor a reading in vain.
-        if stamps or not data:
-            yield time.monotonic(), stamps
+        messages = decoder.feed(data)
+        # A part of a frame is neither a message nor a reading in vain.
+        if messages or not data:
+            yield time.monotonic(), messages
+
+
+def _readings(heard: Heard) -> Iterator[tuple[float, list[int]]]:
+    """Readings of STATE as `explain_readings` takes them."""
+    for when, messages in heard:
+        stamps = [m.device_time_us for m in messages if isinstance(m, link.State)]
+        # An ORIENTATION alone is no reading in vain either.
+        if stamps or not messages:
+            yield when, stamps
 
 
 def _silence(seconds: float) -> str:

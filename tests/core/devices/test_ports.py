@@ -112,12 +112,23 @@ def test_command_prints_one_line_a_port(device, capsys):
     assert "no such port" in second
 
 
+def test_a_device_that_turns_its_stylus_is_told_as_such(capsys):
+    with SimulatedDevice(SimulatedOptions(name="Test", turning=0.0)) as turning:
+        assert main(["devices", "--port", turning.port]) == 0
+        line = capsys.readouterr().out.strip()
+        assert line == f"{turning.port}  Test: 3 axes, 3 N, 1000 Hz, tells its orientation"
+        (port,) = list_ports([turning.port])
+        assert port.tells_orientation
+        assert not port.warning
+
+
 def test_command_prints_json(device, capsys):
     assert main(["devices", "--json", "--port", device.port]) == 0
     (port,) = json.loads(capsys.readouterr().out)["ports"]
     assert port["path"] == device.port
     assert port["hello"]["largest_force"] == 2.0
     assert port["reason"] == ""
+    assert port["tells_orientation"] is False
 
 
 def test_command_says_what_to_do_when_there_is_nothing(capsys):
