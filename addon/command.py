@@ -15,7 +15,8 @@ import bpy
 from ..core.errors import PalpateError
 from ..core.materials import MATERIALS
 from ..operators import bake_session, body_store
-from ..operators.press_once import press_once
+from ..operators.press_once import PressedFinger, press_several
+from .finger_properties import MODE_ITEMS, TIP_ITEMS
 from .properties import FORM_ITEMS, FORMULATION_ITEMS
 
 NAME = "palpate"
@@ -31,6 +32,8 @@ NUMBERS = {
     "stiff_factor": ("stiff_factor", 1.0),
     "tolerance": ("compression_tolerance", 0.01),
 }
+
+FINGER_NUMBERS = {"radius": ("tip_radius", 1.0)}
 
 
 class _OneLineParser(argparse.ArgumentParser):
@@ -103,18 +106,45 @@ def press(arguments: argparse.Namespace) -> dict[str, object]:
     if arguments.young is not None:
         young = _within(thing.palpate, "young_modulus", "young", arguments.young)
         thing.palpate.young_modulus = young
-    pressed = press_once(thing, bpy.context.scene, arguments.at, arguments.by, keep=arguments.keep)
+    if len(arguments.at) != len(arguments.by):
+        raise PalpateError(
+            f"--by: {len(arguments.by)} for {len(arguments.at)} --at; give one for each finger"
+        )
+    for option, (name, unit) in FINGER_NUMBERS.items():
+        value = getattr(arguments, option)
+        if value is not None:
+            chosen = bpy.context.scene.palpate
+            setattr(chosen, name, _within(chosen, name, option, value, unit))
+    for option, name in (("mode", "contact_mode"), ("tip", "tip")):
+        if getattr(arguments, option) is not None:
+            setattr(bpy.context.scene.palpate, name, getattr(arguments, option).upper())
+    pressed = press_several(
+        thing, bpy.context.scene, arguments.at, arguments.by, keep=arguments.keep
+    )
+    if pressed.remark:
+        print(f"palpate: warning: {pressed.remark}", file=sys.stderr)
     if arguments.keep:
         _save(arguments.file)
+    fingers = [_figures(finger) for finger in pressed.fingers]
     return {
         "object": thing.name,
-        "triangle": pressed.touch.triangle.tolist(),
-        "alpha": pressed.touch.alpha.tolist(),
-        "nodal_forces": pressed.touch.nodal_forces.tolist(),
-        "force": list(pressed.force),
-        "depth": pressed.depth,
+        **(fingers[0] if len(fingers) == 1 else {"fingers": fingers}),
         "max_displacement": pressed.largest_displacement,
         "shape_key": pressed.shape_key,
+    }
+
+
+def _figures(finger: PressedFinger) -> dict[str, object]:
+    """What one finger did; a point on its triangle, a tool with its area and pressure."""
+    made = finger.made
+    figures: dict[str, object] = {"force": list(finger.force), "depth": finger.depth}
+    if made.touch is None:
+        return {**figures, "area": made.area, "largest_pressure": made.largest_pressure}
+    return {
+        "triangle": made.touch.triangle.tolist(),
+        "alpha": made.touch.alpha.tolist(),
+        "nodal_forces": made.touch.nodal_forces.tolist(),
+        **figures,
     }
 
 
@@ -170,18 +200,25 @@ def _parser() -> argparse.ArgumentParser:
         "--at",
         type=float,
         nargs=3,
+        action="append",
         required=True,
         metavar=("X", "Y", "Z"),
-        help="the surface point nearest to this is touched, world coordinates",
+        help="the surface point nearest to this is touched, world coordinates; once a finger",
     )
     two.add_argument(
         "--by",
         type=float,
         nargs=3,
+        action="append",
         required=True,
         metavar=("DX", "DY", "DZ"),
-        help="how far it is moved, world axes",
+        help="how far it is moved, world axes; once a finger",
     )
+    modes = [name.lower() for name, *_ in MODE_ITEMS]
+    two.add_argument("--mode", choices=modes, help="how the contact is computed")
+    tips = [name.lower() for name, *_ in TIP_ITEMS]
+    two.add_argument("--tip", choices=tips, help="what touches; else as the scene says")
+    two.add_argument("--radius", type=float, metavar="R", help="of fingertip or rod, scene units")
     two.add_argument("--keep", action="store_true", help="keep a shape key and save the file")
     two.set_defaults(run=press)
     return parser

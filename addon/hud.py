@@ -3,25 +3,21 @@
 import re
 from dataclasses import dataclass, replace
 
-import blf
 import bpy
-import gpu
-from gpu_extras.batch import batch_for_shader
 
+from ..operators.finger_snapshots import fingers_of
 from ..operators.press_session import PressSession
 from ..operators.press_state import Phase, Source
+from ..operators.quantities import area, pressure
 from ..operators.servo_words import Signal, standing
-from .reading import reading
+from . import pixels
+from .pixels import BACKGROUND, BLACK, WHITE, Color
+from .reading import Reading, readings
 
-Color = tuple[float, float, float, float]
-
-FONT = 0
 MARGIN, PADDING, NARROWEST, BADGE_PADDING = 20, 14, 150, 8
 LARGE, BADGE, NORMAL, SMALL = 26, 20, 14, 12
 LINE = 1.5
-WHITE, GREY, WARNING = (1.0, 1.0, 1.0, 1.0), (0.8, 0.8, 0.8, 1.0), (1.0, 0.72, 0.2, 1.0)
-BLACK = (0.0, 0.0, 0.0, 1.0)
-BACKGROUND = (0.05, 0.05, 0.06, 0.72)
+GREY, WARNING = (0.8, 0.8, 0.8, 1.0), (1.0, 0.72, 0.2, 1.0)
 
 # Grey: no force. Green: it may come. Orange: it is there. Yellow: it comes back. Red: a fault.
 FILLS = {
@@ -41,6 +37,12 @@ STATES = {
     Phase.DRAGGING: "Pressing",
     Phase.HOLDING: "Held: look around, keep it, or press elsewhere",
 }
+PINCH_STATES = {
+    Phase.READY: "Drag each handle inward",
+    Phase.DRAGGING: "Pressing",
+    Phase.HOLDING: "Held: drag a handle, look around, or keep it",
+}
+EMPTY_STATES = {Phase.FEELING: "The Empty leads: move it, or play the animation"}
 ABOVE = "Above the surface: drag inward, or turn the wheel"
 KEYS = {
     Phase.READY: "Esc  Leave",
@@ -64,9 +66,9 @@ class Line:
 def draw(context: bpy.types.Context, session: PressSession) -> None:
     """Draw the HUD of a press in the region that is being drawn."""
     scale = context.preferences.system.ui_scale
-    left = _covered(context, "TOOLS", "LEFT") + MARGIN * scale
+    left = pixels.covered(context, "TOOLS", "LEFT") + MARGIN * scale
     padding = PADDING * scale
-    right = context.region.width - _covered(context, "UI", "RIGHT") - MARGIN * scale
+    right = context.region.width - pixels.covered(context, "UI", "RIGHT") - MARGIN * scale
     # In a view that has no room even for words, they are cut rather than broken into letters.
     width = max(NARROWEST * scale, right - left - 2 * padding)
     lines = [
@@ -75,38 +77,71 @@ def draw(context: bpy.types.Context, session: PressSession) -> None:
         for part in _wrapped(line.text, line.size * scale, width)
     ]
     heights = [line.size * LINE for line in lines]
-    widths = [_width(line.text, line.size) for line in lines]
+    widths = [pixels.width_of(line.text, line.size) for line in lines]
     bottom = MARGIN * scale
-    _rectangle(left, bottom, max(widths) + 2 * padding, sum(heights) + 2 * padding, BACKGROUND)
+    pixels.rectangle(
+        left, bottom, max(widths) + 2 * padding, sum(heights) + 2 * padding, BACKGROUND
+    )
     y = bottom + padding + sum(heights)
     for line, height, across in zip(lines, heights, widths, strict=True):
         y -= height
         if line.fill is not None:
             beside = BADGE_PADDING * scale
-            _rectangle(left + padding - beside, y, across + 2 * beside, height, line.fill)
-        blf.size(FONT, line.size)
-        blf.color(FONT, *line.color)
-        blf.position(FONT, left + padding, y + 0.28 * height, 0)
-        blf.draw(FONT, line.text)
+            pixels.rectangle(left + padding - beside, y, across + 2 * beside, height, line.fill)
+        pixels.write(line.text, left + padding, y + 0.28 * height, line.size, line.color)
 
 
 def _lines(context: bpy.types.Context, session: PressSession) -> list[Line]:
     """What the HUD says, from the top."""
-    figures = reading(session)
-    phase, say = _phase(session, touching=figures.touching), bpy.app.translations.pgettext_iface
-    force = Line(f"{figures.force:.3f} N     {1000 * figures.depth:.1f} mm", LARGE, WHITE)
+    figures = readings(session)
+    touching = any(one.touching for one in figures)
+    phase, say = _phase(session, touching=touching), bpy.app.translations.pgettext_iface
+    measured = _measured(figures, session)
     if session.state.source is Source.DEVICE:
         switch = "Space  Force Off" if session.state.force_on else "Space  Force On"
         keys = f"{say(switch)}      {say(KEYS.get(phase, ''))}"
-        return [*_device_lines(session, force), Line(keys, SMALL, GREY)]
-    above = phase is Phase.DRAGGING and not figures.touching
-    lines = [force, Line(say(ABOVE if above else STATES.get(phase, "")), NORMAL, WHITE)]
+        return [*_device_lines(session, measured), Line(keys, SMALL, GREY)]
+    above = phase is Phase.DRAGGING and not touching
+    lines = [*measured, Line(say(ABOVE if above else _state(session, phase)), NORMAL, WHITE)]
     if session.state.message:
         lines.append(Line(say(session.state.message), NORMAL, WARNING))
+    lines += _second_lines(session)
     return [*lines, Line(say(KEYS.get(phase, "")), SMALL, GREY)]
 
 
-def _device_lines(session: PressSession, force: Line) -> list[Line]:
+def _measured(figures: tuple[Reading, ...], session: PressSession) -> list[Line]:
+    """Force and depth of each finger, and of a tool how large and hard its contact is."""
+    say, lines = bpy.app.translations.pgettext_iface, []
+    for number, one in enumerate(figures, start=1):
+        name = f"{number}   " if len(figures) > 1 else ""
+        lines.append(Line(f"{name}{one.force:.3f} N     {1000 * one.depth:.1f} mm", LARGE, WHITE))
+        if session.tip.tool is not None and one.touching:
+            words = f"{say('Contact Area')} {area(one.area)}      "
+            words += f"{say('Largest Pressure')} {pressure(one.largest_pressure)}"
+            lines.append(Line(words, NORMAL, WHITE))
+    return lines
+
+
+def _state(session: PressSession, phase: Phase) -> str:
+    if session.pinches:
+        return PINCH_STATES.get(phase, "")
+    if session.state.source is Source.EMPTY:
+        return EMPTY_STATES.get(phase, "")
+    return STATES.get(phase, "")
+
+
+def _second_lines(session: PressSession) -> list[Line]:
+    """A second finger's device that gives no force, and why."""
+    snapshot, say = session.snapshot, bpy.app.translations.pgettext_iface
+    if snapshot is None or not session.has_device or len(session.leads) < 2:
+        return []
+    now = standing(fingers_of(snapshot)[1])
+    if now.signal is not Signal.FAULT:
+        return []
+    return [Line(f"2   {say(now.word)}: {say(now.why)}", NORMAL, WARNING)]
+
+
+def _device_lines(session: PressSession, measured: list[Line]) -> list[Line]:
     """Whether the motors push, first of all, and why."""
     say, snapshot = bpy.app.translations.pgettext_iface, session.snapshot
     if snapshot is None:
@@ -115,7 +150,7 @@ def _device_lines(session: PressSession, force: Line) -> list[Line]:
     fault = now.signal is Signal.FAULT
     lines = [Line(say(now.word), BADGE, BLACK, FILLS[now.signal])]
     if not session.awaits_device and not fault:
-        lines.append(force)
+        lines += measured
     if now.why:
         lines.append(Line(say(now.why), NORMAL, WARNING if fault else WHITE))
     if now.signal in {Signal.FORCE, Signal.RETURNING}:
@@ -125,7 +160,7 @@ def _device_lines(session: PressSession, force: Line) -> list[Line]:
         lines.append(Line(say(now.limit), NORMAL, WARNING))
     if session.state.message and session.state.phase is not Phase.LOST:
         lines.append(Line(say(session.state.message), NORMAL, WARNING))
-    return lines
+    return lines + _second_lines(session)
 
 
 def _phase(session: PressSession, *, touching: bool) -> Phase:
@@ -134,43 +169,17 @@ def _phase(session: PressSession, *, touching: bool) -> Phase:
     return Phase.READY if phase is Phase.HOLDING and not touching else phase
 
 
-def _width(text: str, size: float) -> float:
-    blf.size(FONT, size)
-    return blf.dimensions(FONT, text)[0]
-
-
 def _wrapped(text: str, size: float, width: float) -> list[str]:
     """The text on lines that fit ``width`` pixels; words stay whole where they fit at all."""
-    if _width(text, size) <= width:
+    if pixels.width_of(text, size) <= width:
         return [text]
     lines = [""]
     for word, space in BREAKS.findall(text):
         # A script without spaces may break anywhere.
-        pieces = [word] if _width(word, size) <= width else list(word)
+        pieces = [word] if pixels.width_of(word, size) <= width else list(word)
         for piece in pieces:
-            if lines[-1].strip() and _width(lines[-1] + piece, size) > width:
+            if lines[-1].strip() and pixels.width_of(lines[-1] + piece, size) > width:
                 lines.append("")
             lines[-1] += piece
         lines[-1] += space
     return [line.strip() for line in lines]
-
-
-def _covered(context: bpy.types.Context, kind: str, side: str) -> float:
-    """Pixels of the view that a region of this kind lies upon at its left or right."""
-    overlap = context.preferences.system.use_region_overlap
-    return sum(
-        region.width
-        for region in context.area.regions
-        if overlap and region.type == kind and region.width > 1 and region.alignment == side
-    )
-
-
-def _rectangle(x: float, y: float, width: float, height: float, color: Color) -> None:
-    corners = [(x, y), (x + width, y), (x + width, y + height), (x, y + height)]
-    shader = gpu.shader.from_builtin("UNIFORM_COLOR")
-    batch = batch_for_shader(shader, "TRIS", {"pos": corners}, indices=[(0, 1, 2), (0, 2, 3)])
-    gpu.state.blend_set("ALPHA")
-    shader.bind()
-    shader.uniform_float("color", color)
-    batch.draw(shader)
-    gpu.state.blend_set("NONE")

@@ -1,11 +1,13 @@
 """The interface in Japanese."""
 
+from .japanese_finger import WORDS as FINGER_WORDS
 from .japanese_force import WORDS as FORCE_WORDS
 from .japanese_softness import WORDS as SOFTNESS_WORDS
 
 WORDS = {
     **FORCE_WORDS,
     **SOFTNESS_WORDS,
+    **FINGER_WORDS,
     # Panel
     "Pins": "固定",
     "Device": "デバイス",

@@ -6,6 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.spatial import ConvexHull
+
+from ..core.tools import Tool
 
 # Vertices (v, 3), colours (v, 4) and triangles (t, 3).
 Lit = tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.int32]]
@@ -14,6 +17,9 @@ RINGS, SEGMENTS = 10, 20
 # Light from the upper left before the viewer, and how dark the far side is.
 LIGHT = np.array([-0.4, 0.6, 0.7]) / np.linalg.norm([-0.4, 0.6, 0.7])
 AMBIENT = 0.45
+# Glass: how much of a tool's colour is seen where one looks through it, and at its rim.
+GLASS, RIM = 0.13, 0.75
+DISC_SEGMENTS = 14
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,6 +48,65 @@ def lit(
     rgba = np.tile(np.asarray(color, dtype=np.float32), (len(vertices), 1))
     rgba[:, :3] *= brightness[:, None].astype(np.float32)
     return vertices.astype(np.float32), rgba, shape.triangles
+
+
+def glass(
+    shape: Shape,
+    place: ArrayLike,
+    size: float,
+    color: ArrayLike,
+    view_axes: NDArray[np.float64],
+    turn: NDArray[np.float64],
+) -> Lit:
+    """A shape that one can look through, its outline stronger than its middle."""
+    vertices, rgba, triangles = lit(shape, place, size, color, view_axes, turn)
+    across = 1.0 - np.abs(shape.normals @ turn.T @ view_axes[2])
+    rgba[:, 3] *= (GLASS + (RIM - GLASS) * across**3).astype(np.float32)
+    return vertices, rgba, triangles
+
+
+def discs(
+    places: NDArray[np.float64],
+    normals: NDArray[np.float64],
+    radii: NDArray[np.float64],
+    colors: NDArray[np.float64],
+) -> Lit:
+    """Discs at places (p, 3) across unit normals (p, 3), colours (p, 3), fading to the rims."""
+    count = len(places)
+    helper = np.eye(3)[np.argmin(np.abs(normals), axis=1)]
+    right = np.cross(normals, helper)
+    right /= np.linalg.norm(right, axis=1, keepdims=True)
+    up = np.cross(normals, right)
+    angle = 2.0 * np.pi * np.arange(DISC_SEGMENTS) / DISC_SEGMENTS
+    around = np.cos(angle)[:, None] * right[:, None] + np.sin(angle)[:, None] * up[:, None]
+    rims = places[:, None] + radii[:, None, None] * around
+    vertices = np.concatenate([places[:, None], rims], axis=1).reshape(-1, 3)
+    rgba = np.ones((count, DISC_SEGMENTS + 1, 4), dtype=np.float32)
+    rgba[:, :, :3] = colors[:, None]
+    rgba[:, 1:, 3] = 0.0
+    rim = 1 + np.arange(DISC_SEGMENTS)
+    fan = np.column_stack([np.zeros(DISC_SEGMENTS, dtype=np.int64), rim, np.roll(rim, -1)])
+    first = (DISC_SEGMENTS + 1) * np.arange(count)[:, None, None]
+    triangles = (first + fan).reshape(-1, 3).astype(np.int32)
+    return vertices.astype(np.float32), rgba.reshape(-1, 4), triangles
+
+
+def tool_shape(tool: Tool) -> Shape:
+    """A tool's outside, metres in its own frame: the hull of balls at its core points."""
+    points = (tool.core[:, None] + tool.radius * SPHERE.vertices).reshape(-1, 3)
+    normals = np.tile(SPHERE.vertices, (len(tool.core), 1))
+    hull = ConvexHull(points)
+    outward = np.einsum(
+        "fx,fx->f",
+        np.cross(
+            points[hull.simplices[:, 1]] - points[hull.simplices[:, 0]],
+            points[hull.simplices[:, 2]] - points[hull.simplices[:, 0]],
+        ),
+        hull.equations[:, :3],
+    )
+    triangles = np.where((outward > 0.0)[:, None], hull.simplices, hull.simplices[:, ::-1])
+    used, renumbered = np.unique(triangles, return_inverse=True)
+    return Shape(points[used], normals[used], renumbered.reshape(-1, 3).astype(np.int32))
 
 
 def _grid_triangles(rings: int) -> NDArray[np.int32]:

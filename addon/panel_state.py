@@ -11,7 +11,7 @@ from ..operators.press_state import Phase, Source
 from ..operators.quantities import duration
 from ..operators.soft_object import BodyStatus, Fit
 from . import known_status, panel_cost, panel_force
-from .reading import reading
+from .reading import readings
 from .sentence import say
 
 # Why other pins need what they need.
@@ -41,10 +41,10 @@ def draw_press(layout: bpy.types.UILayout, context: bpy.types.Context, press: Pr
         panel_force.draw(layout, context, press)
     elif press.state.message:
         say(layout, context, press.state.message, "ERROR")
-    figures = reading(press)
-    row = layout.row()
-    row.label(text=f"{figures.force:.3f} N", icon="FORCE_FORCE", translate=False)
-    row.label(text=f"{1000 * figures.depth:.1f} mm", icon="DRIVER_DISTANCE", translate=False)
+    for figures in readings(press):
+        row = layout.row()
+        row.label(text=f"{figures.force:.3f} N", icon="FORCE_FORCE", translate=False)
+        row.label(text=f"{1000 * figures.depth:.1f} mm", icon="DRIVER_DISTANCE", translate=False)
     if press.state.phase is not Phase.LOST:
         say(layout, context, "Enter keeps the shape, Escape restores it", "INFO")
 
@@ -67,6 +67,7 @@ def draw_idle(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     row = column.row()
     row.enabled = status.fit is Fit.READY or _press_restores(thing, status)
     row.operator("palpate.press", icon="FORCE_FORCE")
+    row.operator("palpate.pinch", icon="ARROW_LEFTRIGHT")
     column = layout.column(align=True)
     if _update_suffices(status):
         column.operator("palpate.update_pins", icon="PINNED")

@@ -4,7 +4,7 @@ import bpy
 
 from ..operators import bake_session, press_session, soft_object
 from ..operators.device_source import is_planar
-from . import panel_cost, panel_loop, panel_recording, panel_softness, panel_state
+from . import panel_cost, panel_finger, panel_loop, panel_recording, panel_softness, panel_state
 from .panel_base import PalpatePanel, named_properties
 from .sentence import say
 
@@ -115,6 +115,11 @@ class PALPATE_PT_press(PalpatePanel, bpy.types.Panel):
         row.prop(chosen, "source")
         if chosen.source == "POINTER":
             return
+        if chosen.source == "EMPTY":
+            row = layout.row()
+            row.enabled = idle
+            row.prop(chosen, "source_empty")
+            return
         column = layout.column()
         column.enabled = idle
         if chosen.source == "SIMULATED":
@@ -194,7 +199,9 @@ classes = (
     PALPATE_PT_touch,
     PALPATE_PT_stiff_region,
     PALPATE_PT_pins,
+    panel_finger.PALPATE_PT_finger,
     PALPATE_PT_press,
+    panel_finger.PALPATE_PT_second_finger,
     *panel_loop.classes,
     *panel_recording.classes,
     PALPATE_PT_bake,

@@ -7,17 +7,35 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.tools import Pose, Tool
+from ..operators.finger_snapshots import FingerSnapshot, fingers_of
 from ..operators.press_session import PressSession
 from ..operators.press_state import Phase
+from ..operators.several_fingers import contact_area
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Reading:
-    """Force (N, on the finger), depth (m), and where it happens, world coordinates (3,).
+class Patch:
+    """Where a tool touches: places (p, 3) and outward directions (p, 3) in the world, pressures
+    (p,) in Pa, and the radius (p,) of the disc that each stands for, in world units.
+    """
 
-    ``contact`` lies on the surface as it is seen; ``force_vector`` has world axes.
+    places: Array
+    normals: Array
+    pressures: Array
+    radii: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Reading:
+    """One finger's force (N, on the finger), depth (m), and where it happens, world coordinates
+    (3,).
+
+    ``contact`` lies on the surface as it is seen; ``force_vector`` has world axes. ``turn`` (3, 3)
+    takes the tool's axes to the world's. ``area`` (m^2) and ``largest_pressure`` (Pa) are 0 for a
+    point.
     """
 
     force: float
@@ -26,30 +44,45 @@ class Reading:
     probe: Array
     contact: Array
     force_vector: Array
+    turn: Array
+    patch: Patch | None = None
+    area: float = 0.0
+    largest_pressure: float = 0.0
 
 
-NOTHING = Reading(0.0, 0.0, False, np.zeros(3), np.zeros(3), np.zeros(3))
+NOTHING = Reading(0.0, 0.0, False, np.zeros(3), np.zeros(3), np.zeros(3), np.eye(3))
 
 
 def reading(session: PressSession) -> Reading:
-    """What the newest snapshot says; nothing before the first, and while the device is away."""
+    """The first finger's."""
+    return readings(session)[0]
+
+
+def readings(session: PressSession) -> tuple[Reading, ...]:
+    """What the newest snapshot says of each finger; nothing before the first, and while the device
+    is away.
+    """
     snapshot = session.snapshot
     if snapshot is None or session.state.phase is Phase.LOST:
-        return NOTHING
-    frame = session.drawn.frame
-    probe, proxy = np.asarray(snapshot.probe), np.asarray(snapshot.proxy)
-    if not snapshot.touching:
+        return (NOTHING,) * len(session.leads)
+    tool = session.tip.tool
+    if tool is None:
+        return tuple(_of_point(session, finger) for finger in fingers_of(snapshot))
+    return tuple(_of_tool(session, finger, tool) for finger in fingers_of(snapshot))
+
+
+def _of_point(session: PressSession, finger: FingerSnapshot) -> Reading:
+    frame, turn = session.drawn.frame, np.eye(3)
+    probe, proxy = np.asarray(finger.probe), np.asarray(finger.proxy)
+    if not finger.touching:
         place = frame.world_from_body(probe)
-        return Reading(0.0, 0.0, False, place, place, np.zeros(3))
-    body = session.drawn.body
+        return Reading(0.0, 0.0, False, place, place, np.zeros(3), turn)
     contact = proxy
     if session.displacements is not None:
-        corners = body.mesh.surface_nodes[np.asarray(snapshot.triangle)]
+        corners = session.drawn.body.mesh.surface_nodes[np.asarray(finger.triangle)]
         moved = session.drawn.node_displacements(session.displacements)[corners]
-        contact = proxy + np.asarray(snapshot.alpha) @ moved
-    # A limp device gives nothing, however deep it is.
-    limp = snapshot.state == "disabled"
-    force = np.zeros(3) if limp else np.asarray(snapshot.contact_force)
+        contact = proxy + np.asarray(finger.alpha) @ moved
+    force = _force(finger)
     return Reading(
         force=float(np.linalg.norm(force)),
         depth=float(np.linalg.norm(probe - proxy)),
@@ -57,4 +90,47 @@ def reading(session: PressSession) -> Reading:
         probe=frame.world_from_body(probe),
         contact=frame.world_from_body(contact),
         force_vector=frame.turn_to_world(force),
+        turn=turn,
     )
+
+
+def _of_tool(session: PressSession, finger: FingerSnapshot, tool: Tool) -> Reading:
+    frame, rotation = session.drawn.frame, np.asarray(finger.orientation)
+    probe, turn = frame.world_from_body(np.asarray(finger.probe)), frame.rotation @ rotation
+    pressures = np.asarray(finger.pressures)
+    if not finger.touching or not np.any(pressures > 0.0):
+        return Reading(0.0, 0.0, False, probe, probe, np.zeros(3), turn)
+    force, pushes = _force(finger), np.asarray(finger.point_forces)
+    carries = pressures > 0.0
+    sizes = np.linalg.norm(pushes[carries], axis=1)
+    # Half the disc's own area again, so that neighbours flow into each other.
+    radii = np.sqrt(1.5 * sizes / pressures[carries] / np.pi) / frame.metres_per_unit
+    places = frame.world_from_body(np.asarray(finger.points)[carries])
+    outward = frame.turn_to_world(-pushes[carries] / sizes[:, None])
+    pose = Pose(np.asarray(finger.probe), rotation)
+    return Reading(
+        force=float(np.linalg.norm(force)),
+        depth=depth_of(tool, pose, session.surface_samples),
+        touching=True,
+        probe=probe,
+        contact=sizes @ places / sizes.sum(),
+        force_vector=frame.turn_to_world(force),
+        turn=turn,
+        patch=Patch(places, outward, pressures[carries], radii),
+        area=contact_area(pushes, pressures),
+        largest_pressure=float(pressures.max()),
+    )
+
+
+def depth_of(tool: Tool, pose: Pose, surface: Array) -> float:
+    """How deep a tool is in the surface at rest, of which places (n, 3) are known, m."""
+    near = surface[np.linalg.norm(surface - pose.position, axis=1) <= tool.reach]
+    if not len(near):
+        return 0.0
+    distance, _ = tool.distance(pose.to_tool(near))
+    return max(0.0, -float(distance.min()))
+
+
+def _force(finger: FingerSnapshot) -> Array:
+    # A limp device gives nothing, however deep it is.
+    return np.zeros(3) if finger.state == "disabled" else np.asarray(finger.contact_force)

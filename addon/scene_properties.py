@@ -3,6 +3,7 @@
 import bpy
 
 from ..operators import refresh_devices
+from .finger_properties import FingerProperties
 
 # Files hold the numbers of these items: add new ones at the end only.
 SOURCE_ITEMS = [
@@ -10,6 +11,7 @@ SOURCE_ITEMS = [
     ("SIMULATED", "Simulated Device", "A program that behaves like a haptic device"),
     ("SERIAL", "Serial Device", "A haptic device on a serial port"),
     ("HAPLY", "Haply 2DIY", "A Haply 2DIY on its serial port; it moves in a plane"),
+    ("EMPTY", "Empty", "An Empty of the scene leads the finger: by keyframes or moved by hand"),
 ]
 SIMULATED_ITEMS = [
     ("LINK", "Three Axes", "A device that speaks Palpate's serial link"),
@@ -33,7 +35,7 @@ def _suggest_ports(
     return [f"{path} ({text})" if text else path for path, text in refresh_devices.known_ports()]
 
 
-class PalpateScene(bpy.types.PropertyGroup):
+class PalpateScene(FingerProperties, bpy.types.PropertyGroup):
     """``scene.palpate``: who presses."""
 
     source: bpy.props.EnumProperty(

@@ -22,6 +22,8 @@ Array = NDArray[np.float64]
 
 # The simulated hand starts this far above the body and presses this deep, as shares of its size.
 SIMULATED_REST, SIMULATED_DEPTH = 0.15, 0.12
+# World directions from which a simulated hand comes: the first's, and a second one's.
+FROM_ABOVE, FROM_THE_SIDE = np.array([0.0, 0.0, 1.0]), np.array([1.0, 0.0, 0.0])
 # In a plane at most this share of what its arms reach.
 SIMULATED_REACH = 0.8
 
@@ -89,6 +91,23 @@ def device_frame(scene: bpy.types.Scene, body: BodyFrame, home: DeviceFrame) -> 
         raise PalpateError(f"Device Frame {empty.name}: {problem}") from problem
 
 
+def second_frame(scene: bpy.types.Scene, body: BodyFrame) -> DeviceFrame:
+    """Where the second finger's device is: at its Empty, else at the object's origin and axes.
+
+    Raises
+    ------
+    PalpateError
+        The Empty is flattened to nothing.
+    """
+    empty, scale = scene.palpate.second_frame, scene.palpate.device_scale
+    if empty is None:
+        return DeviceFrame(np.eye(3), np.zeros(3), scale)
+    try:
+        return frame_of_matrix(np.array(empty.matrix_world), body, scale)
+    except PalpateError as problem:
+        raise PalpateError(f"Device Frame {empty.name}: {problem}") from problem
+
+
 def is_planar(scene: bpy.types.Scene) -> bool:
     """Whether the chosen device moves in a plane."""
     chosen = scene.palpate
@@ -126,9 +145,13 @@ def _top(drawn: DrawnBody, up: Array) -> Array:
 
 
 def start_simulated(
-    drawn: DrawnBody, frame: DeviceFrame, haply: str | None = None
+    drawn: DrawnBody,
+    frame: DeviceFrame,
+    haply: str | None = None,
+    towards: Array = FROM_ABOVE,
 ) -> SimulatedDevice:
-    """Start the simulated device, whose hand presses on the top of the body, again and again.
+    """Start the simulated device, whose hand presses the body from the world direction ``towards``
+    (3,), again and again: on its top, unless told otherwise.
 
     ``haply`` names the model of a Haply 2DIY to simulate: then it presses in the device's plane,
     as far as its arms reach.
@@ -138,7 +161,7 @@ def start_simulated(
     PalpateError
         It does not start, or this system has no pseudo-terminals.
     """
-    up = drawn.frame.turn_to_body(np.array([0.0, 0.0, 1.0]))
+    up = drawn.frame.turn_to_body(towards)
     above, deep = SIMULATED_REST * drawn.size, SIMULATED_DEPTH * drawn.size
     if haply is None:
         options = _hand(frame, _top(drawn, up), above * up, deep * up)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import bpy
 import numpy as np
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 from ..core.drawn_map import DrawnMap
 from ..core.errors import PalpateError
 from ..core.soft_body import SoftBody
-from . import body_store, drawn_surface, pin_change, soft_object
+from . import body_store, drawn_surface, pin_change, ray, soft_object
 from .body_frame import BodyFrame
 from .drawn_surface import DrawnSurface
 from .soft_object import BodyStatus, Fit
@@ -44,6 +45,28 @@ class DrawnBody:
     def size(self) -> float:
         """Diagonal of the body's bounding box, metres."""
         return float(np.linalg.norm(np.ptp(self.body.mesh.nodes, axis=0)))
+
+    @property
+    def surface_nodes(self) -> Array:
+        """The surface nodes at rest, (s, 3), metres."""
+        mesh = self.body.mesh
+        nodes: Array = mesh.nodes[mesh.surface_nodes]
+        return nodes
+
+    @cached_property
+    def node_normals(self) -> Array:
+        """Outward unit normals (N, 3) of all nodes at rest; zero inside."""
+        mesh = self.body.mesh
+        return ray.node_normals(mesh.nodes, mesh.surface_triangles)
+
+    def nearest(self, place: Array) -> tuple[Array, Array]:
+        """The point of the rest surface nearest to ``place`` (3,), and the outward unit normal
+        there, (3,) each.
+        """
+        mesh, found = self.body.mesh, self.body.closest_points.query(place)
+        corners, alpha = mesh.surface_triangles[found.triangle[0]], found.alpha[0]
+        normal = alpha @ self.node_normals[corners]
+        return alpha @ mesh.nodes[corners], normal / np.linalg.norm(normal)
 
     def local_coordinates(self, displacements: Array) -> NDArray[np.float32]:
         """Flat coordinates (3 p,) of the drawn vertices, from the free surface nodes' (n, 3)."""

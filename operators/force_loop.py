@@ -6,36 +6,46 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from typing import Any
 
 import bpy
+import numpy as np
 
 from ..core.devices.simulated_process import SimulatedDevice
 from ..core.errors import PalpateError
 from ..core.servo_session import Servo, Snapshot, servo_for
 from . import device_source, recording
 from .drawn_body import DrawnBody
+from .finger_leads import second_port
+from .finger_tip import FingerTip
 from .live_settings import LiveSettings
 from .loop_figures import LoopFigures
 from .package_preferences import preferences
-from .press_state import MoveProbe, PlaceProbe, Point, SwitchForce
+from .press_state import MoveProbe, PlaceProbe, Point, SwitchForce, Turn
 from .recording import Recorder
 
 
 @dataclass(eq=False)
 class ForceLoop:
-    """A servo, and with it the simulated device that leads it, if one does. ``port`` is the
-    device's, empty for the pointer.
+    """A servo, and with it the simulated devices that lead it: the first finger's and the second's,
+    if they do. ``port`` is the first device's, empty for the pointer.
     """
 
     servo: Servo
     settings: LiveSettings
     recorder: Recorder
+    drawn: DrawnBody
+    tip: FingerTip
     simulated: SimulatedDevice | None = None
+    second_simulated: SimulatedDevice | None = None
     port: str = ""
     figures: LoopFigures = field(default_factory=LoopFigures)
+    _led: dict[int, tuple[Point | None, Turn | None]] = field(default_factory=dict)
 
     @classmethod
-    def prepare(cls, drawn: DrawnBody, settings: LiveSettings, rate_hz: int) -> ForceLoop:
+    def prepare(
+        cls, drawn: DrawnBody, settings: LiveSettings, rate_hz: int, tip: FingerTip
+    ) -> ForceLoop:
         """A loop that does not run yet, with the settings of now.
 
         Raises
@@ -51,7 +61,75 @@ class ForceLoop:
         )
         with servo_errors():
             settings.hand_over(servo)
-        return cls(servo, settings, Recorder(servo, rate_hz))
+        return cls(servo, settings, Recorder(servo, rate_hz), drawn, tip)
+
+    def give_tools(self, fingers: int) -> None:
+        """Give each of so many fingers the tool that was chosen; points stay as they are."""
+        if self.tip.tool is None:
+            return
+        servo = self._servo_with("set_tool", "a tool; choose Finger: Point")
+        with servo_errors():
+            tool = servo.tool(self.drawn.body, self.tip.tool)
+            for finger in range(fingers):
+                servo.set_tool(tool, finger=finger)
+
+    def add_pointer(self, position: Point) -> None:
+        """Another finger, led by :meth:`lead` or the pointer, from ``position`` in body
+        coordinates; before the start.
+        """
+        servo = self._servo_with("add_pointer", "a second finger; choose Second Finger: None")
+        with servo_errors():
+            servo.add_pointer(position)
+
+    def add_device(self, scene: bpy.types.Scene) -> None:
+        """Another finger, led by the device that the scene names as the second; before the start.
+
+        Raises
+        ------
+        PalpateError
+            There is no such device, or it cannot be used.
+        """
+        servo = self._servo_with("add_serial", "a second finger; choose Second Finger: None")
+        chosen = scene.palpate
+        frame = device_source.second_frame(scene, self.drawn.frame)
+        if chosen.second == "SIMULATED":
+            self.second_simulated = device_source.start_simulated(
+                self.drawn, frame, towards=device_source.FROM_THE_SIDE
+            )
+            port = self.second_simulated.port
+        else:
+            port = second_port(scene)
+        with servo_errors():
+            servo.add_serial(
+                port, rotation=frame.rotation, translation=frame.translation, scale=frame.scale
+            )
+
+    def lead(self, finger: int, place: Point | None, turn: Turn | None) -> None:
+        """Where a finger shall be and how its tool is turned, if that is told and new."""
+        before = self._led.get(finger, (None, None))
+        with servo_errors():
+            if turn is not None and turn != before[1]:
+                self._turn(finger, turn)
+            if place is not None and place != before[0]:
+                self._target(finger, place)
+        self._led[finger] = (place, turn)
+
+    def _turn(self, finger: int, turn: Turn) -> None:
+        servo: Any = self.servo
+        servo.set_orientation(np.array(turn), finger=finger)
+
+    def _target(self, finger: int, place: Point, *, restart: bool = False) -> None:
+        servo: Any = self.servo
+        if finger == 0:
+            servo.set_target(place, restart=restart)
+        else:
+            servo.set_target(place, restart=restart, finger=finger)
+
+    def _servo_with(self, method: str, what: str) -> Any:
+        """The servo, if it knows more than one finger that is a point."""
+        if not hasattr(self.servo, method):
+            raise PalpateError(f"servo: the one that is installed does not know {what}")
+        return self.servo
 
     def start_pointer(self, position: Point) -> None:
         """Let the pointer lead, from ``position`` in body coordinates."""
@@ -107,10 +185,12 @@ class ForceLoop:
     def carry_out(self, effect: PlaceProbe | MoveProbe | SwitchForce) -> None:
         """Do what the press wants of the servo."""
         match effect:
-            case PlaceProbe(point):
-                self.servo.set_target(point, restart=True)
-            case MoveProbe(point):
-                self.servo.set_target(point)
+            case PlaceProbe(point, finger, turn):
+                if turn is not None:
+                    self._turn(finger, turn)
+                self._target(finger, point, restart=True)
+            case MoveProbe(point, finger):
+                self._target(finger, point)
             case SwitchForce(on):
                 self.servo.set_enabled(on)
 
@@ -127,8 +207,9 @@ class ForceLoop:
             self.servo.stop()
             recording.keep(self.recorder)
         finally:
-            if self.simulated is not None:
-                self.simulated.stop()
+            for simulated in (self.simulated, self.second_simulated):
+                if simulated is not None:
+                    simulated.stop()
 
 
 @contextmanager

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import bpy
 
+from ..core.contact import ContactMode
 from ..core.servo_session import Servo, device_coupling, haply_encoder_step
 from .device_source import DeviceFrame, is_planar
 
@@ -49,26 +50,42 @@ class Coupling:
         return cls(chosen.coupling_stiffness, chosen.coupling_damping, chosen.passivity_control)
 
 
+def contact_mode(scene: bpy.types.Scene) -> ContactMode:
+    """How the scene says that contacts are computed."""
+    return "paper" if scene.palpate.contact_mode == "PAPER" else "consistent"
+
+
 @dataclass(frozen=True)
 class LiveSettings:
-    """``young_modulus`` in pascal; ``device`` is where a device is, None for the pointer."""
+    """``young_modulus`` in pascal; ``device`` is where the first finger's device is, None where it
+    has none; ``mode`` says how the contact is computed.
+    """
 
     young_modulus: float
     feel: Feel
     coupling: Coupling
     device: DeviceFrame | None = None
+    mode: ContactMode = "consistent"
 
     @classmethod
     def of(
         cls, thing: bpy.types.Object, scene: bpy.types.Scene, device: DeviceFrame | None
     ) -> LiveSettings:
         """As set on the object and in the scene now."""
-        return cls(thing.palpate.young_modulus, Feel.of(thing), Coupling.of(scene), device)
+        return cls(
+            thing.palpate.young_modulus,
+            Feel.of(thing),
+            Coupling.of(scene),
+            device,
+            contact_mode(scene),
+        )
 
     def hand_over(self, servo: Servo, before: LiveSettings | None = None) -> None:
         """Tell the servo what is other than before; all of it, if nothing was told."""
         if before is None or self.young_modulus != before.young_modulus:
             servo.set_young_modulus(self.young_modulus)
+        if before is None or self.mode != before.mode:
+            servo.set_mode(self.mode)
         if before is None or self.feel != before.feel:
             feel = self.feel
             servo.set_feel(

@@ -2,26 +2,59 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import bpy
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ..core.contact import Touch
-from . import live_shape
-from .drawn_body import open_body
+from ..core.errors import PalpateError
+from ..core.tools import Pose, Tool
+from . import live_shape, several_fingers, tool_turn
+from .drawn_body import DrawnBody, open_body
+from .finger_tip import chosen_tip
+from .live_settings import contact_mode
+from .several_fingers import FingerForce, ToolPress
+from .tool_pose import resting_on
+
+Array = NDArray[np.float64]
+Vector = tuple[float, float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class PressedFinger:
+    """What one finger did; ``force`` (N, felt) in world axes, ``depth`` in metres."""
+
+    made: FingerForce
+    force: Vector
+    depth: float
 
 
 @dataclass(frozen=True, eq=False)
 class Pressed:
-    """What one press did; vectors in world axes, SI units."""
+    """What one press did; vectors in world axes, SI units. ``remark`` tells of a changed tool."""
 
-    touch: Touch
-    force: tuple[float, float, float]
-    depth: float
+    fingers: tuple[PressedFinger, ...]
     largest_displacement: float
     shape_key: str
+    remark: str = ""
+
+    @property
+    def touch(self) -> Touch | None:
+        """The first finger's contact if it is a point."""
+        return self.fingers[0].made.touch
+
+    @property
+    def force(self) -> Vector:
+        """The first finger's, N."""
+        return self.fingers[0].force
+
+    @property
+    def depth(self) -> float:
+        """The first finger's, m."""
+        return self.fingers[0].depth
 
 
 def press_once(
@@ -39,22 +72,92 @@ def press_once(
     PalpateError
         The object cannot be pressed, or a coordinate is not finite.
     """
+    return press_several(thing, scene, [at], [by], keep=keep)
+
+
+def press_several(
+    thing: bpy.types.Object,
+    scene: bpy.types.Scene,
+    ats: Sequence[ArrayLike],
+    bys: Sequence[ArrayLike],
+    *,
+    keep: bool = True,
+) -> Pressed:
+    """Press with several fingers at once, each from the surface point nearest to its ``at`` by its
+    ``by``; with the contact mode and the tip that the scene says.
+
+    Raises
+    ------
+    PalpateError
+        The object cannot be pressed, a coordinate is not finite, or the tool cannot be used.
+    """
     drawn = open_body(thing, scene)
     frame, young_modulus = drawn.frame, thing.palpate.young_modulus
-    inward = frame.turn_to_body(np.asarray(by, dtype=np.float64)) * frame.metres_per_unit
-    touch = drawn.body.touch_nearest(frame.body_from_world(at), inward, young_modulus)
-    displacements = drawn.body.deform(touch.triangle, touch.nodal_forces, young_modulus)
-    name = ""
-    if keep:
-        live_shape.hang(thing)
-        live_shape.write(thing.data, drawn.local_coordinates(displacements))
-        name = live_shape.keep(thing)
-        thing.data.update()
-    x, y, z = frame.turn_to_world(touch.force).tolist()
+    tip = chosen_tip(scene, thing)
+    places = np.array([_point(frame.body_from_world(_point(at, "at")), "at") for at in ats])
+    inward = np.array([frame.turn_to_body(_point(by, "by")) * frame.metres_per_unit for by in bys])
+    if tip.tool is None:
+        mode = contact_mode(scene)
+        touches = drawn.body.touch_several(places, inward, young_modulus, mode=mode)
+        made = tuple(several_fingers.of_point(touch) for touch in touches)
+    else:
+        made = _press_tools(drawn, thing, scene, tip.tool, places, inward)
+    displacements = several_fingers.displacements_of(drawn.body, made, young_modulus)
     return Pressed(
-        touch=touch,
-        force=(x, y, z),
-        depth=float(np.linalg.norm(inward)),
+        fingers=tuple(
+            PressedFinger(one, world_vector(drawn, one.force), float(np.linalg.norm(way)))
+            for one, way in zip(made, inward, strict=True)
+        ),
         largest_displacement=float(np.linalg.norm(displacements, axis=1).max()),
-        shape_key=name,
+        shape_key=keep_shape(thing, drawn, displacements) if keep else "",
+        remark=tip.remark,
     )
+
+
+def keep_shape(thing: bpy.types.Object, drawn: DrawnBody, displacements: Array) -> str:
+    """Keep displacements (n, 3) of the free surface nodes as the next "Press <n>"."""
+    live_shape.hang(thing)
+    live_shape.write(thing.data, drawn.local_coordinates(displacements))
+    name = live_shape.keep(thing)
+    thing.data.update()
+    return name
+
+
+def world_vector(drawn: DrawnBody, vector: Array) -> Vector:
+    """A force or direction of the body in world axes."""
+    x, y, z = drawn.frame.turn_to_world(vector).tolist()
+    return (x, y, z)
+
+
+def _press_tools(
+    drawn: DrawnBody,
+    thing: bpy.types.Object,
+    scene: bpy.types.Scene,
+    tool: Tool,
+    places: Array,
+    inward: Array,
+) -> tuple[FingerForce, ...]:
+    """Each tool set down at its place from outside, and led in."""
+    starts = []
+    for place in places:
+        point, normal = drawn.nearest(place)
+        rotation = tool_turn.rotation(scene, drawn.frame, normal)
+        starts.append(resting_on(tool, rotation, point, normal, drawn.surface_nodes))
+    ends = [
+        Pose(start.position + way, start.rotation)
+        for start, way in zip(starts, inward, strict=True)
+    ]
+    press = ToolPress(
+        drawn.body,
+        tool,
+        thing.palpate.young_modulus,
+        (None,) * len(starts),
+    )
+    return press.to(starts).to(ends).fingers
+
+
+def _point(value: ArrayLike, name: str) -> Array:
+    point = np.asarray(value, dtype=np.float64)
+    if point.shape != (3,) or not np.isfinite(point).all():
+        raise PalpateError(f"{name}: {point.tolist()} is not a point; give three finite numbers")
+    return point

@@ -10,16 +10,22 @@ import time
 from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.contact_points import contact_points
 from ..core.errors import PalpateError
 from ..core.servo_session import Snapshot, displacements_of
-from . import device_source, drawn_surface, live_shape, recording_writer, servo_words
+from . import device_source, drawn_surface, live_shape, recording_writer, servo_words, tool_turn
 from .device_source import DeviceFrame
 from .drawn_body import DrawnBody, open_body
+from .finger_leads import BOTH_POINTER, FingerLead, Lead, leads_of
+from .finger_snapshots import fingers_of
+from .finger_tip import FingerTip, chosen_tip
 from .force_loop import ForceLoop
 from .live_settings import LiveSettings
 from .object_handle import ObjectHandle
@@ -46,20 +52,30 @@ from .press_state import (
     StartServo,
     StopServo,
     SwitchForce,
+    Turn,
     transition,
 )
+
+if TYPE_CHECKING:
+    from .pointer_hand import PointerHand
 
 Array = NDArray[np.float64]
 
 
 @dataclass(eq=False)
 class PressSession:
-    """One press of one object. Make one with :func:`begin`; it is :func:`current` until it ends."""
+    """One press of one object. Make one with :func:`begin`; it is :func:`current` until it ends.
+
+    ``leads`` says who moves which finger, ``tip`` what touches, ``hand`` what the pointer holds.
+    """
 
     handle: ObjectHandle
     scene_name: str
     drawn: DrawnBody
     home: DeviceFrame
+    leads: tuple[FingerLead, ...] = (FingerLead(Lead.POINTER),)
+    tip: FingerTip = field(default_factory=FingerTip)
+    hand: PointerHand | None = None
     state: PressState = field(default_factory=PressState)
     loop: ForceLoop | None = None
     snapshot: Snapshot | None = None
@@ -95,6 +111,7 @@ class PressSession:
         if thing is None or loop is None:
             return True
         loop.follow(self._settings(thing, loop.settings.device))
+        self._lead_fingers(loop)
         snapshot = loop.snapshot()
         moved = self.snapshot is None or snapshot.tick != self.snapshot.tick
         self.snapshot = snapshot
@@ -118,14 +135,37 @@ class PressSession:
         """
         if self.loop is not None:
             now = 0.0 if self.snapshot is None else self.snapshot.time
-            self.loop.recorder.start(60.0 * self._scene().palpate.record_minutes, now)
+            self.loop.recorder.start(60.0 * self.scene.palpate.record_minutes, now)
             recording_writer.forget()
+
+    @property
+    def scene(self) -> bpy.types.Scene:
+        """The scene in which the press began, or the one of now if that is gone."""
+        return bpy.data.scenes.get(self.scene_name) or bpy.context.scene
+
+    @property
+    def pinches(self) -> bool:
+        """Whether the pointer has two handles."""
+        return self.leads == BOTH_POINTER
+
+    @property
+    def has_device(self) -> bool:
+        """Whether a device leads one of the fingers."""
+        return self.state.has_device
 
     @property
     def awaits_device(self) -> bool:
         """Whether a device leads that has not said yet where it is."""
         waiting = self.snapshot is not None and self.snapshot.state == "waiting"
         return self.state.phase is Phase.FEELING and waiting
+
+    @cached_property
+    def surface_samples(self) -> Array:
+        """Places (n, 3) spread over the surface at rest, as closely as the tool needs, metres."""
+        tool, body = self.tip.tool, self.drawn.body
+        if tool is None:
+            return self.drawn.surface_nodes
+        return contact_points(body, tool.spacing).positions
 
     def surface_now(self) -> Array:
         """All nodes of the body as they are seen, (N, 3), body coordinates."""
@@ -172,33 +212,77 @@ class PressSession:
         thing.data.update()
 
     def _start_loop(self, source: Source) -> None:
-        scene, thing = self._scene(), self.handle.find()
+        scene, thing = self.scene, self.handle.find()
         if thing is None:
             raise PalpateError(f"{self.handle.name} is gone; choose another object")
         frame = None
         if source is Source.DEVICE:
             frame = device_source.device_frame(scene, self.drawn.frame, self.home)
         settings = LiveSettings.of(thing, scene, frame)
-        self.loop = ForceLoop.prepare(self.drawn, settings, scene.palpate.rate)
+        self.loop = ForceLoop.prepare(self.drawn, settings, scene.palpate.rate, self.tip)
         if scene.palpate.record_from_start:
             self.start_recording()
-        if source is Source.POINTER:
-            self.loop.start_pointer(self._above())
-        else:
+        for lead in self.leads[1:]:
+            if lead.lead is Lead.DEVICE:
+                self.loop.add_device(scene)
+            else:
+                self.loop.add_pointer(self._start_of(lead))
+        self.loop.give_tools(len(self.leads))
+        self._lead_fingers(self.loop)
+        if source is Source.DEVICE:
             self.loop.start_device(scene, self.drawn)
+        else:
+            self.loop.start_pointer(self._start_of(self.leads[0]))
 
-    def _above(self) -> Point:
-        """A place outside the body, where the pointer's probe waits."""
+    def _start_of(self, lead: FingerLead) -> Point:
+        """Where a finger begins: at its Empty, or outside the body, where the pointer's waits."""
+        empty = lead.empty.find() if lead.empty is not None else None
+        if empty is not None:
+            return self._place_of(empty)
         x, y, z = self.drawn.body.mesh.nodes.mean(axis=0).tolist()
         return (x, y, z + self.drawn.size)
+
+    def _place_of(self, empty: bpy.types.Object) -> Point:
+        x, y, z = self.drawn.frame.body_from_world(np.array(empty.matrix_world)[:3, 3]).tolist()
+        return (x, y, z)
+
+    def _lead_fingers(self, loop: ForceLoop) -> None:
+        """Where Empties are now, and how tools are turned that the pointer does not turn."""
+        for finger, lead in enumerate(self.leads):
+            empty = lead.empty.find() if lead.empty is not None else None
+            if lead.empty is not None and empty is None:
+                self._warn(f"{lead.empty.name} was deleted; its finger stays where it was")
+            place = None if empty is None else self._place_of(empty)
+            loop.lead(finger, place, self._turn_of(finger, lead, empty))
+
+    def _turn_of(
+        self, finger: int, lead: FingerLead, empty: bpy.types.Object | None
+    ) -> Turn | None:
+        """As an object, as the Empty that leads, or as the device's axes; None as it was."""
+        scene = self.scene
+        leader = tool_turn.guide_of(scene) if scene.palpate.tip_turn == "OBJECT" else None
+        leader = leader or empty
+        if self.tip.tool is None:
+            return None
+        try:
+            if leader is not None:
+                return tool_turn.as_rows(tool_turn.as_object(leader, scene, self.drawn.frame))
+            if lead.lead is Lead.DEVICE:
+                frame = self._device_frame(finger)
+                return None if frame is None else tool_turn.as_rows(frame.rotation)
+        except PalpateError as problem:
+            self._warn(str(problem))
+        return None
+
+    def _device_frame(self, finger: int) -> DeviceFrame | None:
+        if finger > 0:
+            return device_source.second_frame(self.scene, self.drawn.frame)
+        return None if self.loop is None else self.loop.settings.device
 
     def _stop_loop(self) -> None:
         loop, self.loop = self.loop, None
         if loop is not None:
             loop.stop()
-
-    def _scene(self) -> bpy.types.Scene:
-        return bpy.data.scenes.get(self.scene_name) or bpy.context.scene
 
     def _object_as_it_is(self) -> bpy.types.Object | None:
         """The object, if the press may go on with it; else the press gives way."""
@@ -219,7 +303,7 @@ class PressSession:
 
     def _follow_frame(self, thing: bpy.types.Object) -> bool:
         try:
-            moved = self.drawn.moved_to(drawn_surface.frame_of(thing, self._scene()))
+            moved = self.drawn.moved_to(drawn_surface.frame_of(thing, self.scene))
         except PalpateError:
             # Flattened to nothing: that is a change of scale too.
             return False
@@ -229,7 +313,7 @@ class PressSession:
 
     def _settings(self, thing: bpy.types.Object, before: DeviceFrame | None) -> LiveSettings:
         """As they are now; a device stays where it was while its Empty says nothing of use."""
-        scene, frame = self._scene(), before
+        scene, frame = self.scene, before
         if before is not None:
             try:
                 frame = device_source.device_frame(scene, self.drawn.frame, self.home)
@@ -256,10 +340,9 @@ class PressSession:
             self.post(Recovered())
 
     def _draw(self, thing: bpy.types.Object, snapshot: Snapshot) -> None:
-        contact = (
-            snapshot.touching,
-            tuple(snapshot.triangle),
-            np.asarray(snapshot.nodal_forces).tobytes(),
+        contact = tuple(
+            (finger.touching, tuple(finger.triangle), np.asarray(finger.nodal_forces).tobytes())
+            for finger in fingers_of(snapshot)
         )
         if contact == self._drawn_contact:
             return
@@ -280,23 +363,30 @@ def current() -> PressSession | None:
     return _current
 
 
-def begin(thing: bpy.types.Object, scene: bpy.types.Scene, source: Source) -> PressSession:
-    """Start to press an object.
+def begin(
+    thing: bpy.types.Object, scene: bpy.types.Scene, source: Source, *, pinch: bool = False
+) -> PressSession:
+    """Start to press an object; with ``pinch`` the pointer has two handles.
 
     Raises
     ------
     PalpateError
-        A press is going on; the object or its body does not allow it; the device does not.
+        A press is going on; the object or its body does not allow it; the device does not; the
+        tool or the Empty that the scene asks for is not there.
     """
     global _current  # noqa: PLW0603  see PressSession.post
     if _current is not None:
         raise PalpateError(f"{_current.handle.name} is being pressed; end that first (Escape)")
+    leads = BOTH_POINTER if pinch else leads_of(scene, source)
+    tip = chosen_tip(scene, thing)
     drawn = open_body(thing, scene)
     home = device_source.home_of_device(thing, scene, drawn.frame)
-    session = PressSession(ObjectHandle.of(thing), scene.name, drawn, home)
+    session = PressSession(ObjectHandle.of(thing), scene.name, drawn, home, leads, tip)
+    if tip.remark:
+        session.said.append(Say(tip.remark, warning=True))
     _current = session
     try:
-        session.post(Start(source))
+        session.post(Start(source, device=any(lead.lead is Lead.DEVICE for lead in leads)))
     except BaseException:
         session.post(GiveWay(""))
         raise

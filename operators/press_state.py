@@ -11,6 +11,8 @@ from dataclasses import dataclass, replace
 from enum import Enum
 
 Point = tuple[float, float, float]
+# Rows of a rotation matrix.
+Turn = tuple[Point, Point, Point]
 
 # Somebody who strikes the key twice in alarm wants the force off, not on again.
 CALM_SECONDS = 0.6
@@ -21,6 +23,7 @@ class Source(Enum):
 
     POINTER = "pointer"
     DEVICE = "device"
+    EMPTY = "empty"
 
 
 class Phase(Enum):
@@ -30,7 +33,7 @@ class Phase(Enum):
     READY = "ready"  # pointer: nothing touched yet
     DRAGGING = "dragging"  # pointer: button held, probe follows
     HOLDING = "holding"  # pointer: button released, probe stays
-    FEELING = "feeling"  # the device moves the probe
+    FEELING = "feeling"  # device or Empty moves the probe
     LOST = "lost"  # the device went away or reports a fault
     ENDED = "ended"
 
@@ -41,6 +44,7 @@ class PressState:
 
     phase: Phase = Phase.IDLE
     source: Source = Source.POINTER
+    has_device: bool = False
     withdrawn: bool = False
     message: str = ""
     # The device's force, as the user wants it, and when it was last let go (s, any clock).
@@ -63,21 +67,34 @@ class PressState:
 
 @dataclass(frozen=True)
 class Start:
+    """``device`` if a device leads any of the fingers."""
+
     source: Source
+    device: bool = False
 
 
 @dataclass(frozen=True)
 class SetDown:
-    """The pointer touches the surface here (body coordinates)."""
+    """The pointer touches the surface here (body coordinates) with one of its fingers, whose tool
+    is turned so.
+    """
 
     point: Point
+    finger: int = 0
+    turn: Turn | None = None
+
+
+@dataclass(frozen=True)
+class Grab:
+    """The pointer takes hold of a finger that was set down before; the finger stays where it is."""
 
 
 @dataclass(frozen=True)
 class Move:
-    """The pointer wants the probe here (body coordinates)."""
+    """The pointer wants the finger here (body coordinates)."""
 
     point: Point
+    finger: int = 0
 
 
 @dataclass(frozen=True)
@@ -143,6 +160,7 @@ class GiveWay:
 Event = (
     Start
     | SetDown
+    | Grab
     | Move
     | Release
     | Fault
@@ -169,11 +187,14 @@ class PlaceProbe:
     """Lift the probe off and set it down there, without a sweep through the body."""
 
     point: Point
+    finger: int = 0
+    turn: Turn | None = None
 
 
 @dataclass(frozen=True)
 class MoveProbe:
     point: Point
+    finger: int = 0
 
 
 @dataclass(frozen=True)
@@ -249,9 +270,9 @@ def transition(state: PressState, event: Event) -> Step:
             return _save(state, event)
         case Fault() | Recovered() if state.source is Source.DEVICE:
             return _device(state, event)
-        case LetGo() | BringBack() if state.source is Source.DEVICE:
+        case LetGo() | BringBack() if state.has_device:
             return _switch_force(state, event)
-        case SetDown() | Move() | Release() if state.source is Source.POINTER:
+        case SetDown() | Grab() | Move() | Release() if state.source is Source.POINTER:
             return _pointer(state, event)
     return state, ()
 
@@ -260,15 +281,20 @@ def _start(state: PressState, event: Start) -> Step:
     if state.phase is not Phase.IDLE:
         return state, ()
     phase = Phase.READY if event.source is Source.POINTER else Phase.FEELING
-    return PressState(phase, event.source), (HangLiveShape(), StartServo(event.source))
+    has_device = event.device or event.source is Source.DEVICE
+    begun = PressState(phase, event.source, has_device=has_device)
+    return begun, (HangLiveShape(), StartServo(event.source))
 
 
-def _pointer(state: PressState, event: SetDown | Move | Release) -> Step:
+def _pointer(state: PressState, event: SetDown | Grab | Move | Release) -> Step:
     match state.phase, event:
-        case ((Phase.READY | Phase.HOLDING), SetDown(point)):
-            return replace(state, phase=Phase.DRAGGING, message=""), (PlaceProbe(point),)
-        case Phase.DRAGGING, Move(point):
-            return state, (MoveProbe(point),)
+        case ((Phase.READY | Phase.HOLDING), SetDown(point, finger, turn)):
+            dragging = replace(state, phase=Phase.DRAGGING, message="")
+            return dragging, (PlaceProbe(point, finger, turn),)
+        case ((Phase.READY | Phase.HOLDING), Grab()):
+            return replace(state, phase=Phase.DRAGGING, message=""), ()
+        case Phase.DRAGGING, Move(point, finger):
+            return state, (MoveProbe(point, finger),)
         case Phase.DRAGGING, Release():
             return replace(state, phase=Phase.HOLDING), ()
     return state, ()

@@ -39,3 +39,14 @@ def about(count: float) -> str:
 def percent(share: float) -> str:
     """A share in percent, two digits of it: ``0.1 %``."""
     return f"{100 * share:.2g} %"
+
+
+def area(square_metres: float) -> str:
+    """A contact's area: ``12.3 mm²``, ``4.6 cm²``."""
+    small = 1e6 * square_metres
+    return f"{small:.3g} mm²" if small < 100.0 else f"{small / 100:.3g} cm²"
+
+
+def pressure(pascal: float) -> str:
+    """A pressure in kPa, three digits of it."""
+    return f"{pascal / 1000:.3g} kPa"

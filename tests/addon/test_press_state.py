@@ -141,3 +141,39 @@ def test_after_the_end_nothing_has_an_effect(ps):
     state, _ = play(ps, ps.Start(ps.Source.POINTER), ps.Cancel())
     for event in (ps.Start(ps.Source.POINTER), ps.SetDown(POINT), ps.Keep(), ps.GiveWay("")):
         assert ps.transition(state, event) == (state, ())
+
+
+def test_a_pinch_leads_each_finger_and_takes_hold_of_it_again(ps):
+    other = (0.1, 0.0, 0.0)
+    state, effects = play(
+        ps,
+        ps.Start(ps.Source.POINTER),
+        ps.SetDown(POINT, 0),
+        ps.Release(),
+        ps.SetDown(other, 1),
+        ps.Move(POINT, 1),
+        ps.Release(),
+        ps.Grab(),
+        ps.Move(other, 0),
+    )
+    assert state.phase is ps.Phase.DRAGGING
+    assert effects[2:] == [
+        ps.PlaceProbe(POINT, 0),
+        ps.PlaceProbe(other, 1),
+        ps.MoveProbe(POINT, 1),
+        ps.MoveProbe(other, 0),
+    ]
+
+
+def test_nothing_can_be_grabbed_that_the_pointer_does_not_lead(ps):
+    state, effects = play(ps, ps.Start(ps.Source.EMPTY), ps.Grab(), ps.SetDown(POINT))
+    assert state.phase is ps.Phase.FEELING
+    assert ps.PlaceProbe(POINT) not in effects
+
+
+def test_space_lets_a_second_finger_s_device_go_while_the_pointer_leads_the_first(ps):
+    state, effects = play(ps, ps.Start(ps.Source.POINTER, device=True), ps.LetGo(1.0))
+    assert effects[-1] == ps.SwitchForce(on=False)
+    assert not state.force_on
+    _, effects = play(ps, ps.Start(ps.Source.POINTER), ps.LetGo(1.0))
+    assert ps.SwitchForce(on=False) not in effects

@@ -32,6 +32,8 @@ BLENDERS_OWN = {
     "Group",
     "Port",
     "Vertex Group",
+    "Empty",
+    "None",
     "",
 }
 
@@ -84,7 +86,9 @@ def said_in_code(palpate):
     hud = part("addon.hud")
     yield from hud.STATES.values()
     yield from hud.KEYS.values()
+    yield from (*hud.PINCH_STATES.values(), *hud.EMPTY_STATES.values())
     yield from (hud.ABOVE, "Space  Force Off", "Space  Force On", "Starting")
+    yield from ("Contact Area", "Largest Pressure", "Pressure")
     yield from said_of_the_servo()
 
 

@@ -21,7 +21,7 @@ from mouse_scene import (
 from shown import replaced
 from stage import MODULE, Stage, Wait
 
-from bl_ext.user_default.palpate.addon import hud
+from bl_ext.user_default.palpate.addon import pixels
 from bl_ext.user_default.palpate.operators import bake_session, body_store, press_session
 from bl_ext.user_default.palpate.operators.press_state import Phase
 
@@ -170,14 +170,14 @@ def the_figures_fit_a_narrow_view(stage: Stage) -> Wait:
     yield
     beyond: list[float] = []
     drawn: list[float] = []
-    draw = hud._rectangle
+    draw = pixels.rectangle
 
     def rectangle(x: float, y: float, width: float, *others: object) -> None:
         drawn.append(bpy.context.region.width)
         beyond.append(x + width - bpy.context.region.width)
         draw(x, y, width, *others)
 
-    with replaced(hud, "_rectangle", rectangle):
+    with replaced(pixels, "rectangle", rectangle):
         yield from start_press(stage)
         yield from drag_in(stage)
         yield from stage.picture("narrow")

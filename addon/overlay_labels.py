@@ -1,0 +1,83 @@
+"""Values beside what they belong to: forces at their arrows, pressure beside its colours."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import bpy
+from mathutils import Vector
+
+from . import pixels
+from .pressure_colors import ANCHORS
+
+SIZE, PADDING, ASIDE = 13, 5, 8
+# The legend: how far from the right, its bar, and the space between bar and figures.
+MARGIN, BAR_WIDTH, BAR_HEIGHT, GAP = 24, 14, 130, 6
+
+
+@dataclass(frozen=True)
+class Label:
+    """A text beside a place in the region, pixels; None where that is behind the viewer."""
+
+    text: str
+    place: Vector | None
+
+
+def draw(labels: list[Label], region: bpy.types.Region, scale: float) -> None:
+    """Write labels on a dark ground; one that would cover another goes above it."""
+    taken: list[tuple[float, float, float, float]] = []
+    size, padding = SIZE * scale, PADDING * scale
+    for label in labels:
+        if label.place is None:
+            continue
+        width, height = pixels.width_of(label.text, size) + 2 * padding, 1.6 * size
+        # At the rim of the view it stays readable.
+        x = min(max(0.0, label.place.x + ASIDE * scale), max(0.0, region.width - width))
+        y = min(max(0.0, label.place.y), region.height - height)
+        while any(_overlap((x, y, width, height), other) for other in taken):
+            y += 1.1 * height
+        taken.append((x, y, width, height))
+        pixels.rectangle(x, y, width, height, pixels.BACKGROUND)
+        pixels.write(label.text, x + padding, y + 0.3 * height, size, pixels.WHITE)
+
+
+def _overlap(
+    one: tuple[float, float, float, float], other: tuple[float, float, float, float]
+) -> bool:
+    return (
+        one[0] < other[0] + other[2]
+        and other[0] < one[0] + one[2]
+        and one[1] < other[1] + other[3]
+        and other[1] < one[1] + one[3]
+    )
+
+
+def draw_legend(context: bpy.types.Context, top: float) -> None:
+    """The colours of pressure from 0 to ``top`` (Pa), at the right of the view, half way up."""
+    scale = context.preferences.system.ui_scale
+    size, bar, height = SIZE * scale, BAR_WIDTH * scale, BAR_HEIGHT * scale
+    title = bpy.app.translations.pgettext_iface("Pressure")
+    figures = [f"{top * share / 1000:g} kPa" for share in (0.0, 0.5, 1.0)]
+    across = max(
+        pixels.width_of(title, size),
+        bar + GAP * scale + max(pixels.width_of(figure, size) for figure in figures),
+    )
+    right = context.region.width - pixels.covered(context, "UI", "RIGHT") - MARGIN * scale
+    left, bottom = right - across, 0.5 * (context.region.height - height)
+    around = 10 * scale
+    pixels.rectangle(
+        left - around,
+        bottom - around - 0.5 * size,
+        across + 2 * around,
+        height + 2 * around + 3.0 * size,
+        pixels.BACKGROUND,
+    )
+    step = height / (len(ANCHORS) - 1)
+    for number, (lower, upper) in enumerate(pairwise(ANCHORS)):
+        below, above = (*lower.tolist(), 1.0), (*upper.tolist(), 1.0)
+        pixels.shaded(left, bottom + number * step, bar, step, [below, below, above, above])
+    for share, figure in zip((0.0, 0.5, 1.0), figures, strict=True):
+        y = bottom + share * height - 0.35 * size
+        pixels.write(figure, left + bar + GAP * scale, y, size, pixels.WHITE)
+    pixels.write(title, left, bottom + height + 1.0 * size, size, pixels.WHITE)

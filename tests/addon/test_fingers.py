@@ -1,0 +1,276 @@
+"""Fingers with a shape, and two of them, pressed by scripts: no window, no clock."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+import pytest
+from soft_scene import (
+    error_of,
+    key_coordinates,
+    key_names,
+    mesh_object,
+    mesh_state,
+    part,
+    press_down,
+    select,
+    soft_cube,
+)
+
+TOP, DOWN = (0.0, 0.0, 0.025), (0.0, 0.0, -0.004)
+LEFT, RIGHT = (-0.025, 0.0, 0.01), (0.025, 0.0, 0.01)
+
+
+@pytest.fixture
+def chosen(palpate):
+    return bpy.context.scene.palpate
+
+
+def pressed(thing, ats, bys, *, keep=False):
+    return part("operators.press_once").press_several(thing, bpy.context.scene, ats, bys, keep=keep)
+
+
+def forces(thing, ats, bys):
+    return [np.array(finger.force) for finger in pressed(thing, ats, bys).fingers]
+
+
+def empty(name="Empty", at=(0.0, 0.0, 0.1)):
+    thing = bpy.data.objects.new(name, None)
+    bpy.context.collection.objects.link(thing)
+    thing.location = at
+    bpy.context.view_layer.update()
+    return thing
+
+
+def ball(radius=0.01, at=(0.0, 0.0, 0.1), name="Ball"):
+    bpy.ops.mesh.primitive_uv_sphere_add(radius=radius, location=at, segments=24, ring_count=16)
+    bpy.context.object.name = name
+    bpy.context.view_layer.update()
+    return bpy.context.object
+
+
+@pytest.mark.parametrize("tip", ["SPHERE", "PLATE", "ROD"])
+def test_a_tool_presses_out_and_touches_an_area(chosen, tip):
+    thing = soft_cube()
+    chosen.tip = tip
+    finger = pressed(thing, [TOP], [DOWN]).fingers[0]
+    assert finger.force[2] > 3 * abs(finger.force[0])
+    assert 0.0 < finger.made.area < 0.05**2
+    assert finger.made.largest_pressure >= 0.9 * finger.force[2] / finger.made.area
+
+
+def test_a_larger_fingertip_feels_more(chosen):
+    thing = soft_cube()
+    chosen.tip = "SPHERE"
+    felt = []
+    for radius in (0.006, 0.02):
+        chosen.tip_radius = radius
+        felt.append(pressed(thing, [TOP], [DOWN]).force[2])
+    assert felt[1] > 1.1 * felt[0]
+
+
+def test_a_plate_as_large_as_the_top_presses_it_flat(chosen):
+    thing = soft_cube()
+    chosen.tip, chosen.plate_width, chosen.plate_depth = "PLATE", 0.07, 0.07
+    pressed(thing, [TOP], [DOWN], keep=True)
+    top = key_coordinates(thing, "Press 1")
+    rest = key_coordinates(thing, "Basis")
+    moved = (top - rest)[rest[:, 2] > 0.024]
+    assert np.allclose(moved[:, 2], -0.004, atol=8e-4)
+
+
+def test_sizes_of_tools_are_scene_units(chosen):
+    """A scene in millimetres whose object is as large gives the same newtons."""
+    thing = soft_cube()
+    chosen.tip, chosen.tip_radius = "SPHERE", 0.01
+    metres = pressed(thing, [TOP], [DOWN])
+    bpy.context.scene.unit_settings.scale_length = 0.001
+    thing.scale = (1000.0,) * 3
+    bpy.context.view_layer.update()
+    chosen.tip_radius = 10.0
+    millimetres = pressed(thing, [np.multiply(1000, TOP)], [np.multiply(1000, DOWN)])
+    assert np.allclose(metres.force, millimetres.force, rtol=1e-4, atol=1e-5)
+    assert np.isclose(metres.depth, millimetres.depth)
+
+
+def test_a_mesh_presses_like_the_tool_it_is_shaped_as(chosen):
+    thing, tool = soft_cube(), ball(0.01)
+    select(thing)
+    before = mesh_state(tool)
+    chosen.tip, chosen.tip_radius = "SPHERE", 0.01
+    sphere = pressed(thing, [TOP], [DOWN])
+    chosen.tip, chosen.tip_object = "MESH", tool
+    mesh = pressed(thing, [TOP], [DOWN])
+    assert np.isclose(mesh.force[2], sphere.force[2], rtol=0.1)
+    assert "simplified" in mesh.remark
+    assert mesh_state(tool) == before
+
+
+def test_the_scale_of_a_tool_object_counts(chosen):
+    thing, tool = soft_cube(), ball(0.01)
+    select(thing)
+    chosen.tip, chosen.tip_object = "MESH", tool
+    small = pressed(thing, [TOP], [DOWN]).force[2]
+    tool.scale = (2.0, 2.0, 2.0)
+    bpy.context.view_layer.update()
+    assert pressed(thing, [TOP], [DOWN]).force[2] > 1.02 * small
+
+
+def test_a_hollow_mesh_presses_with_its_hull_and_says_so(chosen):
+    thing = soft_cube()
+    corner = [(x, y, z) for x in (0, 0.01) for y in (0, 0.01) for z in (0, 0.01)]
+    dent = (0.005, 0.005, 0.005)
+    faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4)]
+    top = [(1, 5, 8), (5, 7, 8), (7, 3, 8), (3, 1, 8)]
+    tool = mesh_object([*corner, dent], [*faces, *top], name="Cup")
+    select(thing)
+    chosen.tip, chosen.tip_object = "MESH", tool
+    assert "not convex" in pressed(thing, [TOP], [DOWN]).remark
+    hull = part("operators.hull").hull_of(tool, bpy.context.scene)
+    assert sorted(map(tuple, np.round(hull.corners, 6).tolist())) == sorted(
+        map(tuple, np.round(corner, 6).tolist())
+    )
+
+
+@pytest.mark.parametrize(
+    ("vertices", "faces"),
+    [([], []), ([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], [(0, 1, 2, 3)])],
+    ids=["empty", "flat"],
+)
+def test_a_tool_without_volume_is_refused(chosen, vertices, faces):
+    thing = soft_cube()
+    chosen.tip, chosen.tip_object = "MESH", mesh_object(vertices, faces, name="Nothing")
+    select(thing)
+    message = error_of(bpy.ops.palpate.press, at=TOP, by=DOWN)
+    assert "Nothing has no volume" in message
+    assert key_names(thing) == []
+
+
+def test_a_tool_that_is_not_there_or_is_the_body_is_refused(chosen):
+    thing, tool = soft_cube(), ball()
+    select(thing)
+    chosen.tip = "MESH"
+    assert "pick one under Finger" in error_of(bpy.ops.palpate.press, at=TOP, by=DOWN)
+    chosen.tip_object = tool
+    bpy.data.objects.remove(tool)
+    assert "pick one under Finger" in error_of(bpy.ops.palpate.press, at=TOP, by=DOWN)
+    chosen.tip_object = thing
+    assert "cannot press itself" in error_of(bpy.ops.palpate.press, at=TOP, by=DOWN)
+
+
+def test_a_pinch_squeezes_from_both_sides(chosen):
+    thing = soft_cube()
+    by = 0.003
+    assert bpy.ops.palpate.pinch(at_1=LEFT, by_1=(by, 0, 0), at_2=RIGHT, by_2=(-by, 0, 0)) == {
+        "FINISHED"
+    }
+    assert key_names(thing) == ["Basis", "Press 1"]
+    left, right = forces(thing, [LEFT, RIGHT], [(by, 0, 0), (-by, 0, 0)])
+    assert left[0] < 0 < right[0]
+    alone = forces(thing, [LEFT], [(by, 0, 0)])[0]
+    # The other finger holds the body against this one, which therefore feels more.
+    assert not np.allclose(left, alone, rtol=1e-3)
+
+
+def test_two_fingertips_feel_each_other(chosen):
+    thing = soft_cube()
+    chosen.tip = "SPHERE"
+    ways = [(0.003, 0, 0), (-0.003, 0, 0)]
+    left, right = forces(thing, [LEFT, RIGHT], ways)
+    alone = forces(thing, [LEFT], ways[:1])[0]
+    assert left[0] < 0 < right[0]
+    assert not np.allclose(left, alone, rtol=1e-3)
+
+
+def test_a_pinch_that_does_not_move_is_refused(chosen):
+    soft_cube()
+    message = error_of(bpy.ops.palpate.pinch, at_1=LEFT, by_1=(0.003, 0, 0), at_2=RIGHT)
+    assert "'by_2' is zero" in message
+
+
+def test_the_paper_mode_differs_within_a_triangle(chosen):
+    thing = soft_cube()
+    place = (0.003, 0.001, 0.025)
+    chosen.contact_mode = "PAPER"
+    paper = pressed(thing, [place], [DOWN]).force[2]
+    chosen.contact_mode = "CONSISTENT"
+    assert not np.isclose(pressed(thing, [place], [DOWN]).force[2], paper, rtol=0.01)
+
+
+def test_an_animated_tool_leaves_a_shape_key_in_every_frame_it_touches(chosen):
+    thing, guide = soft_cube(), empty()
+    scene = bpy.context.scene
+    for frame, height in ((1, 0.04), (4, 0.03), (7, 0.04)):
+        guide.location.z = height
+        guide.keyframe_insert("location", frame=frame)
+    scene.frame_start, scene.frame_end = 1, 7
+    scene.frame_set(2)
+    chosen.tip, chosen.tip_radius = "SPHERE", 0.008
+    chosen.source, chosen.source_empty = "EMPTY", guide
+    assert bpy.ops.palpate.press_frames() == {"FINISHED"}
+    assert scene.frame_current == 2
+    names = key_names(thing)
+    assert "Press at 4" in names
+    assert "Press at 1" not in names
+    keys = thing.data.shape_keys.key_blocks
+    scene.frame_set(4)
+    assert keys["Press at 4"].value == pytest.approx(1.0)
+    scene.frame_set(1)
+    assert sum(key.value for key in keys if key.name.startswith("Press at")) == 0.0
+    deepest = key_coordinates(thing, "Press at 4") - key_coordinates(thing, "Basis")
+    assert deepest[:, 2].min() < -1e-4
+    assert bpy.ops.palpate.press_frames() == {"FINISHED"}
+    assert key_names(thing) == names
+
+
+def test_the_current_frame_alone_is_kept_as_a_press(chosen):
+    thing, guide = soft_cube(), empty(at=(0.0, 0.0, 0.04))
+    scene = bpy.context.scene
+    guide.keyframe_insert("location", frame=1)
+    guide.location.z = 0.03
+    guide.keyframe_insert("location", frame=5)
+    scene.frame_start = 1
+    scene.frame_set(5)
+    chosen.tip, chosen.source, chosen.source_empty = "SPHERE", "EMPTY", guide
+    assert bpy.ops.palpate.press_frames(current_only=True) == {"FINISHED"}
+    assert key_names(thing) == ["Basis", "Press 1"]
+
+
+def test_animations_without_a_tool_or_a_leader_are_refused(chosen):
+    thing, guide = soft_cube(), empty()
+    assert "choose Fingertip" in error_of(bpy.ops.palpate.press_frames)
+    chosen.tip = "SPHERE"
+    assert "nothing leads the tool" in error_of(bpy.ops.palpate.press_frames)
+    chosen.source, chosen.source_empty = "EMPTY", guide
+    bpy.context.scene.frame_end = 2
+    assert "touches nothing" in error_of(bpy.ops.palpate.press_frames)
+    chosen.second, chosen.second_empty = "EMPTY", guide
+    assert "both fingers" in error_of(bpy.ops.palpate.press_frames)
+    assert key_names(thing) == []
+
+
+def test_who_leads_is_refused_in_words_where_nobody_does(chosen):
+    leads = part("operators.finger_leads")
+    source = part("operators.press_state").Source
+    scene, guide = bpy.context.scene, empty()
+    refused = part("core.errors").PalpateError
+    with pytest.raises(refused, match="no Empty is chosen; pick one below Press With"):
+        leads.leads_of(scene, source.EMPTY)
+    chosen.source_empty, chosen.second = guide, "EMPTY"
+    with pytest.raises(refused, match="below Second Finger"):
+        leads.leads_of(scene, source.EMPTY)
+    chosen.second_empty = guide
+    with pytest.raises(refused, match="both fingers are led by Empty"):
+        leads.leads_of(scene, source.EMPTY)
+    chosen.second, chosen.source = "SERIAL", "SERIAL"
+    with pytest.raises(refused, match="has no port"):
+        leads.leads_of(scene, source.DEVICE)
+    chosen.port = chosen.second_port = "/dev/ttyACM0"
+    with pytest.raises(refused, match="both fingers use"):
+        leads.leads_of(scene, source.DEVICE)
+
+
+def test_a_press_with_a_point_is_as_before(chosen):
+    thing = soft_cube()
+    press_down(thing)
+    assert key_names(thing) == ["Basis", "Press 1"]

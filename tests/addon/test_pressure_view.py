@@ -1,0 +1,78 @@
+"""How tools, pressure and values are drawn, in numbers: no view is needed."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from soft_scene import part
+
+TOOLS = {
+    "sphere": lambda tools: tools.sphere(0.01),
+    "rod": lambda tools: tools.rod(0.004, 0.03),
+    "plate": lambda tools: tools.plate(0.02, 0.03),
+    "mesh": lambda tools: tools.convex(np.random.default_rng(1).normal(size=(30, 3))),
+}
+
+
+def test_more_pressure_is_brighter(palpate):
+    colors = part("addon.pressure_colors").color_of(np.linspace(0.0, 1.2, 40))
+    brightness = colors @ (0.2126, 0.7152, 0.0722)
+    assert (np.diff(brightness[:33]) > 0.0).all()
+    assert colors.min() >= 0.0
+    assert colors.max() <= 1.0
+
+
+@pytest.mark.parametrize(
+    ("pressure", "top"), [(0.0, 1.0), (3.0, 5.0), (1000.0, 1000.0), (1001.0, 2000.0)]
+)
+def test_the_scale_is_a_round_number(palpate, pressure, top):
+    assert part("addon.pressure_colors").round_up(pressure) == pytest.approx(top)
+
+
+def test_the_scale_does_not_flicker(palpate):
+    scale = part("addon.pressure_colors").PressureScale()
+    assert scale.follow(900.0) == 1000.0
+    assert scale.follow(400.0) == 1000.0
+    assert scale.follow(1100.0) == 2000.0
+    assert scale.follow(500.0) == 500.0
+
+
+@pytest.mark.parametrize("name", TOOLS)
+def test_a_tool_is_drawn_where_it_is_felt(palpate, name):
+    """The drawn shape lies on the tool's own surface, wound outward, and is closed."""
+    tool = TOOLS[name](part("core.tools"))
+    shape = part("addon.overlay_shapes").tool_shape(tool)
+    distance, normals = tool.distance(shape.vertices)
+    assert np.abs(distance).max() < 0.05 * tool.radius
+    corners = shape.vertices[shape.triangles]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    middle = shape.vertices.mean(axis=0)
+    assert (np.einsum("fx,fx->f", across, corners.mean(axis=1) - middle) > 0.0).all()
+    assert np.einsum("vx,vx->v", normals, shape.normals).min() > 0.5
+
+
+def test_discs_lie_across_the_pressure(palpate):
+    places, normals = np.zeros((2, 3)), np.array([[0.0, 0.0, 1.0], [0.6, 0.8, 0.0]])
+    radii, colors = np.array([1.0, 2.0]), np.ones((2, 3))
+    vertices, rgba, triangles = part("addon.overlay_shapes").discs(places, normals, radii, colors)
+    each = vertices.reshape(2, -1, 3)
+    assert np.allclose(np.einsum("dvx,dx->dv", each, normals), 0.0, atol=1e-6)
+    assert np.allclose(np.linalg.norm(each[:, 1:], axis=2), radii[:, None])
+    assert rgba.reshape(2, -1, 4)[:, 1:, 3].max() == 0.0
+    assert triangles.max() == len(vertices) - 1
+
+
+def test_a_tool_is_as_deep_as_the_surface_is_in_it(palpate):
+    tools, reading = part("core.tools"), part("addon.reading")
+    surface = np.array([[x, 0.0, 0.0] for x in np.linspace(-1.0, 1.0, 21)])
+    pose = tools.Pose(np.array([0.0, 0.0, 0.7]), np.eye(3))
+    assert reading.depth_of(tools.sphere(1.0), pose, surface) == pytest.approx(0.3)
+    away = tools.Pose(np.array([0.0, 0.0, 9.0]), np.eye(3))
+    assert reading.depth_of(tools.sphere(1.0), away, surface) == 0.0
+
+
+def test_small_quantities_keep_their_digits(palpate):
+    quantities = part("operators.quantities")
+    assert quantities.area(12.34e-6) == "12.3 mm²"
+    assert quantities.area(4.56e-4) == "4.56 cm²"
+    assert quantities.pressure(1234.5) == "1.23 kPa"
