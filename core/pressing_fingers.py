@@ -11,9 +11,11 @@ shown the finger moved back to where it would be had the others not moved the su
     y_q = x_q - s_q                    the finger moved back; its god object goes to g_q
     u_q = x_q - g_q                    what the body is asked for at g_q
     y_q - g_q                          the push, along n_q
+    s_q += w - n_q n_q.w               with w = sum_p C_qp F_p / E - u_q, once the forces are known
 
 At the moment of touching y_q = g_q, so that u_q = v_q: what the surface does already, and no force.
-Across its push a finger holds the surface as it met it; followed there too, v would feed on itself.
+Across its push a finger holds the surface as it met it (followed there too, v would feed on itself)
+until its force leans on its cone: then it slips by w, by which the surface slips away under it.
 """
 
 from __future__ import annotations
@@ -88,13 +90,12 @@ def press_fingers(
     compliance = told_apart(
         body.contact_compliance([one.triangle for one in fingers], [one.alpha for one in fingers])
     )
-    forces = modulus * _forces(compliance, fingers, before, modulus)
-    each = np.arange(len(fingers))
-    compliance[each, each] = 0.0
-    by_others = np.einsum("pqij,qj->pi", compliance, forces) / modulus
+    forces = _forces(compliance, fingers, before, modulus)
+    moved = np.einsum("pqij,qj->pi", compliance, forces)
+    by_itself = np.einsum("ppij,pj->pi", compliance, forces)
     return tuple(
-        _pressed(finger, force, v)
-        for finger, force, v in zip(fingers, forces, by_others, strict=True)
+        _pressed(finger, modulus * force, at, at - own)
+        for finger, force, at, own in zip(fingers, forces, moved, by_itself, strict=True)
     )
 
 
@@ -140,8 +141,17 @@ def _forces(
     return forces
 
 
-def _pressed(finger: Finger, force: NDArray[np.float64], by_others: NDArray[np.float64]) -> Finger:
-    touch = finger.touch
-    if touch is not None:
-        touch = replace(touch, nodal_forces=finger.alpha[:, None] * force)
-    return replace(finger, by_others=by_others, touch=touch)
+def _pressed(
+    finger: Finger,
+    force: NDArray[np.float64],
+    moved: NDArray[np.float64],
+    by_others: NDArray[np.float64],
+) -> Finger:
+    """The finger with its force, and let slip by what the surface slips away under it."""
+    if finger.touch is None:
+        return replace(finger, by_others=by_others)
+    touch = replace(finger.touch, nodal_forces=finger.alpha[:, None] * force)
+    slip = moved - touch.displacement
+    slip -= finger.direction * float(finger.direction @ slip)
+    back = finger.moved_back + slip
+    return replace(finger, by_others=by_others, moved_back=back, touch=touch)
