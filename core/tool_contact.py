@@ -169,6 +169,7 @@ def press_tool(
     young_modulus: float | None = None,
     start: ToolTouch | None = None,
     outside: Load | None = None,
+    surface: ContactPoints | None = None,
 ) -> ToolTouch:
     """Press a tool on a body, from where ``start`` left it or, without one, from outside.
 
@@ -181,6 +182,7 @@ def press_tool(
     young_modulus : pascal; the body's own unless given.
     start : an earlier touch by the same tool on the same body.
     outside : forces of other fingers, which move the surface too.
+    surface : the contact points; those of :func:`surface_for` unless given. With ``start``, its.
 
     Raises
     ------
@@ -188,12 +190,11 @@ def press_tool(
         Young's modulus is not a positive number; ``start`` is of another body or tool.
     """
     if start is None:
-        state = set_down(body, tool, pose, young_modulus=young_modulus)
+        state = set_down(body, tool, pose, young_modulus=young_modulus, surface=surface)
         shallow = _overlap(state, pose) <= SHALLOW * tool.inner_radius
         if shallow and not _is_within(state, pose):
             return _settled(replace(state, free=True), pose, outside)
-        away = _way_out(state, pose)
-        start = replace(set_down(body, tool, away, young_modulus=young_modulus), free=True)
+        start = replace(state, pose=_way_out(state, pose), free=True)
     touch = _continued(start, body, tool, young_modulus)
     for _ in range(MOST_STRIDES):
         between, arrived = _stride(tool, touch.pose, pose)
@@ -206,7 +207,12 @@ def press_tool(
 
 
 def set_down(
-    body: SoftBody, tool: Tool, pose: Pose, *, young_modulus: float | None = None
+    body: SoftBody,
+    tool: Tool,
+    pose: Pose,
+    *,
+    young_modulus: float | None = None,
+    surface: ContactPoints | None = None,
 ) -> ToolTouch:
     """A tool that appears at a pose. Inside the body it will feel nothing until it was outside."""
     modulus = body.young_modulus if young_modulus is None else young_modulus
@@ -216,7 +222,7 @@ def set_down(
     state = ToolTouch(
         body,
         tool,
-        surface_for(body, tool),
+        surface_for(body, tool) if surface is None else surface,
         pose,
         modulus,
         np.empty(0, dtype=np.int64),
