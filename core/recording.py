@@ -32,6 +32,7 @@ UNITS = {
     "force": "N",
     "output": "N",
     "state": "index into states",
+    "finger": "1",
 }
 VECTORS = ("probe", "proxy", "surface", "force", "output")
 DTYPE = np.dtype(
@@ -39,7 +40,8 @@ DTYPE = np.dtype(
         ("tick", "=u8"),
         ("time", "=f8"),
         *((name, "=f8", (3,)) for name in VECTORS),
-        ("state", "=u8"),
+        ("state", "=u4"),
+        ("finger", "=u4"),
     ]
 )
 """That of `palpate_servo.Servo.samples()` and `recording()`."""
@@ -51,10 +53,12 @@ CSV_HEADER = ",".join(
         "state",
     ]
 )
+FINGER_COLUMN = ",finger"
+"""The last column of a recording of more than one finger."""
 CSV_GROWTH = 3.0
 """A line of CSV takes at most so many times the bytes of its tick in memory."""
 _ROWS_AT_ONCE = 10_000
-_CSV_DTYPE = np.dtype([("tick", "=u8"), ("numbers", "=f8", (16,)), ("state", "U32")])
+_CSV_FIELDS = [("tick", "=u8"), ("numbers", "=f8", (16,)), ("state", "U32")]
 
 
 class RecordingError(PalpateError):
@@ -67,7 +71,7 @@ class Recording:
 
     Attributes
     ----------
-    samples : structured array (n,) of `DTYPE`.
+    samples : structured array (n,) of `DTYPE`; a row for each finger of each tick.
     states : names of the states that `samples["state"]` counts.
     rate_hz : of the servo; None in a CSV file, which does not tell.
     """
@@ -161,15 +165,18 @@ def read_recording(path: Path) -> Recording:
 
 
 def _write_csv(file: IO[bytes], samples: NDArray[np.void], states: Sequence[str]) -> None:
-    file.write(CSV_HEADER.encode() + b"\n")
+    fingers = samples["finger"]
+    is_alone = not fingers.any()
+    file.write((CSV_HEADER + ("" if is_alone else FINGER_COLUMN)).encode() + b"\n")
     for start in range(0, len(samples), _ROWS_AT_ONCE):
         rows = samples[start : start + _ROWS_AT_ONCE]
         numbers = np.column_stack([rows["time"], *(rows[name] for name in VECTORS)]).tolist()
         # A list's text holds the shortest digits that read back as the same number.
+        ends = [""] * len(rows) if is_alone else [f",{n}" for n in rows["finger"].tolist()]
         file.writelines(
-            f"{tick},{str(row)[1:-1].replace(' ', '')},{states[state]}\n".encode()
-            for tick, row, state in zip(
-                rows["tick"].tolist(), numbers, rows["state"].tolist(), strict=True
+            f"{tick},{str(row)[1:-1].replace(' ', '')},{states[state]}{end}\n".encode()
+            for tick, row, state, end in zip(
+                rows["tick"].tolist(), numbers, rows["state"].tolist(), ends, strict=True
             )
         )
 
@@ -205,9 +212,11 @@ def _read_npz(path: Path) -> Recording:
                 f"{path}: is of the format {about['format']!r}, this Palpate reads {FORMAT!r}; "
                 "update Palpate"
             )
-        samples = np.empty(len(arrays["tick"]), DTYPE)
+        samples = np.zeros(len(arrays["tick"]), DTYPE)
         for name in UNITS:
-            samples[name] = arrays[name]
+            # Recordings of one finger once did not tell which.
+            if name != "finger" or name in arrays:
+                samples[name] = arrays[name]
         return Recording(samples, tuple(arrays["states"].tolist()), int(about["rate_hz"]))
     except (KeyError, ValueError, TypeError) as problem:
         raise RecordingError(f"{path}: is no recording ({problem}); choose another file") from None
@@ -216,26 +225,31 @@ def _read_npz(path: Path) -> Recording:
 def _read_csv(path: Path) -> Recording:
     try:
         with path.open(encoding="utf-8") as file:
-            if file.readline().rstrip("\n") != CSV_HEADER:
+            header = file.readline().rstrip("\n")
+            if header not in (CSV_HEADER, CSV_HEADER + FINGER_COLUMN):
                 raise RecordingError(
                     f"{path}: is no recording (another first line); choose another file"
                 )
-            rows = np.empty(0, _CSV_DTYPE)
+            is_alone = header == CSV_HEADER
+            fields = np.dtype(_CSV_FIELDS + ([] if is_alone else [("finger", "=u4")]))
+            rows = np.empty(0, fields)
             # Of no lines at all numpy complains.
             if first := file.readline():
                 lines = itertools.chain([first], file)
-                rows = np.loadtxt(lines, _CSV_DTYPE, delimiter=",", comments=None, ndmin=1)
+                rows = np.loadtxt(lines, fields, delimiter=",", comments=None, ndmin=1)
     except OSError as problem:
         raise RecordingError(
             f"{path}: cannot be read ({problem.strerror}); choose another file"
         ) from problem
     except ValueError as problem:
         raise RecordingError(f"{path}: is damaged ({problem}); record again") from problem
-    samples = np.empty(len(rows), DTYPE)
+    samples = np.zeros(len(rows), DTYPE)
+    if not is_alone:
+        samples["finger"] = rows["finger"]
     samples["tick"], samples["time"] = rows["tick"], rows["numbers"][:, 0]
     for place, name in enumerate(VECTORS):
         samples[name] = rows["numbers"][:, 1 + 3 * place : 4 + 3 * place]
     names, found = np.unique(rows["state"], return_inverse=True)
     states = tuple(dict.fromkeys((*palpate_servo.STATES, *names.tolist())))
-    samples["state"] = np.array([states.index(name) for name in names], np.uint64)[found]
+    samples["state"] = np.array([states.index(name) for name in names], np.uint32)[found]
     return Recording(samples, states, None)

@@ -136,8 +136,13 @@ def servo_for(
 def displacements_of(
     body: SoftBody, snapshot: Snapshot, young_modulus: float | None = None
 ) -> NDArray[np.float64] | None:
-    """Displacements (n, 3) of the free surface nodes that a snapshot asks for, None while free."""
-    if not snapshot.touching:
+    """Displacements (n, 3) of the free surface nodes that all fingers of a snapshot ask for.
+
+    None while none of them touches.
+    """
+    touching = [finger for finger in snapshot.fingers if len(finger.nodes)]
+    if not touching:
         return None
-    triangle = body.mesh.surface_nodes[snapshot.triangle]
-    return body.deform(triangle, snapshot.nodal_forces, young_modulus)
+    nodes = np.concatenate([finger.nodes for finger in touching])
+    forces = np.concatenate([finger.nodal_forces for finger in touching])
+    return body.deform(body.mesh.surface_nodes[nodes], forces, young_modulus)

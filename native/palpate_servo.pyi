@@ -119,8 +119,18 @@ class ProxyCounters(TypedDict):
     most_steps: int
     rescues: int
 
+class FingerCounters(TypedDict):
+    """What one finger has counted."""
+
+    faults: dict[str, int]
+    link: LinkCounters
+    proxy: ProxyCounters
+
 class ServoCounters(TimingCounters):
-    """Timing, faults and link of a servo."""
+    """Timing, faults and link of a servo; faults, link and proxy are those of finger 0."""
+
+    fingers: list[FingerCounters]
+    """Of all fingers, by number."""
 
     rate_hz: int
     stages_us: dict[str, StageTime]
@@ -295,14 +305,8 @@ class Proxy:
         """How often the sign of the distance had to correct a sweep."""
 
 @final
-class Snapshot:
-    """One tick, whole: all values belong together."""
-
-    @property
-    def tick(self) -> int: ...
-    @property
-    def time(self) -> float:
-        """Since the start, s."""
+class FingerSnapshot:
+    """One finger in one tick, whole: all values belong together."""
 
     @property
     def probe(self) -> NDArray[np.float64]:
@@ -311,6 +315,10 @@ class Snapshot:
     @property
     def proxy(self) -> NDArray[np.float64]:
         """Contact point that makes the force, m; the probe itself while free."""
+
+    @property
+    def orientation(self) -> NDArray[np.float64]:
+        """How its tool is turned, (3, 3), tool to body."""
 
     @property
     def sticking(self) -> bool:
@@ -329,21 +337,21 @@ class Snapshot:
         """Area coordinates; exact zeros on edges and nodes, all zero while free."""
 
     @property
-    def nodal_forces(self) -> NDArray[np.float64]:
-        """(12), (13), N, (3, 3)."""
-
-    @property
     def contact_force(self) -> NDArray[np.float64]:
-        """(14), N, before safety, body axes."""
+        """(14), N, before coupling and safety, body axes."""
 
     @property
     def output_force(self) -> NDArray[np.float64]:
         """N, after safety, body axes."""
 
     @property
+    def torque(self) -> NDArray[np.float64]:
+        """On a tool about its reference point, N m, before safety; zero on a point."""
+
+    @property
     def surface_point(self) -> NDArray[np.float64] | None:
-        """Where the touched point of the surface is now, m: the god object plus the displacement
-        that the nodal forces cause there (15). None while free, and for a body without a
+        """Where the touched point of the surface is now, m: the contact point plus the displacement
+        that all fingers' forces cause there (15). None while free, and for a body without a
         compliance.
         """
 
@@ -366,17 +374,109 @@ class Snapshot:
         """Which limiter shortens the force now, one of LIMITERS, or empty."""
 
     @property
+    def buttons(self) -> int: ...
+    @property
+    def nodes(self) -> NDArray[np.int64]:
+        """Surface-local numbers (k,) of the nodes that carry forces; none while free."""
+
+    @property
+    def nodal_forces(self) -> NDArray[np.float64]:
+        """On these nodes, N, (k, 3): (12), (13) for a point."""
+
+@final
+class Snapshot:
+    """One tick, whole: all values belong together. Its own are those of finger 0."""
+
+    @property
+    def tick(self) -> int: ...
+    @property
+    def time(self) -> float:
+        """Since the start, s."""
+
+    @property
     def body(self) -> int:
-        """How often set_body had exchanged the body since the start: to which one the triangle
-        belongs.
+        """How often set_body had exchanged the body since the start: to which one the triangles
+        belong.
         """
 
     @property
+    def fingers(self) -> list[FingerSnapshot]:
+        """All fingers, by number."""
+
+    @property
+    def probe(self) -> NDArray[np.float64]:
+        """Where the finger is, m, body coordinates."""
+
+    @property
+    def proxy(self) -> NDArray[np.float64]:
+        """Contact point that makes the force, m; the probe itself while free."""
+
+    @property
+    def orientation(self) -> NDArray[np.float64]:
+        """How its tool is turned, (3, 3), tool to body."""
+
+    @property
+    def sticking(self) -> bool:
+        """Whether friction holds the contact point where it is."""
+
+    @property
+    def triangle(self) -> NDArray[np.int64]:
+        """Surface-local node numbers of the touched triangle, -1 while free."""
+
+    @property
+    def triangle_index(self) -> int:
+        """Touched triangle, -1 while free."""
+
+    @property
+    def alpha(self) -> NDArray[np.float64]:
+        """Area coordinates; exact zeros on edges and nodes, all zero while free."""
+
+    @property
+    def contact_force(self) -> NDArray[np.float64]:
+        """(14), N, before coupling and safety, body axes."""
+
+    @property
+    def output_force(self) -> NDArray[np.float64]:
+        """N, after safety, body axes."""
+
+    @property
+    def torque(self) -> NDArray[np.float64]:
+        """On a tool about its reference point, N m, before safety; zero on a point."""
+
+    @property
+    def surface_point(self) -> NDArray[np.float64] | None:
+        """Where the touched point of the surface is now, m: the contact point plus the displacement
+        that all fingers' forces cause there (15). None while free, and for a body without a
+        compliance.
+        """
+
+    @property
+    def touching(self) -> bool: ...
+    @property
+    def state(self) -> str:
+        """One of STATES."""
+
+    @property
+    def fault(self) -> str:
+        """Name of the fault while the state is "fault" (or "internal error" when stopped)."""
+
+    @property
+    def reason(self) -> str:
+        """Why it waits, ramps, is disabled or stopped, or empty."""
+
+    @property
+    def limited(self) -> str:
+        """Which limiter shortens the force now, one of LIMITERS, or empty."""
+
+    @property
     def buttons(self) -> int: ...
+    @property
+    def nodal_forces(self) -> NDArray[np.float64]:
+        """(12), (13), N, (3, 3)."""
 
 @final
 class Servo:
-    """A native thread between a device (or pointer) and a body."""
+    """A native thread between fingers, each led by a device or a pointer, and a body."""
 
     def __init__(
         self,
@@ -442,19 +542,66 @@ class Servo:
         model or angles without sense.
         """
 
-    def set_target(self, position: _Vector, restart: bool = False) -> None:
-        """Lead the pointer's probe; with restart it is lifted off and set down there."""
+    def add_pointer(self, position: _Vector) -> int:
+        """Another finger beside that of the next start, as by start_pointer; its number: 1, 2, ...
+
+        The fingers feel each other through the body, which must be a whole one. Raises ValueError
+        for another body, for more than MAX_FINGERS, RuntimeError while the servo runs.
+        """
+
+    def add_serial(
+        self,
+        port: str,
+        *,
+        baud: int = 115200,
+        rotation: _Matrix = ...,
+        translation: _Vector = ...,
+        scale: float = 1.0,
+    ) -> int:
+        """Another finger, as by start_serial; raises as add_pointer, and OSError as there."""
+
+    def add_haply(
+        self,
+        port: str,
+        *,
+        model: str = "2diy-3.1",
+        angles: tuple[float, float] | None = None,
+        recalibrate: bool = False,
+        baud: int = 115200,
+        rotation: _Matrix = ...,
+        translation: _Vector = ...,
+        scale: float = 1.0,
+    ) -> int:
+        """Another finger, as by start_haply; raises as add_pointer, and as there."""
+
+    @property
+    def finger_count(self) -> int:
+        """Fingers that are in use, or will be after the next start."""
+
+    def set_target(self, position: _Vector, restart: bool = False, finger: int = 0) -> None:
+        """Lead a pointer's probe; with restart it is lifted off and set down there.
+
+        RuntimeError unless that finger is a pointer.
+        """
+
+    def set_orientation(self, rotation: _Matrix, finger: int = 0) -> None:
+        """Turn a finger's tool: tool to body for a pointer, tool to stylus for a device that tells
+        its orientation. ValueError unless it is a rotation.
+        """
 
     def set_young_modulus(self, young_modulus: float) -> None: ...
     def set_body(self, body: Body, young_modulus: float) -> None:
         """Touch another body, also while the servo runs: zero force in that tick, then a ramp.
+        ValueError if there is more than one finger and the body is not whole.
 
         The probe is set down anew: inside of the new body nothing is felt until it was outside.
         Returns when the thread uses the new body and the old one is freed.
         """
 
-    def set_device_frame(self, rotation: _Matrix, translation: _Vector, scale: float) -> None:
-        """Map the device elsewhere; the probe is lifted off and set down at its new place."""
+    def set_device_frame(
+        self, rotation: _Matrix, translation: _Vector, scale: float, finger: int = 0
+    ) -> None:
+        """Map a device elsewhere; its probe is lifted off and set down at its new place."""
 
     def set_feel(self, *, shading: bool, static_friction: float, dynamic_friction: float) -> None:
         """Shading and friction of the surface; ValueError unless 0 <= dynamic <= static."""
@@ -465,7 +612,8 @@ class Servo:
     def set_coupling(self, *, stiffness: float, damping: float, passivity_control: bool) -> None:
         """What lies between body and motors: the most stiffness that the device may see (N/m, inf
         for the body as it is), the damping that goes with it (N s/m; a softer body has its share),
-        and whether energy that the contact would make is taken back. A pointer has no motors.
+        and whether energy that the contact would make is taken back. For all fingers; a pointer has
+        no motors.
 
         Unless told otherwise it is `device_coupling` of the servo's rate, with `start_haply` of the
         model's encoders too. ValueError for a stiffness that is not more than 0, or a damping that
@@ -480,7 +628,7 @@ class Servo:
 
     def samples(self) -> NDArray[np.void]:
         """All recorded ticks since the last call: tick, time, probe, proxy, surface, force, output,
-        state.
+        state, finger. A row for each finger of each tick.
 
         surface is the surface_point of snapshots, not a number where that is None; state is an
         index into STATES.
@@ -489,8 +637,9 @@ class Servo:
     def start_recording(self, seconds: float = 600.0) -> int:
         """Record every tick for so long, beside samples(), instead of what was recorded before.
 
-        Before the start: from the first tick on. Returns the memory that it takes at most, bytes
-        (144 a tick: 86 MB for ten minutes at 1 kHz), asked for as the recording grows.
+        Before the start: from the first tick on; first add the fingers. Returns the memory that it
+        takes at most, bytes (144 a tick and finger: 86 MB for ten minutes of one at 1 kHz), asked
+        for as the recording grows.
 
         Raises ValueError for a time without sense, RuntimeError while a recording is on.
         """
@@ -696,6 +845,8 @@ def encode_frame(payload: bytes) -> bytes:
 def stop_all() -> None:
     """Stop every servo that still runs; registered with atexit."""
 
+MAX_FINGERS: int
+"""Fingers of a servo at most."""
 STATES: tuple[str, ...]
 """Names of the states, in the order of their numbers in samples()."""
 FAULTS: tuple[str, ...]

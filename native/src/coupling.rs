@@ -148,31 +148,37 @@ impl Coupler {
         scale: f64,
         dt: f64,
     ) -> Coupled {
-        let Contact {
-            stiffness,
-            displacement,
-            force,
-        } = *contact;
-        let compliance = series_compliance(&stiffness, coupling.stiffness / scale);
+        let compliance = series_compliance(&contact.stiffness, coupling.stiffness / scale);
         // (K^-1 + cI)^-1 is K (I + cK)^-1: both displacement and force have the same share.
         let share = if compliance > 0.0 {
-            (DMat3::IDENTITY + stiffness * compliance).inverse()
+            (DMat3::IDENTITY + contact.stiffness * compliance).inverse()
         } else {
             DMat3::IDENTITY
         };
-        let spring = share * force;
+        let seen = Contact {
+            stiffness: share * contact.stiffness,
+            displacement: contact.displacement,
+            force: share * contact.force,
+        };
+        Coupled {
+            body_displacement: share * contact.displacement,
+            force: self.drive(&seen, coupling, scale, dt),
+        }
+    }
+
+    /// Damps and watches a touch in which the spring is already: its stiffness and force are those
+    /// of the body and the spring in series. The force for the device before safety, N.
+    pub fn drive(&mut self, seen: &Contact, coupling: &Coupling, scale: f64, dt: f64) -> DVec3 {
+        let (spring, displacement) = (seen.force, seen.displacement);
         self.follow(displacement, dt);
-        let lead = share * (stiffness * self.velocity) * -coupling.lead_seconds();
+        let lead = seen.stiffness * self.velocity * -coupling.lead_seconds();
         let brake = if coupling.passivity_control {
             self.passivity
                 .control(spring, displacement, self.velocity, scale, dt)
         } else {
             DVec3::ZERO
         };
-        Coupled {
-            body_displacement: share * displacement,
-            force: spring + bounded(lead + brake, spring, displacement),
-        }
+        spring + bounded(lead + brake, spring, displacement)
     }
 
     /// Tells what the device holds until the next tick.

@@ -156,6 +156,12 @@ impl Proxy {
         self.position
     }
 
+    /// The place on the surface that it touches, or was nearest to when that was last asked for.
+    #[inline]
+    pub fn nearest(&self) -> Hold {
+        self.god_hold().map_or(self.hold, |_| self.contact.hold)
+    }
+
     /// Whether it was set down inside of the body and was not outside since.
     pub fn is_buried(&self) -> bool {
         matches!(self.place, Place::Buried { .. })

@@ -1,12 +1,13 @@
 //! What a tick tells the rest of the world: named state, positions, forces and counters.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use crate::device::{Fault, LinkReport};
+use crate::several::MAX_FINGERS;
 pub use crate::state::State;
 use crate::state::reason;
 
-/// One tick, whole: all fields belong together.
+/// One finger in one tick, whole: all fields belong together.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Snapshot {
     /// Counts from 1; 0 before the first tick.
@@ -15,6 +16,8 @@ pub struct Snapshot {
     pub time: f64,
     /// Where the finger is, m.
     pub probe: DVec3,
+    /// How its tool is turned, tool to body.
+    pub orientation: DMat3,
     /// Contact point that makes the force, m: the god object, shaded or held back by friction.
     pub proxy: DVec3,
     /// Triangle and area coordinates while touching.
@@ -25,8 +28,10 @@ pub struct Snapshot {
     pub triangle: [u32; 3],
     /// (12), (13), N.
     pub nodal_forces: [DVec3; 3],
-    /// (14) before safety, N.
+    /// (14) before coupling and safety, N.
     pub contact_force: DVec3,
+    /// On a tool about its reference point, N m, before safety; none on a point.
+    pub torque: DVec3,
     /// Where the touched point of the surface is now, m; known while touching, if the body has a
     /// compliance.
     pub surface_point: Option<DVec3>,
@@ -46,37 +51,55 @@ pub struct Snapshot {
     pub body: u32,
 }
 
-/// A snapshot with the counters of the same tick.
+/// A finger's snapshot with its counters of the same tick.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Published {
+pub struct Told {
     /// The tick.
     pub snapshot: Snapshot,
     /// The link.
     pub link: LinkReport,
     /// Times each of [`Fault::ALL`] began.
     pub faults: [u64; Fault::ALL.len()],
-    /// Samples not recorded because nobody emptied the ring.
-    pub samples_lost: u64,
     /// Most features the proxy visited in one tick.
     pub most_steps: u32,
     /// Sweeps corrected by the sign of the distance.
     pub rescues: u64,
 }
 
+/// One tick of all fingers.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Published {
+    /// By number; beyond `count` nothing.
+    pub told: [Told; MAX_FINGERS],
+    /// Fingers in use.
+    pub count: usize,
+    /// Samples not recorded because nobody emptied the ring.
+    pub samples_lost: u64,
+}
+
 impl Published {
     /// What is told before the first tick.
     pub fn before_the_start() -> Self {
-        Self {
-            snapshot: Snapshot {
-                reason: reason::NOT_STARTED,
-                ..Snapshot::default()
-            },
+        let mut published = Self {
+            count: 1,
             ..Self::default()
-        }
+        };
+        published.told[0].snapshot.reason = reason::NOT_STARTED;
+        published
+    }
+
+    /// Of the fingers in use.
+    pub fn fingers(&self) -> &[Told] {
+        &self.told[..self.count]
+    }
+
+    /// Of finger 0, which is always there.
+    pub fn first(&self) -> &Told {
+        &self.told[0]
     }
 }
 
-/// One tick in the recording.
+/// One finger's tick in the recording.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[repr(C)]
 pub struct Sample {
@@ -95,5 +118,7 @@ pub struct Sample {
     /// After safety, N.
     pub output: [f64; 3],
     /// [`State`] as a number.
-    pub state: u64,
+    pub state: u32,
+    /// From 0 on.
+    pub finger: u32,
 }

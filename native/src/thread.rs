@@ -134,16 +134,18 @@ pub struct Running {
     samples: Mutex<Consumer<Sample>>,
     recorder: Recorder,
     stages: Arc<Stages>,
+    finger_count: usize,
 }
 
 impl Running {
-    /// Starts a thread for `device`; `recorded_ticks` are recorded from the first one on.
+    /// Starts a thread for these devices, a finger each; `recorded_ticks` are recorded from the
+    /// first one on. Samples are kept of `record_samples` ticks.
     ///
     /// # Errors
     /// When the system gives no thread.
-    pub fn start<D: Device + 'static>(
+    pub fn start(
         body: Arc<Body>,
-        device: D,
+        devices: Vec<Box<dyn Device>>,
         options: Options,
         settings: Settings,
         record_samples: usize,
@@ -152,14 +154,16 @@ impl Running {
         let (hand, holder) = exchange(body.clone());
         let (settings_in, settings_out) = triple_buffer(&settings);
         let (snapshots_in, snapshots_out) = triple_buffer(&Published::before_the_start());
-        let (samples_in, samples_out) = touched_ring(record_samples);
-        let (tape, recorder) = Recorder::new((RING_SECONDS * options.rate_hz) as usize);
+        let (samples_in, samples_out) = touched_ring(record_samples * devices.len());
+        let (tape, recorder) =
+            Recorder::new((RING_SECONDS * options.rate_hz) as usize * devices.len());
         if recorded_ticks > 0 {
-            recorder.start(recorded_ticks)?;
+            recorder.start(recorded_ticks * devices.len())?;
         }
+        let finger_count = devices.len();
         let mut servo = Servo::new(
             body,
-            device,
+            devices,
             options,
             settings_out,
             snapshots_in,
@@ -190,6 +194,7 @@ impl Running {
             samples: Mutex::new(samples_out),
             recorder,
             stages,
+            finger_count,
         })
     }
 
@@ -209,13 +214,18 @@ impl Running {
         self.set(settings);
         bodies.settle();
         let since = Instant::now();
-        while self.published().snapshot.body != number {
+        while self.published().first().snapshot.body != number {
             if since.elapsed() > EXCHANGE_SECONDS || !self.paced.is_running() {
                 return;
             }
             std::thread::sleep(Duration::from_micros(200));
         }
         bodies.forget_older();
+    }
+
+    /// Fingers that it was started with.
+    pub fn finger_count(&self) -> usize {
+        self.finger_count
     }
 
     /// The newest tick.

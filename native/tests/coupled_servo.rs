@@ -6,9 +6,9 @@ mod scripted;
 use glam::DVec3;
 use palpate_servo::coupling::Coupling;
 use palpate_servo::device::{DeviceFrame, Probe, Reading};
-use palpate_servo::servo::Settings;
+use palpate_servo::finger::FingerSettings;
 use palpate_servo::snapshot::Snapshot;
-use scripted::{ABOVE, PRESSED, Table, probe, settings};
+use scripted::{ABOVE, PRESSED, Table, probe, settings_of};
 
 const SOFT: Coupling = Coupling {
     stiffness: 50.0,
@@ -18,14 +18,14 @@ const SOFT: Coupling = Coupling {
 
 fn pressed_with(coupling: Coupling, scale: f64, max_force: f64) -> Snapshot {
     let mut table = Table::pressing();
-    table.settings.write(Settings {
+    table.settings.write(settings_of(FingerSettings {
         coupling,
         frame: DeviceFrame {
             scale,
             ..DeviceFrame::default()
         },
-        ..settings()
-    });
+        ..FingerSettings::default()
+    }));
     let reading = Reading::At(Probe {
         max_force,
         ..probe(PRESSED)
@@ -62,10 +62,10 @@ fn motion_that_is_scaled_up_scales_the_limit_down() {
 #[test]
 fn damping_ends_with_the_touch() {
     let mut table = Table::pressing();
-    table.settings.write(Settings {
+    table.settings.write(settings_of(FingerSettings {
         coupling: Coupling::for_devices(1000),
-        ..settings()
-    });
+        ..FingerSettings::default()
+    }));
     let step = DVec3::Z * -2e-4;
     let mut most = 0.0_f64;
     for tick in 0..10 {

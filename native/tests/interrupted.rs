@@ -202,7 +202,15 @@ fn a_body_that_comes_up_to_a_probe_outside_of_it_is_felt_with_a_ramp() {
 fn the_old_body_is_freed_by_whoever_brought_the_new_one() {
     let old = bodies::cube();
     let kept = Arc::downgrade(&old);
-    let running = Running::start(old, Scripted::above(), OPTIONS, settings(), 10, 0).unwrap();
+    let running = Running::start(
+        old,
+        vec![Box::new(Scripted::above())],
+        OPTIONS,
+        settings(),
+        10,
+        0,
+    )
+    .unwrap();
     for _ in 0..20 {
         let new = bodies::inner_corner();
         let weak = Arc::downgrade(&new);
@@ -211,7 +219,7 @@ fn the_old_body_is_freed_by_whoever_brought_the_new_one() {
         // Three places of the exchange and the hand; one more while a tick runs.
         assert!((4..=5).contains(&weak.strong_count()));
     }
-    assert_eq!(running.published().snapshot.body, 20);
+    assert_eq!(running.published().first().snapshot.body, 20);
     running.paced().stop();
 }
 
@@ -228,7 +236,10 @@ fn a_reader_that_holds_its_end_holds_up_nobody_and_then_sees_the_newest() {
     }
     assert_eq!(*held, then, "nothing changes under a reader's eyes");
     let newest = *reader.read();
-    assert_eq!(newest.snapshot.tick, then.snapshot.tick + 1000);
-    assert_eq!(newest.samples_lost, newest.snapshot.tick - 10);
-    assert_eq!(newest.snapshot.state, State::Touching);
+    assert_eq!(
+        newest.first().snapshot.tick,
+        then.first().snapshot.tick + 1000
+    );
+    assert_eq!(newest.samples_lost, newest.first().snapshot.tick - 10);
+    assert_eq!(newest.first().snapshot.state, State::Touching);
 }

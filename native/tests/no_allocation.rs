@@ -10,13 +10,11 @@ use counting::counted;
 use glam::DVec3;
 use palpate_servo::clock::{Pace, Timing, Waking};
 use palpate_servo::codec::{Decoder, MAX_FRAME, encode};
-use palpate_servo::coupling::Coupling;
-use palpate_servo::device::{Device, DeviceFrame, Fault};
+use palpate_servo::device::{Device, Fault};
 use palpate_servo::exchange::exchange;
 use palpate_servo::link::LinkDevice;
 use palpate_servo::pointer::{Pointer, Target};
 use palpate_servo::port::{Opener, Wire};
-use palpate_servo::proxy::Feel;
 use palpate_servo::recorder::Recorder;
 use palpate_servo::safety::Limits;
 use palpate_servo::servo::{Options, Servo, Settings};
@@ -36,13 +34,7 @@ const OPTIONS: Options = Options {
 };
 
 fn settings() -> Settings {
-    Settings {
-        young_modulus: 1e4,
-        enabled: true,
-        frame: DeviceFrame::default(),
-        feel: Feel::default(),
-        coupling: Coupling::default(),
-    }
+    Settings::new(1e4)
 }
 
 /// A device in memory that answers HELLO and then circles over the body, in and out; now and then
@@ -155,13 +147,13 @@ fn changed(tick: u32) -> Settings {
     changed.young_modulus *= f64::from(1 + tick % 5);
     changed.feel.shading = tick % 2 == 0;
     changed.feel.static_friction = 0.1 * f64::from(tick % 3);
-    changed.coupling.passivity_control = tick % 7 == 0;
+    changed.fingers[0].coupling.passivity_control = tick % 7 == 0;
     changed.enabled = tick % 1000 > 10;
-    changed.frame.epoch = tick / 5000;
+    changed.fingers[0].frame.epoch = tick / 5000;
     changed
 }
 
-fn ticks_of<D: Device>(device: D, mut each: impl FnMut(u32)) -> (Published, u64) {
+fn ticks_of<D: Device + 'static>(device: D, mut each: impl FnMut(u32)) -> (Published, u64) {
     const TICKS: u32 = 100_000;
     let (mut settings_in, settings_out) = triple_buffer(&settings());
     // Full long before the end, and emptied by a thread that allocates on its own account.
@@ -172,7 +164,7 @@ fn ticks_of<D: Device>(device: D, mut each: impl FnMut(u32)) -> (Published, u64)
     let (samples_in, _samples) = RingBuffer::new(50_000);
     let mut servo = Servo::new(
         bodies::giving_cube(),
-        device,
+        vec![Box::new(device)],
         OPTIONS,
         settings_out,
         snapshots_in,
@@ -219,16 +211,16 @@ fn a_hundred_thousand_ticks_with_a_device_allocate_nothing() {
     let device = LinkDevice::open(InMemory).expect("memory opens");
     let (last, allocations) = ticks_of(device, |_| {});
     assert_eq!(allocations, 0);
-    assert_eq!(last.snapshot.tick, 100_000);
-    assert!(last.link.states > 45_000, "{:?}", last.link);
-    assert!(last.link.forces > 99_000);
+    assert_eq!(last.first().snapshot.tick, 100_000);
+    assert!(last.first().link.states > 45_000, "{:?}", last.first().link);
+    assert!(last.first().link.forces > 99_000);
     assert!(
-        last.link.crc_errors > 100 && last.link.oversize > 50,
+        last.first().link.crc_errors > 100 && last.first().link.oversize > 50,
         "{:?}",
-        last.link
+        last.first().link
     );
     assert_eq!(last.samples_lost, 50_000);
-    assert_eq!(last.faults, [0; Fault::ALL.len()]);
+    assert_eq!(last.first().faults, [0; Fault::ALL.len()]);
 }
 
 #[test]
@@ -253,8 +245,11 @@ fn a_hundred_thousand_ticks_with_a_pointer_allocate_nothing() {
     });
     assert_eq!(allocations, 0);
     assert!(touching > 5_000);
-    assert!(matches!(last.snapshot.state, State::Free | State::Touching));
-    assert!(last.most_steps >= 2);
+    assert!(matches!(
+        last.first().snapshot.state,
+        State::Free | State::Touching
+    ));
+    assert!(last.first().most_steps >= 2);
 }
 
 #[test]
@@ -270,7 +265,7 @@ fn a_body_is_exchanged_without_allocating_or_freeing_in_the_tick() {
     let pointer = Pointer::new(start, targets, 0.5);
     let mut servo = Servo::new(
         first,
-        pointer,
+        vec![Box::new(pointer)],
         OPTIONS,
         settings_out,
         snapshots_in,
@@ -281,7 +276,7 @@ fn a_body_is_exchanged_without_allocating_or_freeing_in_the_tick() {
     let mut tick = || {
         now += 1e-3;
         assert_eq!(counted(|| servo.tick(now)).1, 0);
-        snapshots.read().snapshot.body
+        snapshots.read().first().snapshot.body
     };
     for round in 1..=100 {
         let body = bodies::giving_cube();

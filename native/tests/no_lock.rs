@@ -16,11 +16,9 @@ use std::time::Duration;
 
 use glam::{DMat3, DVec3};
 use palpate_servo::codec::{MAX_FRAME, encode};
-use palpate_servo::coupling::Coupling;
 use palpate_servo::device::{Device, DeviceFrame, LinkReport, Probe, Reading};
 use palpate_servo::link::LinkDevice;
 use palpate_servo::port::SerialPort;
-use palpate_servo::proxy::Feel;
 use palpate_servo::safety::Limits;
 use palpate_servo::servo::{Options, Settings};
 use palpate_servo::stages::Stage;
@@ -38,13 +36,7 @@ const OPTIONS: Options = Options {
 };
 
 fn settings() -> Settings {
-    Settings {
-        young_modulus: 1e4,
-        enabled: true,
-        frame: DeviceFrame::default(),
-        feel: Feel::default(),
-        coupling: Coupling::default(),
-    }
+    Settings::new(1e4)
 }
 
 /// The sleep, and the clock where the kernel does not let it be read without a call.
@@ -122,8 +114,8 @@ fn hammer(running: &Running, ticks: u64) {
                 recorder.read(|_| sleep(Duration::from_millis(20)));
             });
         });
-        let from = running.published().snapshot.tick;
-        while running.published().snapshot.tick < from + ticks {
+        let from = running.published().first().snapshot.tick;
+        while running.published().first().snapshot.tick < from + ticks {
             assert!(running.paced().is_running(), "the servo has ended");
             sleep(Duration::from_millis(5));
         }
@@ -142,8 +134,15 @@ fn calls_of<D: Device + 'static>(
         device,
         watch: Some(watch),
     };
-    let running = Running::start(bodies::giving_cube(), watching, OPTIONS, settings(), 100, 0)
-        .expect("a thread");
+    let running = Running::start(
+        bodies::giving_cube(),
+        vec![Box::new(watching)],
+        OPTIONS,
+        settings(),
+        100,
+        0,
+    )
+    .expect("a thread");
     counter.wait();
     during(&running);
     let calls = counter.calls();
@@ -263,9 +262,9 @@ fn a_servo_with_a_serial_device_only_sleeps_reads_and_writes() {
         hammer(running, 3000);
         let seen = running.published();
         assert!(
-            seen.link.states > 100 && seen.link.reopened == 0,
+            seen.first().link.states > 100 && seen.first().link.reopened == 0,
             "{:?}",
-            seen.link
+            seen.first().link
         );
         ends.store(true, Relaxed);
         boarding.join().expect("the board ends");

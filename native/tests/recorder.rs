@@ -5,10 +5,7 @@ mod bodies;
 use std::time::Duration;
 
 use glam::DVec3;
-use palpate_servo::coupling::Coupling;
-use palpate_servo::device::DeviceFrame;
 use palpate_servo::pointer::{Pointer, Target};
-use palpate_servo::proxy::Feel;
 use palpate_servo::recorder::{RING_SECONDS, Recorder, Tape};
 use palpate_servo::safety::Limits;
 use palpate_servo::servo::{Options, Servo, Settings};
@@ -28,13 +25,7 @@ const OPTIONS: Options = Options {
 };
 
 fn settings() -> Settings {
-    Settings {
-        young_modulus: 1e4,
-        enabled: true,
-        frame: DeviceFrame::default(),
-        feel: Feel::default(),
-        coupling: Coupling::default(),
-    }
+    Settings::new(1e4)
 }
 
 fn sample(tick: u64) -> Sample {
@@ -78,7 +69,7 @@ fn ten_minutes_at_1_khz_lose_no_tick_while_pressing() {
     let (samples_in, mut samples) = RingBuffer::new(1000);
     let mut servo = Servo::new(
         bodies::cube(),
-        Pointer::new(start, targets, 0.5),
+        vec![Box::new(Pointer::new(start, targets, 0.5))],
         OPTIONS,
         settings_out,
         snapshots_in,
@@ -115,7 +106,7 @@ fn ten_minutes_at_1_khz_lose_no_tick_while_pressing() {
     for (number, sample) in (1..).zip(&all) {
         assert_eq!((sample.tick, sample.time), (number, number as f64 * 1e-3));
         let presses = sample.force != [0.0; 3];
-        if sample.state == State::Touching as u64 {
+        if sample.state == State::Touching as u32 {
             touching += 1;
             assert!(presses);
         }
@@ -172,7 +163,15 @@ fn a_running_servo_records_from_its_first_tick() {
     let start = Target::first(DVec3::new(0.02, 0.03, 0.055));
     let (_targets_in, targets) = triple_buffer(&start);
     let pointer = Pointer::new(start, targets, 0.5);
-    let running = Running::start(bodies::cube(), pointer, OPTIONS, settings(), 10, 50).unwrap();
+    let running = Running::start(
+        bodies::cube(),
+        vec![Box::new(pointer)],
+        OPTIONS,
+        settings(),
+        10,
+        50,
+    )
+    .unwrap();
     wait_for(running.recorder(), 50);
     assert_eq!(ticks(running.recorder()), (1..=50).collect::<Vec<_>>());
     // The ring of `samples()` is smaller, and nobody has emptied it.

@@ -8,13 +8,14 @@ use std::sync::{Arc, Mutex};
 use glam::{DMat3, DVec3};
 use palpate_servo::coupling::Coupling;
 use palpate_servo::device::{DeviceFrame, Fault, Probe, Reading};
+use palpate_servo::finger::FingerSettings;
 use palpate_servo::proxy::Feel;
 use palpate_servo::safety::Limits;
 use palpate_servo::servo::{Options, Settings};
 use palpate_servo::snapshot::State;
 use palpate_servo::state::reason;
 use palpate_servo::thread::Running;
-use scripted::{ABOVE, DT, OPTIONS, PRESSED, Scripted, Table, probe, settings};
+use scripted::{ABOVE, DT, OPTIONS, PRESSED, Scripted, Table, probe, settings, settings_of};
 
 #[test]
 fn numbers_of_the_probe_that_are_none_give_no_force() {
@@ -53,21 +54,25 @@ fn settings_that_are_no_numbers_give_no_force() {
     };
     let moduli = [f64::NAN, f64::INFINITY, 0.0, -1.0].map(|young_modulus| Settings {
         young_modulus,
-        coupling,
-        ..settings()
+        ..settings_of(FingerSettings {
+            coupling,
+            ..FingerSettings::default()
+        })
     });
-    let frames = [f64::NAN, f64::INFINITY].map(|bad| Settings {
-        frame: DeviceFrame {
-            rotation: DMat3::from_diagonal(DVec3::new(1.0, bad, 1.0)),
-            ..DeviceFrame::default()
-        },
-        ..settings()
+    let frames = [f64::NAN, f64::INFINITY].map(|bad| {
+        settings_of(FingerSettings {
+            frame: DeviceFrame {
+                rotation: DMat3::from_diagonal(DVec3::new(1.0, bad, 1.0)),
+                ..DeviceFrame::default()
+            },
+            ..FingerSettings::default()
+        })
     });
     for bad in moduli.into_iter().chain(frames) {
         let mut table = Table::pressing();
         table.settings.write(bad);
         // The scripted device knows no frame: what a device would make of it.
-        let shot = table.tick(Reading::At(probe(bad.frame.to_body(PRESSED))));
+        let shot = table.tick(Reading::At(probe(bad.fingers[0].frame.to_body(PRESSED))));
         assert_eq!((shot.state, shot.fault), (State::Fault, Some(Fault::Nan)));
         table.is_silent(&shot);
         table.settings.write(settings());
@@ -100,14 +105,14 @@ fn a_coupling_that_is_no_number_gives_no_force_or_the_bodys_own() {
     for bad in [f64::NAN, f64::INFINITY, -1.0, 0.0] {
         for (stiffness, damping) in [(bad, 0.0), (500.0, bad), (bad, bad)] {
             let mut table = Table::pressing();
-            table.settings.write(Settings {
+            table.settings.write(settings_of(FingerSettings {
                 coupling: Coupling {
                     stiffness,
                     damping,
                     passivity_control: true,
                 },
-                ..settings()
-            });
+                ..FingerSettings::default()
+            }));
             for deeper in 0..20 {
                 let position = PRESSED - DVec3::Z * 1e-4 * f64::from(deeper);
                 let shot = table.tick(Reading::At(probe(position)));
@@ -293,13 +298,13 @@ fn a_force_that_grows_or_turns_suddenly_is_slewed_and_one_that_ends_is_not() {
 #[test]
 fn another_device_frame_sets_the_probe_down_anew() {
     let mut table = Table::pressing();
-    table.settings.write(Settings {
+    table.settings.write(settings_of(FingerSettings {
         frame: DeviceFrame {
             epoch: 1,
             ..DeviceFrame::default()
         },
-        ..settings()
-    });
+        ..FingerSettings::default()
+    }));
     let shot = table.press();
     assert_eq!((shot.state, shot.output_force), (State::Free, DVec3::ZERO));
     assert_eq!(table.press().reason, reason::INSIDE);
@@ -314,11 +319,19 @@ fn a_servo_that_fails_inside_leaves_the_device_limp_and_says_so() {
         panics: true,
         ..Scripted::above()
     };
-    let running = Running::start(bodies::cube(), device, OPTIONS, settings(), 10, 0).unwrap();
+    let running = Running::start(
+        bodies::cube(),
+        vec![Box::new(device)],
+        OPTIONS,
+        settings(),
+        10,
+        0,
+    )
+    .unwrap();
     while running.paced().is_running() {
         std::thread::yield_now();
     }
-    let shot = running.published().snapshot;
+    let shot = running.published().first().snapshot;
     assert_eq!(
         (shot.state, shot.fault),
         (State::Stopped, Some(Fault::Internal))
@@ -330,9 +343,17 @@ fn a_servo_that_fails_inside_leaves_the_device_limp_and_says_so() {
 fn a_servo_that_was_asked_to_stop_says_so() {
     let device = Scripted::above();
     let sent = device.sent.clone();
-    let running = Running::start(bodies::cube(), device, OPTIONS, settings(), 10, 0).unwrap();
+    let running = Running::start(
+        bodies::cube(),
+        vec![Box::new(device)],
+        OPTIONS,
+        settings(),
+        10,
+        0,
+    )
+    .unwrap();
     running.paced().stop();
-    let shot = running.published().snapshot;
+    let shot = running.published().first().snapshot;
     assert_eq!((shot.state, shot.reason), (State::Stopped, reason::ASKED));
     assert_eq!(sent.lock().unwrap().last(), Some(&(DVec3::ZERO, false)));
 }

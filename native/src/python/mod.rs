@@ -17,6 +17,7 @@ use pyo3::types::PyTuple;
 
 use crate::device::Fault;
 use crate::safety::LIMITERS;
+use crate::several::MAX_FINGERS;
 use crate::state::{State, after, reason};
 
 #[pymodule]
@@ -27,6 +28,7 @@ fn palpate_servo(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<proxy::Proxy>()?;
     module.add_class::<servo::Servo>()?;
     module.add_class::<snapshot::Snapshot>()?;
+    module.add_class::<snapshot::FingerSnapshot>()?;
     module.add_class::<stepped::SteppedServo>()?;
     module.add_class::<counters::BareTimer>()?;
     module.add_class::<frames::Decoder>()?;
@@ -40,6 +42,7 @@ fn palpate_servo(module: &Bound<'_, PyModule>) -> PyResult<()> {
     py.import("atexit")?
         .call_method1("register", (&stop_all,))?;
     module.add_function(stop_all)?;
+    module.add("MAX_FINGERS", MAX_FINGERS)?;
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("STATES", PyTuple::new(py, State::ALL.map(State::name))?)?;
     let reasons = reason::ALL.into_iter().chain(Fault::ALL.map(after));

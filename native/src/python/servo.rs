@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
-use glam::DMat3;
+use glam::{DMat3, DVec3};
 use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -18,6 +18,7 @@ use crate::clock::Timing;
 use crate::contact::ContactMode;
 use crate::coupling::Coupling;
 use crate::device::{Device, DeviceFrame};
+use crate::finger::FingerSettings;
 use crate::haply::device::HaplyDevice;
 use crate::link::LinkDevice;
 use crate::pointer::{Pointer, Target};
@@ -25,9 +26,14 @@ use crate::port::SerialPort;
 use crate::proxy::Feel;
 use crate::safety::Limits;
 use crate::servo::{Options, Settings};
-use crate::snapshot::{Published, Sample};
+use crate::several::MAX_FINGERS;
+use crate::snapshot::{Published, Sample, Told};
 use crate::surface;
 use crate::thread::Running;
+
+/// Why there can be no more than one finger.
+const NOT_WHOLE: &str = "several fingers need the compliance of any two nodes, which this body has \
+    not kept; make it with Body(..., whole=True)";
 
 /// Every servo that may still run, so that the interpreter's exit can stop it.
 static STARTED: Mutex<Vec<Weak<Running>>> = Mutex::new(Vec::new());
@@ -35,6 +41,9 @@ static STARTED: Mutex<Vec<Weak<Running>>> = Mutex::new(Vec::new());
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
+
+/// Where a pointer is led, and where it was led last.
+type Lead = (Input<Target>, Target);
 
 #[pyclass(frozen, module = "palpate_servo")]
 pub struct Servo {
@@ -48,7 +57,10 @@ pub struct Servo {
     /// The user's, if one was set; else that of the device.
     own_coupling: Mutex<Option<Coupling>>,
     running: Mutex<Option<Arc<Running>>>,
-    targets: Mutex<Option<(Input<Target>, Target)>>,
+    /// Fingers 1, 2, ... of the next start.
+    others: Mutex<Vec<Box<dyn Device>>>,
+    /// Of pointers, by finger.
+    targets: Mutex<[Option<Lead>; MAX_FINGERS]>,
 }
 
 impl Servo {
@@ -78,35 +90,78 @@ impl Servo {
         }
     }
 
-    /// Starts with the device that `open` finds at `port`.
-    fn start_at_port<D: Device + 'static>(
+    /// The device that `open` finds at `port`, for a finger.
+    fn open_port<D: Device + 'static>(
         &self,
         py: Python<'_>,
+        finger: usize,
         port: SerialPort,
         frame: DeviceFrame,
         encoder_step: f64,
         open: impl FnOnce(SerialPort) -> std::io::Result<D> + Send,
-    ) -> PyResult<()> {
-        self.refuse_if_running()?;
-        let settings = {
-            let mut settings = locked(&self.settings);
-            settings.frame = frame;
-            settings.coupling = locked(&self.own_coupling)
-                .unwrap_or_else(|| Coupling::for_encoders(self.options.rate_hz, encoder_step));
-            *settings
-        };
-        let armed_ticks = *locked(&self.armed_ticks);
-        let running = py.detach(|| {
+    ) -> PyResult<Box<dyn Device>> {
+        let device = py.detach(|| {
             let path = port.path.clone();
-            let device = open(port).map_err(|e| {
+            open(port).map_err(|e| {
                 PyOSError::new_err(format!(
                     "{path}: cannot be opened ({e}); close the program that uses it, or see \
                          'palpate devices'"
                 ))
-            })?;
+            })
+        })?;
+        let mut settings = locked(&self.settings);
+        settings.fingers[finger].frame = frame;
+        settings.fingers[finger].coupling = locked(&self.own_coupling)
+            .unwrap_or_else(|| Coupling::for_encoders(self.options.rate_hz, encoder_step));
+        locked(&self.targets)[finger] = None;
+        Ok(Box::new(device))
+    }
+
+    /// A pointer for a finger, set down at a position.
+    fn new_pointer(&self, finger: usize, position: DVec3) -> Box<dyn Device> {
+        let start = Target::first(position);
+        let (input, output) = triple_buffer(&start);
+        locked(&self.targets)[finger] = Some((input, start));
+        Box::new(Pointer::new(start, output, self.glide_speed))
+    }
+
+    /// The number of the next finger but the first.
+    fn next_finger(&self) -> PyResult<usize> {
+        if self.current().is_some_and(|r| r.paced().is_running()) {
+            return Err(PyRuntimeError::new_err(
+                "the servo runs already; stop it, add the fingers, then start it again",
+            ));
+        }
+        if !locked(&self.body).is_whole() {
+            return Err(PyValueError::new_err(NOT_WHOLE));
+        }
+        let number = 1 + locked(&self.others).len();
+        if number < MAX_FINGERS {
+            Ok(number)
+        } else {
+            Err(PyValueError::new_err(format!(
+                "a servo has at most {MAX_FINGERS} fingers; start another one with its own body"
+            )))
+        }
+    }
+
+    fn add(&self, finger: usize, device: Box<dyn Device>) -> usize {
+        let mut others = locked(&self.others);
+        others.truncate(finger - 1);
+        others.push(device);
+        finger
+    }
+
+    /// Starts with this device as finger 0.
+    fn start(&self, py: Python<'_>, first: Box<dyn Device>) -> PyResult<()> {
+        let mut devices = vec![first];
+        devices.append(&mut locked(&self.others));
+        let settings = *locked(&self.settings);
+        let armed_ticks = *locked(&self.armed_ticks);
+        let running = py.detach(|| {
             Running::start(
                 locked(&self.body).clone(),
-                device,
+                devices,
                 self.options,
                 settings,
                 self.record_samples,
@@ -114,18 +169,13 @@ impl Servo {
             )
             .map_err(no_thread)
         })?;
-        *locked(&self.targets) = None;
-        self.keep(running);
-        Ok(())
-    }
-
-    fn keep(&self, running: Running) {
         *locked(&self.armed_ticks) = 0;
         let running = Arc::new(running);
         let mut started = locked(&STARTED);
         started.retain(|weak| weak.strong_count() > 0);
         started.push(Arc::downgrade(&running));
         *locked(&self.running) = Some(running);
+        Ok(())
     }
 }
 
@@ -169,45 +219,30 @@ impl Servo {
             record_samples: (record_seconds * f64::from(rate_hz)).ceil() as usize,
             armed_ticks: Mutex::new(0),
             settings: Mutex::new(Settings {
-                young_modulus: positive("young_modulus", young_modulus)?,
-                enabled: true,
-                frame: DeviceFrame::default(),
                 feel: feel(
                     shading,
                     static_friction,
                     dynamic_friction,
                     contact_mode(mode)?,
                 )?,
-                coupling: Coupling::for_devices(rate_hz),
+                fingers: [FingerSettings {
+                    coupling: Coupling::for_devices(rate_hz),
+                    ..FingerSettings::default()
+                }; MAX_FINGERS],
+                ..Settings::new(positive("young_modulus", young_modulus)?)
             }),
             own_coupling: Mutex::new(None),
             running: Mutex::new(None),
-            targets: Mutex::new(None),
+            others: Mutex::default(),
+            targets: Mutex::default(),
         })
     }
 
     fn start_pointer(&self, py: Python<'_>, position: Triple) -> PyResult<()> {
         self.refuse_if_running()?;
         let position = finite("position", position)?;
-        let start = Target::first(position);
-        let (input, output) = triple_buffer(&start);
-        let pointer = Pointer::new(start, output, self.glide_speed);
-        let settings = *locked(&self.settings);
-        let armed_ticks = *locked(&self.armed_ticks);
-        let running = py.detach(|| {
-            Running::start(
-                locked(&self.body).clone(),
-                pointer,
-                self.options,
-                settings,
-                self.record_samples,
-                armed_ticks,
-            )
-            .map_err(no_thread)
-        })?;
-        *locked(&self.targets) = Some((input, start));
-        self.keep(running);
-        Ok(())
+        let pointer = self.new_pointer(0, position);
+        self.start(py, pointer)
     }
 
     #[pyo3(signature = (port, *, baud=115_200, rotation=IDENTITY, translation=[0.0; 3], scale=1.0))]
@@ -220,9 +255,11 @@ impl Servo {
         translation: Triple,
         scale: f64,
     ) -> PyResult<()> {
+        self.refuse_if_running()?;
         let frame = device_frame(rotation, translation, scale)?;
         let port = SerialPort { path: port, baud };
-        self.start_at_port(py, port, frame, 0.0, LinkDevice::open)
+        let device = self.open_port(py, 0, port, frame, 0.0, LinkDevice::open)?;
+        self.start(py, device)
     }
 
     #[pyo3(signature = (
@@ -242,27 +279,97 @@ impl Servo {
         translation: Triple,
         scale: f64,
     ) -> PyResult<()> {
+        self.refuse_if_running()?;
         let (model, calibration) = haply_setup(model, angles, recalibrate, baud)?;
         let frame = device_frame(rotation, translation, scale)?;
         let (port, step) = (SerialPort { path: port, baud }, model.encoder_step());
-        self.start_at_port(py, port, frame, step, |port| {
+        let device = self.open_port(py, 0, port, frame, step, |port| {
             HaplyDevice::open(port, model, calibration)
-        })
+        })?;
+        self.start(py, device)
     }
 
-    #[pyo3(signature = (position, restart=false))]
-    fn set_target(&self, position: Triple, restart: bool) -> PyResult<()> {
+    fn add_pointer(&self, position: Triple) -> PyResult<usize> {
+        let finger = self.next_finger()?;
+        let pointer = self.new_pointer(finger, finite("position", position)?);
+        Ok(self.add(finger, pointer))
+    }
+
+    #[pyo3(signature = (port, *, baud=115_200, rotation=IDENTITY, translation=[0.0; 3], scale=1.0))]
+    fn add_serial(
+        &self,
+        py: Python<'_>,
+        port: String,
+        baud: u32,
+        rotation: Rows,
+        translation: Triple,
+        scale: f64,
+    ) -> PyResult<usize> {
+        let finger = self.next_finger()?;
+        let frame = device_frame(rotation, translation, scale)?;
+        let port = SerialPort { path: port, baud };
+        let device = self.open_port(py, finger, port, frame, 0.0, LinkDevice::open)?;
+        Ok(self.add(finger, device))
+    }
+
+    #[pyo3(signature = (
+        port, *, model="2diy-3.1", angles=None, recalibrate=false, baud=115_200,
+        rotation=IDENTITY, translation=[0.0; 3], scale=1.0
+    ))]
+    #[allow(clippy::too_many_arguments)] // Keywords in Python.
+    fn add_haply(
+        &self,
+        py: Python<'_>,
+        port: String,
+        model: &str,
+        angles: Option<[f32; 2]>,
+        recalibrate: bool,
+        baud: u32,
+        rotation: Rows,
+        translation: Triple,
+        scale: f64,
+    ) -> PyResult<usize> {
+        let finger = self.next_finger()?;
+        let (model, calibration) = haply_setup(model, angles, recalibrate, baud)?;
+        let frame = device_frame(rotation, translation, scale)?;
+        let (port, step) = (SerialPort { path: port, baud }, model.encoder_step());
+        let device = self.open_port(py, finger, port, frame, step, |port| {
+            HaplyDevice::open(port, model, calibration)
+        })?;
+        Ok(self.add(finger, device))
+    }
+
+    #[getter]
+    fn finger_count(&self) -> usize {
+        match self.current().filter(|r| r.paced().is_running()) {
+            Some(running) => running.finger_count(),
+            None => 1 + locked(&self.others).len(),
+        }
+    }
+
+    #[pyo3(signature = (position, restart=false, finger=0))]
+    fn set_target(&self, position: Triple, restart: bool, finger: usize) -> PyResult<()> {
         let position = finite("position", position)?;
-        match locked(&self.targets).as_mut() {
+        let mut targets = locked(&self.targets);
+        match targets.get_mut(finger).and_then(Option::as_mut) {
             Some((input, last)) => {
                 *last = last.next(position, restart);
                 input.write(*last);
                 Ok(())
             }
-            None => Err(PyRuntimeError::new_err(
-                "targets lead a pointer; call start_pointer first",
-            )),
+            None => Err(PyRuntimeError::new_err(format!(
+                "targets lead a pointer, and finger {finger} is none; call start_pointer first, or \
+                 add_pointer"
+            ))),
         }
+    }
+
+    #[pyo3(signature = (rotation, finger=0))]
+    fn set_orientation(&self, rotation: Rows, finger: usize) -> PyResult<()> {
+        check_finger(finger)?;
+        let rotation = rotation_matrix(rotation)?;
+        self.change(|s| s.fingers[finger].orientation = rotation);
+        Ok(())
     }
 
     fn set_young_modulus(&self, young_modulus: f64) -> PyResult<()> {
@@ -274,6 +381,10 @@ impl Servo {
     fn set_body(&self, py: Python<'_>, body: &Body, young_modulus: f64) -> PyResult<()> {
         let young_modulus = positive("young_modulus", young_modulus)?;
         let body = body.inner.clone();
+        let is_enough = self.finger_count() == 1 || body.is_whole();
+        if !is_enough {
+            return Err(PyValueError::new_err(NOT_WHOLE));
+        }
         // Whoever waits for a lock in here may hold the interpreter's.
         py.detach(|| {
             let mut settings = locked(&self.settings);
@@ -286,9 +397,17 @@ impl Servo {
         Ok(())
     }
 
-    fn set_device_frame(&self, rotation: Rows, translation: Triple, scale: f64) -> PyResult<()> {
+    #[pyo3(signature = (rotation, translation, scale, finger=0))]
+    fn set_device_frame(
+        &self,
+        rotation: Rows,
+        translation: Triple,
+        scale: f64,
+        finger: usize,
+    ) -> PyResult<()> {
+        check_finger(finger)?;
         let frame = device_frame(rotation, translation, scale)?;
-        self.change(|s| s.move_device(frame));
+        self.change(|s| s.fingers[finger].move_device(frame));
         Ok(())
     }
 
@@ -319,7 +438,11 @@ impl Servo {
     fn set_coupling(&self, stiffness: f64, damping: f64, passivity_control: bool) -> PyResult<()> {
         let coupling = coupling(stiffness, damping, passivity_control)?;
         *locked(&self.own_coupling) = Some(coupling);
-        self.change(|s| s.coupling = coupling);
+        self.change(|s| {
+            for finger in &mut s.fingers {
+                finger.coupling = coupling;
+            }
+        });
         Ok(())
     }
 
@@ -328,9 +451,7 @@ impl Servo {
     }
 
     fn snapshot(&self) -> Snapshot {
-        Snapshot {
-            inner: self.published().snapshot,
-        }
+        Snapshot::of(&self.published())
     }
 
     fn samples<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
@@ -342,16 +463,17 @@ impl Servo {
     fn start_recording(&self, py: Python<'_>, seconds: f64) -> PyResult<usize> {
         check_seconds("seconds", positive("seconds", seconds)?)?;
         let ticks = (seconds * f64::from(self.options.rate_hz)).ceil() as usize;
+        let samples = ticks.saturating_mul(self.finger_count());
         match self.current().filter(|r| r.paced().is_running()) {
             Some(running) if running.recorder().is_on() => {
                 return Err(PyRuntimeError::new_err(
                     "a recording is on already; call stop_recording first",
                 ));
             }
-            Some(running) => py.detach(|| running.recorder().start(ticks))?,
+            Some(running) => py.detach(|| running.recorder().start(samples))?,
             None => *locked(&self.armed_ticks) = ticks,
         }
-        Ok(ticks.saturating_mul(size_of::<Sample>()))
+        Ok(samples.saturating_mul(size_of::<Sample>()))
     }
 
     fn stop_recording(&self, py: Python<'_>) {
@@ -393,13 +515,14 @@ impl Servo {
         let stages = running.as_deref().map(Running::stages);
         counters.set_item("stages_us", stage_counters(py, stages)?)?;
         counters.set_item("rate_hz", self.options.rate_hz)?;
-        counters.set_item("faults", fault_counters(py, &published)?)?;
-        counters.set_item("link", link_counters(py, &published.link)?)?;
         counters.set_item("samples_lost", published.samples_lost)?;
-        let proxy = PyDict::new(py);
-        proxy.set_item("most_steps", published.most_steps)?;
-        proxy.set_item("rescues", published.rescues)?;
-        counters.set_item("proxy", proxy)?;
+        count_finger(py, &counters, published.first())?;
+        let fingers = published.fingers().iter().map(|told| {
+            let finger = PyDict::new(py);
+            count_finger(py, &finger, told)?;
+            Ok(finger)
+        });
+        counters.set_item("fingers", fingers.collect::<PyResult<Vec<_>>>()?)?;
         Ok(counters)
     }
 
@@ -410,7 +533,7 @@ impl Servo {
                 running.recorder().stop();
             });
         }
-        *locked(&self.targets) = None;
+        *locked(&self.targets) = Default::default();
     }
 
     #[getter]
@@ -433,21 +556,56 @@ impl Servo {
     }
 }
 
+/// What one finger has counted.
+fn count_finger(py: Python<'_>, counters: &Bound<'_, PyDict>, told: &Told) -> PyResult<()> {
+    counters.set_item("faults", fault_counters(py, told)?)?;
+    counters.set_item("link", link_counters(py, &told.link)?)?;
+    let proxy = PyDict::new(py);
+    proxy.set_item("most_steps", told.most_steps)?;
+    proxy.set_item("rescues", told.rescues)?;
+    counters.set_item("proxy", proxy)
+}
+
+fn check_finger(finger: usize) -> PyResult<()> {
+    if finger < MAX_FINGERS {
+        return Ok(());
+    }
+    Err(PyValueError::new_err(format!(
+        "finger is {finger}; a servo has fingers 0 to {}",
+        MAX_FINGERS - 1
+    )))
+}
+
+fn orthonormal(rows: Rows, refusal: &'static str) -> PyResult<DMat3> {
+    let found = matrix(rows);
+    let error = found * found.transpose() - DMat3::IDENTITY;
+    if error.to_cols_array().iter().all(|e| e.abs() < 1e-6) {
+        Ok(found)
+    } else {
+        Err(PyValueError::new_err(refusal))
+    }
+}
+
+fn rotation_matrix(rows: Rows) -> PyResult<DMat3> {
+    let refusal = "rotation is none; its rows must be orthonormal and right-handed";
+    let found = orthonormal(rows, refusal)?;
+    if found.determinant() > 0.0 {
+        Ok(found)
+    } else {
+        Err(PyValueError::new_err(refusal))
+    }
+}
+
 pub(super) fn device_frame(
     rotation: Rows,
     translation: Triple,
     scale: f64,
 ) -> PyResult<DeviceFrame> {
-    let rotation = matrix(rotation);
-    let error = rotation * rotation.transpose() - DMat3::IDENTITY;
-    let is_orthonormal = error.to_cols_array().iter().all(|e| e.abs() < 1e-6);
-    if !is_orthonormal {
-        return Err(PyValueError::new_err(
-            "rotation is not orthonormal; a device frame may turn and scale, not shear",
-        ));
-    }
     Ok(DeviceFrame {
-        rotation,
+        rotation: orthonormal(
+            rotation,
+            "rotation is not orthonormal; a device frame may turn and scale, not shear",
+        )?,
         translation: finite("translation", translation)?,
         scale: positive("scale", scale)?,
         epoch: 0,

@@ -1,117 +1,184 @@
-//! `Snapshot`: one tick, whole; and the recorded ticks as a structured array.
+//! `Snapshot`: one tick, whole, of one finger or all; and the recorded ticks as a structured array.
 
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyByteArray, PyList};
 
-use super::vectors::{Matrix, Vector, array, rows};
+use super::vectors::{Matrix, Vector, array, rows, square, table};
 use crate::device::Fault;
-use crate::snapshot::Sample;
+use crate::snapshot::{Published, Sample};
 
 #[pyclass(frozen, module = "palpate_servo")]
 pub struct Snapshot {
-    pub inner: crate::snapshot::Snapshot,
+    inner: Box<Published>,
 }
 
-#[pymethods]
+/// One finger of a tick.
+#[pyclass(frozen, module = "palpate_servo")]
+pub struct FingerSnapshot {
+    inner: crate::snapshot::Snapshot,
+}
+
 impl Snapshot {
+    /// Of all fingers, and first of all of finger 0.
+    pub fn of(published: &Published) -> Self {
+        Self {
+            inner: Box::new(*published),
+        }
+    }
+
+    fn shot(&self) -> &crate::snapshot::Snapshot {
+        &self.inner.first().snapshot
+    }
+}
+
+impl FingerSnapshot {
+    fn shot(&self) -> &crate::snapshot::Snapshot {
+        &self.inner
+    }
+}
+
+/// What snapshots of finger 0 and of any finger have in common.
+macro_rules! snapshot_methods {
+    ($name:ident, $($own:item)*) => {
+        #[pymethods]
+        impl $name {
+            #[getter]
+            fn probe<'py>(&self, py: Python<'py>) -> Vector<'py> {
+                array(py, self.shot().probe)
+            }
+            #[getter]
+            fn proxy<'py>(&self, py: Python<'py>) -> Vector<'py> {
+                array(py, self.shot().proxy)
+            }
+            #[getter]
+            fn orientation<'py>(&self, py: Python<'py>) -> PyResult<Matrix<'py>> {
+                square(py, self.shot().orientation)
+            }
+            #[getter]
+            fn triangle<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
+                let nodes = match self.shot().hold {
+                    Some(_) => self.shot().triangle.map(i64::from),
+                    None => [-1; 3],
+                };
+                PyArray1::from_slice(py, &nodes)
+            }
+            #[getter]
+            fn triangle_index(&self) -> i64 {
+                self.shot().hold.map_or(-1, |(t, _)| i64::from(t))
+            }
+            #[getter]
+            fn alpha<'py>(&self, py: Python<'py>) -> Vector<'py> {
+                PyArray1::from_slice(py, &self.shot().hold.map_or([0.0; 3], |(_, a)| a))
+            }
+            #[getter]
+            fn contact_force<'py>(&self, py: Python<'py>) -> Vector<'py> {
+                array(py, self.shot().contact_force)
+            }
+            #[getter]
+            fn output_force<'py>(&self, py: Python<'py>) -> Vector<'py> {
+                array(py, self.shot().output_force)
+            }
+            #[getter]
+            fn torque<'py>(&self, py: Python<'py>) -> Vector<'py> {
+                array(py, self.shot().torque)
+            }
+            #[getter]
+            fn surface_point<'py>(&self, py: Python<'py>) -> Option<Vector<'py>> {
+                self.shot().surface_point.map(|point| array(py, point))
+            }
+            #[getter]
+            fn touching(&self) -> bool {
+                self.shot().hold.is_some()
+            }
+            #[getter]
+            fn sticking(&self) -> bool {
+                self.shot().sticking
+            }
+            #[getter]
+            fn state(&self) -> &'static str {
+                self.shot().state.name()
+            }
+            #[getter]
+            fn fault(&self) -> &'static str {
+                self.shot().fault.map_or("", Fault::name)
+            }
+            #[getter]
+            fn reason(&self) -> &'static str {
+                self.shot().reason
+            }
+            #[getter]
+            fn limited(&self) -> &'static str {
+                self.shot().limited
+            }
+            #[getter]
+            fn buttons(&self) -> u8 {
+                self.shot().buttons
+            }
+            fn __repr__(&self) -> String {
+                let s = self.shot();
+                format!(
+                    "{}(tick={}, state={:?}, fault={:?}, probe={}, proxy={}, contact_force={})",
+                    stringify!($name),
+                    s.tick,
+                    s.state.name(),
+                    self.fault(),
+                    s.probe,
+                    s.proxy,
+                    s.contact_force
+                )
+            }
+            $($own)*
+        }
+    };
+}
+
+snapshot_methods! {
+    Snapshot,
     #[getter]
     fn tick(&self) -> u64 {
-        self.inner.tick
+        self.shot().tick
     }
     #[getter]
     fn time(&self) -> f64 {
-        self.inner.time
-    }
-    #[getter]
-    fn probe<'py>(&self, py: Python<'py>) -> Vector<'py> {
-        array(py, self.inner.probe)
-    }
-    #[getter]
-    fn proxy<'py>(&self, py: Python<'py>) -> Vector<'py> {
-        array(py, self.inner.proxy)
-    }
-    #[getter]
-    fn triangle<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
-        let nodes = match self.inner.hold {
-            Some(_) => self.inner.triangle.map(i64::from),
-            None => [-1; 3],
-        };
-        PyArray1::from_slice(py, &nodes)
-    }
-    #[getter]
-    fn triangle_index(&self) -> i64 {
-        self.inner.hold.map_or(-1, |(t, _)| i64::from(t))
-    }
-    #[getter]
-    fn alpha<'py>(&self, py: Python<'py>) -> Vector<'py> {
-        PyArray1::from_slice(py, &self.inner.hold.map_or([0.0; 3], |(_, a)| a))
-    }
-    #[getter]
-    fn nodal_forces<'py>(&self, py: Python<'py>) -> PyResult<Matrix<'py>> {
-        rows(py, &self.inner.nodal_forces)
-    }
-    #[getter]
-    fn contact_force<'py>(&self, py: Python<'py>) -> Vector<'py> {
-        array(py, self.inner.contact_force)
-    }
-    #[getter]
-    fn output_force<'py>(&self, py: Python<'py>) -> Vector<'py> {
-        array(py, self.inner.output_force)
-    }
-    #[getter]
-    fn surface_point<'py>(&self, py: Python<'py>) -> Option<Vector<'py>> {
-        self.inner.surface_point.map(|point| array(py, point))
-    }
-    #[getter]
-    fn touching(&self) -> bool {
-        self.inner.hold.is_some()
-    }
-    #[getter]
-    fn sticking(&self) -> bool {
-        self.inner.sticking
-    }
-    #[getter]
-    fn state(&self) -> &'static str {
-        self.inner.state.name()
-    }
-    #[getter]
-    fn fault(&self) -> &'static str {
-        self.inner.fault.map_or("", Fault::name)
-    }
-    #[getter]
-    fn reason(&self) -> &'static str {
-        self.inner.reason
-    }
-    #[getter]
-    fn limited(&self) -> &'static str {
-        self.inner.limited
+        self.shot().time
     }
     #[getter]
     fn body(&self) -> u32 {
-        self.inner.body
+        self.shot().body
     }
     #[getter]
-    fn buttons(&self) -> u8 {
-        self.inner.buttons
+    fn nodal_forces<'py>(&self, py: Python<'py>) -> PyResult<Matrix<'py>> {
+        rows(py, &self.shot().nodal_forces)
     }
-    fn __repr__(&self) -> String {
-        let s = &self.inner;
-        format!(
-            "Snapshot(tick={}, state={:?}, fault={:?}, probe={}, proxy={}, contact_force={})",
-            s.tick,
-            s.state.name(),
-            self.fault(),
-            s.probe,
-            s.proxy,
-            s.contact_force
-        )
+    #[getter]
+    fn fingers(&self) -> Vec<FingerSnapshot> {
+        let told = self.inner.fingers().iter();
+        told.map(|told| FingerSnapshot { inner: told.snapshot }).collect()
+    }
+}
+
+snapshot_methods! {
+    FingerSnapshot,
+    #[getter]
+    fn nodes<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
+        match self.inner.hold {
+            Some(_) => PyArray1::from_slice(py, &self.inner.triangle.map(i64::from)),
+            None => PyArray1::from_slice(py, &[]),
+        }
+    }
+    #[getter]
+    fn nodal_forces<'py>(&self, py: Python<'py>) -> PyResult<Matrix<'py>> {
+        match self.inner.hold {
+            Some(_) => rows(py, &self.inner.nodal_forces),
+            None => table(py, &[]),
+        }
     }
 }
 
 fn bytes_of(samples: &[Sample]) -> &[u8] {
     let length = std::mem::size_of_val(samples);
-    // SAFETY: `Sample` is `repr(C)` of 8-byte numbers, without padding.
+    // SAFETY: `Sample` is `repr(C)` of numbers of 8 bytes and then two of 4, without padding.
     unsafe { std::slice::from_raw_parts(samples.as_ptr().cast::<u8>(), length) }
 }
 
@@ -154,7 +221,8 @@ fn sample_fields<'py>(py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
             vector("surface")?,
             vector("force")?,
             vector("output")?,
-            number("state", "=u8")?,
+            number("state", "=u4")?,
+            number("finger", "=u4")?,
         ],
     )
 }

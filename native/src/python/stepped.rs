@@ -13,15 +13,13 @@ use super::counters::link_counters;
 use super::servo::{contact_mode, coupling, device_frame};
 use super::snapshot::Snapshot;
 use super::vectors::{Rows, Triple, check_rate, check_seconds, positive};
-use crate::coupling::Coupling;
-use crate::device::{DeviceFrame, Fault};
+use crate::device::Fault;
 use crate::exchange::{Hand, exchange};
 use crate::link::LinkDevice;
 use crate::port::{Opener, Wire};
-use crate::proxy::Feel;
 use crate::safety::Limits;
 use crate::servo::{Options, Servo, Settings};
-use crate::snapshot::Published;
+use crate::snapshot::{Published, Told};
 
 /// What is on the line in either direction.
 #[derive(Debug, Default)]
@@ -75,7 +73,7 @@ impl Opener for InMemory {
 }
 
 struct Stepped {
-    servo: Servo<LinkDevice<InMemory>>,
+    servo: Servo,
     hand: Hand,
     settings: Settings,
     settings_in: Input<Settings>,
@@ -130,16 +128,8 @@ impl SteppedServo {
             },
             max_speed: positive("max_speed", max_speed)?,
         };
-        let settings = Settings {
-            young_modulus: positive("young_modulus", young_modulus)?,
-            enabled: true,
-            frame: DeviceFrame::default(),
-            feel: Feel {
-                mode: contact_mode(mode)?,
-                ..Feel::default()
-            },
-            coupling: Coupling::default(),
-        };
+        let mut settings = Settings::new(positive("young_modulus", young_modulus)?);
+        settings.feel.mode = contact_mode(mode)?;
         let wire = InMemory::default();
         let (settings_in, settings_out) = triple_buffer(&settings);
         let (snapshots_in, snapshots) = triple_buffer(&Published::before_the_start());
@@ -147,7 +137,7 @@ impl SteppedServo {
         let (hand, holder) = exchange(body.inner.clone());
         let mut servo = Servo::new(
             body.inner.clone(),
-            LinkDevice::open(wire.clone())?,
+            vec![Box::new(LinkDevice::open(wire.clone())?)],
             options,
             settings_out,
             snapshots_in,
@@ -212,13 +202,13 @@ impl SteppedServo {
     #[pyo3(signature = (*, stiffness, damping, passivity_control))]
     fn set_coupling(&self, stiffness: f64, damping: f64, passivity_control: bool) -> PyResult<()> {
         let coupling = coupling(stiffness, damping, passivity_control)?;
-        self.change(|s| s.coupling = coupling);
+        self.change(|s| s.fingers[0].coupling = coupling);
         Ok(())
     }
 
     fn set_device_frame(&self, rotation: Rows, translation: Triple, scale: f64) -> PyResult<()> {
         let frame = device_frame(rotation, translation, scale)?;
-        self.change(|s| s.move_device(frame));
+        self.change(|s| s.fingers[0].move_device(frame));
         Ok(())
     }
 
@@ -231,24 +221,22 @@ impl SteppedServo {
     }
 
     fn snapshot(&self) -> Snapshot {
-        Snapshot {
-            inner: self.stepped().snapshots.read().snapshot,
-        }
+        Snapshot::of(self.stepped().snapshots.read())
     }
 
     fn counters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let published = *self.stepped().snapshots.read();
+        let told = *self.stepped().snapshots.read().first();
         let counters = PyDict::new(py);
-        counters.set_item("faults", fault_counters(py, &published)?)?;
-        counters.set_item("link", link_counters(py, &published.link)?)?;
+        counters.set_item("faults", fault_counters(py, &told)?)?;
+        counters.set_item("link", link_counters(py, &told.link)?)?;
         Ok(counters)
     }
 }
 
 /// Times each fault began.
-pub fn fault_counters<'py>(py: Python<'py>, published: &Published) -> PyResult<Bound<'py, PyDict>> {
+pub fn fault_counters<'py>(py: Python<'py>, told: &Told) -> PyResult<Bound<'py, PyDict>> {
     let faults = PyDict::new(py);
-    for (fault, count) in Fault::ALL.iter().zip(published.faults) {
+    for (fault, count) in Fault::ALL.iter().zip(told.faults) {
         faults.set_item(fault.name(), count)?;
     }
     Ok(faults)

@@ -1,7 +1,7 @@
 //! Vectors and matrices between Python and the crate, and checks of single numbers.
 
 use glam::{DMat3, DVec3};
-use numpy::{PyArray1, PyArray2};
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -39,6 +39,12 @@ pub fn array(py: Python<'_>, v: DVec3) -> Vector<'_> {
 
 pub fn rows<'py>(py: Python<'py>, m: &[DVec3; 3]) -> PyResult<Matrix<'py>> {
     Ok(PyArray2::from_vec2(py, &m.map(|v| v.to_array().to_vec()))?)
+}
+
+/// Vectors as the rows of a matrix (k, 3).
+pub fn table<'py>(py: Python<'py>, vectors: &[DVec3]) -> PyResult<Matrix<'py>> {
+    let flat: Vec<f64> = vectors.iter().flat_map(|v| v.to_array()).collect();
+    PyArray1::from_vec(py, flat).reshape([vectors.len(), 3])
 }
 
 pub fn square(py: Python<'_>, m: DMat3) -> PyResult<Matrix<'_>> {

@@ -4,10 +4,9 @@
 use std::sync::{Arc, Mutex};
 
 use glam::{DMat3, DVec3};
-use palpate_servo::coupling::Coupling;
 use palpate_servo::device::{Device, DeviceFrame, Fault, LinkReport, Probe, Reading};
 use palpate_servo::exchange::{Hand, exchange};
-use palpate_servo::proxy::Feel;
+use palpate_servo::finger::FingerSettings;
 use palpate_servo::safety::Limits;
 use palpate_servo::servo::{Options, Servo, Settings};
 use palpate_servo::snapshot::{Published, Sample, Snapshot, State};
@@ -21,7 +20,7 @@ pub const DT: f64 = 1e-3;
 
 #[derive(Clone)]
 pub struct Scripted {
-    pub reading: Reading,
+    pub reading: Arc<Mutex<Reading>>,
     pub sent: Arc<Mutex<Vec<(DVec3, bool)>>>,
     pub panics: bool,
 }
@@ -29,7 +28,7 @@ pub struct Scripted {
 impl Scripted {
     pub fn above() -> Self {
         Self {
-            reading: Reading::At(probe(ABOVE)),
+            reading: Arc::new(Mutex::new(Reading::At(probe(ABOVE)))),
             sent: Arc::default(),
             panics: false,
         }
@@ -39,7 +38,7 @@ impl Scripted {
 impl Device for Scripted {
     fn read(&mut self, _now: f64, _dt: f64, _frame: &DeviceFrame) -> Reading {
         assert!(!self.panics, "as the test wants it");
-        self.reading
+        *self.reading.lock().unwrap()
     }
 
     fn write(&mut self, force: DVec3, enable: bool, _frame: &DeviceFrame) {
@@ -77,17 +76,19 @@ pub const OPTIONS: Options = Options {
 };
 
 pub fn settings() -> Settings {
-    Settings {
-        young_modulus: 1e4,
-        enabled: true,
-        frame: DeviceFrame::default(),
-        feel: Feel::default(),
-        coupling: Coupling::default(),
-    }
+    Settings::new(1e4)
+}
+
+/// The same with another frame or coupling of finger 0.
+pub fn settings_of(own: FingerSettings) -> Settings {
+    let mut settings = settings();
+    settings.fingers[0] = own;
+    settings
 }
 
 pub struct Table {
-    pub servo: Servo<Scripted>,
+    pub servo: Servo,
+    pub devices: Vec<Scripted>,
     pub hand: Hand,
     pub settings: Input<Settings>,
     pub samples: Consumer<Sample>,
@@ -98,13 +99,20 @@ pub struct Table {
 impl Table {
     /// A servo above a body.
     pub fn new(body: Arc<Body>, options: Options) -> Self {
+        Self::with_fingers(body, options, 1)
+    }
+
+    /// The same with some fingers.
+    pub fn with_fingers(body: Arc<Body>, options: Options, count: usize) -> Self {
         let (settings_in, settings_out) = triple_buffer(&settings());
         let (snapshots_in, snapshots) = triple_buffer(&Published::default());
         let (samples_in, samples) = RingBuffer::new(10);
         let (hand, holder) = exchange(body.clone());
+        let devices: Vec<Scripted> = (0..count).map(|_| Scripted::above()).collect();
+        let boxed = devices.iter().cloned();
         let mut servo = Servo::new(
             body,
-            Scripted::above(),
+            boxed.map(|d| -> Box<dyn Device> { Box::new(d) }).collect(),
             options,
             settings_out,
             snapshots_in,
@@ -113,6 +121,7 @@ impl Table {
         servo.bodies = holder;
         Self {
             servo,
+            devices,
             hand,
             settings: settings_in,
             samples,
@@ -154,10 +163,17 @@ impl Table {
 
     /// A tick so many seconds after the last one.
     pub fn tick_after(&mut self, seconds: f64, reading: Reading) -> Snapshot {
-        self.servo.device.reading = reading;
+        self.tick_all(seconds, &[reading]).first().snapshot
+    }
+
+    /// A tick with a reading for each of the first fingers.
+    pub fn tick_all(&mut self, seconds: f64, readings: &[Reading]) -> Published {
+        for (device, reading) in self.devices.iter().zip(readings) {
+            *device.reading.lock().unwrap() = *reading;
+        }
         self.now += seconds;
         self.servo.tick(self.now);
-        self.published().snapshot
+        self.published()
     }
 
     pub fn published(&mut self) -> Published {
@@ -165,11 +181,11 @@ impl Table {
     }
 
     pub fn counted(&mut self, fault: Fault) -> u64 {
-        self.published().faults[fault as usize]
+        self.published().first().faults[fault as usize]
     }
 
     pub fn sent(&self) -> (DVec3, bool) {
-        *self.servo.device.sent.lock().unwrap().last().unwrap()
+        *self.devices[0].sent.lock().unwrap().last().unwrap()
     }
 
     /// After this reading there is no force at once, and then a ramp from nothing.
