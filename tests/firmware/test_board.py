@@ -113,6 +113,28 @@ def test_a_clean_line_loses_nothing_either_way(press, board, servo, eventually):
     assert (report["enabled"], report["force"]) == (False, [0.0, 0.0, 0.0])
 
 
+def test_a_stylus_that_is_told_no_more_is_a_fault_until_it_is_told_again(board, servo, eventually):
+    def seen(name):
+        return servo.counters()["link"][name]
+
+    board.tell("turn 0.6 0 0.8 0")
+    servo.start_serial(board.port)
+    eventually(state_is(servo, "free"), servo.snapshot)
+    eventually(lambda: seen("orientations") > 100, servo.counters)
+    assert seen("orientations_lost") == seen("orientations_unpaired") == seen("unknown") == 0
+    board.move(DEEP, 300)
+    eventually(lambda: board.report()["force"][2] > 0.3, board.report)
+    # What is no rotation is not told; the place is.
+    board.tell("turn 0.6 0 0 0")
+    eventually(lambda: servo.snapshot().fault == "stale", servo.snapshot)
+    states = seen("states")
+    eventually(lambda: seen("states") > states + 20, servo.counters)
+    assert servo.snapshot().fault == "stale"
+    assert board.report()["force"] == [0.0, 0.0, 0.0]
+    board.tell("turn -0.6 0 -0.8 0")
+    eventually(lambda: board.report()["force"][2] > 0.3, board.report)
+
+
 def test_the_devices_largest_force_holds_at_both_ends(body, start_board, eventually):
     board = start_board("--largest", "0.25")
     with Servo(body, young_modulus=10_000.0) as servo:
