@@ -532,14 +532,47 @@ fn damaged_lost_and_late_orientations_leave_the_last_one_for_20_ms() {
 fn an_orientation_of_a_state_that_is_not_used_is_not_used_either() {
     let (bench, mut device) = turned();
     read(&mut device, 0.001);
-    for sequence in [65_534, 65_000] {
+    for (unpaired, sequence) in [(1, 65_534), (2, 65_000)] {
         bench.turned(sequence, 2.0);
         bench.state(sequence, 9000, 0, 1);
         let reading = read(&mut device, 0.002);
         assert_eq!(position(reading), 1e-3);
         assert!(pointing(reading).distance(DVec3::Y) < 1e-12);
+        assert_eq!(orientations(&device), [1, unpaired, 0, 0]);
     }
-    assert_eq!(orientations(&device), [1, 2, 0, 0]);
+}
+
+#[test]
+fn what_was_told_before_a_break_is_not_for_the_state_after_it() {
+    let told = || {
+        let (bench, mut device) = turned();
+        read(&mut device, 0.001);
+        bench.turned(65_535, 2.0);
+        read(&mut device, 0.002);
+        (bench, device)
+    };
+    let (bench, mut device) = told();
+    assert_eq!(read(&mut device, 0.3), Reading::Fault(Fault::Stale));
+    assert_eq!(orientations(&device), [1, 1, 0, 0], "silence");
+    bench.state_at(65_834_000, 65_535, 1000, 0, 1);
+    assert_eq!(read(&mut device, 0.301), Reading::Fault(Fault::Stale));
+
+    let (bench, mut device) = told();
+    bench.line().gone = true;
+    assert_eq!(read(&mut device, 0.003), Reading::Fault(Fault::Unplugged));
+    assert_eq!(orientations(&device), [1, 1, 0, 0], "unplugged");
+    bench.line().gone = false;
+    read(&mut device, 0.3);
+    bench.hello(1, 2.5);
+    bench.state(65_535, 1000, 0, 1);
+    assert_eq!(pointing(read(&mut device, 0.301)), DVec3::X);
+
+    let (bench, mut device) = told();
+    bench.hello(1, 30.0);
+    bench.state(65_535, 1000, 0, 1);
+    assert!(matches!(read(&mut device, 0.003), Reading::Waiting(_)));
+    assert_eq!(orientations(&device), [1, 1, 0, 0], "another device");
+    assert_eq!(pointing(read(&mut device, 0.004)), DVec3::X);
 }
 
 #[test]
