@@ -9,9 +9,9 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from ..core.errors import PalpateError
-from . import bake, devices, info, materials, pin, press, servo, shore
+from . import bake, curve, devices, durometer, info, materials, pin, press, servo, shore, softness
 
-COMMANDS = (bake, info, pin, press, servo, devices, materials, shore)
+COMMANDS = (bake, info, pin, press, servo, devices, materials, shore, durometer, curve, softness)
 EXIT_ERROR = 2
 
 

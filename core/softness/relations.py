@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from .durometer_type import TYPE_00, TYPE_A, DurometerType
-from .half_space import hertz_force, indenter_force
+from .indentation import hertz_force, indenter_force
 
 RUBBER_POISSON_RATIO = 0.5
 MEGAPASCAL = 1e6

@@ -7,7 +7,7 @@ import pytest
 
 from palpate.core.errors import PalpateError
 from palpate.core.materials import MATERIALS
-from palpate.core.softness import half_space
+from palpate.core.softness import indentation
 from palpate.core.softness.durometer_type import TYPE_00, TYPE_A
 from palpate.core.softness.relations import RELATIONS
 from palpate.core.softness.shore import (
@@ -107,12 +107,12 @@ def abel_force(kind, depth):
 def test_closed_forms_agree_with_sneddons_integral(kind, reading):
     depth = kind.depth(reading)
     expected = abel_force(kind, depth)
-    assert half_space.indenter_force(kind, depth) == pytest.approx(expected, rel=5e-3)
+    assert indentation.indenter_force(kind, depth) == pytest.approx(expected, rel=5e-3)
 
 
 def test_a_shallow_ball_is_hertzs():
-    shallow = half_space.ball_force(1.0, 1e-4)
-    assert shallow == pytest.approx(half_space.hertz_force(1.0, 1e-4), rel=1e-4)
+    shallow = indentation.ball_force(1.0, 1e-4)
+    assert shallow == pytest.approx(indentation.hertz_force(1.0, 1e-4), rel=1e-4)
 
 
 def test_the_other_poissons_ratio_changes_what_a_durometer_feels():

@@ -1,10 +1,11 @@
-"""Shore values and presets on the command line."""
+"""Shore values, presets, durometer, curves and maps on the command line."""
 
 import json
 from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 
 from palpate.cli.main import main
 from palpate.core import cache
@@ -87,3 +88,89 @@ def test_what_cannot_be_a_material_is_refused(tets, tmp_path, capsys, options, r
     assert status == 2
     assert reason in said
     assert not out.exists()
+
+
+@pytest.fixture(scope="module")
+def cube_file(tmp_path_factory, cube) -> Path:
+    path = tmp_path_factory.mktemp("cube") / "cube.npz"
+    cache.save(cube, path)
+    return path
+
+
+TOP = ["--at", 0.024, 0.026, 0.05]
+
+
+def test_a_durometer_is_read(cube_file, capsys):
+    status, printed, said = palpate(
+        capsys, "durometer", cube_file, *TOP, "--shore", "00-50", "--json"
+    )
+    figures = json.loads(printed)
+    assert (status, said) == (0, "")
+    # Geometry reads three points less than Hertz there; the cube's pinned base, a little more.
+    assert 46 < figures["on_a_thick_block"] < 48
+    assert figures["value"] == pytest.approx(figures["on_a_thick_block"], abs=2)
+    assert figures["place"] == pytest.approx(TOP[1:])
+
+
+def test_a_stand_presses_harder_and_doubts_are_told(cube_file, capsys):
+    words = [cube_file, *TOP, "--young", 20_000, "--json"]
+    _, light, _ = palpate(capsys, "durometer", *words)
+    _, stand, said = palpate(capsys, "durometer", *words, "--stand")
+    assert json.loads(stand)["value"] > json.loads(light)["value"]
+    total = json.loads(stand)["foot_force_n"] + json.loads(stand)["indenter_force_n"]
+    assert total == pytest.approx(0.4 * 9.81, rel=1e-3)
+    assert "warning" in said
+
+
+def test_a_curve_becomes_table_and_picture(cube_file, tmp_path, capsys):
+    table, picture = tmp_path / "curve.csv", tmp_path / "curve.svg"
+    words = ["--depth", 0.002, "--steps", 4, "--csv", table, "--picture", picture, "--json"]
+    status, printed, _ = palpate(capsys, "curve", cube_file, *TOP, *words)
+    figures = json.loads(printed)
+    assert status == 0
+    assert figures["tool"] == "fingertip"
+    assert len(table.read_text().splitlines()) == 6
+    assert picture.read_text().startswith("<svg")
+    assert float(table.read_text().splitlines()[-1].split(",")[1]) == pytest.approx(
+        figures["force_n"][-1], rel=1e-5
+    )
+
+
+def test_a_point_curve_ends_with_its_stiffness(cube_file, capsys):
+    _, printed, _ = palpate(capsys, "curve", cube_file, *TOP, "--tool", "point", "--steps", 2)
+    assert printed.splitlines()[0].startswith("depth_mm,force_n")
+    assert "N/mm over" in printed.splitlines()[-1]
+
+
+def test_a_map_is_written_as_numbers_and_as_colours(cube_file, cube, tmp_path, capsys):
+    numbers, colours = tmp_path / "map.npy", tmp_path / "map.ply"
+    _, printed, _ = palpate(capsys, "softness", cube_file, "-o", numbers, "--json")
+    figures = json.loads(printed)
+    values = np.load(numbers)
+    assert len(values) == len(cube.mesh.surface_nodes)
+    assert figures["softest_n_per_mm"] == pytest.approx(values.min() / 1000)
+    assert palpate(capsys, "softness", cube_file, "-o", colours)[0] == 0
+    assert trimesh.load(colours).volume == pytest.approx(0.05**3, rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("words", "reason"),
+    [
+        (["durometer", *TOP, "--young", "-1"], "Young"),
+        (["durometer", *TOP, "--load", "0"], "load is 0"),
+        (["durometer", "--at", "nan", "0", "0"], "not finite"),
+        (["curve", *TOP, "--picture", "curve.gif"], "end it in .svg"),
+        (["curve", *TOP, "--steps", "0"], "from 1 to"),
+        (["softness", "-o", "map.txt"], "end it in .npy or .ply"),
+        (["softness", "-o", "map.ply", "--pad", "-1"], "pad radius is -1"),
+    ],
+)
+def test_what_these_commands_cannot_do_is_refused_in_one_line(
+    cube_file, capsys, monkeypatch, tmp_path, words, reason
+):
+    monkeypatch.chdir(tmp_path)
+    status, _, said = palpate(capsys, words[0], cube_file, *words[1:])
+    assert status == 2
+    assert len(said.splitlines()) == 1
+    assert reason in said
+    assert not list(tmp_path.iterdir())

@@ -1,0 +1,104 @@
+"""``palpate curve``: force against depth at a place of a body."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+
+from ..core import cache
+from ..core.softness.curve_picture import curve_svg
+from ..core.softness.force_depth import MILLIMETRES, force_depth_curve
+from ..core.tools import Tool, plate, rod, sphere
+from ..core.whole_file import refuse_missing_folder, whole_file
+from .place_options import add_at, add_young, positive_length, refuse_suffix, young_modulus_of
+
+TOOLS = ("point", "fingertip", "plate", "rod")
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Describe the command."""
+    parser = subparsers.add_parser("curve", help="force against depth at a place of a body")
+    parser.add_argument("body", type=Path, metavar="BODY.npz")
+    add_at(parser)
+    parser.add_argument(
+        "--tool", choices=TOOLS, default="fingertip", help="what presses (default fingertip)"
+    )
+    parser.add_argument(
+        "--radius",
+        type=positive_length,
+        default=0.008,
+        metavar="M",
+        help="of fingertip and rod (default %(default)g)",
+    )
+    parser.add_argument(
+        "--width",
+        type=positive_length,
+        default=0.02,
+        metavar="M",
+        help="side of the plate, length of the rod (default %(default)g)",
+    )
+    parser.add_argument(
+        "--depth", type=positive_length, metavar="M", help="how far (default: what is small there)"
+    )
+    parser.add_argument("--steps", type=int, default=20, metavar="N", help="default %(default)d")
+    add_young(parser)
+    parser.add_argument("--csv", type=Path, metavar="OUT.csv", help="write the curve as a table")
+    parser.add_argument("--picture", type=Path, metavar="OUT.svg", help="write it as a picture")
+    parser.add_argument("--json", action="store_true", help="print figures as JSON")
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Press deeper and deeper, print and write."""
+    for option, path, suffix in (
+        ("--csv", arguments.csv, ".csv"),
+        ("--picture", arguments.picture, ".svg"),
+    ):
+        if path is not None:
+            refuse_suffix(option, path.name, path.suffix, (suffix,))
+            refuse_missing_folder(path)
+    body = cache.load(arguments.body)
+    curve = force_depth_curve(
+        body,
+        arguments.at,
+        arguments.depth,
+        tool=_tool(arguments),
+        steps=arguments.steps,
+        young_modulus=young_modulus_of(arguments, body),
+    )
+    if arguments.csv is not None:
+        with whole_file(arguments.csv) as file:
+            file.write(curve.as_csv().encode())
+    if arguments.picture is not None:
+        with whole_file(arguments.picture) as file:
+            file.write(curve_svg(curve).encode())
+    if arguments.json:
+        figures = {
+            "tool": curve.tool,
+            "place": curve.place.position.tolist(),
+            "axis": curve.place.axis.tolist(),
+            "depth_m": curve.depths.tolist(),
+            "force_n": curve.forces.tolist(),
+            "stiffness_n_per_m": curve.stiffness.tolist(),
+            "contact_area_m2": curve.areas.tolist(),
+        }
+        print(json.dumps(figures))
+    else:
+        print(curve.as_csv(), end="")
+        print(
+            f"{curve.tool}: {curve.secant / MILLIMETRES:.3g} N/mm over "
+            f"{curve.depths[-1] * MILLIMETRES:.3g} mm"
+        )
+    return 0
+
+
+def _tool(arguments: argparse.Namespace) -> Tool | None:
+    match arguments.tool:
+        case "fingertip":
+            return sphere(arguments.radius, "fingertip")
+        case "plate":
+            return plate(arguments.width, arguments.width)
+        case "rod":
+            return rod(arguments.radius, arguments.width)
+    return None

@@ -1,0 +1,262 @@
+"""A virtual durometer: the standard's indenter pressed into a body, until body and spring balance.
+
+The foot lies on the surface, the indenter stands out of it by p and pushes with the force that its
+spring has then; both are rigid, push along the device's axis only, and may not pull:
+
+    w = C f >= d,  f >= 0,  f (w - d) = 0
+
+with the depths d at which foot and indenter stand below the rest surface. The spring is linear, so
+that p goes into the same complementarity problem, as a compliance that all points of the indenter
+share. The body answers linearly, with the near field (:mod:`..near_field`), since an indenter is
+smaller than the mesh.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.optimize import brentq
+
+from ..complementarity import solve_complementarity
+from ..errors import PalpateError
+from ..near_field import near_correction, point_compliance
+from ..soft_body import SoftBody
+from .durometer_points import Seat, set_on
+from .durometer_type import MILLIMETRE, TYPES, DurometerType
+from .indentation import indenter_force
+from .place import Place
+from .shore import Shore
+
+# What the standard asks of a specimen, and when the body is not to be believed any more.
+LEAST_THICKNESS = 6.0 * MILLIMETRE
+MOST_OF_THICKNESS = 0.2
+MOST_OVERHANG = 0.05
+# Edges of the surface as a share of the thickness: longer ones do not feel what is beneath. It
+# matters where the contact is wider than so much of the thickness (5 %: by about a point).
+MOST_EDGE = 0.25
+LEAST_CONTACT = 0.05
+
+# How exactly the foot carries its load, as a share of it.
+LOAD_TOLERANCE = 1e-4
+MOST_STEPS = 60
+
+
+@dataclass(frozen=True, eq=False)
+class Balance:
+    """A durometer in balance with what it presses on.
+
+    Attributes
+    ----------
+    reading : 0 to 100.
+    pushes : float64 (p,), forces of the points on the body along the axis, newton.
+    depth : how far the indenter stands out of the foot, metres.
+    foot_depth : how far the foot is below where it first touched, metres.
+    """
+
+    reading: float
+    pushes: NDArray[np.float64]
+    depth: float
+    foot_depth: float
+
+
+@dataclass(frozen=True, eq=False)
+class DurometerReading:
+    """What a durometer says at a place of a body.
+
+    Attributes
+    ----------
+    shore : the reading.
+    block : what it would say on a large, thick block of the same material.
+    place : where it stands.
+    tip_force, foot_force : newton, on the body.
+    depth, foot_depth : as in :class:`Balance`, metres.
+    thickness : of the body there, along the axis, metres.
+    warnings : what speaks against believing the reading, in sentences.
+    """
+
+    shore: Shore
+    block: Shore
+    place: Place
+    tip_force: float
+    foot_force: float
+    depth: float
+    foot_depth: float
+    thickness: float
+    warnings: tuple[str, ...]
+
+
+def read_durometer(
+    body: SoftBody,
+    at: ArrayLike,
+    scale: str = "00",
+    *,
+    young_modulus: float | None = None,
+    load: float | None = None,
+) -> DurometerReading:
+    """Read a durometer set on the surface point nearest to ``at`` (3,), metres.
+
+    Parameters
+    ----------
+    scale : "00" or "A".
+    young_modulus : pascal; the body's own unless given.
+    load : newton on the whole device, as a stand presses it on; None lays it on so that its foot
+        just touches, as in the relations between Shore values and Young's modulus.
+
+    Raises
+    ------
+    PalpateError
+        Unknown scale; a load or Young's modulus that is no positive number.
+    """
+    if scale not in TYPES:
+        raise PalpateError(f"Shore {scale}: there is no such durometer here; choose 00 or A")
+    kind = TYPES[scale]
+    modulus = body.young_modulus if young_modulus is None else young_modulus
+    for name, value, unit in (("Young's modulus", modulus, "pascal"), ("load", load, "newton")):
+        if value is not None and not (np.isfinite(value) and value > 0):
+            raise PalpateError(f"durometer: {name} is {value}; give a positive number of {unit}")
+    seat = set_on(body, at, kind)
+    balance = balanced(seat_compliance(body, seat) / modulus, seat, kind, load)
+    return DurometerReading(
+        shore=Shore(scale, balance.reading),
+        block=Shore(scale, block_reading(kind, modulus, body.poisson_ratio)),
+        place=seat.place,
+        tip_force=float(balance.pushes[seat.tip].sum()),
+        foot_force=float(balance.pushes[~seat.tip].sum()),
+        depth=balance.depth,
+        foot_depth=balance.foot_depth,
+        thickness=seat.thickness,
+        warnings=_warnings(body, seat, kind, balance),
+    )
+
+
+def seat_compliance(body: SoftBody, seat: Seat) -> NDArray[np.float64]:
+    """How far points give way along the axis per force along it on others, (p, p), at 1 Pa."""
+    points, everyone = seat.points, np.arange(len(seat.points))
+    # On a slope points lie farther apart than in the plane of the foot.
+    span = 3.0 * float(seat.radii.max())
+    correction = near_correction(body, points, span)
+    blocks = point_compliance(body, points, everyone, everyone, correction)
+    axis = seat.place.axis
+    along = np.einsum("x,klxy,y->kl", axis, blocks, axis, optimize=True)
+    symmetric: NDArray[np.float64] = 0.5 * (along + along.T)
+    return symmetric
+
+
+def block_reading(kind: DurometerType, young_modulus: float, poisson_ratio: float) -> float:
+    """What a durometer says on a half-space, by the closed forms of :mod:`.indentation`."""
+    stiffness = young_modulus / (1.0 - poisson_ratio**2)
+
+    def excess(reading: float) -> float:
+        return stiffness * indenter_force(kind, kind.depth(reading)) - kind.force(reading)
+
+    return 0.0 if excess(0.0) < 0.0 else float(brentq(excess, 0.0, 100.0, xtol=1e-9))
+
+
+def balanced(
+    compliance: NDArray[np.float64], seat: Seat, kind: DurometerType, load: float | None
+) -> Balance:
+    """Balance on a body of this ``compliance`` (p, p) along the axis, m/N.
+
+    With a load, the foot sinks until all forces together are the load.
+    """
+    laid_on = float(seat.heights[~seat.tip].min(initial=float(seat.heights[seat.tip].min())))
+    if load is None:
+        return _at_depth(compliance, seat, kind, laid_on, laid_on)
+    # The force grows with the depth, and where more points come to carry it, faster: Newton's steps
+    # from below never go past the depth looked for by much, and halving holds them if they would.
+    above, below = laid_on - kind.travel, np.inf
+    foot, found = laid_on, _at_depth(compliance, seat, kind, laid_on, laid_on)
+    for _ in range(MOST_STEPS):
+        missing = load - float(found.pushes.sum())
+        if abs(missing) <= LOAD_TOLERANCE * load:
+            break
+        above, below = (foot, below) if missing > 0.0 else (above, foot)
+        pressed = np.flatnonzero(found.pushes > 0.0)
+        step = np.inf
+        if pressed.size:
+            sprung = _sprung(compliance, seat.tip, kind, found.depth)[np.ix_(pressed, pressed)]
+            step = missing / float(np.linalg.solve(sprung, np.ones(len(pressed))).sum())
+        foot += step
+        if not above < foot < below:
+            foot = 0.5 * (above + below) if np.isfinite(below) else above + kind.travel
+        found = _at_depth(compliance, seat, kind, foot, laid_on, found.pushes)
+    return found
+
+
+def _at_depth(
+    compliance: NDArray[np.float64],
+    seat: Seat,
+    kind: DurometerType,
+    foot: float,
+    laid_on: float,
+    start: NDArray[np.float64] | None = None,
+) -> Balance:
+    """Balance of the indenter while the foot stands ``foot`` metres below the place."""
+    tip = seat.tip
+    gaps = seat.heights - foot
+    gaps[tip] += kind.profile(seat.radii[tip])
+    # p = travel - (force - force_at_zero) * softness, as long as neither of its stops is reached.
+    softness = _spring_softness(kind)
+    standing = kind.travel + kind.force_at_zero * softness
+    sprung = compliance + softness * np.outer(tip, tip)
+    pushes = solve_complementarity(sprung, gaps - standing * tip, start).forces
+    depth = standing - softness * float(pushes[tip].sum())
+    if not 0.0 <= depth <= kind.travel:
+        depth = min(max(depth, 0.0), kind.travel)
+        pushes = solve_complementarity(compliance, gaps - depth * tip, start).forces
+    return Balance(100.0 * (1.0 - depth / kind.travel), pushes, depth, foot - laid_on)
+
+
+def _spring_softness(kind: DurometerType) -> float:
+    """How far the spring gives way, metres per newton."""
+    return kind.travel / (100.0 * kind.force_per_point)
+
+
+def _sprung(
+    compliance: NDArray[np.float64], tip: NDArray[np.bool_], kind: DurometerType, depth: float
+) -> NDArray[np.float64]:
+    """The compliance together with that of the spring, unless the indenter is at a stop."""
+    if not 0.0 < depth < kind.travel:
+        return compliance
+    return compliance + _spring_softness(kind) * np.outer(tip, tip)
+
+
+def _warnings(body: SoftBody, seat: Seat, kind: DurometerType, balance: Balance) -> tuple[str, ...]:
+    warnings = []
+    sunk = (balance.depth + balance.foot_depth) / seat.thickness
+    if sunk > MOST_OF_THICKNESS:
+        warnings.append(
+            f"the indenter goes in by {100 * sunk:.0f} % of the thickness there, more than a "
+            "linear body can be believed for; try a firmer material or another place"
+        )
+    if seat.thickness < LEAST_THICKNESS:
+        warnings.append(
+            f"the body is {1000 * seat.thickness:.1f} mm thick there, and the standard asks for "
+            f"{1000 * LEAST_THICKNESS:.0f} mm; the reading tells part and support together"
+        )
+    edge = _edge_length(body, seat)
+    felt = np.sqrt(kind.shaft * balance.depth) > LEAST_CONTACT * seat.thickness
+    if felt and edge > MOST_EDGE * seat.thickness:
+        warnings.append(
+            f"edges of {1000 * edge:.1f} mm are too long for {1000 * seat.thickness:.1f} mm of "
+            "thickness to be felt; bake with a shorter edge length"
+        )
+    if seat.overhang > MOST_OVERHANG:
+        warnings.append(
+            f"{100 * seat.overhang:.0f} % of the foot has no surface under it; choose a place "
+            "farther from the edge"
+        )
+    if balance.reading <= 0.0:
+        warnings.append("softer than this durometer tells; try the scale 00 or read a force curve")
+    if seat.place.pinned(body):
+        warnings.append("the place is pinned, or next to what is; it is as firm as its support")
+    return tuple(warnings)
+
+
+def _edge_length(body: SoftBody, seat: Seat) -> float:
+    """Root of the mean square of the edges under the indenter, metres."""
+    corners = body.mesh.nodes[body.mesh.surface_triangles[seat.place.triangle]]
+    edges = np.linalg.norm(np.roll(corners, -1, axis=0) - corners, axis=1)
+    return float(np.sqrt((edges**2).mean()))

@@ -1,0 +1,150 @@
+"""How hard a place pushes back the deeper it is pressed: for a point, or for a tool."""
+
+from __future__ import annotations
+
+import io
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import PalpateError
+from ..soft_body import SoftBody
+from ..tool_contact import ToolTouch, press_tool
+from ..tools import Pose, Tool
+from .parallel_rays import across
+from .place import Place, nearest_place, thickness
+
+COLUMNS = "depth_mm,force_n,stiffness_n_per_mm,contact_area_mm2"
+MILLIMETRES = 1e3
+
+# Without a depth asked for, a curve goes this far, as a share of the thickness or the tool's size.
+SHARE_OF_THICKNESS = 0.2
+SHARE_OF_TOOL = 0.25
+
+MOST_STEPS = 1000
+
+
+@dataclass(frozen=True, eq=False)
+class ForceDepthCurve:
+    """Force against depth at one place, from the first touch on.
+
+    Attributes
+    ----------
+    tool : name of what presses; "point" for a point.
+    place : where, and along which axis.
+    depths : float64 (n,), metres along the axis, from 0 on.
+    forces : float64 (n,), newton along the axis.
+    stiffness : float64 (n,), slope of the force there, N/m, from the neighbouring depths.
+    areas : float64 (n,), square metres in contact; 0 for a point.
+    """
+
+    tool: str
+    place: Place
+    depths: NDArray[np.float64]
+    forces: NDArray[np.float64]
+    stiffness: NDArray[np.float64]
+    areas: NDArray[np.float64]
+
+    @property
+    def secant(self) -> float:
+        """Force over depth at the end, N/m."""
+        return float(self.forces[-1] / self.depths[-1])
+
+    def as_csv(self) -> str:
+        """Depth in mm, force in N, stiffness in N/mm, contact area in mm2; one line a depth."""
+        table = np.column_stack(
+            [
+                self.depths * MILLIMETRES,
+                self.forces,
+                self.stiffness / MILLIMETRES,
+                self.areas * MILLIMETRES**2,
+            ]
+        )
+        text = io.StringIO()
+        np.savetxt(text, table, fmt="%.6g", delimiter=",", header=COLUMNS, comments="")
+        return text.getvalue()
+
+
+def usual_depth(body: SoftBody, at: ArrayLike, tool: Tool | None) -> float:
+    """How far a curve goes if nobody says: metres."""
+    through = SHARE_OF_THICKNESS * thickness(body, nearest_place(body, at))
+    return through if tool is None else min(through, SHARE_OF_TOOL * tool.size)
+
+
+def force_depth_curve(
+    body: SoftBody,
+    at: ArrayLike,
+    depth: float | None = None,
+    *,
+    tool: Tool | None = None,
+    steps: int = 20,
+    young_modulus: float | None = None,
+) -> ForceDepthCurve:
+    """Press straight in at the surface point nearest to ``at`` (3,), metres.
+
+    Parameters
+    ----------
+    depth : metres; see :func:`usual_depth` without.
+    tool : a rigid tool, its -z axis along the axis; None for a point.
+    steps : how many depths besides 0.
+    young_modulus : pascal; the body's own unless given.
+
+    Raises
+    ------
+    PalpateError
+        A depth, number of steps or Young's modulus that is not positive.
+    """
+    modulus = body.young_modulus if young_modulus is None else young_modulus
+    place = nearest_place(body, at)
+    end = usual_depth(body, at, tool) if depth is None else depth
+    for name, value in (("depth", end), ("Young's modulus", modulus)):
+        if not (np.isfinite(value) and value > 0):
+            raise PalpateError(f"force curve: {name} is {value}; give a positive number")
+    if not 1 <= steps <= MOST_STEPS:
+        raise PalpateError(f"force curve: {steps} steps; give a number from 1 to {MOST_STEPS}")
+    depths = np.linspace(0.0, end, steps + 1)
+    if tool is None:
+        return _of_point(body, place, depths, modulus)
+    return _of_tool(body, place, depths, modulus, tool)
+
+
+def _of_point(
+    body: SoftBody, place: Place, depths: NDArray[np.float64], modulus: float
+) -> ForceDepthCurve:
+    """A point contact is linear: one touch tells all."""
+    touch = body.touch(place.triangle, place.alpha, place.axis, modulus)
+    stiffness = -float(touch.force @ place.axis)
+    return ForceDepthCurve(
+        "point",
+        place,
+        depths,
+        stiffness * depths,
+        np.full(len(depths), stiffness),
+        np.zeros(len(depths)),
+    )
+
+
+def _of_tool(
+    body: SoftBody, place: Place, depths: NDArray[np.float64], modulus: float, tool: Tool
+) -> ForceDepthCurve:
+    """Deeper and deeper, each depth from the one before."""
+    touch: ToolTouch | None = None
+    forces, areas = np.zeros(len(depths)), np.zeros(len(depths))
+    for step, depth in enumerate(depths.tolist()):
+        pose = facing_pose(place, tool, depth)
+        touch = press_tool(body, tool, pose, young_modulus=modulus, start=touch)
+        forces[step] = -float(touch.force @ place.axis)
+        areas[step] = float(touch.surface.areas[touch.points].sum())
+    stiffness: NDArray[np.float64] = np.gradient(forces, depths)
+    return ForceDepthCurve(tool.name, place, depths, forces, stiffness, areas)
+
+
+def facing_pose(place: Place, tool: Tool, depth: float) -> Pose:
+    """The tool with its -z axis into the body at a place, its foremost point ``depth`` metres below
+    the rest surface.
+    """
+    foremost = float(-tool.core[:, 2].min()) + tool.radius
+    sideways = across(-place.axis)
+    rotation = np.column_stack([sideways[0], sideways[1], -place.axis])
+    return Pose.at(place.position + (depth - foremost) * place.axis, rotation)
