@@ -585,8 +585,8 @@ class Servo:
         """
 
     def set_orientation(self, rotation: _Matrix, finger: int = 0) -> None:
-        """Turn a finger's tool: tool to body for a pointer, tool to stylus for a device that tells
-        its orientation. ValueError unless it is a rotation.
+        """Turn a finger's tool: tool to body for a pointer, tool to stylus for a device, whose
+        stylus keeps the device's axes unless it tells otherwise. ValueError unless a rotation.
         """
 
     def set_young_modulus(self, young_modulus: float) -> None: ...

@@ -60,6 +60,19 @@ impl Circling {
         self.filled += length;
     }
 
+    /// Now and then one that is none, or of another STATE.
+    fn orientation(&mut self) {
+        let half = 0.1 * (f64::from(self.tick) * 1e-3).sin();
+        let other = u32::from(self.tick % 13 == 0);
+        let unit = if self.tick % 17 == 0 { 2e4 } else { 32_767.0 };
+        let mut payload = [0; 11];
+        payload[0] = 5;
+        payload[1..3].copy_from_slice(&((self.tick + other) as u16).to_le_bytes());
+        payload[3..5].copy_from_slice(&((half.cos() * unit) as i16).to_le_bytes());
+        payload[5..7].copy_from_slice(&((half.sin() * unit) as i16).to_le_bytes());
+        self.put(&payload);
+    }
+
     fn state(&mut self) {
         let t = f64::from(self.tick) * 1e-3;
         let height = 0.052 - 0.008 * (1.0 - (t * 2.0).cos()) / 2.0;
@@ -77,6 +90,7 @@ impl Circling {
             payload[7 + 4 * i..11 + 4 * i].copy_from_slice(&um.to_le_bytes());
         }
         payload[20] = 1;
+        self.orientation();
         self.put(&payload);
     }
 }
@@ -214,6 +228,9 @@ fn a_hundred_thousand_ticks_with_a_device_allocate_nothing() {
     assert_eq!(last.first().snapshot.tick, 100_000);
     assert!(last.first().link.states > 45_000, "{:?}", last.first().link);
     assert!(last.first().link.forces > 99_000);
+    assert!(last.first().link.orientations > 40_000);
+    assert!(last.first().link.orientations_refused > 1000);
+    assert!(last.first().link.orientations_unpaired > 1000);
     assert!(
         last.first().link.crc_errors > 100 && last.first().link.oversize > 50,
         "{:?}",

@@ -4,6 +4,7 @@ import json
 import math
 from pathlib import Path
 
+import numpy as np
 import palpate_servo
 import pytest
 from measuring.servo_host import ABOVE, YOUNG_MODULUS, cube
@@ -33,6 +34,17 @@ def servo():
     return servo
 
 
+def rotation(quaternion):
+    """Matrix of a quaternion, column by column: where q e q* is."""
+    w, x, y, z = np.array(quaternion) / np.linalg.norm(quaternion)
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return np.eye(3) + 2.0 * w * cross + 2.0 * cross @ cross
+
+
+QUARTER = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+"""x to y, y to -x."""
+
+
 def orientations(servo):
     """Paired, unpaired, refused, lost, and what was no message."""
     counters = servo.counters()["link"]
@@ -42,8 +54,11 @@ def orientations(servo):
 
 @pytest.mark.parametrize("vector", TOLD, ids=lambda vector: vector["name"])
 def test_the_orientations_of_the_vectors_are_taken_with_their_state(servo, vector):
+    np.testing.assert_array_equal(servo.snapshot().orientation, np.eye(3))
     servo.tick(bytes.fromhex(vector["frame"]) + state(vector["fields"]["sequence"]))
     assert orientations(servo) == [1, 0, 0, 0, 0]
+    expected = rotation(vector["fields"]["quaternion"])
+    np.testing.assert_allclose(servo.snapshot().orientation, expected, atol=1e-12)
 
 
 @pytest.mark.parametrize("vector", VECTORS["refused"], ids=lambda vector: vector["name"])
@@ -53,6 +68,16 @@ def test_what_is_none_by_the_vectors_is_refused_by_the_servo_too(servo, vector):
     is_message = len(payload) == 11
     assert orientations(servo) == [0, 0, int(is_message), 0, int(not is_message)]
     assert servo.snapshot().state == "ramping"
+    np.testing.assert_array_equal(servo.snapshot().orientation, np.eye(3))
+
+
+def test_the_frame_turns_the_stylus_from_the_left(servo):
+    servo.set_device_frame(QUARTER, (0.1, 0.0, 0.0), 2.0)
+    tilted = about((1.0, 0.0, 0.0), 0.5)
+    servo.tick(link.encode(link.orientation(0, tilted)) + state(0))
+    seen = servo.snapshot().orientation
+    np.testing.assert_allclose(seen, QUARTER @ rotation(tilted), atol=1e-4)
+    assert not np.allclose(seen, rotation(tilted) @ QUARTER, atol=0.1)
 
 
 @pytest.fixture
@@ -75,9 +100,18 @@ def turning(eventually):
 
 
 def test_each_state_of_a_turning_device_has_its_orientation(turning, eventually):
-    _, servo = turning(turning=30.0, turning_axis=(0.0, 1.0, 0.0))
-    eventually(lambda: servo.counters()["link"]["orientations"] > 300)
+    _, servo = turning(turning=30.0, turning_axis=(0.0, 1.0, 0.0), turning_period=1.0)
+    degrees = []
+
+    def seen():
+        x = servo.snapshot().orientation[:, 0]
+        degrees.append(math.degrees(math.atan2(-x[2], x[0])))
+        return servo.counters()["link"]["orientations"] > 1500
+
+    eventually(seen)
     servo.stop()
+    assert max(degrees) == pytest.approx(30.0, abs=0.5)
+    assert min(degrees) == pytest.approx(0.0, abs=0.5)
     assert orientations(servo)[1:] == [0, 0, 0, 0]
     assert servo.counters()["link"]["orientations"] == servo.counters()["link"]["states"]
 
@@ -89,6 +123,21 @@ def test_lost_orientations_are_counted_and_do_no_harm(turning, eventually):
     servo.stop()
     counters = servo.counters()["link"]
     assert counters["orientations"] + counters["orientations_lost"] <= counters["states"]
+
+
+def test_how_the_hand_holds_the_stylus_arrives_in_the_body(turning, eventually):
+    """The frame turns it as it turns the place, and the tool may be fixed to it at a turn."""
+    device, servo = turning(turning=0.0)
+    np.testing.assert_array_equal(servo.snapshot().orientation, np.eye(3))
+    held, fixed = about((1.0, 2.0, -1.0), 1.2), rotation(about((0.0, 0.0, 1.0), 0.4))
+    servo.set_device_frame(QUARTER, (0.0, 0.0, 0.0), 1.0)
+    servo.set_orientation(fixed)
+    device.turn_hand(held, 0.3)
+    expected = QUARTER @ rotation(held) @ fixed
+    eventually(lambda: np.allclose(servo.snapshot().orientation, expected, atol=1e-4))
+    (finger,) = servo.snapshot().fingers
+    np.testing.assert_allclose(finger.orientation, expected, atol=1e-4)
+    np.testing.assert_allclose(finger.probe, QUARTER @ np.array(ABOVE), atol=2e-5)
 
 
 def test_a_stylus_that_is_turned_for_the_first_time_is_set_down_anew(turning, eventually):
