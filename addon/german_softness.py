@@ -27,4 +27,48 @@ WORDS = {
         "Weichheit wie in Datenblättern, von 10 bis 90: was ein Durometer auf einem dicken "
         "Block anzeigt. Setzt den Elastizitätsmodul und folgt ihm"
     ),
+    "Softness": "Weichheit",
+    "Measured at the 3D cursor": "Gemessen wird am 3D-Cursor",
+    "Reading": "Anzeige",
+    "On a Thick Block": "Auf einem dicken Block",
+    "Text Block": "Textblock",
+    "Stiffness": "Steifigkeit",
+    "Force": "Kraft",
+    "Depth": "Tiefe",
+    "Place": "Stelle",
+    "Colour": "Farbe",
+    "A colour of the map": "Eine Farbe der Karte",
+    "Fingertip Radius": "Radius der Fingerspitze",
+    "How large what presses is, for curve and map; 0 for a point": (
+        "Wie groß ist, was drückt, für Kurve und Karte; 0 für einen Punkt"
+    ),
+    "Read Durometer": "Durometer ablesen",
+    "Press the indenter of the chosen scale into the object at the 3D cursor, and read "
+    "what the device would show there": (
+        "Den Eindringkörper der gewählten Skala am 3D-Cursor in das Objekt drücken und "
+        "ablesen, was das Gerät dort anzeigen würde"
+    ),
+    "Force Curve": "Kraftkurve",
+    "Press straight in at the 3D cursor, deeper and deeper, and write force against depth "
+    "into a text block": (
+        "Am 3D-Cursor gerade hineindrücken, immer tiefer, und die Kraft über der Tiefe in "
+        "einen Textblock schreiben"
+    ),
+    "How far to press; 0 for as far as is small there": (
+        "Wie weit gedrückt wird; 0 für so weit, wie es dort klein ist"
+    ),
+    "The surface point nearest to this is asked, world coordinates. Without one, the 3D "
+    "cursor says where": (
+        "Gefragt wird die nächste Stelle der Oberfläche, Weltkoordinaten. Ohne Angabe gilt "
+        "der 3D-Cursor"
+    ),
+    "Map Softness": "Weichheit kartieren",
+    "Colour the object by how hard a fingertip must push for each millimetre: dark is "
+    "soft, yellow is firm. Writes the colour attribute Palpate Softness and nothing else": (
+        "Das Objekt danach färben, wie stark eine Fingerspitze für jeden Millimeter drücken "
+        "muss: dunkel ist weich, gelb ist fest. Schreibt das Farbattribut „Palpate Softness“ "
+        "und sonst nichts"
+    ),
+    "Remove Softness Map": "Weichheitskarte entfernen",
+    "Delete the colour attribute Palpate Softness": "Das Farbattribut „Palpate Softness“ löschen",
 }

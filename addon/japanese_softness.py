@@ -25,4 +25,43 @@ WORDS = {
         "データシートのショア硬さ (10 から "
         "90)。厚いブロックでの硬度計の値です。ヤング率を設定し、ヤング率に追従します"
     ),
+    "Softness": "柔らかさ",
+    "Measured at the 3D cursor": "3D カーソルの位置で測定",
+    "Reading": "読み",
+    "On a Thick Block": "厚いブロックでは",
+    "Text Block": "テキストブロック",
+    "Stiffness": "剛性",
+    "Force": "力",
+    "Depth": "深さ",
+    "Place": "位置",
+    "Colour": "色",
+    "A colour of the map": "マップの色",
+    "Fingertip Radius": "指先の半径",
+    "How large what presses is, for curve and map; 0 for a point": (
+        "曲線とマップで押すものの大きさ。0 は点"
+    ),
+    "Read Durometer": "硬度計を読む",
+    "Press the indenter of the chosen scale into the object at the 3D cursor, and read "
+    "what the device would show there": (
+        "選んだスケールの押針を 3D カーソルの位置で押し込み、硬度計が示す値を読みます"
+    ),
+    "Force Curve": "力の曲線",
+    "Press straight in at the 3D cursor, deeper and deeper, and write force against depth "
+    "into a text block": (
+        "3D カーソルの位置でまっすぐ深く押し、深さと力の表をテキストブロックに書きます"
+    ),
+    "How far to press; 0 for as far as is small there": "押す深さ。0 はその場所で小さい深さ",
+    "The surface point nearest to this is asked, world coordinates. Without one, the 3D "
+    "cursor says where": (
+        "これに最も近い表面の点で測定します (ワールド座標)。指定がなければ 3D カーソルの位置です"
+    ),
+    "Map Softness": "柔らかさをマップ",
+    "Colour the object by how hard a fingertip must push for each millimetre: dark is "
+    "soft, yellow is firm. Writes the colour attribute Palpate Softness and nothing else": (
+        "指先で 1 "
+        "ミリ押すのに要る力で色を付けます。暗い色は柔らかく、黄色は硬い所です。カラー属性「P"
+        "alpate Softness」だけを書きます"
+    ),
+    "Remove Softness Map": "柔らかさのマップを削除",
+    "Delete the colour attribute Palpate Softness": "カラー属性「Palpate Softness」を削除します",
 }

@@ -1,11 +1,76 @@
-"""Softness in the maker's words: the Shore value beside Young's modulus."""
+"""Softness in the maker's words: Shore value, durometer, force curve and map."""
 
 import bpy
 
 from ..core.errors import PalpateError
+from ..core.softness.ramp import legend
 from ..core.softness.shore import young_range
+from ..operators.softness_colours import ATTRIBUTE
+from .panel_base import PalpatePanel, draw_rows, named_properties
 from .sentence import say
-from .softness_properties import shore_now
+from .softness_properties import LEGEND_STEPS, shore_now
+
+
+class PALPATE_PT_softness(PalpatePanel, bpy.types.Panel):
+    bl_idname = "PALPATE_PT_softness"
+    bl_label = "Softness"
+    bl_parent_id = "PALPATE_PT_main"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = named_properties(self)
+        say(layout, context, "Measured at the 3D cursor", "PIVOT_CURSOR")
+        _draw_reading(layout, context)
+        layout.prop(context.object.palpate_softness, "finger_radius")
+        _draw_curve(layout, context)
+        _draw_map(layout, context)
+
+
+def _draw_reading(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    softness = context.object.palpate_softness
+    layout.prop(softness, "shore_scale")
+    layout.operator("palpate.read_durometer", icon="DRIVER_DISTANCE")
+    if not softness.read_scale:
+        return
+    rows = [
+        ("Reading", f"Shore {softness.read_scale}  {softness.read_value:.0f}"),
+        ("On a Thick Block", f"{softness.read_block:.0f}"),
+    ]
+    draw_rows(layout.column(align=True), rows)
+    for warning in filter(None, softness.read_warnings.split("\n")):
+        say(layout, context, warning[:1].upper() + warning[1:], "ERROR")
+
+
+def _draw_curve(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    softness = context.object.palpate_softness
+    layout.operator("palpate.force_curve", icon="FCURVE")
+    if not softness.curve_text:
+        return
+    rows = [
+        ("Stiffness", f"{softness.curve_stiffness:.3g} N/mm"),
+        ("Force", f"{softness.curve_force:.3g} N"),
+        ("Depth", f"{softness.curve_depth:.3g} mm"),
+        ("Text Block", softness.curve_text),
+    ]
+    draw_rows(layout.column(align=True), rows)
+
+
+def _draw_map(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Buttons, and the legend while the mesh carries the colours."""
+    thing = context.object
+    softness = thing.palpate_softness
+    row = layout.row(align=True)
+    row.operator("palpate.map_softness", icon="COLOR")
+    row.operator("palpate.remove_softness_map", icon="X", text="")
+    if ATTRIBUTE not in thing.data.color_attributes or softness.map_low <= 0.0:
+        return
+    column = layout.column(align=True)
+    column.use_property_split = False
+    values = [value for value, _ in legend(softness.map_low, softness.map_high, LEGEND_STEPS)]
+    for step, value in reversed(list(enumerate(values))):
+        split = column.split(factor=0.15, align=True)
+        split.prop(softness, f"colours_{step}", text="")
+        split.label(text=f"{value:.3g} N/mm", translate=False)
 
 
 def draw_shore(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
@@ -23,3 +88,6 @@ def draw_shore(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         softer = material.young_modulus < softest
         text = "Softer than this scale tells" if softer else "Firmer than this scale tells"
         say(layout, context, text, "INFO")
+
+
+classes = (PALPATE_PT_softness,)

@@ -204,6 +204,7 @@ classes = (
     panel_finger.PALPATE_PT_second_finger,
     *panel_loop.classes,
     *panel_recording.classes,
+    *panel_softness.classes,
     PALPATE_PT_bake,
     PALPATE_PT_method,
     PALPATE_PT_body,

@@ -7,6 +7,7 @@ cannot disagree, and it takes effect while somebody presses, as Young's modulus 
 import bpy
 
 from ..core.errors import PalpateError
+from ..core.softness.ramp import ramp
 from ..core.softness.relations import RELATIONS, USUAL
 from ..core.softness.shore import Shore, shore_from_young, young_from_shore
 
@@ -15,6 +16,7 @@ SCALE_ITEMS = [
     ("00", "Shore 00", "For gels, soft silicones and foams: a ball on a light spring"),
     ("A", "Shore A", "For rubbers: a blunt cone on a stronger spring"),
 ]
+LEGEND_STEPS = 5
 
 
 def shore_now(thing: bpy.types.Object) -> Shore:
@@ -46,6 +48,21 @@ def _set_shore(settings: bpy.types.PropertyGroup, value: float) -> None:
     material.young_modulus = young_from_shore(shore, material.poisson_ratio)
 
 
+def legend_colour(step: int) -> bpy.props.FloatVectorProperty:
+    """One colour of the map's legend, for show."""
+    colour = tuple(ramp([step / (LEGEND_STEPS - 1)])[0].tolist())
+    return bpy.props.FloatVectorProperty(
+        name="Colour",
+        description="A colour of the map",
+        size=3,
+        subtype="COLOR_GAMMA",
+        min=0.0,
+        max=1.0,
+        get=lambda _: colour,
+        options={"HIDDEN"},
+    )
+
+
 class PalpateSoftness(bpy.types.PropertyGroup):
     """``object.palpate_softness``."""
 
@@ -66,6 +83,33 @@ class PalpateSoftness(bpy.types.PropertyGroup):
         get=_read_shore,
         set=_set_shore,
     )
+    finger_radius: bpy.props.FloatProperty(
+        name="Fingertip Radius",
+        description="How large what presses is, for curve and map; 0 for a point",
+        default=0.005,
+        min=0.0,
+        soft_max=0.05,
+        precision=4,
+        step=0.1,
+        subtype="DISTANCE",
+    )
+    colours_0: legend_colour(0)
+    colours_1: legend_colour(1)
+    colours_2: legend_colour(2)
+    colours_3: legend_colour(3)
+    colours_4: legend_colour(4)
+
+    # What was found last. Written by the operators only; lengths in mm, stiffness in N/mm.
+    read_scale: bpy.props.StringProperty(options={"HIDDEN"})
+    read_value: bpy.props.FloatProperty(options={"HIDDEN"})
+    read_block: bpy.props.FloatProperty(options={"HIDDEN"})
+    read_warnings: bpy.props.StringProperty(options={"HIDDEN"})
+    curve_text: bpy.props.StringProperty(options={"HIDDEN"})
+    curve_depth: bpy.props.FloatProperty(options={"HIDDEN"})
+    curve_force: bpy.props.FloatProperty(options={"HIDDEN"})
+    curve_stiffness: bpy.props.FloatProperty(options={"HIDDEN"})
+    map_low: bpy.props.FloatProperty(options={"HIDDEN"})
+    map_high: bpy.props.FloatProperty(options={"HIDDEN"})
 
 
 classes = (PalpateSoftness,)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bpy
 import pytest
-from soft_scene import cube, part
+from soft_scene import cube, error_of, mesh_state, part, soft_cube
 
 
 def test_shore_sets_young_modulus_and_follows_it(palpate):
@@ -46,3 +46,62 @@ def test_files_from_before_keep_their_material(palpate, tmp_path):
     assert [numbers[name] for name in old] == list(range(7))
     assert numbers["CUSTOM"] == 7
     assert len(set(numbers.values())) == len(numbers)
+
+
+MIDDLE = (0.004, 0.003, 0.025)
+
+
+def test_a_durometer_is_read_at_the_cursor_and_where_a_script_says(palpate):
+    thing = soft_cube()
+    thing.palpate.material = "ECOFLEX_30"
+    softness = thing.palpate_softness
+    assert bpy.ops.palpate.read_durometer(at=MIDDLE) == {"FINISHED"}
+    by_script = softness.read_value
+    assert by_script == pytest.approx(softness.read_block, abs=3)
+    bpy.context.scene.cursor.location = MIDDLE
+    softness.read_value = 0.0
+    assert bpy.ops.palpate.read_durometer() == {"FINISHED"}
+    assert softness.read_value == pytest.approx(by_script)
+    assert softness.read_scale == "00"
+
+
+def test_a_force_curve_becomes_figures_and_a_text_block(palpate):
+    thing = soft_cube()
+    softness = thing.palpate_softness
+    for radius in (0.0, 0.008):
+        softness.finger_radius = radius
+        assert bpy.ops.palpate.force_curve(at=MIDDLE, depth=0.001) == {"FINISHED"}
+        table = bpy.data.texts[softness.curve_text].as_string().splitlines()
+        assert table[0].startswith("depth_mm,force_n")
+        assert float(table[-1].split(",")[0]) == pytest.approx(1.0, rel=1e-4)
+        assert float(table[-1].split(",")[1]) == pytest.approx(softness.curve_force, rel=1e-4)
+    assert len(bpy.data.texts) == 1
+
+
+def test_the_map_colours_vertices_and_changes_nothing_else(palpate):
+    thing = soft_cube()
+    mesh = thing.data
+    before = mesh_state(thing)
+    painted = mesh.color_attributes.new("Paint", "BYTE_COLOR", "CORNER")
+    mesh.color_attributes.active_color = painted
+    assert bpy.ops.palpate.map_softness() == {"FINISHED"}
+    assert mesh.color_attributes.active_color_name == "Paint"
+    colours = mesh.color_attributes["Palpate Softness"]
+    assert (colours.domain, colours.data_type) == ("POINT", "FLOAT_COLOR")
+    top = max(range(8), key=lambda v: mesh.vertices[v].co.z)
+    base = min(range(8), key=lambda v: mesh.vertices[v].co.z)
+    # Corners on top give way more than those that are pinned: darker, less green.
+    assert colours.data[top].color[1] < colours.data[base].color[1]
+    assert 0 < thing.palpate_softness.map_low < thing.palpate_softness.map_high
+    # Again, over the old one, and away with it.
+    assert bpy.ops.palpate.map_softness() == {"FINISHED"}
+    assert bpy.ops.palpate.remove_softness_map() == {"FINISHED"}
+    assert [attribute.name for attribute in mesh.color_attributes] == ["Paint"]
+    assert mesh_state(thing) == before
+    assert "no softness map" in error_of(bpy.ops.palpate.remove_softness_map)
+
+
+def test_what_is_not_soft_cannot_be_measured(palpate):
+    cube()
+    for operator in ("read_durometer", "force_curve", "map_softness"):
+        assert "not soft yet" in error_of(getattr(bpy.ops.palpate, operator))
