@@ -144,14 +144,20 @@ def test_what_was_before_does_not_change_the_answer(cube, rng):
         )
 
 
-def test_a_finger_is_never_limited_while_it_is_alone(cube, rng):
-    for triangle in rng.choice(free_triangles(cube), 20):
+def test_a_finger_is_never_limited_while_it_is_alone(any_body, rng):
+    for triangle in rng.choice(free_triangles(any_body), 20):
         alpha, by = rng.dirichlet([1, 1, 1]), rng.normal(size=3)
-        touch = cube.touch(triangle, alpha, by)
-        forces = cube.young_modulus * solve_contacts(
-            cube.contact_compliance([triangle], alpha[None]), by[None]
+        touch = any_body.touch(triangle, alpha, by)
+        forces = any_body.young_modulus * solve_contacts(
+            any_body.contact_compliance([triangle], alpha[None]), by[None]
         )
-        np.testing.assert_allclose(forces[0], -touch.force, rtol=1e-9)
+        np.testing.assert_allclose(forces[0], -touch.force, rtol=1e-6)
+
+
+def test_nor_where_the_surface_is_much_firmer_along_than_into_it():
+    C, by = np.diag([1.0, 1.0, 50.0])[None, None], np.array([[1.0, 0.0, -2.0]])
+    forces = solve_contacts(C, by)
+    np.testing.assert_allclose(forces, [[1.0, 0.0, -0.04]], rtol=1e-12)
 
 
 def test_a_finger_drawn_away_from_does_not_hold_the_surface(cube):

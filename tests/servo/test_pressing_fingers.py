@@ -91,6 +91,22 @@ def test_contacts_come_and_go_without_a_jump(cube, name):
     assert largest[1] < 0.1 * np.linalg.norm(forces, axis=2).max()
 
 
+def test_a_contact_that_slides_ends_without_a_jump(cube):
+    """Drawn towards the other, a finger leans sideways on its cone until the surface leaves it."""
+    largest = []
+    for count in (100, 400):
+        down, s = np.linspace(0, 1, 20), np.linspace(0, 1, count)
+        moving = 0.0275 - 0.0015 * np.concatenate([0 * down, s])
+        z = TOP + 0.001 - 0.005 * np.concatenate([down, 1 + 0 * s])
+        still, y = np.full_like(z, 0.02), np.full_like(z, 0.024)
+        path = np.stack([np.stack([still, y, z], 1), np.stack([moving, y, z], 1)], 1)
+        ticks = followed(cube, path)
+        assert ticks[20][1].touch is not None
+        assert ticks[-1][1].touch is None
+        largest.append(np.linalg.norm(np.diff(forces_of(ticks[20:]), axis=0), axis=2).max())
+    assert largest[1] < 0.4 * largest[0]
+
+
 def test_a_finger_is_met_where_the_other_has_moved_the_surface_to(cube):
     """Pushed from the left, the right side comes out, and touches before its place at rest."""
     s = np.linspace(0, 1, 60)
