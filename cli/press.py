@@ -1,4 +1,4 @@
-"""``palpate press``: press a body at a place and read the force."""
+"""``palpate press``: press a body at one or several places and read the forces."""
 
 from __future__ import annotations
 
@@ -7,9 +7,12 @@ import json
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..core import cache
+from ..core.contact import CONTACT_MODES, ContactMode, Touch
 from ..core.errors import PalpateError
+from ..core.soft_body import SoftBody
 from ..core.stiffness import lame_parameters
 from ..core.whole_file import whole_file
 from .body_figures import as_lines
@@ -17,7 +20,11 @@ from .body_figures import as_lines
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Describe the command."""
-    parser = subparsers.add_parser("press", help="press a body once and read the force")
+    parser = subparsers.add_parser(
+        "press",
+        help="press a body with one or several fingers and read the forces",
+        epilog="Several fingers: give --at and --by once for each, in the same order.",
+    )
     parser.add_argument("body", type=Path, metavar="BODY.npz")
     for name, what in (
         ("at", "the surface point nearest to this is touched"),
@@ -27,16 +34,18 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
             f"--{name}",
             type=float,
             nargs=3,
+            action="append",
             required=True,
             metavar=("X", "Y", "Z"),
-            help=f"{what} (metres, body coordinates)",
+            help=f"{what} (metres, body coordinates); once for each finger",
         )
     parser.add_argument("--young", type=float, metavar="PA", help="default: the body's own")
     parser.add_argument(
         "--mode",
-        choices=["paper"],
-        default="paper",
-        help="contact inside triangles (default paper)",
+        choices=CONTACT_MODES,
+        default="consistent",
+        help="contact inside triangles: its point moves by exactly the finger's displacement "
+        "(consistent, default), or as in the paper",
     )
     parser.add_argument(
         "--displacements",
@@ -53,25 +62,67 @@ def run(arguments: argparse.Namespace) -> int:
     body = cache.load(arguments.body)
     young_modulus = body.young_modulus if arguments.young is None else arguments.young
     lame_parameters(young_modulus, body.poisson_ratio)
-    touch = body.touch_nearest(arguments.at, arguments.by, young_modulus)
-    displacements = body.deform(touch.triangle, touch.nodal_forces, young_modulus)
-    if not (np.isfinite(touch.force).all() and np.isfinite(displacements).all()):
+    mode: ContactMode = arguments.mode
+    touches = body.touch_several(arguments.at, arguments.by, young_modulus, mode)
+    displacements = body.deform(
+        np.concatenate([touch.triangle for touch in touches]),
+        np.concatenate([touch.nodal_forces for touch in touches]),
+        young_modulus,
+    )
+    forces = np.array([touch.force for touch in touches])
+    if not (np.isfinite(forces).all() and np.isfinite(displacements).all()):
         raise PalpateError(
             f"--young: at {young_modulus} Pa this press is beyond what numbers can hold; give less"
         )
     if arguments.displacements is not None:
         with whole_file(arguments.displacements) as file:
             np.save(file, displacements)
-    figures = {
+    contacts = [_contact_figures(body, touch, displacements) for touch in touches]
+    common: dict[str, object] = {
+        "max_displacement": float(np.linalg.norm(displacements, axis=1).max()),
+        "young_modulus": young_modulus,
+        "mode": mode,
+    }
+    if len(contacts) == 1:
+        figures = contacts[0] | common
+        print(json.dumps(figures) if arguments.json else as_lines(figures))
+        return 0
+    coupling = _coupling(body, arguments.at, young_modulus)
+    if arguments.json:
+        print(json.dumps({"contacts": contacts, "coupling": coupling.tolist(), **common}))
+        return 0
+    for number, contact in enumerate(contacts, start=1):
+        print(f"contact {number}\n{_indented(as_lines(contact))}")
+    print(f"coupling, m/N (how far each contact moves per newton on each)\n{_as_table(coupling)}")
+    print(as_lines(common))
+    return 0
+
+
+def _contact_figures(
+    body: SoftBody, touch: Touch, displacements: NDArray[np.float64]
+) -> dict[str, object]:
+    return {
         "triangle": touch.triangle.tolist(),
         "alpha": touch.alpha.tolist(),
         "point": touch.point.tolist(),
         "nodal_forces": touch.nodal_forces.tolist(),
         "force": touch.force.tolist(),
         "contact_displacement": body.contact_displacement(touch, displacements).tolist(),
-        "max_displacement": float(np.linalg.norm(displacements, axis=1).max()),
-        "young_modulus": young_modulus,
-        "mode": arguments.mode,
     }
-    print(json.dumps(figures) if arguments.json else as_lines(figures))
-    return 0
+
+
+def _coupling(body: SoftBody, at: list[list[float]], young_modulus: float) -> NDArray[np.float64]:
+    """C_pq / E, (m, m, 3, 3), m/N."""
+    places = body.closest_points.query(np.array(at))
+    return body.contact_compliance(places.triangle, places.alpha) / young_modulus
+
+
+def _as_table(coupling: NDArray[np.float64]) -> str:
+    """The blocks as one matrix, three rows and columns for each contact."""
+    size = 3 * len(coupling)
+    rows = coupling.transpose(0, 2, 1, 3).reshape(size, size)
+    return "\n".join("".join(f"{value:11.3e}" for value in row) for row in rows)
+
+
+def _indented(lines: str) -> str:
+    return "\n".join(f"  {line}" for line in lines.splitlines())

@@ -125,17 +125,19 @@ def test_a_ply_that_mixes_polygons_is_read_as_blender_writes_it(tmp_path, capsys
     assert json.loads(printed)["volume_m3"] == pytest.approx(1.25, rel=0.02)
 
 
-def test_press_reads_the_force_and_writes_displacements(cube_file, tmp_path, capsys, cube):
+@pytest.mark.parametrize("mode", ["paper", "consistent"])
+def test_press_reads_the_force_and_writes_displacements(mode, cube_file, tmp_path, capsys, cube):
     out = tmp_path / "u.npy"
     status, printed, _ = palpate(
         capsys, "press", cube_file, "--at", 0.021, 0.024, 0.06, "--by", 0, "1e-3", "-5e-3",
-        "--young", 10000, "--mode", "paper", "--displacements", out, "--json",
+        "--young", 10000, "--mode", mode, "--displacements", out, "--json",
     )  # fmt: skip
     figures = json.loads(printed)
     assert status == 0
-    touch = cube.touch_nearest([0.021, 0.024, 0.06], [0, 1e-3, -5e-3], 10000)
+    touch = cube.touch_nearest([0.021, 0.024, 0.06], [0, 1e-3, -5e-3], 10000, mode)
     np.testing.assert_allclose(figures["force"], touch.force, rtol=1e-9)
     np.testing.assert_allclose(figures["nodal_forces"], touch.nodal_forces, rtol=1e-9)
+    assert figures["mode"] == mode
     assert figures["triangle"] == touch.triangle.tolist()
     assert sum(figures["alpha"]) == pytest.approx(1)
     np.testing.assert_allclose(-np.sum(figures["nodal_forces"], axis=0), figures["force"])
@@ -144,6 +146,49 @@ def test_press_reads_the_force_and_writes_displacements(cube_file, tmp_path, cap
     assert displacements.dtype == np.float64
     largest = np.linalg.norm(displacements, axis=1).max()
     assert figures["max_displacement"] == pytest.approx(largest)
+
+
+def test_press_is_consistent_unless_told_otherwise(cube_file, capsys):
+    words = ["press", cube_file, "--at", 0.02, 0.024, 0.05, "--by", 0, 0, "-5e-3", "--json"]
+    figures = json.loads(palpate(capsys, *words)[1])
+    assert figures["mode"] == "consistent"
+    np.testing.assert_allclose(figures["contact_displacement"], [0, 0, -5e-3], atol=1e-8)
+    assert json.loads(palpate(capsys, *words, "--mode", "paper")[1])["force"] != figures["force"]
+
+
+def test_press_takes_several_fingers_in_order(cube_file, tmp_path, capsys, cube):
+    at, by = [[0, 0.025, 0.03], [0.05, 0.02, 0.03]], [[0.004, 0, 0], [-0.003, 0, 0]]
+    pairs = [
+        word
+        for a, b in zip(at, by, strict=True)
+        for word in ("--at", *a, "--by", *map("{:f}".format, b))
+    ]
+    out = tmp_path / "u.npy"
+    words = ["press", cube_file, *pairs, "--young", 1000, "--displacements", out]
+    status, printed, _ = palpate(capsys, *words, "--json")
+    figures = json.loads(printed)
+    assert status == 0
+    touches = cube.touch_several(at, by, 1000)
+    assert len(figures["contacts"]) == 2
+    for contact, touch in zip(figures["contacts"], touches, strict=True):
+        np.testing.assert_allclose(contact["force"], touch.force, rtol=1e-9)
+        np.testing.assert_allclose(contact["nodal_forces"], touch.nodal_forces, rtol=1e-9)
+        np.testing.assert_allclose(contact["contact_displacement"], touch.displacement, atol=1e-7)
+    forces = -np.array([contact["force"] for contact in figures["contacts"]])
+    moved = np.einsum("pqij,qj->pi", figures["coupling"], forces)
+    np.testing.assert_allclose(moved, by, atol=1e-9)
+    largest = np.linalg.norm(np.load(out), axis=1).max()
+    assert figures["max_displacement"] == pytest.approx(largest)
+    status, printed, _ = palpate(capsys, *words)
+    assert status == 0
+    assert [line for line in printed.splitlines() if not line.startswith(" ")] == [
+        "contact 1",
+        "contact 2",
+        "coupling, m/N (how far each contact moves per newton on each)",
+        f"max displacement  {figures['max_displacement']}",
+        "young modulus     1000.0",
+        "mode              consistent",
+    ]
 
 
 @pytest.mark.parametrize(
@@ -206,6 +251,7 @@ def test_press_reads_the_force_and_writes_displacements(cube_file, tmp_path, cap
         (["press", "{body}", "--at", "0", "0", "0", "--by", "0", "0", "0", "--young", "-1"], "You"),
         (["press", "{body}", "--at", "0", "0", "--by", "0", "0", "0"], "--at"),
         (["press", "{body}", "--at", "0", "0", "0"], "--by"),
+        (["press", "{body}", *2 * ["--at", *"000"], "--by", *"001"], "2 times and --by 1 times"),
         (["fly"], "fly"),
         ([], "COMMAND"),
     ],
