@@ -106,7 +106,7 @@ def test_an_orientation_bears_the_number_of_the_state_to_come(device):
 
 @pytest.mark.parametrize("part", [float("nan"), float("inf"), 0.0, 0.985, 1.015, -1e30])
 def test_what_is_no_rotation_is_not_told(greeted, part):
-    assert greeted.orientation(0.0, part, 0.0, 0.0) == []
+    assert greeted.ask(f"orientation 0 {part!r} 0 0") == "-"
 
 
 def test_the_board_rounds_orientations_as_this_side_does(greeted):

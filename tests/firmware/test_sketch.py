@@ -31,7 +31,10 @@ class Sketch:
         self.ask(f"run {microseconds}")
 
     def said_in_full(self):
-        return link.Decoder().feed(bytes.fromhex(self.ask("said")))
+        decoder = link.Decoder()
+        messages = decoder.feed(bytes.fromhex(self.ask("said")))
+        assert decoder.errors.total == 0
+        return messages
 
     def said(self):
         """Without how the stylus is turned."""

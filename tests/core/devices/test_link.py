@@ -246,6 +246,12 @@ def test_what_is_no_unit_quaternion_is_not_sent(part):
         link.orientation(0, (part, 0.0, 0.0, 0.0))
 
 
+def test_a_unit_quaternion_is_sent_as_the_document_shows():
+    half = math.radians(15.0)
+    tilted = (math.cos(half), math.sin(half), 0.0, 0.0)
+    assert link.orientation(258, tilted) == link.Orientation(258, (31650, 8481, 0, 0))
+
+
 @given(rotations)
 def test_rounding_turns_a_stylus_by_less_than_its_document_says(unit):
     sent = link.orientation(0, unit).quaternion
