@@ -6,8 +6,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from palpate_servo import STATES, Body, Servo, Snapshot, device_coupling, haply_encoder_step
+from palpate_servo import (
+    STATES,
+    Body,
+    Servo,
+    Snapshot,
+    ToolContact,
+    ToolSurface,
+    device_coupling,
+    haply_encoder_step,
+)
 from palpate_servo import Compliance as NativeCompliance
+from palpate_servo import Tool as NativeTool
 
 if TYPE_CHECKING:
     # Types only: the module itself does not have them.
@@ -20,7 +30,10 @@ from .compression.compressed_compliance import CompressedCompliance
 from .dense_compliance import DenseCompliance
 from .errors import PalpateError
 from .mapped_compliance import MappedCompliance
+from .near_field import near_correction
 from .soft_body import SoftBody
+from .tool_contact import surface_for
+from .tools import Tool
 
 __all__ = [
     "STATES",
@@ -31,6 +44,7 @@ __all__ = [
     "haply_encoder_step",
     "native_body",
     "native_compliance",
+    "native_tool",
     "servo_for",
 ]
 
@@ -146,3 +160,38 @@ def displacements_of(
     nodes = np.concatenate([finger.nodes for finger in touching])
     forces = np.concatenate([finger.nodal_forces for finger in touching])
     return body.deform(body.mesh.surface_nodes[nodes], forces, young_modulus)
+
+
+def native_tool(body: SoftBody, surface: Body, tool: Tool) -> ToolContact:
+    """A tool as the native thread holds it, with all the memory that it will ever need.
+
+    Takes a second or so for large bodies: contact points are spread and what the mesh is too coarse
+    for between them is computed.
+
+    Parameters
+    ----------
+    surface : of ``native_body(body, whole=True)``, the one that the servo touches.
+
+    Raises
+    ------
+    PalpateError
+        A body without its whole compliance, or a tool too small for the body.
+    """
+    points = surface_for(body, tool)
+    near = near_correction(body, points, tool.size)
+    try:
+        return ToolContact(
+            ToolSurface(
+                surface,
+                points.positions,
+                points.normals,
+                points.triangles,
+                points.alphas,
+                points.areas,
+                np.full(len(points), np.pi),
+                (near.starts, near.others, near.blocks),
+            ),
+            NativeTool(tool.core, tool.radius),
+        )
+    except ValueError as problem:
+        raise PalpateError(f"tool {tool.name}: {problem}") from problem

@@ -475,6 +475,141 @@ class Snapshot:
         """(12), (13), N, (3, 3)."""
 
 @final
+class Tool:
+    """A rigid tool: the convex hull of core points, grown by a ball."""
+
+    def __init__(self, core: ArrayLike, radius: float) -> None:
+        """Take core points (k, 3), 1 <= k <= 64, in the tool's own frame, m; radius m.
+
+        Raises ValueError for other numbers of points, numbers that are not finite, no radius.
+        """
+
+    @property
+    def radius(self) -> float: ...
+    @property
+    def reach(self) -> float:
+        """From the reference point to the farthest point of the tool, m."""
+
+    @property
+    def stride(self) -> float:
+        """How far the tool moves in one tick at most, m."""
+
+    def distance(self, points: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Signed distances (p,), negative inside, and outward unit normals (p, 3), tool's frame."""
+
+@final
+class ToolSurface:
+    """The contact points of a body, with the compliance between them; immutable."""
+
+    def __init__(
+        self,
+        body: Body,
+        positions: ArrayLike,
+        normals: ArrayLike,
+        triangles: ArrayLike,
+        alphas: ArrayLike,
+        areas: ArrayLike,
+        limits: ArrayLike,
+        correction: tuple[ArrayLike, ArrayLike, ArrayLike] | None = None,
+    ) -> None:
+        """Take points at rest (P, 3) in m, unit outward normals (P, 3), the triangle of each (P,),
+        area coordinates in it (P, 3), shares of the surface (P,) in m^2, largest angles (P,) of
+        a push with the inward normal, rad.
+
+        correction: rows of 3 x 3 blocks to add to the compliance at unit modulus between pairs of
+        points, (starts (P + 1,), others (n,), blocks (n, 3, 3)).
+
+        Raises ValueError for a body that is not whole, or arrays that do not fit.
+        """
+
+    @property
+    def point_count(self) -> int: ...
+    @property
+    def spacing(self) -> float:
+        """How far points usually are apart, m."""
+
+@final
+class ToolContact:
+    """A tool on a body alone, tick by tick; as the servo's fingers have it."""
+
+    def __init__(self, surface: ToolSurface, tool: Tool) -> None: ...
+    def restart(self, position: _Vector, rotation: _Matrix) -> None:
+        """Set the tool down; inside the body it feels nothing until it was outside."""
+
+    def follow(
+        self,
+        position: _Vector,
+        rotation: _Matrix,
+        young_modulus: float,
+        outside: tuple[ArrayLike, ArrayLike] | None = None,
+    ) -> None:
+        """One tick: go towards a pose by at most one stride, and feel the body (Pa) there.
+
+        outside: nodes (k,) and the forces (k, 3) of other fingers on them, N.
+        ValueError for a pose that is none, or where the forces came out as no numbers.
+        """
+
+    @property
+    def force(self) -> NDArray[np.float64]:
+        """On the tool, (3,), N."""
+
+    @property
+    def torque(self) -> NDArray[np.float64]:
+        """On the tool about its reference point, (3,), N m."""
+
+    @property
+    def stiffness(self) -> NDArray[np.float64]:
+        """How the force resists a small move of the tool, (3, 3), N/m."""
+
+    @property
+    def linearisations(self) -> int: ...
+    @property
+    def exact(self) -> bool:
+        """The displacements stopped changing within the bounds on the tick's work."""
+
+    @property
+    def free(self) -> bool:
+        """The tool was outside since it was set down; until then it feels nothing."""
+
+    @property
+    def touching(self) -> bool: ...
+    @property
+    def near_count(self) -> int:
+        """Contact points that are looked at."""
+
+    @property
+    def position(self) -> NDArray[np.float64] | None: ...
+    @property
+    def rotation(self) -> NDArray[np.float64] | None: ...
+    @property
+    def points(self) -> NDArray[np.int64]:
+        """Numbers of the pressed contact points (p,), in no order."""
+
+    @property
+    def forces(self) -> NDArray[np.float64]:
+        """On the body at these points, (p, 3), N."""
+
+    @property
+    def normals(self) -> NDArray[np.float64]:
+        """Outward from the tool where these points have gone to, (p, 3)."""
+
+    @property
+    def displacements(self) -> NDArray[np.float64]:
+        """Of these points, (p, 3), m."""
+
+    @property
+    def pressures(self) -> NDArray[np.float64]:
+        """At these points, (p,), Pa."""
+
+    @property
+    def nodes(self) -> NDArray[np.int64]:
+        """Surface nodes that carry force (k,)."""
+
+    @property
+    def nodal_forces(self) -> NDArray[np.float64]:
+        """Forces on these nodes, (k, 3), N."""
+
+@final
 class Servo:
     """A native thread between fingers, each led by a device or a pointer, and a body."""
 

@@ -48,6 +48,7 @@ pub mod state;
 pub mod surface;
 pub mod table;
 pub mod thread;
+pub mod tool;
 pub mod tree;
 mod turning;
 mod whole;

@@ -10,6 +10,7 @@ mod proxy;
 mod servo;
 mod snapshot;
 mod stepped;
+mod tool;
 mod vectors;
 
 use pyo3::prelude::*;
@@ -30,6 +31,9 @@ fn palpate_servo(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<snapshot::Snapshot>()?;
     module.add_class::<snapshot::FingerSnapshot>()?;
     module.add_class::<stepped::SteppedServo>()?;
+    module.add_class::<tool::Tool>()?;
+    module.add_class::<tool::ToolSurface>()?;
+    module.add_class::<tool::ToolContact>()?;
     module.add_class::<counters::BareTimer>()?;
     module.add_class::<frames::Decoder>()?;
     module.add_function(wrap_pyfunction!(counters::bare_timer, module)?)?;

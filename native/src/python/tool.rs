@@ -1,0 +1,376 @@
+//! `Tool`, `ToolSurface`, and `ToolContact`: a tool on a body alone, step by step.
+
+use std::sync::Arc;
+
+use glam::{DMat3, DVec3};
+use numpy::{
+    AllowTypeChange, PyArray1, PyArray2, PyArrayLike1, PyArrayLike2, PyArrayLike3, PyArrayMethods,
+};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use super::body::Body;
+use super::vectors::{Matrix, Rows, Triple, Vector, array, finite, matrix, positive, square};
+use crate::tool::contact::{self, MOST_NODES};
+use crate::tool::points::{self, Correction, Point};
+use crate::tool::shape::{self, Pose};
+use crate::tool::tilt::Limit;
+
+type Vectors<'py> = Bound<'py, PyArray2<f64>>;
+/// Starts of rows, other points, blocks.
+type Blocks<'py> = (
+    PyArrayLike1<'py, i64, AllowTypeChange>,
+    PyArrayLike1<'py, i64, AllowTypeChange>,
+    PyArrayLike3<'py, f64, AllowTypeChange>,
+);
+type Numbers<'py> = Bound<'py, PyArray1<i64>>;
+
+/// Smallest entry of |R R' - 1| that makes a matrix no rotation.
+const SKEW: f64 = 1e-6;
+
+pub fn rotation(name: &str, rows: Rows) -> PyResult<DMat3> {
+    let turn = matrix(rows);
+    let error = turn * turn.transpose() - DMat3::IDENTITY;
+    let largest = (error.to_cols_array().into_iter()).fold(0.0, |m: f64, e| m.max(e.abs()));
+    if turn.is_finite() && largest <= SKEW && turn.determinant() > 0.0 {
+        Ok(turn)
+    } else {
+        Err(PyValueError::new_err(format!(
+            "{name} is no rotation; give orthogonal unit columns, right-handed, without scale"
+        )))
+    }
+}
+
+#[pyclass(frozen, module = "palpate_servo")]
+pub struct Tool {
+    pub inner: shape::Tool,
+}
+
+#[pymethods]
+impl Tool {
+    #[new]
+    fn new(core: PyArrayLike2<'_, f64, AllowTypeChange>, radius: f64) -> PyResult<Self> {
+        let core = vectors("core", &core)?;
+        let refused = |e: crate::tool::hull::HullError| PyValueError::new_err(e.to_string());
+        let inner = shape::Tool::new(&core, radius).map_err(refused)?;
+        Ok(Self { inner })
+    }
+
+    #[getter]
+    fn radius(&self) -> f64 {
+        self.inner.radius()
+    }
+
+    #[getter]
+    fn reach(&self) -> f64 {
+        self.inner.reach()
+    }
+
+    #[getter]
+    fn stride(&self) -> f64 {
+        self.inner.stride()
+    }
+
+    fn distance<'py>(
+        &self,
+        py: Python<'py>,
+        points: PyArrayLike2<'_, f64, AllowTypeChange>,
+    ) -> PyResult<(Vector<'py>, Vectors<'py>)> {
+        let found: Vec<(f64, DVec3)> = (vectors("points", &points)?.into_iter())
+            .map(|point| self.inner.distance(point))
+            .collect();
+        let distances = PyArray1::from_iter(py, found.iter().map(|&(distance, _)| distance));
+        Ok((
+            distances,
+            stacked(py, found.iter().map(|&(_, normal)| normal))?,
+        ))
+    }
+}
+
+#[pyclass(frozen, module = "palpate_servo")]
+pub struct ToolSurface {
+    pub inner: Arc<points::ToolSurface>,
+}
+
+#[pymethods]
+impl ToolSurface {
+    #[new]
+    #[allow(clippy::too_many_arguments)] // Keywords in Python.
+    #[pyo3(signature = (body, positions, normals, triangles, alphas, areas, limits, correction=None))]
+    fn new(
+        body: &Body,
+        positions: PyArrayLike2<'_, f64, AllowTypeChange>,
+        normals: PyArrayLike2<'_, f64, AllowTypeChange>,
+        triangles: PyArrayLike1<'_, i64, AllowTypeChange>,
+        alphas: PyArrayLike2<'_, f64, AllowTypeChange>,
+        areas: PyArrayLike1<'_, f64, AllowTypeChange>,
+        limits: PyArrayLike1<'_, f64, AllowTypeChange>,
+        correction: Option<Blocks<'_>>,
+    ) -> PyResult<Self> {
+        let (positions, normals, alphas) = (
+            vectors("positions", &positions)?,
+            vectors("normals", &normals)?,
+            vectors("alphas", &alphas)?,
+        );
+        let (triangles, areas) = (triangles.as_array(), areas.as_array());
+        let limits = limits.as_array();
+        let count = positions.len();
+        if [
+            normals.len(),
+            alphas.len(),
+            triangles.len(),
+            areas.len(),
+            limits.len(),
+        ] != [count; 5]
+        {
+            return Err(PyValueError::new_err(format!(
+                "normals, triangles, alphas, areas and limits must have a row for each of the {count} positions"
+            )));
+        }
+        let points = (0..count)
+            .map(|i| {
+                let triangle = usize::try_from(triangles[i]).ok();
+                let nodes = triangle.and_then(|t| body.inner.triangles.get(t));
+                let nodes = *nodes.ok_or_else(|| {
+                    PyValueError::new_err(format!(
+                        "contact point {i} is on triangle {}, beyond the {} of the body",
+                        triangles[i],
+                        body.inner.triangles.len()
+                    ))
+                })?;
+                Ok(Point {
+                    position: positions[i],
+                    normal: normals[i],
+                    nodes,
+                    alpha: alphas[i].to_array(),
+                    area: areas[i],
+                    limit: Limit::new(limits[i]),
+                })
+            })
+            .collect::<PyResult<Vec<Point>>>()?;
+        let correction = match correction {
+            Some((starts, others, blocks)) => Correction {
+                starts: indices("starts", &starts)?,
+                others: indices("others", &others)?,
+                blocks: matrices("blocks", &blocks)?,
+            },
+            None => Correction::default(),
+        };
+        let surface = points::ToolSurface::new(body.inner.clone(), points, correction)
+            .map_err(|e| PyValueError::new_err(e.to_string()))?;
+        Ok(Self {
+            inner: Arc::new(surface),
+        })
+    }
+
+    #[getter]
+    fn point_count(&self) -> usize {
+        self.inner.points().len()
+    }
+
+    #[getter]
+    fn spacing(&self) -> f64 {
+        self.inner.spacing()
+    }
+}
+
+#[pyclass(module = "palpate_servo")]
+pub struct ToolContact {
+    inner: contact::ToolContact,
+    young_modulus: f64,
+}
+
+impl ToolContact {
+    fn pressed(&self) -> impl Iterator<Item = &crate::tool::patch::Slot> {
+        (self.inner.slots().iter()).filter(|slot| slot.force != DVec3::ZERO)
+    }
+}
+
+#[pymethods]
+impl ToolContact {
+    #[new]
+    fn new(surface: &ToolSurface, tool: &Tool) -> Self {
+        Self {
+            inner: contact::ToolContact::new(surface.inner.clone(), tool.inner.clone()),
+            young_modulus: 1.0,
+        }
+    }
+
+    fn restart(&mut self, position: Triple, rotation: Rows) -> PyResult<()> {
+        let pose = pose(position, rotation)?;
+        self.inner.restart(&pose);
+        Ok(())
+    }
+
+    #[pyo3(signature = (position, rotation, young_modulus, outside=None))]
+    fn follow(
+        &mut self,
+        position: Triple,
+        rotation: Rows,
+        young_modulus: f64,
+        outside: Option<(
+            PyArrayLike1<'_, i64, AllowTypeChange>,
+            PyArrayLike2<'_, f64, AllowTypeChange>,
+        )>,
+    ) -> PyResult<()> {
+        let goal = pose(position, rotation)?;
+        self.young_modulus = positive("young_modulus", young_modulus)?;
+        let outside = match outside {
+            Some((nodes, forces)) => {
+                let nodes = indices("outside", &nodes)?;
+                let forces = vectors("outside", &forces)?;
+                let count = self.inner.surface().body().nodes.len();
+                if nodes.len() != forces.len() || nodes.iter().any(|&n| n as usize >= count) {
+                    return Err(PyValueError::new_err(format!(
+                        "outside must have a force for each node, none beyond the {count}"
+                    )));
+                }
+                nodes.into_iter().zip(forces).collect()
+            }
+            None => Vec::new(),
+        };
+        (self.inner.follow(&goal, young_modulus, &outside))
+            .map(|_| ())
+            .map_err(|_| PyValueError::new_err("the contact came out as no number"))
+    }
+
+    #[getter]
+    fn force<'py>(&self, py: Python<'py>) -> Vector<'py> {
+        array(py, self.inner.felt().force)
+    }
+
+    #[getter]
+    fn torque<'py>(&self, py: Python<'py>) -> Vector<'py> {
+        array(py, self.inner.felt().torque)
+    }
+
+    #[getter]
+    fn stiffness<'py>(&self, py: Python<'py>) -> PyResult<Matrix<'py>> {
+        square(py, self.inner.felt().stiffness)
+    }
+
+    #[getter]
+    fn linearisations(&self) -> usize {
+        self.inner.felt().linearisations
+    }
+
+    #[getter]
+    fn exact(&self) -> bool {
+        self.inner.felt().exact
+    }
+
+    #[getter]
+    fn free(&self) -> bool {
+        self.inner.is_free()
+    }
+
+    #[getter]
+    fn touching(&self) -> bool {
+        self.inner.felt().pressed > 0
+    }
+
+    #[getter]
+    fn near_count(&self) -> usize {
+        self.inner.slots().len()
+    }
+
+    #[getter]
+    fn position<'py>(&self, py: Python<'py>) -> Option<Vector<'py>> {
+        self.inner.pose().map(|pose| array(py, pose.position))
+    }
+
+    #[getter]
+    fn rotation<'py>(&self, py: Python<'py>) -> PyResult<Option<Matrix<'py>>> {
+        (self.inner.pose())
+            .map(|pose| square(py, pose.rotation))
+            .transpose()
+    }
+
+    #[getter]
+    fn points<'py>(&self, py: Python<'py>) -> Numbers<'py> {
+        PyArray1::from_iter(py, self.pressed().map(|slot| i64::from(slot.point)))
+    }
+
+    #[getter]
+    fn forces<'py>(&self, py: Python<'py>) -> PyResult<Vectors<'py>> {
+        let scale = self.young_modulus;
+        stacked(py, self.pressed().map(|slot| slot.force * scale))
+    }
+
+    #[getter]
+    fn normals<'py>(&self, py: Python<'py>) -> PyResult<Vectors<'py>> {
+        stacked(py, self.pressed().map(|slot| slot.normal))
+    }
+
+    #[getter]
+    fn displacements<'py>(&self, py: Python<'py>) -> PyResult<Vectors<'py>> {
+        stacked(py, self.pressed().map(|slot| slot.moved))
+    }
+
+    #[getter]
+    fn pressures<'py>(&self, py: Python<'py>) -> Vector<'py> {
+        let points = self.inner.surface().points();
+        let pressure = |slot: &crate::tool::patch::Slot| {
+            slot.force.length() * self.young_modulus / points[slot.point as usize].area
+        };
+        PyArray1::from_iter(py, self.pressed().map(pressure))
+    }
+
+    #[getter]
+    fn nodes<'py>(&self, py: Python<'py>) -> Numbers<'py> {
+        let nodes = self.inner.nodal_forces().iter();
+        PyArray1::from_iter(py, nodes.map(|&(node, _)| i64::from(node)))
+    }
+
+    #[getter]
+    fn nodal_forces<'py>(&self, py: Python<'py>) -> PyResult<Vectors<'py>> {
+        debug_assert!(self.inner.nodal_forces().len() <= MOST_NODES);
+        let forces = self.inner.nodal_forces().iter();
+        stacked(py, forces.map(|&(_, force)| force * self.young_modulus))
+    }
+}
+
+fn pose(position: Triple, rows: Rows) -> PyResult<Pose> {
+    Ok(Pose {
+        position: finite("position", position)?,
+        rotation: rotation("rotation", rows)?,
+    })
+}
+
+fn vectors(name: &str, array: &PyArrayLike2<'_, f64, AllowTypeChange>) -> PyResult<Vec<DVec3>> {
+    let array = array.as_array();
+    if array.ncols() != 3 {
+        return Err(PyValueError::new_err(format!(
+            "{name} has {} columns, not three",
+            array.ncols()
+        )));
+    }
+    let rows = array.rows().into_iter();
+    Ok(rows.map(|r| DVec3::new(r[0], r[1], r[2])).collect())
+}
+
+fn matrices(name: &str, array: &PyArrayLike3<'_, f64, AllowTypeChange>) -> PyResult<Vec<DMat3>> {
+    let array = array.as_array();
+    if array.shape()[1..] != [3, 3] {
+        return Err(PyValueError::new_err(format!(
+            "{name} must have the shape (n, 3, 3)"
+        )));
+    }
+    let block = |b: numpy::ndarray::ArrayView2<'_, f64>| {
+        DMat3::from_cols_array_2d(&[0, 1, 2].map(|c| [0, 1, 2].map(|r| b[[r, c]])))
+    };
+    Ok(array.outer_iter().map(block).collect())
+}
+
+fn indices(name: &str, array: &PyArrayLike1<'_, i64, AllowTypeChange>) -> PyResult<Vec<u32>> {
+    let number = |&n: &i64| {
+        u32::try_from(n).map_err(|_| PyValueError::new_err(format!("{name} has the number {n}")))
+    };
+    array.as_array().iter().map(number).collect()
+}
+
+fn stacked(py: Python<'_>, vectors: impl Iterator<Item = DVec3>) -> PyResult<Vectors<'_>> {
+    let flat: Vec<f64> = vectors.flat_map(|v| v.to_array()).collect();
+    let count = flat.len() / 3;
+    PyArray1::from_vec(py, flat).reshape([count, 3])
+}

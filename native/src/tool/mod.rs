@@ -1,0 +1,19 @@
+//! Rigid tools against the body: a fingertip, plate, rod or convex hull, in the tick.
+//!
+//! The [`shape`] of a tool meets [`points`] fixed on the body's surface; those near it form a
+//! [`patch`], whose forces may only push ([`complementarity`]). [`contact`] follows the pose from tick
+//! to tick. Readable references: `core/tools.py`, `core/contact_points.py`, `core/tool_contact.py`.
+
+mod blocks;
+pub mod cholesky;
+pub mod complementarity;
+pub mod contact;
+pub mod hull;
+pub mod patch;
+pub mod points;
+pub mod shape;
+pub mod tilt;
+mod tree;
+
+/// Contact points that can be under a tool at once.
+pub const MOST_POINTS: usize = 160;

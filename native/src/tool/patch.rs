@@ -1,0 +1,189 @@
+//! The contact points near a tool, and how each gives way to a force on each other.
+
+use glam::{DMat3, DVec3};
+
+use super::MOST_POINTS;
+use super::blocks::Blocks;
+use super::points::{Point, ToolSurface};
+
+/// The slot of a point that has none.
+const NONE: u16 = u16::MAX;
+
+/// A point near the tool.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Slot {
+    /// Number of the contact point.
+    pub point: u32,
+    /// Force on the body, N at unit modulus.
+    pub force: DVec3,
+    /// Displacement, m.
+    pub moved: DVec3,
+    /// The part of it that other fingers cause, m.
+    pub offset: DVec3,
+    /// Outward from the tool where the point has gone to.
+    pub normal: DVec3,
+    /// Signed distance from the tool there, m.
+    pub distance: f64,
+    /// Signed distance of the place at rest, m.
+    pub at_rest: f64,
+}
+
+/// Slots in use and the compliance between them.
+#[derive(Debug)]
+pub struct Patch {
+    slots: Vec<Slot>,
+    slot_of: Vec<u16>,
+    /// C_ij at unit modulus, [`MOST_POINTS`] blocks a row.
+    compliance: Vec<DMat3>,
+    blocks: Blocks,
+}
+
+impl Patch {
+    pub(super) fn new(points: usize) -> Self {
+        Self {
+            slots: Vec::with_capacity(MOST_POINTS),
+            slot_of: vec![NONE; points],
+            compliance: vec![DMat3::ZERO; MOST_POINTS * MOST_POINTS],
+            blocks: Blocks::new(),
+        }
+    }
+
+    /// All slots in use.
+    #[inline]
+    pub fn slots(&self) -> &[Slot] {
+        &self.slots
+    }
+
+    #[inline]
+    pub(super) fn slots_mut(&mut self) -> &mut [Slot] {
+        &mut self.slots
+    }
+
+    /// The slot of a point that has one.
+    #[inline]
+    pub(super) fn slot(&self, point: u32) -> Option<&Slot> {
+        self.slots.get(usize::from(self.slot_of[point as usize]))
+    }
+
+    #[inline]
+    pub(super) fn has(&self, point: u32) -> bool {
+        self.slot_of[point as usize] != NONE
+    }
+
+    #[inline]
+    pub(super) fn is_full(&self) -> bool {
+        self.slots.len() == MOST_POINTS
+    }
+
+    /// How a slot gives way to a force on another, m/N at unit modulus.
+    #[inline]
+    pub(super) fn compliance(&self, i: usize, j: usize) -> &DMat3 {
+        &self.compliance[i * MOST_POINTS + j]
+    }
+
+    #[inline]
+    pub(super) fn row(&self, i: usize) -> &[DMat3] {
+        &self.compliance[i * MOST_POINTS..][..self.slots.len()]
+    }
+
+    #[inline]
+    pub(super) fn blocks_mut(&mut self) -> &mut Blocks {
+        &mut self.blocks
+    }
+
+    /// Takes a point in; there must be room.
+    pub(super) fn enter(&mut self, surface: &ToolSurface, point: u32) {
+        let new = self.slots.len();
+        debug_assert!(new < MOST_POINTS && !self.has(point));
+        self.slots.push(Slot {
+            point,
+            ..Slot::default()
+        });
+        self.slot_of[point as usize] = new as u16;
+        for slot in 0..=new {
+            let other = self.slots[slot].point;
+            let block = self.response(surface, point, other);
+            self.put(new, slot, block);
+        }
+        for (other, block) in surface.corrections(point) {
+            let slot = self.slot_of[other as usize];
+            if slot != NONE {
+                let block = *self.compliance(new, slot as usize) + *block;
+                self.put(new, slot as usize, block);
+            }
+        }
+    }
+
+    #[inline]
+    fn put(&mut self, i: usize, j: usize, block: DMat3) {
+        self.compliance[j * MOST_POINTS + i] = block.transpose();
+        self.compliance[i * MOST_POINTS + j] = block;
+    }
+
+    /// Displacement of a point per force on another, as the finite elements have it.
+    fn response(&mut self, surface: &ToolSurface, point: u32, other: u32) -> DMat3 {
+        let [p, q] = [point, other].map(|k| surface.points()[k as usize]);
+        let mut sum = DMat3::ZERO;
+        for (&a, &weight) in p.nodes.iter().zip(&p.alpha) {
+            for (&b, &load) in q.nodes.iter().zip(&q.alpha) {
+                if weight != 0.0 && load != 0.0 {
+                    sum += self.blocks.get(surface.body(), a, b) * (weight * load);
+                }
+            }
+        }
+        sum
+    }
+
+    /// Drops a slot; the last one takes its place.
+    pub(super) fn leave(&mut self, slot: usize) {
+        let last = self.slots.len() - 1;
+        self.slot_of[self.slots[slot].point as usize] = NONE;
+        if slot != last {
+            let own = *self.compliance(last, last);
+            for other in 0..last {
+                let block = *self.compliance(last, other);
+                self.put(slot, other, block);
+            }
+            self.put(slot, slot, own);
+            self.slot_of[self.slots[last].point as usize] = slot as u16;
+        }
+        self.slots.swap_remove(slot);
+    }
+
+    /// Drops all.
+    pub(super) fn clear(&mut self) {
+        for slot in &self.slots {
+            self.slot_of[slot.point as usize] = NONE;
+        }
+        self.slots.clear();
+    }
+
+    /// Moves every slot as its forces and the offset ask for; the largest change, m.
+    pub(super) fn displace(&mut self) -> f64 {
+        let count = self.slots.len();
+        let mut change = 0.0_f64;
+        for i in 0..count {
+            let mut moved = self.slots[i].offset;
+            for (slot, block) in self.slots.iter().zip(&self.compliance[i * MOST_POINTS..]) {
+                if slot.force != DVec3::ZERO {
+                    moved += *block * slot.force;
+                }
+            }
+            let slot = &mut self.slots[i];
+            // What is no number stays one.
+            change = if change.is_nan() {
+                change
+            } else {
+                (moved - slot.moved).abs().max_element().max(change)
+            };
+            slot.moved = moved;
+        }
+        change
+    }
+
+    /// The contact point of a slot.
+    #[inline]
+    pub(super) fn point<'a>(&self, surface: &'a ToolSurface, slot: usize) -> &'a Point {
+        &surface.points()[self.slots[slot].point as usize]
+    }
+}

@@ -1,0 +1,231 @@
+//! Where a body can be touched by a tool: points fixed on its surface.
+//!
+//! Readable reference: `core/contact_points.py`.
+
+use std::sync::Arc;
+
+use glam::{DMat3, DVec3};
+
+use super::tilt::Limit;
+use super::tree::PointTree;
+use crate::surface::{Body, BodyError};
+
+/// Points within this many times the median distance to the nearest are neighbours.
+const NEIGHBOURHOOD: f64 = 2.0;
+/// Neighbours of one point, at most.
+const MOST_NEIGHBOURS: usize = 24;
+
+/// A place on the surface.
+#[derive(Debug, Clone, Copy)]
+pub struct Point {
+    /// At rest, m.
+    pub position: DVec3,
+    /// Unit outward normal of the body there.
+    pub normal: DVec3,
+    /// Corners of the triangle that it lies in.
+    pub nodes: [u32; 3],
+    /// Area coordinates there.
+    pub alpha: [f64; 3],
+    /// Its share of the surface, m^2.
+    pub area: f64,
+    /// Largest angle between a push and the inward normal; see [`tilt`](super::tilt).
+    pub limit: Limit,
+}
+
+/// Blocks 3 x 3 between pairs of contact points, row after row: what a mesh is too coarse for.
+#[derive(Debug, Default)]
+pub struct Correction {
+    /// Where each point's row begins, and the end of the last.
+    pub starts: Vec<u32>,
+    /// The other point of each block.
+    pub others: Vec<u32>,
+    /// What is to be added to the compliance at unit modulus.
+    pub blocks: Vec<DMat3>,
+}
+
+/// The contact points of a body.
+#[derive(Debug)]
+pub struct ToolSurface {
+    body: Arc<Body>,
+    points: Vec<Point>,
+    correction: Correction,
+    tree: PointTree,
+    spacing: f64,
+    first_neighbour: Vec<u32>,
+    neighbours: Vec<u32>,
+}
+
+impl ToolSurface {
+    /// Checks that the points lie on the body, and finds their neighbours.
+    ///
+    /// # Errors
+    /// [`BodyError`] for a body that does not keep its whole compliance, no points, numbers that are
+    /// not finite, places beyond the arrays.
+    pub fn new(
+        body: Arc<Body>,
+        points: Vec<Point>,
+        correction: Correction,
+    ) -> Result<Self, BodyError> {
+        check(&body, &points, &correction)?;
+        let positions: Vec<DVec3> = points.iter().map(|p| p.position).collect();
+        let tree = PointTree::new(&positions);
+        let spacing = median_distance(&tree, &points, body.size());
+        let mut surface = Self {
+            body,
+            points,
+            correction,
+            tree,
+            spacing,
+            first_neighbour: vec![0],
+            neighbours: Vec::new(),
+        };
+        surface.find_neighbours();
+        Ok(surface)
+    }
+
+    /// The body that the points lie on.
+    #[inline]
+    pub fn body(&self) -> &Arc<Body> {
+        &self.body
+    }
+
+    /// All contact points.
+    #[inline]
+    pub fn points(&self) -> &[Point] {
+        &self.points
+    }
+
+    /// How far points usually are apart, m.
+    #[inline]
+    pub fn spacing(&self) -> f64 {
+        self.spacing
+    }
+
+    #[inline]
+    pub(super) fn tree(&self) -> &PointTree {
+        &self.tree
+    }
+
+    /// Points around a point.
+    #[inline]
+    pub(super) fn neighbours(&self, point: u32) -> &[u32] {
+        let [first, end] = [0, 1].map(|k| self.first_neighbour[point as usize + k] as usize);
+        &self.neighbours[first..end]
+    }
+
+    /// Corrections of a point's row, with the other point of each.
+    #[inline]
+    pub(super) fn corrections(&self, point: u32) -> impl Iterator<Item = (u32, &DMat3)> {
+        let c = &self.correction;
+        let range = match c.starts.get(point as usize..point as usize + 2) {
+            Some(ends) => ends[0] as usize..ends[1] as usize,
+            None => 0..0,
+        };
+        c.others[range.clone()]
+            .iter()
+            .copied()
+            .zip(&c.blocks[range])
+    }
+
+    fn find_neighbours(&mut self) {
+        let reach = NEIGHBOURHOOD * self.spacing;
+        let mut near: Vec<(f64, u32)> = Vec::new();
+        for (i, point) in self.points.iter().enumerate() {
+            near.clear();
+            let within = |middle: DVec3, radius| middle.distance(point.position) <= reach + radius;
+            self.tree.visit(within, |j| {
+                let other = &self.points[j as usize];
+                let distance = other.position.distance(point.position);
+                let faces = other.normal.dot(point.normal) > 0.0;
+                if j as usize != i && distance <= reach && faces {
+                    near.push((distance, j));
+                }
+            });
+            near.sort_by(|a, b| a.0.total_cmp(&b.0));
+            near.truncate(MOST_NEIGHBOURS);
+            self.neighbours.extend(near.iter().map(|&(_, j)| j));
+            self.first_neighbour.push(self.neighbours.len() as u32);
+        }
+    }
+}
+
+fn check(body: &Body, points: &[Point], correction: &Correction) -> Result<(), BodyError> {
+    let refuse = |reason: String| Err(BodyError(reason));
+    if !body.is_whole() {
+        return refuse(
+            "the body does not keep its whole compliance, without which a tool cannot touch it; \
+             make it with whole=True"
+                .into(),
+        );
+    }
+    if points.is_empty() {
+        return refuse("there are no contact points; give at least one".into());
+    }
+    if points.len() > (u32::MAX / 4) as usize {
+        return refuse("there are too many contact points; give a larger spacing".into());
+    }
+    for (i, point) in points.iter().enumerate() {
+        if (point.nodes.iter()).any(|&node| node as usize >= body.nodes.len()) {
+            return refuse(format!(
+                "contact point {i} is on a node beyond the {} of the body",
+                body.nodes.len()
+            ));
+        }
+        let numbers = point.position.is_finite()
+            && point.normal.is_finite()
+            && point.alpha.iter().all(|a| a.is_finite())
+            && point.limit.is_finite();
+        if !(numbers && point.area > 0.0 && point.area.is_finite()) {
+            return refuse(format!(
+                "contact point {i} has numbers that are not finite or no area"
+            ));
+        }
+    }
+    let Correction {
+        starts,
+        others,
+        blocks,
+    } = correction;
+    if starts.is_empty() && others.is_empty() && blocks.is_empty() {
+        return Ok(());
+    }
+    let ends_fit = starts.len() == points.len() + 1
+        && starts[0] == 0
+        && starts.windows(2).all(|ends| ends[0] <= ends[1])
+        && starts[points.len()] as usize == others.len()
+        && others.len() == blocks.len();
+    if !ends_fit || others.iter().any(|&j| j as usize >= points.len()) {
+        return refuse("the correction is of other contact points".into());
+    }
+    if let Some(k) = blocks.iter().position(|block| !block.is_finite()) {
+        return refuse(format!("correction {k} is not finite"));
+    }
+    Ok(())
+}
+
+/// The median distance of points to their nearest on the same side.
+fn median_distance(tree: &PointTree, points: &[Point], size: f64) -> f64 {
+    let mut distances: Vec<f64> = (points.iter().enumerate())
+        .step_by(points.len().div_ceil(500))
+        .map(|(i, point)| {
+            let mut reach = 1e-3 * size;
+            loop {
+                let mut nearest = f64::INFINITY;
+                let within =
+                    |middle: DVec3, radius| middle.distance(point.position) <= reach + radius;
+                tree.visit(within, |j| {
+                    let other = &points[j as usize];
+                    if j as usize != i && other.normal.dot(point.normal) > 0.0 {
+                        nearest = nearest.min(other.position.distance(point.position));
+                    }
+                });
+                if nearest <= reach || reach > 2.0 * size {
+                    return nearest.min(size);
+                }
+                reach *= 2.0;
+            }
+        })
+        .collect();
+    distances.sort_by(f64::total_cmp);
+    distances[distances.len() / 2]
+}

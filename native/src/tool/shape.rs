@@ -1,0 +1,130 @@
+//! A rigid tool: the convex hull of a few core points, grown by a ball, and its signed distance.
+//!
+//! One point is a sphere, two a rod with round ends, a box a plate with rounded edges. Distance and
+//! normal are exact: outside the core by the closest point of the hull, inside it by the nearest face
+//! (Ericson 2005, 5.1). Readable reference: `core/tools.py`.
+
+use glam::{DMat3, DVec3};
+
+use super::hull::{Hull, HullError};
+
+/// Core points that a tool may have.
+pub const MOST_CORE_POINTS: usize = 64;
+/// Share of its inner radius that a tool goes in one tick at most, so that it jumps over no wall.
+const STRIDE_PER_INNER_RADIUS: f64 = 0.25;
+/// Closer to the core than this share of the radius, the direction is rounding.
+const CLEAR: f64 = 1e-9;
+
+/// Where a tool is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pose {
+    /// Of its reference point, m, body coordinates.
+    pub position: DVec3,
+    /// Takes directions of the tool to directions of the body.
+    pub rotation: DMat3,
+}
+
+impl Pose {
+    /// Whether all of it are finite numbers.
+    #[inline]
+    pub fn is_finite(&self) -> bool {
+        self.position.is_finite() && self.rotation.is_finite()
+    }
+
+    /// A place of the body in the tool's frame.
+    #[inline]
+    pub fn to_tool(&self, point: DVec3) -> DVec3 {
+        self.rotation.transpose() * (point - self.position)
+    }
+}
+
+/// The convex hull of core points, grown by a radius; m, in the tool's own frame.
+#[derive(Debug, Clone)]
+pub struct Tool {
+    hull: Hull,
+    radius: f64,
+    reach: f64,
+    low: DVec3,
+    high: DVec3,
+    middle: DVec3,
+    stride: f64,
+}
+
+impl Tool {
+    /// A tool around its core points.
+    ///
+    /// # Errors
+    /// [`HullError`] for no points or more than [`MOST_CORE_POINTS`], numbers that are not finite, a
+    /// radius that is not positive.
+    pub fn new(core: &[DVec3], radius: f64) -> Result<Self, HullError> {
+        let refuse = |reason: String| Err(HullError(reason));
+        if core.is_empty() || core.len() > MOST_CORE_POINTS {
+            return refuse(format!(
+                "a tool of {} core points; it must have from 1 to {MOST_CORE_POINTS}",
+                core.len()
+            ));
+        }
+        if let Some(i) = core.iter().position(|p| !p.is_finite()) {
+            return refuse(format!(
+                "core point {i} has a coordinate that is not finite"
+            ));
+        }
+        if !(radius.is_finite() && radius > 0.0) {
+            return refuse(format!(
+                "the tool's radius is {radius}; it must be finite and greater than zero"
+            ));
+        }
+        let hull = Hull::new(core);
+        let middle = core.iter().sum::<DVec3>() / core.len() as f64;
+        let inner_radius = radius + hull.depth(middle);
+        Ok(Self {
+            radius,
+            reach: core.iter().map(|p| p.length()).fold(0.0, f64::max) + radius,
+            low: core.iter().fold(DVec3::INFINITY, |low, &p| low.min(p)),
+            high: core
+                .iter()
+                .fold(DVec3::NEG_INFINITY, |high, &p| high.max(p)),
+            middle,
+            stride: STRIDE_PER_INNER_RADIUS * inner_radius,
+            hull,
+        })
+    }
+
+    /// Radius of the ball, m.
+    #[inline]
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// From the reference point to the farthest point of the tool, m.
+    #[inline]
+    pub fn reach(&self) -> f64 {
+        self.reach
+    }
+
+    /// How far the tool moves in one tick at most, m.
+    #[inline]
+    pub fn stride(&self) -> f64 {
+        self.stride
+    }
+
+    /// Mean of the core points.
+    #[inline]
+    pub fn middle(&self) -> DVec3 {
+        self.middle
+    }
+
+    /// Signed distance of a point, negative inside, and the outward unit normal there.
+    #[inline]
+    pub fn distance(&self, point: DVec3) -> (f64, DVec3) {
+        let (distance, normal) = self.hull.distance(point, CLEAR * self.radius);
+        (distance - self.radius, normal)
+    }
+
+    /// Less than the signed distance, or equal to it, at little cost.
+    #[inline]
+    pub fn least_distance(&self, point: DVec3) -> f64 {
+        let outside = (self.low - point).max(point - self.high).max(DVec3::ZERO);
+        outside.length() - self.radius
+    }
+}
