@@ -16,6 +16,8 @@ from ..core.soft_body import SoftBody
 from ..core.stiffness import lame_parameters
 from ..core.whole_file import whole_file
 from .body_figures import as_lines
+from .press_tool import pressed_tool, tool_figures, tool_summary
+from .tool_option import KINDS, tool_from
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -43,9 +45,14 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         "--mode",
         choices=CONTACT_MODES,
-        default="consistent",
         help="contact inside triangles: its point moves by exactly the finger's displacement "
         "(consistent, default), or as in the paper",
+    )
+    parser.add_argument(
+        "--tool",
+        metavar="TOOL",
+        help=f"press this instead of a point: {KINDS} (metres); its -z side is set down at --at, "
+        "against the surface, and moved by --by",
     )
     parser.add_argument(
         "--displacements",
@@ -62,27 +69,23 @@ def run(arguments: argparse.Namespace) -> int:
     body = cache.load(arguments.body)
     young_modulus = body.young_modulus if arguments.young is None else arguments.young
     lame_parameters(young_modulus, body.poisson_ratio)
-    mode: ContactMode = arguments.mode
+    if arguments.tool is not None:
+        return _press_tool(arguments, body, young_modulus)
+    return _press_points(arguments, body, young_modulus)
+
+
+def _press_points(arguments: argparse.Namespace, body: SoftBody, young_modulus: float) -> int:
+    mode: ContactMode = arguments.mode or "consistent"
     touches = body.touch_several(arguments.at, arguments.by, young_modulus, mode)
-    displacements = body.deform(
+    displacements = _deformed(
+        arguments,
+        body,
         np.concatenate([touch.triangle for touch in touches]),
         np.concatenate([touch.nodal_forces for touch in touches]),
         young_modulus,
     )
-    forces = np.array([touch.force for touch in touches])
-    if not (np.isfinite(forces).all() and np.isfinite(displacements).all()):
-        raise PalpateError(
-            f"--young: at {young_modulus} Pa this press is beyond what numbers can hold; give less"
-        )
-    if arguments.displacements is not None:
-        with whole_file(arguments.displacements) as file:
-            np.save(file, displacements)
     contacts = [_contact_figures(body, touch, displacements) for touch in touches]
-    common: dict[str, object] = {
-        "max_displacement": float(np.linalg.norm(displacements, axis=1).max()),
-        "young_modulus": young_modulus,
-        "mode": mode,
-    }
+    common = _common_figures(displacements, young_modulus) | {"mode": mode}
     if len(contacts) == 1:
         figures = contacts[0] | common
         print(json.dumps(figures) if arguments.json else as_lines(figures))
@@ -96,6 +99,48 @@ def run(arguments: argparse.Namespace) -> int:
     print(f"coupling, m/N (how far each contact moves per newton on each)\n{_as_table(coupling)}")
     print(as_lines(common))
     return 0
+
+
+def _press_tool(arguments: argparse.Namespace, body: SoftBody, young_modulus: float) -> int:
+    if arguments.mode is not None:
+        raise PalpateError("--mode: it is about points; leave it out with --tool")
+    if not len(arguments.at) == len(arguments.by) == 1:
+        raise PalpateError("--tool: one tool at a time; give --at and --by once")
+    tool = tool_from(arguments.tool)
+    touch = pressed_tool(body, tool, arguments.at[0], arguments.by[0], young_modulus)
+    displacements = _deformed(arguments, body, touch.nodes, touch.nodal_forces, young_modulus)
+    common = _common_figures(displacements, young_modulus)
+    if arguments.json:
+        print(json.dumps(tool_figures(touch) | common))
+    else:
+        print(as_lines(tool_summary(touch) | common))
+    return 0
+
+
+def _deformed(
+    arguments: argparse.Namespace,
+    body: SoftBody,
+    nodes: NDArray[np.int64],
+    nodal_forces: NDArray[np.float64],
+    young_modulus: float,
+) -> NDArray[np.float64]:
+    """Displacements (n, 3) under the forces on nodes, written where that is asked for."""
+    displacements = body.deform(nodes, nodal_forces, young_modulus)
+    if not (np.isfinite(nodal_forces).all() and np.isfinite(displacements).all()):
+        raise PalpateError(
+            f"--young: at {young_modulus} Pa this press is beyond what numbers can hold; give less"
+        )
+    if arguments.displacements is not None:
+        with whole_file(arguments.displacements) as file:
+            np.save(file, displacements)
+    return displacements
+
+
+def _common_figures(displacements: NDArray[np.float64], young_modulus: float) -> dict[str, object]:
+    return {
+        "max_displacement": float(np.linalg.norm(displacements, axis=1).max()),
+        "young_modulus": young_modulus,
+    }
 
 
 def _contact_figures(

@@ -14,9 +14,11 @@ import trimesh
 
 from palpate.cli.main import main
 from palpate.cli.status_line import bake_status
+from palpate.cli.tool_option import tool_from
 from palpate.core.bake_job import JobProgress
 
 MOUSE = Path(__file__).resolve().parents[1] / "meshes" / "mouse-1.7k.npz"
+PRESSED = ["--at", *"000", "--by", *"001"]
 
 
 def palpate(capsys, *words):
@@ -191,6 +193,38 @@ def test_press_takes_several_fingers_in_order(cube_file, tmp_path, capsys, cube)
     ]
 
 
+@pytest.mark.parametrize("tool", ["sphere:0.012", "rod:0.006:0.02", "plate:0.04:0.03", "convex"])
+def test_press_takes_a_tool_instead_of_a_point(tool, cube_file, tmp_path, capsys, cube):
+    (tmp_path / "tip.obj").write_text(
+        "v -.01 -.01 .02\nv .01 -.01 .02\nv .01 .01 .02\nv -.01 .01 .02\nv 0 0 0\n"
+        "f 1 2 3 4\nf 1 5 2\nf 2 5 3\nf 3 5 4\nf 4 5 1\n"
+    )
+    named = f"convex:{tmp_path / 'tip.obj'}" if tool == "convex" else tool
+    out = tmp_path / "u.npy"
+    words = [
+        "press", cube_file, "--at", 0.025, 0.02, 0.06, "--by", 0, 0, "-3e-3",
+        "--tool", named, "--displacements", out,
+    ]  # fmt: skip
+    status, printed, _ = palpate(capsys, *words, "--json")
+    figures = json.loads(printed)
+    assert status == 0
+    assert figures["force"][2] > 0
+    np.testing.assert_allclose(-np.sum(figures["nodal_forces"], axis=0), figures["force"])
+    nodes, forces = np.array(figures["nodes"]), np.array(figures["nodal_forces"])
+    moved = cube.deform(nodes, forces, figures["young_modulus"])
+    largest = np.abs(moved).max()
+    np.testing.assert_allclose(np.load(out), moved, rtol=0, atol=1e-6 * largest)
+    # Nothing of the surface is left inside the tool: its points are, where they went, at its front.
+    places = np.array(figures["points"]) + figures["point_displacements"]
+    in_tool = (places - figures["position"]) @ np.array(figures["rotation"])
+    np.testing.assert_allclose(tool_from(named).distance(in_tool)[0], 0, atol=1e-6)
+    assert len(figures["pressures"]) == len(places)
+    if tool.startswith("sphere"):
+        printed = palpate(capsys, *words)[1]
+        assert f"tool                   {named}" in printed.splitlines()
+        assert f"pressed points         {len(places)}" in printed.splitlines()
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [
@@ -251,6 +285,19 @@ def test_press_takes_several_fingers_in_order(cube_file, tmp_path, capsys, cube)
         (["press", "{body}", "--at", "0", "0", "0", "--by", "0", "0", "0", "--young", "-1"], "You"),
         (["press", "{body}", "--at", "0", "0", "--by", "0", "0", "0"], "--at"),
         (["press", "{body}", "--at", "0", "0", "0"], "--by"),
+        (
+            ["press", "{body}", *PRESSED, "--tool", "ball:1"],
+            "'ball:1' is no tool; give sphere:RADIUS",
+        ),
+        (["press", "{body}", *PRESSED, "--tool", "plate:0.1"], "'plate:0.1' is no tool"),
+        (["press", "{body}", *PRESSED, "--tool", "sphere:-1"], "tool sphere:-1: radius"),
+        (["press", "{body}", *PRESSED, "--tool", "convex:none.obj"], "none.obj"),
+        (["press", "{body}", *2 * PRESSED, "--tool", "sphere:0.01"], "one tool at a time"),
+        (["press", "{body}", *PRESSED, "--tool", "sphere:1", "--mode", "paper"], "--mode"),
+        (
+            ["press", "{body}", "--at", *"000", "--by", "0", "0", "nan", "--tool", "sphere:1"],
+            "--by",
+        ),
         (["press", "{body}", *2 * ["--at", *"000"], "--by", *"001"], "2 times and --by 1 times"),
         (["fly"], "fly"),
         ([], "COMMAND"),
