@@ -18,9 +18,10 @@ from scipy.spatial.transform import Rotation
 
 from .contact_points import ContactPoints, contact_points
 from .errors import PalpateError
-from .near_field import point_compliance
+from .near_field import NearCorrection, near_correction, point_compliance
 from .soft_body import SoftBody
 from .surface import Surface
+from .tilt import tilt_limits
 from .tool_law import Candidates, Settled, along_normals, distances_in_body, settle
 from .tools import Pose, Tool
 from .winding_volume import is_inside
@@ -64,6 +65,8 @@ class ToolTouch:
     ----------
     body, tool : which.
     surface : all contact points of the body for this tool.
+    correction : what their compliance is besides the mesh's; None for the mesh's alone.
+    limits : float64 (P,), largest tilt of a push on each of them, radians; see :mod:`.tilt`.
     pose : where the tool is; behind the pose asked for where that was farther than it may go.
     young_modulus : pascal.
     points : int64 (p,), numbers of the contact points that are pressed.
@@ -79,6 +82,8 @@ class ToolTouch:
     body: SoftBody
     tool: Tool
     surface: ContactPoints
+    correction: NearCorrection | None
+    limits: NDArray[np.float64]
     pose: Pose
     young_modulus: float
     points: NDArray[np.int64]
@@ -170,6 +175,7 @@ def press_tool(
     start: ToolTouch | None = None,
     outside: Load | None = None,
     surface: ContactPoints | None = None,
+    correction: NearCorrection | None = None,
 ) -> ToolTouch:
     """Press a tool on a body, from where ``start`` left it or, without one, from outside.
 
@@ -182,7 +188,8 @@ def press_tool(
     young_modulus : pascal; the body's own unless given.
     start : an earlier touch by the same tool on the same body.
     outside : forces of other fingers, which move the surface too.
-    surface : the contact points; those of :func:`surface_for` unless given. With ``start``, its.
+    surface, correction : contact points to use in place of :func:`surface_for`'s, with what their
+        compliance is besides the mesh's. With ``start``, those of that touch.
 
     Raises
     ------
@@ -190,7 +197,9 @@ def press_tool(
         Young's modulus is not a positive number; ``start`` is of another body or tool.
     """
     if start is None:
-        state = set_down(body, tool, pose, young_modulus=young_modulus, surface=surface)
+        state = set_down(
+            body, tool, pose, young_modulus=young_modulus, surface=surface, correction=correction
+        )
         shallow = _overlap(state, pose) <= SHALLOW * tool.inner_radius
         if shallow and not _is_within(state, pose):
             return _settled(replace(state, free=True), pose, outside)
@@ -213,16 +222,21 @@ def set_down(
     *,
     young_modulus: float | None = None,
     surface: ContactPoints | None = None,
+    correction: NearCorrection | None = None,
 ) -> ToolTouch:
     """A tool that appears at a pose. Inside the body it will feel nothing until it was outside."""
     modulus = body.young_modulus if young_modulus is None else young_modulus
     if not (np.isfinite(modulus) and modulus > 0.0):
         raise PalpateError(f"Young's modulus is {modulus} Pa; give a positive number")
+    placed: tuple[ContactPoints, NearCorrection | None]
+    placed = _known_surface(body, tool) if surface is None else (surface, correction)
     none, vectors = np.empty(0), np.empty((0, 3))
     state = ToolTouch(
         body,
         tool,
-        surface_for(body, tool) if surface is None else surface,
+        placed[0],
+        placed[1],
+        tilt_limits(body.mesh, placed[0]),
         pose,
         modulus,
         np.empty(0, dtype=np.int64),
@@ -258,15 +272,28 @@ def press_along(
 
 
 # Contact points take long to spread and are the same for every touch of a body by a tool.
-_surfaces: WeakKeyDictionary[SoftBody, dict[float, ContactPoints]] = WeakKeyDictionary()
+_surfaces: WeakKeyDictionary[
+    SoftBody, dict[tuple[float, float], tuple[ContactPoints, NearCorrection]]
+] = WeakKeyDictionary()
 
 
 def surface_for(body: SoftBody, tool: Tool) -> ContactPoints:
     """The contact points of a body for a tool; kept as long as the body lives."""
+    return _known_surface(body, tool)[0]
+
+
+def correction_for(body: SoftBody, tool: Tool) -> NearCorrection:
+    """What the near field adds to the compliance between these points; kept as they are."""
+    return _known_surface(body, tool)[1]
+
+
+def _known_surface(body: SoftBody, tool: Tool) -> tuple[ContactPoints, NearCorrection]:
     known = _surfaces.setdefault(body, {})
-    if tool.spacing not in known:
-        known[tool.spacing] = contact_points(body, tool.spacing)
-    return known[tool.spacing]
+    which = tool.spacing, tool.span
+    if which not in known:
+        points = contact_points(body, tool.spacing)
+        known[which] = points, near_correction(body, points, tool.span)
+    return known[which]
 
 
 def _continued(
@@ -335,6 +362,7 @@ def _candidates(state: ToolTouch, chosen: NDArray[np.int64], outside: Load | Non
     return Candidates(
         state.surface.positions[chosen],
         state.surface.normals[chosen],
+        state.limits[chosen],
         _compliance(state, chosen, chosen),
         _offsets(state, chosen, outside),
     )
@@ -344,7 +372,7 @@ def _compliance(
     state: ToolTouch, rows: NDArray[np.int64], columns: NDArray[np.int64]
 ) -> NDArray[np.float64]:
     """Displacements of points ``rows`` (k,) per force on points ``columns`` (l,), (3k, 3l), m/N."""
-    blocks = point_compliance(state.body, state.surface, rows, columns)
+    blocks = point_compliance(state.body, state.surface, rows, columns, state.correction)
     matrix: NDArray[np.float64] = blocks.transpose(0, 2, 1, 3).reshape(3 * len(rows), -1)
     return matrix / state.young_modulus
 

@@ -9,7 +9,8 @@ Those are the conditions for least elastic energy among all shapes that stay out
 (Karush, Kuhn and Tucker). So the forces on the tool are the slope of an energy in the tool's pose,
 and in balance with those on the body. They are found by linearising the distance about the last
 displacements: one complementarity problem each time, whose matrix N' C N is symmetric and positive
-definite. The iteration contracts wherever the equilibrium is stable.
+definite. The iteration contracts wherever the equilibrium is stable; :mod:`.tilt` keeps it so
+beyond depths of about half a sphere's radius.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .complementarity import solve_complementarity
+from .tilt import held_tilt
 from .tools import Pose, Tool
 
 # Linearisations; five to thirty are usual, the more the deeper the tool in relation to its radius.
@@ -30,7 +32,7 @@ CONVERGED = 1e-13
 
 # A point whose outward normal looks along the tool's (cosine) is seen from within the body: it
 # belongs to the far side of a thin part, and does not touch.
-FAR_SIDE = 0.3
+FAR_SIDE = 0.7
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,12 +43,14 @@ class Candidates:
     ----------
     positions : float64 (p, 3), places at rest, metres.
     normals : float64 (p, 3), outward normals of the body there.
+    limits : float64 (p,), largest tilts of a push, radians; see :mod:`.tilt`.
     compliance : float64 (3p, 3p), displacements per newton at the body's modulus, m/N.
     offsets : float64 (p, 3), displacements that other forces cause there, metres.
     """
 
     positions: NDArray[np.float64]
     normals: NDArray[np.float64]
+    limits: NDArray[np.float64]
     compliance: NDArray[np.float64]
     offsets: NDArray[np.float64]
 
@@ -91,7 +95,12 @@ def settle(
     normals = np.zeros_like(forces)
     for made in range(1, most + 1):
         distances, normals = distances_in_body(tool, pose, candidates.positions + displacements)
-        pushes = _pushes_about(candidates, displacements, distances, normals, pushes)
+        facing = np.einsum("px,px->p", normals, candidates.normals) < FAR_SIDE
+        offsets = (candidates.positions + displacements)[:, None] - pose.to_body(tool.core)
+        distances, normals = held_tilt(
+            distances, normals, offsets, -candidates.normals, candidates.limits, tool.radius
+        )
+        pushes = _pushes_about(candidates, displacements, distances, normals, facing, pushes)
         forces = pushes[:, None] * normals
         last, displacements = displacements, candidates.displacements(forces)
         change = float(np.abs(displacements - last).max(initial=0.0))
@@ -126,10 +135,10 @@ def _pushes_about(
     displacements: NDArray[np.float64],
     distances: NDArray[np.float64],
     normals: NDArray[np.float64],
+    facing: NDArray[np.bool_],
     start: NDArray[np.float64],
 ) -> NDArray[np.float64]:
     """Solve the complementarity problem of the distances linearised about ``displacements``."""
-    facing = np.einsum("px,px->p", normals, candidates.normals) < FAR_SIDE
     moved = displacements - candidates.offsets
     gaps = distances - np.einsum("px,px->p", normals, moved)
     pushes = np.zeros(len(gaps))

@@ -27,7 +27,7 @@ MOST_CORE_POINTS = 64
 FLATNESS = 1e-6
 
 # How far apart contact points are, as a share of a round tool's radius and of a flat tool's width.
-SPACING_PER_RADIUS = 0.35
+SPACING_PER_RADIUS = 0.25
 SPACING_PER_WIDTH = 0.125
 
 # Share of its inner radius that a tool goes in one tick at most, so that it jumps over no wall.
@@ -78,6 +78,11 @@ class Pose:
         """Body coordinates (p, 3) as the tool's own."""
         own: NDArray[np.float64] = (points - self.position) @ self.rotation
         return own
+
+    def to_body(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The tool's own coordinates (p, 3) as the body's."""
+        moved: NDArray[np.float64] = points @ self.rotation.T + self.position
+        return moved
 
 
 @dataclass(frozen=True, eq=False)
@@ -172,6 +177,11 @@ class Tool:
         if len(self.planes) or _span(self.core)[0] == 2:
             return SPACING_PER_WIDTH * self.size
         return SPACING_PER_RADIUS * self.radius
+
+    @property
+    def span(self) -> float:
+        """How far apart two points may be for the near field between them to count, metres."""
+        return self.size if len(self.core) > 2 else 2.0 * self.radius
 
     @property
     def stride(self) -> float:

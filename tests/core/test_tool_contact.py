@@ -9,18 +9,17 @@ from palpate.core.tool_contact import (
     press_along,
     press_tool,
     set_down,
-    surface_for,
 )
 from palpate.core.tools import Pose, convex, plate, rod, sphere
 
 TOP = 0.05
-BOX = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * 0.007
-# Each tool on the top of the cube with a tilt and a height at which it presses 3 to 4 mm deep.
+BOX = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * 0.012
+# Each tool on the top of the cube with a tilt and a height at which it presses 1 to 4 mm deep.
 PRESSES = {
-    "sphere": (sphere(0.012), [0.3, 0.2, 0.1], TOP + 0.008),
-    "rod": (rod(0.006, 0.03), [0.02, 0.05, 0.4], TOP + 0.002),
-    "plate": (plate(0.03, 0.03), [0.05, -0.08, 0.2], TOP - 0.003),
-    "corner": (convex(BOX, 0.002), [0.5, 0.7, 0.2], TOP + 0.007),
+    "sphere": (sphere(0.014), [0.3, 0.2, 0.1], TOP + 0.01),
+    "rod": (rod(0.012, 0.02), [0.02, 0.05, 0.4], TOP + 0.008),
+    "plate": (plate(0.03, 0.03), [0.05, -0.08, 0.2], TOP - 0.0005),
+    "corner": (convex(BOX, 0.006), [0.5, 0.7, 0.2], TOP + 0.014),
 }
 
 
@@ -33,6 +32,14 @@ def pressed(request, cube):
 
 def moved(pose, by=(0, 0, 0), turn=(0, 0, 0)):
     return Pose.at(pose.position + by, Rotation.from_rotvec(turn).as_matrix() @ pose.rotation)
+
+
+def steep(touch):
+    """Which pushes are held at the limit of their tilt."""
+    inward = -touch.surface.normals[touch.points]
+    tilts = np.arccos(np.einsum("px,px->p", touch.normals, inward))
+    assert (tilts < touch.limits[touch.points] + 1e-9).all()
+    return tilts > touch.limits[touch.points] - 1e-9
 
 
 def test_the_force_is_the_slope_of_the_elastic_energy(pressed):
@@ -48,21 +55,25 @@ def test_the_force_is_the_slope_of_the_elastic_energy(pressed):
         torque[axis] = -(energy(turn=angle) - energy(turn=-angle)) / 2e-4
     assert pressed.force[2] > 0.1
     np.testing.assert_allclose(pressed.force, force, atol=2e-6 * np.linalg.norm(force))
-    np.testing.assert_allclose(pressed.torque, torque, atol=2e-6 * np.linalg.norm(force) * 0.01)
+    # The limit of a push's tilt does not turn with the tool: at the plate's rim, a part in 1000.
+    share = 2e-6 if steep(pressed).sum() == 0 else 1e-3
+    np.testing.assert_allclose(pressed.torque, torque, atol=share * np.linalg.norm(force) * 0.01)
 
 
 def test_points_are_pushed_out_of_the_tool_and_never_pulled(pressed):
-    surface = surface_for(pressed.body, pressed.tool)
     assert pressed.exact
     assert (pressed.pushes > 0).all()
     assert (pressed.pressures > 0).all()
     np.testing.assert_allclose(pressed.forces, pressed.pushes[:, None] * pressed.normals)
-    # The pressed points lie on the tool, exactly, and the others nowhere in it.
+    # The pressed points lie on the tool, exactly, where their push is not held near their normal.
+    held = steep(pressed)
     gone_to = pressed.places + pressed.displacements
     distance, normals = pressed.tool.distance(pressed.pose.to_tool(gone_to))
-    assert np.abs(distance).max() < 1e-11
-    np.testing.assert_allclose(normals @ pressed.pose.rotation.T, pressed.normals, atol=1e-8)
-    assert len(surface.positions) > len(pressed.points)
+    assert np.abs(distance[~held]).max() < 1e-11
+    assert (distance[held] > 0).all()
+    normals = normals @ pressed.pose.rotation.T
+    np.testing.assert_allclose(normals[~held], pressed.normals[~held], atol=1e-8)
+    assert held.mean() < 0.5
 
 
 def test_forces_on_nodes_add_up_to_what_the_tool_feels(pressed):
@@ -72,6 +83,19 @@ def test_forces_on_nodes_add_up_to_what_the_tool_feels(pressed):
     at_points = np.cross(pressed.places, pressed.forces).sum(axis=0)
     np.testing.assert_allclose(about_origin, at_points, atol=1e-12)
     assert len(np.unique(pressed.nodes)) == len(pressed.nodes)
+
+
+def test_deeper_than_its_radius_a_sphere_is_still_resisted_more_and_more(cube):
+    tool = sphere(0.014)
+    depths = np.arange(1, 15) * 0.1 * tool.radius
+    touch = set_down(cube, tool, Pose.at([0.0262, 0.0243, TOP + 1.05 * tool.radius]))
+    forces = []
+    for depth in depths:
+        pose = Pose.at([0.0262, 0.0243, TOP + tool.radius - depth])
+        touch = press_tool(cube, tool, pose, start=touch)
+        forces.append(touch.force[2])
+    assert steep(touch).any()
+    assert (np.diff(forces) > 0).all()
 
 
 def test_the_way_there_does_not_matter(pressed):
@@ -103,33 +127,32 @@ def test_the_force_follows_the_modulus(pressed):
 
 
 def test_a_tool_set_down_inside_feels_nothing_until_it_was_outside(cube):
-    tool = sphere(0.004)
-    heights = np.concatenate([np.linspace(0.03, 0.06, 40), np.linspace(0.06, 0.052, 20)])
+    tool = sphere(0.014)
+    heights = np.concatenate([np.linspace(0.03, 0.08, 30), np.linspace(0.08, 0.062, 15)])
     touches = press_along(cube, tool, [Pose.at([0.025, 0.025, height]) for height in heights])
-    assert not any(touch.touching for touch in touches[:40])
+    assert not any(touch.touching for touch in touches[:30])
     assert not touches[0].free
-    assert touches[39].free
+    assert touches[29].free
     assert touches[-1].touching
     assert touches[-1].force[2] > 0
 
 
 def test_a_tool_goes_at_most_one_stride_a_tick_and_does_not_jump_through_the_body(cube):
-    tool = sphere(0.004)
-    touch = set_down(cube, tool, Pose.at([0.025, 0.025, 0.06]))
+    tool = sphere(0.014)
+    touch = set_down(cube, tool, Pose.at([0.025, 0.025, 0.074]))
     through = Pose.at([0.025, 0.025, -0.02])
-    for _ in range(12):
+    for _ in range(6):
         last, touch = touch, follow_tool(touch, through)
         assert np.linalg.norm(touch.pose.position - last.pose.position) <= tool.stride * 1.0001
-    assert touch.touching
-    assert touch.force[2] > 0
+    assert touch.force[2] > 1.0
     turned = follow_tool(touch, moved(touch.pose, turn=[3.0, 0, 0]))
     angle = Rotation.from_matrix(turned.pose.rotation).magnitude()
     assert 0 < angle * tool.reach <= tool.stride * 1.0001
 
 
 def test_forces_of_others_are_felt_through_the_body_both_ways(cube):
-    tool = sphere(0.01)
-    alone = press_tool(cube, tool, Pose.at([0.02, 0.025, 0.057]))
+    tool = sphere(0.014)
+    alone = press_tool(cube, tool, Pose.at([0.02, 0.025, 0.06]))
     below = np.linalg.norm(cube.mesh.nodes - [0.025, 0.025, TOP], axis=1).argmin()
     pushed = Load(np.array([below]), np.array([[0.0, 0.0, -0.2]]))
     nearby = press_tool(cube, tool, alone.pose, outside=pushed)
