@@ -5,7 +5,7 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::contact::{ContactMode, contact_stiffness, surface_displacement, touch};
+use crate::contact::{contact_stiffness, surface_displacement, touch};
 use crate::coupling::{Contact, Coupler, Coupling};
 use crate::device::{Device, DeviceFrame, Fault, Probe, Reading};
 use crate::proxy::Proxy;
@@ -23,11 +23,6 @@ const SUSPENDED_SECONDS: f64 = 0.02;
 const HOLES_SECONDS: f64 = 0.05;
 /// A device slower than this part of the largest speed is calm.
 const CALM_PART: f64 = 0.5;
-/// A finger as near as this to the surface, in lengths of the triangle there, may be mixed up with
-/// another that touches there.
-const NEAR_LENGTHS: f64 = 0.5;
-/// What others do to the surface below this is none, m.
-const NOT_CARRIED: f64 = 1e-12;
 
 /// What may change of one finger while the servo runs.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -83,8 +78,12 @@ pub struct Finger {
     pub device: Box<dyn Device>,
     proxy: Option<Proxy>,
     probe: DVec3,
-    /// How far the others move the surface where it touches or will touch, m, as far as believed.
-    carried: DVec3,
+    /// How far the others moved the surface where it touches or will touch in the last tick, m.
+    by_others: DVec3,
+    /// How far it is moved back from its place before the proxy sees it, m: onto the rest surface.
+    moved_back: DVec3,
+    /// Unit vector of its push on the body, zero while it has none.
+    push_direction: DVec3,
     /// Set down anew: what the others do there is not known yet.
     is_fresh: bool,
     /// That is known since the last tick: it decides on which side the finger was set down.
@@ -111,7 +110,9 @@ impl Finger {
             device,
             proxy: None,
             probe: DVec3::ZERO,
-            carried: DVec3::ZERO,
+            by_others: DVec3::ZERO,
+            moved_back: DVec3::ZERO,
+            push_direction: DVec3::ZERO,
             is_fresh: true,
             set_down_again: false,
             presence: 1.0,
@@ -150,7 +151,7 @@ impl Finger {
     ) {
         if moment.body_replaced {
             // Even in a tick without a probe: nothing may be left of the old body.
-            self.carried = DVec3::ZERO;
+            self.forget_others();
             if let Some(proxy) = &mut self.proxy {
                 proxy.restart(body, self.probe);
             }
@@ -218,7 +219,8 @@ impl Finger {
 
     /// Moves the proxy after the probe, or sets it down anew where no sweep leads there.
     ///
-    /// The proxy lives on the rest surface: the probe is seen from the surface that the others carry.
+    /// The proxy lives on the rest surface: it sees the probe where it would be, had the others not
+    /// moved the surface. Across its push a finger holds the surface as it met it.
     fn move_proxy(
         &mut self,
         body: &Body,
@@ -239,10 +241,17 @@ impl Finger {
             self.found.fault == Some(Fault::TooFast) || self.standing.fault == Some(Fault::TooFast);
         let lifted = probe.restart || jumped || lost_its_place || moment.body_replaced;
         if lifted {
-            (self.is_fresh, self.set_down_again, self.carried) = (true, false, DVec3::ZERO);
+            self.forget_others();
+            (self.is_fresh, self.set_down_again) = (true, false);
         }
         let lifted = lifted || std::mem::take(&mut self.set_down_again);
-        let seen = self.probe - self.carried;
+        let n = self.push_direction;
+        self.moved_back = if n == DVec3::ZERO {
+            self.by_others
+        } else {
+            self.moved_back + n * n.dot(self.by_others - self.moved_back)
+        };
+        let seen = self.probe - self.moved_back;
         match &mut self.proxy {
             Some(proxy) if !lifted => proxy.follow(body, seen, &settings.feel, moment.dt),
             Some(proxy) => proxy.restart(body, seen),
@@ -276,11 +285,11 @@ impl Finger {
     }
 
     /// Whether it has to reckon with what others do or did.
-    pub fn is_carried(&self) -> bool {
-        self.carried != DVec3::ZERO
+    pub fn is_moved(&self) -> bool {
+        self.by_others != DVec3::ZERO || self.moved_back != DVec3::ZERO
     }
 
-    /// The finger as the others see it: on the surface, or near it where they may carry that.
+    /// The finger as the others see it: on the surface, or where it is nearest to that.
     pub fn press(&self, body: &Body, young_modulus: f64, own: &FingerSettings) -> Option<Press> {
         let proxy = self.proxy.as_ref()?;
         if self.acts() {
@@ -293,9 +302,8 @@ impl Finger {
             return Some(Press {
                 hold: proxy.hold()?,
                 touches: true,
-                nearness: 1.0,
                 displacement,
-                push: displacement - self.carried,
+                push: displacement - self.moved_back,
                 most_stiffness: limit,
                 presence: self.presence,
             });
@@ -304,19 +312,11 @@ impl Finger {
             return None;
         }
         let mut hold = proxy.nearest();
-        let face = body.face(hold.triangle);
-        let (alpha, point) = closest_on_face(face, self.probe - self.carried);
-        hold.alpha = alpha;
-        let distance = point.distance(self.probe - self.carried);
-        let reach = NEAR_LENGTHS * face.area_vector.length().sqrt();
+        let seen = self.probe - self.moved_back;
+        hold.alpha = closest_on_face(body.face(hold.triangle), seen).0;
         Some(Press {
             hold,
             touches: false,
-            nearness: if proxy.is_buried() {
-                0.0
-            } else {
-                (1.0 - distance / reach).max(0.0)
-            },
             displacement: DVec3::ZERO,
             push: DVec3::ZERO,
             most_stiffness: f64::INFINITY,
@@ -378,7 +378,7 @@ impl Finger {
         dt: f64,
     ) -> DVec3 {
         let young_modulus = settings.young_modulus;
-        self.believe(answer);
+        self.reckon_with(answer);
         let Some(hold) = self.hold() else {
             self.let_go();
             return DVec3::ZERO;
@@ -394,22 +394,14 @@ impl Finger {
             self.let_go();
             return DVec3::ZERO;
         }
-        let (triangle, alpha) = hold;
-        self.shot.nodal_forces = match settings.feel.mode {
-            ContactMode::Consistent => alpha.map(|share| force * -share),
-            ContactMode::Paper => {
-                let stiffness = contact_stiffness(body, ContactMode::Paper, triangle, alpha);
-                let u = stiffness.inverse() * -force / young_modulus;
-                touch(body, ContactMode::Paper, triangle, alpha, u, young_modulus).nodal_forces
-            }
-        };
-        self.show_surface(body, hold, young_modulus, answer.carried);
+        self.shot.nodal_forces = hold.1.map(|share| force * -share);
+        self.show_surface(body, hold, young_modulus, answer.by_others);
         if !self.has_motors() {
             return force;
         }
         let seen = Contact {
             stiffness: answer.seen_stiffness * young_modulus,
-            displacement: self.shot.probe - self.shot.proxy - answer.carried,
+            displacement: self.shot.probe - self.shot.proxy - answer.by_others,
             force,
         };
         self.coupler
@@ -418,27 +410,34 @@ impl Finger {
 
     /// Forgets what the others do.
     pub fn forget_others(&mut self) {
-        self.carried = DVec3::ZERO;
+        self.by_others = DVec3::ZERO;
+        self.moved_back = DVec3::ZERO;
+        self.push_direction = DVec3::ZERO;
+        self.is_fresh = false;
     }
 
-    /// Takes over what the others do at its place: gradually, or two fingers that are close would
-    /// chase each other.
-    fn believe(&mut self, answer: &Answer) {
-        let is_known = answer.news > 0.0;
-        self.set_down_again |= self.is_fresh && is_known && answer.carried != DVec3::ZERO;
-        let share = if self.set_down_again {
-            1.0
-        } else {
-            answer.news
-        };
-        self.is_fresh &= !is_known;
-        let carried = self.carried + (answer.carried - self.carried) * share;
-        let is_over = answer.carried == DVec3::ZERO && carried.length() < NOT_CARRIED;
-        self.carried = if is_over || !carried.is_finite() {
-            DVec3::ZERO
-        } else {
-            carried
-        };
+    /// Notes what the others do at its place, and which way it pushes itself.
+    fn reckon_with(&mut self, answer: &Answer) {
+        if self.found.blind {
+            return;
+        }
+        self.by_others = answer.by_others;
+        if !self.by_others.is_finite() {
+            self.forget_others();
+        }
+        self.set_down_again |= self.is_fresh && self.is_moved() && !self.touches();
+        self.is_fresh = false;
+        if !self.acts() {
+            self.push_direction = DVec3::ZERO;
+            return;
+        }
+        let push = self.shot.probe - self.moved_back - self.shot.proxy;
+        let n = push.try_normalize().unwrap_or(self.push_direction);
+        self.push_direction = n;
+        let slipped = self.moved_back + answer.slip - n * n.dot(answer.slip);
+        if slipped.is_finite() {
+            self.moved_back = slipped;
+        }
     }
 
     fn hold(&self) -> Option<(u32, [f64; 3])> {

@@ -14,6 +14,7 @@ pub mod closed_loop;
 pub mod closest;
 pub mod codec;
 pub mod compliance;
+pub mod cones;
 pub mod contact;
 pub mod coupling;
 pub mod device;

@@ -7,13 +7,15 @@ use glam::DVec3;
 use rtrb::Producer;
 use triple_buffer::{Input, Output};
 
+use crate::cones::MAX_FINGERS;
+use crate::contact::ContactMode;
 use crate::device::{Device, Fault};
 use crate::exchange::{Holder, exchange};
 use crate::finger::{Finger, FingerSettings, Moment};
 use crate::proxy::Feel;
 use crate::recorder::Tape;
 use crate::safety::Limits;
-use crate::several::{MAX_FINGERS, Several};
+use crate::several::Several;
 use crate::snapshot::{Published, Sample};
 use crate::stages::{Stage, Stages};
 use crate::surface::Body;
@@ -155,13 +157,15 @@ impl Servo {
             fingers: own,
             ..
         } = settings;
-        let reckons = |finger: &Finger| finger.acts() || finger.is_carried();
-        if self.fingers.len() > 1 && self.fingers.iter().any(reckons) {
+        let reckons = |finger: &Finger| finger.acts() || finger.is_moved();
+        // The paper couples fingers on nodes alone (10); in its mode each feels as if it were alone.
+        let are_coupled = self.fingers.len() > 1 && feel.mode == ContactMode::Consistent;
+        if are_coupled && self.fingers.iter().any(reckons) {
             let mut presses = [None; MAX_FINGERS];
             for ((press, finger), own) in presses.iter_mut().zip(&self.fingers).zip(own) {
                 *press = finger.press(body, *young_modulus, own);
             }
-            if let Some(answers) = self.several.solve(body, moment.body, feel.mode, &presses) {
+            if let Some(answers) = self.several.solve(body, moment.body, &presses) {
                 for (p, finger) in self.fingers.iter_mut().enumerate() {
                     wanted[p] = finger.feel(body, settings, &own[p], &answers[p], moment.dt);
                 }

@@ -66,6 +66,38 @@ impl SmallMatrix {
             reciprocals,
         })
     }
+
+    /// Replaces the right hand side by the solution, by Gauss' elimination with row exchanges; for
+    /// matrices that are not symmetric. `None` for a singular one.
+    pub fn eliminate(mut self, column: &mut [f64; MOST_ROWS]) -> Option<()> {
+        let rows = self.rows;
+        for k in 0..rows {
+            let size = |row: usize| self.entries[row][k].abs();
+            let pivot = (k..rows).fold(
+                k,
+                |best, row| if size(row) > size(best) { row } else { best },
+            );
+            let is_sound = size(pivot) > 0.0 && size(pivot).is_finite();
+            if !is_sound {
+                return None;
+            }
+            self.entries.swap(k, pivot);
+            column.swap(k, pivot);
+            for row in k + 1..rows {
+                let factor = self.entries[row][k] / self.entries[k][k];
+                for c in k..rows {
+                    self.entries[row][c] -= factor * self.entries[k][c];
+                }
+                column[row] -= factor * column[k];
+            }
+        }
+        for row in (0..rows).rev() {
+            let line = &self.entries[row];
+            let known: f64 = (row + 1..rows).map(|c| line[c] * column[c]).sum();
+            column[row] = (column[row] - known) / line[row];
+        }
+        Some(())
+    }
 }
 
 impl Factored {
@@ -123,6 +155,13 @@ mod tests {
             x[..rows].fill(1.0);
             factored.solve(&mut x);
             let inverse = factored.inverse();
+            let mut y = [0.0; MOST_ROWS];
+            y[..rows].fill(1.0);
+            let mut skew = matrix;
+            // Needs its rows exchanged.
+            skew.entries.swap(0, rows - 1);
+            skew.eliminate(&mut y).expect("regular");
+            assert!(x.iter().zip(y).all(|(x, y)| (x - y).abs() < 1e-13));
             for i in 0..rows {
                 let product = |column: &dyn Fn(usize) -> f64| -> f64 {
                     (0..rows).map(|k| matrix.entries[i][k] * column(k)).sum()

@@ -2,8 +2,8 @@
 
 use glam::{DMat3, DVec3};
 
+use crate::cones::MAX_FINGERS;
 use crate::device::{Fault, LinkReport};
-use crate::several::MAX_FINGERS;
 pub use crate::state::State;
 use crate::state::reason;
 

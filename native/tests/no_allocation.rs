@@ -10,7 +10,8 @@ use counting::counted;
 use glam::DVec3;
 use palpate_servo::clock::{Pace, Timing, Waking};
 use palpate_servo::codec::{Decoder, MAX_FRAME, encode};
-use palpate_servo::device::{Device, Fault};
+use palpate_servo::cones::MAX_FINGERS;
+use palpate_servo::device::{Device, DeviceFrame, Fault, LinkReport, Probe, Reading};
 use palpate_servo::exchange::exchange;
 use palpate_servo::link::LinkDevice;
 use palpate_servo::pointer::{Pointer, Target};
@@ -308,4 +309,83 @@ fn a_body_is_exchanged_without_allocating_or_freeing_in_the_tick() {
         tick();
         old = new;
     }
+}
+
+/// A finger that circles over the body, in and out, by itself.
+struct Drumming {
+    tick: u32,
+    phase: f64,
+}
+
+impl Device for Drumming {
+    fn read(&mut self, _now: f64, _dt: f64, _frame: &DeviceFrame) -> Reading {
+        self.tick += 1;
+        if self.tick % 999 == 0 {
+            return Reading::Fault(Fault::Stale);
+        }
+        let t = f64::from(self.tick) * 1e-3 + self.phase;
+        let around = DVec3::new(0.02 * (2.0 * t).cos(), 0.02 * (2.7 * t).sin(), 0.0);
+        Reading::At(Probe {
+            position: DVec3::new(0.025, 0.025, 0.049 - 0.003 * (9.0 * t).sin()) + around,
+            orientation: glam::DMat3::IDENTITY,
+            speed: 0.1,
+            restart: self.tick % 5_000 == 1,
+            buttons: 0,
+            max_force: 3.0,
+        })
+    }
+
+    fn write(&mut self, _force: DVec3, _enable: bool, _frame: &DeviceFrame) {}
+
+    fn park(&mut self) {}
+
+    fn report(&self) -> LinkReport {
+        LinkReport::default()
+    }
+}
+
+#[test]
+fn five_fingers_that_feel_each_other_allocate_nothing() {
+    let devices = (0..MAX_FINGERS).map(|k| -> Box<dyn Device> {
+        Box::new(Drumming {
+            tick: 0,
+            phase: 1.3 * k as f64,
+        })
+    });
+    let (mut settings_in, settings_out) = triple_buffer(&settings());
+    let (snapshots_in, mut snapshots) = triple_buffer(&Published::default());
+    let (samples_in, _samples) = RingBuffer::new(50_000);
+    let mut servo = Servo::new(
+        bodies::elastic_cube(),
+        devices.collect(),
+        OPTIONS,
+        settings_out,
+        snapshots_in,
+        samples_in,
+    );
+    let mut together = 0;
+    let ((), allocations) = counted(|| {
+        for tick in 1..=20_000 {
+            if tick % 3 == 0 {
+                settings_in.write(changed(tick));
+            }
+            servo.tick(f64::from(tick) * 1e-3);
+            let told = snapshots.read().fingers();
+            let touching = told.iter().filter(|told| told.snapshot.hold.is_some());
+            together += u32::from(touching.count() > 2);
+        }
+    });
+    assert_eq!(allocations, 0);
+    assert!(together > 3_000, "{together}");
+    let last = snapshots.read();
+    assert!(
+        last.fingers()
+            .iter()
+            .all(|told| told.faults[Fault::Stale as usize] == 20)
+    );
+    assert!(
+        last.fingers()
+            .iter()
+            .all(|told| told.faults[Fault::Nan as usize] == 0)
+    );
 }

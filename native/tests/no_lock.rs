@@ -102,7 +102,7 @@ fn hammer(running: &Running, ticks: u64) {
         });
         others.spawn(|| {
             until_enough(&|| {
-                running.set_body(bodies::giving_cube(), settings());
+                running.set_body(bodies::elastic_cube(), settings());
                 // Time to come out of the old body and into the new one.
                 sleep(Duration::from_millis(150));
             });
@@ -126,6 +126,7 @@ fn hammer(running: &Running, ticks: u64) {
 /// Calls that were not permitted while the servo was hammered upon, by number.
 fn calls_of<D: Device + 'static>(
     device: D,
+    others: Vec<Box<dyn Device>>,
     permitted: &[libc::c_long],
     during: impl FnOnce(&Running),
 ) -> BTreeMap<i64, u64> {
@@ -134,15 +135,10 @@ fn calls_of<D: Device + 'static>(
         device,
         watch: Some(watch),
     };
-    let running = Running::start(
-        bodies::giving_cube(),
-        vec![Box::new(watching)],
-        OPTIONS,
-        settings(),
-        100,
-        0,
-    )
-    .expect("a thread");
+    let mut devices: Vec<Box<dyn Device>> = vec![Box::new(watching)];
+    devices.extend(others);
+    let running = Running::start(bodies::elastic_cube(), devices, OPTIONS, settings(), 100, 0)
+        .expect("a thread");
     counter.wait();
     during(&running);
     let calls = counter.calls();
@@ -192,9 +188,24 @@ fn a_servo_only_sleeps() {
     let dipping = Dipping {
         touched: touched.clone(),
     };
-    let calls = calls_of(dipping, &[], |running| hammer(running, 3000));
+    let calls = calls_of(dipping, Vec::new(), &[], |running| hammer(running, 3000));
     assert_eq!(calls, BTreeMap::new());
     assert!(touched.load(Relaxed) > 100, "{touched:?}");
+}
+
+#[test]
+fn a_servo_with_two_fingers_that_feel_each_other_only_sleeps() {
+    let touched = [Arc::new(AtomicU64::new(0)), Arc::new(AtomicU64::new(0))];
+    let [first, second] = touched.clone().map(|touched| Dipping { touched });
+    let calls = calls_of(first, vec![Box::new(second)], &[], |running| {
+        hammer(running, 3000);
+        assert_eq!(running.published().fingers().len(), 2);
+    });
+    assert_eq!(calls, BTreeMap::new());
+    assert!(
+        touched.iter().all(|touched| touched.load(Relaxed) > 100),
+        "{touched:?}"
+    );
 }
 
 /// A pseudo-terminal: the host's path, and the device's end.
@@ -258,7 +269,7 @@ fn a_servo_with_a_serial_device_only_sleeps_reads_and_writes() {
         move || board(line, &ends)
     });
     let permitted = [libc::SYS_read, libc::SYS_write];
-    let calls = calls_of(device, &permitted, |running| {
+    let calls = calls_of(device, Vec::new(), &permitted, |running| {
         hammer(running, 3000);
         let seen = running.published();
         assert!(
@@ -294,7 +305,7 @@ fn the_counter_sees_a_lock_that_others_hold() {
     let shared = Arc::new(Mutex::new(Dipping {
         touched: Arc::default(),
     }));
-    let calls = calls_of(Locking(shared.clone()), &[], |running| {
+    let calls = calls_of(Locking(shared.clone()), Vec::new(), &[], |running| {
         for _ in 0..20 {
             let held = shared.lock().expect("nobody panics");
             sleep(Duration::from_millis(5));

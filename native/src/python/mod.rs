@@ -16,9 +16,9 @@ mod vectors;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
+use crate::cones::MAX_FINGERS;
 use crate::device::Fault;
 use crate::safety::LIMITERS;
-use crate::several::MAX_FINGERS;
 use crate::state::{State, after, reason};
 
 #[pymodule]

@@ -116,7 +116,7 @@ pub fn elastic(body: &Body) -> Arc<Body> {
     let dense = Dense::new(free.len(), Either::Long(table.into())).expect("n x 3 x 3n");
     let blocks = vec![shape.inverse(); body.nodes.len()];
     let body = Body::new(body.nodes.clone(), body.triangles.clone(), blocks).expect("sound");
-    let whole = body.with_compliance(&Compliance::Dense(dense), &free);
+    let whole = body.with_whole_compliance(Arc::new(Compliance::Dense(dense)), &free);
     Arc::new(whole.expect("it fits"))
 }
 

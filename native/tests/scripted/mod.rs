@@ -88,6 +88,7 @@ pub fn settings_of(own: FingerSettings) -> Settings {
 
 pub struct Table {
     pub servo: Servo,
+    pub body: Arc<Body>,
     pub devices: Vec<Scripted>,
     pub hand: Hand,
     pub settings: Input<Settings>,
@@ -107,6 +108,7 @@ impl Table {
         let (settings_in, settings_out) = triple_buffer(&settings());
         let (snapshots_in, snapshots) = triple_buffer(&Published::default());
         let (samples_in, samples) = RingBuffer::new(10);
+        let kept = body.clone();
         let (hand, holder) = exchange(body.clone());
         let devices: Vec<Scripted> = (0..count).map(|_| Scripted::above()).collect();
         let boxed = devices.iter().cloned();
@@ -121,6 +123,7 @@ impl Table {
         servo.bodies = holder;
         Self {
             servo,
+            body: kept,
             devices,
             hand,
             settings: settings_in,
