@@ -214,8 +214,10 @@ fn bounded(added: DVec3, spring: DVec3, displacement: DVec3) -> DVec3 {
     let across = added - way * along;
     let added = way * along.clamp(-size, MOST_GAIN * size) + shortened(across, size);
     let (inward, outward) = (added.dot(displacement), -spring.dot(displacement));
+    // Among other fingers a spring may lean on its cone, and not against the displacement at all.
+    let outward = outward.max(0.0);
     if inward > outward {
-        added * (outward.max(0.0) / inward)
+        added * (outward / inward)
     } else {
         added
     }
