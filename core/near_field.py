@@ -26,6 +26,7 @@ from .formulation import LINEAR, SMOOTHED
 from .half_space import own_displacement, surface_displacement
 from .pair_blocks import pair_blocks
 from .soft_body import SoftBody
+from .solid_angle import FLAT, solid_angles
 
 # Distances in mean edge lengths of the two nodes: within the first finite elements are not believed
 # at all, from the second on wholly; what they miss is taken from the ring between the third
@@ -41,6 +42,20 @@ SAME_SURFACE = (-0.5, 0.0)
 # A pinned point gives way by this share of what the body's firmest node does under its own force,
 # besides what its nodes do: between three pinned nodes no point is the sum of others.
 OWN_PINNED = 0.1
+
+# A point with more than the second of these shares of a half-space around it is on a round surface,
+# with less than the first on an edge.
+ROUND = (0.55, 0.75)
+
+SHARPENING = 1.3
+
+# By how much more a point gives way to its own force along the surface than in a half-space. What
+# smoothed elements have between neighbours swings, and would else leave blocks of several points
+# not positive definite (by at most 0.2 where meshes are coarse and bodies thin).
+ACROSS = {LINEAR: 0.0, SMOOTHED: 0.35}
+
+# How firmly slopes are held at zero, in mean squares of edge lengths.
+SLOPE_DAMPING = 0.1
 
 # A ring of fewer neighbours than this says nothing.
 FEWEST_IN_RING = 2.0
@@ -58,6 +73,7 @@ class NearField:
     normals : float64 (s, 3), outward unit normals at the surface nodes.
     edges : float64 (s,), mean length of the surface's edges at each node, metres.
     regular : float64 (s, 3, 3), how far a node gives way beyond a half-space, m / N at 1 Pa.
+    slope : float64 (s, 3, 3, 3), how that changes per metre as the force moves away, by direction.
     softness : float64 (s,), 1 over the factor of Young's modulus around the node.
     trusted : float64 (s,), 0 where nothing is known and plain finite elements stay, else 1.
     """
@@ -66,6 +82,7 @@ class NearField:
     normals: NDArray[np.float64]
     edges: NDArray[np.float64]
     regular: NDArray[np.float64]
+    slope: NDArray[np.float64]
     softness: NDArray[np.float64]
     trusted: NDArray[np.float64]
 
@@ -83,17 +100,46 @@ class NearField:
         ring = np.flatnonzero((apart >= inner * reach) & (apart <= outer * reach) & (facing > 0))
         a, b, weight = a[ring], b[ring], facing[ring]
         beyond = pair_blocks(body, a, b) - _between_nodes(body, places, normals, softness, a, b)
-        count = len(places)
-        total = np.bincount(a, weight, count) + np.bincount(b, weight, count)
-        regular = np.zeros((count, 3, 3))
-        weighted = weight[:, None, None] * beyond
-        np.add.at(regular, a, weighted)
-        np.add.at(regular, b, weighted.transpose(0, 2, 1))
-        known = total >= FEWEST_IN_RING
-        regular[known] /= total[known, None, None]
-        regular = 0.5 * (regular + regular.transpose(0, 2, 1))
+        # Seen at a with the force at b, and the other way round.
+        regular, slope, known = _fitted(
+            np.concatenate([a, b]),
+            np.concatenate([places[b] - places[a], places[a] - places[b]]),
+            np.concatenate([beyond, beyond.transpose(0, 2, 1)]),
+            np.concatenate([weight, weight]),
+            edges,
+        )
         free = body.free_index(mesh.surface_nodes) >= 0
-        return cls(body, normals, edges, regular, softness, (known & free).astype(np.float64))
+        return cls(
+            body, normals, edges, regular, slope, softness, (known & free).astype(np.float64)
+        )
+
+
+def _fitted(
+    node: NDArray[np.int64],
+    offsets: NDArray[np.float64],
+    beyond: NDArray[np.float64],
+    weight: NDArray[np.float64],
+    edges: NDArray[np.float64],
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]:
+    """Value (s, 3, 3) and slope (s, 3, 3, 3) at each node of what its ring tells, and where known.
+
+    Least squares over the samples ``beyond`` (k, 3, 3) of ``node`` (k,) at ``offsets`` (k, 3).
+    """
+    count = len(edges)
+    terms = np.column_stack([np.ones(len(node)), offsets / edges[node, None]])
+    ring = csr_array((weight, (node, np.arange(len(node)))), shape=(count, len(node)))
+    both = np.einsum("ki,kj->kij", terms, terms).reshape(-1, 16)
+    sides = np.einsum("ki,kx->kix", terms, beyond.reshape(-1, 9)).reshape(-1, 36)
+    normal, right = (ring @ both).reshape(-1, 4, 4), (ring @ sides).reshape(-1, 4, 9)
+    total = normal[:, 0, 0]
+    known = total >= FEWEST_IN_RING
+    # Across the surface, and where all of a ring lies to one side, a slope is not to be had.
+    damping = SLOPE_DAMPING * np.maximum(total, 1.0)[:, None, None] * np.diag([0.0, 1.0, 1.0, 1.0])
+    fit = np.zeros((count, 4, 9))
+    fit[known] = np.linalg.solve(normal[known] + damping[known], right[known])
+    regular = fit[:, 0].reshape(-1, 3, 3)
+    slope = (fit[:, 1:] / edges[:, None, None]).reshape(-1, 3, 3, 3)
+    return 0.5 * (regular + regular.transpose(0, 2, 1)), slope, known
 
 
 def _within(
@@ -227,7 +273,11 @@ def _corrections(
         blocks[few] = -np.einsum("kab,kabxy->kxy", weights, table[place[few]], optimize=True)
     own = i == j
     nu = field.body.poisson_ratio
-    blocks[own] += softness[:, None, None] * own_displacement(points.areas, points.normals, nu)
+    alone = softness * _sharpness(field.body, points)
+    alone_moved = alone[:, None, None] * own_displacement(points.areas, points.normals, nu)
+    across = np.eye(3) - np.einsum("px,py->pxy", points.normals, points.normals)
+    lift = ACROSS[field.body.formulation]
+    blocks[own] += alone_moved + lift * across @ alone_moved @ across
     a, b = i[~own], j[~own]
     facing = _facing(points.normals[a], points.normals[b], SAME_SURFACE)[:, None, None]
     blocks[~own] += _between_nodes(field.body, points.positions, points.normals, softness, a, b)
@@ -237,6 +287,19 @@ def _corrections(
     pinned = OWN_PINNED / np.linalg.eigvalsh(field.body.contact_blocks).max()
     blocks[own] += pinned * (1 - share**2)[:, None, None] * np.eye(3)
     return blocks
+
+
+def _sharpness(body: SoftBody, points: ContactPoints) -> NDArray[np.float64]:
+    """How much more than a half-space a point gives way on an edge or a tip, (P,), 1 and more.
+
+    The power of what there is around it to hold it that a cube's edge and tip come out as finite
+    elements have them, 2.5 and 6. A surface that is only made of flat triangles is not sharp.
+    """
+    around = solid_angles(body.mesh, points.triangles, points.alphas) / FLAT
+    low, high = ROUND
+    sharp = np.clip((high - around) / (high - low), 0.0, 1.0)
+    sharpness: NDArray[np.float64] = 1.0 + sharp * np.maximum(around**-SHARPENING - 1.0, 0.0)
+    return sharpness
 
 
 def _table_of(
@@ -251,6 +314,20 @@ def _table_of(
     here, there = (triangles[side] for side in np.divmod(codes, len(triangles)))
     both, place = np.unique(here[:, :, None] * nodes + there[:, None, :], return_inverse=True)
     return _node_table(field, *np.divmod(both, nodes)), place.reshape(-1, 3, 3)[pair.reshape(-1)]
+
+
+def _regular_between(
+    field: NearField,
+    places: NDArray[np.float64],
+    a: NDArray[np.int64],
+    b: NDArray[np.int64],
+) -> NDArray[np.float64]:
+    """What the rings tell of nodes that are near each other, (k, 3, 3): mean of both views."""
+    offset = places[b] - places[a]
+    from_a = field.regular[a] + np.einsum("kz,kzxy->kxy", offset, field.slope[a])
+    from_b = field.regular[b] - np.einsum("kz,kzxy->kxy", offset, field.slope[b])
+    mean: NDArray[np.float64] = 0.5 * (from_a + from_b.transpose(0, 2, 1))
+    return mean
 
 
 def _node_table(
@@ -271,7 +348,7 @@ def _node_table(
     )
     near = np.flatnonzero(doubt > 0)
     resolved = pair_blocks(field.body, a[near], b[near])
-    regular = 0.5 * (field.regular[a[near]] + field.regular[b[near]])
+    regular = _regular_between(field, places, a[near], b[near])
     blocks[near] += doubt[near][:, None, None] * (resolved - regular)
     return blocks
 
@@ -289,8 +366,7 @@ def point_compliance(
     """
     rows, weigh_rows = _weights(body, points, i)
     columns, weigh_columns = _weights(body, points, j)
-    every_row, every_column = np.repeat(rows, len(columns)), np.tile(columns, len(rows))
-    blocks = pair_blocks(body, every_row, every_column)
+    blocks = body.surface_blocks(rows, columns)
     left = (weigh_rows @ blocks.reshape(len(rows), -1)).reshape(len(i), len(columns), 9)
     turned = left.transpose(1, 0, 2).reshape(len(columns), -1)
     both = (weigh_columns @ turned).reshape(len(j), len(i), 3, 3)

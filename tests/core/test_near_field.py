@@ -173,3 +173,27 @@ def test_pinned_places_stay_as_firm_as_they_are(cubes):
     firmest = np.linalg.eigvalsh(body.compliance.diagonal()).min()
     assert np.linalg.eigvalsh(matrix(blocks)).min() > 0.05 * firmest
     assert np.einsum("iixx->i", blocks).max() / 3 < 1.11 * firmest
+
+
+@pytest.mark.parametrize("radius", [0.008, 0.02])
+@pytest.mark.parametrize("formulation", ["linear", "smoothed"])
+@pytest.mark.parametrize("nu", [0.3, 0.49])
+def test_every_patch_that_a_fingertip_covers_is_positive_definite(
+    mouse_mesh, rng, formulation, nu, radius
+):
+    """On the mouse, thin at its ears and tail: points on one side within 0.7 of the radius."""
+    mesh, fixed = mouse_mesh
+    everywhere = body_of(mesh, fixed, nu, formulation)
+    points = contact_points(everywhere, radius / 4)
+    centres = rng.choice(len(points), 40, replace=False)
+    patches = []
+    for centre in centres:
+        near = patch(points, points.positions[centre], 0.7 * radius)
+        patches.append(near[points.normals[near] @ points.normals[centre] > 0.2])
+    used, place = np.unique(np.concatenate(patches), return_inverse=True)
+    some = points.taken(used)
+    correction = near_correction(everywhere, some, 2 * radius)
+    for few in np.split(place, np.cumsum([len(one) for one in patches])[:-1]):
+        whole = matrix(point_compliance(everywhere, some, few, few, correction))
+        scale = 1 / np.sqrt(np.diag(whole))
+        assert np.linalg.eigvalsh(whole * scale * scale[:, None])[0] > 0.01
