@@ -64,11 +64,15 @@ WORDS = {
     ),
     "Map Softness": "Weichheit kartieren",
     "Colour the object by how hard a fingertip must push for each millimetre: dark is "
-    "soft, yellow is firm. Writes the colour attribute Palpate Softness and nothing else": (
+    "soft, yellow is firm. Writes the colour attribute Palpate Softness and shows it in "
+    "the view": (
         "Das Objekt danach färben, wie stark eine Fingerspitze für jeden Millimeter drücken "
         "muss: dunkel ist weich, gelb ist fest. Schreibt das Farbattribut „Palpate Softness“ "
-        "und sonst nichts"
+        "und zeigt es in der Ansicht"
     ),
     "Remove Softness Map": "Weichheitskarte entfernen",
     "Delete the colour attribute Palpate Softness": "Das Farbattribut „Palpate Softness“ löschen",
+    "Viewport Shading, Color, Attribute shows it": (
+        "Zu sehen mit Viewport-Schattierung, Farbe, Attribut"
+    ),
 }

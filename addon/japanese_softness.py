@@ -57,11 +57,15 @@ WORDS = {
     ),
     "Map Softness": "柔らかさをマップ",
     "Colour the object by how hard a fingertip must push for each millimetre: dark is "
-    "soft, yellow is firm. Writes the colour attribute Palpate Softness and nothing else": (
+    "soft, yellow is firm. Writes the colour attribute Palpate Softness and shows it in "
+    "the view": (
         "指先で 1 "
         "ミリ押すのに要る力で色を付けます。暗い色は柔らかく、黄色は硬い所です。カラー属性「P"
-        "alpate Softness」だけを書きます"
+        "alpate Softness」を書いて、ビューに表示します"
     ),
     "Remove Softness Map": "柔らかさのマップを削除",
     "Delete the colour attribute Palpate Softness": "カラー属性「Palpate Softness」を削除します",
+    "Viewport Shading, Color, Attribute shows it": (
+        "ビューポートシェーディングのカラーを「属性」にすると見えます"
+    ),
 }

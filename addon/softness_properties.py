@@ -110,6 +110,7 @@ class PalpateSoftness(bpy.types.PropertyGroup):
     curve_stiffness: bpy.props.FloatProperty(options={"HIDDEN"})
     map_low: bpy.props.FloatProperty(options={"HIDDEN"})
     map_high: bpy.props.FloatProperty(options={"HIDDEN"})
+    shown_before: bpy.props.StringProperty(options={"HIDDEN"})
 
 
 classes = (PalpateSoftness,)

@@ -20,7 +20,7 @@ class PALPATE_OT_map_softness(bpy.types.Operator):
     bl_label = "Map Softness"
     bl_description = (
         "Colour the object by how hard a fingertip must push for each millimetre: dark is soft, "
-        "yellow is firm. Writes the colour attribute Palpate Softness and nothing else"
+        "yellow is firm. Writes the colour attribute Palpate Softness and shows it in the view"
     )
     bl_options = {"REGISTER", "UNDO"}
 
@@ -44,6 +44,9 @@ class PALPATE_OT_map_softness(bpy.types.Operator):
         except PalpateError as problem:
             self.report({"ERROR"}, str(problem))
             return {"CANCELLED"}
+        shown = thing.data.color_attributes.active_color_name
+        if shown != ATTRIBUTE:
+            softness.shown_before = shown
         _write(thing.data, ramp(_at_vertices(drawn, found)))
         softness.map_low, softness.map_high = (end / MILLIMETRES for end in found.span)
         self.report({"INFO"}, "Viewport Shading > Color > Attribute shows it")
@@ -67,9 +70,12 @@ class PALPATE_OT_remove_softness_map(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         mesh = context.object.data
+        softness = context.object.palpate_softness
         mesh.color_attributes.remove(mesh.color_attributes[ATTRIBUTE])
-        for name in ("map_low", "map_high"):
-            context.object.palpate_softness.property_unset(name)
+        if softness.shown_before in mesh.color_attributes:
+            mesh.color_attributes.active_color_name = softness.shown_before
+        for name in ("map_low", "map_high", "shown_before"):
+            softness.property_unset(name)
         return {"FINISHED"}
 
 
@@ -83,9 +89,9 @@ def _at_vertices(drawn: DrawnBody, found: SoftnessMap) -> NDArray[np.float64]:
 
 
 def _write(mesh: bpy.types.Mesh, colours: NDArray[np.float64]) -> None:
-    """Colours (p, 3), sRGB, onto the vertices. Which attributes are active stays, if any were."""
+    """Colours (p, 3), sRGB, onto the vertices; shown in the view, while renders keep theirs."""
     attributes = mesh.color_attributes
-    active, rendered = attributes.active_color_name, attributes.default_color_name
+    rendered = attributes.default_color_name
     old = attributes.get(ATTRIBUTE)
     if old is not None:
         attributes.remove(old)
@@ -95,8 +101,8 @@ def _write(mesh: bpy.types.Mesh, colours: NDArray[np.float64]) -> None:
     dark = colours <= 0.04045
     flat[:, :3] = np.where(dark, colours / 12.92, ((colours + 0.055) / 1.055) ** 2.4)
     attribute.data.foreach_set("color", flat.ravel())
-    if active and active != ATTRIBUTE:
-        attributes.active_color_name = active
+    attributes.active_color_name = ATTRIBUTE
+    if rendered:
         attributes.default_color_name = rendered
     mesh.update()
 

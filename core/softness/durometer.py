@@ -249,7 +249,8 @@ def _warnings(body: SoftBody, seat: Seat, kind: DurometerType, balance: Balance)
             "farther from the edge"
         )
     if balance.reading <= 0.0:
-        warnings.append("softer than this durometer tells; try the scale 00 or read a force curve")
+        remedy = "try the scale 00" if kind.name == "A" else "read a force curve instead"
+        warnings.append(f"softer than this durometer tells; {remedy}")
     if seat.place.pinned(body):
         warnings.append("the place is pinned, or next to what is; it is as firm as its support")
     return tuple(warnings)

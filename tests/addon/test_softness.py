@@ -82,10 +82,11 @@ def test_the_map_colours_vertices_and_changes_nothing_else(palpate):
     thing = soft_cube()
     mesh = thing.data
     before = mesh_state(thing)
-    painted = mesh.color_attributes.new("Paint", "BYTE_COLOR", "CORNER")
-    mesh.color_attributes.active_color = painted
+    mesh.color_attributes.new("Paint", "BYTE_COLOR", "CORNER")
+    mesh.color_attributes.active_color_name = mesh.color_attributes.default_color_name = "Paint"
     assert bpy.ops.palpate.map_softness() == {"FINISHED"}
-    assert mesh.color_attributes.active_color_name == "Paint"
+    assert mesh.color_attributes.active_color_name == "Palpate Softness"
+    assert mesh.color_attributes.default_color_name == "Paint"
     colours = mesh.color_attributes["Palpate Softness"]
     assert (colours.domain, colours.data_type) == ("POINT", "FLOAT_COLOR")
     top = max(range(8), key=lambda v: mesh.vertices[v].co.z)
@@ -97,6 +98,7 @@ def test_the_map_colours_vertices_and_changes_nothing_else(palpate):
     assert bpy.ops.palpate.map_softness() == {"FINISHED"}
     assert bpy.ops.palpate.remove_softness_map() == {"FINISHED"}
     assert [attribute.name for attribute in mesh.color_attributes] == ["Paint"]
+    assert mesh.color_attributes.active_color_name == "Paint"
     assert mesh_state(thing) == before
     assert "no softness map" in error_of(bpy.ops.palpate.remove_softness_map)
 
