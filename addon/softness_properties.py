@@ -59,6 +59,8 @@ def legend_colour(step: int) -> bpy.props.FloatVectorProperty:
         min=0.0,
         max=1.0,
         get=lambda _: colour,
+        # Without a way to be set it would be drawn as switched off, darker than it is.
+        set=lambda _, __: None,
         options={"HIDDEN"},
     )
 
