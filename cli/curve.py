@@ -9,11 +9,11 @@ from pathlib import Path
 from ..core import cache
 from ..core.softness.curve_picture import curve_svg
 from ..core.softness.force_depth import MILLIMETRES, force_depth_curve
-from ..core.tools import Tool, plate, rod, sphere
 from ..core.whole_file import refuse_missing_folder, whole_file
 from .place_options import add_at, add_young, positive_length, refuse_suffix, young_modulus_of
+from .tool_option import KINDS, tool_from
 
-TOOLS = ("point", "fingertip", "plate", "rod")
+POINT, FINGERTIP = "point", "sphere:0.008"
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -22,21 +22,10 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument("body", type=Path, metavar="BODY.npz")
     add_at(parser)
     parser.add_argument(
-        "--tool", choices=TOOLS, default="fingertip", help="what presses (default fingertip)"
-    )
-    parser.add_argument(
-        "--radius",
-        type=positive_length,
-        default=0.008,
-        metavar="M",
-        help="of fingertip and rod (default %(default)g)",
-    )
-    parser.add_argument(
-        "--width",
-        type=positive_length,
-        default=0.02,
-        metavar="M",
-        help="side of the plate, length of the rod (default %(default)g)",
+        "--tool",
+        default=FINGERTIP,
+        metavar="TOOL",
+        help=f"what presses: {POINT}, {KINDS}, lengths in metres (default %(default)s, a fingertip)",
     )
     parser.add_argument(
         "--depth", type=positive_length, metavar="M", help="how far (default: what is small there)"
@@ -63,7 +52,7 @@ def run(arguments: argparse.Namespace) -> int:
         body,
         arguments.at,
         arguments.depth,
-        tool=_tool(arguments),
+        tool=None if arguments.tool == POINT else tool_from(arguments.tool),
         steps=arguments.steps,
         young_modulus=young_modulus_of(arguments, body),
     )
@@ -91,14 +80,3 @@ def run(arguments: argparse.Namespace) -> int:
             f"{curve.depths[-1] * MILLIMETRES:.3g} mm"
         )
     return 0
-
-
-def _tool(arguments: argparse.Namespace) -> Tool | None:
-    match arguments.tool:
-        case "fingertip":
-            return sphere(arguments.radius, "fingertip")
-        case "plate":
-            return plate(arguments.width, arguments.width)
-        case "rod":
-            return rod(arguments.radius, arguments.width)
-    return None

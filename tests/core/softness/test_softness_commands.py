@@ -128,7 +128,7 @@ def test_a_curve_becomes_table_and_picture(cube_file, tmp_path, capsys):
     status, printed, _ = palpate(capsys, "curve", cube_file, *TOP, *words)
     figures = json.loads(printed)
     assert status == 0
-    assert figures["tool"] == "fingertip"
+    assert figures["tool"] == "sphere:0.008"
     assert len(table.read_text().splitlines()) == 6
     assert picture.read_text().startswith("<svg")
     assert float(table.read_text().splitlines()[-1].split(",")[1]) == pytest.approx(
@@ -161,6 +161,7 @@ def test_a_map_is_written_as_numbers_and_as_colours(cube_file, cube, tmp_path, c
         (["durometer", "--at", "nan", "0", "0"], "not finite"),
         (["curve", *TOP, "--picture", "curve.gif"], "end it in .svg"),
         (["curve", *TOP, "--steps", "0"], "from 1 to"),
+        (["curve", *TOP, "--tool", "spoon"], "'spoon' is no tool"),
         (["softness", "-o", "map.txt"], "end it in .npy or .ply"),
         (["softness", "-o", "map.ply", "--pad", "-1"], "pad radius is -1"),
     ],
