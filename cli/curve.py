@@ -25,7 +25,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "--tool",
         default=FINGERTIP,
         metavar="TOOL",
-        help=f"what presses: {POINT}, {KINDS}, lengths in metres (default %(default)s, a fingertip)",
+        help=f"what presses: {POINT}, {KINDS}, in metres (default %(default)s, a fingertip)",
     )
     parser.add_argument(
         "--depth", type=positive_length, metavar="M", help="how far (default: what is small there)"

@@ -8,7 +8,7 @@ ball, parabola    F = 4/3 E* sqrt(R) h^(3/2)                           Hertz 188
 ball, exact       h = a/2 ln((R+a)/(R-a)),
                   F = E* ((R^2+a^2)/2 ln((R+a)/(R-a)) - a R)           Segedin 1957, Sneddon 1965
 truncated cone    h = a cot(theta) phi,  cos(phi) = tip/a,
-                  F = E* a^2 cot(theta) (phi + sin(phi) cos(phi))      Ejike 1969
+                  F = E* a^2 cot(theta) (phi + sin(phi) cos(phi))      Sneddon 1965
 Past the shaft's radius the contact cannot grow, and every further depth adds that of a flat punch.
 """
 

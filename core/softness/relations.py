@@ -66,7 +66,7 @@ def mix(reading: float) -> float:
 
 
 def cone(reading: float) -> float:
-    """Young's modulus in pascal at a Shore A reading: the truncated cone as it is (Ejike 1969)."""
+    """Young's modulus in pascal at a Shore A reading: the cone as it is (Sneddon 1965)."""
     return _rubber_modulus(TYPE_A, reading, indenter_force(TYPE_A, TYPE_A.depth(reading)))
 
 
@@ -84,7 +84,7 @@ RELATIONS = {
     for relation in (
         Relation("gent", "A", 10.0, 90.0, gent, "Gent 1958"),
         Relation("boyce", "A", 20.0, 80.0, boyce, "Qi, Joyce and Boyce 2003"),
-        Relation("cone", "A", 10.0, 90.0, cone, "Ejike 1969 with the geometry of ASTM D2240"),
+        Relation("cone", "A", 10.0, 90.0, cone, "Sneddon 1965 with the geometry of ASTM D2240"),
         Relation("mix", "00", 10.0, 90.0, mix, "Mix and Giacomin 2011"),
         Relation("ball", "00", 10.0, 90.0, ball, "Segedin 1957 with the geometry of ASTM D2240"),
     )

@@ -1,0 +1,41 @@
+"""A block on its pinned base, of any fineness, its mesh even or shaken."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+
+from palpate.core.soft_body import SoftBody
+from palpate.core.stiffness import assemble
+from palpate.core.surface_compliance import surface_compliance
+from palpate.core.tet_mesh import TetMesh
+
+
+def soft_block(
+    size: tuple[float, float, float],
+    cells: tuple[int, int, int],
+    poisson_ratio: float = 0.45,
+    jitter: float = 0.0,
+) -> SoftBody:
+    """A box of ``size`` metres in ``cells``, each of six smoothed tetrahedra (Kuhn's subdivision).
+
+    ``jitter`` shakes the nodes by this share of a cell; those on a face stay in it.
+    """
+    parts = np.array(cells)
+    at = np.indices(parts + 1).reshape(3, -1).T
+    shaken = np.random.default_rng(1999).uniform(-jitter, jitter, at.shape)
+    nodes = (at + np.where((at > 0) & (at < parts), shaken, 0.0)) * (np.array(size) / parts)
+    corner = np.indices(parts).reshape(3, -1).T
+    tets = []
+    for order in itertools.permutations(np.eye(3, dtype=np.int64)):
+        path = np.vstack([np.zeros((1, 3), dtype=np.int64), np.cumsum(order, axis=0)])
+        if np.linalg.det(path[1:].astype(np.float64)) < 0:
+            path[[1, 2]] = path[[2, 1]]
+        steps = (corner[:, None] + path).transpose(2, 0, 1)
+        tets.append(np.ravel_multi_index(tuple(steps), tuple((parts + 1).tolist())))
+    mesh = TetMesh.checked(nodes, np.concatenate(tets))
+    fixed = np.flatnonzero(at[:, 2] == 0)
+    stiffness = assemble(mesh, poisson_ratio, formulation="smoothed")
+    compliance = surface_compliance(mesh, stiffness, fixed)
+    return SoftBody(mesh, fixed, poisson_ratio, compliance, 100_000.0, "smoothed")
