@@ -22,6 +22,7 @@ from .near_field import NearCorrection, near_correction, point_compliance
 from .soft_body import SoftBody
 from .surface import Surface
 from .tilt import tilt_limits
+from .tool_friction import Rubbing, moved_anchors, settle_rubbing
 from .tool_law import Candidates, Settled, along_normals, distances_in_body, settle
 from .tools import Pose, Tool
 from .winding_volume import is_inside
@@ -75,6 +76,8 @@ class ToolTouch:
     normals : float64 (p, 3), outward from the tool, where the points have gone to.
     displacements : float64 (p, 3), of the points, metres.
     compliance : float64 (3p, 3p), of the points, m/N.
+    anchors : float64 (p, 3), where on the tool each point sticks, in the tool's coordinates.
+    friction : coefficient of friction.
     free : whether the tool has been outside since it was set down; until then it feels nothing.
     exact : whether the equilibrium was found within the bounds on the work.
     """
@@ -92,6 +95,8 @@ class ToolTouch:
     normals: NDArray[np.float64]
     displacements: NDArray[np.float64]
     compliance: NDArray[np.float64]
+    anchors: NDArray[np.float64]
+    friction: float = 0.0
     free: bool = True
     exact: bool = True
 
@@ -172,6 +177,7 @@ def press_tool(
     pose: Pose,
     *,
     young_modulus: float | None = None,
+    friction: float = 0.0,
     start: ToolTouch | None = None,
     outside: Load | None = None,
     surface: ContactPoints | None = None,
@@ -186,6 +192,7 @@ def press_tool(
     Parameters
     ----------
     young_modulus : pascal; the body's own unless given.
+    friction : coefficient of Coulomb friction. With it the force depends on the way there.
     start : an earlier touch by the same tool on the same body.
     outside : forces of other fingers, which move the surface too.
     surface, correction : contact points to use in place of :func:`surface_for`'s, with what their
@@ -194,17 +201,25 @@ def press_tool(
     Raises
     ------
     PalpateError
-        Young's modulus is not a positive number; ``start`` is of another body or tool.
+        Young's modulus is not a positive number, or friction a negative one; ``start`` is of
+        another body or tool.
     """
     if start is None:
         state = set_down(
-            body, tool, pose, young_modulus=young_modulus, surface=surface, correction=correction
+            body,
+            tool,
+            pose,
+            young_modulus=young_modulus,
+            friction=friction,
+            surface=surface,
+            correction=correction,
         )
-        shallow = _overlap(state, pose) <= SHALLOW * tool.inner_radius
+        # With friction the way matters: it is always gone.
+        shallow = friction == 0.0 and _overlap(state, pose) <= SHALLOW * tool.inner_radius
         if shallow and not _is_within(state, pose):
             return _settled(replace(state, free=True), pose, outside)
         start = replace(state, pose=_way_out(state, pose), free=True)
-    touch = _continued(start, body, tool, young_modulus)
+    touch = replace(_continued(start, body, tool, young_modulus), friction=friction)
     for _ in range(MOST_STRIDES):
         between, arrived = _stride(tool, touch.pose, pose)
         touch = _settled(touch, between, outside)
@@ -221,6 +236,7 @@ def set_down(
     pose: Pose,
     *,
     young_modulus: float | None = None,
+    friction: float = 0.0,
     surface: ContactPoints | None = None,
     correction: NearCorrection | None = None,
 ) -> ToolTouch:
@@ -228,6 +244,8 @@ def set_down(
     modulus = body.young_modulus if young_modulus is None else young_modulus
     if not (np.isfinite(modulus) and modulus > 0.0):
         raise PalpateError(f"Young's modulus is {modulus} Pa; give a positive number")
+    if not (np.isfinite(friction) and friction >= 0.0):
+        raise PalpateError(f"friction coefficient is {friction}; give zero or more")
     placed: tuple[ContactPoints, NearCorrection | None]
     placed = _known_surface(body, tool) if surface is None else (surface, correction)
     none, vectors = np.empty(0), np.empty((0, 3))
@@ -245,6 +263,8 @@ def set_down(
         vectors,
         vectors,
         np.empty((0, 0)),
+        vectors,
+        friction,
     )
     return replace(state, free=_is_outside(state, pose))
 
@@ -261,12 +281,15 @@ def press_along(
     poses: Iterable[Pose],
     *,
     young_modulus: float | None = None,
+    friction: float = 0.0,
     outside: Load | None = None,
 ) -> list[ToolTouch]:
     """Follow a path, one tick a pose, from where the first one sets the tool down."""
     touches: list[ToolTouch] = []
     for pose in poses:
-        last = touches[-1:] or [set_down(body, tool, pose, young_modulus=young_modulus)]
+        last = touches[-1:] or [
+            set_down(body, tool, pose, young_modulus=young_modulus, friction=friction)
+        ]
         touches.append(follow_tool(last[0], pose, outside=outside))
     return touches
 
@@ -323,7 +346,11 @@ def _settled(state: ToolTouch, pose: Pose, outside: Load | None) -> ToolTouch:
     forces[np.searchsorted(chosen, state.points)] = state.forces
     for _ in range(MOST_ADDITIONS):
         candidates = _candidates(state, chosen, outside)
-        settled = settle(candidates, state.tool, pose, forces)
+        rubbing = _rubbing(state, pose, chosen)
+        if state.friction > 0.0:
+            settled = settle_rubbing(candidates, state.tool, pose, forces, rubbing)
+        else:
+            settled = settle(candidates, state.tool, pose, forces)
         entered = _entered(state, pose, chosen, settled, outside)
         if not entered.size:
             break
@@ -341,11 +368,19 @@ def _settled(state: ToolTouch, pose: Pose, outside: Load | None) -> ToolTouch:
         normals=settled.normals[pressed],
         displacements=settled.displacements[pressed],
         compliance=candidates.compliance[np.ix_(own, own)],
+        anchors=pose.to_tool(moved_anchors(settled, candidates, rubbing)[pressed]),
         exact=settled.exact,
     )
     # A tool that lost the surface while in the body would come out at any side: it is let go.
     lost = state.touching and not touch.touching and not _is_outside(touch, pose)
     return replace(touch, free=not lost)
+
+
+def _rubbing(state: ToolTouch, pose: Pose, chosen: NDArray[np.int64]) -> Rubbing:
+    """Friction of the chosen points, their anchors moved along with the tool."""
+    anchors = np.full((len(chosen), 3), np.nan)
+    anchors[np.searchsorted(chosen, state.points)] = pose.to_body(state.anchors)
+    return Rubbing(state.friction, anchors)
 
 
 def _looked_at(state: ToolTouch, pose: Pose) -> NDArray[np.int64]:

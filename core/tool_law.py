@@ -94,19 +94,30 @@ def settle(
     displacements = candidates.displacements(forces)
     normals = np.zeros_like(forces)
     for made in range(1, most + 1):
-        distances, normals = distances_in_body(tool, pose, candidates.positions + displacements)
-        facing = np.einsum("px,px->p", normals, candidates.normals) < FAR_SIDE
-        offsets = (candidates.positions + displacements)[:, None] - pose.to_body(tool.core)
-        distances, normals = held_tilt(
-            distances, normals, offsets, -candidates.normals, candidates.limits, tool.radius
-        )
-        pushes = _pushes_about(candidates, displacements, distances, normals, facing, pushes)
+        distances, normals, facing = linearised(candidates, tool, pose, displacements)
+        pushes = pushes_about(candidates, displacements, distances, normals, facing, pushes)
         forces = pushes[:, None] * normals
         last, displacements = displacements, candidates.displacements(forces)
         change = float(np.abs(displacements - last).max(initial=0.0))
         if change <= CONVERGED * tool.size:
             return Settled(forces, pushes, normals, displacements, made, exact=True)
     return Settled(forces, pushes, normals, displacements, most, exact=False)
+
+
+def linearised(
+    candidates: Candidates, tool: Tool, pose: Pose, displacements: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]:
+    """Distances (p,), normals (p, 3), and whether each point can be touched, (p,), where
+    ``displacements`` (p, 3) have taken the points.
+    """
+    places = candidates.positions + displacements
+    distances, normals = distances_in_body(tool, pose, places)
+    facing = np.einsum("px,px->p", normals, candidates.normals) < FAR_SIDE
+    offsets = places[:, None] - pose.to_body(tool.core)
+    distances, normals = held_tilt(
+        distances, normals, offsets, -candidates.normals, candidates.limits, tool.radius
+    )
+    return distances, normals, facing
 
 
 def distances_in_body(
@@ -130,7 +141,7 @@ def along_normals(
     return symmetric
 
 
-def _pushes_about(
+def pushes_about(
     candidates: Candidates,
     displacements: NDArray[np.float64],
     distances: NDArray[np.float64],
@@ -138,7 +149,9 @@ def _pushes_about(
     facing: NDArray[np.bool_],
     start: NDArray[np.float64],
 ) -> NDArray[np.float64]:
-    """Solve the complementarity problem of the distances linearised about ``displacements``."""
+    """Pushes (p,) of the complementarity problem of the distances linearised about
+    ``displacements`` (p, 3), which these pushes and the other fingers cause.
+    """
     moved = displacements - candidates.offsets
     gaps = distances - np.einsum("px,px->p", normals, moved)
     pushes = np.zeros(len(gaps))

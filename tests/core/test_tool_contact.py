@@ -3,6 +3,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from palpate.core.errors import PalpateError
+from palpate.core.several_tools import energy_of, press_tools
 from palpate.core.tool_contact import (
     Load,
     follow_tool,
@@ -87,7 +88,7 @@ def test_forces_on_nodes_add_up_to_what_the_tool_feels(pressed):
 
 def test_deeper_than_its_radius_a_sphere_is_still_resisted_more_and_more(cube):
     tool = sphere(0.014)
-    depths = np.arange(1, 15) * 0.1 * tool.radius
+    depths = np.arange(1, 7) * 0.2 * tool.radius
     touch = set_down(cube, tool, Pose.at([0.0262, 0.0243, TOP + 1.05 * tool.radius]))
     forces = []
     for depth in depths:
@@ -168,3 +169,48 @@ def test_another_touch_or_modulus_that_does_not_fit_is_refused(cube, pressed):
         press_tool(cube, sphere(0.01), pressed.pose, start=pressed)
     with pytest.raises(PalpateError, match="Young's modulus is nan"):
         press_tool(cube, pressed.tool, pressed.pose, young_modulus=float("nan"))
+
+
+def test_friction_holds_a_tool_back_and_none_changes_nothing(cube):
+    tool = sphere(0.014)
+    above = set_down(cube, tool, Pose.at([0.02, 0.025, TOP + 0.0145]))
+    pressed = Pose.at([0.02, 0.025, TOP + 0.011])
+    beside = Pose.at([0.022, 0.025, TOP + 0.011])
+    drags = []
+    for friction in (0.0, 0.2, 0.6):
+        touch = press_tool(cube, tool, pressed, friction=friction, start=above)
+        touch = press_tool(cube, tool, beside, friction=friction, start=touch)
+        drags.append(-touch.force[0])
+        aside = touch.forces - touch.pushes[:, None] * touch.normals
+        across = np.einsum("px,px->p", aside, touch.normals)
+        assert np.abs(across).max() < 1e-12
+        sizes = np.linalg.norm(aside, axis=1)
+        assert (sizes <= friction * touch.pushes * (1 + 1e-9)).all()
+        if friction == 0.0:
+            np.testing.assert_allclose(
+                touch.force, press_tool(cube, tool, beside).force, atol=1e-10
+            )
+    assert drags[0] + 0.02 < drags[1] < drags[2] - 0.02
+
+
+def test_two_tools_that_pinch_feel_each_other_alike(cube):
+    tool = sphere(0.014)
+    left = Pose.at([-0.011, 0.025, 0.035])
+    right = Pose.at([0.061, 0.025, 0.035])
+    touches = press_tools(cube, [(tool, left), (tool, right)])
+    alone = press_tool(cube, tool, left)
+    assert touches[0].force[0] < 0 < touches[1].force[0]
+    assert touches[0].force[0] == pytest.approx(-touches[1].force[0], rel=0.02)
+    # The other finger keeps the cube from giving way.
+    assert touches[0].force[0] < 1.02 * alone.force[0] < 0
+    step = 1e-6
+    energies = [
+        energy_of(
+            press_tools(cube, [(tool, left), (tool, moved(right, by=[by, 0, 0]))], start=touches)
+        )
+        for by in (step, -step)
+    ]
+    slope = -(energies[0] - energies[1]) / (2 * step)
+    assert touches[1].force[0] == pytest.approx(slope, rel=1e-5)
+    swapped = press_tools(cube, [(tool, right), (tool, left)])
+    np.testing.assert_allclose(swapped[0].force, touches[1].force, rtol=1e-6, atol=1e-9)
