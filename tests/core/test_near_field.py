@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from palpate.core.contact_points import ContactPoints, contact_points
+from palpate.core.half_space import surface_displacement
 from palpate.core.near_field import near_correction, point_compliance
 from palpate.core.paper_cube import paper_cube
 from palpate.core.soft_body import SoftBody
@@ -129,6 +130,21 @@ def test_with_a_finer_mesh_there_is_less_and_less_to_correct(cubes):
     assert 0 < missing[2] < 0.07
 
 
+def test_a_point_load_is_felt_afar_as_by_boussinesq(cubes):
+    """From one and a half elements on; the block is not infinite and the mesh not isotropic."""
+    body, step = cubes[12], EDGE / 12
+    places = body.mesh.nodes[body.compliance.free_surface]
+    loaded = int(np.argmin(np.linalg.norm(places - TOP, axis=1)))
+    offsets = places - TOP
+    apart = np.linalg.norm(offsets, axis=1)
+    ring = np.flatnonzero((places[:, 2] == EDGE) & (apart > 1.5 * step) & (apart < 3.5 * step))
+    moved = body.compliance.blocks(ring, np.array([loaded]))[:, 0, 2, 2]
+    up = np.tile([0.0, 0.0, 1.0], (len(ring), 1))
+    np.testing.assert_allclose(
+        moved, surface_displacement(offsets[ring], up, 0.3)[:, 2, 2], rtol=0.08
+    )
+
+
 def test_turning_the_body_turns_the_near_field():
     turn = np.linalg.qr(np.random.default_rng(3).normal(size=(3, 3)))[0]
     turn *= np.sign(np.linalg.det(turn))
@@ -177,15 +193,14 @@ def test_pinned_places_stay_as_firm_as_they_are(cubes):
 
 @pytest.mark.parametrize("radius", [0.008, 0.02])
 @pytest.mark.parametrize("formulation", ["linear", "smoothed"])
-@pytest.mark.parametrize("nu", [0.3, 0.49])
 def test_every_patch_that_a_fingertip_covers_is_positive_definite(
-    mouse_mesh, rng, formulation, nu, radius
+    mouse_mesh, rng, formulation, radius
 ):
     """On the mouse, thin at its ears and tail: points on one side within 0.7 of the radius."""
     mesh, fixed = mouse_mesh
-    everywhere = body_of(mesh, fixed, nu, formulation)
+    everywhere = body_of(mesh, fixed, 0.49, formulation)
     points = contact_points(everywhere, radius / 4)
-    centres = rng.choice(len(points), 40, replace=False)
+    centres = rng.choice(len(points), 30, replace=False)
     patches = []
     for centre in centres:
         near = patch(points, points.positions[centre], 0.7 * radius)
