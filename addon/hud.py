@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 
 import bpy
 
-from ..operators.finger_snapshots import fingers_of
 from ..operators.press_session import PressSession
 from ..operators.press_state import Phase, Source
 from ..operators.quantities import area, pressure
@@ -135,7 +134,7 @@ def _second_lines(session: PressSession) -> list[Line]:
     snapshot, say = session.snapshot, bpy.app.translations.pgettext_iface
     if snapshot is None or not session.has_device or len(session.leads) < 2:
         return []
-    now = standing(fingers_of(snapshot)[1])
+    now = standing(snapshot.fingers[1])
     if now.signal is not Signal.FAULT:
         return []
     return [Line(f"2   {say(now.word)}: {say(now.why)}", NORMAL, WARNING)]

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.servo_session import FingerSnapshot
 from ..core.tools import Pose, Tool
-from ..operators.finger_snapshots import FingerSnapshot, fingers_of
 from ..operators.press_session import PressSession
 from ..operators.press_state import Phase
 from ..operators.several_fingers import contact_area
@@ -67,8 +68,8 @@ def readings(session: PressSession) -> tuple[Reading, ...]:
         return (NOTHING,) * len(session.leads)
     tool = session.tip.tool
     if tool is None:
-        return tuple(_of_point(session, finger) for finger in fingers_of(snapshot))
-    return tuple(_of_tool(session, finger, tool) for finger in fingers_of(snapshot))
+        return tuple(_of_point(session, finger) for finger in snapshot.fingers)
+    return tuple(_of_tool(session, finger, tool) for finger in snapshot.fingers)
 
 
 def _of_point(session: PressSession, finger: FingerSnapshot) -> Reading:
@@ -94,7 +95,7 @@ def _of_point(session: PressSession, finger: FingerSnapshot) -> Reading:
     )
 
 
-def _of_tool(session: PressSession, finger: FingerSnapshot, tool: Tool) -> Reading:
+def _of_tool(session: PressSession, finger: Any, tool: Tool) -> Reading:
     frame, rotation = session.drawn.frame, np.asarray(finger.orientation)
     probe, turn = frame.world_from_body(np.asarray(finger.probe)), frame.rotation @ rotation
     pressures = np.asarray(finger.pressures)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from palpate_servo import (
     STATES,
     Body,
+    FingerSnapshot,
     Servo,
     Snapshot,
     ToolContact,
@@ -37,6 +38,8 @@ from .tools import Tool
 
 __all__ = [
     "STATES",
+    "Body",
+    "FingerSnapshot",
     "Servo",
     "Snapshot",
     "device_coupling",
@@ -46,6 +49,7 @@ __all__ = [
     "native_compliance",
     "native_tool",
     "servo_for",
+    "servo_on",
 ]
 
 
@@ -132,12 +136,36 @@ def servo_for(
     PalpateError
         A setting out of its range, or a body that cannot be touched.
     """
-    modulus = body.young_modulus if young_modulus is None else young_modulus
-    surface = native_body(body)
+    return servo_on(
+        native_body(body),
+        young_modulus=body.young_modulus if young_modulus is None else young_modulus,
+        rate_hz=rate_hz,
+        max_force=max_force,
+        record_seconds=record_seconds,
+        mode=mode,
+    )
+
+
+def servo_on(
+    surface: Body,
+    *,
+    young_modulus: float,
+    rate_hz: int = 1000,
+    max_force: float = 3.0,
+    record_seconds: float = 10.0,
+    mode: ContactMode = "consistent",
+) -> Servo:
+    """As :func:`servo_for`, for a native body that others use as well: its tools.
+
+    Raises
+    ------
+    PalpateError
+        A setting out of its range.
+    """
     try:
         return Servo(
             surface,
-            young_modulus=modulus,
+            young_modulus=young_modulus,
             rate_hz=rate_hz,
             max_force=max_force,
             record_seconds=record_seconds,

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..core.devices.simulated_process import SimulatedDevice
 from ..core.errors import PalpateError
-from ..core.servo_session import Servo, Snapshot, servo_for
+from ..core.servo_session import Body, Servo, Snapshot, native_body, native_tool, servo_on
 from . import device_source, recording
 from .drawn_body import DrawnBody
 from .finger_leads import second_port
@@ -35,6 +35,7 @@ class ForceLoop:
     settings: LiveSettings
     recorder: Recorder
     drawn: DrawnBody
+    touched: Body
     tip: FingerTip
     simulated: SimulatedDevice | None = None
     second_simulated: SimulatedDevice | None = None
@@ -44,32 +45,35 @@ class ForceLoop:
 
     @classmethod
     def prepare(
-        cls, drawn: DrawnBody, settings: LiveSettings, rate_hz: int, tip: FingerTip
+        cls, drawn: DrawnBody, settings: LiveSettings, rate_hz: int, tip: FingerTip, fingers: int
     ) -> ForceLoop:
-        """A loop that does not run yet, with the settings of now.
+        """A loop that does not run yet, for so many fingers, with the settings of now.
 
         Raises
         ------
         PalpateError
             A body that cannot be touched, or a setting that the servo refuses.
         """
-        servo = servo_for(
-            drawn.body,
+        touched = native_body(drawn.body, whole=fingers > 1 or tip.tool is not None)
+        servo = servo_on(
+            touched,
             young_modulus=settings.young_modulus,
             rate_hz=rate_hz,
             max_force=preferences().max_force,
         )
         with servo_errors():
             settings.hand_over(servo)
-        return cls(servo, settings, Recorder(servo, rate_hz), drawn, tip)
+        return cls(servo, settings, Recorder(servo, rate_hz), drawn, touched, tip)
 
     def give_tools(self, fingers: int) -> None:
         """Give each of so many fingers the tool that was chosen; points stay as they are."""
         if self.tip.tool is None:
             return
-        servo = self._servo_with("set_tool", "a tool; choose Finger: Point")
+        servo: Any = self.servo
+        if not hasattr(servo, "set_tool"):
+            raise PalpateError("servo: it has no tools yet; choose Finger: Point")
+        tool = native_tool(self.drawn.body, self.touched, self.tip.tool)
         with servo_errors():
-            tool = servo.tool(self.drawn.body, self.tip.tool)
             for finger in range(fingers):
                 servo.set_tool(tool, finger=finger)
 
@@ -77,9 +81,8 @@ class ForceLoop:
         """Another finger, led by :meth:`lead` or the pointer, from ``position`` in body
         coordinates; before the start.
         """
-        servo = self._servo_with("add_pointer", "a second finger; choose Second Finger: None")
         with servo_errors():
-            servo.add_pointer(position)
+            self.servo.add_pointer(position)
 
     def add_device(self, scene: bpy.types.Scene) -> None:
         """Another finger, led by the device that the scene names as the second; before the start.
@@ -89,7 +92,6 @@ class ForceLoop:
         PalpateError
             There is no such device, or it cannot be used.
         """
-        servo = self._servo_with("add_serial", "a second finger; choose Second Finger: None")
         chosen = scene.palpate
         frame = device_source.second_frame(scene, self.drawn.frame)
         if chosen.second == "SIMULATED":
@@ -100,7 +102,7 @@ class ForceLoop:
         else:
             port = second_port(scene)
         with servo_errors():
-            servo.add_serial(
+            self.servo.add_serial(
                 port, rotation=frame.rotation, translation=frame.translation, scale=frame.scale
             )
 
@@ -109,27 +111,10 @@ class ForceLoop:
         before = self._led.get(finger, (None, None))
         with servo_errors():
             if turn is not None and turn != before[1]:
-                self._turn(finger, turn)
+                self.servo.set_orientation(np.array(turn), finger=finger)
             if place is not None and place != before[0]:
-                self._target(finger, place)
+                self.servo.set_target(place, finger=finger)
         self._led[finger] = (place, turn)
-
-    def _turn(self, finger: int, turn: Turn) -> None:
-        servo: Any = self.servo
-        servo.set_orientation(np.array(turn), finger=finger)
-
-    def _target(self, finger: int, place: Point, *, restart: bool = False) -> None:
-        servo: Any = self.servo
-        if finger == 0:
-            servo.set_target(place, restart=restart)
-        else:
-            servo.set_target(place, restart=restart, finger=finger)
-
-    def _servo_with(self, method: str, what: str) -> Any:
-        """The servo, if it knows more than one finger that is a point."""
-        if not hasattr(self.servo, method):
-            raise PalpateError(f"servo: the one that is installed does not know {what}")
-        return self.servo
 
     def start_pointer(self, position: Point) -> None:
         """Let the pointer lead, from ``position`` in body coordinates."""
@@ -187,10 +172,10 @@ class ForceLoop:
         match effect:
             case PlaceProbe(point, finger, turn):
                 if turn is not None:
-                    self._turn(finger, turn)
-                self._target(finger, point, restart=True)
+                    self.servo.set_orientation(np.array(turn), finger=finger)
+                self.servo.set_target(point, restart=True, finger=finger)
             case MoveProbe(point, finger):
-                self._target(finger, point)
+                self.servo.set_target(point, finger=finger)
             case SwitchForce(on):
                 self.servo.set_enabled(on)
 

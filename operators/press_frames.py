@@ -136,13 +136,13 @@ def press_frames(
             "Rod or Mesh"
         )
     guides = leading_objects(scene)
-    modulus = thing.palpate.young_modulus
+    modulus, friction = thing.palpate.young_modulus, thing.palpate.static_friction
     press: ToolPress | None = None
     for frame in frames:
         scene.frame_set(frame)
         poses = [_pose(guide, scene, drawn.frame) for guide in guides]
         if press is None:
-            press = ToolPress(drawn.body, tip.tool, modulus, (None,) * len(poses))
+            press = ToolPress(drawn.body, tip.tool, modulus, friction, (None,) * len(poses))
         press = press.to(poses)
         touching = any(np.any(finger.nodal_forces) for finger in press.fingers)
         yield PressedFrame(
@@ -163,7 +163,7 @@ def leading_objects(scene: bpy.types.Scene) -> tuple[bpy.types.Object, ...]:
         Nothing does, or both fingers are led by the same object.
     """
     chosen = scene.palpate
-    first = chosen.source_empty if chosen.source == "EMPTY" else None
+    first = chosen.source_empty
     if chosen.tip == "MESH":
         first = first or chosen.tip_object
     first = first or chosen.turn_object

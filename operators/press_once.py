@@ -151,6 +151,7 @@ def _press_tools(
         drawn.body,
         tool,
         thing.palpate.young_modulus,
+        thing.palpate.static_friction,
         (None,) * len(starts),
     )
     return press.to(starts).to(ends).fingers

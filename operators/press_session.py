@@ -17,14 +17,13 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.contact_points import contact_points
 from ..core.errors import PalpateError
 from ..core.servo_session import Snapshot, displacements_of
+from ..core.tool_contact import surface_for
 from . import device_source, drawn_surface, live_shape, recording_writer, servo_words, tool_turn
 from .device_source import DeviceFrame
 from .drawn_body import DrawnBody, open_body
 from .finger_leads import BOTH_POINTER, FingerLead, Lead, leads_of
-from .finger_snapshots import fingers_of
 from .finger_tip import FingerTip, chosen_tip
 from .force_loop import ForceLoop
 from .live_settings import LiveSettings
@@ -162,10 +161,10 @@ class PressSession:
     @cached_property
     def surface_samples(self) -> Array:
         """Places (n, 3) spread over the surface at rest, as closely as the tool needs, metres."""
-        tool, body = self.tip.tool, self.drawn.body
+        tool = self.tip.tool
         if tool is None:
             return self.drawn.surface_nodes
-        return contact_points(body, tool.spacing).positions
+        return surface_for(self.drawn.body, tool).positions
 
     def surface_now(self) -> Array:
         """All nodes of the body as they are seen, (N, 3), body coordinates."""
@@ -219,20 +218,22 @@ class PressSession:
         if source is Source.DEVICE:
             frame = device_source.device_frame(scene, self.drawn.frame, self.home)
         settings = LiveSettings.of(thing, scene, frame)
-        self.loop = ForceLoop.prepare(self.drawn, settings, scene.palpate.rate, self.tip)
-        if scene.palpate.record_from_start:
-            self.start_recording()
+        fingers, rate = len(self.leads), scene.palpate.rate
+        self.loop = ForceLoop.prepare(self.drawn, settings, rate, self.tip, fingers)
         for lead in self.leads[1:]:
             if lead.lead is Lead.DEVICE:
                 self.loop.add_device(scene)
             else:
                 self.loop.add_pointer(self._start_of(lead))
-        self.loop.give_tools(len(self.leads))
-        self._lead_fingers(self.loop)
+        self.loop.give_tools(fingers)
+        if scene.palpate.record_from_start:
+            # All fingers are there: memory for each is asked for now.
+            self.start_recording()
         if source is Source.DEVICE:
             self.loop.start_device(scene, self.drawn)
         else:
             self.loop.start_pointer(self._start_of(self.leads[0]))
+        self._lead_fingers(self.loop)
 
     def _start_of(self, lead: FingerLead) -> Point:
         """Where a finger begins: at its Empty, or outside the body, where the pointer's waits."""
@@ -253,31 +254,20 @@ class PressSession:
             if lead.empty is not None and empty is None:
                 self._warn(f"{lead.empty.name} was deleted; its finger stays where it was")
             place = None if empty is None else self._place_of(empty)
-            loop.lead(finger, place, self._turn_of(finger, lead, empty))
+            loop.lead(finger, place, self._turn_of(lead, empty))
 
-    def _turn_of(
-        self, finger: int, lead: FingerLead, empty: bpy.types.Object | None
-    ) -> Turn | None:
-        """As an object, as the Empty that leads, or as the device's axes; None as it was."""
+    def _turn_of(self, lead: FingerLead, empty: bpy.types.Object | None) -> Turn | None:
+        """As an object or as the Empty that leads; None as it was. A device turns its own."""
         scene = self.scene
         leader = tool_turn.guide_of(scene) if scene.palpate.tip_turn == "OBJECT" else None
         leader = leader or empty
-        if self.tip.tool is None:
+        if self.tip.tool is None or leader is None or lead.lead is Lead.DEVICE:
             return None
         try:
-            if leader is not None:
-                return tool_turn.as_rows(tool_turn.as_object(leader, scene, self.drawn.frame))
-            if lead.lead is Lead.DEVICE:
-                frame = self._device_frame(finger)
-                return None if frame is None else tool_turn.as_rows(frame.rotation)
+            return tool_turn.as_rows(tool_turn.as_object(leader, scene, self.drawn.frame))
         except PalpateError as problem:
             self._warn(str(problem))
-        return None
-
-    def _device_frame(self, finger: int) -> DeviceFrame | None:
-        if finger > 0:
-            return device_source.second_frame(self.scene, self.drawn.frame)
-        return None if self.loop is None else self.loop.settings.device
+            return None
 
     def _stop_loop(self) -> None:
         loop, self.loop = self.loop, None
@@ -341,8 +331,8 @@ class PressSession:
 
     def _draw(self, thing: bpy.types.Object, snapshot: Snapshot) -> None:
         contact = tuple(
-            (finger.touching, tuple(finger.triangle), np.asarray(finger.nodal_forces).tobytes())
-            for finger in fingers_of(snapshot)
+            (finger.touching, finger.nodes.tobytes(), finger.nodal_forces.tobytes())
+            for finger in snapshot.fingers
         )
         if contact == self._drawn_contact:
             return

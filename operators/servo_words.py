@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
-from ..core.servo_session import Snapshot
+from ..core.servo_session import FingerSnapshot, Snapshot
 
 
 class Signal(Enum):
@@ -115,7 +115,7 @@ def fault_text(fault: str) -> str:
     return FAULTS.get(fault, f"The device reports a fault: {fault}")
 
 
-def standing(snapshot: Snapshot) -> Standing:
+def standing(snapshot: Snapshot | FingerSnapshot) -> Standing:
     """What a snapshot says of the force."""
     known = STATES.get(snapshot.state, Standing(Signal.WAITING, snapshot.state))
     why, signal = known.why, known.signal

@@ -7,7 +7,7 @@ until nothing changes any more (block Gauss-Seidel).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -79,6 +79,7 @@ class ToolPress:
     body: SoftBody
     tool: Tool
     young_modulus: float
+    friction: float
     touches: tuple[ToolTouch | None, ...]
 
     def to(self, poses: Sequence[Pose]) -> ToolPress:
@@ -110,6 +111,7 @@ class ToolPress:
                     self.tool,
                     pose,
                     young_modulus=self.young_modulus,
+                    friction=self.friction,
                     start=starts[number],
                     outside=_load(others),
                 )
@@ -117,7 +119,7 @@ class ToolPress:
                 touches[number] = new
             if change <= SETTLED:
                 break
-        return ToolPress(self.body, self.tool, self.young_modulus, tuple(touches))
+        return replace(self, touches=tuple(touches))
 
     @property
     def fingers(self) -> tuple[FingerForce, ...]:

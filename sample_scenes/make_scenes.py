@@ -25,23 +25,33 @@ def main() -> int:
         # Only now: these import bpy, which finds its home when it is first imported.
         import bodies
         import bpy
+        import finger_scenes
         import scenes
 
         bpy.context.preferences.filepaths.save_version = 0
-        for name, (make, tets) in {
-            "cube": (scenes.cube_scene, bodies.cube_tets),
-            "mouse": (scenes.mouse_scene, lambda: bodies.stored_tets("mouse")),
-            "drumstick": (scenes.drumstick_scene, lambda: bodies.stored_tets("drumstick")),
+        stored = {"Cube": bodies.cube_tets(), "Drumstick": bodies.stored_tets("drumstick")}
+        stored |= finger_scenes.tets()
+        for name, (make, finish) in {
+            "cube": (lambda: [scenes.cube_scene()], None),
+            "mouse": (lambda: [scenes.mouse_scene()], None),
+            "drumstick": (lambda: [scenes.drumstick_scene()], None),
+            "pinch": (finger_scenes.pinch_scene, finger_scenes.keep_pinches),
+            "fingertip": (finger_scenes.fingertip_scene, None),
         }.items():
             if options.only not in {None, name}:
                 continue
-            body = make()
-            path = options.output / f"{body.name.lower()}.blend"
+            made = make()
+            path = options.output / f"{name}.blend"
             # Saved first, so that the body file goes beside it and the user's folder stays clean.
             bpy.ops.wm.save_as_mainfile(filepath=str(path), compress=True)
-            bodies.attach(body, tets())
+            for body in made:
+                bodies.attach(body, stored[body.name])
+            if finish is not None:
+                finish()
+            bpy.context.view_layer.objects.active = made[0]
             bpy.ops.wm.save_mainfile(compress=True)
-            print(f"{path.name}: {len(body.data.vertices)} vertices, {path.stat().st_size} bytes")
+            vertices = sum(len(body.data.vertices) for body in made)
+            print(f"{path.name}: {vertices} vertices, {path.stat().st_size} bytes")
     return 0
 
 
@@ -50,7 +60,9 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--package", type=Path, required=True, help="the extension's zip")
     parser.add_argument("--output", type=Path, default=HERE)
     parser.add_argument(
-        "--only", choices=["cube", "mouse", "drumstick"], help="make this one alone"
+        "--only",
+        choices=["cube", "mouse", "drumstick", "pinch", "fingertip"],
+        help="make this one alone",
     )
     return parser.parse_args()
 

@@ -54,6 +54,18 @@ def pin(thing: bpy.types.Object, vertices: NDArray[np.int64]) -> None:
 def mouse_scene() -> bpy.types.Object:
     """The plush mouse on its table."""
     scene = studio.empty_scene("Mouse")
+    mouse = plush_mouse(scene)
+    aim = (-0.004, -0.004, 0.030)
+    studio.backdrop(scene, (0.13, 0.27, 0.29), 0.30)
+    studio.lights(scene, (0.0, 0.0, 0.03))
+    studio.camera(scene, (0.23, -0.33, 0.215), aim, 88.0)
+    studio.render_settings(scene)
+    studio.open_view(scene, mouse, 0.23, aim)
+    return mouse
+
+
+def plush_mouse(scene: bpy.types.Scene) -> bpy.types.Object:
+    """The mouse with its fabrics, material and pins."""
     shape = mouse_shape.mouse()
     mesh = soft_mesh("Mouse", shape)
     body, stitch, pink = (0.40, 0.315, 0.265), (0.14, 0.095, 0.08), (0.76, 0.24, 0.25)
@@ -76,38 +88,38 @@ def mouse_scene() -> bpy.types.Object:
     pin(mouse, shape.pinned)
     bodies.set_up(mouse, PINNED, material="PLUSH")
     bodies.set_mesh_size(mouse, bodies.MOUSE_SIZE)
-    aim = (-0.004, -0.004, 0.030)
-    studio.backdrop(scene, (0.13, 0.27, 0.29), 0.30)
-    studio.lights(scene, (0.0, 0.0, 0.03))
-    studio.camera(scene, (0.23, -0.33, 0.215), aim, 88.0)
-    studio.render_settings(scene)
-    studio.open_view(scene, mouse, 0.23, aim)
     return mouse
 
 
 def cube_scene() -> bpy.types.Object:
     """The paper's cube, 50 mm, pinned at the bottom."""
     scene = studio.empty_scene("Cube")
-    unit, quads = mouse_shape.cube_surface(CUBE_CELLS)
-    vertices = CUBE_EDGE * (unit - np.array([0.5, 0.5, 0.0]))
-    plain = np.full(len(vertices), 0.01)
-    shape = mouse_shape.QuadMesh(
-        vertices, quads, np.zeros(len(quads), dtype=np.int64), felt=plain, quilt=plain
-    )
-    mesh = soft_mesh("Cube", shape)
-    colour = (0.80, 0.20, 0.09)
-    mesh.materials.append(fabric.foam(colour, (0.40, 0.07, 0.03), CUBE_EDGE / 10.0))
-    paint(mesh, checked(colour, *vertices.T))
-    cube = studio.link(scene, "Cube", mesh)
-    pin(cube, np.flatnonzero(vertices[:, 2] < 1e-6))
-    # The paper's own, whose figures the cube is there to show.
-    bodies.set_up(cube, PINNED, material="PAPER_CUBE", formulation="LINEAR")
+    cube = paper_cube(scene, "Cube")
     aim = (0.0, 0.0, 0.023)
     studio.backdrop(scene, (0.13, 0.27, 0.29), 0.30)
     studio.lights(scene, aim)
     studio.camera(scene, (0.23, -0.28, 0.20), aim, 110.0)
     studio.render_settings(scene)
     studio.open_view(scene, cube, 0.14, aim)
+    return cube
+
+
+def paper_cube(scene: bpy.types.Scene, name: str) -> bpy.types.Object:
+    """The paper's cube standing on the origin, with its material and pins."""
+    unit, quads = mouse_shape.cube_surface(CUBE_CELLS)
+    vertices = CUBE_EDGE * (unit - np.array([0.5, 0.5, 0.0]))
+    plain = np.full(len(vertices), 0.01)
+    shape = mouse_shape.QuadMesh(
+        vertices, quads, np.zeros(len(quads), dtype=np.int64), felt=plain, quilt=plain
+    )
+    mesh = soft_mesh(name, shape)
+    colour = (0.80, 0.20, 0.09)
+    mesh.materials.append(fabric.foam(colour, (0.40, 0.07, 0.03), CUBE_EDGE / 10.0))
+    paint(mesh, checked(colour, *vertices.T))
+    cube = studio.link(scene, name, mesh)
+    pin(cube, np.flatnonzero(vertices[:, 2] < 1e-6))
+    # The paper's own, whose figures the cube is there to show.
+    bodies.set_up(cube, PINNED, material="PAPER_CUBE", formulation="LINEAR")
     return cube
 
 

@@ -22,8 +22,8 @@ def empty_scene(name: str) -> bpy.types.Scene:
     return scene
 
 
-def link(scene: bpy.types.Scene, name: str, data: bpy.types.ID) -> bpy.types.Object:
-    """Put `data` into the scene as an object of that name."""
+def link(scene: bpy.types.Scene, name: str, data: bpy.types.ID | None) -> bpy.types.Object:
+    """Put `data` into the scene as an object of that name; an Empty without."""
     thing = bpy.data.objects.new(name, data)
     scene.collection.objects.link(thing)
     return thing
@@ -119,6 +119,17 @@ def open_view(scene: bpy.types.Scene, body: bpy.types.Object, distance: float, a
         for area in screen.areas:
             if area.type == "VIEW_3D":
                 _frame(area, scene.camera, distance, aim)
+
+
+def show_empties() -> None:
+    """Let Empties be seen in every 3D view, but not lamps and camera."""
+    for thing in bpy.context.scene.objects:
+        if thing.type in {"LIGHT", "CAMERA"}:
+            thing.hide_set(True)
+    for screen in bpy.data.screens:
+        for area in screen.areas:
+            if area.type == "VIEW_3D":
+                area.spaces.active.overlay.show_extras = True
 
 
 def _frame(area: bpy.types.Area, view_from: bpy.types.Object, distance: float, aim: Colour) -> None:

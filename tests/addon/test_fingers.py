@@ -23,7 +23,11 @@ LEFT, RIGHT = (-0.025, 0.0, 0.01), (0.025, 0.0, 0.01)
 
 @pytest.fixture
 def chosen(palpate):
-    return bpy.context.scene.palpate
+    """The scene's settings, with tools so large that few contact points suffice."""
+    settings = bpy.context.scene.palpate
+    settings.tip_radius, settings.rod_length = 0.02, 0.02
+    settings.plate_width = settings.plate_depth = 0.04
+    return settings
 
 
 def pressed(thing, ats, bys, *, keep=False):
@@ -42,7 +46,7 @@ def empty(name="Empty", at=(0.0, 0.0, 0.1)):
     return thing
 
 
-def ball(radius=0.01, at=(0.0, 0.0, 0.1), name="Ball"):
+def ball(radius=0.02, at=(0.0, 0.0, 0.1), name="Ball"):
     bpy.ops.mesh.primitive_uv_sphere_add(radius=radius, location=at, segments=24, ring_count=16)
     bpy.context.object.name = name
     bpy.context.view_layer.update()
@@ -59,55 +63,63 @@ def test_a_tool_presses_out_and_touches_an_area(chosen, tip):
     assert finger.made.largest_pressure >= 0.9 * finger.force[2] / finger.made.area
 
 
+def test_friction_of_the_material_holds_a_fingertip_back(chosen):
+    thing = soft_cube()
+    chosen.tip = "SPHERE"
+    aslant = (0.004, 0.0, -0.004)
+    slippery = pressed(thing, [TOP], [aslant]).force
+    thing.palpate.static_friction = 0.8
+    rough = pressed(thing, [TOP], [aslant]).force
+    assert rough[0] < slippery[0] - 0.1 * slippery[2]
+
+
 def test_a_larger_fingertip_feels_more(chosen):
     thing = soft_cube()
     chosen.tip = "SPHERE"
     felt = []
-    for radius in (0.006, 0.02):
+    for radius in (0.015, 0.03):
         chosen.tip_radius = radius
         felt.append(pressed(thing, [TOP], [DOWN]).force[2])
     assert felt[1] > 1.1 * felt[0]
 
 
-def test_a_plate_as_large_as_the_top_presses_it_flat(chosen):
+def test_a_plate_takes_the_surface_under_it_along(chosen):
     thing = soft_cube()
-    chosen.tip, chosen.plate_width, chosen.plate_depth = "PLATE", 0.07, 0.07
-    pressed(thing, [TOP], [DOWN], keep=True)
-    top = key_coordinates(thing, "Press 1")
-    rest = key_coordinates(thing, "Basis")
-    moved = (top - rest)[rest[:, 2] > 0.024]
-    assert np.allclose(moved[:, 2], -0.004, atol=8e-4)
+    chosen.tip, chosen.plate_width, chosen.plate_depth = "PLATE", 0.03, 0.03
+    press = pressed(thing, [TOP], [DOWN])
+    assert press.largest_displacement == pytest.approx(0.004, rel=0.1)
+    assert press.fingers[0].made.area == pytest.approx(0.03**2, rel=0.3)
 
 
 def test_sizes_of_tools_are_scene_units(chosen):
     """A scene in millimetres whose object is as large gives the same newtons."""
     thing = soft_cube()
-    chosen.tip, chosen.tip_radius = "SPHERE", 0.01
+    chosen.tip = "SPHERE"
     metres = pressed(thing, [TOP], [DOWN])
     bpy.context.scene.unit_settings.scale_length = 0.001
     thing.scale = (1000.0,) * 3
     bpy.context.view_layer.update()
-    chosen.tip_radius = 10.0
+    chosen.tip_radius = 20.0
     millimetres = pressed(thing, [np.multiply(1000, TOP)], [np.multiply(1000, DOWN)])
-    assert np.allclose(metres.force, millimetres.force, rtol=1e-4, atol=1e-5)
+    assert np.allclose(metres.force, millimetres.force, rtol=0.01, atol=1e-4)
     assert np.isclose(metres.depth, millimetres.depth)
 
 
 def test_a_mesh_presses_like_the_tool_it_is_shaped_as(chosen):
-    thing, tool = soft_cube(), ball(0.01)
+    thing, tool = soft_cube(), ball(0.02)
     select(thing)
     before = mesh_state(tool)
-    chosen.tip, chosen.tip_radius = "SPHERE", 0.01
+    chosen.tip = "SPHERE"
     sphere = pressed(thing, [TOP], [DOWN])
     chosen.tip, chosen.tip_object = "MESH", tool
     mesh = pressed(thing, [TOP], [DOWN])
-    assert np.isclose(mesh.force[2], sphere.force[2], rtol=0.1)
+    assert np.isclose(mesh.force[2], sphere.force[2], rtol=0.2)
     assert "simplified" in mesh.remark
     assert mesh_state(tool) == before
 
 
 def test_the_scale_of_a_tool_object_counts(chosen):
-    thing, tool = soft_cube(), ball(0.01)
+    thing, tool = soft_cube(), ball(0.015)
     select(thing)
     chosen.tip, chosen.tip_object = "MESH", tool
     small = pressed(thing, [TOP], [DOWN]).force[2]
@@ -118,8 +130,8 @@ def test_the_scale_of_a_tool_object_counts(chosen):
 
 def test_a_hollow_mesh_presses_with_its_hull_and_says_so(chosen):
     thing = soft_cube()
-    corner = [(x, y, z) for x in (0, 0.01) for y in (0, 0.01) for z in (0, 0.01)]
-    dent = (0.005, 0.005, 0.005)
+    corner = [(x, y, z) for x in (0, 0.03) for y in (0, 0.03) for z in (0, 0.03)]
+    dent = (0.015, 0.015, 0.015)
     faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4)]
     top = [(1, 5, 8), (5, 7, 8), (7, 3, 8), (3, 1, 8)]
     tool = mesh_object([*corner, dent], [*faces, *top], name="Cup")
@@ -200,13 +212,12 @@ def test_the_paper_mode_differs_within_a_triangle(chosen):
 def test_an_animated_tool_leaves_a_shape_key_in_every_frame_it_touches(chosen):
     thing, guide = soft_cube(), empty()
     scene = bpy.context.scene
-    for frame, height in ((1, 0.04), (4, 0.03), (7, 0.04)):
+    for frame, height in ((1, 0.05), (4, 0.042), (7, 0.05)):
         guide.location.z = height
         guide.keyframe_insert("location", frame=frame)
     scene.frame_start, scene.frame_end = 1, 7
     scene.frame_set(2)
-    chosen.tip, chosen.tip_radius = "SPHERE", 0.008
-    chosen.source, chosen.source_empty = "EMPTY", guide
+    chosen.tip, chosen.source, chosen.source_empty = "SPHERE", "EMPTY", guide
     assert bpy.ops.palpate.press_frames() == {"FINISHED"}
     assert scene.frame_current == 2
     names = key_names(thing)
@@ -224,10 +235,10 @@ def test_an_animated_tool_leaves_a_shape_key_in_every_frame_it_touches(chosen):
 
 
 def test_the_current_frame_alone_is_kept_as_a_press(chosen):
-    thing, guide = soft_cube(), empty(at=(0.0, 0.0, 0.04))
+    thing, guide = soft_cube(), empty(at=(0.0, 0.0, 0.05))
     scene = bpy.context.scene
     guide.keyframe_insert("location", frame=1)
-    guide.location.z = 0.03
+    guide.location.z = 0.042
     guide.keyframe_insert("location", frame=5)
     scene.frame_start = 1
     scene.frame_set(5)

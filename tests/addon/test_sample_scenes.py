@@ -8,7 +8,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 import pytest
-from soft_scene import part, select
+from soft_scene import key_names, part, select
 
 SCENES = Path(__file__).resolve().parents[2] / "sample_scenes"
 MATERIALS = {"cube": "PAPER_CUBE", "mouse": "PLUSH", "drumstick": "JELLY"}
@@ -50,3 +50,55 @@ def test_the_bone_in_the_drumstick_is_felt_and_only_where_it_is(palpate, tmp_pat
     assert boneless[OVER_BONE] < boneless[OVER_MEAT]
     assert boned[OVER_BONE] > 2 * boneless[OVER_BONE]
     assert boned[OVER_MEAT] < 1.3 * boneless[OVER_MEAT]
+
+
+@pytest.fixture
+def pinch_file(palpate, tmp_path):
+    copy = tmp_path / "pinch.blend"
+    shutil.copyfile(SCENES / copy.name, copy)
+    bpy.ops.wm.open_mainfile(filepath=str(copy))
+    return bpy.context.scene
+
+
+@pytest.mark.parametrize("name", ["Nodes", "Triangles"])
+def test_the_pinched_cubes_open_ready_and_undented(pinch_file, name):
+    thing = select(bpy.data.objects[name])
+    status = part("operators.soft_object").body_status(thing, pinch_file)
+    assert status.fit.name == "FILE_MISSING"
+    assert thing.data.shape_keys.key_blocks["Pinched"].value == 0.0
+
+
+def test_the_cube_of_figure_5_is_pinched_as_the_paper_s_equation_10_says(pinch_file):
+    thing = select(bpy.data.objects["Nodes"])
+    left, right = (bpy.data.objects[f"Nodes {side}"] for side in ("Left", "Right"))
+    assert pinch_file.palpate.source_empty == left
+    assert pinch_file.palpate.second_empty == right
+    middle = np.array(thing.location) + np.array([0.0, 0.0, 0.025])
+    ways = np.array([[0.008, 0.0, 0.0], [-0.008, 0.0, 0.0]])
+    pressed = part("operators.press_once").press_several(
+        thing, pinch_file, list(middle - 0.025 * np.sign(ways)), list(ways), keep=False
+    )
+    body = part("operators.body_store").load(thing)
+    nodes = [
+        int(np.argmin(np.linalg.norm(body.mesh.nodes - p, axis=1)))
+        for p in ((-0.025, 0.0, 0.025), (0.025, 0.0, 0.025))
+    ]
+    local = np.searchsorted(body.mesh.surface_nodes, nodes)
+    blocks = body.surface_blocks(local, local) / thing.palpate.young_modulus
+    by_paper = part("core.contact").two_node_forces(blocks, *ways)
+    for finger, force in zip(pressed.fingers, by_paper, strict=True):
+        assert np.allclose(finger.force, -force, rtol=1e-5, atol=1e-7)
+    # The one on triangles is not symmetric, and not on nodes.
+    other = np.concatenate([bpy.data.objects[f"Triangles {s}"].location for s in ("Left", "Right")])
+    assert not np.isclose(other[1], -other[4])
+
+
+def test_the_fingertip_s_animation_presses_the_mouse(palpate, tmp_path):
+    copy = tmp_path / "fingertip.blend"
+    shutil.copyfile(SCENES / copy.name, copy)
+    bpy.ops.wm.open_mainfile(filepath=str(copy))
+    thing, scene = select(bpy.data.objects["Mouse"]), bpy.context.scene
+    assert scene.palpate.tip == "SPHERE"
+    assert bpy.ops.palpate.press_frames(frame_start=1, frame_end=21, step=5) == {"FINISHED"}
+    names = key_names(thing)[1:]
+    assert names == ["Press at 16", "Press at 21"]

@@ -1,0 +1,142 @@
+"""The scenes about fingers: a pinch with two of them, and a fingertip with a radius."""
+
+import bodies
+import bpy
+import fabric
+import numpy as np
+import scenes
+import studio
+from installed import palpate
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Point = tuple[float, float, float]
+
+# Two cubes beside each other, metres; how deep they are pinched.
+APART, DEPTH = 0.045, 0.008
+# Middles of the left and right side, where the body has nodes: the paper's Figure 5 ...
+ON_NODES = ((-0.025, 0.0, 0.025), (0.025, 0.0, 0.025))
+# ... and places within triangles, not opposite to each other.
+IN_TRIANGLES = ((-0.025, -0.0045, 0.0285), (0.025, 0.0055, 0.0215))
+# Frames: in the air, pressed, still pressed, in the air again.
+FRAMES = (1, 20, 40, 60)
+# A finger's end, and the place on the mouse's back where it comes down, metres.
+FINGER_RADIUS, FINGER_LENGTH = 0.008, 0.045
+BACK, FINGER_DEPTH, FINGER_LIFT = (-0.018, -0.006, 0.0595), 0.009, 0.03
+SKIN = (0.80, 0.50, 0.38)
+
+
+def pinch_scene() -> list[bpy.types.Object]:
+    """Two of the paper's cubes, each between two Empties: on nodes, and within triangles."""
+    scene = studio.empty_scene("Pinch")
+    cubes = []
+    for name, x, places in (("Nodes", -APART, ON_NODES), ("Triangles", APART, IN_TRIANGLES)):
+        cube = scenes.paper_cube(scene, name)
+        cube.location.x = x
+        for side, place, inward in zip(("Left", "Right"), places, (1.0, -1.0), strict=True):
+            here = (place[0] + x, place[1], place[2])
+            empty = leading_empty(scene, f"{name} {side}", 0.004)
+            keyframes(empty, here, (inward, 0.0, 0.0), lift=0.004, depth=DEPTH)
+        cubes.append(cube)
+    chosen = scene.palpate
+    chosen.source, chosen.second = "EMPTY", "EMPTY"
+    chosen.source_empty = scene.objects["Nodes Left"]
+    chosen.second_empty = scene.objects["Nodes Right"]
+    scene.frame_start, scene.frame_end = FRAMES[0], FRAMES[-1]
+    aim = (0.0, 0.0, 0.023)
+    studio.backdrop(scene, (0.13, 0.27, 0.29), 0.30)
+    studio.lights(scene, aim)
+    studio.camera(scene, (0.10, -0.40, 0.20), aim, 88.0)
+    studio.render_settings(scene)
+    studio.open_view(scene, cubes[0], 0.21, aim)
+    studio.show_empties()
+    return cubes
+
+
+def keep_pinches() -> None:
+    """Both cubes pinched as the paper's Figure 5 shows it, in shape keys that are off at first."""
+    press = palpate("operators.press_once").press_several
+    for name, x, places in (("Nodes", -APART, ON_NODES), ("Triangles", APART, IN_TRIANGLES)):
+        cube = bpy.data.objects[name]
+        ats = list(np.array(places) + np.array([x, 0.0, 0.0]))
+        press(cube, bpy.context.scene, ats, [(DEPTH, 0.0, 0.0), (-DEPTH, 0.0, 0.0)])
+        key = cube.data.shape_keys.key_blocks[-1]
+        key.name, key.value = "Pinched", 0.0
+
+
+def fingertip_scene() -> list[bpy.types.Object]:
+    """The plush mouse, and a finger that an Empty leads onto its back."""
+    scene = studio.empty_scene("Fingertip")
+    mouse = scenes.plush_mouse(scene)
+    empty = leading_empty(scene, "Finger", FINGER_RADIUS)
+    centre = (BACK[0], BACK[1], BACK[2] + FINGER_RADIUS)
+    keyframes(empty, centre, (0.0, 0.0, -1.0), lift=FINGER_LIFT, depth=FINGER_DEPTH)
+    finger = studio.link(scene, "Finger Skin", finger_mesh())
+    finger.parent = empty
+    finger.hide_select = True
+    chosen = scene.palpate
+    chosen.tip, chosen.tip_radius = "SPHERE", FINGER_RADIUS
+    chosen.source_empty = empty
+    scene.frame_start, scene.frame_end = FRAMES[0], FRAMES[-1]
+    aim = (-0.004, -0.004, 0.042)
+    studio.backdrop(scene, (0.13, 0.27, 0.29), 0.30)
+    studio.lights(scene, (0.0, 0.0, 0.04))
+    studio.camera(scene, (0.23, -0.33, 0.19), aim, 76.0)
+    studio.render_settings(scene)
+    studio.open_view(scene, mouse, 0.26, aim)
+    studio.show_empties()
+    return [mouse]
+
+
+def finger_mesh() -> bpy.types.Mesh:
+    """A finger upright, the middle of its round end at the origin."""
+    rings, segments = 12, 32
+    angle = np.linspace(-0.5 * np.pi, 0.0, rings)
+    radius = np.append(FINGER_RADIUS * np.cos(angle), 1.06 * FINGER_RADIUS)
+    height = np.append(FINGER_RADIUS * np.sin(angle), FINGER_LENGTH)
+    turn = 2.0 * np.pi * np.arange(segments) / segments
+    circle = np.column_stack([np.cos(turn), np.sin(turn)])
+    vertices = np.concatenate(
+        [
+            np.column_stack([r * circle, np.full(segments, z)])
+            for r, z in zip(radius, height, strict=True)
+        ]
+    )
+    faces = [
+        (
+            segments * ring + s,
+            segments * ring + t,
+            segments * (ring + 1) + t,
+            segments * (ring + 1) + s,
+        )
+        for ring in range(rings)
+        for s, t in zip(range(segments), [*range(1, segments), 0], strict=True)
+    ]
+    mesh = bpy.data.meshes.new("Finger Skin")
+    mesh.from_pydata(vertices, [], faces)
+    mesh.shade_smooth()
+    mesh.materials.append(fabric.felt(SKIN))
+    scenes.paint(mesh, np.tile(SKIN, (len(vertices), 1)))
+    return mesh
+
+
+def leading_empty(scene: bpy.types.Scene, name: str, size: float) -> bpy.types.Object:
+    """An Empty that leads a finger."""
+    empty = studio.link(scene, name, None)
+    empty.empty_display_type, empty.empty_display_size = "SPHERE", size
+    return empty
+
+
+def keyframes(
+    empty: bpy.types.Object, place: Point, inward: Point, *, lift: float, depth: float
+) -> None:
+    """From the air to a place, in, a rest there, and back."""
+    for frame, way in zip(FRAMES, (-lift, depth, depth, -lift), strict=True):
+        empty.location = np.array(place) + way * np.array(inward)
+        empty.keyframe_insert("location", frame=frame)
+
+
+def tets() -> dict[str, bodies.Tets]:
+    """The stored tetrahedra of each object of these scenes."""
+    cube = bodies.cube_tets()
+    return {"Nodes": cube, "Triangles": cube, "Mouse": bodies.stored_tets("mouse")}

@@ -1,0 +1,132 @@
+"""Two fingers that press at once, by the events that the modal side posts."""
+
+from __future__ import annotations
+
+import time
+
+import bpy
+import numpy as np
+import pytest
+from soft_scene import key_names, mesh_state, part, soft_cube
+
+LEFT, RIGHT = (-0.02501, 0.0, 0.01), (0.02501, 0.0, 0.01)
+LEFT_IN, RIGHT_IN = (-0.022, 0.0, 0.01), (0.022, 0.0, 0.01)
+
+
+@pytest.fixture
+def states(palpate):
+    return part("operators.press_state")
+
+
+@pytest.fixture
+def sessions(palpate):
+    module = part("operators.press_session")
+    yield module
+    module.give_way("")
+
+
+def wait(session, condition, seconds=10.0):
+    end = time.monotonic() + seconds
+    while True:
+        session.tick()
+        if condition():
+            return
+        assert time.monotonic() < end, "waited in vain"
+        time.sleep(0.005)
+
+
+def arrived(session, *places):
+    fingers = session.snapshot.fingers
+    return all(
+        finger.touching and np.allclose(finger.probe, place)
+        for finger, place in zip(fingers, places, strict=True)
+    )
+
+
+def begin(sessions, states, thing, source="POINTER", *, pinch=False):
+    return sessions.begin(thing, bpy.context.scene, states.Source[source], pinch=pinch)
+
+
+def empty(name, at):
+    thing = bpy.data.objects.new(name, None)
+    bpy.context.collection.objects.link(thing)
+    thing.location = at
+    bpy.context.view_layer.update()
+    return thing
+
+
+def test_a_pinch_is_felt_by_both_and_agrees_with_the_one_without_a_clock(sessions, states):
+    thing = soft_cube()
+    before = mesh_state(thing)
+    once = part("operators.press_once").press_several(
+        thing,
+        bpy.context.scene,
+        [LEFT, RIGHT],
+        [(0.003, 0, 0), (-0.003, 0, 0)],
+        keep=False,
+    )
+    session = begin(sessions, states, thing, pinch=True)
+    session.post(states.SetDown(LEFT, 0))
+    session.post(states.Move(LEFT_IN, 0))
+    session.post(states.Release())
+    session.post(states.SetDown(RIGHT, 1))
+    session.post(states.Move(RIGHT_IN, 1))
+    wait(session, lambda: arrived(session, LEFT_IN, RIGHT_IN))
+    figures = part("addon.reading").readings(session)
+    for seen, told in zip(figures, once.fingers, strict=True):
+        assert np.allclose(seen.force_vector, told.force, rtol=0.05, atol=0.02 * seen.force)
+        assert seen.depth == pytest.approx(0.003, abs=1e-4)
+    session.post(states.Cancel())
+    assert mesh_state(thing) == before
+
+
+def test_empties_lead_both_fingers_and_one_may_be_deleted(sessions, states):
+    thing, scene = soft_cube(), bpy.context.scene
+    left, right = empty("Left", (-0.05, 0, 0.01)), empty("Right", (0.05, 0, 0.01))
+    chosen = scene.palpate
+    chosen.source, chosen.source_empty, chosen.second = "EMPTY", left, "EMPTY"
+    chosen.second_empty = right
+    session = begin(sessions, states, thing, "EMPTY")
+    wait(session, lambda: session.snapshot.tick > 0)
+    assert not any(finger.touching for finger in session.snapshot.fingers)
+    left.location, right.location = LEFT_IN, RIGHT_IN
+    bpy.context.view_layer.update()
+    wait(session, lambda: arrived(session, LEFT_IN, RIGHT_IN))
+    bpy.data.objects.remove(left)
+    session.tick()
+    assert [said.text for said in session.said if "Left was deleted" in said.text]
+    wait(session, lambda: arrived(session, LEFT_IN, RIGHT_IN))
+    session.post(states.Keep(session.displacements is not None))
+    assert key_names(thing) == ["Basis", "Press 1"]
+
+
+def test_a_simulated_device_presses_beside_the_pointer(sessions, states):
+    thing = soft_cube()
+    bpy.context.scene.palpate.second = "SIMULATED"
+    session = begin(sessions, states, thing)
+    assert session.has_device
+    session.post(states.SetDown(LEFT, 0))
+    session.post(states.Move(LEFT_IN, 0))
+    wait(session, lambda: session.snapshot.fingers[0].touching, 20.0)
+    wait(session, lambda: session.snapshot.fingers[1].touching, 20.0)
+    device = session.loop.second_simulated
+    session.post(states.Cancel())
+    assert sessions.current() is None
+    assert not device.running
+
+
+def test_the_mode_is_felt_while_pressing(sessions, states):
+    thing = soft_cube()
+    session = begin(sessions, states, thing)
+    place, deep = (0.004, 0.001, 0.02501), (0.004, 0.001, 0.021)
+    session.post(states.SetDown(place))
+    session.post(states.Move(deep))
+    wait(session, lambda: arrived(session, deep))
+    consistent = np.linalg.norm(session.snapshot.contact_force)
+    bpy.context.scene.palpate.contact_mode = "PAPER"
+    wait(
+        session,
+        lambda: (
+            abs(np.linalg.norm(session.snapshot.contact_force) - consistent) > 0.01 * consistent
+        ),
+    )
