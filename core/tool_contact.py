@@ -21,7 +21,6 @@ from .errors import PalpateError
 from .near_field import NearCorrection, near_correction, point_compliance
 from .soft_body import SoftBody
 from .surface import Surface
-from .tilt import tilt_limits
 from .tool_friction import Rubbing, moved_anchors, settle_rubbing
 from .tool_law import Candidates, Settled, along_normals, distances_in_body, settle
 from .tools import Pose, Tool
@@ -67,7 +66,6 @@ class ToolTouch:
     body, tool : which.
     surface : all contact points of the body for this tool.
     correction : what their compliance is besides the mesh's; None for the mesh's alone.
-    limits : float64 (P,), largest tilt of a push on each of them, radians; see :mod:`.tilt`.
     pose : where the tool is; behind the pose asked for where that was farther than it may go.
     young_modulus : pascal.
     points : int64 (p,), numbers of the contact points that are pressed.
@@ -86,7 +84,6 @@ class ToolTouch:
     tool: Tool
     surface: ContactPoints
     correction: NearCorrection | None
-    limits: NDArray[np.float64]
     pose: Pose
     young_modulus: float
     points: NDArray[np.int64]
@@ -254,7 +251,6 @@ def set_down(
         tool,
         placed[0],
         placed[1],
-        tilt_limits(body.mesh, placed[0]),
         pose,
         modulus,
         np.empty(0, dtype=np.int64),
@@ -397,7 +393,6 @@ def _candidates(state: ToolTouch, chosen: NDArray[np.int64], outside: Load | Non
     return Candidates(
         state.surface.positions[chosen],
         state.surface.normals[chosen],
-        state.limits[chosen],
         _compliance(state, chosen, chosen),
         _offsets(state, chosen, outside),
     )
@@ -456,9 +451,8 @@ def _entered(
     if pressed.any():
         response = _compliance(state, others, chosen[pressed])
         moved += (response @ settled.forces[pressed].reshape(-1)).reshape(-1, 3)
-    distances, normals = distances_in_body(tool, pose, surface.positions[others] + moved)
-    facing = np.einsum("px,px->p", normals, surface.normals[others]) < 0.0
-    entered: NDArray[np.int64] = others[(distances < -IN_TOOL * tool.size) & facing]
+    distances, _ = distances_in_body(tool, pose, surface.positions[others] + moved)
+    entered: NDArray[np.int64] = others[distances < -IN_TOOL * tool.size]
     return entered
 
 

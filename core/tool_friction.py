@@ -57,11 +57,11 @@ def settle_rubbing(
     normals = np.zeros_like(forces)
     pushes = np.linalg.norm(forces, axis=1)
     for made in range(1, most + 1):
-        distances, normals, facing = linearised(candidates, tool, pose, displacements)
+        distances, normals = linearised(candidates, tool, pose, displacements, pushes)
         aside = _across(forces, normals) * known[:, None]
         # What the forces aside move counts as given, like the other fingers'.
         given = displacements - candidates.displacements(aside)
-        pushes = pushes_about(candidates, given, distances, normals, facing, pushes)
+        pushes = pushes_about(candidates, given, distances, normals, pushes)
         limits = rubbing.coefficient * pushes * known
         aside = _aside(candidates, normals, pushes, limits, rubbing.anchors, aside)
         forces = pushes[:, None] * normals + aside

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .complementarity import solve_complementarity
-from .tilt import held_tilt
+from .tilt import held_tilt, hold
 from .tools import Pose, Tool
 
 # Linearisations; five to thirty are usual, the more the deeper the tool in relation to its radius.
@@ -29,10 +29,6 @@ MOST_LINEARISATIONS = 400
 
 # Displacements that change by less than this share of the tool's size have been found.
 CONVERGED = 1e-13
-
-# A point whose outward normal looks along the tool's (cosine) is seen from within the body: it
-# belongs to the far side of a thin part, and does not touch.
-FAR_SIDE = 0.7
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,14 +39,12 @@ class Candidates:
     ----------
     positions : float64 (p, 3), places at rest, metres.
     normals : float64 (p, 3), outward normals of the body there.
-    limits : float64 (p,), largest tilts of a push, radians; see :mod:`.tilt`.
     compliance : float64 (3p, 3p), displacements per newton at the body's modulus, m/N.
     offsets : float64 (p, 3), displacements that other forces cause there, metres.
     """
 
     positions: NDArray[np.float64]
     normals: NDArray[np.float64]
-    limits: NDArray[np.float64]
     compliance: NDArray[np.float64]
     offsets: NDArray[np.float64]
 
@@ -94,8 +88,8 @@ def settle(
     displacements = candidates.displacements(forces)
     normals = np.zeros_like(forces)
     for made in range(1, most + 1):
-        distances, normals, facing = linearised(candidates, tool, pose, displacements)
-        pushes = pushes_about(candidates, displacements, distances, normals, facing, pushes)
+        distances, normals = linearised(candidates, tool, pose, displacements, pushes)
+        pushes = pushes_about(candidates, displacements, distances, normals, pushes)
         forces = pushes[:, None] * normals
         last, displacements = displacements, candidates.displacements(forces)
         change = float(np.abs(displacements - last).max(initial=0.0))
@@ -105,19 +99,21 @@ def settle(
 
 
 def linearised(
-    candidates: Candidates, tool: Tool, pose: Pose, displacements: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]:
-    """Distances (p,), normals (p, 3), and whether each point can be touched, (p,), where
-    ``displacements`` (p, 3) have taken the points.
+    candidates: Candidates,
+    tool: Tool,
+    pose: Pose,
+    displacements: NDArray[np.float64],
+    pushes: NDArray[np.float64],
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Distances (p,) and normals (p, 3) where ``displacements`` (p, 3) have taken the points.
+
+    ``pushes`` (p,) are the last, which tell the direction that pushes are held near.
     """
     places = candidates.positions + displacements
     distances, normals = distances_in_body(tool, pose, places)
-    facing = np.einsum("px,px->p", normals, candidates.normals) < FAR_SIDE
     offsets = places[:, None] - pose.to_body(tool.core)
-    distances, normals = held_tilt(
-        distances, normals, offsets, -candidates.normals, candidates.limits, tool.radius
-    )
-    return distances, normals, facing
+    inward, limit = hold(pushes, candidates.normals)
+    return held_tilt(distances, normals, offsets, inward, limit, tool.radius)
 
 
 def distances_in_body(
@@ -146,7 +142,6 @@ def pushes_about(
     displacements: NDArray[np.float64],
     distances: NDArray[np.float64],
     normals: NDArray[np.float64],
-    facing: NDArray[np.bool_],
     start: NDArray[np.float64],
 ) -> NDArray[np.float64]:
     """Pushes (p,) of the complementarity problem of the distances linearised about
@@ -154,8 +149,5 @@ def pushes_about(
     """
     moved = displacements - candidates.offsets
     gaps = distances - np.einsum("px,px->p", normals, moved)
-    pushes = np.zeros(len(gaps))
-    chosen = np.flatnonzero(facing)
-    matrix = along_normals(candidates.compliance, normals)[np.ix_(chosen, chosen)]
-    pushes[chosen] = solve_complementarity(matrix, gaps[chosen], start[chosen]).forces
-    return pushes
+    matrix = along_normals(candidates.compliance, normals)
+    return solve_complementarity(matrix, gaps, start).forces

@@ -4,6 +4,7 @@ from scipy.spatial.transform import Rotation
 
 from palpate.core.errors import PalpateError
 from palpate.core.several_tools import energy_of, press_tools
+from palpate.core.tilt import hold
 from palpate.core.tool_contact import (
     Load,
     follow_tool,
@@ -37,10 +38,10 @@ def moved(pose, by=(0, 0, 0), turn=(0, 0, 0)):
 
 def steep(touch):
     """Which pushes are held at the limit of their tilt."""
-    inward = -touch.surface.normals[touch.points]
-    tilts = np.arccos(np.einsum("px,px->p", touch.normals, inward))
-    assert (tilts < touch.limits[touch.points] + 1e-9).all()
-    return tilts > touch.limits[touch.points] - 1e-9
+    inward, limit = hold(touch.pushes, touch.surface.normals[touch.points])
+    tilts = np.arccos(touch.normals @ inward)
+    assert (tilts < limit + 1e-6).all()
+    return tilts > limit - 1e-6
 
 
 def test_the_force_is_the_slope_of_the_elastic_energy(pressed):
@@ -211,6 +212,7 @@ def test_two_tools_that_pinch_feel_each_other_alike(cube):
         for by in (step, -step)
     ]
     slope = -(energies[0] - energies[1]) / (2 * step)
-    assert touches[1].force[0] == pytest.approx(slope, rel=1e-5)
+    # The table of the compliance is float32.
+    assert touches[1].force[0] == pytest.approx(slope, rel=2e-4)
     swapped = press_tools(cube, [(tool, right), (tool, left)])
     np.testing.assert_allclose(swapped[0].force, touches[1].force, rtol=1e-6, atol=1e-9)
