@@ -314,7 +314,9 @@ class FingerSnapshot:
 
     @property
     def proxy(self) -> NDArray[np.float64]:
-        """Contact point that makes the force, m; the probe itself while free."""
+        """Contact point that makes the force, m; the probe itself while free. Of a tool it is the
+        reference point, which may be behind the probe.
+        """
 
     @property
     def orientation(self) -> NDArray[np.float64]:
@@ -380,6 +382,18 @@ class FingerSnapshot:
         """Surface-local numbers (k,) of the nodes that carry forces; none while free."""
 
     @property
+    def points(self) -> NDArray[np.float64]:
+        """Where the surface's points that a tool presses are now, m (p, 3); none for a point."""
+
+    @property
+    def point_forces(self) -> NDArray[np.float64]:
+        """On the body at these points, N (p, 3)."""
+
+    @property
+    def pressures(self) -> NDArray[np.float64]:
+        """There, Pa (p,)."""
+
+    @property
     def nodal_forces(self) -> NDArray[np.float64]:
         """On these nodes, N, (k, 3): (12), (13) for a point."""
 
@@ -409,7 +423,9 @@ class Snapshot:
 
     @property
     def proxy(self) -> NDArray[np.float64]:
-        """Contact point that makes the force, m; the probe itself while free."""
+        """Contact point that makes the force, m; the probe itself while free. Of a tool it is the
+        reference point, which may be behind the probe.
+        """
 
     @property
     def orientation(self) -> NDArray[np.float64]:
@@ -724,12 +740,21 @@ class Servo:
         stylus keeps the device's axes unless it tells otherwise. ValueError unless a rotation.
         """
 
+    def set_tool(self, tool: ToolContact | None, finger: int = 0) -> None:
+        """Give a finger a tool, also while the servo runs, or make it a point again (None).
+
+        Only what the tool is and which contact points it meets is taken; the finger has a contact
+        of its own. Inside the body it feels nothing until it was outside. Returns when the thread
+        uses it. ValueError for a tool that was made for another Body than that of the servo.
+        """
+
     def set_young_modulus(self, young_modulus: float) -> None: ...
     def set_body(self, body: Body, young_modulus: float) -> None:
         """Touch another body, also while the servo runs: zero force in that tick, then a ramp.
         ValueError if there is more than one finger and the body is not whole.
 
-        The probe is set down anew: inside of the new body nothing is felt until it was outside.
+        The probe is set down anew: inside of the new body nothing is felt until it was outside. A
+        finger with a tool waits until that is set again, made for the new body.
         Returns when the thread uses the new body and the old one is freed.
         """
 

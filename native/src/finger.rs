@@ -3,19 +3,24 @@
 //! The servo leads all fingers through the stages of a tick, one stage after the other; what happens
 //! between them lies in [`crate::several`].
 
-use glam::{DMat3, DVec3};
+mod point;
+mod tool;
 
-use crate::contact::{contact_stiffness, surface_displacement, touch};
-use crate::coupling::{Contact, Coupler, Coupling};
+use glam::{DMat3, DVec3};
+use triple_buffer::Input;
+
+use tool::ToolTouch;
+
+use crate::coupling::{Coupler, Coupling};
 use crate::device::{Device, DeviceFrame, Fault, Probe, Reading};
+use crate::pressed_patch::PressedPatch;
 use crate::proxy::Proxy;
 use crate::safety::{Limits, Safety};
 use crate::servo::{Options, Settings};
-use crate::several::{Answer, Press};
 use crate::snapshot::{Sample, Snapshot, Told};
 use crate::state::{Findings, Standing, State, reason, transition};
 use crate::surface::Body;
-use crate::tree::closest_on_face;
+use crate::tip::{Tip, TipHolder, exchange_tips};
 
 /// Two ticks further apart than this were interrupted: the device has gone limp meanwhile, s.
 const SUSPENDED_SECONDS: f64 = 0.02;
@@ -76,6 +81,13 @@ pub struct Moment {
 pub struct Finger {
     /// What moves it.
     pub device: Box<dyn Device>,
+    /// What it touches with.
+    pub tips: TipHolder,
+    /// Where the patch of a tool is shown.
+    pub patches: Option<Input<PressedPatch>>,
+    /// Whether the tip can touch the body.
+    tip_fits: bool,
+    tool_touch: ToolTouch,
     proxy: Option<Proxy>,
     probe: DVec3,
     /// How far the others moved the surface where it touches or will touch in the last tick, m.
@@ -97,6 +109,7 @@ pub struct Finger {
     /// Time of the last tick after a gap, s.
     interrupted_at: f64,
     /// Of this tick.
+    tip_changed: bool,
     reading: Reading,
     found: Findings,
     shot: Snapshot,
@@ -108,6 +121,10 @@ impl Finger {
     pub fn new(device: Box<dyn Device>, settings: &FingerSettings) -> Self {
         Self {
             device,
+            tips: exchange_tips(Tip::Point).1,
+            patches: None,
+            tip_fits: true,
+            tool_touch: ToolTouch::default(),
             proxy: None,
             probe: DVec3::ZERO,
             by_others: DVec3::ZERO,
@@ -121,6 +138,7 @@ impl Finger {
             safety: Safety::default(),
             standing: Standing::default(),
             interrupted_at: f64::NEG_INFINITY,
+            tip_changed: false,
             reading: Reading::Waiting(""),
             found: Findings::default(),
             shot: Snapshot::default(),
@@ -149,6 +167,10 @@ impl Finger {
         own: &FingerSettings,
         options: &Options,
     ) {
+        self.tip_changed = self.tips.exchange();
+        if self.tip_changed {
+            (self.proxy, self.tool_touch) = (None, ToolTouch::default());
+        }
         if moment.body_replaced {
             // Even in a tick without a probe: nothing may be left of the old body.
             self.forget_others();
@@ -159,6 +181,10 @@ impl Finger {
         self.found = self.inspect(moment, options.max_speed);
         self.found.switched_off = !settings.enabled;
         self.found.body_replaced = moment.body_replaced;
+        self.tip_fits = self.tips.tip.fits(body);
+        if !self.tip_fits {
+            self.found.waiting = self.found.waiting.or(Some(reason::OTHER_BODY));
+        }
         if !(settings.young_modulus > 0.0 && settings.young_modulus.is_finite()) {
             self.found.fault = self.found.fault.or(Some(Fault::Nan));
         }
@@ -239,10 +265,17 @@ impl Finger {
         // have gone must not become a depth.
         let lost_its_place =
             self.found.fault == Some(Fault::TooFast) || self.standing.fault == Some(Fault::TooFast);
-        let lifted = probe.restart || jumped || lost_its_place || moment.body_replaced;
+        let lifted =
+            probe.restart || jumped || lost_its_place || moment.body_replaced || self.tip_changed;
         if lifted {
             self.forget_others();
             (self.is_fresh, self.set_down_again) = (true, false);
+        }
+        if self.has_tool() {
+            if lifted && self.tip_fits {
+                self.set_tool_down();
+            }
+            return;
         }
         let lifted = lifted || std::mem::take(&mut self.set_down_again);
         let n = self.push_direction;
@@ -276,7 +309,11 @@ impl Finger {
     /// Whether it touches in this tick, by a proxy that can be trusted.
     pub fn touches(&self) -> bool {
         let is_sound = !self.found.blind && self.found.fault != Some(Fault::Nan);
-        is_sound && self.proxy.as_ref().is_some_and(|p| p.hold().is_some())
+        is_sound
+            && match self.tool() {
+                Some(tool) => self.tip_fits && tool.felt().pressed > 0,
+                None => self.proxy.as_ref().is_some_and(|p| p.hold().is_some()),
+            }
     }
 
     /// Whether the others feel it.
@@ -289,198 +326,8 @@ impl Finger {
         self.by_others != DVec3::ZERO || self.moved_back != DVec3::ZERO
     }
 
-    /// The finger as the others see it: on the surface, or where it is nearest to that.
-    pub fn press(&self, body: &Body, young_modulus: f64, own: &FingerSettings) -> Option<Press> {
-        let proxy = self.proxy.as_ref()?;
-        if self.acts() {
-            let displacement = self.shot.probe - self.shot.proxy;
-            let limit = if self.has_motors() {
-                own.coupling.stiffness / own.frame.scale / young_modulus
-            } else {
-                f64::INFINITY
-            };
-            return Some(Press {
-                hold: proxy.hold()?,
-                touches: true,
-                displacement,
-                push: displacement - self.moved_back,
-                most_stiffness: limit,
-                presence: self.presence,
-            });
-        }
-        if self.found.blind {
-            return None;
-        }
-        let mut hold = proxy.nearest();
-        let seen = self.probe - self.moved_back;
-        hold.alpha = closest_on_face(body.face(hold.triangle), seen).0;
-        Some(Press {
-            hold,
-            touches: false,
-            displacement: DVec3::ZERO,
-            push: DVec3::ZERO,
-            most_stiffness: f64::INFINITY,
-            presence: 0.0,
-        })
-    }
-
-    /// The contact of a finger that is alone, (11) to (14); what goes to the motors, N.
-    pub fn feel_alone(
-        &mut self,
-        body: &Body,
-        settings: &Settings,
-        own: &FingerSettings,
-        dt: f64,
-    ) -> DVec3 {
-        let (mode, young_modulus) = (settings.feel.mode, settings.young_modulus);
-        let Some((triangle, alpha)) = self.hold() else {
-            self.let_go();
-            return DVec3::ZERO;
-        };
-        let displacement = self.shot.probe - self.shot.proxy;
-        let touch = |u| touch(body, mode, triangle, alpha, u, young_modulus);
-        let whole = touch(displacement);
-        if !self.takes(body, (triangle, alpha), whole.force) {
-            self.let_go();
-            return DVec3::ZERO;
-        }
-        self.shot.nodal_forces = whole.nodal_forces;
-        let mut wanted = whole.force;
-        if self.has_motors() {
-            let contact = Contact {
-                stiffness: contact_stiffness(body, mode, triangle, alpha) * young_modulus,
-                displacement,
-                force: whole.force,
-            };
-            let coupled = self
-                .coupler
-                .couple(&contact, &own.coupling, own.frame.scale, dt);
-            wanted = coupled.force;
-            let spared = displacement - coupled.body_displacement;
-            if spared != DVec3::ZERO {
-                let relief = touch(spared).nodal_forces;
-                for (force, less) in self.shot.nodal_forces.iter_mut().zip(relief) {
-                    *force -= less;
-                }
-            }
-        }
-        self.show_surface(body, (triangle, alpha), young_modulus, DVec3::ZERO);
-        wanted
-    }
-
-    /// The contact of a finger among others; what goes to the motors, N.
-    pub fn feel(
-        &mut self,
-        body: &Body,
-        settings: &Settings,
-        own: &FingerSettings,
-        answer: &Answer,
-        dt: f64,
-    ) -> DVec3 {
-        let young_modulus = settings.young_modulus;
-        self.reckon_with(answer);
-        let Some(hold) = self.hold() else {
-            self.let_go();
-            return DVec3::ZERO;
-        };
-        if !self.acts() {
-            // Its contact is lifted: it is followed, for it may come back, but presses nothing.
-            let wanted = self.feel_alone(body, settings, own, dt);
-            self.shot.nodal_forces = [DVec3::ZERO; 3];
-            return wanted;
-        }
-        let force = answer.force * -young_modulus;
-        if !self.takes(body, hold, answer.contact_force * -young_modulus) || !force.is_finite() {
-            self.let_go();
-            return DVec3::ZERO;
-        }
-        self.shot.nodal_forces = hold.1.map(|share| force * -share);
-        self.show_surface(body, hold, young_modulus, answer.by_others);
-        if !self.has_motors() {
-            return force;
-        }
-        let seen = Contact {
-            stiffness: answer.seen_stiffness * young_modulus,
-            displacement: self.shot.probe - self.shot.proxy - answer.by_others,
-            force,
-        };
-        self.coupler
-            .drive(&seen, &own.coupling, own.frame.scale, dt)
-    }
-
-    /// Forgets what the others do.
-    pub fn forget_others(&mut self) {
-        self.by_others = DVec3::ZERO;
-        self.moved_back = DVec3::ZERO;
-        self.push_direction = DVec3::ZERO;
-        self.is_fresh = false;
-    }
-
-    /// Notes what the others do at its place, and which way it pushes itself.
-    fn reckon_with(&mut self, answer: &Answer) {
-        if self.found.blind {
-            return;
-        }
-        self.by_others = answer.by_others;
-        if !self.by_others.is_finite() {
-            self.forget_others();
-        }
-        self.set_down_again |= self.is_fresh && self.is_moved() && !self.touches();
-        self.is_fresh = false;
-        if !self.acts() {
-            self.push_direction = DVec3::ZERO;
-            return;
-        }
-        let push = self.shot.probe - self.moved_back - self.shot.proxy;
-        let n = push.try_normalize().unwrap_or(self.push_direction);
-        self.push_direction = n;
-        let slipped = self.moved_back + answer.slip - n * n.dot(answer.slip);
-        if slipped.is_finite() {
-            self.moved_back = slipped;
-        }
-    }
-
-    fn hold(&self) -> Option<(u32, [f64; 3])> {
-        let hold = self.proxy.as_ref().filter(|_| self.touches())?.hold()?;
-        Some((hold.triangle, hold.alpha))
-    }
-
-    /// A touch is over. In a tick without a position nobody knows, and the coupling waits.
-    fn let_go(&mut self) {
-        if self.has_motors() {
-            self.coupler.release();
-        }
-    }
-
     fn has_motors(&self) -> bool {
         self.reading.probe().is_some_and(Probe::has_motors)
-    }
-
-    /// Notes a contact and its force; false if that is no number.
-    fn takes(&mut self, body: &Body, hold: (u32, [f64; 3]), force: DVec3) -> bool {
-        if !force.is_finite() {
-            self.found.fault = self.found.fault.or(Some(Fault::Nan));
-            return false;
-        }
-        self.found.touching = true;
-        self.shot.sticking = self.proxy.as_ref().is_some_and(Proxy::is_sticking);
-        self.shot.hold = Some(hold);
-        self.shot.triangle = body.triangles[hold.0 as usize];
-        self.shot.contact_force = force;
-        true
-    }
-
-    /// Where the touched point of the surface is, by its own nodal forces and the others'.
-    fn show_surface(
-        &mut self,
-        body: &Body,
-        (triangle, alpha): (u32, [f64; 3]),
-        young_modulus: f64,
-        carried: DVec3,
-    ) {
-        let forces = &self.shot.nodal_forces;
-        let moved = surface_displacement(body, triangle, alpha, forces, young_modulus);
-        self.shot.surface_point = moved.map(|moved| self.shot.proxy + moved + carried);
     }
 
     /// State and safety, then the device.
@@ -510,7 +357,14 @@ impl Finger {
     }
 
     /// What the tick came to, for others to read.
-    pub fn tell(&mut self) -> &Told {
+    pub fn tell(&mut self, young_modulus: f64) -> &Told {
+        if let (Some(patches), Tip::Tool(tool)) = (&mut self.patches, &self.tips.tip) {
+            let tool = self.shot.touching.then_some(&**tool);
+            patches
+                .input_buffer_mut()
+                .show(self.shot.tick, tool, young_modulus);
+            patches.publish();
+        }
         if let Some(fault) = self.shot.fault
             && self.told.snapshot.fault != Some(fault)
         {

@@ -30,6 +30,7 @@ mod normals;
 pub mod passivity;
 pub mod pointer;
 pub mod port;
+pub mod pressed_patch;
 pub mod proxy;
 #[cfg(feature = "python")]
 mod python;
@@ -49,6 +50,7 @@ pub mod state;
 pub mod surface;
 pub mod table;
 pub mod thread;
+pub mod tip;
 pub mod tool;
 pub mod tree;
 mod turning;

@@ -7,18 +7,19 @@ use glam::DVec3;
 use rtrb::Producer;
 use triple_buffer::{Input, Output};
 
-use crate::cones::MAX_FINGERS;
+use crate::cones::{MAX_FINGERS, Vectors};
 use crate::contact::ContactMode;
 use crate::device::{Device, Fault};
 use crate::exchange::{Holder, exchange};
 use crate::finger::{Finger, FingerSettings, Moment};
-use crate::proxy::Feel;
+use crate::proxy::{Feel, Hold};
 use crate::recorder::Tape;
 use crate::safety::Limits;
 use crate::several::Several;
 use crate::snapshot::{Published, Sample};
 use crate::stages::{Stage, Stages};
 use crate::surface::Body;
+use crate::tool::contact::MOST_NODES;
 
 /// What may change while the servo runs.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -69,6 +70,8 @@ pub struct Servo {
     /// Where ticks go while they are recorded.
     pub tape: Option<Tape>,
     several: Several,
+    /// Forces of others on nodes, N.
+    loads: Vec<(u32, DVec3)>,
     tick: u64,
     /// Time of the last tick, s.
     ticked_at: Option<f64>,
@@ -98,6 +101,7 @@ impl Servo {
             samples,
             tape: None,
             several: Several::default(),
+            loads: Vec::with_capacity(MAX_FINGERS * MOST_NODES),
             tick: 0,
             ticked_at: None,
             samples_lost: 0,
@@ -145,29 +149,44 @@ impl Servo {
             finger.send(wanted, &self.options.limits, own, moment.dt);
         }
         self.stages.end_of(Stage::Write, &mut since);
-        self.publish();
+        self.publish(settings.young_modulus);
     }
 
     /// What the body makes each finger feel; what is to go to the motors, N.
-    fn feel(&mut self, body: &Body, moment: &Moment, settings: &Settings) -> [DVec3; MAX_FINGERS] {
+    fn feel(&mut self, body: &Body, moment: &Moment, settings: &Settings) -> Vectors {
+        let mut wanted = self.feel_points(body, moment, settings);
+        // Tools in turn, each with what all others do by now: block Gauss-Seidel over the ticks.
+        for (p, wanted) in wanted.iter_mut().enumerate().take(self.fingers.len()) {
+            if self.fingers[p].has_tool() {
+                self.gather_loads(settings.young_modulus, |q, _| q != p);
+                let (finger, own) = (&mut self.fingers[p], &settings.fingers[p]);
+                *wanted = finger.feel_tool(settings.young_modulus, own, &self.loads, moment.dt);
+            }
+        }
+        wanted
+    }
+
+    /// What all fingers feel whose tips are points.
+    fn feel_points(&mut self, body: &Body, moment: &Moment, settings: &Settings) -> Vectors {
         let mut wanted = [DVec3::ZERO; MAX_FINGERS];
-        let Settings {
-            feel,
-            young_modulus,
-            fingers: own,
-            ..
-        } = settings;
-        let reckons = |finger: &Finger| finger.acts() || finger.is_moved();
+        let (own, young_modulus) = (&settings.fingers, settings.young_modulus);
         // The paper couples fingers on nodes alone (10); in its mode each feels as if it were alone.
-        let are_coupled = self.fingers.len() > 1 && feel.mode == ContactMode::Consistent;
+        let are_coupled = self.fingers.len() > 1 && settings.feel.mode == ContactMode::Consistent;
+        let reckons = |finger: &Finger| finger.acts() || finger.is_moved();
         if are_coupled && self.fingers.iter().any(reckons) {
+            self.gather_loads(young_modulus, |_, finger| finger.has_tool());
             let mut presses = [None; MAX_FINGERS];
             for ((press, finger), own) in presses.iter_mut().zip(&self.fingers).zip(own) {
-                *press = finger.press(body, *young_modulus, own);
+                *press = finger.press(body, young_modulus, own);
+                if let Some(press) = press {
+                    press.moved_by_tools = moved_by(body, &press.hold, &self.loads, young_modulus);
+                }
             }
             if let Some(answers) = self.several.solve(body, moment.body, &presses) {
                 for (p, finger) in self.fingers.iter_mut().enumerate() {
-                    wanted[p] = finger.feel(body, settings, &own[p], &answers[p], moment.dt);
+                    if !finger.has_tool() {
+                        wanted[p] = finger.feel(body, settings, &own[p], &answers[p], moment.dt);
+                    }
                 }
                 return wanted;
             }
@@ -175,16 +194,28 @@ impl Servo {
         self.several.release();
         for (p, finger) in self.fingers.iter_mut().enumerate() {
             finger.forget_others();
-            wanted[p] = finger.feel_alone(body, settings, &own[p], moment.dt);
+            if !finger.has_tool() {
+                wanted[p] = finger.feel_alone(body, settings, &own[p], moment.dt);
+            }
         }
         wanted
     }
 
-    fn publish(&mut self) {
+    /// Puts the forces on nodes of some fingers into `loads`, N.
+    fn gather_loads(&mut self, young_modulus: f64, counts: impl Fn(usize, &Finger) -> bool) {
+        self.loads.clear();
+        for (number, finger) in self.fingers.iter().enumerate() {
+            if counts(number, finger) {
+                finger.add_loads(young_modulus, &mut self.loads);
+            }
+        }
+    }
+
+    fn publish(&mut self, young_modulus: f64) {
         let published = self.snapshots.input_buffer_mut();
         published.count = self.fingers.len();
         for (number, finger) in self.fingers.iter_mut().enumerate() {
-            published.told[number] = *finger.tell();
+            published.told[number] = *finger.tell(young_modulus);
             let sample = finger.sample(number as u32);
             if self.samples.push(sample).is_err() {
                 self.samples_lost += 1;
@@ -207,4 +238,19 @@ impl Servo {
         }
         self.snapshots.publish();
     }
+}
+
+/// How far forces on nodes (N) move a place on the surface, m.
+fn moved_by(body: &Body, hold: &Hold, loads: &[(u32, DVec3)], young_modulus: f64) -> DVec3 {
+    let mut moved = DVec3::ZERO;
+    for (node, weight) in body.triangles[hold.triangle as usize]
+        .into_iter()
+        .zip(hold.alpha)
+    {
+        if weight != 0.0 {
+            let by = |&(loaded, force): &(u32, DVec3)| body.block(node, loaded).map(|l| l * force);
+            moved += loads.iter().filter_map(by).sum::<DVec3>() * weight;
+        }
+    }
+    moved / young_modulus
 }

@@ -31,6 +31,8 @@ pub struct Press {
     pub touches: bool,
     /// How far it asks the contact point to move from rest, m.
     pub displacement: DVec3,
+    /// How far tools move it already, m.
+    pub moved_by_tools: DVec3,
     /// The part of that which it adds to what the others do, m.
     pub push: DVec3,
     /// Of all that its device may see, over Young's modulus; infinite for no such limit.
@@ -113,13 +115,14 @@ impl Several {
             series[p][p] += DMat3::IDENTITY * between[p];
             let share = (DMat3::IDENTITY + held[p] * spring).inverse();
             answers[p].seen_stiffness = share * held[p];
-            asked[p] = press.displacement;
+            asked[p] = press.displacement - press.moved_by_tools;
             cones[p] = Cone::about(press.push, &series[p][p])?;
         }
         self.forces = solve_distinct(&series, &asked, &cones, &members, &self.forces)?;
         for (p, press) in numbered(presses) {
             let others = members.numbers().filter(|&q| q != p);
-            answers[p].by_others = others.map(|q| compliance[p][q] * self.forces[q]).sum();
+            let by_points: DVec3 = others.map(|q| compliance[p][q] * self.forces[q]).sum();
+            answers[p].by_others = by_points + press.moved_by_tools;
             if press.touches {
                 let force = self.forces[p];
                 let own = inverse_of_definite(&compliance[p][p])?;

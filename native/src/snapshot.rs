@@ -20,7 +20,9 @@ pub struct Snapshot {
     pub orientation: DMat3,
     /// Contact point that makes the force, m: the god object, shaded or held back by friction.
     pub proxy: DVec3,
-    /// Triangle and area coordinates while touching.
+    /// It presses on the body.
+    pub touching: bool,
+    /// Triangle and area coordinates while touching with a point.
     pub hold: Option<(u32, [f64; 3])>,
     /// Whether friction holds the contact point where it is.
     pub sticking: bool,
@@ -78,13 +80,15 @@ pub struct Published {
 }
 
 impl Published {
-    /// What is told before the first tick.
-    pub fn before_the_start() -> Self {
+    /// What is told of so many fingers before the first tick.
+    pub fn before_the_start(count: usize) -> Self {
         let mut published = Self {
-            count: 1,
+            count,
             ..Self::default()
         };
-        published.told[0].snapshot.reason = reason::NOT_STARTED;
+        for told in &mut published.told[..count] {
+            told.snapshot.reason = reason::NOT_STARTED;
+        }
         published
     }
 

@@ -76,6 +76,8 @@ pub mod reason {
     pub const NO_ANGLES: &str = "no angles yet";
     /// Waiting: near its limit the device's force has no certain direction.
     pub const STRETCHED: &str = "the arms are stretched: bring the handle back to the middle";
+    /// Waiting: a tool is made for one body, and there is another now.
+    pub const OTHER_BODY: &str = "its tool was made for another body: set it again";
     /// Ramping: the thread has just started.
     pub const STARTED: &str = "started";
     /// Ramping: the device has just become ready.
@@ -98,7 +100,7 @@ pub mod reason {
     pub const ASKED: &str = "asked to stop";
 
     /// All of them but the empty one and those of [`super::after`].
-    pub const ALL: [&str; 18] = [
+    pub const ALL: [&str; 19] = [
         NO_ANSWER,
         NO_STATE,
         NOT_READY,
@@ -107,6 +109,7 @@ pub mod reason {
         LOST_PLACE,
         NO_ANGLES,
         STRETCHED,
+        OTHER_BODY,
         STARTED,
         READY,
         SWITCHED_ON,

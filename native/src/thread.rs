@@ -13,15 +13,20 @@ use crate::child_thread::ChildThread;
 use crate::clock::{Pace, Timing, Waking};
 use crate::device::{Device, Fault};
 use crate::exchange::{Hand, exchange};
+use crate::pressed_patch::PressedPatch;
 use crate::realtime::{Granted, ask_for_real_time};
 use crate::recorder::{RING_SECONDS, Recorder, touched_ring};
 use crate::servo::{Options, Servo, Settings};
 use crate::snapshot::{Published, Sample};
 use crate::stages::Stages;
 use crate::surface::Body;
+use crate::tip::{Tip, TipHand, exchange_tips};
 
 /// How long an exchange of the body waits for the thread.
 const EXCHANGE_SECONDS: Duration = Duration::from_millis(200);
+
+/// Reads of a snapshot until it is of the same tick as the patches.
+const SAME_TICK_TRIES: usize = 100;
 
 /// A thread that wakes at a fixed rate until it is stopped.
 #[derive(Debug)]
@@ -129,6 +134,8 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 pub struct Running {
     paced: Paced,
     bodies: Mutex<Hand>,
+    tips: Mutex<Vec<TipHand>>,
+    patches: Mutex<Vec<Output<PressedPatch>>>,
     settings: Mutex<Input<Settings>>,
     snapshots: Mutex<Output<Published>>,
     samples: Mutex<Consumer<Sample>>,
@@ -151,9 +158,27 @@ impl Running {
         record_samples: usize,
         recorded_ticks: usize,
     ) -> std::io::Result<Self> {
+        let points = devices.iter().map(|_| Tip::Point).collect();
+        let recording = (record_samples, recorded_ticks);
+        Self::start_with_tips(body, devices, points, options, settings, recording)
+    }
+
+    /// The same with a tip for each finger, from the first tick on.
+    ///
+    /// # Errors
+    /// When the system gives no thread.
+    pub fn start_with_tips(
+        body: Arc<Body>,
+        devices: Vec<Box<dyn Device>>,
+        tips: Vec<Tip>,
+        options: Options,
+        settings: Settings,
+        (record_samples, recorded_ticks): (usize, usize),
+    ) -> std::io::Result<Self> {
         let (hand, holder) = exchange(body.clone());
         let (settings_in, settings_out) = triple_buffer(&settings);
-        let (snapshots_in, snapshots_out) = triple_buffer(&Published::before_the_start());
+        let (snapshots_in, snapshots_out) =
+            triple_buffer(&Published::before_the_start(devices.len()));
         let (samples_in, samples_out) = touched_ring(record_samples * devices.len());
         let (tape, recorder) =
             Recorder::new((RING_SECONDS * options.rate_hz) as usize * devices.len());
@@ -170,6 +195,15 @@ impl Running {
             samples_in,
         );
         servo.bodies = holder;
+        let mut hands = Vec::new();
+        let mut patches = Vec::new();
+        for (finger, tip) in servo.fingers.iter_mut().zip(tips) {
+            let (tip_hand, tip_holder) = exchange_tips(tip);
+            let (patches_in, patches_out) = triple_buffer(&PressedPatch::default());
+            (finger.tips, finger.patches) = (tip_holder, Some(patches_in));
+            hands.push(tip_hand);
+            patches.push(patches_out);
+        }
         servo.tape = Some(tape);
         let stages = servo.stages();
         let paced = Paced::spawn(
@@ -189,6 +223,8 @@ impl Running {
         Ok(Self {
             paced,
             bodies: Mutex::new(hand),
+            tips: Mutex::new(hands),
+            patches: Mutex::new(patches),
             settings: Mutex::new(settings_in),
             snapshots: Mutex::new(snapshots_out),
             samples: Mutex::new(samples_out),
@@ -221,6 +257,47 @@ impl Running {
             std::thread::sleep(Duration::from_micros(200));
         }
         bodies.forget_older();
+    }
+
+    /// Gives a finger another tip, waits until the thread uses it, and frees the one before.
+    ///
+    /// Should the thread not get to it within [`EXCHANGE_SECONDS`], the old tip is freed with the
+    /// next exchange or the end.
+    ///
+    /// # Errors
+    /// The tip, while the thread has not got to several others before it.
+    pub fn set_tip(&self, finger: usize, tip: Tip) -> Result<(), Tip> {
+        let mut tips = locked(&self.tips);
+        tips[finger].free_old();
+        tips[finger].give(tip)?;
+        let since = Instant::now();
+        while self.paced.is_running() && since.elapsed() < EXCHANGE_SECONDS {
+            if tips[finger].free_old() > 0 {
+                break;
+            }
+            std::thread::sleep(Duration::from_micros(200));
+        }
+        Ok(())
+    }
+
+    /// The newest tick with the patches of its tools, as far as these are of the same tick.
+    pub fn published_with_patches(&self) -> (Published, Vec<PressedPatch>) {
+        let mut patches = locked(&self.patches);
+        let mut published = self.published();
+        let mut newest: Vec<PressedPatch> = Vec::new();
+        for _ in 0..SAME_TICK_TRIES {
+            newest = patches
+                .iter_mut()
+                .map(|patch| patch.read().clone())
+                .collect();
+            // A tool's patch is written just before the tick is told.
+            let tick = newest.iter().map(|patch| patch.tick).max().unwrap_or(0);
+            if tick <= published.first().snapshot.tick {
+                break;
+            }
+            published = self.published();
+        }
+        (published, newest)
     }
 
     /// Fingers that it was started with.

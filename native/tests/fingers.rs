@@ -171,6 +171,7 @@ fn press(hold: Hold, displacement: DVec3) -> Option<Press> {
         hold,
         touches: true,
         displacement,
+        moved_by_tools: DVec3::ZERO,
         push: displacement,
         most_stiffness: f64::INFINITY,
         presence: 1.0,

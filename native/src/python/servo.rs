@@ -13,6 +13,7 @@ use super::counters::{link_counters, stage_counters, timing_counters};
 use super::haply::haply_setup;
 use super::snapshot::{Snapshot, structured, structured_pieces};
 use super::stepped::fault_counters;
+use super::tool::ToolContact;
 use super::vectors::{IDENTITY, Rows, Triple, check_rate, check_seconds, finite, matrix, positive};
 use crate::clock::Timing;
 use crate::cones::MAX_FINGERS;
@@ -30,6 +31,10 @@ use crate::servo::{Options, Settings};
 use crate::snapshot::{Published, Sample, Told};
 use crate::surface;
 use crate::thread::Running;
+use crate::tip::Tip;
+use crate::tool;
+use crate::tool::points::ToolSurface;
+use crate::tool::shape::Tool;
 
 /// Why there can be no more than one finger.
 const NOT_WHOLE: &str = "several fingers need the compliance of any two nodes, which this body has \
@@ -41,6 +46,8 @@ static STARTED: Mutex<Vec<Weak<Running>>> = Mutex::new(Vec::new());
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
+
+type MadeTool = (Arc<ToolSurface>, Tool);
 
 /// Where a pointer is led, and where it was led last.
 type Lead = (Input<Target>, Target);
@@ -59,6 +66,8 @@ pub struct Servo {
     running: Mutex<Option<Arc<Running>>>,
     /// Fingers 1, 2, ... of the next start.
     others: Mutex<Vec<Box<dyn Device>>>,
+    /// By finger: its tool, on the body that it was made for.
+    tools: Mutex<[Option<MadeTool>; MAX_FINGERS]>,
     /// Of pointers, by finger.
     targets: Mutex<[Option<Lead>; MAX_FINGERS]>,
 }
@@ -70,7 +79,7 @@ impl Servo {
 
     fn published(&self) -> Published {
         self.current()
-            .map_or_else(Published::before_the_start, |r| r.published())
+            .map_or_else(|| Published::before_the_start(1), |r| r.published())
     }
 
     fn change(&self, edit: impl FnOnce(&mut Settings)) {
@@ -158,14 +167,15 @@ impl Servo {
         devices.append(&mut locked(&self.others));
         let settings = *locked(&self.settings);
         let armed_ticks = *locked(&self.armed_ticks);
+        let tools = locked(&self.tools).clone();
         let running = py.detach(|| {
-            Running::start(
+            Running::start_with_tips(
                 locked(&self.body).clone(),
                 devices,
+                tools.into_iter().map(tip).collect(),
                 self.options,
                 settings,
-                self.record_samples,
-                armed_ticks,
+                (self.record_samples, armed_ticks),
             )
             .map_err(no_thread)
         })?;
@@ -234,6 +244,7 @@ impl Servo {
             own_coupling: Mutex::new(None),
             running: Mutex::new(None),
             others: Mutex::default(),
+            tools: Mutex::default(),
             targets: Mutex::default(),
         })
     }
@@ -372,6 +383,32 @@ impl Servo {
         Ok(())
     }
 
+    #[pyo3(signature = (tool, finger=0))]
+    fn set_tool(
+        &self,
+        py: Python<'_>,
+        tool: Option<PyRef<'_, ToolContact>>,
+        finger: usize,
+    ) -> PyResult<()> {
+        check_finger(finger)?;
+        let made = tool.map(|tool| (tool.inner.surface().clone(), tool.inner.tool().clone()));
+        let fits = |(surface, _): &MadeTool| Arc::ptr_eq(surface.body(), &locked(&self.body));
+        if made.as_ref().is_some_and(|made| !fits(made)) {
+            return Err(PyValueError::new_err(
+                "the tool was made for another body; make it with the Body that the servo touches",
+            ));
+        }
+        locked(&self.tools)[finger].clone_from(&made);
+        let Some(running) = self.current().filter(|r| finger < r.finger_count()) else {
+            return Ok(());
+        };
+        py.detach(|| running.set_tip(finger, tip(made))).map_err(|_| {
+            PyRuntimeError::new_err(
+                "the servo's thread has not taken the tools that it was given before; try again",
+            )
+        })
+    }
+
     fn set_young_modulus(&self, young_modulus: f64) -> PyResult<()> {
         let young_modulus = positive("young_modulus", young_modulus)?;
         self.change(|s| s.young_modulus = young_modulus);
@@ -390,6 +427,8 @@ impl Servo {
             let mut settings = locked(&self.settings);
             settings.young_modulus = young_modulus;
             (*locked(&self.body)).clone_from(&body);
+            // Tools are made for one body.
+            *locked(&self.tools) = Default::default();
             if let Some(running) = self.current() {
                 running.set_body(body, *settings);
             }
@@ -451,7 +490,13 @@ impl Servo {
     }
 
     fn snapshot(&self) -> Snapshot {
-        Snapshot::of(&self.published())
+        match self.current() {
+            Some(running) => {
+                let (published, patches) = running.published_with_patches();
+                Snapshot::of(&published, patches)
+            }
+            None => Snapshot::of(&Published::before_the_start(1), Vec::new()),
+        }
     }
 
     fn samples<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
@@ -554,6 +599,13 @@ impl Servo {
     ) {
         self.stop(py);
     }
+}
+
+/// A tip with all its memory; a point for no tool.
+fn tip(made: Option<MadeTool>) -> Tip {
+    made.map_or(Tip::Point, |(surface, tool)| {
+        Tip::Tool(Box::new(tool::contact::ToolContact::new(surface, tool)))
+    })
 }
 
 /// What one finger has counted.

@@ -6,24 +6,29 @@ use pyo3::types::{PyByteArray, PyList};
 
 use super::vectors::{Matrix, Vector, array, rows, square, table};
 use crate::device::Fault;
+use crate::pressed_patch::{PressedPatch, PressedPoint};
 use crate::snapshot::{Published, Sample};
 
 #[pyclass(frozen, module = "palpate_servo")]
 pub struct Snapshot {
     inner: Box<Published>,
+    patches: Vec<PressedPatch>,
 }
 
 /// One finger of a tick.
 #[pyclass(frozen, module = "palpate_servo")]
 pub struct FingerSnapshot {
     inner: crate::snapshot::Snapshot,
+    /// Of a tool that touches.
+    patch: Option<Box<PressedPatch>>,
 }
 
 impl Snapshot {
     /// Of all fingers, and first of all of finger 0.
-    pub fn of(published: &Published) -> Self {
+    pub fn of(published: &Published, patches: Vec<PressedPatch>) -> Self {
         Self {
             inner: Box::new(*published),
+            patches,
         }
     }
 
@@ -33,6 +38,10 @@ impl Snapshot {
 }
 
 impl FingerSnapshot {
+    fn pressed(&self) -> &[PressedPoint] {
+        self.patch.as_ref().map_or(&[], |patch| patch.points())
+    }
+
     fn shot(&self) -> &crate::snapshot::Snapshot {
         &self.inner
     }
@@ -89,7 +98,7 @@ macro_rules! snapshot_methods {
             }
             #[getter]
             fn touching(&self) -> bool {
-                self.shot().hold.is_some()
+                self.shot().touching
             }
             #[getter]
             fn sticking(&self) -> bool {
@@ -153,8 +162,17 @@ snapshot_methods! {
     }
     #[getter]
     fn fingers(&self) -> Vec<FingerSnapshot> {
-        let told = self.inner.fingers().iter();
-        told.map(|told| FingerSnapshot { inner: told.snapshot }).collect()
+        let told = self.inner.fingers().iter().enumerate();
+        let patch_of = |finger: usize, shot: &crate::snapshot::Snapshot| {
+            let presses_with_tool = shot.touching && shot.hold.is_none();
+            let patch = self.patches.get(finger).filter(|_| presses_with_tool)?;
+            (patch.tick == shot.tick).then(|| Box::new(patch.clone()))
+        };
+        told.map(|(finger, told)| FingerSnapshot {
+            inner: told.snapshot,
+            patch: patch_of(finger, &told.snapshot),
+        })
+        .collect()
     }
 }
 
@@ -162,17 +180,32 @@ snapshot_methods! {
     FingerSnapshot,
     #[getter]
     fn nodes<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
-        match self.inner.hold {
-            Some(_) => PyArray1::from_slice(py, &self.inner.triangle.map(i64::from)),
-            None => PyArray1::from_slice(py, &[]),
-        }
+        let nodes: Vec<i64> = match (&self.patch, self.inner.hold) {
+            (Some(patch), _) => patch.nodes().iter().map(|&(node, _)| i64::from(node)).collect(),
+            (None, Some(_)) => self.inner.triangle.map(i64::from).to_vec(),
+            (None, None) => Vec::new(),
+        };
+        PyArray1::from_vec(py, nodes)
     }
     #[getter]
     fn nodal_forces<'py>(&self, py: Python<'py>) -> PyResult<Matrix<'py>> {
-        match self.inner.hold {
-            Some(_) => rows(py, &self.inner.nodal_forces),
-            None => table(py, &[]),
+        match (&self.patch, self.inner.hold) {
+            (Some(patch), _) => table(py, patch.nodes().iter().map(|&(_, force)| force)),
+            (None, Some(_)) => rows(py, &self.inner.nodal_forces),
+            (None, None) => table(py, std::iter::empty()),
         }
+    }
+    #[getter]
+    fn points<'py>(&self, py: Python<'py>) -> PyResult<Matrix<'py>> {
+        table(py, self.pressed().iter().map(|point| point.position))
+    }
+    #[getter]
+    fn point_forces<'py>(&self, py: Python<'py>) -> PyResult<Matrix<'py>> {
+        table(py, self.pressed().iter().map(|point| point.force))
+    }
+    #[getter]
+    fn pressures<'py>(&self, py: Python<'py>) -> Vector<'py> {
+        PyArray1::from_iter(py, self.pressed().iter().map(|point| point.pressure))
     }
 }
 

@@ -132,7 +132,7 @@ impl SteppedServo {
         settings.feel.mode = contact_mode(mode)?;
         let wire = InMemory::default();
         let (settings_in, settings_out) = triple_buffer(&settings);
-        let (snapshots_in, snapshots) = triple_buffer(&Published::before_the_start());
+        let (snapshots_in, snapshots) = triple_buffer(&Published::before_the_start(1));
         let (samples_in, _nobody_takes_them) = RingBuffer::new(1);
         let (hand, holder) = exchange(body.inner.clone());
         let mut servo = Servo::new(
@@ -221,7 +221,7 @@ impl SteppedServo {
     }
 
     fn snapshot(&self) -> Snapshot {
-        Snapshot::of(self.stepped().snapshots.read())
+        Snapshot::of(self.stepped().snapshots.read(), Vec::new())
     }
 
     fn counters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {

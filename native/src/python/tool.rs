@@ -176,7 +176,7 @@ impl ToolSurface {
 
 #[pyclass(module = "palpate_servo")]
 pub struct ToolContact {
-    inner: contact::ToolContact,
+    pub inner: contact::ToolContact,
     young_modulus: f64,
 }
 

@@ -42,9 +42,10 @@ pub fn rows<'py>(py: Python<'py>, m: &[DVec3; 3]) -> PyResult<Matrix<'py>> {
 }
 
 /// Vectors as the rows of a matrix (k, 3).
-pub fn table<'py>(py: Python<'py>, vectors: &[DVec3]) -> PyResult<Matrix<'py>> {
-    let flat: Vec<f64> = vectors.iter().flat_map(|v| v.to_array()).collect();
-    PyArray1::from_vec(py, flat).reshape([vectors.len(), 3])
+pub fn table(py: Python<'_>, vectors: impl Iterator<Item = DVec3>) -> PyResult<Matrix<'_>> {
+    let flat: Vec<f64> = vectors.flat_map(|v| v.to_array()).collect();
+    let count = flat.len() / 3;
+    PyArray1::from_vec(py, flat).reshape([count, 3])
 }
 
 pub fn square(py: Python<'_>, m: DMat3) -> PyResult<Matrix<'_>> {
