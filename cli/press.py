@@ -16,7 +16,7 @@ from ..core.soft_body import SoftBody
 from ..core.stiffness import lame_parameters
 from ..core.whole_file import whole_file
 from .body_figures import as_lines
-from .press_tool import pressed_tool, tool_figures, tool_summary
+from .press_tool import pressed_tools, tool_figures, tool_summary
 from .tool_option import KINDS, tool_from
 
 
@@ -55,6 +55,12 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "against the surface, and moved by --by",
     )
     parser.add_argument(
+        "--friction",
+        type=float,
+        metavar="MU",
+        help="coefficient of friction between --tool and body (default 0)",
+    )
+    parser.add_argument(
         "--displacements",
         type=Path,
         metavar="OUT.npy",
@@ -71,6 +77,8 @@ def run(arguments: argparse.Namespace) -> int:
     lame_parameters(young_modulus, body.poisson_ratio)
     if arguments.tool is not None:
         return _press_tool(arguments, body, young_modulus)
+    if arguments.friction is not None:
+        raise PalpateError("--friction: points have none; give it with --tool")
     return _press_points(arguments, body, young_modulus)
 
 
@@ -104,16 +112,28 @@ def _press_points(arguments: argparse.Namespace, body: SoftBody, young_modulus: 
 def _press_tool(arguments: argparse.Namespace, body: SoftBody, young_modulus: float) -> int:
     if arguments.mode is not None:
         raise PalpateError("--mode: it is about points; leave it out with --tool")
-    if not len(arguments.at) == len(arguments.by) == 1:
-        raise PalpateError("--tool: one tool at a time; give --at and --by once")
     tool = tool_from(arguments.tool)
-    touch = pressed_tool(body, tool, arguments.at[0], arguments.by[0], young_modulus)
-    displacements = _deformed(arguments, body, touch.nodes, touch.nodal_forces, young_modulus)
+    touches = pressed_tools(
+        body, tool, arguments.at, arguments.by, young_modulus, arguments.friction or 0.0
+    )
+    displacements = _deformed(
+        arguments,
+        body,
+        np.concatenate([touch.nodes for touch in touches]),
+        np.concatenate([touch.nodal_forces for touch in touches]),
+        young_modulus,
+    )
     common = _common_figures(displacements, young_modulus)
+    figures = [(tool_figures if arguments.json else tool_summary)(touch) for touch in touches]
     if arguments.json:
-        print(json.dumps(tool_figures(touch) | common))
+        several: dict[str, object] = {"contacts": figures}
+        print(json.dumps((figures[0] if len(figures) == 1 else several) | common))
+    elif len(figures) == 1:
+        print(as_lines(figures[0] | common))
     else:
-        print(as_lines(tool_summary(touch) | common))
+        for number, contact in enumerate(figures, start=1):
+            print(f"contact {number}\n{_indented(as_lines(contact))}")
+        print(as_lines(common))
     return 0
 
 

@@ -2,44 +2,71 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.coordinates import refuse_unusable
 from ..core.errors import PalpateError
+from ..core.several_tools import press_tools
 from ..core.soft_body import SoftBody
 from ..core.softness.force_depth import facing_pose
 from ..core.softness.place import nearest_place
 from ..core.tool_contact import ToolTouch, press_tool
 from ..core.tools import Pose, Tool
 
+# Into how many parts the way of a tool with friction is divided.
+STEPS_WITH_FRICTION = 20
 
-def pressed_tool(
-    body: SoftBody, tool: Tool, at: ArrayLike, by: ArrayLike, young_modulus: float
-) -> ToolTouch:
-    """Set a tool down at the surface point nearest to ``at``, move it by ``by`` (3,) metres.
 
-    Its -z axis looks into the body there, against the smooth normal, and its foremost point is on
-    the surface. Then it is moved straight on, without turning.
+def pressed_tools(
+    body: SoftBody,
+    tool: Tool,
+    at: Sequence[ArrayLike],
+    by: Sequence[ArrayLike],
+    young_modulus: float,
+    friction: float,
+) -> list[ToolTouch]:
+    """Set tools of one kind down at the surface points nearest to ``at``, move them by ``by``.
+
+    The -z axis of each looks into the body there, against the smooth normal, and its foremost point
+    is on the surface. Then it is moved straight on, without turning. Lengths in metres.
 
     Raises
     ------
     PalpateError
-        Coordinates that are not three finite numbers.
+        Coordinates that are not three finite numbers, or not as many of one as of the other;
+        friction between several tools.
     """
-    way = np.asarray(by, dtype=np.float64)
-    if way.shape != (3,):
-        raise PalpateError(f"--by: {way.tolist()} is no displacement; give three numbers in metres")
-    refuse_unusable("--by", way[None])
-    start = facing_pose(nearest_place(body, at), tool, 0.0)
-    outside = press_tool(body, tool, start, young_modulus=young_modulus)
-    return press_tool(
-        body,
-        tool,
-        Pose(start.position + way, start.rotation),
-        young_modulus=young_modulus,
-        start=outside,
-    )
+    if len(at) != len(by):
+        raise PalpateError(
+            f"--at is given {len(at)} times and --by {len(by)} times; give one --by for every --at"
+        )
+    ways = [np.asarray(way, dtype=np.float64) for way in by]
+    for way in ways:
+        if way.shape != (3,):
+            raise PalpateError(f"--by: {way.tolist()} is no displacement; give three numbers")
+        refuse_unusable("--by", way[None])
+    starts = [facing_pose(nearest_place(body, place), tool, 0.0) for place in at]
+    ends = [
+        Pose(start.position + way, start.rotation) for start, way in zip(starts, ways, strict=True)
+    ]
+    if len(starts) == 1:
+        # With friction it matters how the tool came: points stick where they are first pressed.
+        between = np.linspace(0.0, 1.0, 1 + (STEPS_WITH_FRICTION if friction else 1))
+        touch: ToolTouch | None = None
+        for share in between:
+            pose = Pose(starts[0].position + share * ways[0], starts[0].rotation)
+            touch = press_tool(
+                body, tool, pose, young_modulus=young_modulus, friction=friction, start=touch
+            )
+        return [touch] if touch is not None else []
+    if friction:
+        raise PalpateError("--friction: it is there for one tool; leave it out with several")
+    outsides = press_tools(body, [(tool, pose) for pose in starts], young_modulus=young_modulus)
+    together = [(tool, pose) for pose in ends]
+    return press_tools(body, together, young_modulus=young_modulus, start=outsides)
 
 
 def tool_figures(touch: ToolTouch) -> dict[str, object]:
