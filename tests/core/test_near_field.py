@@ -212,3 +212,13 @@ def test_every_patch_that_a_fingertip_covers_is_positive_definite(
         whole = matrix(point_compliance(everywhere, some, few, few, correction))
         scale = 1 / np.sqrt(np.diag(whole))
         assert np.linalg.eigvalsh(whole * scale * scale[:, None])[0] > 0.01
+
+
+def test_no_point_pulls_itself_in_where_pins_are_nearer_than_points(cubes):
+    """A tool ten times as coarse as the mesh, beside the pinned bottom."""
+    points = contact_points(cubes[12], 0.03)
+    everyone = np.arange(len(points))
+    correction = near_correction(cubes[12], points, 0.1)
+    blocks = point_compliance(cubes[12], points, everyone, everyone, correction)
+    own = np.einsum("iixy->ixy", blocks)
+    assert np.linalg.eigvalsh(own).min() > 0

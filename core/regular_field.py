@@ -1,0 +1,196 @@
+"""How a body's surface gives way beyond what a half-space would, at each node and around it.
+
+Finite elements are not accurate for a node under its own force, nor for its next neighbours. But
+the difference between the body and a half-space is smooth there: so it is told from a ring of nodes
+around, where they are accurate, by a plane fitted to it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+from scipy.spatial import cKDTree
+
+from .contact_points import node_normals
+from .formulation import LINEAR, SMOOTHED
+from .half_space import surface_displacement
+from .pair_blocks import pair_blocks
+from .soft_body import SoftBody
+
+# Distances in mean edge lengths of two nodes: within the first finite elements are not believed at
+# all, from the second on wholly; the ring lies between the third and the fourth. Smoothed elements
+# spread a force over more of their neighbours.
+BELIEVED = {LINEAR: (0.6, 1.0, 0.9, 2.2), SMOOTHED: (1.2, 2.0, 1.6, 2.8)}
+
+# Nodes whose normals have a smaller product than the first are not of one side of an edge, from the
+# second on they are wholly.
+SAME_SIDE = (0.2, 0.7)
+
+# How firmly slopes are held at zero, in mean squares of edge lengths.
+SLOPE_DAMPING = 0.1
+
+# A ring of fewer neighbours than this says nothing.
+FEWEST_IN_RING = 2.0
+
+
+@dataclass(frozen=True, eq=False)
+class RegularField:
+    """What there is to know of a body at its surface nodes.
+
+    Attributes
+    ----------
+    body : which.
+    normals : float64 (s, 3), outward unit normals at the surface nodes.
+    edges : float64 (s,), mean length of the surface's edges at each node, metres.
+    regular : float64 (s, 3, 3), how far a node gives way beyond a half-space, m / N at 1 Pa.
+    slope : float64 (s, 3, 3, 3), how that changes per metre as the force moves away, by direction.
+    softness : float64 (s,), 1 over the factor of Young's modulus around the node.
+    trusted : float64 (s,), 0 where nothing is known and plain finite elements stay, else 1.
+    """
+
+    body: SoftBody
+    normals: NDArray[np.float64]
+    edges: NDArray[np.float64]
+    regular: NDArray[np.float64]
+    slope: NDArray[np.float64]
+    softness: NDArray[np.float64]
+    trusted: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, body: SoftBody) -> RegularField:
+        """Look at the rings around all surface nodes."""
+        mesh = body.mesh
+        normals, edges, softness = node_normals(mesh), mean_edges(body), surface_softness(body)
+        places = mesh.nodes[mesh.surface_nodes]
+        _, _, inner, outer = BELIEVED[body.formulation]
+        a, b = _within(places, outer * edges)
+        apart = np.linalg.norm(places[a] - places[b], axis=1)
+        reach = 0.5 * (edges[a] + edges[b])
+        alike = facing(normals[a], normals[b], SAME_SIDE)
+        ring = np.flatnonzero((apart >= inner * reach) & (apart <= outer * reach) & (alike > 0))
+        a, b, weight = a[ring], b[ring], alike[ring]
+        beyond = pair_blocks(body, a, b) - half_space_between(body, places, normals, softness, a, b)
+        # Seen at a with the force at b, and the other way round.
+        regular, slope, known = _fitted(
+            np.concatenate([a, b]),
+            np.concatenate([places[b] - places[a], places[a] - places[b]]),
+            np.concatenate([beyond, beyond.transpose(0, 2, 1)]),
+            np.concatenate([weight, weight]),
+            edges,
+        )
+        free = body.free_index(mesh.surface_nodes) >= 0
+        return cls(
+            body, normals, edges, regular, slope, softness, (known & free).astype(np.float64)
+        )
+
+    def between(self, a: NDArray[np.int64], b: NDArray[np.int64]) -> NDArray[np.float64]:
+        """The regular part for nodes near each other, (k, 3, 3): the mean of what both rings tell.
+
+        Displacement of surface-local nodes ``a`` (k,) per force on ``b`` (k,).
+        """
+        offset = self.places[b] - self.places[a]
+        from_a = self.regular[a] + np.einsum("kz,kzxy->kxy", offset, self.slope[a])
+        from_b = self.regular[b] - np.einsum("kz,kzxy->kxy", offset, self.slope[b])
+        mean: NDArray[np.float64] = 0.5 * (from_a + from_b.transpose(0, 2, 1))
+        return mean
+
+    @property
+    def places(self) -> NDArray[np.float64]:
+        """Where the surface nodes lie, (s, 3), metres."""
+        places: NDArray[np.float64] = self.body.mesh.nodes[self.body.mesh.surface_nodes]
+        return places
+
+
+def _fitted(
+    node: NDArray[np.int64],
+    offsets: NDArray[np.float64],
+    beyond: NDArray[np.float64],
+    weight: NDArray[np.float64],
+    edges: NDArray[np.float64],
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]:
+    """Value (s, 3, 3) and slope (s, 3, 3, 3) at each node of what its ring tells, and where known.
+
+    Least squares over the samples ``beyond`` (k, 3, 3) of ``node`` (k,) at ``offsets`` (k, 3).
+    """
+    count = len(edges)
+    terms = np.column_stack([np.ones(len(node)), offsets / edges[node, None]])
+    ring = csr_array((weight, (node, np.arange(len(node)))), shape=(count, len(node)))
+    both = np.einsum("ki,kj->kij", terms, terms).reshape(-1, 16)
+    sides = np.einsum("ki,kx->kix", terms, beyond.reshape(-1, 9)).reshape(-1, 36)
+    normal, right = (ring @ both).reshape(-1, 4, 4), (ring @ sides).reshape(-1, 4, 9)
+    total = normal[:, 0, 0]
+    known = total >= FEWEST_IN_RING
+    # Across the surface, and where all of a ring lies to one side, a slope is not to be had.
+    damping = SLOPE_DAMPING * np.maximum(total, 1.0)[:, None, None] * np.diag([0.0, 1.0, 1.0, 1.0])
+    fit = np.zeros((count, 4, 9))
+    fit[known] = np.linalg.solve(normal[known] + damping[known], right[known])
+    regular = fit[:, 0].reshape(-1, 3, 3)
+    slope = (fit[:, 1:] / edges[:, None, None]).reshape(-1, 3, 3, 3)
+    return 0.5 * (regular + regular.transpose(0, 2, 1)), slope, known
+
+
+def _within(
+    places: NDArray[np.float64], reach: NDArray[np.float64]
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Pairs a < b of places (s, 3) no farther apart than the mean of their reaches (s,)."""
+    tree = cKDTree(places)
+    found = tree.query_ball_point(places, reach)
+    a = np.repeat(np.arange(len(places)), [len(one) for one in found])
+    b = np.concatenate([np.asarray(one, dtype=np.int64) for one in found])
+    a, b = np.minimum(a, b), np.maximum(a, b)
+    codes = np.unique(a[a != b] * len(places) + b[a != b])
+    a, b = np.divmod(codes, len(places))
+    near = np.linalg.norm(places[a] - places[b], axis=1) <= 0.5 * (reach[a] + reach[b])
+    return a[near], b[near]
+
+
+def mean_edges(body: SoftBody) -> NDArray[np.float64]:
+    """Mean length of the surface edges at each surface node, (s,), metres."""
+    mesh = body.mesh
+    triangles, places = mesh.surface_local_triangles, mesh.nodes[mesh.surface_nodes]
+    ahead = np.roll(triangles, -1, axis=1)
+    lengths = np.linalg.norm(places[triangles] - places[ahead], axis=2).ravel()
+    # Every edge of a closed surface is met twice, once from either side.
+    count = np.bincount(triangles.ravel(), minlength=len(places))
+    mean: NDArray[np.float64] = np.bincount(triangles.ravel(), lengths, len(places)) / count
+    return mean
+
+
+def surface_softness(body: SoftBody) -> NDArray[np.float64]:
+    """1 over the factor of Young's modulus at each surface node, (s,): mean of its tetrahedra."""
+    mesh = body.mesh
+    if body.young_scale is None:
+        return np.ones(len(mesh.surface_nodes))
+    weight = np.repeat(mesh.tet_volumes, 4)
+    stiff = np.bincount(mesh.tets.ravel(), weight * np.repeat(body.young_scale, 4))
+    volume = np.bincount(mesh.tets.ravel(), weight)
+    softness: NDArray[np.float64] = (volume / stiff)[mesh.surface_nodes]
+    return softness
+
+
+def facing(
+    first: NDArray[np.float64], second: NDArray[np.float64], limits: tuple[float, float]
+) -> NDArray[np.float64]:
+    """How far two normals (k, 3) are of one side or surface, (k,), 0 to 1."""
+    alike = np.einsum("kx,kx->k", first, second)
+    share: NDArray[np.float64] = np.clip((alike - limits[0]) / (limits[1] - limits[0]), 0.0, 1.0)
+    return share
+
+
+def half_space_between(
+    body: SoftBody,
+    places: NDArray[np.float64],
+    normals: NDArray[np.float64],
+    softness: NDArray[np.float64],
+    a: NDArray[np.int64],
+    b: NDArray[np.int64],
+) -> NDArray[np.float64]:
+    """H between places a (k,) and b (k,), (k, 3, 3)."""
+    normal = normals[a] + normals[b]
+    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 0.5)
+    blocks = surface_displacement(places[a] - places[b], normal, body.poisson_ratio)
+    blocks *= (0.5 * (softness[a] + softness[b]))[:, None, None]
+    return blocks
