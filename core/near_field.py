@@ -50,7 +50,7 @@ LEAST_OWN = 0.25
 
 # By how much more a point gives way to its own force along the surface than in a half-space. What
 # smoothed elements have between neighbours swings, and would else leave blocks of several points
-# not positive definite (by at most 0.2 where meshes are coarse and bodies thin).
+# not positive definite (by up to a third where meshes are coarse and bodies thin).
 ACROSS = {LINEAR: 0.0, SMOOTHED: 0.35}
 
 # Pairs of triangles worked on together; bounds memory to some 100 MB.

@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from palpate.core.contact_points import contact_points, smooth_corner_normals
+from palpate.core.contact_points import _shares, contact_points, smooth_corner_normals
 from palpate.core.errors import PalpateError
 from palpate.core.near_field import point_compliance
+from palpate.core.paper_cube import paper_cube
+from palpate.core.tet_mesh import TetMesh
 
 SPACINGS = [0.003, 0.007, 0.02]
 
@@ -147,3 +149,15 @@ def test_a_pinned_point_answers_as_the_firmest_node_and_only_itself(cube):
     for row, point in enumerate(pinned):
         np.testing.assert_allclose(blocks[row, point], firmest * np.eye(3))
         assert not np.delete(blocks[row], pinned, axis=0).any()
+
+
+def test_the_sides_of_a_thin_plate_take_nothing_from_each_other():
+    """One point above, three below: all of the upper side belongs to the first one."""
+    mesh, _ = paper_cube(1.0, 4)
+    plate = TetMesh.checked(mesh.nodes * [1.0, 1.0, 0.02], mesh.tets)
+    places = np.array([[0.5, 0.5, 0.02], [0.2, 0.2, 0.0], [0.8, 0.2, 0.0], [0.5, 0.8, 0.0]])
+    normals = np.array([[0.0, 0.0, 1.0], *3 * [[0.0, 0.0, -1.0]]])
+    shares = _shares(plate, smooth_corner_normals(plate), places, normals, 0.5)
+    assert shares.sum() == pytest.approx(surface_area(plate))
+    assert 1.0 - 1e-9 < shares[0] < 1.0 + 4 * 0.02
+    assert shares[1:].sum() > 1.0 - 1e-9
