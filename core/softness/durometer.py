@@ -160,6 +160,11 @@ def balanced(
     """Balance on a body of this ``compliance`` (p, p) along the axis, m/N.
 
     With a load, the foot sinks until all forces together are the load.
+
+    Raises
+    ------
+    PalpateError
+        The load is not reached within :data:`MOST_STEPS`.
     """
     laid_on = float(seat.heights[~seat.tip].min(initial=float(seat.heights[seat.tip].min())))
     if load is None:
@@ -171,7 +176,7 @@ def balanced(
     for _ in range(MOST_STEPS):
         missing = load - float(found.pushes.sum())
         if abs(missing) <= LOAD_TOLERANCE * load:
-            break
+            return found
         above, below = (foot, below) if missing > 0.0 else (above, foot)
         pressed = np.flatnonzero(found.pushes > 0.0)
         step = np.inf
@@ -182,7 +187,10 @@ def balanced(
         if not above < foot < below:
             foot = 0.5 * (above + below) if np.isfinite(below) else above + kind.travel
         found = _at_depth(compliance, seat, kind, foot, laid_on, found.pushes)
-    return found
+    raise PalpateError(
+        f"durometer: no depth was found at which the foot carries {load:g} N there; lay it on "
+        "without a load, or choose another place"
+    )
 
 
 def _at_depth(

@@ -134,7 +134,7 @@ def _of_tool(
     for step, depth in enumerate(depths.tolist()):
         pose = facing_pose(place, tool, depth)
         touch = press_tool(body, tool, pose, young_modulus=modulus, start=touch)
-        forces[step] = -float(touch.force @ place.axis)
+        forces[step] = 0.0 - float(touch.force @ place.axis)
         areas[step] = float(touch.surface.areas[touch.points].sum())
     stiffness: NDArray[np.float64] = np.gradient(forces, depths)
     return ForceDepthCurve(tool.name, place, depths, forces, stiffness, areas)
