@@ -193,6 +193,7 @@ def test_pinned_places_stay_as_firm_as_they_are(cubes):
 
 # Where it is thin: edges of both ears, the tail's end, the nose.
 THIN = np.array([[45.8, 31.3, 40.7], [36.5, -29.5, 47.1], [-92.3, -2.2, -9.8], [101.2, 4.6, 14.8]])
+TAIL = 2
 
 
 def least_share(whole):
@@ -203,7 +204,7 @@ def least_share(whole):
 
 @pytest.mark.parametrize("formulation", ["linear", "smoothed"])
 def test_every_patch_that_a_fingertip_covers_is_positive_definite(mouse_mesh, rng, formulation):
-    """On the mouse: points on one side within 0.7 of the radius; pushes also where it is thin."""
+    """On the mouse: points on one side within 0.7 of the radius; pushes also at the tail."""
     mesh, fixed = mouse_mesh
     everywhere, radius = body_of(mesh, fixed, 0.49, formulation), 0.012
     points = contact_points(everywhere, radius / 4)
@@ -221,7 +222,7 @@ def test_every_patch_that_a_fingertip_covers_is_positive_definite(mouse_mesh, rn
         blocks = point_compliance(everywhere, some, few, few, correction)
         along = np.einsum("ix,ijxy,jy->ij", some.normals[few], blocks, some.normals[few])
         assert least_share(along) > 0.01
-        if formulation == "linear" or number >= len(thin):
+        if formulation == "linear" or number != TAIL:
             assert least_share(matrix(blocks)) > 0.01
 
 
