@@ -24,14 +24,14 @@ from ..core.devices.simulated_process import SimulatedDevice
 from ..core.devices.stop_signals import stopped_by_signals
 from ..core.errors import PalpateError
 from ..core.recording import check_recording_path, check_room, write_recording
-from ..core.servo_session import STATES, servo_for
+from ..core.servo_session import STATES, native_body, servo_on
 from ..core.soft_body import SoftBody
 from ..core.stiffness import lame_parameters
 from .body_figures import as_lines
 from .haply import add_haply_options, connect_haply
 
 if TYPE_CHECKING:
-    from ..core.servo_session import Servo
+    from ..core.servo_session import FingerCounters, Servo, Snapshot
 
 HELLO_SECONDS = 5.0
 LOOK_EVERY_SECONDS = 0.02
@@ -50,6 +50,19 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "--simulate", action="store_true", help="a simulated device that presses from above"
     )
     add_haply_options(parser, device)
+    parser.add_argument(
+        "--second-port",
+        action="append",
+        default=[],
+        metavar="PORT",
+        help="another device that speaks the link, which presses the same body; repeatable",
+    )
+    parser.add_argument(
+        "--mode",
+        choices=("consistent", "paper"),
+        default="consistent",
+        help="how a contact inside a triangle becomes a force (default: %(default)s)",
+    )
     parser.add_argument(
         "--seconds", type=float, default=10.0, metavar="S", help="default: %(default)g"
     )
@@ -78,10 +91,17 @@ def run(arguments: argparse.Namespace) -> int:
             hand = press_from_above(body, young_modulus)
             simulated = stack.enter_context(SimulatedDevice(hand))
             port = simulated.port
-        check_port(port)
+        others: list[str] = arguments.second_port
+        _check_ports([port, *others])
         stopped = stack.enter_context(stopped_by_signals())
-        servo = servo_for(body, young_modulus=young_modulus, rate_hz=arguments.rate)
+        servo = servo_on(
+            native_body(body, whole=bool(others)),
+            young_modulus=young_modulus,
+            rate_hz=arguments.rate,
+            mode=arguments.mode,
+        )
         stack.callback(servo.stop)
+        _add_fingers(servo, others)
         if arguments.record is not None:
             _start_recording(servo, arguments.record, arguments.seconds)
         if arguments.haply:
@@ -89,6 +109,7 @@ def run(arguments: argparse.Namespace) -> int:
             connect_haply(servo, arguments, _vector(at), stopped)
         else:
             _connect(servo, port, stopped)
+        _await_greetings(servo, others, stopped)
         report = _touch(servo, port, arguments.seconds, stopped)
         if simulated is not None:
             report["simulated_device"] = simulated.stop()
@@ -176,9 +197,36 @@ def _connect(servo: Servo, port: str, stopped: Sequence[int]) -> None:
         servo.start_serial(port)
     except OSError as error:
         raise PalpateError(str(error)) from error
+    _await_greeting(servo, 0, port, stopped)
+
+
+def _check_ports(ports: Sequence[str]) -> None:
+    for port in ports:
+        check_port(port)
+    if len(set(ports)) < len(ports):
+        raise PalpateError("--second-port: a port is named twice; give each device its own")
+
+
+def _await_greetings(servo: Servo, others: Sequence[str], stopped: Sequence[int]) -> None:
+    for finger, port in enumerate(others, start=1):
+        _await_greeting(servo, finger, port, stopped)
+
+
+def _add_fingers(servo: Servo, ports: Sequence[str]) -> None:
+    for port in ports:
+        try:
+            servo.add_serial(port)
+        except (OSError, ValueError) as error:
+            raise PalpateError(f"--second-port: {error}") from error
+
+
+def _await_greeting(servo: Servo, finger: int, port: str, stopped: Sequence[int]) -> None:
+    def counters() -> FingerCounters:
+        return servo.counters()["fingers"][finger]
+
     deadline = time.monotonic() + HELLO_SECONDS
-    while servo.counters()["link"]["device"] is None and not stopped:
-        if servo.counters()["faults"]["wrong protocol"]:
+    while counters()["link"]["device"] is None and not stopped:
+        if counters()["faults"]["wrong protocol"]:
             break
         if time.monotonic() > deadline:
             raise PortError(
@@ -187,7 +235,7 @@ def _connect(servo: Servo, port: str, stopped: Sequence[int]) -> None:
                 "device that speaks Palpate's link",
             )
         time.sleep(LOOK_EVERY_SECONDS)
-    if servo.counters()["faults"]["wrong protocol"]:
+    if counters()["faults"]["wrong protocol"]:
         raise PortError(
             port,
             "speaks another version of the link than this Palpate; update the older of the two",
@@ -196,7 +244,7 @@ def _connect(servo: Servo, port: str, stopped: Sequence[int]) -> None:
 
 @dataclass
 class _Felt:
-    """Extremes of all ticks so far, SI units."""
+    """Extremes of the first finger in all ticks so far, SI units."""
 
     samples: int = 0
     touching: int = 0
@@ -205,6 +253,7 @@ class _Felt:
     depth: float = 0.0
 
     def take(self, samples: NDArray[np.void]) -> None:
+        samples = samples[samples["finger"] == 0]
         if not len(samples):
             return
         contact, output, depth = (
@@ -230,6 +279,15 @@ def _for_people(report: dict[str, Any]) -> str:
     for stage, times in report["stages_us"].items():
         rows.append(f"{stage:10}" + "".join(f"{times[column]:9.2f}" for column in columns))
     return "\n".join([lines, *rows])
+
+
+def _of_others(last: Snapshot, counters: Sequence[FingerCounters]) -> dict[str, Any]:
+    """State, faults and link of the fingers beside the first; nothing if there are none."""
+    others = [
+        {"last_state": finger.state, "last_fault": finger.fault, **counted}
+        for finger, counted in zip(last.fingers[1:], counters[1:], strict=False)
+    ]
+    return {"other_fingers": others} if others else {}
 
 
 def _touch(servo: Servo, port: str, seconds: float, stopped: Sequence[int]) -> dict[str, Any]:
@@ -262,6 +320,7 @@ def _touch(servo: Servo, port: str, seconds: float, stopped: Sequence[int]) -> d
         "last_state": last.state,
         "last_fault": last.fault,
         "touching_ticks": felt.touching,
+        **_of_others(last, counters["fingers"]),
         "peak_contact_force_n": felt.contact_force,
         "peak_output_force_n": felt.output_force,
         "deepest_mm": felt.depth * 1e3,

@@ -23,6 +23,7 @@ from palpate_servo import Tool as NativeTool
 if TYPE_CHECKING:
     # Types only: the module itself does not have them.
     from palpate_servo import ContactMode
+    from palpate_servo import FingerCounters as FingerCounters  # noqa: PLC0414
     from palpate_servo import LinkCounters as LinkCounters  # noqa: PLC0414
     from palpate_servo import ServoCounters as ServoCounters  # noqa: PLC0414
 
