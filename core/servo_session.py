@@ -32,9 +32,8 @@ from .compression.compressed_compliance import CompressedCompliance
 from .dense_compliance import DenseCompliance
 from .errors import PalpateError
 from .mapped_compliance import MappedCompliance
-from .near_field import near_correction
 from .soft_body import SoftBody
-from .tool_contact import surface_for
+from .tool_contact import correction_for, surface_for
 from .tools import Tool
 
 __all__ = [
@@ -206,8 +205,7 @@ def native_tool(body: SoftBody, surface: Body, tool: Tool) -> ToolContact:
     PalpateError
         A body without its whole compliance, or a tool too small for the body.
     """
-    points = surface_for(body, tool)
-    near = near_correction(body, points, tool.size)
+    points, near = surface_for(body, tool), correction_for(body, tool)
     try:
         return ToolContact(
             ToolSurface(
@@ -217,7 +215,6 @@ def native_tool(body: SoftBody, surface: Body, tool: Tool) -> ToolContact:
                 points.triangles,
                 points.alphas,
                 points.areas,
-                np.full(len(points), np.pi),
                 (near.starts, near.others, near.blocks),
             ),
             NativeTool(tool.core, tool.radius),

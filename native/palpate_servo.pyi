@@ -490,6 +490,14 @@ class Snapshot:
     def nodal_forces(self) -> NDArray[np.float64]:
         """(12), (13), N, (3, 3)."""
 
+def tick_costs(
+    body: Body, paths: ArrayLike, *, young_modulus: float, mode: ContactMode = "consistent"
+) -> NDArray[np.float64]:
+    """CPU time (ticks,), s, of the servo's whole ticks with fingers on paths (fingers, ticks, 3).
+
+    For benchmarks. ValueError for other shapes, or several fingers on a body that is not whole.
+    """
+
 @final
 class Tool:
     """A rigid tool: the convex hull of core points, grown by a ball."""
@@ -525,12 +533,10 @@ class ToolSurface:
         triangles: ArrayLike,
         alphas: ArrayLike,
         areas: ArrayLike,
-        limits: ArrayLike,
         correction: tuple[ArrayLike, ArrayLike, ArrayLike] | None = None,
     ) -> None:
         """Take points at rest (P, 3) in m, unit outward normals (P, 3), the triangle of each (P,),
-        area coordinates in it (P, 3), shares of the surface (P,) in m^2, largest angles (P,) of
-        a push with the inward normal, rad.
+        area coordinates in it (P, 3), shares of the surface (P,) in m^2.
 
         correction: rows of 3 x 3 blocks to add to the compliance at unit modulus between pairs of
         points, (starts (P + 1,), others (n,), blocks (n, 3, 3)).
@@ -563,6 +569,13 @@ class ToolContact:
 
         outside: nodes (k,) and the forces (k, 3) of other fingers on them, N.
         ValueError for a pose that is none, or where the forces came out as no numbers.
+        """
+
+    def time_path(
+        self, positions: ArrayLike, rotations: ArrayLike, young_modulus: float
+    ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+        """Follow poses (t, 3), (t, 3, 3), one a tick: CPU time of each tick (t,), s, and how many
+        points were pressed (t,). For benchmarks.
         """
 
     @property
@@ -929,20 +942,6 @@ def coupled_forces(
 ) -> NDArray[np.float64]:
     """Forces (n,), N, that the servo's coupling gives for displacements (n,), m into the body, of
     successive ticks on a body of one stiffness (N/m); negative is out of the body.
-    """
-
-def solve_contacts(
-    compliance: ArrayLike,
-    displacements: ArrayLike,
-    pushes: ArrayLike,
-    start: ArrayLike | None = None,
-) -> NDArray[np.float64]:
-    """Forces (m, 3) on the body at E = 1 of fingers that may only push, as in a tick.
-
-    Takes C (m, m, 3, 3), displacements asked for and pushes (m, 3), forces of the tick before.
-
-    A tick does ten rounds at most where forces lean on their cones. ValueError for more than
-    MAX_FINGERS, other shapes, or a C that is not positive definite.
     """
 
 class ContactOutcome(TypedDict):

@@ -17,6 +17,7 @@ pub mod compliance;
 pub mod cones;
 pub mod contact;
 pub mod coupling;
+pub mod cpu_time;
 pub mod device;
 pub mod durations;
 mod early;

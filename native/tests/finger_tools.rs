@@ -4,7 +4,6 @@ mod bodies;
 mod counting;
 mod scripted;
 
-use std::f64::consts::PI;
 use std::sync::Arc;
 
 use counting::counted;
@@ -17,7 +16,6 @@ use palpate_servo::tip::{Tip, exchange_tips};
 use palpate_servo::tool::contact::ToolContact;
 use palpate_servo::tool::points::{Correction, Point, ToolSurface};
 use palpate_servo::tool::shape::Tool;
-use palpate_servo::tool::tilt::Limit;
 use scripted::{DT, OPTIONS, Table, probe};
 
 const RADIUS: f64 = 0.012;
@@ -34,7 +32,6 @@ fn surface(body: &Arc<Body>) -> Arc<ToolSurface> {
             nodes,
             alpha: nodes.map(|n| f64::from(u8::from(n as usize == node))),
             area: 1.5e-4,
-            limit: Limit::new(PI),
         }
     };
     let points = (0..body.nodes.len()).map(point).collect();

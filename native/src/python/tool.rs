@@ -1,5 +1,6 @@
 //! `Tool`, `ToolSurface`, and `ToolContact`: a tool on a body alone, step by step.
 
+use std::hint::black_box;
 use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
@@ -11,10 +12,10 @@ use pyo3::prelude::*;
 
 use super::body::Body;
 use super::vectors::{Matrix, Rows, Triple, Vector, array, finite, matrix, positive, square};
+use crate::cpu_time::thread_seconds;
 use crate::tool::contact::{self, MOST_NODES};
 use crate::tool::points::{self, Correction, Point};
 use crate::tool::shape::{self, Pose};
-use crate::tool::tilt::Limit;
 
 type Vectors<'py> = Bound<'py, PyArray2<f64>>;
 /// Starts of rows, other points, blocks.
@@ -96,7 +97,7 @@ pub struct ToolSurface {
 impl ToolSurface {
     #[new]
     #[allow(clippy::too_many_arguments)] // Keywords in Python.
-    #[pyo3(signature = (body, positions, normals, triangles, alphas, areas, limits, correction=None))]
+    #[pyo3(signature = (body, positions, normals, triangles, alphas, areas, correction=None))]
     fn new(
         body: &Body,
         positions: PyArrayLike2<'_, f64, AllowTypeChange>,
@@ -104,7 +105,6 @@ impl ToolSurface {
         triangles: PyArrayLike1<'_, i64, AllowTypeChange>,
         alphas: PyArrayLike2<'_, f64, AllowTypeChange>,
         areas: PyArrayLike1<'_, f64, AllowTypeChange>,
-        limits: PyArrayLike1<'_, f64, AllowTypeChange>,
         correction: Option<Blocks<'_>>,
     ) -> PyResult<Self> {
         let (positions, normals, alphas) = (
@@ -113,18 +113,10 @@ impl ToolSurface {
             vectors("alphas", &alphas)?,
         );
         let (triangles, areas) = (triangles.as_array(), areas.as_array());
-        let limits = limits.as_array();
         let count = positions.len();
-        if [
-            normals.len(),
-            alphas.len(),
-            triangles.len(),
-            areas.len(),
-            limits.len(),
-        ] != [count; 5]
-        {
+        if [normals.len(), alphas.len(), triangles.len(), areas.len()] != [count; 4] {
             return Err(PyValueError::new_err(format!(
-                "normals, triangles, alphas, areas and limits must have a row for each of the {count} positions"
+                "normals, triangles, alphas and areas must have a row for each of the {count} positions"
             )));
         }
         let points = (0..count)
@@ -144,7 +136,6 @@ impl ToolSurface {
                     nodes,
                     alpha: alphas[i].to_array(),
                     area: areas[i],
-                    limit: Limit::new(limits[i]),
                 })
             })
             .collect::<PyResult<Vec<Point>>>()?;
@@ -232,6 +223,38 @@ impl ToolContact {
         (self.inner.follow(&goal, young_modulus, &outside))
             .map(|_| ())
             .map_err(|_| PyValueError::new_err("the contact came out as no number"))
+    }
+
+    fn time_path<'py>(
+        &mut self,
+        py: Python<'py>,
+        positions: PyArrayLike2<'_, f64, AllowTypeChange>,
+        rotations: PyArrayLike3<'_, f64, AllowTypeChange>,
+        young_modulus: f64,
+    ) -> PyResult<(Vector<'py>, Numbers<'py>)> {
+        self.young_modulus = positive("young_modulus", young_modulus)?;
+        let positions = vectors("positions", &positions)?;
+        let rotations = matrices("rotations", &rotations)?;
+        if positions.len() != rotations.len() {
+            return Err(PyValueError::new_err(
+                "rotations must be as many as positions",
+            ));
+        }
+        let mut costs = Vec::with_capacity(positions.len());
+        let mut pressed = Vec::with_capacity(positions.len());
+        let mut before = thread_seconds();
+        for (position, rotation) in positions.into_iter().zip(rotations) {
+            let goal = Pose { position, rotation };
+            let felt = self.inner.follow(black_box(&goal), young_modulus, &[]);
+            pressed.push(black_box(felt).map_or(0, |felt| felt.pressed) as i64);
+            let after = thread_seconds();
+            costs.push(after - before);
+            before = after;
+        }
+        Ok((
+            PyArray1::from_vec(py, costs),
+            PyArray1::from_vec(py, pressed),
+        ))
     }
 
     #[getter]

@@ -1,6 +1,7 @@
 //! A = L L^T of a small symmetric positive definite matrix, in memory that is already there.
 
-use super::MOST_POINTS;
+use super::wide::widely;
+use super::{MOST_POINTS, room};
 
 /// Sums that run beside each other, so that no addition waits for the one before.
 const LANES: usize = 8;
@@ -9,7 +10,7 @@ const LANES: usize = 8;
 const LEAST_PIVOT: f64 = 1e-13;
 
 /// The sum of products, in a fixed order of additions.
-#[inline]
+#[inline(always)]
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     let n = a.len().min(b.len());
     let (a, b) = (&a[..n], &b[..n]);
@@ -41,7 +42,7 @@ impl Default for Factor {
     fn default() -> Self {
         Self {
             size: 0,
-            rows: vec![0.0; MOST_POINTS * MOST_POINTS],
+            rows: room(MOST_POINTS * MOST_POINTS),
             inverse_pivots: vec![0.0; MOST_POINTS],
         }
     }
@@ -57,23 +58,7 @@ impl Factor {
     /// Decomposes the matrix in the rows; false where it is not positive definite to rounding.
     pub fn decompose(&mut self, size: usize) -> bool {
         self.size = size;
-        for i in 0..size {
-            let (above, here) = self.rows.split_at_mut(i * MOST_POINTS);
-            let here = &mut here[..=i];
-            for j in 0..i {
-                let other = &above[j * MOST_POINTS..][..j];
-                here[j] = (here[j] - dot(&here[..j], other)) * self.inverse_pivots[j];
-            }
-            let pivot = here[i] - dot(&here[..i], &here[..i]);
-            // Not a number is not greater.
-            let is_positive = pivot > LEAST_PIVOT * here[i] && pivot.is_finite();
-            if !is_positive {
-                return false;
-            }
-            here[i] = pivot.sqrt();
-            self.inverse_pivots[i] = 1.0 / here[i];
-        }
-        true
+        widely!(decompose(&mut self.rows, &mut self.inverse_pivots, size))
     }
 
     /// x with L x = b, in place of b.
@@ -96,4 +81,26 @@ impl Factor {
             }
         }
     }
+}
+
+/// Column after column: the entries of one do not wait for each other.
+#[inline(always)]
+fn decompose(rows: &mut [f64], inverse_pivots: &mut [f64], size: usize) -> bool {
+    for j in 0..size {
+        let (above, below) = rows.split_at_mut((j + 1) * MOST_POINTS);
+        let here = &mut above[j * MOST_POINTS..][..=j];
+        let (head, own) = here.split_at_mut(j);
+        let pivot = own[0] - dot(head, head);
+        // Not a number is not greater.
+        let is_positive = pivot > LEAST_PIVOT * own[0] && pivot.is_finite();
+        if !is_positive {
+            return false;
+        }
+        own[0] = pivot.sqrt();
+        inverse_pivots[j] = 1.0 / own[0];
+        for other in below.chunks_exact_mut(MOST_POINTS).take(size - j - 1) {
+            other[j] = (other[j] - dot(&other[..j], head)) * inverse_pivots[j];
+        }
+    }
+    true
 }

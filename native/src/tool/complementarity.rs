@@ -6,8 +6,9 @@
 //! step, so nothing cycles, and where the bound on the work ends it early the forces are still a
 //! push, nearer the solution than at the start. Readable reference: `core/complementarity.py`.
 
-use super::MOST_POINTS;
 use super::cholesky::{Factor, dot};
+use super::wide::widely;
+use super::{MOST_POINTS, room};
 
 /// Rounds of exact solve and sweep. From the tick before one or two are enough.
 const MOST_ROUNDS: usize = 12;
@@ -58,7 +59,7 @@ impl Default for Complementarity {
     fn default() -> Self {
         Self {
             count: 0,
-            matrix: vec![0.0; MOST_POINTS * MOST_POINTS],
+            matrix: room(MOST_POINTS * MOST_POINTS),
             gaps: vec![0.0; MOST_POINTS],
             forces: vec![0.0; MOST_POINTS],
             opened: vec![0.0; MOST_POINTS],
@@ -149,9 +150,9 @@ impl Complementarity {
 
     /// A f + g.
     fn open(&mut self) {
-        for i in 0..self.count {
-            self.opened[i] = dot(self.row(i), &self.forces[..self.count]) + self.gaps[i];
-        }
+        let (matrix, gaps, forces) = (&self.matrix, &self.gaps, &self.forces[..self.count]);
+        let opened = &mut self.opened[..self.count];
+        widely!(open(matrix, gaps, forces, opened));
     }
 
     /// 1/2 f (A f + g) + 1/2 f g, once opened.
@@ -303,5 +304,14 @@ impl Complementarity {
             self.is_shifted = true;
         }
         false
+    }
+}
+
+/// A f + g.
+#[inline(always)]
+fn open(matrix: &[f64], gaps: &[f64], forces: &[f64], opened: &mut [f64]) {
+    let rows = matrix.chunks_exact(MOST_POINTS);
+    for ((opened, gap), row) in opened.iter_mut().zip(gaps).zip(rows) {
+        *opened = dot(&row[..forces.len()], forces) + gap;
     }
 }

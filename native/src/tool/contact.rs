@@ -14,19 +14,17 @@ use super::complementarity::Complementarity;
 use super::patch::{Patch, Slot};
 use super::points::ToolSurface;
 use super::shape::{Pose, Tool};
+use super::tilt::Hold;
 use crate::closest::closest_point;
 
 /// Linearisations in one tick.
 const MOST_LINEARISATIONS: usize = 4;
 /// Multiplications that a tick takes, about, before it leaves the rest to the next.
-const MOST_WORK: usize = 700_000;
+const MOST_WORK: usize = 350_000;
 /// Points farther from the tool than this share of the margin are only watched.
 const WATCHED: f64 = 0.3;
 /// Displacements that change by less than this share of the tool's reach have been found.
-const CONVERGED: f64 = 1e-6;
-/// A point whose outward normal looks along the tool's (cosine) is seen from within the body: it
-/// belongs to the far side of a thin part, and does not touch.
-const FAR_SIDE: f64 = 0.7;
+const CONVERGED: f64 = 1e-5;
 /// Points within so many spacings of the tool are looked at.
 const MARGIN: f64 = 1.0;
 /// Points beyond this many margins, at rest and now, are forgotten.
@@ -101,7 +99,7 @@ impl ToolContact {
             felt: Felt::default(),
             nodes: Vec::with_capacity(MOST_NODES),
             place_of: vec![NOWHERE; nodes],
-            moved_nodes: vec![(0, DVec3::ZERO); nodes],
+            moved_nodes: vec![(0, DVec3::NAN); nodes],
             tick: 0,
         }
     }
@@ -370,16 +368,19 @@ impl ToolContact {
     fn linearise(&mut self, pose: &Pose) {
         self.chosen.clear();
         let watched = WATCHED * MARGIN * self.surface.spacing();
-        for number in 0..self.patch.slots().len() {
-            let point = self.patch.point(&self.surface, number);
-            let slot = &mut self.patch.slots_mut()[number];
-            let place = pose.to_tool(point.position + slot.moved);
-            let (distance, normal) = self.tool.distance(place);
+        let points = self.surface.points();
+        let pushes = self.patch.slots().iter().map(|slot| {
+            let normal = points[slot.point as usize].normal;
+            (slot.force.length(), normal)
+        });
+        let hold = Hold::of(pushes).map(|hold| hold.seen_from(&pose.rotation));
+        for (number, slot) in self.patch.slots_mut().iter_mut().enumerate() {
+            let rest = points[slot.point as usize].position;
+            let place = pose.to_tool(rest + slot.moved);
+            let free = self.tool.distance(place);
+            let (distance, normal) = hold.map_or(free, |hold| hold.hold(free, place, &self.tool));
             let normal = pose.rotation * normal;
-            let is_facing = normal.dot(point.normal) < FAR_SIDE;
-            let held = (distance, normal);
-            let (distance, normal) = point.limit.hold(held, -point.normal, self.tool.radius());
-            if is_facing && (distance < watched || slot.force != DVec3::ZERO) {
+            if distance < watched || slot.force != DVec3::ZERO {
                 let place = self.chosen.len();
                 self.problem.forces[place] = slot.force.length();
                 self.problem.gaps[place] = distance - normal.dot(slot.moved - slot.offset);
@@ -388,11 +389,12 @@ impl ToolContact {
             (slot.distance, slot.normal) = (distance, normal);
         }
         self.problem.begin(self.chosen.len());
-        let slots = self.patch.slots();
-        for (i, &p) in self.chosen.iter().enumerate() {
-            let row = self.patch.row(p);
-            for (j, &q) in self.chosen[..=i].iter().enumerate() {
-                let along = slots[p].normal.dot(row[q] * slots[q].normal);
+        for (j, &loaded) in self.chosen.iter().enumerate() {
+            let normal = self.patch.slots()[loaded].normal;
+            let [x, y, z] = *self.patch.moved_by(loaded, normal);
+            for (i, &seen) in self.chosen.iter().enumerate().skip(j) {
+                let moved = DVec3::new(x[seen], y[seen], z[seen]);
+                let along = self.patch.slots()[seen].normal.dot(moved);
                 self.problem.set(i, j, along);
             }
         }

@@ -14,6 +14,13 @@ pub mod points;
 pub mod shape;
 pub mod tilt;
 mod tree;
+mod wide;
 
 /// Contact points that can be under a tool at once.
 pub const MOST_POINTS: usize = 160;
+
+/// Room for numbers that are written before they are read. Not zeros: the system would give memory
+/// for those page by page, in the tick.
+fn room(count: usize) -> Vec<f64> {
+    vec![f64::NAN; count]
+}

@@ -2,10 +2,14 @@
 
 use glam::{DMat3, DVec3};
 
-use super::MOST_POINTS;
 use super::blocks::Blocks;
 use super::points::{Point, ToolSurface};
+use super::wide::widely;
+use super::{MOST_POINTS, room};
 
+/// Numbers of a column: how all slots give way to a force on one, an entry of the blocks after the
+/// other, row by row, each for all slots.
+const COLUMN: usize = 9 * MOST_POINTS;
 /// The slot of a point that has none.
 const NONE: u16 = u16::MAX;
 
@@ -33,8 +37,10 @@ pub struct Slot {
 pub struct Patch {
     slots: Vec<Slot>,
     slot_of: Vec<u16>,
-    /// C_ij at unit modulus, [`MOST_POINTS`] blocks a row.
-    compliance: Vec<DMat3>,
+    /// C_ij at unit modulus, a column for each loaded slot j.
+    compliance: Vec<f64>,
+    /// Displacements, an axis after the other.
+    moved: [[f64; MOST_POINTS]; 3],
     blocks: Blocks,
 }
 
@@ -43,7 +49,8 @@ impl Patch {
         Self {
             slots: Vec::with_capacity(MOST_POINTS),
             slot_of: vec![NONE; points],
-            compliance: vec![DMat3::ZERO; MOST_POINTS * MOST_POINTS],
+            compliance: room(COLUMN * MOST_POINTS),
+            moved: [[0.0; MOST_POINTS]; 3],
             blocks: Blocks::new(),
         }
     }
@@ -77,13 +84,24 @@ impl Patch {
 
     /// How a slot gives way to a force on another, m/N at unit modulus.
     #[inline]
-    pub(super) fn compliance(&self, i: usize, j: usize) -> &DMat3 {
-        &self.compliance[i * MOST_POINTS + j]
+    fn compliance(&self, i: usize, j: usize) -> DMat3 {
+        let entry =
+            |r: usize, c: usize| self.compliance[j * COLUMN + (3 * r + c) * MOST_POINTS + i];
+        DMat3::from_cols_array_2d(&[0, 1, 2].map(|c| [0, 1, 2].map(|r| entry(r, c))))
     }
 
+    /// How far all slots move under a force on one of them, m at unit modulus, an axis after the
+    /// other.
     #[inline]
-    pub(super) fn row(&self, i: usize) -> &[DMat3] {
-        &self.compliance[i * MOST_POINTS..][..self.slots.len()]
+    pub(super) fn moved_by(&mut self, slot: usize, force: DVec3) -> &[[f64; MOST_POINTS]; 3] {
+        let count = self.slots.len();
+        for axis in &mut self.moved {
+            axis[..count].fill(0.0);
+        }
+        let column = &self.compliance[slot * COLUMN..][..COLUMN];
+        let moved = &mut self.moved;
+        widely!(add_moved(column, force, moved, count));
+        &self.moved
     }
 
     #[inline]
@@ -108,7 +126,7 @@ impl Patch {
         for (other, block) in surface.corrections(point) {
             let slot = self.slot_of[other as usize];
             if slot != NONE {
-                let block = *self.compliance(new, slot as usize) + *block;
+                let block = self.compliance(new, slot as usize) + *block;
                 self.put(new, slot as usize, block);
             }
         }
@@ -116,8 +134,13 @@ impl Patch {
 
     #[inline]
     fn put(&mut self, i: usize, j: usize, block: DMat3) {
-        self.compliance[j * MOST_POINTS + i] = block.transpose();
-        self.compliance[i * MOST_POINTS + j] = block;
+        for c in 0..3 {
+            for r in 0..3 {
+                let entry = block.col(c)[r];
+                self.compliance[j * COLUMN + (3 * r + c) * MOST_POINTS + i] = entry;
+                self.compliance[i * COLUMN + (3 * c + r) * MOST_POINTS + j] = entry;
+            }
+        }
     }
 
     /// Displacement of a point per force on another, as the finite elements have it.
@@ -139,9 +162,9 @@ impl Patch {
         let last = self.slots.len() - 1;
         self.slot_of[self.slots[slot].point as usize] = NONE;
         if slot != last {
-            let own = *self.compliance(last, last);
+            let own = self.compliance(last, last);
             for other in 0..last {
-                let block = *self.compliance(last, other);
+                let block = self.compliance(last, other);
                 self.put(slot, other, block);
             }
             self.put(slot, slot, own);
@@ -161,20 +184,26 @@ impl Patch {
     /// Moves every slot as its forces and the offset ask for; the largest change, m.
     pub(super) fn displace(&mut self) -> f64 {
         let count = self.slots.len();
-        let mut change = 0.0_f64;
-        for i in 0..count {
-            let mut moved = self.slots[i].offset;
-            for (slot, block) in self.slots.iter().zip(&self.compliance[i * MOST_POINTS..]) {
-                if slot.force != DVec3::ZERO {
-                    moved += *block * slot.force;
-                }
+        for (i, slot) in self.slots.iter().enumerate() {
+            for (axis, offset) in self.moved.iter_mut().zip(slot.offset.to_array()) {
+                axis[i] = offset;
             }
-            let slot = &mut self.slots[i];
+        }
+        for (slot, column) in self.slots.iter().zip(self.compliance.chunks_exact(COLUMN)) {
+            if slot.force != DVec3::ZERO {
+                let (force, moved) = (slot.force, &mut self.moved);
+                widely!(add_moved(column, force, moved, count));
+            }
+        }
+        let mut change = 0.0_f64;
+        for (i, slot) in self.slots.iter_mut().enumerate() {
+            let moved = DVec3::from_array([0, 1, 2].map(|axis| self.moved[axis][i]));
+            let step = (moved - slot.moved).abs().max_element();
             // What is no number stays one.
             change = if change.is_nan() {
                 change
             } else {
-                (moved - slot.moved).abs().max_element().max(change)
+                change.max(step)
             };
             slot.moved = moved;
         }
@@ -185,5 +214,18 @@ impl Patch {
     #[inline]
     pub(super) fn point<'a>(&self, surface: &'a ToolSurface, slot: usize) -> &'a Point {
         &surface.points()[self.slots[slot].point as usize]
+    }
+}
+
+/// Adds how far slots move under a force on one of them.
+#[inline(always)]
+fn add_moved(column: &[f64], force: DVec3, moved: &mut [[f64; MOST_POINTS]; 3], count: usize) {
+    for (axis, rows) in moved.iter_mut().zip(column.chunks_exact(3 * MOST_POINTS)) {
+        let (x, rest) = rows.split_at(MOST_POINTS);
+        let (y, z) = rest.split_at(MOST_POINTS);
+        let entries = x.iter().zip(y).zip(z);
+        for (sum, ((x, y), z)) in axis[..count].iter_mut().zip(entries) {
+            *sum += x * force.x + y * force.y + z * force.z;
+        }
     }
 }

@@ -6,7 +6,6 @@ use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
 
-use super::tilt::Limit;
 use super::tree::PointTree;
 use crate::surface::{Body, BodyError};
 
@@ -28,8 +27,6 @@ pub struct Point {
     pub alpha: [f64; 3],
     /// Its share of the surface, m^2.
     pub area: f64,
-    /// Largest angle between a push and the inward normal; see [`tilt`](super::tilt).
-    pub limit: Limit,
 }
 
 /// Blocks 3 x 3 between pairs of contact points, row after row: what a mesh is too coarse for.
@@ -173,8 +170,7 @@ fn check(body: &Body, points: &[Point], correction: &Correction) -> Result<(), B
         }
         let numbers = point.position.is_finite()
             && point.normal.is_finite()
-            && point.alpha.iter().all(|a| a.is_finite())
-            && point.limit.is_finite();
+            && point.alpha.iter().all(|a| a.is_finite());
         if !(numbers && point.area > 0.0 && point.area.is_finite()) {
             return refuse(format!(
                 "contact point {i} has numbers that are not finite or no area"

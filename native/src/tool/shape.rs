@@ -41,6 +41,7 @@ impl Pose {
 /// The convex hull of core points, grown by a radius; m, in the tool's own frame.
 #[derive(Debug, Clone)]
 pub struct Tool {
+    core: Vec<DVec3>,
     hull: Hull,
     radius: f64,
     reach: f64,
@@ -78,6 +79,7 @@ impl Tool {
         let middle = core.iter().sum::<DVec3>() / core.len() as f64;
         let inner_radius = radius + hull.depth(middle);
         Ok(Self {
+            core: core.to_vec(),
             radius,
             reach: core.iter().map(|p| p.length()).fold(0.0, f64::max) + radius,
             low: core.iter().fold(DVec3::INFINITY, |low, &p| low.min(p)),
@@ -88,6 +90,12 @@ impl Tool {
             stride: STRIDE_PER_INNER_RADIUS * inner_radius,
             hull,
         })
+    }
+
+    /// The points that it was made of, m.
+    #[inline]
+    pub fn core(&self) -> &[DVec3] {
+        &self.core
     }
 
     /// Radius of the ball, m.

@@ -1,55 +1,184 @@
 //! How far to the side a tool may push a point of the surface.
 //!
 //! Points round a sphere pressed about as deep as its radius would slide off round its equator, as
-//! those of no real body do. So a push is held near the inward normal at rest: beyond the limit a
-//! sphere acts as if it widened into the cone that touches it there. Readable reference: `core/tilt.py`.
+//! those of no real body do. So pushes are held near the direction that the pressed surface faces. A
+//! signed distance is the greatest separation n x - h(n) among all directions n, with h the farthest
+//! reach of the tool along n; here it is the greatest among the directions within the limit: the
+//! distance to the tool grown by a cone. Readable reference: `core/tilt.py`.
 
-use glam::DVec3;
+use std::f64::consts::PI;
 
-/// Shorter than this, what is aside of the inward normal has no direction.
-const NO_SIDE: f64 = f64::EPSILON;
+use glam::{DMat3, DVec2, DVec3};
 
-/// Largest angle between a push and the inward normal.
+use super::shape::{MOST_CORE_POINTS, Tool};
+
+/// Directions on the circle at the limit that are looked at first.
+const TURNS: usize = 24;
+/// Core points that can be nearest at once on that circle, of those nearest where it was looked at.
+const MOST_AT_ONCE: usize = 8;
+
+/// Largest angle between a push and the direction against which an even surface is pressed, rad.
+const MOST_TILT: f64 = 50.0 / 180.0 * PI;
+/// By how much more where the pressed points face different ways: at most this, were they all
+/// opposed, rad.
+const MORE_WHERE_UNEVEN: f64 = 100.0 / 180.0 * PI;
+
+/// The directions that pushes are held within.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Limit {
+pub struct Hold {
+    inward: DVec3,
     cosine: f64,
     sine: f64,
 }
 
-impl Limit {
-    /// Of an angle from 0 to pi, rad.
-    pub fn new(angle: f64) -> Self {
-        Self {
-            cosine: angle.cos(),
-            sine: angle.sin(),
-        }
-    }
+/// How far a point is from a core point along each direction of the circle: level + slope . (c, s).
+#[derive(Debug, Clone, Copy, Default)]
+struct Sinusoid {
+    level: f64,
+    slope: DVec2,
+}
 
-    /// Whether it is one at all.
-    pub fn is_finite(&self) -> bool {
-        self.cosine.is_finite() && self.sine >= 0.0
-    }
-
-    /// Distance and normal of a tool of so large a radius, held within the limit of `inward`.
+impl Sinusoid {
     #[inline]
-    pub fn hold(
-        &self,
-        (distance, normal): (f64, DVec3),
-        inward: DVec3,
-        radius: f64,
-    ) -> (f64, DVec3) {
-        let along = normal.dot(inward).clamp(-1.0, 1.0);
-        if along >= self.cosine {
-            return (distance, normal);
+    fn at(&self, turn: DVec2) -> f64 {
+        self.level + self.slope.dot(turn)
+    }
+}
+
+impl Hold {
+    /// From pushes and the outward normals of the body where they push; of none, nowhere.
+    pub fn of(pushes: impl Iterator<Item = (f64, DVec3)>) -> Option<Self> {
+        let (mut facing, mut most) = (DVec3::ZERO, 0.0);
+        for (push, normal) in pushes {
+            facing += normal * push;
+            most += push;
         }
-        let aside = normal - inward * along;
-        let length = aside.length();
-        if length <= NO_SIDE {
-            return (distance, normal);
+        let length = facing.length();
+        (length > 0.0).then(|| {
+            let limit = MOST_TILT + MORE_WHERE_UNEVEN * (1.0 - length / most);
+            Self {
+                inward: -facing / length,
+                cosine: limit.cos(),
+                sine: limit.sin(),
+            }
+        })
+    }
+
+    /// The same in the frame that a rotation takes directions of to these.
+    #[must_use]
+    pub fn seen_from(self, rotation: &DMat3) -> Self {
+        Self {
+            inward: rotation.transpose() * self.inward,
+            ..self
         }
-        // The cosine of how much the tilt is over the limit.
-        let over = along * self.cosine + length * self.sine;
-        let held = inward * self.cosine + aside * (self.sine / length);
-        ((distance + radius) * over - radius, held)
+    }
+
+    /// Distance and normal of a tool at a place, held; all of it in the tool's frame. `free` are those
+    /// of the tool as it is.
+    #[inline]
+    pub fn hold(&self, free: (f64, DVec3), place: DVec3, tool: &Tool) -> (f64, DVec3) {
+        let inward = self.inward;
+        if free.1.dot(inward) >= self.cosine {
+            return free;
+        }
+        let first = inward.any_orthonormal_vector();
+        let second = inward.cross(first);
+        let sinusoid = |core: DVec3| {
+            let offset = place - core;
+            Sinusoid {
+                level: self.cosine * offset.dot(inward),
+                slope: DVec2::new(offset.dot(first), offset.dot(second)) * self.sine,
+            }
+        };
+        let turn = match tool.core() {
+            [core] => peak(&sinusoid(*core)),
+            core => {
+                let mut sinusoids = [Sinusoid::default(); MOST_CORE_POINTS];
+                for (sinusoid_of, &core) in sinusoids.iter_mut().zip(core) {
+                    *sinusoid_of = sinusoid(core);
+                }
+                highest(&sinusoids[..core.len()])
+            }
+        };
+        let aside = first * turn.x + second * turn.y;
+        let direction = inward * self.cosine + aside * self.sine;
+        let nearest = |least: f64, core: &DVec3| least.min((place - *core).dot(direction));
+        let distance = tool.core().iter().fold(f64::INFINITY, nearest);
+        (distance - tool.radius(), direction)
+    }
+}
+
+/// Where a sinusoid is greatest.
+#[inline]
+fn peak(sinusoid: &Sinusoid) -> DVec2 {
+    sinusoid.slope.try_normalize().unwrap_or(DVec2::X)
+}
+
+#[inline]
+fn least(sinusoids: &[Sinusoid], turn: DVec2) -> f64 {
+    let at = |least: f64, sinusoid: &Sinusoid| least.min(sinusoid.at(turn));
+    sinusoids.iter().fold(f64::INFINITY, at)
+}
+
+/// Where the least of some sinusoids is greatest: at the peak of one, or where two cross.
+fn highest(sinusoids: &[Sinusoid]) -> DVec2 {
+    let mut best = (f64::NEG_INFINITY, DVec2::X);
+    let mut offer = |turn: DVec2| {
+        let value = least(sinusoids, turn);
+        if value > best.0 {
+            best = (value, turn);
+        }
+    };
+    let mut few = [0; MOST_AT_ONCE];
+    let few = if sinusoids.len() <= MOST_AT_ONCE {
+        (few.iter_mut().enumerate()).for_each(|(k, place)| *place = k);
+        &few[..sinusoids.len()]
+    } else {
+        nearest_few(sinusoids, &mut few);
+        &few
+    };
+    for (place, &i) in few.iter().enumerate() {
+        offer(peak(&sinusoids[i]));
+        for &j in &few[..place] {
+            let between = sinusoids[i].slope - sinusoids[j].slope;
+            let length = between.length();
+            if length > 0.0 {
+                let level = (sinusoids[j].level - sinusoids[i].level) / length;
+                let level = level.clamp(-1.0, 1.0);
+                let (along, apart) = (between / length, (1.0 - level * level).sqrt());
+                offer(along * level + along.perp() * apart);
+                offer(along * level - along.perp() * apart);
+            }
+        }
+    }
+    best.1
+}
+
+/// The core points that are nearest where the least of all is greatest, of some directions.
+fn nearest_few(sinusoids: &[Sinusoid], few: &mut [usize; MOST_AT_ONCE]) {
+    let mut best = (f64::NEG_INFINITY, DVec2::X);
+    // The first turn of the circle, over and over: no sine is asked for in the tick.
+    let (sine, cosine) = (std::f64::consts::TAU / TURNS as f64).sin_cos();
+    let (step, mut turn) = (DVec2::new(cosine, sine), DVec2::X);
+    for _ in 0..TURNS {
+        let value = least(sinusoids, turn);
+        if value > best.0 {
+            best = (value, turn);
+        }
+        turn = step.rotate(turn);
+    }
+    let mut count = 0;
+    for (k, sinusoid) in sinusoids.iter().enumerate() {
+        let value = sinusoid.at(best.1);
+        let before = |other: &usize| sinusoids[*other].at(best.1) <= value;
+        let place = few[..count]
+            .iter()
+            .take_while(|other| before(other))
+            .count();
+        if place < MOST_AT_ONCE {
+            count = (count + 1).min(MOST_AT_ONCE);
+            few.copy_within(place..count - 1, place + 1);
+            few[place] = k;
+        }
     }
 }

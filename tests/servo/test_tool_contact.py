@@ -1,0 +1,167 @@
+"""Tools in native code against the numpy reference of core, on real bodies."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from palpate_servo import Tool as NativeTool
+from palpate_servo import ToolContact, ToolSurface, tick_costs
+from scipy.spatial.transform import Rotation
+
+from palpate.core.bake import BakeSettings, bake
+from palpate.core.errors import PalpateError
+from palpate.core.paper_cube import paper_cube
+from palpate.core.pins import PinNodes
+from palpate.core.servo_session import native_body, native_tool
+from palpate.core.tet_mesh import TetMesh
+from palpate.core.tool_contact import Load, follow_tool, set_down, surface_for
+from palpate.core.tools import Pose, convex, plate, rod, sphere
+
+MOUSE = Path(__file__).resolve().parents[1] / "meshes" / "mouse-1.7k.npz"
+BOX = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * 0.008
+TOOLS = {
+    "sphere": sphere(0.012),
+    "rod": rod(0.008, 0.012),
+    "plate": plate(0.016, 0.016),
+    "hull": convex(BOX, 0.003),
+}
+# What a tick leaves to the next ones is found by then.
+TICKS_TO_SETTLE = 200
+
+
+@pytest.fixture(scope="module", params=["cube", "mouse"])
+def body(request):
+    if request.param == "cube":
+        mesh, fixed = paper_cube()
+        return bake(mesh, BakeSettings(0.49, 10_000.0, PinNodes(fixed)))[0]
+    with np.load(MOUSE) as file:
+        mesh, fixed = TetMesh.checked(file["X"], file["T"]), file["fixed"]
+    return bake(mesh, BakeSettings(0.3, 1_000.0, PinNodes(fixed)))[0]
+
+
+@pytest.fixture(scope="module")
+def surface(body):
+    return native_body(body, whole=True)
+
+
+def place_on(body):
+    """The highest node about over the body's middle."""
+    nodes = body.mesh.nodes[body.mesh.surface_nodes]
+    aside = np.linalg.norm((nodes - nodes.mean(axis=0))[:, :2], axis=1)
+    return nodes[np.where(aside < aside.min() + 0.01, nodes[:, 2], -np.inf).argmax()]
+
+
+def path_over(body, tool, ticks=7):
+    """Poses down onto the body, 3 mm deep, and along it, turning."""
+    middle = place_on(body)
+    above = -float(tool.core[:, 2].min() - tool.radius)
+    for tick in range(ticks):
+        along = np.array([0.004 * np.sin(tick / 3), 0.004 * np.cos(tick / 4) - 0.002, 0.0])
+        turn = Rotation.from_rotvec([0.1 * np.sin(tick / 3), 0.08 * np.sin(tick / 2), 0.05 * tick])
+        height = above + 0.001 - min(0.001 * tick, 0.004)
+        yield Pose(middle + along + [0.0, 0.0, height], turn.as_matrix())
+
+
+def settled(contact, pose, young_modulus, outside=None):
+    """Ticks at one pose until nothing changes any more."""
+    for _ in range(TICKS_TO_SETTLE):
+        contact.follow(pose.position, pose.rotation, young_modulus, outside)
+
+
+@pytest.mark.parametrize("name", list(TOOLS))
+def test_forces_are_those_of_the_reference(body, surface, name):
+    tool = TOOLS[name]
+    contact = native_tool(body, surface, tool)
+    poses = list(path_over(body, tool))
+    touch = set_down(body, tool, poses[0])
+    contact.restart(poses[0].position, poses[0].rotation)
+    pressed = 0
+    for pose in poses:
+        touch = follow_tool(touch, pose)
+        settled(contact, touch.pose, body.young_modulus)
+        assert contact.touching == touch.touching
+        scale = max(float(np.linalg.norm(touch.force)), 1e-9)
+        np.testing.assert_allclose(contact.force, touch.force, atol=1e-6 * scale)
+        np.testing.assert_allclose(contact.torque, touch.torque, atol=1e-6 * scale * tool.reach)
+        stiffness = np.abs(touch.stiffness).max(initial=1e-9)
+        np.testing.assert_allclose(contact.stiffness, touch.stiffness, atol=1e-5 * stiffness)
+        order = np.argsort(contact.points)
+        np.testing.assert_array_equal(contact.points[order], touch.points)
+        np.testing.assert_allclose(contact.forces[order], touch.forces, atol=2e-6 * scale)
+        pressures = np.abs(touch.pressures).max(initial=1e-9)
+        np.testing.assert_allclose(contact.pressures[order], touch.pressures, atol=1e-5 * pressures)
+        found = np.zeros((len(body.mesh.nodes), 3))
+        found[body.mesh.surface_nodes[contact.nodes]] = contact.nodal_forces
+        expected = np.zeros_like(found)
+        expected[touch.nodes] = touch.nodal_forces
+        np.testing.assert_allclose(found, expected, atol=2e-6 * scale)
+        pressed = max(pressed, len(touch.points))
+    assert pressed >= 3
+
+
+def test_other_fingers_are_felt_as_in_the_reference(body, surface):
+    tool = TOOLS["sphere"]
+    contact = native_tool(body, surface, tool)
+    poses = list(path_over(body, tool))
+    touch = set_down(body, tool, poses[0])
+    contact.restart(poses[0].position, poses[0].rotation)
+    free = body.compliance.free_surface
+    near = free[np.linalg.norm(body.mesh.nodes[free] - poses[-1].position, axis=1).argsort()[:4]]
+    load = Load(near, np.linspace(-1e-3, -4e-3, 4)[:, None] * np.array([0.3, 0.1, 1.0]))
+    outside = (np.searchsorted(body.mesh.surface_nodes, near), load.forces)
+    for pose in poses:
+        touch = follow_tool(touch, pose, outside=load)
+        settled(contact, touch.pose, body.young_modulus, outside)
+    alone = follow_tool(touch, poses[-1])
+    scale = np.linalg.norm(touch.force)
+    np.testing.assert_allclose(contact.force, touch.force, atol=1e-6 * scale)
+    assert np.linalg.norm(alone.force - touch.force) > 1e-3 * scale
+
+
+@pytest.mark.parametrize("name", list(TOOLS))
+def test_distances_are_those_of_the_reference(name):
+    tool = TOOLS[name]
+    points = np.random.default_rng(1).uniform(-1.5, 1.5, (500, 3)) * tool.reach
+    expected, normals = tool.distance(points)
+    native = NativeTool(tool.core, tool.radius)
+    distances, found = native.distance(points)
+    np.testing.assert_allclose(distances, expected, atol=1e-12)
+    # Where two faces are equally near, either normal is one.
+    alike = np.einsum("px,px->p", found, normals) > 1 - 1e-9
+    assert alike.mean() > 0.99
+    assert native.stride == pytest.approx(tool.stride)
+    assert native.reach == pytest.approx(tool.reach)
+
+
+def test_a_body_that_is_not_whole_is_refused(body):
+    with pytest.raises(PalpateError, match=r"sphere.*whole=True"):
+        native_tool(body, native_body(body), TOOLS["sphere"])
+
+
+def test_wrong_arrays_are_refused(body, surface):
+    points = surface_for(body, TOOLS["sphere"])
+    arrays = [points.positions, points.normals, points.triangles, points.alphas, points.areas]
+    ToolSurface(surface, *arrays)
+    with pytest.raises(ValueError, match="a row for each"):
+        ToolSurface(surface, *arrays[:-1], points.areas[1:])
+    with pytest.raises(ValueError, match="correction is of other contact points"):
+        ToolSurface(surface, *arrays, ([0, 1], [0], np.eye(3)[None]))
+    contact = ToolContact(ToolSurface(surface, *arrays), NativeTool([[0, 0, 0]], 0.01))
+    with pytest.raises(ValueError, match="no rotation"):
+        contact.follow([0, 0, 0.2], 2 * np.eye(3), 1e4)
+    with pytest.raises(ValueError, match="young_modulus"):
+        contact.follow([0, 0, 0.2], np.eye(3), 0.0)
+    with pytest.raises(ValueError, match="65 core points"):
+        NativeTool(np.zeros((65, 3)), 0.01)
+
+
+def test_costs_are_told_for_every_tick(body, surface):
+    path = np.tile(body.mesh.nodes.max(axis=0) + 0.01, (2, 5, 1))
+    costs = tick_costs(surface, path, young_modulus=1e4)
+    assert costs.shape == (5,)
+    assert (costs >= 0).all()
+    with pytest.raises(ValueError, match="6 fingers"):
+        tick_costs(surface, np.zeros((6, 5, 3)), young_modulus=1e4)
+    contact = native_tool(body, surface, TOOLS["sphere"])
+    costs, pressed = contact.time_path(path[0], np.tile(np.eye(3), (5, 1, 1)), 1e4)
+    assert costs.shape == pressed.shape == (5,)
