@@ -101,6 +101,9 @@ WORDS = {
         "Empty, das sagt, wo Ursprung und Achsen des zweiten Geräts sind"
     ),
     "Pinch leads two fingers with the pointer": "Zwicken führt zwei Finger mit dem Zeiger",
+    "The body was exchanged under the tool; leave with Escape and press again": (
+        "Der Körper unter dem Werkzeug ist ein anderer; mit Escape verlassen, erneut drücken"
+    ),
     # Pinch
     "Pinch": "Zwicken",
     "Squeeze the soft object between two fingers: drag each handle, the other stays where it is. "

@@ -7,7 +7,7 @@ import bpy
 from bpy.app.handlers import persistent
 
 from ..core.errors import PalpateError
-from ..operators import bake_session, body_store, live_shape, press_session
+from ..operators import bake_session, body_store, kept_body, live_shape, press_session
 from ..operators.package_preferences import preferences
 from ..operators.press_state import SaveBegins, SaveEnds
 from . import known_status
@@ -32,6 +32,7 @@ def _before_load(*_: object) -> None:
 @persistent
 def _after_load(*_: object) -> None:
     known_status.forget()
+    kept_body.forget()
     live_shape.remove_leftovers()
     if not bpy.data.filepath:
         for scene in bpy.data.scenes:
@@ -121,6 +122,7 @@ def register() -> None:
 def unregister() -> None:
     """End everything and stop listening."""
     end_everything("Palpate was switched off; pressing has ended")
+    kept_body.forget()
     atexit.unregister(_before_exit)
     for name, handler in HANDLERS.items():
         getattr(bpy.app.handlers, name).remove(handler)

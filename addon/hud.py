@@ -8,7 +8,7 @@ import bpy
 from ..operators.press_session import PressSession
 from ..operators.press_state import Phase, Source
 from ..operators.quantities import area, pressure
-from ..operators.servo_words import Signal, standing
+from ..operators.servo_words import REASONS, Signal, standing
 from . import pixels
 from .pixels import BACKGROUND, BLACK, WHITE, Color
 from .reading import Reading, readings
@@ -104,6 +104,7 @@ def _lines(context: bpy.types.Context, session: PressSession) -> list[Line]:
     lines = [*measured, Line(say(ABOVE if above else _state(session, phase)), NORMAL, WHITE)]
     if session.state.message:
         lines.append(Line(say(session.state.message), NORMAL, WARNING))
+    lines += _buried_lines(session)
     lines += _second_lines(session)
     return [*lines, Line(say(KEYS.get(phase, "")), SMALL, GREY)]
 
@@ -127,6 +128,14 @@ def _state(session: PressSession, phase: Phase) -> str:
     if session.state.source is Source.EMPTY:
         return EMPTY_STATES.get(phase, "")
     return STATES.get(phase, "")
+
+
+def _buried_lines(session: PressSession) -> list[Line]:
+    """That a finger is inside the body and feels nothing, once for all fingers."""
+    snapshot, inside = session.snapshot, "inside the body"
+    if snapshot is None or all(finger.reason != inside for finger in snapshot.fingers):
+        return []
+    return [Line(bpy.app.translations.pgettext_iface(REASONS[inside]), NORMAL, WARNING)]
 
 
 def _second_lines(session: PressSession) -> list[Line]:

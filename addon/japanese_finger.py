@@ -92,6 +92,9 @@ WORDS = {
         "2台目のデバイスの原点と軸を決めるエンプティ"
     ),
     "Pinch leads two fingers with the pointer": "「つまむ」でポインターが2本の指を動かします",
+    "The body was exchanged under the tool; leave with Escape and press again": (
+        "道具の下のボディが替わりました。Escape で終了し、もう一度押してください"
+    ),
     # Pinch
     "Pinch": "つまむ",
     "Squeeze the soft object between two fingers: drag each handle, the other stays where it is. "

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -95,7 +94,7 @@ def _of_point(session: PressSession, finger: FingerSnapshot) -> Reading:
     )
 
 
-def _of_tool(session: PressSession, finger: Any, tool: Tool) -> Reading:
+def _of_tool(session: PressSession, finger: FingerSnapshot, tool: Tool) -> Reading:
     frame, rotation = session.drawn.frame, np.asarray(finger.orientation)
     probe, turn = frame.world_from_body(np.asarray(finger.probe)), frame.rotation @ rotation
     pressures = np.asarray(finger.pressures)

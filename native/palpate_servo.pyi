@@ -944,6 +944,20 @@ def coupled_forces(
     successive ticks on a body of one stiffness (N/m); negative is out of the body.
     """
 
+def solve_contacts(
+    compliance: ArrayLike,
+    displacements: ArrayLike,
+    pushes: ArrayLike,
+    start: ArrayLike | None = None,
+) -> NDArray[np.float64]:
+    """Forces (m, 3) on the body at E = 1 of fingers that may only push, as in a tick.
+
+    Takes C (m, m, 3, 3), displacements asked for and pushes (m, 3), forces of the tick before.
+
+    A tick does ten rounds at most where forces lean on their cones. ValueError for more than
+    MAX_FINGERS, other shapes, or a C that is not positive definite.
+    """
+
 class ContactOutcome(TypedDict):
     """Energies in J: start + motor + hand = kinetic + viscous + coulomb."""
 

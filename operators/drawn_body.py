@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ..core.drawn_map import DrawnMap
 from ..core.errors import PalpateError
 from ..core.soft_body import SoftBody
-from . import body_store, drawn_surface, pin_change, ray, soft_object
+from . import body_store, drawn_surface, kept_body, pin_change, ray, soft_object
 from .body_frame import BodyFrame
 from .drawn_surface import DrawnSurface
 from .soft_object import BodyStatus, Fit
@@ -126,4 +126,4 @@ def _body(thing: bpy.types.Object, surface: DrawnSurface, status: BodyStatus) ->
     # Other settings wait for Rebuild Body, and the pins with them.
     if status.fit is Fit.READY and status.pins.quick and not status.changed:
         return pin_change.take_over(thing, surface)
-    return body_store.load(thing)
+    return kept_body.load(thing)

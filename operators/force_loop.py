@@ -6,7 +6,6 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from typing import Any
 
 import bpy
 import numpy as np
@@ -69,13 +68,10 @@ class ForceLoop:
         """Give each of so many fingers the tool that was chosen; points stay as they are."""
         if self.tip.tool is None:
             return
-        servo: Any = self.servo
-        if not hasattr(servo, "set_tool"):
-            raise PalpateError("servo: it has no tools yet; choose Finger: Point")
         tool = native_tool(self.drawn.body, self.touched, self.tip.tool)
         with servo_errors():
             for finger in range(fingers):
-                servo.set_tool(tool, finger=finger)
+                self.servo.set_tool(tool, finger=finger)
 
     def add_pointer(self, position: Point) -> None:
         """Another finger, led by :meth:`lead` or the pointer, from ``position`` in body

@@ -120,7 +120,7 @@ class PointerHand:
         if tool is None:
             return point + SET_DOWN_HEIGHT * session.drawn.size * normal, None
         rotation = tool_turn.rotation(session.scene, session.drawn.frame, normal, view_axes)
-        pose = resting_on(tool, rotation, point, normal, session.drawn.surface_nodes)
+        pose = resting_on(tool, rotation, point, normal, session.surface_samples)
         return pose.position, tool_turn.as_rows(rotation)
 
     def _begin(

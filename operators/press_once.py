@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.contact import Touch
 from ..core.errors import PalpateError
+from ..core.tool_contact import surface_for
 from ..core.tools import Pose, Tool
 from . import live_shape, several_fingers, tool_turn
 from .drawn_body import DrawnBody, open_body
@@ -138,11 +139,11 @@ def _press_tools(
     inward: Array,
 ) -> tuple[FingerForce, ...]:
     """Each tool set down at its place from outside, and led in."""
-    starts = []
+    starts, surface = [], surface_for(drawn.body, tool).positions
     for place in places:
         point, normal = drawn.nearest(place)
         rotation = tool_turn.rotation(scene, drawn.frame, normal)
-        starts.append(resting_on(tool, rotation, point, normal, drawn.surface_nodes))
+        starts.append(resting_on(tool, rotation, point, normal, surface))
     ends = [
         Pose(start.position + way, start.rotation)
         for start, way in zip(starts, inward, strict=True)

@@ -90,6 +90,9 @@ REASONS = {
     "switched on": "Switched on; the force rises slowly",
     "button released": "The button was let go; the force rises slowly",
     "body replaced": "The body is another one now; the force rises slowly",
+    "its tool was made for another body: set it again": (
+        "The body was exchanged under the tool; leave with Escape and press again"
+    ),
     "inside the body": "The probe is inside the body: lead it out, then touch from outside",
     "not started": "The force loop has not started yet",
     "asked to stop": "Pressing has ended",

@@ -35,15 +35,17 @@ def reach(tool: Tool, rotation: Array, direction: Array) -> float:
     return float((tool.core @ rotation.T @ direction).max()) + tool.radius
 
 
-def resting_on(tool: Tool, rotation: Array, point: Array, normal: Array, nodes: Array) -> Pose:
+def resting_on(tool: Tool, rotation: Array, point: Array, normal: Array, surface: Array) -> Pose:
     """The tool where it just does not touch a surface, above ``point`` (3,) on it.
 
     ``normal`` (3,) is the outward unit normal there. A surface that rises beside the point, of
-    which ``nodes`` (n, 3) are known, keeps the tool further off.
+    which places ``surface`` (n, 3) are known, keeps the tool further off. They should be those that
+    the tool will touch, or it may be set down in one of them and feel nothing.
     """
     position = point + (reach(tool, rotation, -normal) + AIR * tool.size) * normal
-    for _ in range(MOST_LIFTS):
-        distance, _normals = tool.distance((nodes - position) @ rotation)
+    near = surface[np.linalg.norm(surface - position, axis=1) < 2.0 * tool.reach]
+    for _ in range(MOST_LIFTS if len(near) else 0):
+        distance, _normals = tool.distance((near - position) @ rotation)
         inside = -float(distance.min())
         if inside < 0.0:
             break

@@ -189,8 +189,9 @@ fn blocks_between(body: &Body, [p, q]: [u32; 2]) -> Option<[[DMat3; 3]; 3]> {
 
 /// Makes contacts distinct that the surface can hardly tell apart: what they do to each other is
 /// reduced, C_pq t_p t_q with t_p^2 = 1 - max(0, DISTINCT - y_p). What p yields while all others are
-/// held is the inverse of the block pp of C^-1; y_p is its share of C_pp, what p yields alone.
-fn tell_apart(compliance: &mut Blocks, members: &Members) -> Option<()> {
+/// held is the inverse of the block pp of C^-1; y_p is its share of C_pp, what p yields alone. `None`
+/// unless C is definite.
+pub fn tell_apart(compliance: &mut Blocks, members: &Members) -> Option<()> {
     if members.count < 2 {
         return Some(());
     }

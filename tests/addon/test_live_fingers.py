@@ -130,3 +130,64 @@ def test_the_mode_is_felt_while_pressing(sessions, states):
             abs(np.linalg.norm(session.snapshot.contact_force) - consistent) > 0.01 * consistent
         ),
     )
+
+
+def test_a_fingertip_is_felt_as_without_a_clock_and_its_patch_is_seen(sessions, states):
+    thing, chosen = soft_cube(), bpy.context.scene.palpate
+    chosen.tip, chosen.tip_radius = "SPHERE", 0.02
+    before = mesh_state(thing)
+    top, deep = (0.0, 0.0, 0.025), 0.003
+    once = part("operators.press_once").press_once(
+        thing, bpy.context.scene, top, (0.0, 0.0, -deep), keep=False
+    )
+    session = begin(sessions, states, thing)
+    upright = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+    pressed = (0.0, 0.0, 0.045 - deep)
+    session.post(states.SetDown((0.0, 0.0, 0.0451), 0, upright))
+    session.post(states.Move(pressed))
+    wait(session, lambda: arrived(session, pressed))
+    wait(session, lambda: session.snapshot.tick > 400)
+    seen = part("addon.reading").reading(session)
+    assert np.allclose(seen.force_vector, once.force, atol=0.05 * once.force[2])
+    assert seen.depth == pytest.approx(deep, rel=0.1)
+    made = once.fingers[0].made
+    assert seen.area == pytest.approx(made.area, rel=0.2)
+    assert seen.largest_pressure == pytest.approx(made.largest_pressure, rel=0.2)
+    patch = seen.patch
+    # The patch lies in the tip, and its normals point out of the body.
+    distance = np.linalg.norm(patch.places - np.array(pressed), axis=1)
+    assert np.abs(distance - 0.02).max() < 2e-3
+    assert (patch.normals[:, 2] > 0.5).all()
+    session.post(states.Cancel())
+    assert mesh_state(thing) == before
+
+
+def test_a_tool_object_may_be_deleted_while_it_presses(sessions, states):
+    thing, chosen = soft_cube(), bpy.context.scene.palpate
+    bpy.ops.mesh.primitive_cube_add(size=0.03, location=(0.0, 0.0, 0.2))
+    tool = bpy.context.object
+    chosen.tip, chosen.tip_object, chosen.tip_turn = "MESH", tool, "OBJECT"
+    bpy.context.view_layer.objects.active = thing
+    session = begin(sessions, states, thing)
+    session.post(states.SetDown((0.0, 0.0, 0.0401)))
+    session.post(states.Move((0.0, 0.0, 0.038)))
+    wait(session, lambda: session.snapshot.fingers[0].touching)
+    bpy.data.objects.remove(tool)
+    for _ in range(3):
+        session.tick()
+    assert session.snapshot.fingers[0].touching
+    session.post(states.Keep(session.displacements is not None))
+    assert key_names(thing) == ["Basis", "Press 1"]
+
+
+def test_the_next_press_does_not_read_the_body_again_unless_its_file_changed(sessions, states):
+    thing = soft_cube()
+    bodies = []
+    for touch_file in (False, False, True):
+        if touch_file:
+            part("operators.body_store").locate(thing).touch()
+        session = begin(sessions, states, thing)
+        bodies.append(session.drawn.body)
+        session.post(states.Cancel())
+    assert bodies[0] is bodies[1]
+    assert bodies[2] is not bodies[1]

@@ -1,5 +1,6 @@
 """Tools on a graded block beside closed forms, as in benchmarks/contact_closed_forms.py."""
 
+import contact_referee
 import numpy as np
 import pytest
 from contact_closed_forms import hertz, punch
@@ -60,3 +61,11 @@ def test_a_sphere_that_is_pushed_aside_sticks_and_slips_as_cattaneo_and_mindlin_
         assert drag == pytest.approx(expected, abs=0.04 * friction * push)
         aside = touch.forces - touch.pushes[:, None] * touch.normals
         assert (np.linalg.norm(aside, axis=1) <= friction * touch.pushes * (1 + 1e-9)).all()
+
+
+def test_a_fingertip_on_a_cube_is_resisted_as_by_another_finite_element_method():
+    # What scikit-fem with quadratic elements and a contact of its own gives: the last row of
+    # benchmarks/contact_referee.py, at a depth of 0.05 and 0.1 of the radius.
+    forces = contact_referee.pressed(8, fine=True)
+    assert forces[0] == pytest.approx(0.03336, rel=0.03)
+    assert forces[1] == pytest.approx(0.09473, rel=0.03)

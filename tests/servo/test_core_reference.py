@@ -1,6 +1,5 @@
 """The native contact against the numpy reference of core, on real bodies."""
 
-import itertools
 import time
 from pathlib import Path
 
@@ -9,7 +8,6 @@ import pytest
 from palpate_servo import Proxy
 
 from palpate.core.bake import BakeSettings, bake
-from palpate.core.contact import triangle_forces
 from palpate.core.errors import PalpateError
 from palpate.core.paper_cube import paper_cube
 from palpate.core.pins import PinNodes
@@ -30,24 +28,6 @@ def body(request):
     return bake(mesh, BakeSettings(0.3, 1_000.0, PinNodes(fixed)))[0]
 
 
-def reference_forces(body, mode, triangle, alpha, u):
-    """Nodal forces (3, 3) of a touch by (11) to (13), or of least energy."""
-    nodes = body.mesh.surface_local_triangles[triangle]
-    if mode == "paper":
-        blocks = body.young_modulus * body.contact_blocks[nodes]
-        return triangle_forces(blocks, alpha, u)
-    free = body.free_index(body.mesh.surface_nodes[nodes])
-    compliance = np.zeros((3, 3))
-    for p, q in itertools.product(range(3), repeat=2):
-        if free[p] >= 0 and free[q] >= 0:
-            block = body.compliance.block(free[p], free[q])
-        else:
-            block = np.linalg.inv(body.contact_blocks[nodes[p]]) if p == q else np.zeros((3, 3))
-        compliance += alpha[p] * alpha[q] * block
-    push = body.young_modulus * np.linalg.solve(0.5 * (compliance + compliance.T), u)
-    return alpha[:, None] * push
-
-
 def random_alpha(rng):
     """Inside, on an edge, or on a node, one as often as the other."""
     alpha = rng.dirichlet([1, 1, 1])
@@ -62,7 +42,7 @@ def test_native_force_equals_the_reference_at_random_presses(body, mode):
     for _ in range(PRESSES):
         triangle = int(rng.integers(len(body.mesh.surface_triangles)))
         alpha, u = random_alpha(rng), rng.normal(size=3) * 0.005
-        expected = reference_forces(body, mode, triangle, alpha, u)
+        expected = body.touch(triangle, alpha, u, mode=mode).nodal_forces
         nodal_forces, force = native.contact(triangle, alpha, u, body.young_modulus, mode)
         scale = np.abs(expected).max()
         assert np.abs(nodal_forces - expected).max() <= 1e-9 * scale
@@ -86,8 +66,8 @@ def test_a_probe_pushed_in_feels_what_the_reference_says_there(body):
         assert touched == triangle
         np.testing.assert_allclose(position, centre, atol=1e-12)
         _, force = native.contact(touched, alpha, finger - position, body.young_modulus)
-        expected = reference_forces(body, "consistent", triangle, np.full(3, 1 / 3), -1e-5 * normal)
-        np.testing.assert_allclose(force, -expected.sum(axis=0), rtol=1e-6)
+        expected = body.touch_nearest(centre, -1e-5 * normal).force
+        np.testing.assert_allclose(force, expected, rtol=1e-6)
 
 
 @pytest.mark.parametrize("mode", ["paper", "consistent"])
@@ -103,9 +83,9 @@ def test_the_running_servo_publishes_what_the_reference_computes(body, mode):
             assert time.monotonic() < deadline, snapshot
             time.sleep(0.01)
             snapshot = servo.snapshot()
-    forces = reference_forces(
-        body, mode, snapshot.triangle_index, snapshot.alpha, snapshot.probe - snapshot.proxy
-    )
+    forces = body.touch(
+        snapshot.triangle_index, snapshot.alpha, snapshot.probe - snapshot.proxy, mode=mode
+    ).nodal_forces
     np.testing.assert_allclose(snapshot.contact_force, -forces.sum(axis=0), rtol=1e-9)
     np.testing.assert_allclose(snapshot.nodal_forces, forces, rtol=1e-9, atol=1e-15)
     triangle = body.mesh.surface_triangles[snapshot.triangle_index]

@@ -8,6 +8,7 @@ mod frames;
 mod haply;
 mod proxy;
 mod servo;
+mod several;
 mod snapshot;
 mod stepped;
 mod tick_cost;
@@ -42,6 +43,7 @@ fn palpate_servo(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(closed_loop::simulate_contact, module)?)?;
     module.add_function(wrap_pyfunction!(closed_loop::coupled_forces, module)?)?;
     module.add_function(wrap_pyfunction!(closed_loop::device_coupling, module)?)?;
+    module.add_function(wrap_pyfunction!(several::solve_contacts, module)?)?;
     module.add_function(wrap_pyfunction!(tick_cost::tick_costs, module)?)?;
     module.add_function(wrap_pyfunction!(haply::haply_encoder_step, module)?)?;
     let stop_all = wrap_pyfunction!(servo::stop_all, module)?;

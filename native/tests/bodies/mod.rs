@@ -102,9 +102,11 @@ pub fn elastic(body: &Body) -> Arc<Body> {
         .filter(|&node| body.nodes[node as usize].z > lowest + 1e-9)
         .collect();
     let shape = DMat3::from_cols_array(&[9.0, 1.0, 0.5, 1.0, 7.0, -0.8, 0.5, -0.8, 11.0]);
+    // Stiffer one way than another, and not alike near and far.
+    let near = DMat3::from_cols_array(&[4.0, -1.5, 1.0, -1.5, 2.0, 0.3, 1.0, 0.3, 1.5]);
     let block = |a: u32, b: u32| {
         let gap = body.nodes[a as usize].distance(body.nodes[b as usize]);
-        shape * (-gap / 0.02).exp()
+        shape * (-gap / 0.02).exp() + near * (-gap / 0.008).exp()
     };
     let mut table = Vec::new();
     for &loaded in &free {
@@ -114,7 +116,7 @@ pub fn elastic(body: &Body) -> Arc<Body> {
         }
     }
     let dense = Dense::new(free.len(), Either::Long(table.into())).expect("n x 3 x 3n");
-    let blocks = vec![shape.inverse(); body.nodes.len()];
+    let blocks = vec![(shape + near).inverse(); body.nodes.len()];
     let body = Body::new(body.nodes.clone(), body.triangles.clone(), blocks).expect("sound");
     let whole = body.with_whole_compliance(Arc::new(Compliance::Dense(dense)), &free);
     Arc::new(whole.expect("it fits"))

@@ -124,11 +124,23 @@ def test_a_stand_presses_harder_and_doubts_are_told(cube_file, capsys):
 
 def test_a_curve_becomes_table_and_picture(cube_file, tmp_path, capsys):
     table, picture = tmp_path / "curve.csv", tmp_path / "curve.svg"
-    words = ["--depth", 0.002, "--steps", 4, "--csv", table, "--picture", picture, "--json"]
+    words = [
+        "--tool",
+        "sphere:0.016",
+        "--depth",
+        0.002,
+        "--steps",
+        4,
+        "--csv",
+        table,
+        "--picture",
+        picture,
+        "--json",
+    ]
     status, printed, _ = palpate(capsys, "curve", cube_file, *TOP, *words)
     figures = json.loads(printed)
     assert status == 0
-    assert figures["tool"] == "sphere:0.008"
+    assert figures["tool"] == "sphere:0.016"
     assert len(table.read_text().splitlines()) == 6
     assert picture.read_text().startswith("<svg")
     assert float(table.read_text().splitlines()[-1].split(",")[1]) == pytest.approx(

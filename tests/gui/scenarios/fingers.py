@@ -13,7 +13,7 @@ from bl_ext.user_default.palpate.operators.press_state import Phase
 
 PINCH, FINGERTIP = "sample_scenes/pinch.blend", "sample_scenes/fingertip.blend"
 # A place on the mouse's back that the view shows from above, world coordinates.
-BACK = (-0.018, -0.014, 0.064)
+BACK = (-0.018, -0.014, 0.057)
 
 
 def a_fingertip_led_by_the_mouse_shows_its_patch_and_force(stage: Stage) -> Wait:
