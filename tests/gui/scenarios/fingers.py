@@ -21,8 +21,8 @@ def a_fingertip_led_by_the_mouse_shows_its_patch_and_force(stage: Stage) -> Wait
     before = _coordinates("Mouse")
     yield from _press(stage)
     x, y = stage.pixel(BACK)
-    yield from stage.drag([(x, y), (x + 15, y - 55)], steps=5, release=False)
-    yield from stage.until(lambda: _figures()[0].depth > 0.005, "a depth of 5 mm")
+    yield from stage.drag([(x, y), (x + 8, y - 34)], steps=4, release=False)
+    yield from stage.until(lambda: _figures()[0].depth > 0.004, "a depth of 4 mm")
     yield from stage.picture("pressed")
     figures = _figures()[0]
     assert figures.patch is not None
@@ -43,7 +43,7 @@ def a_plate_and_a_mesh_are_chosen_in_the_panel_and_press(stage: Stage) -> Wait:
     chosen.tip = "PLATE"
     yield from _press(stage)
     x, y = stage.pixel(BACK)
-    yield from stage.drag([(x, y), (x + 10, y - 50)], steps=3)
+    yield from stage.drag([(x, y), (x + 6, y - 28)], steps=3)
     yield from stage.until(lambda: _figures()[0].area > 1e-5, "the plate's contact")
     yield from stage.picture("plate")
     yield from type_key(stage, "ESC")
@@ -54,7 +54,7 @@ def a_plate_and_a_mesh_are_chosen_in_the_panel_and_press(stage: Stage) -> Wait:
         assert "pick one under Finger" in _refusal()
     chosen.tip_object = bpy.data.objects["Finger Skin"]
     yield from _press(stage)
-    yield from stage.drag([(x, y), (x + 10, y - 50)], steps=3)
+    yield from stage.drag([(x, y), (x + 6, y - 28)], steps=3)
     yield from stage.until(lambda: _figures()[0].area > 1e-6, "the mesh's contact")
     bpy.data.objects.remove(bpy.data.objects["Finger Skin"])
     yield from stage.picture("mesh-deleted")
