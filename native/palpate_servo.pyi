@@ -894,6 +894,48 @@ class SteppedServo:
     def counters(self) -> SteppedCounters: ...
 
 @final
+class SteppedFingers:
+    """The ticks of a Servo, by hand and in virtual time, with fingers led along paths.
+
+    For tests and measurements: no device, no limits, the same input gives the same output. Fingers
+    are as those of pointers, but are where the path says, however far apart its places lie.
+    """
+
+    def __init__(
+        self,
+        body: Body,
+        positions: ArrayLike,
+        *,
+        young_modulus: float,
+        rate_hz: int = 1000,
+        shading: bool = False,
+        static_friction: float = 0.0,
+        dynamic_friction: float = 0.0,
+        mode: ContactMode = "consistent",
+    ) -> None:
+        """Fingers set down at positions (m, 3), m; the other arguments as of Servo, the rate any.
+
+        Raises ValueError for no finger or more than MAX_FINGERS, for several on a body that is not
+        whole, for numbers without sense.
+        """
+
+    def follow(self, paths: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Lead the fingers along paths (ticks, m, 3), m: contact forces on them, N, and torques,
+        N m, (ticks, m, 3), before coupling and safety. ValueError for another shape.
+        """
+
+    def set_tool(self, tool: ToolContact | None, rotation: _Matrix, finger: int = 0) -> None:
+        """Touch with a tool (or again a point), turned from the tool's axes to the body's; it is
+        set down with the next tick. ValueError for no rotation, or no such finger.
+        """
+
+    def set_down(self, position: _Vector, finger: int) -> None:
+        """Lift a finger off and set it down there with the next tick."""
+
+    def set_young_modulus(self, young_modulus: float) -> None: ...
+    def snapshot(self) -> Snapshot: ...
+
+@final
 class BareTimer:
     """A native thread that only sleeps and wakes: what the machine can do at best."""
 

@@ -11,6 +11,7 @@ mod servo;
 mod several;
 mod snapshot;
 mod stepped;
+mod stepped_fingers;
 mod tick_cost;
 mod tool;
 mod vectors;
@@ -33,6 +34,7 @@ fn palpate_servo(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<snapshot::Snapshot>()?;
     module.add_class::<snapshot::FingerSnapshot>()?;
     module.add_class::<stepped::SteppedServo>()?;
+    module.add_class::<stepped_fingers::SteppedFingers>()?;
     module.add_class::<tool::Tool>()?;
     module.add_class::<tool::ToolSurface>()?;
     module.add_class::<tool::ToolContact>()?;
