@@ -42,7 +42,7 @@ WORKSPACE_COLOR, WORKSPACE_PIXELS = (0.75, 0.85, 1.0, 0.4), 1.5
 HEAD_LENGTH, HEAD_WIDTH, SHAFT_PIXELS = 20.0, 7.0, 4.0
 # The patch is drawn this share of a disc's radius nearer to the viewer than it is: the surface that
 # is drawn is coarser than the contact.
-PATCH_LIFT = 1.0
+PATCH_LIFT, PATCH_SEEN_THROUGH = 1.0, 0.8
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,14 +159,22 @@ def arrow_tip(figures: Reading, pixel: float) -> tuple[Array, Array]:
 
 
 def _draw_patches(patches: list[Patch], top: float, view: View) -> None:
-    parts = []
+    """Through the surface that is drawn, too, for it does not follow a tool as closely as the
+    contact does; but not what looks away from the viewer, on the body's other side.
+    """
+    toward = view.axes[2]
     for patch in patches:
-        lifted = patch.places + PATCH_LIFT * patch.radii[:, None] * view.axes[2]
+        lifted = patch.places + PATCH_LIFT * patch.radii[:, None] * toward
         # What presses hardest is drawn last, so that no weaker neighbour covers it.
         order = np.argsort(patch.pressures)
-        colors = color_of(patch.pressures[order] / top)
-        parts.append(discs(lifted[order], patch.normals[order], patch.radii[order], colors))
-    _draw(parts, [], "LESS_EQUAL", 1.0, both_sides=True)
+        seen = order[patch.normals[order] @ toward > 0.0]
+        for chosen, depth_test, opacity in (
+            (seen, "NONE", PATCH_SEEN_THROUGH),
+            (order, "LESS_EQUAL", 1.0),
+        ):
+            colors = color_of(patch.pressures[chosen] / top)
+            part = discs(lifted[chosen], patch.normals[chosen], patch.radii[chosen], colors)
+            _draw([part], [], depth_test, opacity, both_sides=True)
 
 
 def _tool(session: PressSession, tool: Tool, figures: Reading, view: View) -> Lit:
