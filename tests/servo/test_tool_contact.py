@@ -20,8 +20,8 @@ from palpate.core.tools import Pose, convex, plate, rod, sphere
 MOUSE = Path(__file__).resolve().parents[1] / "meshes" / "mouse-1.7k.npz"
 BOX = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * 0.008
 TOOLS = {
-    "sphere": sphere(0.012),
-    "rod": rod(0.008, 0.012),
+    "sphere": sphere(0.018),
+    "rod": rod(0.014, 0.015),
     "plate": plate(0.016, 0.016),
     "hull": convex(BOX, 0.003),
 }
