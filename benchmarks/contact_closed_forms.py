@@ -40,8 +40,8 @@ SMALLEST_CLAIMED_RADIUS = 4.0
 PUNCH_SIDES = 32
 LARGEST_WORK = 1e-6
 FIRST_STEPS = 60
-CHANGE_BY_HALVING = 3e-8
-SHORTEST_STEP = 1e-5
+CHANGE_BY_HALVING = 1e-8
+SHORTEST_STEP = 2e-6
 
 
 def main() -> int:
@@ -161,7 +161,7 @@ def closed_paths() -> dict[str, tuple[Tool, Path]]:
         return Pose.at([0.025, 0.025, 0.0485 + 0.0005 * s], turn)
 
     return {
-        "sphere, lifted to 0.86 of its radius": (sphere(0.014), sphere_deep),
+        "sphere, pressed to 0.86 of its radius": (sphere(0.014), sphere_deep),
         "sphere, over an edge and back": (sphere(0.014), sphere_over_edge),
         "rod, pressed, turned and rolled": (rod(0.012, 0.02), rod_turning),
         "plate, larger than the face, rocking": (plate(0.08, 0.08), plate_rocking),
