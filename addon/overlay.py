@@ -42,7 +42,7 @@ WORKSPACE_COLOR, WORKSPACE_PIXELS = (0.75, 0.85, 1.0, 0.4), 1.5
 HEAD_LENGTH, HEAD_WIDTH, SHAFT_PIXELS = 20.0, 7.0, 4.0
 # The patch is drawn this share of a disc's radius nearer to the viewer than it is: the surface that
 # is drawn is coarser than the contact.
-PATCH_LIFT, PATCH_SEEN_THROUGH = 1.0, 0.8
+PATCH_LIFT, PATCH_SEEN_THROUGH = 0.5, 0.9
 
 
 @dataclass(frozen=True, eq=False)

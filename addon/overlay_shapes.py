@@ -19,7 +19,8 @@ LIGHT = np.array([-0.4, 0.6, 0.7]) / np.linalg.norm([-0.4, 0.6, 0.7])
 AMBIENT = 0.45
 # Glass: how much of a tool's colour is seen where one looks through it, and at its rim.
 GLASS, RIM = 0.13, 0.75
-DISC_SEGMENTS = 14
+# A disc has its full colour up to this share of its radius.
+DISC_SEGMENTS, FULL_SHARE = 14, 0.6
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,14 +80,23 @@ def discs(
     up = np.cross(normals, right)
     angle = 2.0 * np.pi * np.arange(DISC_SEGMENTS) / DISC_SEGMENTS
     around = np.cos(angle)[:, None] * right[:, None] + np.sin(angle)[:, None] * up[:, None]
-    rims = places[:, None] + radii[:, None, None] * around
-    vertices = np.concatenate([places[:, None], rims], axis=1).reshape(-1, 3)
-    rgba = np.ones((count, DISC_SEGMENTS + 1, 4), dtype=np.float32)
+    inner, outer = (
+        places[:, None] + share * radii[:, None, None] * around for share in (FULL_SHARE, 1.0)
+    )
+    vertices = np.concatenate([places[:, None], inner, outer], axis=1).reshape(-1, 3)
+    rgba = np.ones((count, 2 * DISC_SEGMENTS + 1, 4), dtype=np.float32)
     rgba[:, :, :3] = colors[:, None]
-    rgba[:, 1:, 3] = 0.0
-    rim = 1 + np.arange(DISC_SEGMENTS)
-    fan = np.column_stack([np.zeros(DISC_SEGMENTS, dtype=np.int64), rim, np.roll(rim, -1)])
-    first = (DISC_SEGMENTS + 1) * np.arange(count)[:, None, None]
+    rgba[:, DISC_SEGMENTS + 1 :, 3] = 0.0
+    near = 1 + np.arange(DISC_SEGMENTS)
+    far, beside = near + DISC_SEGMENTS, np.roll(near, -1)
+    fan = np.concatenate(
+        [
+            np.column_stack([np.zeros(DISC_SEGMENTS, dtype=np.int64), near, beside]),
+            np.column_stack([near, far, beside + DISC_SEGMENTS]),
+            np.column_stack([near, beside + DISC_SEGMENTS, beside]),
+        ]
+    )
+    first = (2 * DISC_SEGMENTS + 1) * np.arange(count)[:, None, None]
     triangles = (first + fan).reshape(-1, 3).astype(np.int32)
     return vertices.astype(np.float32), rgba.reshape(-1, 4), triangles
 

@@ -103,8 +103,8 @@ def _of_tool(session: PressSession, finger: FingerSnapshot, tool: Tool) -> Readi
     force, pushes = _force(finger), np.asarray(finger.point_forces)
     carries = pressures > 0.0
     sizes = np.linalg.norm(pushes[carries], axis=1)
-    # Half the disc's own area again, so that neighbours flow into each other.
-    radii = np.sqrt(1.5 * sizes / pressures[carries] / np.pi) / frame.metres_per_unit
+    # Three times its own area, so that neighbours flow into each other.
+    radii = np.sqrt(3.0 * sizes / pressures[carries] / np.pi) / frame.metres_per_unit
     places = frame.world_from_body(np.asarray(finger.points)[carries])
     outward = frame.turn_to_world(-pushes[carries] / sizes[:, None])
     pose = Pose(np.asarray(finger.probe), rotation)

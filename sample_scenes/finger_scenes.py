@@ -83,7 +83,8 @@ def fingertip_scene() -> list[bpy.types.Object]:
     studio.lights(scene, (0.0, 0.0, 0.04))
     studio.camera(scene, (0.23, -0.33, 0.19), aim, 76.0)
     studio.render_settings(scene)
-    studio.open_view(scene, mouse, 0.26, aim)
+    # Near enough for the pressure under a finger to be seen.
+    studio.open_view(scene, mouse, 0.16, (-0.012, -0.010, 0.046))
     studio.show_empties()
     return [mouse]
 
