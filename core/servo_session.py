@@ -190,7 +190,7 @@ def displacements_of(
     return body.deform(body.mesh.surface_nodes[nodes], forces, young_modulus)
 
 
-def native_tool(body: SoftBody, surface: Body, tool: Tool) -> ToolContact:
+def native_tool(body: SoftBody, surface: Body, tool: Tool, *, friction: float = 0.0) -> ToolContact:
     """A tool as the native thread holds it, with all the memory that it will ever need.
 
     Takes a second or so for large bodies: contact points are spread and what the mesh is too coarse
@@ -199,11 +199,13 @@ def native_tool(body: SoftBody, surface: Body, tool: Tool) -> ToolContact:
     Parameters
     ----------
     surface : of ``native_body(body, whole=True)``, the one that the servo touches.
+    friction : coefficient of the contact when it is stepped alone; a servo's fingers have that of
+        ``Servo.set_feel``.
 
     Raises
     ------
     PalpateError
-        A body without its whole compliance, or a tool too small for the body.
+        A body without its whole compliance, a tool too small for the body, or friction below zero.
     """
     points, near = surface_for(body, tool), correction_for(body, tool)
     try:
@@ -218,6 +220,7 @@ def native_tool(body: SoftBody, surface: Body, tool: Tool) -> ToolContact:
                 (near.starts, near.others, near.blocks),
             ),
             NativeTool(tool.core, tool.radius),
+            friction=friction,
         )
     except ValueError as problem:
         raise PalpateError(f"tool {tool.name}: {problem}") from problem

@@ -554,7 +554,12 @@ class ToolSurface:
 class ToolContact:
     """A tool on a body alone, tick by tick; as the servo's fingers have it."""
 
-    def __init__(self, surface: ToolSurface, tool: Tool) -> None: ...
+    def __init__(self, surface: ToolSurface, tool: Tool, *, friction: float = 0.0) -> None:
+        """Take Coulomb's coefficient too; a servo's tools have those of `Servo.set_feel` instead.
+
+        Raises ValueError for a negative coefficient, or one that is no number.
+        """
+
     def restart(self, position: _Vector, rotation: _Matrix) -> None:
         """Set the tool down; inside the body it feels nothing until it was outside."""
 

@@ -86,7 +86,7 @@ const SMOOTHING_SECONDS: f64 = 1.0e-3;
 const MOST_GAIN: f64 = 2.0;
 
 /// Largest eigenvalue of a symmetric matrix (Smith 1961).
-fn largest_eigenvalue(matrix: &DMat3) -> f64 {
+pub(crate) fn largest_eigenvalue(matrix: &DMat3) -> f64 {
     let mean = (matrix.x_axis.x + matrix.y_axis.y + matrix.z_axis.z) / 3.0;
     let rest = *matrix - DMat3::from_diagonal(DVec3::splat(mean));
     let squares =

@@ -63,7 +63,7 @@ impl PressedPatch {
             *point = PressedPoint {
                 position: place.position + slot.moved,
                 force,
-                pressure: force.length() / place.area,
+                pressure: slot.push * young_modulus / place.area,
             };
             self.point_count += 1;
         }

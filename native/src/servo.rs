@@ -160,7 +160,8 @@ impl Servo {
             if self.fingers[p].has_tool() {
                 self.gather_loads(settings.young_modulus, |q, _| q != p);
                 let (finger, own) = (&mut self.fingers[p], &settings.fingers[p]);
-                *wanted = finger.feel_tool(settings.young_modulus, own, &self.loads, moment.dt);
+                let (modulus, feel) = (settings.young_modulus, &settings.feel);
+                *wanted = finger.feel_tool(modulus, feel, own, &self.loads, moment.dt);
             }
         }
         wanted

@@ -105,6 +105,29 @@ fn a_ball_pushes_back_and_leaves_without_a_force() {
 }
 
 #[test]
+fn the_friction_of_the_surface_holds_for_tools_too() {
+    let (mut table, _) = table(&[true]);
+    let mut rub = |sticking: f64, slipping: f64| {
+        let mut settings = scripted::settings();
+        settings.feel.static_friction = sticking;
+        settings.feel.dynamic_friction = slipping;
+        table.settings.write(settings);
+        for step in 0..=600 {
+            let way = f64::from(step) / 300.0;
+            let depth = down(way.min(1.0), 0.003);
+            let aside = 0.002 * (way - 1.0).max(0.0);
+            table.tick_all(DT, &[in_by(0.025 + aside, 0.025, depth)]);
+        }
+        let force = shots(&mut table)[0].contact_force;
+        pressed(&mut table, |_| vec![in_by(0.025, 0.025, -0.002)]);
+        -force.x / force.z
+    };
+    let (without, with, again) = (rub(0.0, 0.0), rub(0.5, 0.4), rub(0.0, 0.0));
+    assert!(with > without + 0.1, "{without} {with}");
+    assert_eq!(without.to_bits(), again.to_bits());
+}
+
+#[test]
 fn set_down_in_the_body_it_feels_nothing_until_it_was_outside() {
     let (mut table, _) = table(&[true]);
     let shot = pressed(&mut table, |_| vec![in_by(0.025, 0.025, 0.003)])[0];

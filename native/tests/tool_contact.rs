@@ -13,6 +13,7 @@ use palpate_servo::compliance::{Compliance, Dense, Either};
 use palpate_servo::surface::Body;
 use palpate_servo::tool::MOST_POINTS;
 use palpate_servo::tool::contact::{NotANumber, ToolContact};
+use palpate_servo::tool::friction::Friction;
 use palpate_servo::tool::points::{Correction, Point, ToolSurface};
 use palpate_servo::tool::shape::{Pose, Tool};
 
@@ -322,14 +323,113 @@ fn other_fingers_move_the_surface_away_from_a_tool() {
 }
 
 #[test]
+fn a_tool_that_just_touches_is_not_let_go() {
+    let mut contact = on_cube(sphere(0.01), 3);
+    contact.restart(&at(0.025, 0.025, TOP + 0.012));
+    for height in [0.01, 0.01 - 1e-15, 0.01 + 1e-15, 0.01 - 1e-13] {
+        for _ in 0..6 {
+            force(&mut contact, &at(0.025, 0.025, TOP + height));
+        }
+    }
+    for _ in 0..6 {
+        force(&mut contact, &at(0.025, 0.025, TOP + 0.008));
+    }
+    assert!(contact.felt().force.z > 0.02, "{:?}", contact.felt());
+}
+
+fn rubbing(sticking: f64, slipping: f64) -> Friction {
+    Friction { sticking, slipping }
+}
+
+/// Force aside over push, of the point where that is most.
+fn steepest(contact: &ToolContact) -> f64 {
+    let pressed = contact.slots().iter().filter(|slot| slot.push > 0.0);
+    pressed.fold(0.0, |most, slot| {
+        let push = slot.force.dot(slot.normal);
+        let aside = (slot.force - slot.normal * push).length();
+        assert!(push > 0.0, "{slot:?}");
+        f64::max(most, aside / push)
+    })
+}
+
+#[test]
+fn friction_holds_up_to_its_limit_and_less_once_it_slips() {
+    let mut contact = on_cube(sphere(0.01), 3);
+    contact.set_friction(rubbing(0.6, 0.3));
+    contact.restart(&at(0.025, 0.025, TOP + 0.012));
+    for tick in 0..=40 {
+        force(
+            &mut contact,
+            &at(0.025, 0.025, TOP + 0.012 - 1e-4 * f64::from(tick)),
+        );
+    }
+    let mut drags = Vec::new();
+    for tick in 0..400 {
+        let x = 0.025 + 2e-5 * f64::from(tick);
+        drags.push(-force(&mut contact, &at(x, 0.025, TOP + 0.008)).x);
+        assert!(steepest(&contact) <= 0.6 * (1.0 + 1e-12));
+    }
+    let most = drags.iter().fold(0.0, |most: f64, &drag| most.max(drag));
+    assert!(
+        drags[20] > 5.0 * drags[1].abs() && drags[399] < 0.8 * most,
+        "{drags:?}"
+    );
+    assert!(steepest(&contact) <= 0.3 * (1.0 + 1e-12) || contact.slots().iter().any(|s| !s.slips));
+    // Without friction nothing of it is left.
+    contact.set_friction(Friction::default());
+    for _ in 0..20 {
+        force(&mut contact, &at(0.033, 0.025, TOP + 0.008));
+    }
+    assert!(steepest(&contact) < 1e-12);
+}
+
+#[test]
+fn friction_that_is_none_makes_no_force() {
+    let mut contact = on_cube(sphere(0.01), 3);
+    for (sticking, slipping) in [(f64::NAN, 0.1), (0.2, f64::NAN), (0.1, 0.2), (0.3, -0.1)] {
+        contact.set_friction(rubbing(sticking, slipping));
+        let pose = at(0.025, 0.025, TOP + 0.012);
+        assert_eq!(contact.follow(&pose, MODULUS, &[]), Err(NotANumber));
+    }
+}
+
+#[test]
+fn points_that_stick_count_as_stiffness_aside() {
+    let mut contact = on_cube(sphere(0.01), 3);
+    contact.set_friction(rubbing(5.0, 5.0));
+    contact.restart(&at(0.025, 0.025, TOP + 0.012));
+    for tick in 0..=60 {
+        let height = 0.012 - 1e-4 * f64::from(tick.min(40));
+        force(&mut contact, &at(0.025, 0.025, TOP + height));
+    }
+    let stiffness = contact.felt().stiffness;
+    let before = contact.felt().force;
+    let step = 1e-5;
+    for _ in 0..20 {
+        force(&mut contact, &at(0.025 + step, 0.025, TOP + 0.008));
+    }
+    let measured = (before.x - contact.felt().force.x) / step;
+    // This body gives way alike on all sides, which none does of itself: aside it is stiffer here.
+    let ratio = stiffness.x_axis.x / measured;
+    assert!((0.9..1.5).contains(&ratio), "{stiffness} {measured}");
+}
+
+#[test]
 fn a_tick_takes_no_memory_whatever_is_under_the_tool() {
+    for friction in [0.0, 0.4] {
+        takes_no_memory(rubbing(friction, friction));
+    }
+}
+
+fn takes_no_memory(friction: Friction) {
     // The tool covers many times the points that can be looked at.
     let mut contact = on_cube(plate(0.04, 0.003), 4);
+    contact.set_friction(friction);
     let mut dice = Dice::new(7);
     contact.restart(&at(0.025, 0.025, TOP + 0.002));
     let ((), taken) = counted(|| {
         let mut most = 0;
-        for tick in 0..2000 {
+        for tick in 0..1000 {
             let z = TOP - 0.004 * (f64::from(tick) * 0.01).sin();
             let turn = DMat3::from_rotation_x(dice.within(-0.01, 0.01));
             let pose = Pose {

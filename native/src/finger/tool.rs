@@ -5,8 +5,10 @@ use glam::{DMat3, DVec3};
 use super::{Finger, FingerSettings};
 use crate::coupling::{Contact, series_compliance};
 use crate::device::Fault;
+use crate::proxy::Feel;
 use crate::tip::Tip;
 use crate::tool::contact::ToolContact;
+use crate::tool::friction::Friction;
 use crate::tool::shape::Pose;
 
 /// The coupling sees a tool's stiffness smoothed over this time, s: it jumps where a point comes to
@@ -73,6 +75,7 @@ impl Finger {
     pub fn feel_tool(
         &mut self,
         young_modulus: f64,
+        feel: &Feel,
         own: &FingerSettings,
         others: &[(u32, DVec3)],
         dt: f64,
@@ -86,6 +89,10 @@ impl Finger {
             self.let_go();
             return DVec3::ZERO;
         }
+        tool.set_friction(Friction {
+            sticking: feel.static_friction,
+            slipping: feel.dynamic_friction,
+        });
         let felt = match tool.follow(&pose, young_modulus, others) {
             Ok(felt) => *felt,
             Err(_) => {

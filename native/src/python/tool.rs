@@ -14,6 +14,7 @@ use super::body::Body;
 use super::vectors::{Matrix, Rows, Triple, Vector, array, finite, matrix, positive, square};
 use crate::cpu_time::thread_seconds;
 use crate::tool::contact::{self, MOST_NODES};
+use crate::tool::friction::Friction;
 use crate::tool::points::{self, Correction, Point};
 use crate::tool::shape::{self, Pose};
 
@@ -180,11 +181,24 @@ impl ToolContact {
 #[pymethods]
 impl ToolContact {
     #[new]
-    fn new(surface: &ToolSurface, tool: &Tool) -> Self {
-        Self {
-            inner: contact::ToolContact::new(surface.inner.clone(), tool.inner.clone()),
-            young_modulus: 1.0,
+    #[pyo3(signature = (surface, tool, *, friction=0.0))]
+    fn new(surface: &ToolSurface, tool: &Tool, friction: f64) -> PyResult<Self> {
+        let friction = Friction {
+            sticking: friction,
+            slipping: friction,
+        };
+        if !friction.is_sound() {
+            return Err(PyValueError::new_err(format!(
+                "friction is {}; give a coefficient, zero or more",
+                friction.sticking
+            )));
         }
+        let mut inner = contact::ToolContact::new(surface.inner.clone(), tool.inner.clone());
+        inner.set_friction(friction);
+        Ok(Self {
+            inner,
+            young_modulus: 1.0,
+        })
     }
 
     fn restart(&mut self, position: Triple, rotation: Rows) -> PyResult<()> {
@@ -334,7 +348,7 @@ impl ToolContact {
     fn pressures<'py>(&self, py: Python<'py>) -> Vector<'py> {
         let points = self.inner.surface().points();
         let pressure = |slot: &crate::tool::patch::Slot| {
-            slot.force.length() * self.young_modulus / points[slot.point as usize].area
+            slot.push * self.young_modulus / points[slot.point as usize].area
         };
         PyArray1::from_iter(py, self.pressed().map(pressure))
     }

@@ -11,20 +11,26 @@ use glam::{DMat3, DQuat, DVec3};
 
 use super::MOST_POINTS;
 use super::complementarity::Complementarity;
+use super::friction::{Friction, Rubbing, across, take_anchors};
 use super::patch::{Patch, Slot};
 use super::points::ToolSurface;
 use super::shape::{Pose, Tool};
 use super::tilt::Hold;
 use crate::closest::closest_point;
+use crate::coupling::largest_eigenvalue;
 
 /// Linearisations in one tick.
 const MOST_LINEARISATIONS: usize = 4;
 /// Multiplications that a tick takes, about, before it leaves the rest to the next.
 const MOST_WORK: usize = 350_000;
+/// The same with friction.
+const MOST_WORK_RUBBING: usize = 450_000;
 /// Points farther from the tool than this share of the margin are only watched.
 const WATCHED: f64 = 0.3;
 /// Displacements that change by less than this share of the tool's reach have been found.
 const CONVERGED: f64 = 1e-5;
+/// A point counts as in the tool below this share of its reach: one that is just touched is not.
+const IN_TOOL: f64 = 1e-9;
 /// Points within so many spacings of the tool are looked at.
 const MARGIN: f64 = 1.0;
 /// Points beyond this many margins, at rest and now, are forgotten.
@@ -67,6 +73,8 @@ pub struct ToolContact {
     is_free: bool,
     patch: Patch,
     problem: Complementarity,
+    friction: Friction,
+    rubbing: Rubbing,
     /// Which slot each unknown belongs to.
     chosen: Vec<usize>,
     /// What points enter, nearest first.
@@ -94,6 +102,8 @@ impl ToolContact {
             pose: None,
             is_free: false,
             problem: Complementarity::default(),
+            friction: Friction::default(),
+            rubbing: Rubbing::new(),
             chosen: Vec::with_capacity(MOST_POINTS),
             entering: Vec::with_capacity(MOST_ENTERING + 1),
             felt: Felt::default(),
@@ -112,6 +122,11 @@ impl ToolContact {
     /// The contact points.
     pub fn surface(&self) -> &Arc<ToolSurface> {
         &self.surface
+    }
+
+    /// Friction from the next tick on; none unless told.
+    pub fn set_friction(&mut self, friction: Friction) {
+        self.friction = friction;
     }
 
     /// Where the tool is: behind the pose asked for where that is farther than it may go.
@@ -163,14 +178,15 @@ impl ToolContact {
     /// `outside` are forces of other fingers on nodes, N.
     ///
     /// # Errors
-    /// [`NotANumber`] anywhere: the contact is let go.
+    /// [`NotANumber`] anywhere, or friction that is none: the contact is let go.
     pub fn follow(
         &mut self,
         goal: &Pose,
         young_modulus: f64,
         outside: &[(u32, DVec3)],
     ) -> Result<&Felt, NotANumber> {
-        if !(goal.is_finite() && young_modulus > 0.0 && young_modulus.is_finite()) {
+        let is_stiffness = young_modulus > 0.0 && young_modulus.is_finite();
+        if !(goal.is_finite() && is_stiffness && self.friction.is_sound()) {
             self.lift();
             return Err(NotANumber);
         }
@@ -191,7 +207,8 @@ impl ToolContact {
         let all_in = self.choose(&pose);
         self.offset(outside, young_modulus);
         let (linearisations, exact) = self.settle(&pose);
-        self.feel(&pose, young_modulus);
+        let stuck = take_anchors(&mut self.patch, &self.surface, &pose, &self.friction);
+        self.feel(&pose, young_modulus, stuck);
         self.felt.linearisations = linearisations;
         self.felt.exact = exact && all_in;
         let are_numbers = self.felt.force.is_finite()
@@ -217,7 +234,8 @@ impl ToolContact {
             |middle, radius| tool.least_distance(pose.to_tool(middle)) <= radius,
             |point| {
                 let place = self.surface.points()[point as usize].position;
-                overlaps = overlaps || tool.distance(pose.to_tool(place)).0 < 0.0;
+                let distance = tool.distance(pose.to_tool(place)).0;
+                overlaps = overlaps || distance < -IN_TOOL * tool.reach();
             },
         );
         let middle = pose.position + pose.rotation * tool.middle();
@@ -338,26 +356,37 @@ impl ToolContact {
     /// Finds the equilibrium of the points with the tool, from the last tick's forces on.
     fn settle(&mut self, pose: &Pose) -> (usize, bool) {
         let limit = CONVERGED * self.tool.reach();
+        let rubs = !self.friction.is_none();
+        let most_work = if rubs { MOST_WORK_RUBBING } else { MOST_WORK };
         let mut work = 0;
         self.patch.displace();
         for made in 1..=MOST_LINEARISATIONS {
             self.linearise(pose);
-            self.problem.solve(MOST_WORK - work);
+            self.problem.solve(MOST_WORK.min(most_work - work));
             for slot in self.patch.slots_mut() {
-                slot.force = DVec3::ZERO;
+                (slot.force, slot.push) = (DVec3::ZERO, 0.0);
             }
             for (place, &number) in self.chosen.iter().enumerate() {
                 let slot = &mut self.patch.slots_mut()[number];
                 slot.force = slot.normal * self.problem.forces[place];
+                slot.push = slot.force.length();
             }
-            if self.patch.displace() <= limit {
+            let change = if rubs {
+                let (friction, reach) = (&self.friction, self.tool.reach());
+                self.rubbing
+                    .rub(&mut self.patch, &self.surface, pose, friction, reach)
+            } else {
+                self.patch.displace()
+            };
+            if change <= limit {
                 return (made, true);
             }
             // Another one takes as much again.
             let (chosen, near) = (self.chosen.len(), self.patch.slots().len());
             let own = self.problem.work() + 6 * chosen * chosen + 9 * chosen * near;
+            let own = own + if rubs { self.rubbing.work() } else { 0 };
             work += own;
-            if work + own > MOST_WORK {
+            if work + own > most_work {
                 return (made, false);
             }
         }
@@ -371,7 +400,7 @@ impl ToolContact {
         let points = self.surface.points();
         let pushes = self.patch.slots().iter().map(|slot| {
             let normal = points[slot.point as usize].normal;
-            (slot.force.length(), normal)
+            (slot.push, normal)
         });
         let hold = Hold::of(pushes).map(|hold| hold.seen_from(&pose.rotation));
         for (number, slot) in self.patch.slots_mut().iter_mut().enumerate() {
@@ -382,11 +411,24 @@ impl ToolContact {
             let normal = pose.rotation * normal;
             if distance < watched || slot.force != DVec3::ZERO {
                 let place = self.chosen.len();
-                self.problem.forces[place] = slot.force.length();
+                self.problem.forces[place] = slot.push;
                 self.problem.gaps[place] = distance - normal.dot(slot.moved - slot.offset);
                 self.chosen.push(number);
             }
             (slot.distance, slot.normal) = (distance, normal);
+        }
+        if !self.friction.is_none() {
+            // What the forces aside move counts as given, like the other fingers'.
+            for slot in self.patch.slots_mut() {
+                slot.aside = across(slot.aside, slot.normal);
+            }
+            let [x, y, z] = self.patch.moved_aside();
+            let moved = |i: usize| DVec3::new(x[i], y[i], z[i]);
+            let given: [DVec3; MOST_POINTS] = std::array::from_fn(moved);
+            for (place, &number) in self.chosen.iter().enumerate() {
+                let normal = self.patch.slots()[number].normal;
+                self.problem.gaps[place] += normal.dot(given[number]);
+            }
         }
         self.problem.begin(self.chosen.len());
         for (j, &loaded) in self.chosen.iter().enumerate() {
@@ -401,7 +443,7 @@ impl ToolContact {
     }
 
     /// Sums the forces up.
-    fn feel(&mut self, pose: &Pose, young_modulus: f64) {
+    fn feel(&mut self, pose: &Pose, young_modulus: f64, stuck: f64) {
         let mut felt = Felt::default();
         self.clear_nodes();
         for number in 0..self.patch.slots().len() {
@@ -421,7 +463,7 @@ impl ToolContact {
                 }
             }
         }
-        felt.stiffness = self.stiffness() * young_modulus;
+        felt.stiffness = with_stuck(self.stiffness(), stuck) * young_modulus;
         self.felt = felt;
     }
 
@@ -466,6 +508,17 @@ impl ToolContact {
             DVec3::new(zx, yz, product(2, 2)),
         )
     }
+}
+
+/// The stiffness of a tool without friction, with what points that stick add aside: where all stick
+/// the tool counts as held on all sides as it is where that is stiffest. More than it is: a patch
+/// that sticks is at most nine tenths as stiff aside as into the body (R. D. Mindlin, 1949).
+fn with_stuck(stiffness: DMat3, stuck: f64) -> DMat3 {
+    if stuck == 0.0 {
+        return stiffness;
+    }
+    let all_round = DMat3::from_diagonal(DVec3::splat(largest_eigenvalue(&stiffness)));
+    stiffness + (all_round - stiffness) * stuck
 }
 
 /// Keeps the nearest points, nearest first.

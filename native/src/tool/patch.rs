@@ -20,6 +20,14 @@ pub struct Slot {
     pub point: u32,
     /// Force on the body, N at unit modulus.
     pub force: DVec3,
+    /// The part of it along the normal, N at unit modulus.
+    pub push: f64,
+    /// The part of it across, by friction, N at unit modulus.
+    pub aside: DVec3,
+    /// Where on the tool the point stuck, in the tool's frame; nowhere before its second tick.
+    pub anchor: Option<DVec3>,
+    /// It slipped in the last tick.
+    pub slips: bool,
     /// Displacement, m.
     pub moved: DVec3,
     /// The part of it that other fingers cause, m.
@@ -101,6 +109,21 @@ impl Patch {
         let column = &self.compliance[slot * COLUMN..][..COLUMN];
         let moved = &mut self.moved;
         widely!(add_moved(column, force, moved, count));
+        &self.moved
+    }
+
+    /// How far all slots move under their forces aside, m at unit modulus, an axis after the other.
+    pub(super) fn moved_aside(&mut self) -> &[[f64; MOST_POINTS]; 3] {
+        let count = self.slots.len();
+        for axis in &mut self.moved {
+            axis[..count].fill(0.0);
+        }
+        for (slot, column) in self.slots.iter().zip(self.compliance.chunks_exact(COLUMN)) {
+            if slot.aside != DVec3::ZERO {
+                let (force, moved) = (slot.aside, &mut self.moved);
+                widely!(add_moved(column, force, moved, count));
+            }
+        }
         &self.moved
     }
 

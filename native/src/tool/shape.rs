@@ -36,6 +36,12 @@ impl Pose {
     pub fn to_tool(&self, point: DVec3) -> DVec3 {
         self.rotation.transpose() * (point - self.position)
     }
+
+    /// A place of the tool's frame on the body.
+    #[inline]
+    pub fn to_body(&self, point: DVec3) -> DVec3 {
+        self.rotation * point + self.position
+    }
 }
 
 /// The convex hull of core points, grown by a radius; m, in the tool's own frame.

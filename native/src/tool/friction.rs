@@ -1,0 +1,276 @@
+//! Coulomb friction between a tool and the contact points.
+//!
+//! Each point carries a force aside of at most the coefficient times its push. Where it is less, the
+//! point sticks: it stays with its anchor, the place on the tool where it was; where it is that much
+//! the point slips, and its anchor follows it. For given pushes the forces aside are those of least
+//! energy within their discs (Tresca's problem, convex), found by projected Gauss-Seidel from the
+//! forces before; pushes and forces aside take turns, once a linearisation (P. D. Panagiotopoulos,
+//! 1975). What a tick leaves to be found the next ones find; the discs hold at any moment. Readable
+//! reference: `core/tool_friction.py`.
+
+use glam::{DVec2, DVec3};
+
+use super::cholesky::dot;
+use super::patch::{Patch, Slot};
+use super::points::ToolSurface;
+use super::shape::Pose;
+use super::wide::widely;
+use super::{MOST_POINTS, room};
+
+/// Sweeps in one linearisation. From the tick before a few are enough.
+const MOST_SWEEPS: usize = 16;
+/// Multiplications of the sweeps in one linearisation, about; one sweep there is always.
+const MOST_WORK: usize = 80_000;
+/// Forces that move their points by less than this share of the tool's reach have been found.
+const CONVERGED: f64 = 1e-6;
+/// A force aside within this share of its limit slips.
+const SLIPPING: f64 = 1.0 - 1e-7;
+/// Unknowns: two a point.
+const MOST_UNKNOWNS: usize = 2 * MOST_POINTS;
+
+/// Coefficients of friction; zero for none.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Friction {
+    /// While a point sticks.
+    pub sticking: f64,
+    /// While it slips, at most the other.
+    pub slipping: f64,
+}
+
+impl Friction {
+    /// Whether there is none at all.
+    #[inline]
+    pub fn is_none(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// Whether both are coefficients.
+    #[inline]
+    pub fn is_sound(&self) -> bool {
+        self.sticking.is_finite() && self.slipping >= 0.0 && self.slipping <= self.sticking
+    }
+
+    /// The most that a point bears aside; nothing in the first tick, when it has no anchor yet.
+    #[inline]
+    fn limit(&self, slot: &Slot) -> f64 {
+        let coefficient = if slot.slips {
+            self.slipping
+        } else {
+            self.sticking
+        };
+        slot.anchor.map_or(0.0, |_| coefficient * slot.push)
+    }
+}
+
+/// The forces aside of one linearisation and the memory to find them in.
+#[derive(Debug, Clone)]
+pub(super) struct Rubbing {
+    /// Slots that bear a force aside, two directions across the normal of each, the most it bears.
+    rubbed: Vec<(usize, [DVec3; 2], f64)>,
+    /// How far points move along these directions under a force along another, row by row.
+    matrix: Vec<f64>,
+    /// How far points are from their anchors under the forces to begin with.
+    away: Vec<f64>,
+    /// Forces along these directions, and how they differ from those to begin with.
+    forces: Vec<f64>,
+    changes: Vec<f64>,
+    before: Vec<DVec3>,
+    work: usize,
+}
+
+impl Rubbing {
+    pub(super) fn new() -> Self {
+        Self {
+            rubbed: Vec::with_capacity(MOST_POINTS),
+            matrix: room(MOST_UNKNOWNS * MOST_UNKNOWNS),
+            away: vec![0.0; MOST_UNKNOWNS],
+            forces: vec![0.0; MOST_UNKNOWNS],
+            changes: vec![0.0; MOST_UNKNOWNS],
+            before: vec![DVec3::ZERO; MOST_POINTS],
+            work: 0,
+        }
+    }
+
+    /// Multiplications that the last turn took, about.
+    #[inline]
+    pub(super) fn work(&self) -> usize {
+        self.work
+    }
+
+    /// Finds the forces aside for the pushes of all slots; the largest change of a displacement, m.
+    pub(super) fn rub(
+        &mut self,
+        patch: &mut Patch,
+        surface: &ToolSurface,
+        pose: &Pose,
+        friction: &Friction,
+        reach: f64,
+    ) -> f64 {
+        let near = patch.slots().len();
+        self.rubbed.clear();
+        for (number, slot) in patch.slots_mut().iter_mut().enumerate() {
+            self.before[number] = slot.moved;
+            let limit = friction.limit(slot);
+            if limit > 0.0 {
+                slot.aside = shortened(across(slot.aside, slot.normal), limit);
+                let (first, second) = slot.normal.any_orthonormal_pair();
+                self.rubbed.push((number, [first, second], limit));
+            } else {
+                slot.aside = DVec3::ZERO;
+            }
+            slot.force = slot.normal * slot.push + slot.aside;
+        }
+        let rubbed = self.rubbed.len();
+        patch.displace();
+        self.work = 9 * rubbed * near;
+        if rubbed > 0 {
+            self.set_up(patch, surface, pose);
+            let sweep = 4 * rubbed * rubbed;
+            let sweeps = (MOST_WORK / sweep).clamp(1, MOST_SWEEPS);
+            let (rubbing, least) = (&mut *self, CONVERGED * reach);
+            let made = widely!(sweep_through(rubbing, sweeps, least));
+            for (&(number, [first, second], limit), force) in
+                self.rubbed.iter().zip(self.forces.chunks_exact(2))
+            {
+                let slot = &mut patch.slots_mut()[number];
+                slot.aside = shortened(first * force[0] + second * force[1], limit);
+                slot.force = slot.normal * slot.push + slot.aside;
+            }
+            patch.displace();
+            self.work += 27 * rubbed * near + made * sweep;
+        }
+        let mut change = 0.0_f64;
+        for (slot, before) in patch.slots().iter().zip(&self.before) {
+            let step = (slot.moved - *before).abs().max_element();
+            // What is no number stays one.
+            change = if change.is_nan() || step.is_nan() {
+                f64::NAN
+            } else {
+                change.max(step)
+            };
+        }
+        change
+    }
+
+    /// Tresca's problem about the forces that the slots have.
+    fn set_up(&mut self, patch: &mut Patch, surface: &ToolSurface, pose: &Pose) {
+        for (k, &(number, directions, _)) in self.rubbed.iter().enumerate() {
+            let slot = patch.slots()[number];
+            let place = patch.point(surface, number).position + slot.moved;
+            let anchor = slot.anchor.map_or(place, |anchor| pose.to_body(anchor));
+            for (a, direction) in directions.into_iter().enumerate() {
+                self.away[2 * k + a] = direction.dot(place - anchor);
+                self.forces[2 * k + a] = direction.dot(slot.aside);
+                self.changes[2 * k + a] = 0.0;
+                let [x, y, z] = patch.moved_by(number, direction);
+                for (l, &(seen, across, _)) in self.rubbed.iter().enumerate().skip(k) {
+                    let moved = DVec3::new(x[seen], y[seen], z[seen]);
+                    for (b, other) in across.into_iter().enumerate() {
+                        let entry = other.dot(moved);
+                        self.matrix[(2 * l + b) * MOST_UNKNOWNS + 2 * k + a] = entry;
+                        self.matrix[(2 * k + a) * MOST_UNKNOWNS + 2 * l + b] = entry;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Sweeps until the forces stay, at most so many; how many. Each point in turn goes to its anchor,
+/// or as near as its limit lets it: the energy falls.
+#[inline(always)]
+fn sweep_through(rubbing: &mut Rubbing, most: usize, least: f64) -> usize {
+    let unknowns = 2 * rubbing.rubbed.len();
+    for made in 1..=most {
+        let mut largest = 0.0_f64;
+        for (k, &(_, _, limit)) in rubbing.rubbed.iter().enumerate() {
+            let row = |a: usize| &rubbing.matrix[(2 * k + a) * MOST_UNKNOWNS..][..unknowns];
+            let slip =
+                |a: usize| rubbing.away[2 * k + a] + dot(row(a), &rubbing.changes[..unknowns]);
+            let slip = DVec2::new(slip(0), slip(1));
+            let (xx, xy, yy) = (row(0)[2 * k], row(0)[2 * k + 1], row(1)[2 * k + 1]);
+            let last = DVec2::new(rubbing.forces[2 * k], rubbing.forces[2 * k + 1]);
+            let force = nearer(last, slip, [xx, xy, yy], limit);
+            let change = force - last;
+            for a in 0..2 {
+                rubbing.forces[2 * k + a] = force[a];
+                rubbing.changes[2 * k + a] += change[a];
+            }
+            largest = largest.max(change.abs().max_element() * (xx + yy));
+        }
+        if largest <= least {
+            return made;
+        }
+    }
+    most
+}
+
+/// The force within its limit that brings one point nearer to its anchor: all the way if it may.
+#[inline(always)]
+fn nearer(last: DVec2, slip: DVec2, own: [f64; 3], limit: f64) -> DVec2 {
+    let [xx, xy, yy] = own;
+    let determinant = xx * yy - xy * xy;
+    if determinant > 0.0 {
+        let there = DVec2::new(yy * slip.x - xy * slip.y, xx * slip.y - xy * slip.x);
+        let sticking = last - there / determinant;
+        if sticking.length_squared() <= limit * limit {
+            return sticking;
+        }
+    }
+    // The larger principal value: a step by its inverse lowers the energy.
+    let half = 0.5 * (xx - yy);
+    let largest = 0.5 * (xx + yy) + (half * half + xy * xy).sqrt();
+    let tried = last - slip / largest;
+    let length = tried.length();
+    if length > limit {
+        tried * (limit / length)
+    } else {
+        tried
+    }
+}
+
+/// The part of a force across a normal.
+#[inline]
+pub(super) fn across(force: DVec3, normal: DVec3) -> DVec3 {
+    force - normal * normal.dot(force)
+}
+
+/// A force shortened to a limit.
+#[inline]
+fn shortened(force: DVec3, limit: f64) -> DVec3 {
+    let length = force.length();
+    if length > limit {
+        force * (limit / length)
+    } else {
+        force
+    }
+}
+
+/// After a tick: anchors of points that stuck stay, others are where the points are. How much of all
+/// pushes is on points that stick, 0 to 1.
+pub(super) fn take_anchors(
+    patch: &mut Patch,
+    surface: &ToolSurface,
+    pose: &Pose,
+    friction: &Friction,
+) -> f64 {
+    let (mut stuck, mut all) = (0.0, 0.0);
+    for number in 0..patch.slots().len() {
+        let rest = patch.point(surface, number).position;
+        let slot = &mut patch.slots_mut()[number];
+        if slot.push <= 0.0 || friction.is_none() {
+            (slot.aside, slot.anchor, slot.slips) = (DVec3::ZERO, None, false);
+            continue;
+        }
+        all += slot.push;
+        let is_held = slot.anchor.is_some();
+        if is_held && slot.aside.length() < SLIPPING * friction.limit(slot) {
+            slot.slips = false;
+            stuck += slot.push;
+        } else {
+            slot.slips = is_held;
+            slot.anchor = Some(pose.to_tool(rest + slot.moved));
+        }
+    }
+    if all > 0.0 { stuck / all } else { 0.0 }
+}
