@@ -28,7 +28,7 @@ both = pytest.mark.parametrize("suffix", [".csv", ".npz", ".CSV"])
 def samples():
     count = 25_000
     dice = np.random.default_rng(7)
-    samples = np.empty(count, DTYPE)
+    samples = np.zeros(count, DTYPE)
     samples["tick"] = np.arange(1, count + 1)
     samples["tick"][-1] = 2**63 + 1
     samples["time"] = np.arange(count) / 3e3
