@@ -1,19 +1,29 @@
-"""Bodies for the servo's tests; nothing of core is needed."""
+"""Bodies for the servo's tests: a made-up one, for which nothing is baked, and baked ones."""
 
 from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 from palpate_servo import Body
 
+from palpate.core.bake import BakeSettings, bake
+from palpate.core.paper_cube import paper_cube
+from palpate.core.pins import PinNodes
+from palpate.core.servo_session import native_body
+from palpate.core.tet_mesh import TetMesh
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from palpate.core.soft_body import SoftBody
+
 YOUNG_MODULUS = 10_000.0
+MOUSE = Path(__file__).resolve().parents[1] / "meshes" / "mouse-1.7k.npz"
 
 
 @dataclass(frozen=True)
@@ -52,3 +62,20 @@ def cube() -> SoftCube:
     # About 100 N/m at 10 kPa, different from node to node and direction to direction.
     blocks = 0.004 * (factors @ factors.swapaxes(1, 2)) + 0.01 * np.eye(3)
     return SoftCube(nodes, triangles, blocks, Body(nodes, triangles, blocks))
+
+
+@pytest.fixture(scope="session", params=["cube", "mouse"])
+def body(request: pytest.FixtureRequest) -> SoftBody:
+    """A baked body for tools; its contact points and near field are made once for all tests."""
+    if request.param == "cube":
+        mesh, fixed = paper_cube()
+        return bake(mesh, BakeSettings(0.49, 10_000.0, PinNodes(fixed)))[0]
+    with np.load(MOUSE) as file:
+        mesh, fixed = TetMesh.checked(file["X"], file["T"]), file["fixed"]
+    return bake(mesh, BakeSettings(0.3, 1_000.0, PinNodes(fixed)))[0]
+
+
+@pytest.fixture(scope="session")
+def surface(body: SoftBody) -> Body:
+    """The baked body as native code holds it, with its whole compliance."""
+    return native_body(body, whole=True)

@@ -1,31 +1,15 @@
 """The native contact against the numpy reference of core, on real bodies."""
 
 import time
-from pathlib import Path
 
 import numpy as np
 import pytest
 from palpate_servo import Proxy
 
-from palpate.core.bake import BakeSettings, bake
 from palpate.core.errors import PalpateError
-from palpate.core.paper_cube import paper_cube
-from palpate.core.pins import PinNodes
 from palpate.core.servo_session import displacements_of, native_body, servo_for
-from palpate.core.tet_mesh import TetMesh
 
-MOUSE = Path(__file__).resolve().parents[1] / "meshes" / "mouse-1.7k.npz"
 PRESSES = 10_000
-
-
-@pytest.fixture(scope="module", params=["cube", "mouse"])
-def body(request):
-    if request.param == "cube":
-        mesh, fixed = paper_cube()
-        return bake(mesh, BakeSettings(0.49, 10_000.0, PinNodes(fixed)))[0]
-    with np.load(MOUSE) as file:
-        mesh, fixed = TetMesh.checked(file["X"], file["T"]), file["fixed"]
-    return bake(mesh, BakeSettings(0.3, 1_000.0, PinNodes(fixed)))[0]
 
 
 def random_alpha(rng):

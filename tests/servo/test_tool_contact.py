@@ -1,23 +1,16 @@
 """Tools in native code against the numpy reference of core, on real bodies."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from palpate_servo import Tool as NativeTool
 from palpate_servo import ToolContact, ToolSurface, tick_costs
 from scipy.spatial.transform import Rotation
 
-from palpate.core.bake import BakeSettings, bake
 from palpate.core.errors import PalpateError
-from palpate.core.paper_cube import paper_cube
-from palpate.core.pins import PinNodes
 from palpate.core.servo_session import native_body, native_tool
-from palpate.core.tet_mesh import TetMesh
 from palpate.core.tool_contact import Load, follow_tool, set_down, surface_for
 from palpate.core.tools import Pose, convex, plate, rod, sphere
 
-MOUSE = Path(__file__).resolve().parents[1] / "meshes" / "mouse-1.7k.npz"
 BOX = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * 0.008
 TOOLS = {
     "sphere": sphere(0.018),
@@ -27,21 +20,6 @@ TOOLS = {
 }
 # What a tick leaves to the next ones is found by then.
 TICKS_TO_SETTLE = 200
-
-
-@pytest.fixture(scope="module", params=["cube", "mouse"])
-def body(request):
-    if request.param == "cube":
-        mesh, fixed = paper_cube()
-        return bake(mesh, BakeSettings(0.49, 10_000.0, PinNodes(fixed)))[0]
-    with np.load(MOUSE) as file:
-        mesh, fixed = TetMesh.checked(file["X"], file["T"]), file["fixed"]
-    return bake(mesh, BakeSettings(0.3, 1_000.0, PinNodes(fixed)))[0]
-
-
-@pytest.fixture(scope="module")
-def surface(body):
-    return native_body(body, whole=True)
 
 
 def place_on(body):

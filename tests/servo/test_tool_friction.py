@@ -1,38 +1,16 @@
 """Friction of the servo's tools against the numpy reference of core, and what it must never do."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from palpate.core.bake import BakeSettings, bake
 from palpate.core.errors import PalpateError
-from palpate.core.paper_cube import paper_cube
-from palpate.core.pins import PinNodes
-from palpate.core.servo_session import native_body, native_tool
-from palpate.core.tet_mesh import TetMesh
+from palpate.core.servo_session import native_tool
 from palpate.core.tool_contact import follow_tool, set_down
 from palpate.core.tools import Pose, rod, sphere
 
-MOUSE = Path(__file__).resolve().parents[1] / "meshes" / "mouse-1.7k.npz"
 TOOLS = {"sphere": sphere(0.018), "rod": rod(0.014, 0.015)}
 FRICTION = 0.4
-
-
-@pytest.fixture(scope="module", params=["cube", "mouse"])
-def body(request):
-    if request.param == "cube":
-        mesh, fixed = paper_cube()
-        return bake(mesh, BakeSettings(0.49, 10_000.0, PinNodes(fixed)))[0]
-    with np.load(MOUSE) as file:
-        mesh, fixed = TetMesh.checked(file["X"], file["T"]), file["fixed"]
-    return bake(mesh, BakeSettings(0.3, 1_000.0, PinNodes(fixed)))[0]
-
-
-@pytest.fixture(scope="module")
-def surface(body):
-    return native_body(body, whole=True)
 
 
 def above(body, tool):
