@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ..core import cache
 from ..core.contact import CONTACT_MODES, ContactMode, Touch
 from ..core.errors import PalpateError
+from ..core.large_deformation.shapes import SHAPES, shape
 from ..core.soft_body import SoftBody
 from ..core.stiffness import lame_parameters
 from ..core.whole_file import whole_file
@@ -61,6 +62,12 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help="coefficient of friction between --tool and body (default 0)",
     )
     parser.add_argument(
+        "--shape",
+        choices=SHAPES,
+        default="linear",
+        help="how the deformed shape is computed under the forces (default: linear)",
+    )
+    parser.add_argument(
         "--displacements",
         type=Path,
         metavar="OUT.npy",
@@ -93,7 +100,7 @@ def _press_points(arguments: argparse.Namespace, body: SoftBody, young_modulus: 
         young_modulus,
     )
     contacts = [_contact_figures(body, touch, displacements) for touch in touches]
-    common = _common_figures(displacements, young_modulus) | {"mode": mode}
+    common = _common_figures(arguments, displacements, young_modulus) | {"mode": mode}
     if len(contacts) == 1:
         figures = contacts[0] | common
         print(json.dumps(figures) if arguments.json else as_lines(figures))
@@ -123,7 +130,7 @@ def _press_tool(arguments: argparse.Namespace, body: SoftBody, young_modulus: fl
         np.concatenate([touch.nodal_forces for touch in touches]),
         young_modulus,
     )
-    common = _common_figures(displacements, young_modulus)
+    common = _common_figures(arguments, displacements, young_modulus)
     figures = [(tool_figures if arguments.json else tool_summary)(touch) for touch in touches]
     if arguments.json:
         several: dict[str, object] = {"contacts": figures}
@@ -145,7 +152,12 @@ def _deformed(
     young_modulus: float,
 ) -> NDArray[np.float64]:
     """Displacements (n, 3) under the forces on nodes, written where that is asked for."""
-    displacements = body.deform(nodes, nodal_forces, young_modulus)
+    chosen = shape(body, arguments.shape, arguments.body)
+    try:
+        chosen.wait_for(nodes)
+        displacements = chosen.displacements(nodes, nodal_forces, young_modulus)
+    finally:
+        chosen.close()
     if not (np.isfinite(nodal_forces).all() and np.isfinite(displacements).all()):
         raise PalpateError(
             f"--young: at {young_modulus} Pa this press is beyond what numbers can hold; give less"
@@ -156,10 +168,13 @@ def _deformed(
     return displacements
 
 
-def _common_figures(displacements: NDArray[np.float64], young_modulus: float) -> dict[str, object]:
+def _common_figures(
+    arguments: argparse.Namespace, displacements: NDArray[np.float64], young_modulus: float
+) -> dict[str, object]:
     return {
         "max_displacement": float(np.linalg.norm(displacements, axis=1).max()),
         "young_modulus": young_modulus,
+        "shape": arguments.shape,
     }
 
 

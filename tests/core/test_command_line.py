@@ -16,6 +16,7 @@ from palpate.cli.main import main
 from palpate.cli.status_line import bake_status
 from palpate.cli.tool_option import tool_from
 from palpate.core.bake_job import JobProgress
+from palpate.core.large_deformation.shapes import MAKERS, shape
 from palpate.core.tools import plate, rod
 
 MOUSE = Path(__file__).resolve().parents[1] / "meshes" / "mouse-1.7k.npz"
@@ -547,3 +548,18 @@ def test_a_compressed_body_tells_its_tolerance_and_its_error(tmp_path, capsys):
         assert 1e-4 < figures["column_error"] <= 3e-3
         assert figures["dense_bytes"] == 36 * 987**2
         assert figures["compliance_bytes"] < figures["dense_bytes"] / 8
+
+
+@pytest.mark.parametrize("name", MAKERS)
+def test_press_writes_the_shape_that_is_asked_for(name, cube_file, tmp_path, capsys, cube):
+    out = tmp_path / "u.npy"
+    words = ["press", cube_file, "--at", 0.021, 0.024, 0.06, "--by", 0, 0, "-5e-3", "--json"]
+    status, printed, _ = palpate(capsys, *words, "--shape", name, "--displacements", out)
+    assert status == 0
+    assert json.loads(printed)["shape"] == name
+    touch = cube.touch_nearest([0.021, 0.024, 0.06], [0, 0, -5e-3])
+    made = shape(cube, name)
+    made.wait_for(touch.triangle)
+    wanted = made.displacements(touch.triangle, touch.nodal_forces)
+    made.close()
+    np.testing.assert_allclose(np.load(out), wanted, atol=1e-6 * np.abs(wanted).max())

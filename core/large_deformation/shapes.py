@@ -1,0 +1,133 @@
+"""The shapes that can be drawn of a body under forces: one name, one sentence and one maker each.
+
+All of them agree for small forces. They differ in what is drawn, not in the force that is felt.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal, Protocol, TypeAlias, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import PalpateError
+from ..soft_body import SoftBody
+
+ShapeName: TypeAlias = Literal["linear", "table", "series", "rotation-strain"]
+SHAPES: tuple[ShapeName, ...] = get_args(ShapeName)
+EXPLANATIONS: dict[ShapeName, str] = {
+    "linear": "As the force is computed; large bends look swollen",
+    "table": "The paper's (16): corrected by stored large deformations, each solved exactly",
+    "series": "As (16), but by power series: computed around the touched place while you press",
+    "rotation-strain": "Bends and twists keep their size; needs no table",
+}
+
+
+class Shape(Protocol):
+    """How a body looks under forces on its nodes."""
+
+    @property
+    def ready(self) -> float:
+        """Share (0 to 1) of what the place touched last needs that is there; 1 without a table.
+
+        What is missing yet is drawn as ``linear``.
+        """
+        ...
+
+    def displacements(
+        self,
+        nodes: NDArray[np.int64],
+        nodal_forces: NDArray[np.float64],
+        young_modulus: float | None = None,
+    ) -> NDArray[np.float64]:
+        """Displacements (n, 3) of the free surface nodes, metres; at once, with what is there.
+
+        Arguments as for :meth:`SoftBody.deform`. What a place lacks is asked for: a later call is
+        better, until :attr:`ready` is 1.
+        """
+        ...
+
+    def wait_for(self, nodes: NDArray[np.int64]) -> None:
+        """Return when all is there that forces on these nodes (k,) of the mesh need.
+
+        Raises
+        ------
+        PalpateError
+            It cannot be computed.
+        """
+        ...
+
+    def close(self) -> None:
+        """End what works in the background, and keep what it made. Safe to call twice."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class LinearShape:
+    """Equation (15)."""
+
+    body: SoftBody
+
+    @property
+    def ready(self) -> float:
+        """Always 1."""
+        return 1.0
+
+    def displacements(
+        self,
+        nodes: NDArray[np.int64],
+        nodal_forces: NDArray[np.float64],
+        young_modulus: float | None = None,
+    ) -> NDArray[np.float64]:
+        """As :meth:`SoftBody.deform`."""
+        return self.body.deform(nodes, nodal_forces, young_modulus)
+
+    def wait_for(self, nodes: NDArray[np.int64]) -> None:
+        """Nothing is missing."""
+
+    def close(self) -> None:
+        """Nothing works in the background."""
+
+
+# How each is made, of a body and the file it came from, beside which tables may be kept.
+MAKERS: dict[ShapeName, Callable[[SoftBody, Path | None], Shape]] = {
+    "linear": lambda body, _: LinearShape(body)
+}
+
+
+def shape(body: SoftBody, choice: str, body_file: Path | None = None) -> Shape:
+    """The shape of this name for a body.
+
+    Parameters
+    ----------
+    choice : one of :data:`SHAPES`.
+    body_file : where the body came from; tables are kept beside it. Without it they are not kept.
+
+    Raises
+    ------
+    PalpateError
+        An unknown name, or a body for which there is no such shape.
+    """
+    name = shape_name(choice)
+    if name not in MAKERS:
+        raise PalpateError(f"shape {name}: it is not there yet; choose {' or '.join(MAKERS)}")
+    return MAKERS[name](body, body_file)
+
+
+def shape_name(choice: str) -> ShapeName:
+    """The name, checked.
+
+    Raises
+    ------
+    PalpateError
+        An unknown one.
+    """
+    for name in SHAPES:
+        if name == choice:
+            return name
+    raise PalpateError(
+        f"shape {choice!r} is unknown; give {', '.join(SHAPES[:-1])} or {SHAPES[-1]}"
+    )
