@@ -191,6 +191,7 @@ def test_press_takes_several_fingers_in_order(cube_file, tmp_path, capsys, cube)
         "coupling, m/N (how far each contact moves per newton on each)",
         f"max displacement  {figures['max_displacement']}",
         "young modulus     1000.0",
+        "shape             linear",
         "mode              consistent",
     ]
 
