@@ -12,8 +12,10 @@
     inverse.py            L = W^T W, written as the table of the compliance
     surface_columns.py    the same, single columns on demand
     plan.py               counts before any work
+    cholesky.py           the factor kept, for solves inside the body, and of matrix after matrix
 
 With K = C C^T and E the unit loads on the surface, W = C^-1 E answers everything: L = E^T K^-1 E =
 W^T W. W is sparse by the tree of the dissection: a front meets only loads from its own part of the
-body. So neither the factor C is kept, nor is a surface-sized dense matrix ever factored.
+body. So for the compliance neither the factor C is kept, nor is a surface-sized dense matrix ever
+factored.
 """

@@ -64,7 +64,8 @@ def inverse_factor(matrix: BlockMatrix, symbolic: SymbolicFactor, meter: Meter) 
     PalpateError
         A matrix that is not positive definite: the body is not held.
     """
-    entries = _EntriesByFront(matrix, symbolic)
+    entries = EntriesByFront(matrix.rows, matrix.columns, symbolic)
+    blocks = entries.in_order(matrix.blocks)
     works = [FrontWork.of(front) for front in symbolic.fronts]
     # In one piece: between them, what fronts hold for a while would leave holes when it goes.
     room = np.zeros(sum(work.loaded_rows * work.loads for work in works))
@@ -76,7 +77,9 @@ def inverse_factor(matrix: BlockMatrix, symbolic: SymbolicFactor, meter: Meter) 
             shape = work.loaded_rows, work.loads
             own = room[used : used + shape[0] * shape[1]].reshape(shape, order="F")
             used += own.size
-            remainders[index] = _eliminated(index, entries, symbolic, remainders, own, meter)
+            remainders[index] = _eliminated(
+                index, entries, blocks, symbolic, remainders, own, meter
+            )
             if own.size:
                 result.append(LoadRows(3 * front.load_start, 3 * front.load_stop, own))
     return result
@@ -84,7 +87,8 @@ def inverse_factor(matrix: BlockMatrix, symbolic: SymbolicFactor, meter: Meter) 
 
 def _eliminated(
     index: int,
-    entries: _EntriesByFront,
+    entries: EntriesByFront,
+    blocks: NDArray[np.float64],
     symbolic: SymbolicFactor,
     remainders: dict[int, _Remainder],
     own: NDArray[np.float64],
@@ -99,13 +103,15 @@ def _eliminated(
     skipped = work.pivots - work.loaded_rows
     passed = np.zeros((work.boundary, work.loads), order="F")
 
-    entries.add_to(index, front, pivots, coupling)
+    entries.add_to(index, front, blocks, pivots, coupling)
     stiffness = pivots.diagonal().copy()
     loaded = (3 * front.loaded_pivots[:, None] + AXES).ravel()
     own[loaded - skipped, np.arange(work.loads - len(loaded), work.loads)] = 1.0
     for child in front.children:
         below, remainder = symbolic.fronts[child], remainders.pop(child)
-        runs = runs_between(_targets(below, front), work.pivots, remainder.schur.edges, schur.edges)
+        runs = runs_between(
+            targets_of_child(below, front), work.pivots, remainder.schur.edges, schur.edges
+        )
         extend_add(remainder.schur, runs, pivots, coupling, schur)
         meter.add(MOVE_WEIGHT * remainder.schur.size)
         if not below.load_count:
@@ -133,7 +139,7 @@ def _eliminated(
     return _Remainder(schur, passed)
 
 
-def _targets(child: Front, parent: Front) -> NDArray[np.int64]:
+def targets_of_child(child: Front, parent: Front) -> NDArray[np.int64]:
     """Which freedom of the parent, pivots first, each freedom of the child's boundary is."""
     nodes = np.where(
         child.boundary < parent.stop,
@@ -178,28 +184,37 @@ def _short_calls(columns: int, flops_per_column: int) -> list[slice]:
     return [slice(start, min(start + step, columns)) for start in range(0, columns, step)]
 
 
-class _EntriesByFront:
-    """The upper half of a block matrix in order of elimination, cut into fronts."""
+class EntriesByFront:
+    """Where the upper half of a block matrix goes in order of elimination, cut into fronts.
 
-    def __init__(self, matrix: BlockMatrix, symbolic: SymbolicFactor) -> None:
-        rows, columns = symbolic.place[matrix.rows], symbolic.place[matrix.columns]
+    ``rows`` and ``columns`` (m,) are those of its blocks, both halves of the matrix.
+    """
+
+    def __init__(
+        self, rows: NDArray[np.int64], columns: NDArray[np.int64], symbolic: SymbolicFactor
+    ) -> None:
+        rows, columns = symbolic.place[rows], symbolic.place[columns]
         upper = np.flatnonzero(rows <= columns)
-        upper = upper[np.argsort(rows[upper], kind="stable")]
-        self._rows, self._columns = rows[upper], columns[upper]
-        self._blocks = matrix.blocks[upper]
+        self._upper = upper[np.argsort(rows[upper], kind="stable")]
+        self._rows, self._columns = rows[self._upper], columns[self._upper]
         stops = [0] + [front.stop for front in symbolic.fronts]
         self._bounds = np.searchsorted(self._rows, stops)
+
+    def in_order(self, blocks: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The blocks of the upper half, sorted for :meth:`add_to`."""
+        return blocks[self._upper]
 
     def add_to(
         self,
         index: int,
         front: Front,
+        blocks: NDArray[np.float64],
         pivots: NDArray[np.float64],
         coupling: NDArray[np.float64],
     ) -> None:
-        """Write the entries of front number ``index`` into its empty arrays."""
+        """Write the entries of front number ``index``, of sorted ``blocks``, into empty arrays."""
         span = slice(*self._bounds[index : index + 2])
-        rows, columns, blocks = self._rows[span], self._columns[span], self._blocks[span]
+        rows, columns, blocks = self._rows[span], self._columns[span], blocks[span]
         inside = columns < front.stop
         for chosen, target, places in (
             (inside, pivots, columns - front.start),

@@ -60,55 +60,120 @@ class StrainTerm:
         forces: NDArray[np.float64] = self.gradients.T @ weighted.transpose(0, 2, 1).reshape(-1, 3)
         return forces
 
-    def tangent_blocks(
-        self, displacements: NDArray[np.float64]
-    ) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
-        """Blocks (p, 3, 3) of the tangent stiffness, with their rows and columns (p,) of nodes."""
+    def tangent_blocks(self, displacements: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Blocks (p, 3, 3) of the tangent stiffness, one for each of :attr:`pairs`."""
         gradient = self.displacement_gradients(displacements)
         stress = self.second_stress(green_strain(gradient))
         moved = np.eye(3) + gradient
-        pairs = self._pairs
-        a, b, at = pairs.row_gradient, pairs.column_gradient, pairs.domain
-        # F g_a and F g_b: how the gradients look from the deformed body.
-        forward = np.einsum("pij,pj->pi", moved[at], a), np.einsum("pij,pj->pi", moved[at], b)
-        metric = moved @ moved.transpose(0, 2, 1)
-        first, shear = self.first_lame[at], self.shear_modulus[at]
-        blocks = first[:, None, None] * forward[0][:, :, None] * forward[1][:, None, :]
-        blocks += shear[:, None, None] * forward[1][:, :, None] * forward[0][:, None, :]
-        blocks += (shear * np.einsum("pi,pi->p", a, b))[:, None, None] * metric[at]
-        initial = np.einsum("pi,pij,pj->p", a, stress[at], b)
+        pairs, volumes = self.pairs, self.volumes[:, None, None]
+        at, each = pairs.domain, pairs.gradient_domain
+        # F g: how the gradients look from the deformed body.
+        forward = np.einsum("qij,qj->qi", moved[each], pairs.gradients)
+        pulled = np.einsum("qij,qj->qi", (volumes * stress)[each], pairs.gradients)
+        first, second = pairs.first, pairs.second
+        own, other = forward[first], forward[second]
+        first_lame, shear = (self.volumes * m for m in (self.first_lame, self.shear_modulus))
+        metric = shear[:, None, None] * (moved @ moved.transpose(0, 2, 1))
+        blocks: NDArray[np.float64] = (first_lame[at, None] * own)[:, :, None] * other[:, None, :]
+        blocks += (shear[at, None] * other)[:, :, None] * own[:, None, :]
+        near = np.einsum("pi,pi->p", pairs.gradients[first], pairs.gradients[second])
+        blocks += near[:, None, None] * metric[at]
+        initial = np.einsum("pi,pi->p", pulled[first], pairs.gradients[second])
         for axis in range(3):
             blocks[:, axis, axis] += initial
-        blocks *= self.volumes[at][:, None, None]
-        return blocks, pairs.row, pairs.column
+        return blocks
 
     @cached_property
-    def _pairs(self) -> _Pairs:
-        return _Pairs.of(self.gradients)
+    def pairs(self) -> NodePairs:
+        """Every two nodes that share a domain, in ascending order, and each with itself."""
+        return NodePairs.of(self.gradients)
 
 
 @dataclass(frozen=True, eq=False)
-class _Pairs:
-    """Every two nodes that share a domain, and their gradients there."""
+class NodePairs:
+    """Pairs of nodes within domains, the first node's number not above the second's.
 
+    Attributes
+    ----------
+    rows, columns : int64 (p,), the two nodes.
+    domain : int64 (p,), where they meet.
+    first, second : int64 (p,), their places in the two arrays that follow.
+    gradients : (q, 3), of every node in each of its domains.
+    gradient_domain : int64 (q,), that domain.
+    """
+
+    rows: NDArray[np.int64]
+    columns: NDArray[np.int64]
     domain: NDArray[np.int64]
-    row: NDArray[np.int64]
-    column: NDArray[np.int64]
-    row_gradient: NDArray[np.float64]
-    column_gradient: NDArray[np.float64]
+    first: NDArray[np.int64]
+    second: NDArray[np.int64]
+    gradients: NDArray[np.float64]
+    gradient_domain: NDArray[np.int64]
 
     @classmethod
-    def of(cls, gradients: csr_array) -> _Pairs:
+    def of(cls, gradients: csr_array) -> NodePairs:
+        """Of csr (3D, N), as in :class:`StrainTerm`."""
         blocks = gradients.tobsr((3, 1))
+        blocks.sort_indices()
         counts = np.diff(blocks.indptr).astype(np.int64)
         sizes = counts * counts
         domain = np.repeat(np.arange(len(counts)), sizes)
         within = np.arange(sizes.sum()) - np.repeat(np.cumsum(sizes) - sizes, sizes)
         first, second = np.divmod(within, counts[domain])
+        upper = first <= second
+        domain, first, second = domain[upper], first[upper], second[upper]
         first += blocks.indptr[domain]
         second += blocks.indptr[domain]
         nodes, values = blocks.indices.astype(np.int64), blocks.data[:, :, 0]
-        return cls(domain, nodes[first], nodes[second], values[first], values[second])
+        own_domain = np.repeat(np.arange(len(counts)), counts)
+        return cls(nodes[first], nodes[second], domain, first, second, values, own_domain)
+
+
+@dataclass(frozen=True, eq=False)
+class TangentPattern:
+    """Where the 3x3 blocks of a symmetric matrix stand, found once for many matrices.
+
+    Attributes
+    ----------
+    rows, columns : int64 (m,), in both halves; ordered by row, then by column.
+    sums : csr (u, p), adds blocks of one place in the upper half.
+    source : int64 (m,), which of those u blocks each of the m is,
+    mirrored : bool (m,), and whether it is that block's transpose.
+    """
+
+    rows: NDArray[np.int64]
+    columns: NDArray[np.int64]
+    sums: csr_array
+    source: NDArray[np.int64]
+    mirrored: NDArray[np.bool_]
+
+    @classmethod
+    def of(
+        cls, rows: NDArray[np.int64], columns: NDArray[np.int64], node_count: int
+    ) -> TangentPattern:
+        """For blocks added at ``rows``, ``columns`` (p,), rows not above columns."""
+        once, which = np.unique(rows * node_count + columns, return_inverse=True)
+        count = len(which)
+        sums = coo_array((np.ones(count), (which, np.arange(count))), shape=(len(once), count))
+        row, column = np.divmod(once, node_count)
+        below = np.flatnonzero(row != column)
+        all_rows, all_columns = np.append(row, column[below]), np.append(column, row[below])
+        source = np.append(np.arange(len(once)), below)
+        order = np.lexsort((all_columns, all_rows))
+        return cls(
+            all_rows[order],
+            all_columns[order],
+            sums.tocsr(),
+            source[order],
+            (np.arange(len(source)) >= len(once))[order],
+        )
+
+    def summed(self, blocks: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Blocks (p, 3, 3) added at their places, (m, 3, 3) in both halves."""
+        upper = (self.sums @ blocks.reshape(-1, 9)).reshape(-1, 3, 3)
+        every: NDArray[np.float64] = upper[self.source]
+        every[self.mirrored] = every[self.mirrored].transpose(0, 2, 1)
+        return every
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,9 +215,24 @@ class Solid:
 
         The derivative of :meth:`forces`, symmetric. Degree of freedom ``3 * node + axis``.
         """
+        blocks, pattern = self.tangent_blocks(displacements), self.pattern
+        size = 3 * self.node_count
+        starts = np.searchsorted(pattern.rows, np.arange(self.node_count + 1))
+        return bsr_array((blocks, pattern.columns, starts), shape=(size, size)).tocsr()
+
+    def tangent_blocks(self, displacements: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The blocks (m, 3, 3) of :meth:`tangent` at the places of :attr:`pattern`."""
         parts = [term.tangent_blocks(displacements) for term in self.terms]
-        data, rows, columns = (np.concatenate(arrays) for arrays in zip(*parts, strict=True))
-        return _assembled(data, rows, columns, self.node_count)
+        return self.pattern.summed(np.concatenate(parts))
+
+    @cached_property
+    def pattern(self) -> TangentPattern:
+        """Where the blocks of every tangent stand."""
+        rows, columns = (
+            np.concatenate([getattr(term.pairs, side) for term in self.terms])
+            for side in ("rows", "columns")
+        )
+        return TangentPattern.of(rows, columns, self.node_count)
 
     def volume_ratios(self, displacements: NDArray[np.float64]) -> NDArray[np.float64]:
         """Det F of every domain of the first term, (D,); zero or less where it is inverted."""
@@ -232,22 +312,3 @@ def _averages(domains: SmoothingDomains) -> csr_array:
     blocks = shares.data * np.eye(3)
     size = (3 * shares.shape[0], 3 * shares.shape[1])
     return bsr_array((blocks, shares.indices, shares.indptr), shape=size).tocsr()
-
-
-def _assembled(
-    blocks: NDArray[np.float64],
-    rows: NDArray[np.int64],
-    columns: NDArray[np.int64],
-    node_count: int,
-) -> csr_array:
-    """Blocks (p, 3, 3) added at their places, (3N, 3N)."""
-    place = rows * node_count + columns
-    once, which = np.unique(place, return_inverse=True)
-    flat = blocks.reshape(-1, 9)
-    sums = np.stack([np.bincount(which, flat[:, k], len(once)) for k in range(9)], axis=1)
-    starts = np.searchsorted(once, node_count * np.arange(node_count + 1))
-    size = 3 * node_count
-    matrix = bsr_array((sums.reshape(-1, 3, 3), once % node_count, starts), shape=(size, size))
-    tangent = matrix.tocsr()
-    tangent.sort_indices()
-    return tangent
