@@ -14,6 +14,8 @@ PLAYER = Path(__file__).with_name("scenario_player.py")
 SECONDS_TO_START = 120
 LONGEST_RUN_SECONDS = 1800
 LINES_OF_LOG = 60
+# Drawn by the processor, so every pixel takes time; the panels' text is still read easily.
+SCREEN = "1280x800"
 
 
 @dataclass(frozen=True)
@@ -70,6 +72,7 @@ class WindowedBlender:
             environment = os.environ | {
                 "BLENDER_USER_RESOURCES": user_folder,
                 "TIMEOUT": str(LONGEST_RUN_SECONDS),
+                "SCREEN": SCREEN,
             }
             command = [str(self.program), "run", "--enable-event-simulate", "--factory-startup"]
             command += ["--python-exit-code", "3", "--python", str(PLAYER), "--", str(job)]
