@@ -47,6 +47,12 @@ class StrainTerm:
         by_axis = self.gradients @ displacements
         return by_axis.reshape(-1, 3, 3).transpose(0, 2, 1)
 
+    def volume_ratios(self, displacements: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Det F of every domain, (D,); zero or less where it is inverted."""
+        gradient = self.displacement_gradients(displacements)
+        ratios: NDArray[np.float64] = np.linalg.det(np.eye(3) + gradient)
+        return ratios
+
     def second_stress(self, strain: NDArray[np.float64]) -> NDArray[np.float64]:
         """S = lambda tr(E) I + 2 mu E for Green's strains E (D, 3, 3), at unit modulus."""
         stress = 2.0 * self.shear_modulus[:, None, None] * strain
@@ -236,9 +242,7 @@ class Solid:
 
     def volume_ratios(self, displacements: NDArray[np.float64]) -> NDArray[np.float64]:
         """Det F of every domain of the first term, (D,); zero or less where it is inverted."""
-        gradient = self.terms[0].displacement_gradients(displacements)
-        ratios: NDArray[np.float64] = np.linalg.det(np.eye(3) + gradient)
-        return ratios
+        return self.terms[0].volume_ratios(displacements)
 
 
 def solid(
