@@ -3,8 +3,8 @@
 mouse-tets.npz is one answer of fTetWild, which gives another mesh each time: edge length and
 tolerance below gave 1,690 to 1,780 nodes and 1,010 to 1,075 free surface nodes in five runs, where
 the paper's mouse has 1,713 and 1,036. drumstick-tets.npz is another answer, for meat and
-bone together: 1,896 nodes, 836 of them on the free surface. Arrays X (m), T, fixed as in the other
-stored meshes.
+bone together: 1,896 nodes, 836 of them on the free surface; hare-tets.npz one for the hare: 1,933 and
+1,189. Arrays X (m), T, fixed as in the other stored meshes.
 """
 
 from pathlib import Path
@@ -16,13 +16,13 @@ from numpy.typing import NDArray
 
 HERE = Path(__file__).parent
 # Edge length and tolerance with which fTetWild made them, as shares of the diagonal.
-MOUSE_SIZE, DRUMSTICK_SIZE = (0.058, 0.0037), (0.045, 0.003)
+MOUSE_SIZE, DRUMSTICK_SIZE, HARE_SIZE = (0.058, 0.0037), (0.045, 0.003), (0.04, 0.0035)
 TRIANGLES = 6000
 Tets = tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]
 
 
 def stored_tets(name: str) -> Tets:
-    """Nodes, tetrahedra and pinned nodes of the mouse or the drumstick."""
+    """Nodes, tetrahedra and pinned nodes of the mouse, the drumstick or the hare."""
     with np.load(HERE / f"{name}-tets.npz", allow_pickle=False) as stored:
         return stored["X"], stored["T"], stored["fixed"]
 

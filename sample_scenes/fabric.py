@@ -154,3 +154,15 @@ def smile(graph: Graph, x: Socket, y: Socket, z: Socket) -> Socket:
     below = graph.math("LESS_THAN", drop, 0.0)
     front = graph.math("GREATER_THAN", x, 0.045)
     return graph.math("MULTIPLY", thread, graph.math("MULTIPLY", below, front))
+
+
+def ringed(graph: Graph) -> Socket:
+    """Rings round the hare from its feet to the tips of its ears, and seams along its trunk."""
+    x, y, z = graph.node("ShaderNodeSeparateXYZ", graph.attribute(REST).outputs["Vector"]).outputs
+    rings = graph.line(z, PITCH, THREAD)
+    angle = graph.math("ARCTAN2", y, graph.math("ADD", x, 0.014))
+    seams = graph.line(graph.math("MULTIPLY", angle, 0.030), PITCH, THREAD)
+    border = graph.step(graph.attribute(QUILT).outputs["Fac"], 0.0, 0.0006)
+    quilt = graph.math("MULTIPLY", graph.math("MAXIMUM", rings, seams), border)
+    ears = graph.math("MULTIPLY", rings, graph.step(z, 0.0925, 0.0935))
+    return graph.math("MAXIMUM", quilt, ears)

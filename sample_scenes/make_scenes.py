@@ -26,10 +26,12 @@ def main() -> int:
         import bodies
         import bpy
         import finger_scenes
+        import large_scene
         import scenes
 
         bpy.context.preferences.filepaths.save_version = 0
-        stored = {"Cube": bodies.cube_tets(), "Drumstick": bodies.stored_tets("drumstick")}
+        stored = {"Cube": bodies.cube_tets()}
+        stored |= {name.title(): bodies.stored_tets(name) for name in ("drumstick", "hare")}
         stored |= finger_scenes.tets()
         for name, (make, finish) in {
             "cube": (lambda: [scenes.cube_scene()], None),
@@ -37,6 +39,7 @@ def main() -> int:
             "drumstick": (lambda: [scenes.drumstick_scene()], None),
             "pinch": (finger_scenes.pinch_scene, finger_scenes.keep_pinches),
             "fingertip": (finger_scenes.fingertip_scene, None),
+            "large": (lambda: [large_scene.hare_scene()], None),
         }.items():
             if options.only not in {None, name}:
                 continue
@@ -61,7 +64,7 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--output", type=Path, default=HERE)
     parser.add_argument(
         "--only",
-        choices=["cube", "mouse", "drumstick", "pinch", "fingertip"],
+        choices=["cube", "mouse", "drumstick", "pinch", "fingertip", "large"],
         help="make this one alone",
     )
     return parser.parse_args()

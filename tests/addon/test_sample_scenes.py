@@ -11,7 +11,8 @@ import pytest
 from soft_scene import key_names, part, select
 
 SCENES = Path(__file__).resolve().parents[2] / "sample_scenes"
-MATERIALS = {"cube": "PAPER_CUBE", "mouse": "PLUSH", "drumstick": "JELLY"}
+MATERIALS = {"cube": "PAPER_CUBE", "mouse": "PLUSH", "drumstick": "JELLY", "large": "PLUSH"}
+OBJECTS = {"large": "Hare"}
 # Places on top, metres: where the meat tapers over the bone, and where it is thick.
 OVER_BONE, OVER_MEAT = (0.048, 0.0, 0.0335), (-0.02, 0.0, 0.068)
 
@@ -20,7 +21,7 @@ def opened(name, folder):
     copy = folder / f"{name}.blend"
     shutil.copyfile(SCENES / copy.name, copy)
     bpy.ops.wm.open_mainfile(filepath=str(copy))
-    return select(bpy.data.objects[name.title()])
+    return select(bpy.data.objects[OBJECTS.get(name, name.title())])
 
 
 def force(thing, at):
