@@ -29,13 +29,17 @@ MOST_AT_ONCE = 8
 
 
 def hold(
-    pushes: NDArray[np.float64], normals: NDArray[np.float64]
+    forces: NDArray[np.float64], normals: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], float]:
-    """The direction (3,) that pushes (p,) on points with outward normals (p, 3) are held near, and
-    within what angle, radians. No pushes are held nowhere.
+    """The direction (3,) that pushes are held near, and within what angle, radians, after the last
+    ``forces`` (p, 3) on points with outward normals (p, 3). Where there were none it is nowhere.
+
+    Only forces into the body count: where a tool reaches the far side of a thin part it pushes
+    that outwards, and the part would else be felt turned round.
     """
-    facing = pushes @ normals
-    length, most = float(np.linalg.norm(facing)), float(pushes.sum())
+    into = np.maximum(-np.einsum("px,px->p", forces, normals), 0.0)
+    facing = into @ normals
+    length, most = float(np.linalg.norm(facing)), float(into.sum())
     if length == 0.0:
         return np.array([0.0, 0.0, 1.0]), np.pi
     return -facing / length, float(MOST_TILT + MORE_WHERE_UNEVEN * (1.0 - length / most))

@@ -55,16 +55,17 @@ def settle_rubbing(
     displacements = candidates.displacements(forces)
     known = np.isfinite(rubbing.anchors.sum(axis=1))
     normals = np.zeros_like(forces)
-    pushes = np.linalg.norm(forces, axis=1)
+    pushes, into = np.linalg.norm(forces, axis=1), forces
     for made in range(1, most + 1):
-        distances, normals = linearised(candidates, tool, pose, displacements, pushes)
+        distances, normals = linearised(candidates, tool, pose, displacements, into)
         aside = _across(forces, normals) * known[:, None]
         # What the forces aside move counts as given, like the other fingers'.
         given = displacements - candidates.displacements(aside)
         pushes = pushes_about(candidates, given, distances, normals, pushes)
         limits = rubbing.coefficient * pushes * known
         aside = _aside(candidates, normals, pushes, limits, rubbing.anchors, aside)
-        forces = pushes[:, None] * normals + aside
+        into = pushes[:, None] * normals
+        forces = into + aside
         last, displacements = displacements, candidates.displacements(forces)
         change = float(np.abs(displacements - last).max(initial=0.0))
         if change <= CONVERGED * tool.size:

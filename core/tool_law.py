@@ -88,7 +88,7 @@ def settle(
     displacements = candidates.displacements(forces)
     normals = np.zeros_like(forces)
     for made in range(1, most + 1):
-        distances, normals = linearised(candidates, tool, pose, displacements, pushes)
+        distances, normals = linearised(candidates, tool, pose, displacements, forces)
         pushes = pushes_about(candidates, displacements, distances, normals, pushes)
         forces = pushes[:, None] * normals
         last, displacements = displacements, candidates.displacements(forces)
@@ -103,16 +103,16 @@ def linearised(
     tool: Tool,
     pose: Pose,
     displacements: NDArray[np.float64],
-    pushes: NDArray[np.float64],
+    forces: NDArray[np.float64],
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Distances (p,) and normals (p, 3) where ``displacements`` (p, 3) have taken the points.
 
-    ``pushes`` (p,) are the last, which tell the direction that pushes are held near.
+    ``forces`` (p, 3) are the last pushes, which tell the direction that pushes are held near.
     """
     places = candidates.positions + displacements
     distances, normals = distances_in_body(tool, pose, places)
     offsets = places[:, None] - pose.to_body(tool.core)
-    inward, limit = hold(pushes, candidates.normals)
+    inward, limit = hold(forces, candidates.normals)
     return held_tilt(distances, normals, offsets, inward, limit, tool.radius)
 
 

@@ -38,7 +38,7 @@ def moved(pose, by=(0, 0, 0), turn=(0, 0, 0)):
 
 def steep(touch):
     """Which pushes are held at the limit of their tilt."""
-    inward, limit = hold(touch.pushes, touch.surface.normals[touch.points])
+    inward, limit = hold(touch.forces, touch.surface.normals[touch.points])
     tilts = np.arccos(touch.normals @ inward)
     assert (tilts < limit + 1e-6).all()
     return tilts > limit - 1e-6

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from measuring.soft_block import soft_block
 from palpate_servo import Tool as NativeTool
 from palpate_servo import ToolContact, ToolSurface, tick_costs
 from scipy.spatial.transform import Rotation
@@ -143,3 +144,17 @@ def test_costs_are_told_for_every_tick(body, surface):
     contact = native_tool(body, surface, TOOLS["sphere"])
     costs, pressed = contact.time_path(path[0], np.tile(np.eye(3), (5, 1, 1)), 1e4)
     assert costs.shape == pressed.shape == (5,)
+
+
+def test_a_thin_part_on_a_firm_base_is_not_passed_through():
+    slab, tool = soft_block((0.04, 0.04, 0.006), (6, 6, 2)), sphere(0.008)
+    contact = native_tool(slab, native_body(slab, whole=True), tool)
+    touch, forces = None, []
+    # To twice the thickness: the sphere reaches the pinned far side.
+    for depth in np.arange(-0.001, 0.012, 0.001):
+        pose = Pose.at([0.021, 0.019, 0.006 + tool.radius - depth])
+        touch = set_down(slab, tool, pose) if touch is None else follow_tool(touch, pose)
+        for _ in range(10):
+            contact.follow(pose.position, pose.rotation, slab.young_modulus)
+        forces.append((touch.force[2], contact.force[2]))
+    assert (np.diff(forces[2:], axis=0) > 0).all()

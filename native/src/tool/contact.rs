@@ -399,8 +399,8 @@ impl ToolContact {
         let watched = WATCHED * MARGIN * self.surface.spacing();
         let points = self.surface.points();
         let pushes = self.patch.slots().iter().map(|slot| {
-            let normal = points[slot.point as usize].normal;
-            (slot.push, normal)
+            let facing = points[slot.point as usize].normal;
+            (slot.push * slot.normal, facing)
         });
         let hold = Hold::of(pushes).map(|hold| hold.seen_from(&pose.rotation));
         for (number, slot) in self.patch.slots_mut().iter_mut().enumerate() {

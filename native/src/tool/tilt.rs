@@ -46,12 +46,15 @@ impl Sinusoid {
 }
 
 impl Hold {
-    /// From pushes and the outward normals of the body where they push; of none, nowhere.
-    pub fn of(pushes: impl Iterator<Item = (f64, DVec3)>) -> Option<Self> {
+    /// From pushes (along the tool's normals) and the outward normals of the body where they push.
+    /// Only what goes into the body counts: the far side of a thin part is pushed outwards, and the
+    /// part would else be felt turned round. Of none, nowhere.
+    pub fn of(pushes: impl Iterator<Item = (DVec3, DVec3)>) -> Option<Self> {
         let (mut facing, mut most) = (DVec3::ZERO, 0.0);
         for (push, normal) in pushes {
-            facing += normal * push;
-            most += push;
+            let into = (-push.dot(normal)).max(0.0);
+            facing += normal * into;
+            most += into;
         }
         let length = facing.length();
         (length > 0.0).then(|| {
