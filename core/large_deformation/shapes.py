@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from ..errors import PalpateError
 from ..soft_body import SoftBody
+from .rotation_strain_shape import RotationStrainShape
 
 ShapeName: TypeAlias = Literal["linear", "table", "series", "rotation-strain"]
 SHAPES: tuple[ShapeName, ...] = get_args(ShapeName)
@@ -94,7 +95,8 @@ class LinearShape:
 
 # How each is made, of a body and the file it came from, beside which tables may be kept.
 MAKERS: dict[ShapeName, Callable[[SoftBody, Path | None], Shape]] = {
-    "linear": lambda body, _: LinearShape(body)
+    "linear": lambda body, _: LinearShape(body),
+    "rotation-strain": lambda body, _: RotationStrainShape(body),
 }
 
 

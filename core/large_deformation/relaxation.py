@@ -1,0 +1,169 @@
+"""From the warped shape towards equilibrium, in a fixed number of steps that depend smoothly on F.
+
+Warping keeps a bend's size, but knows nothing of equilibrium: the lever of a force shortens as a
+body bends, and what is crushed or drawn out hardens or softens. So the total energy is minimised,
+as a function of the *linear* displacement v that is warped to u = W(v):
+
+    p(v) = U(W(v)) - F . W(v)
+
+In these coordinates it is nearly the quadratic function 1/2 v.Kv - F.v whatever the rotations, and
+quasi-Newton steps from K^-1, which is at hand, come close in very few: where steps in u have to
+undo each rotation's false stretch, these turn what they move.
+
+Steps are those of the limited-memory BFGS method with K^-1 as the first inverse Hessian and
+Powell's damping; the length of each is where the parabola through value and slope at its start and
+value at its end is lowest, at most the whole. All of it depends continuously on the forces.
+
+References
+----------
+J. Nocedal, S. J. Wright: Numerical Optimization, Springer, 2nd edition, 2006; L-BFGS in section
+7.2, damping in section 18.3.
+T. Liu, S. Bouaziz, L. Kavan: Quasi-Newton Methods for Real-Time Simulation of Hyperelastic
+Materials, ACM Transactions on Graphics 36, 2017; there in displacements.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from .by_component import Array
+from .rotation_strain import RotationStrain, Warped
+from .strain_energy import StrainEnergy, Stressed
+
+# A parabola at least this far ahead of the end of a step takes the whole step: the energy is no
+# parabola, and a step that is nearly right is cheaper taken than looked at again.
+WHOLE_FROM = 0.8
+SHORTEST_STEP = 0.05
+# Powell's: a pair of changes keeps at least this share of the curvature that was expected.
+LEAST_CURVATURE = 0.2
+
+Solve = Callable[[Array], Array]
+
+
+@dataclass(frozen=True, eq=False)
+class Relaxation:
+    """Total energy of a body under forces, over its linear displacements.
+
+    Attributes
+    ----------
+    coordinates : the warp.
+    energy : of the body on its free nodes, at unit modulus.
+    solve : K^-1 on nodal forces (3, f).
+    """
+
+    coordinates: RotationStrain
+    energy: StrainEnergy
+    solve: Solve
+
+    def relaxed(self, forces: Array, steps: int) -> Array:
+        """Displacements (3, f) of the free nodes under ``forces`` (3, f), after so many steps.
+
+        Without steps it is the warped linear displacement.
+        """
+        linear = self.solve(forces)
+        if not steps or not forces.any():
+            return self.coordinates.warp(linear).displacements
+        here, share = self._nearer(_Place.at(linear, forces, self), forces)
+        slope = self._gradient(here, forces)
+        # At rest the gradient is known without any work, so the way from there counts as a step.
+        history = [_Change.damped(share, linear, -forces, slope)]
+        for step in range(steps):
+            direction = _direction(slope, history, self.solve)
+            descent = dot(slope, direction)
+            there = _Place.at(here.linear + direction, forces, self)
+            share = step_length(here.potential, descent, there.potential)
+            if step + 1 == steps:
+                # On the chord: warping once more would change little.
+                start, end = here.warped.displacements, there.warped.displacements
+                return start + share * (end - start)
+            if share < 1.0:
+                there = _Place.at(here.linear + share * direction, forces, self)
+            after = self._gradient(there, forces)
+            history.append(_Change.damped(share, direction, slope, after))
+            here, slope = there, after
+        return here.warped.displacements
+
+    def _nearer(self, place: _Place, forces: Array) -> tuple[_Place, float]:
+        """The place on the way from rest: all of it, or the share of it where a body hardens."""
+        share = step_length(0.0, -dot(forces, place.linear), place.potential)
+        return place if share == 1.0 else _Place.at(share * place.linear, forces, self), share
+
+    def _gradient(self, place: _Place, forces: Array) -> Array:
+        unbalanced = self.energy.forces(place.stressed) - forces
+        return self.coordinates.pulled_back(place.warped, unbalanced)
+
+
+def step_length(start: float, slope: float, end: float) -> float:
+    """Share of a step at which the parabola through these values is lowest, 0.05 to 1.
+
+    ``slope`` is the derivative at the start along the whole step, zero or less.
+    """
+    curvature = 2.0 * (end - start - slope)
+    if -slope >= WHOLE_FROM * curvature:
+        return 1.0
+    return max(SHORTEST_STEP, -slope / (WHOLE_FROM * curvature))
+
+
+def dot(a: Array, b: Array) -> float:
+    """The work of nodal forces ``a`` on displacements ``b``, both (3, f)."""
+    return float(a.ravel() @ b.ravel())
+
+
+@dataclass(frozen=True, eq=False)
+class _Place:
+    """Linear displacements (3, f), what they are warped to, and the total energy there."""
+
+    linear: Array
+    warped: Warped
+    stressed: Stressed
+    potential: float
+
+    @classmethod
+    def at(cls, linear: Array, forces: Array, body: Relaxation) -> _Place:
+        warped = body.coordinates.warp(linear)
+        stressed = body.energy.stressed(warped.displacements)
+        potential = stressed.energy - dot(forces, warped.displacements)
+        return cls(linear, warped, stressed, potential)
+
+
+@dataclass(frozen=True, eq=False)
+class _Change:
+    """By how much a step changed the place and the gradient, and the work of the two."""
+
+    place: Array
+    gradient: Array
+    work: float
+
+    @classmethod
+    def damped(cls, share: float, direction: Array, before: Array, after: Array) -> _Change:
+        """Of a step of ``share`` of a direction, -H times the gradient ``before``."""
+        place = share * direction
+        gradient = after - before
+        # H^-1 times the step is known without H: it is -share times the gradient.
+        expected = -share * dot(before, place)
+        work = dot(place, gradient)
+        if work < LEAST_CURVATURE * expected:
+            kept = (1.0 - LEAST_CURVATURE) * expected / (expected - work)
+            gradient = kept * gradient - (1.0 - kept) * share * before
+            work = LEAST_CURVATURE * expected
+        return cls(place, gradient, work)
+
+
+def _direction(slope: Array, history: list[_Change], solve: Solve) -> Array:
+    """Minus the inverse Hessian of BFGS times the gradient, by two loops over the changes."""
+    left = slope.copy()
+    shares = []
+    for change in reversed(history):
+        share = _ratio(dot(change.place, left), change.work)
+        left -= share * change.gradient
+        shares.append(share)
+    direction = solve(left)
+    for change, share in zip(history, reversed(shares), strict=True):
+        direction += (share - _ratio(dot(change.gradient, direction), change.work)) * change.place
+    return -direction
+
+
+def _ratio(work: float, curvature: float) -> float:
+    """Zero where the change is: it has arrived."""
+    return work / curvature if curvature > 0.0 else 0.0

@@ -1,0 +1,75 @@
+"""The strain energy of a :class:`.solid.Solid` and its forces, by component: fast for frames."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .by_component import Array, product, symmetric_part, transposed_product
+from .gradients import Gradients
+from .solid import StrainTerm
+
+
+@dataclass(frozen=True, eq=False)
+class StressedTerm:
+    """One term's energy, joule, and its first stresses times volumes, (3, 3, d)."""
+
+    energy: float
+    stresses: Array
+
+
+@dataclass(frozen=True, eq=False)
+class EnergyTerm:
+    """As :class:`.solid.StrainTerm`; moduli times volumes, (d,)."""
+
+    gradients: Gradients
+    first_lame: NDArray[np.float64]
+    shear_modulus: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, term: StrainTerm, gradients: Gradients) -> EnergyTerm:
+        """With the term's gradients by component, which may be shared."""
+        volumes = term.volumes
+        return cls(gradients, volumes * term.first_lame, volumes * term.shear_modulus)
+
+    def stressed(self, displacements: Array) -> StressedTerm:
+        """At displacements (3, f)."""
+        gradient = self.gradients.of_displacements(displacements)
+        strain = symmetric_part(gradient)
+        strain += 0.5 * transposed_product(gradient, gradient)
+        stress = 2.0 * self.shear_modulus * strain
+        pressure = self.first_lame * (strain[0, 0] + strain[1, 1] + strain[2, 2])
+        for axis in range(3):
+            stress[axis, axis] += pressure
+        energy = 0.5 * float(stress.ravel() @ strain.ravel())
+        stress += product(gradient, stress)
+        return StressedTerm(energy, stress)
+
+
+@dataclass(frozen=True, eq=False)
+class Stressed:
+    """A solid at some displacements: its strain energy, joule, and the stresses of its terms."""
+
+    energy: float
+    terms: tuple[StressedTerm, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class StrainEnergy:
+    """The energy of a solid on its free nodes, at unit modulus."""
+
+    terms: tuple[EnergyTerm, ...]
+
+    def stressed(self, displacements: Array) -> Stressed:
+        """At displacements (3, f)."""
+        terms = tuple(term.stressed(displacements) for term in self.terms)
+        return Stressed(sum(term.energy for term in terms), terms)
+
+    def forces(self, stressed: Stressed) -> Array:
+        """Forces (3, f) that hold the nodes there: the gradient of the energy."""
+        total = np.zeros((3, self.terms[0].gradients.backward.shape[0]))
+        for term, there in zip(self.terms, stressed.terms, strict=True):
+            total += term.gradients.nodal(there.stresses)
+        return total
