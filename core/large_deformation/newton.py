@@ -37,8 +37,14 @@ MOST_ITERATIONS = 16
 SUFFICIENT_DECREASE = 1e-4
 SHORTEST_PART = 1 / 64
 
-# Residuals, relative to the forces inside, that are rounding.
+# Rounding of an energy, relative to the parts it is summed of.
 ROUNDING = 1e-14
+
+# Where bodies are slender, stresses inside are so much larger than the load that a residual above
+# the wanted share is rounding. It is taken for that below this share, once it no longer falls by
+# this factor.
+LARGEST_ROUNDING_SHARE = 1e-8
+STALLED = 0.1
 
 
 class NoEquilibrium(PalpateError):  # noqa: N818 - it is a result of mechanics, not a mistake
@@ -52,8 +58,9 @@ class NoEquilibrium(PalpateError):  # noqa: N818 - it is a result of mechanics, 
 
     def __init__(self, held: float, displacements: NDArray[np.float64]) -> None:
         super().__init__(
-            f"large deformation: the body gives way at {held:.1%} of the load (St. Venant-Kirchhoff "
-            "solids collapse under strong compression); use less force or a stiffer body"
+            f"large deformation: the body gives way at {held:.1%} of the load (St. "
+            "Venant-Kirchhoff solids collapse under strong compression); use less force or a "
+            "stiffer body"
         )
         self.held = held
         self.displacements = displacements
@@ -142,12 +149,13 @@ def _newton(
     """Newton's method for one load, from displacements without inverted elements."""
     load = float(np.abs(forces).max())
     point = _Point.at(body, forces, start)
-    history = []
+    history: list[float] = []
     for _ in range(MOST_ITERATIONS):
         worst = float(np.abs(point.residual).max())
         history.append(worst / load)
-        inner = float(np.abs(forces - point.residual).max())
-        if worst <= max(tolerance * load, ROUNDING * inner):
+        is_small = worst <= LARGEST_ROUNDING_SHARE * load
+        has_stalled = len(history) > 1 and history[-1] > STALLED * history[-2]
+        if worst <= tolerance * load or (is_small and has_stalled):
             return _Step(True, point.displacements, tuple(history))
         tangent = body.solid.tangent_blocks(point.displacements)
         try:
@@ -157,7 +165,8 @@ def _newton(
         way = factor.solve(point.residual.ravel()).reshape(-1, 3)
         further = _searched(body, forces, point, way)
         if further is None:
-            break
+            # No way lowers the energy further, as far as its numbers tell.
+            return _Step(is_small, point.displacements, tuple(history))
         point = further
     return _Step(False, point.displacements, tuple(history))
 
@@ -181,7 +190,7 @@ class _Point:
 def _searched(
     body: FreeSolid, forces: NDArray[np.float64], point: _Point, way: NDArray[np.float64]
 ) -> _Point | None:
-    """The first of ever shorter parts of ``way`` that lowers the energy enough; None if none does."""
+    """The first of ever shorter parts of ``way`` that lowers the energy enough, if one does."""
     slope = float((point.residual * way).sum())
     part = unhindered_share(body.solid, point.displacements, way)
     while part >= SHORTEST_PART:

@@ -6,7 +6,7 @@ import pytest
 from palpate.core.dense_compliance import DenseCompliance
 from palpate.core.large_deformation.free_solid import FreeSolid
 from palpate.core.large_deformation.inversion import is_upright, unhindered_share
-from palpate.core.large_deformation.newton import NoEquilibrium, equilibrium
+from palpate.core.large_deformation.newton import RESIDUAL_SHARE, NoEquilibrium, equilibrium
 from palpate.core.paper_cube import paper_cube
 from palpate.core.soft_body import SoftBody
 from palpate.core.tet_mesh import TetMesh
@@ -138,3 +138,17 @@ def test_without_a_load_the_body_rests(cube):
     found = equilibrium(cube, np.zeros((cube.node_count, 3)))
     assert not found.displacements.any()
     assert found.iterations == 0
+
+
+def test_rounding_in_a_slender_body_is_no_collapse():
+    """A beam thirty times as long as thick bends; its stresses are far above its load."""
+    mesh, fixed = paper_cube(1.0, 4)
+    mesh = TetMesh.checked(mesh.nodes * [1.0, 1.0, 30.0], mesh.tets)
+    nodes = np.setdiff1d(mesh.surface_nodes, fixed)
+    none = DenseCompliance(nodes, np.empty((len(nodes), 3, 0)))
+    beam = FreeSolid.of(SoftBody(mesh, fixed, 0.49, none, 1.0))
+    forces = np.zeros((beam.node_count, 3))
+    forces[beam.positions[:, 2] > 29.9, 0] = 1.0
+    forces *= 9.0 / np.abs(beam.linear(forces)).max()
+    found = equilibrium(beam, forces)
+    assert RESIDUAL_SHARE < found.residual < 1e-8
