@@ -22,7 +22,7 @@ from palpate_servo import Tool as NativeTool
 
 if TYPE_CHECKING:
     # Types only: the module itself does not have them.
-    from palpate_servo import ContactMode
+    from palpate_servo import ContactMode, FeltName
     from palpate_servo import FingerCounters as FingerCounters  # noqa: PLC0414
     from palpate_servo import LinkCounters as LinkCounters  # noqa: PLC0414
     from palpate_servo import ServoCounters as ServoCounters  # noqa: PLC0414
@@ -120,6 +120,7 @@ def servo_for(
     max_force: float = 3.0,
     record_seconds: float = 10.0,
     mode: ContactMode = "consistent",
+    felt: FeltName = "linear",
 ) -> Servo:
     """A servo for this body, ready to be started with a pointer or a serial device.
 
@@ -130,6 +131,9 @@ def servo_for(
     max_force : newton; the clamp on what any device is told.
     record_seconds : how long samples are kept until somebody takes them.
     mode : how a contact inside a triangle becomes a force; can be changed while it runs.
+    felt : which relation between displacement and force points feel; can be changed while it runs.
+        ``corrected`` is ``linear`` where the native body was not told its softenings, see
+        :class:`.large_deformation.softening_table.SofteningTable`: ``listen(surface.set_softenings)``.
 
     Raises
     ------
@@ -143,6 +147,7 @@ def servo_for(
         max_force=max_force,
         record_seconds=record_seconds,
         mode=mode,
+        felt=felt,
     )
 
 
@@ -154,6 +159,7 @@ def servo_on(
     max_force: float = 3.0,
     record_seconds: float = 10.0,
     mode: ContactMode = "consistent",
+    felt: FeltName = "linear",
 ) -> Servo:
     """As :func:`servo_for`, for a native body that others use as well: its tools.
 
@@ -170,6 +176,7 @@ def servo_on(
             max_force=max_force,
             record_seconds=record_seconds,
             mode=mode,
+            felt=felt,
         )
     except (ValueError, OverflowError) as problem:
         raise PalpateError(f"servo: {problem}") from problem

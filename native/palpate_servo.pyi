@@ -15,6 +15,7 @@ _Vector: TypeAlias = Sequence[float] | NDArray[np.floating[Any]]
 _Matrix: TypeAlias = Sequence[_Vector] | NDArray[np.floating[Any]]
 
 ContactMode: TypeAlias = Literal["paper", "consistent"]
+FeltName: TypeAlias = Literal["linear", "corrected"]
 
 class Lateness(TypedDict):
     """Time from the deadline to the waking, us; percentiles to 3 %."""
@@ -222,6 +223,14 @@ class Body:
     def is_whole(self) -> bool: ...
     @property
     def has_compliance(self) -> bool: ...
+    def set_softenings(self, nodes: ArrayLike, softenings: ArrayLike) -> None:
+        """How nodes (k,) depart from the linear relation: b (1/m) and w (1/m^2) of each, (k, 4).
+
+        Also while a servo touches the body; the first that is told of a node counts. What was not
+        told is linear. ValueError for other shapes, nodes beyond the body, or numbers that make no
+        relation.
+        """
+
     def contact(
         self,
         triangle: int,
@@ -229,11 +238,13 @@ class Body:
         displacement: _Vector,
         young_modulus: float,
         mode: ContactMode = "consistent",
+        felt: FeltName = "linear",
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Nodal forces (3, 3) and force on the finger (3,), N: equations (11) to (14), or the force
         of least energy that moves the contact point by exactly the displacement (consistent).
 
-        Without a compliance both modes are the paper's. ValueError for another mode.
+        Without a compliance both modes are the paper's. Felt as "corrected" with the softenings that
+        were told. ValueError for another mode or felt force.
         """
 
     def surface_displacement(
@@ -343,6 +354,16 @@ class FingerSnapshot:
         """(14), N, before coupling and safety, body axes."""
 
     @property
+    def felt(self) -> FeltName:
+        """Which relation was to be felt."""
+
+    @property
+    def felt_share(self) -> float:
+        """How much of the corrected relation is in contact_force, 0 to 1: all of it where the
+        softenings of the touched nodes were told and nothing was changed within 50 ms.
+        """
+
+    @property
     def output_force(self) -> NDArray[np.float64]:
         """N, after safety, body axes."""
 
@@ -450,6 +471,16 @@ class Snapshot:
     @property
     def contact_force(self) -> NDArray[np.float64]:
         """(14), N, before coupling and safety, body axes."""
+
+    @property
+    def felt(self) -> FeltName:
+        """Which relation was to be felt."""
+
+    @property
+    def felt_share(self) -> float:
+        """How much of the corrected relation is in contact_force, 0 to 1: all of it where the
+        softenings of the touched nodes were told and nothing was changed within 50 ms.
+        """
 
     @property
     def output_force(self) -> NDArray[np.float64]:
@@ -663,6 +694,7 @@ class Servo:
         static_friction: float = 0.0,
         dynamic_friction: float = 0.0,
         mode: ContactMode = "consistent",
+        felt: FeltName = "linear",
     ) -> None:
         """Prepare a servo; ValueError for a rate beyond 100 to 8000 Hz or limits without sense.
 
@@ -784,6 +816,12 @@ class Servo:
     def set_feel(self, *, shading: bool, static_friction: float, dynamic_friction: float) -> None:
         """Shading and friction of the surface; ValueError unless 0 <= dynamic <= static."""
 
+    def set_felt(self, felt: FeltName) -> None:
+        """Which relation between displacement and force points feel; while touching, the other one
+        comes in over 50 ms. Where the body was not told its softenings, both are linear. ValueError
+        for another name.
+        """
+
     def set_mode(self, mode: ContactMode) -> None:
         """How a contact becomes a force, from the next tick on; ValueError for another mode."""
 
@@ -883,6 +921,9 @@ class SteppedServo:
     def set_young_modulus(self, young_modulus: float) -> None:
         """Any number, also none: to see what the tick makes of it."""
 
+    def set_felt(self, felt: FeltName) -> None:
+        """As of Servo; linear at the start."""
+
     def set_mode(self, mode: ContactMode) -> None:
         """As of Servo."""
 
@@ -917,6 +958,7 @@ class SteppedFingers:
         static_friction: float = 0.0,
         dynamic_friction: float = 0.0,
         mode: ContactMode = "consistent",
+        felt: FeltName = "linear",
     ) -> None:
         """Fingers set down at positions (m, 3), m; the other arguments as of Servo, the rate any.
 
@@ -936,6 +978,9 @@ class SteppedFingers:
 
     def set_down(self, position: _Vector, finger: int) -> None:
         """Lift a finger off and set it down there with the next tick."""
+
+    def set_felt(self, felt: FeltName) -> None:
+        """As of Servo."""
 
     def set_young_modulus(self, young_modulus: float) -> None: ...
     def snapshot(self) -> Snapshot: ...

@@ -13,6 +13,7 @@ use tool::ToolTouch;
 
 use crate::coupling::{Coupler, Coupling};
 use crate::device::{Device, DeviceFrame, Fault, Probe, Reading};
+use crate::felt::Blend;
 use crate::pressed_patch::PressedPatch;
 use crate::proxy::Proxy;
 use crate::safety::{Limits, Safety};
@@ -104,6 +105,7 @@ pub struct Finger {
     presence: f64,
     frame_epoch: u32,
     coupler: Coupler,
+    blend: Blend,
     safety: Safety,
     standing: Standing,
     /// Time of the last tick after a gap, s.
@@ -135,6 +137,7 @@ impl Finger {
             presence: 1.0,
             frame_epoch: settings.frame.epoch,
             coupler: Coupler::default(),
+            blend: Blend::default(),
             safety: Safety::default(),
             standing: Standing::default(),
             interrupted_at: f64::NEG_INFINITY,
@@ -174,11 +177,13 @@ impl Finger {
         if moment.body_replaced {
             // Even in a tick without a probe: nothing may be left of the old body.
             self.forget_others();
+            self.blend.let_go();
             if let Some(proxy) = &mut self.proxy {
                 proxy.restart(body, self.probe);
             }
         }
         self.found = self.inspect(moment, options.max_speed);
+        self.shot.felt = settings.felt;
         self.found.switched_off = !settings.enabled;
         self.found.body_replaced = moment.body_replaced;
         self.tip_fits = self.tips.tip.fits(body);

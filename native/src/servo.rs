@@ -11,6 +11,7 @@ use crate::cones::{MAX_FINGERS, Vectors};
 use crate::contact::ContactMode;
 use crate::device::{Device, Fault};
 use crate::exchange::{Holder, exchange};
+use crate::felt::Felt;
 use crate::finger::{Finger, FingerSettings, Moment};
 use crate::proxy::{Feel, Hold};
 use crate::recorder::Tape;
@@ -30,6 +31,8 @@ pub struct Settings {
     pub enabled: bool,
     /// Shading, friction and how a contact becomes a force.
     pub feel: Feel,
+    /// Which relation between displacement and force is felt.
+    pub felt: Felt,
     /// Of each finger by number; those that are not there have theirs, too.
     pub fingers: [FingerSettings; MAX_FINGERS],
 }
@@ -41,6 +44,7 @@ impl Settings {
             young_modulus,
             enabled: true,
             feel: Feel::default(),
+            felt: Felt::default(),
             fingers: [FingerSettings::default(); MAX_FINGERS],
         }
     }
@@ -177,8 +181,8 @@ impl Servo {
         if are_coupled && self.fingers.iter().any(reckons) {
             self.gather_loads(young_modulus, |_, finger| finger.has_tool());
             let mut presses = [None; MAX_FINGERS];
-            for ((press, finger), own) in presses.iter_mut().zip(&self.fingers).zip(own) {
-                *press = finger.press(body, young_modulus, own);
+            for ((press, finger), own) in presses.iter_mut().zip(&mut self.fingers).zip(own) {
+                *press = finger.press(body, settings, own, moment.dt);
                 if let Some(press) = press {
                     press.moved_by_tools = moved_by(body, &press.hold, &self.loads, young_modulus);
                 }

@@ -11,7 +11,9 @@ use glam::{DMat3, DVec3};
 use crate::cones::{Blocks, Cone, MAX_FINGERS, Members, mean, solve_distinct};
 use crate::contact::{contact_compliance, inverse_of_definite};
 use crate::coupling::series_compliance;
+use crate::felt::Softening;
 use crate::proxy::Hold;
+use crate::softened::{Pressing, Softened};
 use crate::surface::Body;
 
 /// Where the others hold a finger, it still finds this share of the compliance it finds alone.
@@ -39,6 +41,8 @@ pub struct Press {
     pub most_stiffness: f64,
     /// From 0 to 1 after it was lifted by a fault: how much it acts on the others.
     pub presence: f64,
+    /// How the place departs from the linear relation.
+    pub softening: Softening,
 }
 
 /// What becomes of a press; times Young's modulus for N and N/m.
@@ -50,11 +54,16 @@ pub struct Answer {
     pub contact_force: DVec3,
     /// How far the others move the contact point, m.
     pub by_others: DVec3,
+    /// As `force` and `by_others`, were all relations linear: so the linear body is drawn, in which
+    /// every contact point is where its finger has it.
+    pub drawn: (DVec3, DVec3),
     /// How far the surface goes beyond what the finger asks, m: zero unless its force is on its cone.
     pub slip: DVec3,
     /// Of the contact point while the others hold theirs, in series with what keeps the device from
     /// seeing it whole: the most that any device sees.
     pub seen_stiffness: DMat3,
+    /// Compliance of that which keeps the device from seeing it whole.
+    pub spring: f64,
 }
 
 /// L between the nodes of two triangles, kept until one of them changes.
@@ -70,6 +79,7 @@ struct Cross {
 pub struct Several {
     cross: [[Cross; MAX_FINGERS]; MAX_FINGERS],
     forces: [DVec3; MAX_FINGERS],
+    softened: Softened,
 }
 
 impl Default for Several {
@@ -82,6 +92,7 @@ impl Default for Several {
         Self {
             cross: [[unread; MAX_FINGERS]; MAX_FINGERS],
             forces: [DVec3::ZERO; MAX_FINGERS],
+            softened: Softened::default(),
         }
     }
 }
@@ -115,6 +126,7 @@ impl Several {
             series[p][p] += DMat3::IDENTITY * between[p];
             let share = (DMat3::IDENTITY + held[p] * spring).inverse();
             answers[p].seen_stiffness = share * held[p];
+            answers[p].spring = spring;
             asked[p] = press.displacement - press.moved_by_tools;
             cones[p] = Cone::about(press.push, &series[p][p])?;
         }
@@ -131,6 +143,25 @@ impl Several {
                 let moved = series[p][p] * force + answers[p].by_others;
                 answers[p].slip = moved - press.displacement;
             }
+            answers[p].drawn = (answers[p].force, answers[p].by_others);
+        }
+        if numbered(&touching).any(|(_, press)| !press.softening.is_none()) {
+            let pressing = Pressing {
+                compliance,
+                between,
+                asked,
+                cones,
+                members,
+            };
+            // Where rounding has made nonsense of it, the linear answers stay.
+            if (self.softened)
+                .solve(&pressing, presses, &mut answers)
+                .is_none()
+            {
+                self.softened = Softened::default();
+            }
+        } else {
+            self.softened = Softened::default();
         }
         Some(answers)
     }
@@ -138,6 +169,7 @@ impl Several {
     /// Nobody touches: what was remembered of the forces is over.
     pub fn release(&mut self) {
         self.forces = [DVec3::ZERO; MAX_FINGERS];
+        self.softened = Softened::default();
     }
 
     /// C_pq of all fingers that are there.
@@ -171,7 +203,9 @@ impl Several {
 }
 
 /// Those that are there, by number.
-fn numbered<T: Copy>(some: &[Option<T>; MAX_FINGERS]) -> impl Iterator<Item = (usize, T)> + '_ {
+pub(crate) fn numbered<T: Copy>(
+    some: &[Option<T>; MAX_FINGERS],
+) -> impl Iterator<Item = (usize, T)> + '_ {
     some.iter()
         .enumerate()
         .filter_map(|(number, one)| one.map(|one| (number, one)))

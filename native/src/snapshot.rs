@@ -4,6 +4,7 @@ use glam::{DMat3, DVec3};
 
 use crate::cones::MAX_FINGERS;
 use crate::device::{Fault, LinkReport};
+use crate::felt::Felt;
 pub use crate::state::State;
 use crate::state::reason;
 
@@ -26,10 +27,15 @@ pub struct Snapshot {
     pub hold: Option<(u32, [f64; 3])>,
     /// Whether friction holds the contact point where it is.
     pub sticking: bool,
+    /// Which relation was to be felt.
+    pub felt: Felt,
     /// Node numbers of that triangle.
     pub triangle: [u32; 3],
-    /// (12), (13), N.
+    /// (12), (13), of the linear relation whatever is felt: with them the linear body gives way as
+    /// far as the finger has come, N.
     pub nodal_forces: [DVec3; 3],
+    /// How much of the corrected relation is in the felt force, 0 to 1.
+    pub felt_share: f64,
     /// (14) before coupling and safety, N.
     pub contact_force: DVec3,
     /// On a tool about its reference point, N m, before safety; none on a point.

@@ -9,6 +9,7 @@ use std::sync::Arc;
 use glam::{DMat3, DVec3};
 
 use crate::compliance::Compliance;
+use crate::felt::Softenings;
 use crate::joining::{edge_nodes, edges_by_nodes, gather_fans, join_edges};
 use crate::normals::{is_soft, set_fan_normals};
 use crate::tree::Tree;
@@ -165,6 +166,8 @@ pub struct Body {
     size: f64,
     response: Option<Response>,
     whole: Option<Whole>,
+    /// How nodes soften under a press, as far as that was told.
+    pub softenings: Softenings,
 }
 
 impl Body {
@@ -194,6 +197,7 @@ impl Body {
         }
         let tree = Tree::new(&faces);
         let size = tree.diagonal();
+        let softenings = Softenings::unknown(nodes.len());
         Ok(Self {
             nodes,
             triangles,
@@ -208,6 +212,7 @@ impl Body {
             size,
             response: None,
             whole: None,
+            softenings,
         })
     }
 

@@ -9,6 +9,7 @@ use palpate_servo::cones::MAX_FINGERS;
 use palpate_servo::contact::{ContactMode, touch};
 use palpate_servo::coupling::Coupling;
 use palpate_servo::device::{Fault, Probe, Reading};
+use palpate_servo::felt::Softening;
 use palpate_servo::finger::FingerSettings;
 use palpate_servo::proxy::Hold;
 use palpate_servo::several::{Press, Several};
@@ -177,6 +178,7 @@ fn press(hold: Hold, displacement: DVec3) -> Option<Press> {
         push: displacement,
         most_stiffness: f64::INFINITY,
         presence: 1.0,
+        softening: Softening::default(),
     })
 }
 

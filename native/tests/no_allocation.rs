@@ -13,6 +13,7 @@ use palpate_servo::codec::{Decoder, MAX_FRAME, encode};
 use palpate_servo::cones::MAX_FINGERS;
 use palpate_servo::device::{Device, DeviceFrame, Fault, LinkReport, Probe, Reading};
 use palpate_servo::exchange::exchange;
+use palpate_servo::felt::{Felt, Softening};
 use palpate_servo::link::LinkDevice;
 use palpate_servo::pointer::{Pointer, Target};
 use palpate_servo::port::{Opener, Wire};
@@ -164,6 +165,7 @@ fn changed(tick: u32) -> Settings {
     changed.feel.static_friction = 0.1 * f64::from(tick % 3);
     changed.fingers[0].coupling.passivity_control = tick % 7 == 0;
     changed.enabled = tick % 1000 > 10;
+    changed.felt = Felt::ALL[tick as usize / 200 % 2];
     changed.fingers[0].frame.epoch = tick / 5000;
     changed
 }
@@ -177,8 +179,16 @@ fn ticks_of<D: Device + 'static>(device: D, mut each: impl FnMut(u32)) -> (Publi
     let (snapshots_in, mut snapshots) = triple_buffer(&Published::default());
     // Smaller than the run: a full ring must not allocate either.
     let (samples_in, _samples) = RingBuffer::new(50_000);
+    let body = bodies::giving_cube();
+    for node in 0..body.nodes.len() as u32 {
+        let softening = Softening {
+            slope: DVec3::new(5.0, -10.0, 20.0),
+            saturation: 1e3,
+        };
+        body.softenings.tell(node, &softening);
+    }
     let mut servo = Servo::new(
-        bodies::giving_cube(),
+        body,
         vec![Box::new(device)],
         OPTIONS,
         settings_out,

@@ -1,11 +1,12 @@
 //! A finger whose tip is a point: its contact alone and among others.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use super::{Finger, FingerSettings};
-use crate::contact::{contact_stiffness, surface_displacement, touch};
-use crate::coupling::Contact;
+use crate::contact::{contact_relation, softened_touch, surface_displacement, touch};
+use crate::coupling::{Contact, Coupled, series_compliance};
 use crate::device::Fault;
+use crate::felt::Softening;
 use crate::proxy::Proxy;
 use crate::servo::Settings;
 use crate::several::{Answer, Press};
@@ -14,9 +15,20 @@ use crate::tree::closest_on_face;
 
 impl Finger {
     /// The finger as the others see it: on the surface, or where it is nearest to that.
-    pub fn press(&self, body: &Body, young_modulus: f64, own: &FingerSettings) -> Option<Press> {
+    pub fn press(
+        &mut self,
+        body: &Body,
+        settings: &Settings,
+        own: &FingerSettings,
+        dt: f64,
+    ) -> Option<Press> {
+        let young_modulus = settings.young_modulus;
         let proxy = self.proxy.as_ref().filter(|_| !self.has_tool())?;
         if self.acts() {
+            let hold = proxy.hold()?;
+            let nodes = body.triangles[hold.triangle as usize];
+            let blended = (self.blend).follow(&body.softenings, nodes, settings.felt, dt);
+            self.shot.felt_share = blended.share(hold.alpha);
             let displacement = self.shot.probe - self.shot.proxy;
             let limit = if self.has_motors() {
                 own.coupling.stiffness / own.frame.scale / young_modulus
@@ -24,13 +36,14 @@ impl Finger {
                 f64::INFINITY
             };
             return Some(Press {
-                hold: proxy.hold()?,
+                hold,
                 touches: true,
                 displacement,
                 moved_by_tools: DVec3::ZERO,
                 push: displacement - self.moved_back,
                 most_stiffness: limit,
                 presence: self.presence,
+                softening: Softening::mixed(&blended.softenings, hold.alpha),
             });
         }
         if self.found.blind {
@@ -47,6 +60,7 @@ impl Finger {
             push: DVec3::ZERO,
             most_stiffness: f64::INFINITY,
             presence: 0.0,
+            softening: Softening::default(),
         })
     }
 
@@ -59,38 +73,64 @@ impl Finger {
         dt: f64,
     ) -> DVec3 {
         let (mode, young_modulus) = (settings.feel.mode, settings.young_modulus);
-        let Some((triangle, alpha)) = self.hold() else {
+        let Some(hold @ (triangle, alpha)) = self.hold() else {
             self.let_go();
             return DVec3::ZERO;
         };
         let displacement = self.shot.probe - self.shot.proxy;
-        let touch = |u| touch(body, mode, triangle, alpha, u, young_modulus);
-        let whole = touch(displacement);
-        if !self.takes(body, (triangle, alpha), whole.force) {
+        let nodes = body.triangles[triangle as usize];
+        let blended = (self.blend).follow(&body.softenings, nodes, settings.felt, dt);
+        let linear = |u| touch(body, mode, triangle, alpha, u, young_modulus);
+        let softened = |by: &_, u| softened_touch(body, mode, hold, by, u, young_modulus);
+        let felt = blended.softenings;
+        let is_softened = felt.iter().any(|one| !one.is_none());
+        let whole = if is_softened {
+            softened(&felt, displacement)
+        } else {
+            linear(displacement)
+        };
+        if !self.takes(body, hold, whole.force) {
             self.let_go();
             return DVec3::ZERO;
         }
-        self.shot.nodal_forces = whole.nodal_forces;
         let mut wanted = whole.force;
+        let mut reached = displacement;
         if self.has_motors() {
+            let relation = contact_relation(body, mode, triangle, alpha, &felt);
+            let (coupling, scale) = (&own.coupling, own.frame.scale);
             let contact = Contact {
-                stiffness: contact_stiffness(body, mode, triangle, alpha) * young_modulus,
+                stiffness: relation.stiffness * young_modulus,
                 displacement,
                 force: whole.force,
             };
-            let coupled = self
-                .coupler
-                .couple(&contact, &own.coupling, own.frame.scale, dt);
-            wanted = coupled.force;
-            let spared = displacement - coupled.body_displacement;
-            if spared != DVec3::ZERO {
-                let relief = touch(spared).nodal_forces;
-                for (force, less) in self.shot.nodal_forces.iter_mut().zip(relief) {
-                    *force -= less;
+            let coupled = if is_softened {
+                let tangent = relation.tangent(displacement) * young_modulus;
+                let most = coupling.stiffness / scale;
+                let spring = series_compliance(&contact.stiffness, most)
+                    .max(series_compliance(&tangent, most));
+                let moved = relation.behind_spring(spring * young_modulus, displacement);
+                let there = relation.tangent(moved) * young_modulus;
+                let seen = Contact {
+                    stiffness: (DMat3::IDENTITY + there * spring).inverse() * there,
+                    displacement,
+                    force: relation.force(moved) * -young_modulus,
+                };
+                Coupled {
+                    body_displacement: moved,
+                    force: self.coupler.drive(&seen, coupling, scale, dt),
                 }
-            }
+            } else {
+                self.coupler.couple(&contact, coupling, scale, dt)
+            };
+            (wanted, reached) = (coupled.force, coupled.body_displacement);
         }
-        self.show_surface(body, (triangle, alpha), young_modulus, DVec3::ZERO);
+        self.shot.nodal_forces = if !is_softened && reached == displacement {
+            whole.nodal_forces
+        } else {
+            linear(reached).nodal_forces
+        };
+        self.shot.felt_share = blended.share(alpha);
+        self.show_surface(body, hold, young_modulus, DVec3::ZERO);
         wanted
     }
 
@@ -120,8 +160,9 @@ impl Finger {
             self.let_go();
             return DVec3::ZERO;
         }
-        self.shot.nodal_forces = hold.1.map(|share| force * -share);
-        self.show_surface(body, hold, young_modulus, answer.by_others);
+        let (drawn, carried) = answer.drawn;
+        self.shot.nodal_forces = hold.1.map(|share| drawn * (share * young_modulus));
+        self.show_surface(body, hold, young_modulus, carried);
         if !self.has_motors() {
             return force;
         }
@@ -173,6 +214,7 @@ impl Finger {
 
     /// A touch is over. In a tick without a position nobody knows, and the coupling waits.
     pub(super) fn let_go(&mut self) {
+        self.blend.let_go();
         if self.has_motors() {
             self.coupler.release();
         }

@@ -3,13 +3,15 @@
 use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
+use numpy::ndarray::ArrayView1;
 use numpy::{AllowTypeChange, PyArray1, PyArrayLike1, PyArrayLike2, PyArrayLike3};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use super::compliance::Compliance;
-use super::servo::contact_mode;
+use super::servo::{contact_mode, felt_choice};
 use super::vectors::{Matrix, Rows, Triple, Vector, array, finite, rows};
+use crate::felt::{Felt, Softening};
 use crate::{closest, contact, surface};
 
 #[pyclass(frozen, module = "palpate_servo")]
@@ -106,7 +108,47 @@ impl Body {
         self.inner.has_compliance()
     }
 
-    #[pyo3(signature = (triangle, alpha, displacement, young_modulus, mode="consistent"))]
+    fn set_softenings(
+        &self,
+        nodes: PyArrayLike1<'_, i64, AllowTypeChange>,
+        softenings: PyArrayLike2<'_, f64, AllowTypeChange>,
+    ) -> PyResult<()> {
+        let (numbers, rows) = (node_numbers(&nodes)?, softenings.as_array());
+        if rows.shape() != [numbers.len(), 4] {
+            return Err(PyValueError::new_err(
+                "softenings must have four numbers for each of the nodes",
+            ));
+        }
+        let count = self.inner.nodes.len();
+        if let Some(&node) = numbers.iter().find(|&&node| node as usize >= count) {
+            return Err(PyValueError::new_err(format!(
+                "node {node} is beyond the {count} nodes of the body"
+            )));
+        }
+        let read = |row: ArrayView1<'_, f64>| {
+            let softening = Softening {
+                slope: DVec3::new(row[0], row[1], row[2]),
+                saturation: row[3],
+            };
+            softening.is_sound().then_some(softening)
+        };
+        let sound: Option<Vec<Softening>> = rows.rows().into_iter().map(read).collect();
+        let sound = sound.ok_or_else(|| {
+            PyValueError::new_err(
+                "softenings must be finite, the fourth number not negative, and positive where one \
+                 of the others is not zero",
+            )
+        })?;
+        // The interpreter's lock is held: one thread tells at a time.
+        for (&node, softening) in numbers.iter().zip(&sound) {
+            self.inner.softenings.tell(node, softening);
+        }
+        Ok(())
+    }
+
+    #[pyo3(signature = (triangle, alpha, displacement, young_modulus, mode="consistent",
+        felt="linear"))]
+    #[allow(clippy::too_many_arguments)] // Keywords in Python.
     fn contact<'py>(
         &self,
         py: Python<'py>,
@@ -115,16 +157,22 @@ impl Body {
         displacement: Triple,
         young_modulus: f64,
         mode: &str,
+        felt: &str,
     ) -> PyResult<(Matrix<'py>, Vector<'py>)> {
         self.check_triangle(triangle)?;
-        let touch = contact::touch(
-            &self.inner,
-            contact_mode(mode)?,
-            triangle as u32,
-            alpha,
-            DVec3::from_array(displacement),
-            young_modulus,
-        );
+        let (body, mode, triangle) = (&self.inner, contact_mode(mode)?, triangle as u32);
+        let displacement = DVec3::from_array(displacement);
+        let touch = match felt_choice(felt)? {
+            Felt::Linear => {
+                contact::touch(body, mode, triangle, alpha, displacement, young_modulus)
+            }
+            Felt::Corrected => {
+                let of = |node| body.softenings.of(node).unwrap_or_default();
+                let softenings = body.triangles[triangle as usize].map(of);
+                let hold = (triangle, alpha);
+                contact::softened_touch(body, mode, hold, &softenings, displacement, young_modulus)
+            }
+        };
         Ok((rows(py, &touch.nodal_forces)?, array(py, touch.force)))
     }
 

@@ -20,6 +20,7 @@ use crate::cones::MAX_FINGERS;
 use crate::contact::ContactMode;
 use crate::coupling::Coupling;
 use crate::device::{Device, DeviceFrame};
+use crate::felt::Felt;
 use crate::finger::FingerSettings;
 use crate::haply::device::HaplyDevice;
 use crate::link::LinkDevice;
@@ -194,7 +195,7 @@ impl Servo {
     #[new]
     #[pyo3(signature = (body, *, young_modulus, rate_hz=1000, max_force=3.0, max_slew=1000.0,
         ramp_seconds=0.25, max_speed=2.0, glide_speed=0.5, record_seconds=10.0, shading=false,
-        static_friction=0.0, dynamic_friction=0.0, mode="consistent"))]
+        static_friction=0.0, dynamic_friction=0.0, mode="consistent", felt="linear"))]
     #[allow(clippy::too_many_arguments)] // Keywords in Python.
     fn new(
         body: &Body,
@@ -210,6 +211,7 @@ impl Servo {
         static_friction: f64,
         dynamic_friction: f64,
         mode: &str,
+        felt: &str,
     ) -> PyResult<Self> {
         check_rate(rate_hz)?;
         check_seconds("ramp_seconds", ramp_seconds)?;
@@ -235,6 +237,7 @@ impl Servo {
                     dynamic_friction,
                     contact_mode(mode)?,
                 )?,
+                felt: felt_choice(felt)?,
                 fingers: [FingerSettings {
                     coupling: Coupling::for_devices(rate_hz),
                     ..FingerSettings::default()
@@ -473,6 +476,12 @@ impl Servo {
         Ok(())
     }
 
+    fn set_felt(&self, felt: &str) -> PyResult<()> {
+        let felt = felt_choice(felt)?;
+        self.change(|s| s.felt = felt);
+        Ok(())
+    }
+
     #[pyo3(signature = (*, stiffness, damping, passivity_control))]
     fn set_coupling(&self, stiffness: f64, damping: f64, passivity_control: bool) -> PyResult<()> {
         let coupling = coupling(stiffness, damping, passivity_control)?;
@@ -671,6 +680,15 @@ pub(super) fn contact_mode(name: &str) -> PyResult<ContactMode> {
     found.ok_or_else(|| {
         PyValueError::new_err(format!(
             "mode is {name:?}; it must be \"paper\" or \"consistent\""
+        ))
+    })
+}
+
+pub(super) fn felt_choice(name: &str) -> PyResult<Felt> {
+    let found = Felt::ALL.into_iter().find(|felt| felt.name() == name);
+    found.ok_or_else(|| {
+        PyValueError::new_err(format!(
+            "felt is {name:?}; it must be \"linear\" or \"corrected\""
         ))
     })
 }

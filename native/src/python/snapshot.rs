@@ -85,6 +85,14 @@ macro_rules! snapshot_methods {
                 array(py, self.shot().contact_force)
             }
             #[getter]
+            fn felt(&self) -> &'static str {
+                self.shot().felt.name()
+            }
+            #[getter]
+            fn felt_share(&self) -> f64 {
+                self.shot().felt_share
+            }
+            #[getter]
             fn output_force<'py>(&self, py: Python<'py>) -> Vector<'py> {
                 array(py, self.shot().output_force)
             }

@@ -10,7 +10,7 @@ use triple_buffer::{Input, Output, triple_buffer};
 
 use super::body::Body;
 use super::counters::link_counters;
-use super::servo::{contact_mode, coupling, device_frame};
+use super::servo::{contact_mode, coupling, device_frame, felt_choice};
 use super::snapshot::Snapshot;
 use super::vectors::{Rows, Triple, check_rate, check_seconds, positive};
 use crate::device::Fault;
@@ -191,6 +191,12 @@ impl SteppedServo {
 
     fn set_young_modulus(&self, young_modulus: f64) {
         self.change(|s| s.young_modulus = young_modulus);
+    }
+
+    fn set_felt(&self, felt: &str) -> PyResult<()> {
+        let felt = felt_choice(felt)?;
+        self.change(|s| s.felt = felt);
+        Ok(())
     }
 
     fn set_mode(&self, mode: &str) -> PyResult<()> {

@@ -10,7 +10,7 @@ use rtrb::RingBuffer;
 use triple_buffer::{Input, Output, triple_buffer};
 
 use super::body::Body;
-use super::servo::{contact_mode, feel};
+use super::servo::{contact_mode, feel, felt_choice};
 use super::snapshot::Snapshot;
 use super::tool::{ToolContact, rotation as turn};
 use super::vectors::{Rows, Triple, finite, positive};
@@ -91,7 +91,7 @@ impl SteppedFingers {
 impl SteppedFingers {
     #[new]
     #[pyo3(signature = (body, positions, *, young_modulus, rate_hz=1000, shading=false,
-        static_friction=0.0, dynamic_friction=0.0, mode="consistent"))]
+        static_friction=0.0, dynamic_friction=0.0, mode="consistent", felt="linear"))]
     #[allow(clippy::too_many_arguments)] // Keywords in Python.
     fn new(
         body: &Body,
@@ -102,6 +102,7 @@ impl SteppedFingers {
         static_friction: f64,
         dynamic_friction: f64,
         mode: &str,
+        felt: &str,
     ) -> PyResult<Self> {
         let places = places_of(&positions)?;
         if places.is_empty() || places.len() > MAX_FINGERS {
@@ -131,6 +132,7 @@ impl SteppedFingers {
             dynamic_friction,
             contact_mode(mode)?,
         )?;
+        settings.felt = felt_choice(felt)?;
         let led: Vec<Led> = (places.into_iter())
             .map(|position| {
                 Led(Arc::new(Mutex::new(Place {
@@ -238,6 +240,14 @@ impl SteppedFingers {
             position: finite("position", position)?,
             set_down: true,
         };
+        Ok(())
+    }
+
+    fn set_felt(&self, felt: &str) -> PyResult<()> {
+        let felt = felt_choice(felt)?;
+        let stepped = &mut *self.stepped();
+        stepped.settings.felt = felt;
+        stepped.settings_in.write(stepped.settings);
         Ok(())
     }
 
