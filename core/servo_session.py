@@ -132,8 +132,8 @@ def servo_for(
     record_seconds : how long samples are kept until somebody takes them.
     mode : how a contact inside a triangle becomes a force; can be changed while it runs.
     felt : which relation between displacement and force points feel; can be changed while it runs.
-        ``corrected`` is ``linear`` where the native body was not told its softenings, see
-        :class:`.large_deformation.softening_table.SofteningTable`: ``listen(surface.set_softenings)``.
+        ``corrected`` is ``linear`` where the native body was not told its softenings: let a
+        :class:`.large_deformation.softening_table.SofteningTable` tell ``Body.set_softenings``.
 
     Raises
     ------

@@ -243,8 +243,8 @@ class Body:
         """Nodal forces (3, 3) and force on the finger (3,), N: equations (11) to (14), or the force
         of least energy that moves the contact point by exactly the displacement (consistent).
 
-        Without a compliance both modes are the paper's. Felt as "corrected" with the softenings that
-        were told. ValueError for another mode or felt force.
+        Without a compliance both modes are the paper's. "corrected" is felt with the softenings
+        that were told. ValueError for another mode or felt force.
         """
 
     def surface_displacement(
