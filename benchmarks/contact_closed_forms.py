@@ -54,7 +54,7 @@ def main() -> int:
         body = graded_block(ELEMENT, core, nu)
         points = nodes_as_points(body, core * ELEMENT)
         shift = lift(body, points, ELEMENT)
-        near = near_correction(body, points, 2 * core * ELEMENT)
+        near = near_correction(body, points)
         for name, correction in (("elements alone", None), ("with near field", near)):
             print(f"\nHertz, nu = {nu}, {name}\n  a / element   force / Hertz   exponent")
             for radius, force, exponent in hertz(body, points, correction, shift, core):

@@ -69,7 +69,7 @@ def pressed(cells: int, *, fine: bool) -> list[float]:
         every = contact_points(body, FINE_SPACING)
         middle = np.array([EDGE / 2, EDGE / 2, EDGE])
         surface = every.taken(np.linalg.norm(every.positions - middle, axis=1) < RADIUS)
-        correction = near_correction(body, surface, 2 * RADIUS)
+        correction = near_correction(body, surface)
     forces = []
     for depth in DEPTHS:
         pose = Pose.at([EDGE / 2, EDGE / 2, EDGE + RADIUS - depth])

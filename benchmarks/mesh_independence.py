@@ -70,7 +70,7 @@ class Surroundings:
         """Spread the points, and look at them once."""
         points = contact_points(body, tool.spacing)
         points = points.taken(points.normals[:, 2] > FACING_UP)
-        return cls(body, tool, points, near_correction(body, points, tool.span))
+        return cls(body, tool, points, near_correction(body, points))
 
     def pressed(
         self, place: NDArray[np.float64], normal: NDArray[np.float64], depth: float, *, near: bool

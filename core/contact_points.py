@@ -28,7 +28,7 @@ CLOSEST_NODES = 0.75
 CLOSEST_OTHERS = 0.55
 
 # How finely the surface is sampled to share it out among the points, in shares of the spacing.
-SAMPLE_SPACING = 0.25
+SAMPLE_SPACING = 0.3
 
 # How many points there are on the square of the spacing.
 POINTS_PER_SPACING_SQUARED = 1.3
@@ -265,12 +265,15 @@ def _shares(
     for count in np.unique(cuts).tolist():
         centres = _sub_centres(count)
         members = np.flatnonzero(cuts == count)
-        places = np.einsum("kc,tcx->tkx", centres, corners[members]).reshape(-1, 3)
-        outward = np.einsum("kc,tcx->tkx", centres, corner_normals[members]).reshape(-1, 3)
-        _, nearest = tree.query(places, asked)
-        nearest = nearest.reshape(len(places), asked)
-        facing = np.einsum("qkx,qx->qk", normals[nearest], outward) > 0
-        chosen = nearest[np.arange(len(places)), np.argmax(facing, axis=1)]
+        places = (centres @ corners[members]).reshape(-1, 3)
+        outward = (centres @ corner_normals[members]).reshape(-1, 3)
+        chosen = np.asarray(tree.query(places)[1], dtype=np.int64)
+        away = np.einsum("qx,qx->q", normals[chosen], outward) <= 0
+        if away.any():
+            _, nearest = tree.query(places[away], asked)
+            nearest = nearest.reshape(-1, asked)
+            facing = np.einsum("qkx,qx->qk", normals[nearest], outward[away]) > 0
+            chosen[away] = nearest[np.arange(len(nearest)), np.argmax(facing, axis=1)]
         area = np.repeat(areas[members] / len(centres), len(centres))
         shares += np.bincount(chosen, area, len(positions))
     return shares

@@ -14,12 +14,12 @@ neighbours from :mod:`.regular_field`. The part of a force's own cell in H is th
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
-from scipy.spatial import cKDTree
 
 from .contact_points import ContactPoints
 from .formulation import LINEAR, SMOOTHED
@@ -59,78 +59,136 @@ PAIRS_TOGETHER = 50_000
 
 @dataclass(frozen=True, eq=False)
 class NearCorrection:
-    """What is to be added to plain finite elements, for pairs of contact points near each other.
+    """What is to be added to plain finite elements between contact points of a body.
+
+    Nothing is kept pair by pair: a tool touches a few dozen points, bodies have pairs by the
+    million.
 
     Attributes
     ----------
-    starts : int64 (P + 1,), where the row of each point begins.
-    others : int64 (z,), the second points of the pairs, ascending in each row.
-    blocks : float64 (z, 3, 3), m / N at 1 Pa. The block of (j, i) is the transpose of (i, j)'s.
+    field : what is known at the surface's nodes.
+    points : the P contact points.
+    shares : float64 (P,), 0 where plain finite elements stay, else up to 1.
+    softness : float64 (P,), 1 over the factor of Young's modulus around each point.
+    own : float64 (P, 3, 3), for each point and its own force, m / N at 1 Pa, symmetric.
     """
 
-    starts: NDArray[np.int64]
-    others: NDArray[np.int64]
-    blocks: NDArray[np.float64]
+    field: RegularField
+    points: ContactPoints
+    shares: NDArray[np.float64]
+    softness: NDArray[np.float64]
+    own: NDArray[np.float64]
+    _last: _Known = dataclasses.field(default_factory=lambda: _Known(), repr=False)  # noqa: PLW0108  defined below
 
     def between(self, i: NDArray[np.int64], j: NDArray[np.int64]) -> NDArray[np.float64]:
-        """The part for points ``i`` (k,) seen and ``j`` (l,) loaded, (k, l, 3, 3)."""
-        found = np.zeros((len(i), len(j), 3, 3))
-        for row, point in enumerate(i.tolist()):
-            first, last = self.starts[point], self.starts[point + 1]
-            place = np.searchsorted(self.others[first:last], j)
-            inside = np.flatnonzero(place < last - first)
-            inside = inside[self.others[first + place[inside]] == j[inside]]
-            found[row, inside] = self.blocks[first + place[inside]]
-        return found
+        """The part for points ``i`` (k,) seen and ``j`` (l,) loaded, (k, l, 3, 3).
+
+        The block of (j, i) is the transpose of (i, j)'s. Of all pairs of the same points the last
+        are kept: along a path most are those of the step before.
+        """
+        if not np.array_equal(i, j):
+            return self._pairs(np.repeat(i, len(j)), np.tile(j, len(i))).reshape(
+                len(i), len(j), 3, 3
+            )
+        known, blocks = self._last.points, np.empty((len(i), len(i), 3, 3))
+        place = np.searchsorted(known, i)
+        place[place == len(known)] = 0
+        old = known[place] == i if len(known) else np.zeros(len(i), dtype=np.bool_)
+        kept, new = np.flatnonzero(old), np.flatnonzero(~old)
+        blocks[kept[:, None], kept] = self._last.blocks[place[kept][:, None], place[kept]]
+        rows = self._pairs(np.repeat(i[new], len(i)), np.tile(i, len(new)))
+        rows = rows.reshape(len(new), len(i), 3, 3)
+        blocks[new], blocks[:, new] = rows, rows.transpose(1, 0, 3, 2)
+        if np.all(np.diff(i) > 0):
+            self._last.points, self._last.blocks = i.copy(), blocks
+        return blocks.copy()
+
+    def arrays(self) -> dict[str, object]:
+        """All of it as the native thread takes it; the thread reckons the pairs by itself."""
+        field = self.field
+        never, wholly, _, _ = BELIEVED[field.body.formulation]
+        return {
+            "normals": field.normals,
+            "edges": field.edges,
+            "softness": field.softness,
+            "regular": field.regular,
+            "slopes": field.slope.reshape(-1, 3, 3),
+            "shares": self.shares,
+            "softness_of_points": self.softness,
+            "own": self.own,
+            "believed": (never, wholly),
+            "poisson_ratio": field.body.poisson_ratio,
+        }
+
+    def _pairs(self, i: NDArray[np.int64], j: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Blocks (k, 3, 3) for pairs of points ``i`` (k,) and ``j`` (k,)."""
+        blocks = np.empty((len(i), 3, 3))
+        own = i == j
+        blocks[own] = self.own[i[own]]
+        apart = np.flatnonzero(~own)
+        first, second = np.minimum(i[apart], j[apart]), np.maximum(i[apart], j[apart])
+        found = _corrections(self, first, second)
+        turned = i[apart] > j[apart]
+        found[turned] = found[turned].transpose(0, 2, 1)
+        blocks[apart] = found
+        return blocks
 
 
-def near_correction(body: SoftBody, points: ContactPoints, span: float) -> NearCorrection:
-    """The correction for pairs of points within ``span`` metres, such as a tool's width: what is
-    farther apart never touches it at once.
+@dataclass(eq=False)
+class _Known:
+    """Blocks (k, k, 3, 3) between ``points`` (k,), ascending, that were asked for last."""
+
+    points: NDArray[np.int64] = dataclasses.field(default_factory=lambda: np.empty(0, np.int64))
+    blocks: NDArray[np.float64] = dataclasses.field(default_factory=lambda: np.empty((0, 0, 3, 3)))
+
+
+def near_correction(body: SoftBody, points: ContactPoints) -> NearCorrection:
+    """The correction for the contact points of a body; what is between them is reckoned when it is
+    asked for.
     """
     field = RegularField.of(body)
-    i, j = _pairs(points, span)
-    blocks = _corrections(field, points, i, j)
-    own = i == j
-    rows = np.concatenate([i, j[~own]])
-    columns = np.concatenate([j, i[~own]])
-    every = np.concatenate([blocks, blocks[~own].transpose(0, 2, 1)])
-    order = np.lexsort((columns, rows))
-    starts = np.searchsorted(rows[order], np.arange(len(points) + 1)).astype(np.int64)
-    return NearCorrection(starts, columns[order], every[order])
-
-
-def _pairs(points: ContactPoints, span: float) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Pairs i <= j of points on one side of the body."""
-    near = cKDTree(points.positions).query_pairs(span, output_type="ndarray")
-    i, j = near.min(axis=1), near.max(axis=1)
-    alike = facing(points.normals[i], points.normals[j], SAME_SURFACE) > 0
-    own = np.arange(len(points))
-    return np.concatenate([own, i[alike]]), np.concatenate([own, j[alike]])
+    triangles = body.mesh.surface_local_triangles[points.triangles]
+    shares = np.einsum("pc,pc->p", points.alphas, field.trusted[triangles])
+    softness = np.einsum("pc,pc->p", points.alphas, field.softness[triangles])
+    everyone = np.arange(len(points))
+    own = _own(field, points, softness) + _replaced(field, points, everyone, everyone)
+    own = 0.5 * (own + own.transpose(0, 2, 1)) * (shares**2)[:, None, None]
+    own += _lifted(field, points, softness, own, 1 - shares**2)
+    return NearCorrection(field, points, shares, softness, own)
 
 
 def _corrections(
+    near: NearCorrection, i: NDArray[np.int64], j: NDArray[np.int64]
+) -> NDArray[np.float64]:
+    """Blocks (k, 3, 3) for pairs of points, none with itself."""
+    points, field = near.points, near.field
+    share = near.shares[i] * near.shares[j]
+    share *= facing(points.normals[i], points.normals[j], SAME_SURFACE)
+    counts = np.flatnonzero(share > 0.0)
+    blocks = np.zeros((len(i), 3, 3))
+    for first in range(0, len(counts), PAIRS_TOGETHER):
+        few = counts[first : first + PAIRS_TOGETHER]
+        a, b = i[few], j[few]
+        found = _replaced(field, points, a, b)
+        found += half_space_between(
+            field.body, points.positions, points.normals, near.softness, a, b
+        )
+        blocks[few] = share[few][:, None, None] * found
+    return blocks
+
+
+def _replaced(
     field: RegularField, points: ContactPoints, i: NDArray[np.int64], j: NDArray[np.int64]
 ) -> NDArray[np.float64]:
-    """Blocks (k, 3, 3) for pairs of points."""
-    triangles = field.body.mesh.surface_local_triangles[points.triangles]
-    share = np.einsum("pc,pc->p", points.alphas, field.trusted[triangles])
-    softness = np.einsum("pc,pc->p", points.alphas, field.softness[triangles])
+    """What finite elements have in place of the half-space, taken off, (k, 3, 3)."""
     table, place = _table_of(field, points.triangles[i], points.triangles[j])
-    blocks = np.empty((len(i), 3, 3))
-    for first in range(0, len(i), PAIRS_TOGETHER):
-        few = slice(first, first + PAIRS_TOGETHER)
-        weights = points.alphas[i[few]][:, :, None] * points.alphas[j[few]][:, None, :]
-        blocks[few] = -np.einsum("kab,kabxy->kxy", weights, table[place[few]], optimize=True)
-    own = i == j
-    blocks[own] += _own(field, points, softness)
-    blocks[own] = 0.5 * (blocks[own] + blocks[own].transpose(0, 2, 1))
-    a, b = i[~own], j[~own]
-    blocks[~own] += half_space_between(field.body, points.positions, points.normals, softness, a, b)
-    blocks[~own] *= facing(points.normals[a], points.normals[b], SAME_SURFACE)[:, None, None]
-    blocks *= (share[i] * share[j])[:, None, None]
-    blocks[own] += _lifted(field, points, softness, blocks[own], 1 - share**2)
-    return blocks
+    weights = points.alphas[i][:, :, None] * points.alphas[j][:, None, :]
+    taken = np.zeros((len(i), 9))
+    flat = table.reshape(-1, 9)
+    for a in range(3):
+        for b in range(3):
+            taken -= weights[:, a, b, None] * flat[place[:, a, b]]
+    return taken.reshape(-1, 3, 3)
 
 
 def _own(

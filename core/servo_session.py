@@ -200,8 +200,8 @@ def displacements_of(
 def native_tool(body: SoftBody, surface: Body, tool: Tool, *, friction: float = 0.0) -> ToolContact:
     """A tool as the native thread holds it, with all the memory that it will ever need.
 
-    Takes a second or so for large bodies: contact points are spread and what the mesh is too coarse
-    for between them is computed.
+    Takes some tenths of a second: contact points are spread and what the mesh is too coarse for is
+    told from the nodes around each node.
 
     Parameters
     ----------
@@ -224,7 +224,7 @@ def native_tool(body: SoftBody, surface: Body, tool: Tool, *, friction: float = 
                 points.triangles,
                 points.alphas,
                 points.areas,
-                (near.starts, near.others, near.blocks),
+                near.arrays(),
             ),
             NativeTool(tool.core, tool.radius),
             friction=friction,

@@ -291,9 +291,9 @@ def press_along(
 
 
 # Contact points take long to spread and are the same for every touch of a body by a tool.
-_surfaces: WeakKeyDictionary[
-    SoftBody, dict[tuple[float, float], tuple[ContactPoints, NearCorrection]]
-] = WeakKeyDictionary()
+_surfaces: WeakKeyDictionary[SoftBody, dict[float, tuple[ContactPoints, NearCorrection]]] = (
+    WeakKeyDictionary()
+)
 
 
 def surface_for(body: SoftBody, tool: Tool) -> ContactPoints:
@@ -308,11 +308,11 @@ def correction_for(body: SoftBody, tool: Tool) -> NearCorrection:
 
 def _known_surface(body: SoftBody, tool: Tool) -> tuple[ContactPoints, NearCorrection]:
     known = _surfaces.setdefault(body, {})
-    which = tool.spacing, tool.span
-    if which not in known:
-        points = contact_points(body, tool.spacing)
-        known[which] = points, near_correction(body, points, tool.span)
-    return known[which]
+    spacing = tool.spacing
+    if spacing not in known:
+        points = contact_points(body, spacing)
+        known[spacing] = points, near_correction(body, points)
+    return known[spacing]
 
 
 def _continued(

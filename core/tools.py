@@ -179,11 +179,6 @@ class Tool:
         return SPACING_PER_RADIUS * self.radius
 
     @property
-    def span(self) -> float:
-        """How far apart two points may be for the near field between them to count, metres."""
-        return self.size if len(self.core) > 2 else 2.0 * self.radius
-
-    @property
     def stride(self) -> float:
         """How far the tool moves in one tick at most, metres."""
         return STRIDE_PER_INNER_RADIUS * self.inner_radius

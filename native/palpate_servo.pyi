@@ -564,13 +564,15 @@ class ToolSurface:
         triangles: ArrayLike,
         alphas: ArrayLike,
         areas: ArrayLike,
-        correction: tuple[ArrayLike, ArrayLike, ArrayLike] | None = None,
+        near: dict[str, object] | None = None,
     ) -> None:
         """Take points at rest (P, 3) in m, unit outward normals (P, 3), the triangle of each (P,),
         area coordinates in it (P, 3), shares of the surface (P,) in m^2.
 
-        correction: rows of 3 x 3 blocks to add to the compliance at unit modulus between pairs of
-        points, (starts (P + 1,), others (n,), blocks (n, 3, 3)).
+        near: what the mesh is too coarse for, as `core.near_field.NearCorrection.arrays` names it:
+        for each node of the surface normals (s, 3), edges (s,), softness (s,), regular (s, 3, 3),
+        slopes (3 s, 3, 3); for each point shares (P,), softness_of_points (P,), own (P, 3, 3);
+        believed (two numbers) and poisson_ratio.
 
         Raises ValueError for a body that is not whole, or arrays that do not fit.
         """

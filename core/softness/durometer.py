@@ -134,9 +134,7 @@ def read_durometer(
 def seat_compliance(body: SoftBody, seat: Seat) -> NDArray[np.float64]:
     """How far points give way along the axis per force along it on others, (p, p), at 1 Pa."""
     points, everyone = seat.points, np.arange(len(seat.points))
-    # On a slope points lie farther apart than in the plane of the foot.
-    span = 3.0 * float(seat.radii.max())
-    correction = near_correction(body, points, span)
+    correction = near_correction(body, points)
     blocks = point_compliance(body, points, everyone, everyone, correction)
     axis = seat.place.axis
     along = np.einsum("x,klxy,y->kl", axis, blocks, axis, optimize=True)

@@ -102,8 +102,4 @@ def _of_pads(body: SoftBody, normals: NDArray[np.float64], radius: float) -> NDA
         alphas=np.eye(3)[corner],
         areas=np.full(count, np.pi * radius**2 * (OWN_CELL / DISC_MEAN) ** 2),
     )
-    # No pair of points lies within no distance: each pad by itself.
-    own = near_correction(body, pads, 0.0)
-    blocks = np.zeros((count, 3, 3))
-    blocks[own.others] = own.blocks
-    return blocks
+    return near_correction(body, pads).own

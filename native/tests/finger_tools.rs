@@ -14,7 +14,7 @@ use palpate_servo::state::reason;
 use palpate_servo::surface::Body;
 use palpate_servo::tip::{Tip, exchange_tips};
 use palpate_servo::tool::contact::ToolContact;
-use palpate_servo::tool::points::{Correction, Point, ToolSurface};
+use palpate_servo::tool::points::{Point, ToolSurface};
 use palpate_servo::tool::shape::Tool;
 use scripted::{DT, OPTIONS, Table, probe};
 
@@ -35,7 +35,7 @@ fn surface(body: &Arc<Body>) -> Arc<ToolSurface> {
         }
     };
     let points = (0..body.nodes.len()).map(point).collect();
-    let surface = ToolSurface::new(body.clone(), points, Correction::default());
+    let surface = ToolSurface::new(body.clone(), points, None);
     Arc::new(surface.expect("sound"))
 }
 

@@ -14,7 +14,8 @@ use palpate_servo::surface::Body;
 use palpate_servo::tool::MOST_POINTS;
 use palpate_servo::tool::contact::{NotANumber, ToolContact};
 use palpate_servo::tool::friction::Friction;
-use palpate_servo::tool::points::{Correction, Point, ToolSurface};
+use palpate_servo::tool::near_field::{NearField, NodeField, PointField};
+use palpate_servo::tool::points::{Point, ToolSurface};
 use palpate_servo::tool::shape::{Pose, Tool};
 
 const MODULUS: f64 = 1e4;
@@ -58,28 +59,29 @@ fn surface(body: &Arc<Body>, parts: u32) -> Arc<ToolSurface> {
     for (point, faces) in points.iter_mut().zip(&faces) {
         point.normal = faces.iter().sum::<DVec3>().normalize();
     }
-    let correction = closer(&points);
-    Arc::new(ToolSurface::new(body.clone(), points, correction).expect("sound"))
+    let near = own_parts(body, &points);
+    Arc::new(ToolSurface::new(body.clone(), points, Some(near)).expect("sound"))
 }
 
-/// How points give way that are closer together than nodes: positive definite in space (Askey 1973).
-fn closer(points: &[Point]) -> Correction {
-    let mut correction = Correction::default();
-    for p in points {
-        correction.starts.push(correction.others.len() as u32);
-        for (other, q) in points.iter().enumerate() {
-            let near = 1.0 - p.position.distance(q.position) / 0.012;
-            if near > 0.0 {
-                correction.others.push(other as u32);
-                let give = 150.0 * near * near;
-                correction
-                    .blocks
-                    .push(DMat3::from_diagonal(DVec3::splat(give)));
-            }
-        }
+/// No half-space, but something of its own for each point, so that they are more than the nodes.
+fn own_parts(body: &Body, points: &[Point]) -> NearField {
+    let node = NodeField {
+        normal: DVec3::Z,
+        edge: 0.0125,
+        softness: 1.0,
+        ..NodeField::default()
+    };
+    let point = PointField {
+        share: 0.0,
+        softness: 1.0,
+        own: DMat3::from_diagonal(DVec3::splat(150.0)),
+    };
+    NearField {
+        nodes: vec![node; body.nodes.len()],
+        points: vec![point; points.len()],
+        believed: [0.6, 1.0],
+        poisson_ratio: 0.3,
     }
-    correction.starts.push(correction.others.len() as u32);
-    correction
 }
 
 /// The cube, pinned below, giving way about as rubber does: less the farther away.
@@ -448,20 +450,20 @@ fn takes_no_memory(friction: Friction) {
 fn surfaces_that_do_not_fit_are_refused() {
     let body = rubber_cube();
     let good = surface(&body, 1);
-    let with = |change: &dyn Fn(&mut Vec<Point>, &mut Correction)| {
-        let (mut points, mut correction) = (good.points().to_vec(), Correction::default());
-        change(&mut points, &mut correction);
-        (ToolSurface::new(body.clone(), points, correction)).map_or_else(|e| e.0, |_| "none".into())
+    let with = |change: &dyn Fn(&mut Vec<Point>, &mut NearField)| {
+        let mut points = good.points().to_vec();
+        let mut near = own_parts(&body, &points);
+        change(&mut points, &mut near);
+        (ToolSurface::new(body.clone(), points, Some(near))).map_or_else(|e| e.0, |_| "none".into())
     };
     assert_eq!(with(&|_, _| ()), "none");
     assert!(with(&|points, _| points.clear()).contains("no contact points"));
     assert!(with(&|points, _| points[3].nodes[0] = 98).contains("point 3 is on a node beyond"));
     assert!(with(&|points, _| points[2].area = 0.0).contains("point 2 has"));
-    assert!(with(&|_, c| c.starts.push(0)).contains("of other contact points"));
-    let bare = ToolSurface::new(
-        bodies::cube(),
-        good.points().to_vec(),
-        Correction::default(),
-    );
+    assert!(with(&|_, near| near.nodes.truncate(5)).contains("of another body"));
+    assert!(with(&|_, near| near.points.truncate(5)).contains("other contact points"));
+    assert!(with(&|_, near| near.nodes[1].edge = 0.0).contains("cannot be reckoned"));
+    assert!(with(&|_, near| near.points[1].own.x_axis.x = f64::NAN).contains("cannot be reckoned"));
+    let bare = ToolSurface::new(bodies::cube(), good.points().to_vec(), None);
     assert!(bare.expect_err("no compliance").0.contains("whole"));
 }

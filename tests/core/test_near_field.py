@@ -46,34 +46,43 @@ def cubes():
 def test_the_correction_is_symmetric(mouse):
     points = contact_points(mouse, 0.004)
     some = patch(points, points.positions[500], 0.014)
-    correction = near_correction(mouse, points, 0.02)
+    correction = near_correction(mouse, points)
     blocks = matrix(correction.between(some, some))
     assert np.abs(blocks).max() > 0
     np.testing.assert_array_equal(blocks, blocks.T)
 
 
-def test_rows_of_the_correction_tell_the_pairs_within_the_span(mouse):
-    points, span = contact_points(mouse, 0.006), 0.02
-    correction = near_correction(mouse, points, span)
-    rows = np.repeat(np.arange(len(points)), np.diff(correction.starts))
-    apart = np.linalg.norm(points.positions[rows] - points.positions[correction.others], axis=1)
-    assert apart.max() <= span
-    assert (np.diff(correction.others)[np.diff(rows) == 0] > 0).all()
-    assert (np.bincount(rows[rows == correction.others]) == 1).all()
-    everyone = np.arange(len(points))
-    dense = correction.between(everyone, everyone)
-    np.testing.assert_array_equal(dense[rows, correction.others], correction.blocks)
-    assert np.count_nonzero(dense.any(axis=(2, 3))) <= len(rows)
-
-
-def test_what_is_far_apart_stays_as_the_finite_elements_have_it(mouse):
+def test_what_is_asked_for_again_is_what_it_was(mouse):
+    """Pairs are kept from one question to the next, in whatever order they are asked for."""
     points = contact_points(mouse, 0.006)
-    correction = near_correction(mouse, points, 0.02)
-    i = np.array([10])
-    far = np.flatnonzero(np.linalg.norm(points.positions - points.positions[10], axis=1) > 0.02)
-    np.testing.assert_array_equal(
-        point_compliance(mouse, points, i, far, correction), point_compliance(mouse, points, i, far)
-    )
+    first = patch(points, points.positions[500], 0.014)
+    later = patch(points, points.positions[first[0]], 0.014)
+    assert 0 < len(np.intersect1d(first, later)) < len(later)
+    correction = near_correction(mouse, points)
+    correction.between(first, first)
+    fresh = near_correction(mouse, points).between(later, later)
+    np.testing.assert_allclose(correction.between(later, later), fresh, rtol=1e-12)
+    mixed = np.concatenate([later[::-1], first[:3]])
+    some = correction.between(mixed, mixed)
+    np.testing.assert_allclose(some[: len(later), : len(later)], fresh[::-1, ::-1], rtol=1e-12)
+    between = correction.between(first, later)
+    np.testing.assert_allclose(between[:3], some[-3:, : len(later)][:, ::-1], rtol=1e-12)
+
+
+def test_far_apart_little_is_added_to_the_finite_elements(mouse):
+    points = contact_points(mouse, 0.003)
+    # One in the middle of a triangle, where the elements are poorest.
+    one = np.array([points.alphas.min(axis=1).argmax()])
+    correction = near_correction(mouse, points)
+    apart = np.linalg.norm(points.positions - points.positions[one], axis=1)
+    share = []
+    for least in (0.003, 0.012, 0.04):
+        ring = np.flatnonzero((apart > least) & (apart < 1.5 * least))
+        added = np.abs(correction.between(one, ring)).max(axis=(0, 2, 3))
+        plain = np.abs(point_compliance(mouse, points, one, ring)).max(axis=(0, 2, 3))
+        share.append(added.mean() / plain.mean())
+    assert share[0] > 5 * share[1] > 25 * share[2] > 0
+    assert share[2] < 0.01
 
 
 def lattice_on_top(body, step, radius):
@@ -102,7 +111,7 @@ def sinking(body, step, radius):
     """How far the middle of a disc gives way per newton spread over it: plain, corrected, exact."""
     points = lattice_on_top(body, step, radius)
     everyone = np.arange(len(points))
-    correction = near_correction(body, points, 3 * radius)
+    correction = near_correction(body, points)
     plain, near = (
         point_compliance(body, points, everyone[:1], everyone, which)[0, :, 2, 2].mean()
         for which in (None, correction)
@@ -155,7 +164,7 @@ def test_turning_the_body_turns_the_near_field():
     )
     some = patch(points, TOP, 0.012)
     found = [
-        near_correction(body, where, 0.02).between(some, some)
+        near_correction(body, where).between(some, some)
         for body, where in ((straight, points), (turned, as_turned))
     ]
     expected = turn @ found[0] @ turn.T
@@ -168,7 +177,7 @@ def test_a_body_of_twice_the_size_gives_way_half_as_far():
         body = cube_of(4, scale=scale)
         points = contact_points(body, 0.005 * scale)
         some = patch(points, scale * TOP, 0.012 * scale)
-        found.append(near_correction(body, points, 0.02 * scale).between(some, some))
+        found.append(near_correction(body, points).between(some, some))
     np.testing.assert_allclose(found[0], 2 * found[1], atol=1e-9 * np.abs(found[0]).max())
 
 
@@ -177,7 +186,7 @@ def test_a_place_of_twice_the_modulus_gives_way_half_as_far(cubes):
     stiff = body_of(mesh, fixed, 0.3, young_scale=np.full(len(mesh.tets), 2.0))
     points = contact_points(stiff, 0.005)
     some = patch(points, TOP, 0.012)
-    both = [near_correction(body, points, 0.02).between(some, some) for body in (cubes[4], stiff)]
+    both = [near_correction(body, points).between(some, some) for body in (cubes[4], stiff)]
     np.testing.assert_allclose(both[0], 2 * both[1], atol=1e-9 * np.abs(both[0]).max())
 
 
@@ -185,7 +194,7 @@ def test_pinned_places_stay_as_firm_as_they_are(cubes):
     body = cubes[4]
     points = contact_points(body, 0.004)
     low = np.flatnonzero(points.positions[:, 2] == 0)[:60]
-    blocks = point_compliance(body, points, low, low, near_correction(body, points, 0.02))
+    blocks = point_compliance(body, points, low, low, near_correction(body, points))
     firmest = np.linalg.eigvalsh(body.compliance.diagonal()).min()
     assert np.linalg.eigvalsh(matrix(blocks)).min() > 0.05 * firmest
     assert np.einsum("iixx->i", blocks).max() / 3 < 1.11 * firmest
@@ -216,7 +225,7 @@ def test_every_patch_that_a_fingertip_covers_is_positive_definite(mouse_mesh, rn
         patches.append(near[points.normals[near] @ points.normals[centre] > 0.2])
     used, place = np.unique(np.concatenate(patches), return_inverse=True)
     some = points.taken(used)
-    correction = near_correction(everywhere, some, 2 * radius)
+    correction = near_correction(everywhere, some)
     ends = np.cumsum([len(one) for one in patches])[:-1]
     for number, few in enumerate(np.split(place, ends)):
         blocks = point_compliance(everywhere, some, few, few, correction)
@@ -231,7 +240,5 @@ def test_no_point_pulls_itself_in_where_pins_are_nearer_than_points(cubes):
     points = contact_points(cubes[12], 0.01)
     vast = replace(points, areas=np.full(len(points), 1.0))
     everyone = np.arange(len(points))
-    blocks = point_compliance(
-        cubes[12], vast, everyone, everyone, near_correction(cubes[12], vast, 0.02)
-    )
+    blocks = point_compliance(cubes[12], vast, everyone, everyone, near_correction(cubes[12], vast))
     assert np.linalg.eigvalsh(np.einsum("iixy->ixy", blocks)).min() > 0

@@ -26,7 +26,7 @@ def points(block):
 
 @pytest.mark.parametrize("near", [False, True])
 def test_a_sphere_is_resisted_as_hertz_says(block, points, near):
-    correction = near_correction(block, points, 2 * CORE * ELEMENT) if near else None
+    correction = near_correction(block, points) if near else None
     rows = hertz(block, points, correction, lift(block, points, ELEMENT), CORE)
     radius, force, exponent = rows[-1]
     assert radius > 4

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from palpate.core.errors import PalpateError
 from palpate.core.servo_session import native_body, native_tool
-from palpate.core.tool_contact import Load, follow_tool, set_down, surface_for
+from palpate.core.tool_contact import Load, correction_for, follow_tool, set_down, surface_for
 from palpate.core.tools import Pose, convex, plate, rod, sphere
 
 BOX = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * 0.008
@@ -123,8 +123,14 @@ def test_wrong_arrays_are_refused(body, surface):
     ToolSurface(surface, *arrays)
     with pytest.raises(ValueError, match="a row for each"):
         ToolSurface(surface, *arrays[:-1], points.areas[1:])
-    with pytest.raises(ValueError, match="correction is of other contact points"):
-        ToolSurface(surface, *arrays, ([0, 1], [0], np.eye(3)[None]))
+    near = correction_for(body, TOOLS["sphere"]).arrays()
+    for name, remark in {"own": "a row for each", "normals": "a row for each"}.items():
+        with pytest.raises(ValueError, match=remark):
+            ToolSurface(surface, *arrays, near | {name: near[name][1:]})
+    with pytest.raises(ValueError, match="cannot be reckoned with"):
+        ToolSurface(surface, *arrays, near | {"edges": 0 * near["edges"]})
+    with pytest.raises(ValueError, match="near has no shares"):
+        ToolSurface(surface, *arrays, {k: near[k] for k in near if k != "shares"})
     contact = ToolContact(ToolSurface(surface, *arrays), NativeTool([[0, 0, 0]], 0.01))
     with pytest.raises(ValueError, match="no rotation"):
         contact.follow([0, 0, 0.2], 2 * np.eye(3), 1e4)

@@ -9,22 +9,18 @@ use numpy::{
 };
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use super::body::Body;
 use super::vectors::{Matrix, Rows, Triple, Vector, array, finite, matrix, positive, square};
 use crate::cpu_time::thread_seconds;
 use crate::tool::contact::{self, MOST_NODES};
 use crate::tool::friction::Friction;
-use crate::tool::points::{self, Correction, Point};
+use crate::tool::near_field::{NearField, NodeField, PointField};
+use crate::tool::points::{self, Point};
 use crate::tool::shape::{self, Pose};
 
 type Vectors<'py> = Bound<'py, PyArray2<f64>>;
-/// Starts of rows, other points, blocks.
-type Blocks<'py> = (
-    PyArrayLike1<'py, i64, AllowTypeChange>,
-    PyArrayLike1<'py, i64, AllowTypeChange>,
-    PyArrayLike3<'py, f64, AllowTypeChange>,
-);
 type Numbers<'py> = Bound<'py, PyArray1<i64>>;
 
 /// Smallest entry of |R R' - 1| that makes a matrix no rotation.
@@ -98,7 +94,7 @@ pub struct ToolSurface {
 impl ToolSurface {
     #[new]
     #[allow(clippy::too_many_arguments)] // Keywords in Python.
-    #[pyo3(signature = (body, positions, normals, triangles, alphas, areas, correction=None))]
+    #[pyo3(signature = (body, positions, normals, triangles, alphas, areas, near=None))]
     fn new(
         body: &Body,
         positions: PyArrayLike2<'_, f64, AllowTypeChange>,
@@ -106,7 +102,7 @@ impl ToolSurface {
         triangles: PyArrayLike1<'_, i64, AllowTypeChange>,
         alphas: PyArrayLike2<'_, f64, AllowTypeChange>,
         areas: PyArrayLike1<'_, f64, AllowTypeChange>,
-        correction: Option<Blocks<'_>>,
+        near: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
         let (positions, normals, alphas) = (
             vectors("positions", &positions)?,
@@ -140,15 +136,8 @@ impl ToolSurface {
                 })
             })
             .collect::<PyResult<Vec<Point>>>()?;
-        let correction = match correction {
-            Some((starts, others, blocks)) => Correction {
-                starts: indices("starts", &starts)?,
-                others: indices("others", &others)?,
-                blocks: matrices("blocks", &blocks)?,
-            },
-            None => Correction::default(),
-        };
-        let surface = points::ToolSurface::new(body.inner.clone(), points, correction)
+        let near = near.map(near_field).transpose()?;
+        let surface = points::ToolSurface::new(body.inner.clone(), points, near)
             .map_err(|e| PyValueError::new_err(e.to_string()))?;
         Ok(Self {
             inner: Arc::new(surface),
@@ -164,6 +153,55 @@ impl ToolSurface {
     fn spacing(&self) -> f64 {
         self.inner.spacing()
     }
+}
+
+/// From the arrays that `core/near_field.py` names.
+fn near_field(arrays: &Bound<'_, PyDict>) -> PyResult<NearField> {
+    let array = |name: &'static str| {
+        arrays.get_item(name)?.ok_or_else(|| {
+            PyValueError::new_err(format!("near has no {name}; give what native_tool gives"))
+        })
+    };
+    let numbers = |name| -> PyResult<Vec<f64>> {
+        let given = array(name)?.extract::<PyArrayLike1<'_, f64, AllowTypeChange>>()?;
+        Ok(given.as_array().to_vec())
+    };
+    let blocks = |name| -> PyResult<Vec<DMat3>> { matrices(name, &array(name)?.extract()?) };
+    let believed: [f64; 2] = array("believed")?.extract()?;
+    let poisson_ratio: f64 = array("poisson_ratio")?.extract()?;
+    let normals = vectors("normals", &array("normals")?.extract()?)?;
+    let (edges, softness, regular) = (numbers("edges")?, numbers("softness")?, blocks("regular")?);
+    let slopes = blocks("slopes")?;
+    let [shares, softness_of_points] = [numbers("shares")?, numbers("softness_of_points")?];
+    let own = blocks("own")?;
+    let (nodes, points) = (normals.len(), shares.len());
+    if [edges.len(), softness.len(), regular.len()] != [nodes; 3]
+        || slopes.len() != 3 * nodes
+        || [softness_of_points.len(), own.len()] != [points; 2]
+    {
+        return Err(PyValueError::new_err(
+            "near must have a row for each node of the surface (three of slopes) and one for each \
+             contact point",
+        ));
+    }
+    let node = |k: usize| NodeField {
+        normal: normals[k],
+        edge: edges[k],
+        softness: softness[k],
+        regular: regular[k],
+        slope: [0, 1, 2].map(|axis| slopes[3 * k + axis]),
+    };
+    let point = |k: usize| PointField {
+        share: shares[k],
+        softness: softness_of_points[k],
+        own: own[k],
+    };
+    Ok(NearField {
+        nodes: (0..nodes).map(node).collect(),
+        points: (0..points).map(point).collect(),
+        believed,
+        poisson_ratio,
+    })
 }
 
 #[pyclass(module = "palpate_servo")]

@@ -35,6 +35,12 @@ impl Blocks {
     /// L_ab at unit modulus, zero for a body that does not keep its compliance.
     #[inline]
     pub(super) fn get(&mut self, body: &Body, a: u32, b: u32) -> DMat3 {
+        self.kept(a, b, |a, b| body.block(a, b).unwrap_or(DMat3::ZERO))
+    }
+
+    /// A block between two nodes that is the transpose of the one between them the other way round.
+    #[inline]
+    pub(super) fn kept(&mut self, a: u32, b: u32, found: impl FnOnce(u32, u32) -> DMat3) -> DMat3 {
         let (low, high) = (a.min(b), a.max(b));
         let key = u64::from(low) << 32 | u64::from(high);
         // Fibonacci hashing (Knuth 6.4): neighbouring numbers go far apart.
@@ -42,7 +48,7 @@ impl Blocks {
         let kept = &mut self.places[place];
         if kept.0 != key {
             self.fetched += 1;
-            *kept = (key, body.block(low, high).unwrap_or(DMat3::ZERO));
+            *kept = (key, found(low, high));
         }
         if a <= b { kept.1 } else { kept.1.transpose() }
     }

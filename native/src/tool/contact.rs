@@ -281,10 +281,10 @@ impl ToolContact {
                 }
             }
         }
-        let first = self.patch.blocks_mut().fetched();
+        let first = self.patch.fetched();
         for place in 0..self.entering.len() {
             let (distance, point) = self.entering[place];
-            if self.patch.blocks_mut().fetched() - first > MOST_FETCHED {
+            if self.patch.fetched() - first > MOST_FETCHED {
                 return false;
             }
             if self.patch.is_full() && !self.make_room(distance) {

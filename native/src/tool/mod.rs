@@ -10,6 +10,7 @@ pub mod complementarity;
 pub mod contact;
 pub mod friction;
 pub mod hull;
+pub mod near_field;
 pub mod patch;
 pub mod points;
 pub mod shape;

@@ -50,6 +50,8 @@ pub struct Patch {
     /// Displacements, an axis after the other.
     moved: [[f64; MOST_POINTS]; 3],
     blocks: Blocks,
+    /// The same beyond a half-space.
+    beyond: Blocks,
 }
 
 impl Patch {
@@ -60,6 +62,7 @@ impl Patch {
             compliance: room(COLUMN * MOST_POINTS),
             moved: [[0.0; MOST_POINTS]; 3],
             blocks: Blocks::new(),
+            beyond: Blocks::new(),
         }
     }
 
@@ -132,6 +135,12 @@ impl Patch {
         &mut self.blocks
     }
 
+    /// How many blocks were not at hand so far.
+    #[inline]
+    pub(super) fn fetched(&self) -> usize {
+        self.blocks.fetched() + self.beyond.fetched()
+    }
+
     /// Takes a point in; there must be room.
     pub(super) fn enter(&mut self, surface: &ToolSurface, point: u32) {
         let new = self.slots.len();
@@ -146,13 +155,6 @@ impl Patch {
             let block = self.response(surface, point, other);
             self.put(new, slot, block);
         }
-        for (other, block) in surface.corrections(point) {
-            let slot = self.slot_of[other as usize];
-            if slot != NONE {
-                let block = self.compliance(new, slot as usize) + *block;
-                self.put(new, slot as usize, block);
-            }
-        }
     }
 
     #[inline]
@@ -166,16 +168,36 @@ impl Patch {
         }
     }
 
-    /// Displacement of a point per force on another, as the finite elements have it.
+    /// Displacement of a point per force on another.
     fn response(&mut self, surface: &ToolSurface, point: u32, other: u32) -> DMat3 {
-        let [p, q] = [point, other].map(|k| surface.points()[k as usize]);
+        let [p, q] = [point, other].map(|k| &surface.points()[k as usize]);
+        let body = surface.body();
+        let Some(near) = surface.near() else {
+            return between(p, q, |a, b| self.blocks.get(body, a, b));
+        };
+        if point == other {
+            let sum = between(p, q, |a, b| self.blocks.get(body, a, b));
+            let whole = sum + near.points[point as usize].own;
+            return (whole + whole.transpose()) * 0.5;
+        }
+        let normals = [p.normal, q.normal];
+        let share = near.share(point, other, normals);
         let mut sum = DMat3::ZERO;
-        for (&a, &weight) in p.nodes.iter().zip(&p.alpha) {
-            for (&b, &load) in q.nodes.iter().zip(&q.alpha) {
-                if weight != 0.0 && load != 0.0 {
-                    sum += self.blocks.get(surface.body(), a, b) * (weight * load);
-                }
-            }
+        if share < 1.0 {
+            sum += between(p, q, |a, b| self.blocks.get(body, a, b)) * (1.0 - share);
+        }
+        if share > 0.0 {
+            let beyond = &mut self.beyond;
+            sum += share
+                * between(p, q, |a, b| {
+                    beyond.kept(a, b, |a, b| {
+                        let offset = body.nodes[a as usize] - body.nodes[b as usize];
+                        let resolved = body.block(a, b).unwrap_or(DMat3::ZERO);
+                        near.beyond(a, b, offset, resolved)
+                    })
+                });
+            let offset = p.position - q.position;
+            sum += near.between_points(point, other, offset, normals) * share;
         }
         sum
     }
@@ -238,6 +260,20 @@ impl Patch {
     pub(super) fn point<'a>(&self, surface: &'a ToolSurface, slot: usize) -> &'a Point {
         &surface.points()[self.slots[slot].point as usize]
     }
+}
+
+/// Blocks between the corners of two points' triangles, weighted with their area coordinates.
+#[inline]
+fn between(p: &Point, q: &Point, mut block: impl FnMut(u32, u32) -> DMat3) -> DMat3 {
+    let mut sum = DMat3::ZERO;
+    for (&a, &weight) in p.nodes.iter().zip(&p.alpha) {
+        for (&b, &load) in q.nodes.iter().zip(&q.alpha) {
+            if weight != 0.0 && load != 0.0 {
+                sum += block(a, b) * (weight * load);
+            }
+        }
+    }
+    sum
 }
 
 /// Adds how far slots move under a force on one of them.

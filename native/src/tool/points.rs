@@ -4,8 +4,9 @@
 
 use std::sync::Arc;
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
+use super::near_field::NearField;
 use super::tree::PointTree;
 use crate::surface::{Body, BodyError};
 
@@ -29,23 +30,12 @@ pub struct Point {
     pub area: f64,
 }
 
-/// Blocks 3 x 3 between pairs of contact points, row after row: what a mesh is too coarse for.
-#[derive(Debug, Default)]
-pub struct Correction {
-    /// Where each point's row begins, and the end of the last.
-    pub starts: Vec<u32>,
-    /// The other point of each block.
-    pub others: Vec<u32>,
-    /// What is to be added to the compliance at unit modulus.
-    pub blocks: Vec<DMat3>,
-}
-
 /// The contact points of a body.
 #[derive(Debug)]
 pub struct ToolSurface {
     body: Arc<Body>,
     points: Vec<Point>,
-    correction: Correction,
+    near: Option<NearField>,
     tree: PointTree,
     spacing: f64,
     first_neighbour: Vec<u32>,
@@ -61,16 +51,16 @@ impl ToolSurface {
     pub fn new(
         body: Arc<Body>,
         points: Vec<Point>,
-        correction: Correction,
+        near: Option<NearField>,
     ) -> Result<Self, BodyError> {
-        check(&body, &points, &correction)?;
+        check(&body, &points, near.as_ref())?;
         let positions: Vec<DVec3> = points.iter().map(|p| p.position).collect();
         let tree = PointTree::new(&positions);
         let spacing = median_distance(&tree, &points, body.size());
         let mut surface = Self {
             body,
             points,
-            correction,
+            near,
             tree,
             spacing,
             first_neighbour: vec![0],
@@ -110,18 +100,10 @@ impl ToolSurface {
         &self.neighbours[first..end]
     }
 
-    /// Corrections of a point's row, with the other point of each.
+    /// What the mesh is too coarse for, if that is known.
     #[inline]
-    pub(super) fn corrections(&self, point: u32) -> impl Iterator<Item = (u32, &DMat3)> {
-        let c = &self.correction;
-        let range = match c.starts.get(point as usize..point as usize + 2) {
-            Some(ends) => ends[0] as usize..ends[1] as usize,
-            None => 0..0,
-        };
-        c.others[range.clone()]
-            .iter()
-            .copied()
-            .zip(&c.blocks[range])
+    pub(super) fn near(&self) -> Option<&NearField> {
+        self.near.as_ref()
     }
 
     fn find_neighbours(&mut self) {
@@ -146,7 +128,7 @@ impl ToolSurface {
     }
 }
 
-fn check(body: &Body, points: &[Point], correction: &Correction) -> Result<(), BodyError> {
+fn check(body: &Body, points: &[Point], near: Option<&NearField>) -> Result<(), BodyError> {
     let refuse = |reason: String| Err(BodyError(reason));
     if !body.is_whole() {
         return refuse(
@@ -177,24 +159,12 @@ fn check(body: &Body, points: &[Point], correction: &Correction) -> Result<(), B
             ));
         }
     }
-    let Correction {
-        starts,
-        others,
-        blocks,
-    } = correction;
-    if starts.is_empty() && others.is_empty() && blocks.is_empty() {
-        return Ok(());
+    let Some(near) = near else { return Ok(()) };
+    if near.nodes.len() != body.nodes.len() || near.points.len() != points.len() {
+        return refuse("the near field is of another body or other contact points".into());
     }
-    let ends_fit = starts.len() == points.len() + 1
-        && starts[0] == 0
-        && starts.windows(2).all(|ends| ends[0] <= ends[1])
-        && starts[points.len()] as usize == others.len()
-        && others.len() == blocks.len();
-    if !ends_fit || others.iter().any(|&j| j as usize >= points.len()) {
-        return refuse("the correction is of other contact points".into());
-    }
-    if let Some(k) = blocks.iter().position(|block| !block.is_finite()) {
-        return refuse(format!("correction {k} is not finite"));
+    if !near.is_sound() {
+        return refuse("the near field has numbers that cannot be reckoned with".into());
     }
     Ok(())
 }
