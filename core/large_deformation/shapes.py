@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from ..errors import PalpateError
 from ..soft_body import SoftBody
 from .rotation_strain_shape import RotationStrainShape
+from .series_shape import SeriesShape
 
 ShapeName: TypeAlias = Literal["linear", "table", "series", "rotation-strain"]
 SHAPES: tuple[ShapeName, ...] = get_args(ShapeName)
@@ -97,6 +98,7 @@ class LinearShape:
 MAKERS: dict[ShapeName, Callable[[SoftBody, Path | None], Shape]] = {
     "linear": lambda body, _: LinearShape(body),
     "rotation-strain": lambda body, _: RotationStrainShape(body),
+    "series": SeriesShape,
 }
 
 

@@ -1,0 +1,188 @@
+"""The shape ``series``: power series in the force, of the whole load or of each loaded freedom.
+
+The sum over freedoms, as (16) has it, leaves out what the nine freedoms of a touched triangle do
+together, some two thirds of the second order of a press in its middle. A body whose solves fit in a
+frame is therefore drawn by the series of the whole load, two solves a frame, which needs no table
+and errs five to thirty times less. Larger bodies are drawn from a table of freedoms
+(:mod:`.series_table`), filled around the touched place in the background and kept beside the body's
+file.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import PalpateError
+from ..soft_body import SoftBody
+from ..whole_file import UnwritableError
+from .continued_powers import continued_powers
+from .free_solid import FreeSolid
+from .outward_filling import OutwardFilling
+from .power_series import ORDER, SeriesSolid
+from .series_entries import trusted_share
+from .series_table import KIND, SeriesTable
+from .table_file import TableFileError, table_path
+
+# Free nodes up to which a frame has time for the series of the whole load: some 10 ms of 16.
+LARGEST_WHOLE_LOAD = 2500
+# The series of a load goes on straight where its third order is this share of the first: at 0.01
+# it follows less far than it could, beyond 0.1 it overshoots.
+LOAD_SHARE = 0.05
+# Nodes whose freedoms are computed in one slice of the background: 0.1 s at 1,700 nodes.
+NODES_AT_ONCE = 4
+
+
+def load_displacements(solid: SeriesSolid, forces: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Displacements (n, 3) of the free surface by the series of one load, (f, 3), at 1 Pa.
+
+    Once continuously differentiable in the size of the load, continuous in its direction.
+    """
+    surface = solid.body.surface
+    terms = [term[surface] for term in solid.terms(forces[:, :, None], ORDER)]
+    if not terms[0].any():
+        return terms[0][:, :, 0]
+    square, cube = continued_powers(np.ones(1), trusted_share(terms, LOAD_SHARE))
+    moved: NDArray[np.float64] = terms[0] + square * terms[1] + cube * terms[2]
+    return moved[:, :, 0]
+
+
+class SeriesShape:
+    """A :class:`.shapes.Shape` by power series.
+
+    Parameters
+    ----------
+    body : what is drawn.
+    body_file : the table is kept beside it; without it, it is not kept.
+    whole_load : whether every frame computes the series of the whole load, or sums over the
+        freedoms of a table; None chooses by the number of nodes.
+    """
+
+    def __init__(
+        self, body: SoftBody, body_file: Path | None = None, whole_load: bool | None = None
+    ) -> None:
+        self._body = body
+        self._path = None if body_file is None else table_path(body_file, KIND)
+        free = len(body.mesh.nodes) - len(body.fixed)
+        self._by_load = free <= LARGEST_WHOLE_LOAD if whole_load is None else whole_load
+        self._solid: SeriesSolid | None = None
+        self._table: SeriesTable | None = None
+        self._kept = 0
+        self._places = np.zeros(0, dtype=np.int64)
+        self.warning: str | None = None
+        surface = body.compliance.free_surface
+        self._is_filled = np.zeros(len(surface), dtype=bool)
+        self._filling = OutwardFilling(
+            body.mesh.nodes[surface], self._is_filled, self._fill, NODES_AT_ONCE, self._prepare
+        )
+
+    @property
+    def table(self) -> SeriesTable | None:
+        """The table of freedoms, once it is there; None where none is needed."""
+        return self._table
+
+    @property
+    def ready(self) -> float:
+        """Share of the nodes touched last that need not be drawn linear."""
+        if not len(self._places):
+            return float(self._is_prepared)
+        return float(self._is_filled[self._places].mean())
+
+    @property
+    def _is_prepared(self) -> bool:
+        return (self._solid if self._by_load else self._table) is not None
+
+    def displacements(
+        self,
+        nodes: NDArray[np.int64],
+        nodal_forces: NDArray[np.float64],
+        young_modulus: float | None = None,
+    ) -> NDArray[np.float64]:
+        """Displacements (n, 3) of the free surface nodes, metres; see :class:`.shapes.Shape`.
+
+        Raises
+        ------
+        PalpateError
+            What is needed cannot be computed.
+        """
+        numbers = np.asarray(nodes, dtype=np.int64).reshape(-1)
+        self._touch(numbers)
+        if (problem := self._filling.problem) is not None:
+            raise PalpateError(f"shape series: {problem}") from problem
+        if self._by_load and (solid := self._solid) is not None:
+            modulus = self._body.young_modulus if young_modulus is None else young_modulus
+            forces = np.asarray(nodal_forces, dtype=np.float64).reshape(-1, 3) / modulus
+            return load_displacements(solid, solid.body.on_free_nodes(numbers, forces))
+        if not self._by_load and (table := self._table) is not None:
+            return table.displacements(numbers, nodal_forces, young_modulus)
+        return self._body.deform(numbers, nodal_forces, young_modulus)
+
+    def wait_for(self, nodes: NDArray[np.int64]) -> None:
+        """Return when all is there that forces on these nodes (k,) of the mesh need.
+
+        Raises
+        ------
+        PalpateError
+            It cannot be computed.
+        """
+        self._touch(np.asarray(nodes, dtype=np.int64).reshape(-1))
+        self._filling.wait_for(self._places)
+
+    def finish(self) -> None:
+        """Fill the whole table; returns at once where none is needed."""
+        self._filling.finish()
+
+    def close(self) -> None:
+        """End what works in the background, and keep what it made. Safe to call twice.
+
+        Where it cannot be kept, :attr:`warning` says why; it is computed again next time.
+        """
+        self._filling.close()
+        self._keep()
+
+    def _touch(self, nodes: NDArray[np.int64]) -> None:
+        places = self._body.free_index(nodes)
+        self._places = np.unique(places[places >= 0])
+        self._filling.around(self._places)
+
+    def _prepare(self) -> None:
+        """What comes before any entry; in the background."""
+        if not self._by_load:
+            self._table = self._kept_table()
+            self._is_filled[:] = self._table.has(np.arange(len(self._is_filled)))
+            self._kept = int(self._is_filled.sum())
+            if self._is_filled.all():
+                return
+        solid = SeriesSolid(FreeSolid.of(self._body))
+        _ = solid.body.factor, solid.fields
+        self._solid = solid
+        if self._by_load:
+            self._is_filled[:] = True
+
+    def _kept_table(self) -> SeriesTable:
+        if self._path is not None and self._path.exists():
+            try:
+                return SeriesTable.load(self._body, self._path)
+            except TableFileError as problem:
+                self.warning = str(problem)
+        return SeriesTable.empty(self._body)
+
+    def _fill(self, places: NDArray[np.int64]) -> None:
+        if self._table is None or self._solid is None:
+            raise AssertionError("filled before it was prepared")
+        self._table.fill(self._solid, (3 * places[:, None] + np.arange(3)).ravel())
+        self._is_filled[places] = True
+        if self._is_filled.all():
+            self._keep()
+
+    def _keep(self) -> None:
+        filled = int(self._is_filled.sum())
+        if self._table is None or self._path is None or filled <= self._kept:
+            return
+        try:
+            self._table.save(self._path)
+            self._kept = filled
+        except UnwritableError as problem:
+            self.warning = str(problem)
