@@ -3,8 +3,8 @@
 mouse-tets.npz is one answer of fTetWild, which gives another mesh each time: edge length and
 tolerance below gave 1,690 to 1,780 nodes and 1,010 to 1,075 free surface nodes in five runs, where
 the paper's mouse has 1,713 and 1,036. drumstick-tets.npz is another answer, for meat and
-bone together: 1,896 nodes, 836 of them on the free surface; hare-tets.npz one for the hare: 1,933 and
-1,189. Arrays X (m), T, fixed as in the other stored meshes.
+bone together: 1,896 nodes, 836 of them on the free surface; hare-tets.npz one for the hare: 1,933
+nodes, 1,189 of them on the free surface. Arrays X (m), T, fixed as in the other stored meshes.
 """
 
 from pathlib import Path
