@@ -13,8 +13,10 @@ from typing import NoReturn
 import bpy
 
 from ..core.errors import PalpateError
+from ..core.large_deformation.shapes import SHAPES
 from ..core.materials import MATERIALS
 from ..operators import bake_session, body_store
+from ..operators.drawn_shape import chosen_shape
 from ..operators.press_once import PressedFinger, press_several
 from .finger_properties import MODE_ITEMS, TIP_ITEMS
 from .properties import FORM_ITEMS, FORMULATION_ITEMS
@@ -115,6 +117,8 @@ def press(arguments: argparse.Namespace) -> dict[str, object]:
         if value is not None:
             chosen = bpy.context.scene.palpate
             setattr(chosen, name, _within(chosen, name, option, value, unit))
+    if arguments.shape is not None:
+        thing.palpate.shape = arguments.shape.upper().replace("-", "_")
     for option, name in (("mode", "contact_mode"), ("tip", "tip")):
         if getattr(arguments, option) is not None:
             setattr(bpy.context.scene.palpate, name, getattr(arguments, option).upper())
@@ -130,6 +134,7 @@ def press(arguments: argparse.Namespace) -> dict[str, object]:
         "object": thing.name,
         **(fingers[0] if len(fingers) == 1 else {"fingers": fingers}),
         "max_displacement": pressed.largest_displacement,
+        "shape": chosen_shape(thing),
         "shape_key": pressed.shape_key,
     }
 
@@ -219,6 +224,7 @@ def _parser() -> argparse.ArgumentParser:
     tips = [name.lower() for name, *_ in TIP_ITEMS]
     two.add_argument("--tip", choices=tips, help="what touches; else as the scene says")
     two.add_argument("--radius", type=float, metavar="R", help="of fingertip or rod, scene units")
+    two.add_argument("--shape", choices=SHAPES, help="how it deforms; else as the object says")
     two.add_argument("--keep", action="store_true", help="keep a shape key and save the file")
     two.set_defaults(run=press)
     return parser

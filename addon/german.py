@@ -2,12 +2,14 @@
 
 from .german_finger import WORDS as FINGER_WORDS
 from .german_force import WORDS as FORCE_WORDS
+from .german_shape import WORDS as SHAPE_WORDS
 from .german_softness import WORDS as SOFTNESS_WORDS
 
 WORDS = {
     **FORCE_WORDS,
     **SOFTNESS_WORDS,
     **FINGER_WORDS,
+    **SHAPE_WORDS,
     # Panel
     "Pins": "Fixierung",
     "Device": "Gerät",

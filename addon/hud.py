@@ -42,6 +42,7 @@ PINCH_STATES = {
     Phase.HOLDING: "Held: drag a handle, look around, or keep it",
 }
 EMPTY_STATES = {Phase.FEELING: "The Empty leads: move it, or play the animation"}
+SHAPE = "Shape {share} %"
 ABOVE = "Above the surface: drag inward, or turn the wheel"
 KEYS = {
     Phase.READY: "Esc  Leave",
@@ -99,11 +100,13 @@ def _lines(context: bpy.types.Context, session: PressSession) -> list[Line]:
     if session.state.source is Source.DEVICE:
         switch = "Space  Force Off" if session.state.force_on else "Space  Force On"
         keys = f"{say(switch)}      {say(KEYS.get(phase, ''))}"
-        return [*_device_lines(session, measured), Line(keys, SMALL, GREY)]
+        about = [*_device_lines(session, measured), *_shape_lines(session)]
+        return [*about, Line(keys, SMALL, GREY)]
     above = phase is Phase.DRAGGING and not touching
     lines = [*measured, Line(say(ABOVE if above else _state(session, phase)), NORMAL, WHITE)]
     if session.state.message:
         lines.append(Line(say(session.state.message), NORMAL, WARNING))
+    lines += _shape_lines(session)
     lines += _buried_lines(session)
     lines += _second_lines(session)
     return [*lines, Line(say(KEYS.get(phase, "")), SMALL, GREY)]
@@ -128,6 +131,14 @@ def _state(session: PressSession, phase: Phase) -> str:
     if session.state.source is Source.EMPTY:
         return EMPTY_STATES.get(phase, "")
     return STATES.get(phase, "")
+
+
+def _shape_lines(session: PressSession) -> list[Line]:
+    """How far the table is that the touched place needs."""
+    if session.shape.ready >= 1.0:
+        return []
+    share = f"{100 * session.shape.ready:.0f}"
+    return [Line(bpy.app.translations.pgettext_iface(SHAPE).format(share=share), NORMAL, GREY)]
 
 
 def _buried_lines(session: PressSession) -> list[Line]:

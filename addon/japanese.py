@@ -2,12 +2,14 @@
 
 from .japanese_finger import WORDS as FINGER_WORDS
 from .japanese_force import WORDS as FORCE_WORDS
+from .japanese_shape import WORDS as SHAPE_WORDS
 from .japanese_softness import WORDS as SOFTNESS_WORDS
 
 WORDS = {
     **FORCE_WORDS,
     **SOFTNESS_WORDS,
     **FINGER_WORDS,
+    **SHAPE_WORDS,
     # Panel
     "Pins": "固定",
     "Device": "デバイス",

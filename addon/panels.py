@@ -4,7 +4,15 @@ import bpy
 
 from ..operators import bake_session, press_session, soft_object
 from ..operators.device_source import is_planar
-from . import panel_cost, panel_finger, panel_loop, panel_recording, panel_softness, panel_state
+from . import (
+    panel_cost,
+    panel_finger,
+    panel_loop,
+    panel_recording,
+    panel_shape,
+    panel_softness,
+    panel_state,
+)
 from .panel_base import PalpatePanel, named_properties
 from .sentence import say
 
@@ -199,6 +207,7 @@ classes = (
     PALPATE_PT_touch,
     PALPATE_PT_stiff_region,
     PALPATE_PT_pins,
+    panel_shape.PALPATE_PT_shape,
     panel_finger.PALPATE_PT_finger,
     PALPATE_PT_press,
     panel_finger.PALPATE_PT_second_finger,

@@ -7,6 +7,7 @@ import bpy
 
 from ..core.materials import MATERIALS
 from .scene_properties import PalpateScene
+from .shape_properties import ShapeProperties
 
 # Files hold the numbers of these items: add new ones at the end only.
 CUSTOM = "CUSTOM"
@@ -78,7 +79,7 @@ def _keep_order(changed: str) -> Callable[[bpy.types.PropertyGroup, bpy.types.Co
     return update
 
 
-class PalpateObject(bpy.types.PropertyGroup):
+class PalpateObject(ShapeProperties, bpy.types.PropertyGroup):
     """``object.palpate``. The tetrahedra lie beside these as ID properties nodes, tets,
     fixed and, where there is a stiff region, young_scale.
     """

@@ -105,7 +105,8 @@ def _of_tool(session: PressSession, finger: FingerSnapshot, tool: Tool) -> Readi
     sizes = np.linalg.norm(pushes[carries], axis=1)
     # Three times its own area, so that neighbours flow into each other.
     radii = np.sqrt(3.0 * sizes / pressures[carries] / np.pi) / frame.metres_per_unit
-    places = frame.world_from_body(np.asarray(finger.points)[carries])
+    points = _as_drawn(session, finger, np.asarray(finger.points)[carries])
+    places = frame.world_from_body(points)
     outward = frame.turn_to_world(-pushes[carries] / sizes[:, None])
     pose = Pose(np.asarray(finger.probe), rotation)
     return Reading(
@@ -120,6 +121,23 @@ def _of_tool(session: PressSession, finger: FingerSnapshot, tool: Tool) -> Readi
         area=contact_area(pushes, pressures),
         largest_pressure=float(pressures.max()),
     )
+
+
+def _as_drawn(session: PressSession, finger: FingerSnapshot, points: Array) -> Array:
+    """Points (p, 3) of the surface by the linear shape, on the shape that is drawn."""
+    if session.displacements is None or session.linear is None or not len(finger.nodes):
+        return points
+    mesh, drawn = session.drawn.body.mesh, session.drawn
+    nodes = mesh.surface_nodes[np.asarray(finger.nodes)]
+    linear = drawn.node_displacements(session.linear)[nodes]
+    beyond = drawn.node_displacements(session.displacements)[nodes] - linear
+    if not beyond.any():
+        return points
+    # Weighted by nearness, so that neighbouring points go alike.
+    away = np.linalg.norm(points[:, None] - (mesh.nodes[nodes] + linear), axis=2)
+    nearness = 1.0 / (away + 1e-3 * drawn.size) ** 2
+    moved: Array = points + nearness @ beyond / nearness.sum(axis=1, keepdims=True)
+    return moved
 
 
 def depth_of(tool: Tool, pose: Pose, surface: Array) -> float:

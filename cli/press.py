@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ..core import cache
 from ..core.contact import CONTACT_MODES, ContactMode, Touch
 from ..core.errors import PalpateError
+from ..core.large_deformation.meeting import FingerLoad, settled
 from ..core.large_deformation.shapes import SHAPES, shape
 from ..core.soft_body import SoftBody
 from ..core.stiffness import lame_parameters
@@ -92,13 +93,8 @@ def run(arguments: argparse.Namespace) -> int:
 def _press_points(arguments: argparse.Namespace, body: SoftBody, young_modulus: float) -> int:
     mode: ContactMode = arguments.mode or "consistent"
     touches = body.touch_several(arguments.at, arguments.by, young_modulus, mode)
-    displacements = _deformed(
-        arguments,
-        body,
-        np.concatenate([touch.triangle for touch in touches]),
-        np.concatenate([touch.nodal_forces for touch in touches]),
-        young_modulus,
-    )
+    loads = [FingerLoad(touch.triangle, touch.nodal_forces) for touch in touches]
+    displacements = _deformed(arguments, body, loads, young_modulus)
     contacts = [_contact_figures(body, touch, displacements) for touch in touches]
     common = _common_figures(arguments, displacements, young_modulus) | {"mode": mode}
     if len(contacts) == 1:
@@ -123,13 +119,8 @@ def _press_tool(arguments: argparse.Namespace, body: SoftBody, young_modulus: fl
     touches = pressed_tools(
         body, tool, arguments.at, arguments.by, young_modulus, arguments.friction or 0.0
     )
-    displacements = _deformed(
-        arguments,
-        body,
-        np.concatenate([touch.nodes for touch in touches]),
-        np.concatenate([touch.nodal_forces for touch in touches]),
-        young_modulus,
-    )
+    loads = [FingerLoad(touch.nodes, touch.nodal_forces) for touch in touches]
+    displacements = _deformed(arguments, body, loads, young_modulus)
     common = _common_figures(arguments, displacements, young_modulus)
     figures = [(tool_figures if arguments.json else tool_summary)(touch) for touch in touches]
     if arguments.json:
@@ -145,20 +136,16 @@ def _press_tool(arguments: argparse.Namespace, body: SoftBody, young_modulus: fl
 
 
 def _deformed(
-    arguments: argparse.Namespace,
-    body: SoftBody,
-    nodes: NDArray[np.int64],
-    nodal_forces: NDArray[np.float64],
-    young_modulus: float,
+    arguments: argparse.Namespace, body: SoftBody, loads: list[FingerLoad], young_modulus: float
 ) -> NDArray[np.float64]:
-    """Displacements (n, 3) under the forces on nodes, written where that is asked for."""
+    """Displacements (n, 3) under the fingers' forces, written where that is asked for."""
     chosen = shape(body, arguments.shape, arguments.body)
     try:
-        chosen.wait_for(nodes)
-        displacements = chosen.displacements(nodes, nodal_forces, young_modulus)
+        displacements = settled(body, chosen, loads, young_modulus).displacements
     finally:
         chosen.close()
-    if not (np.isfinite(nodal_forces).all() and np.isfinite(displacements).all()):
+    finite = all(np.isfinite(load.forces).all() for load in loads)
+    if not (finite and np.isfinite(displacements).all()):
         raise PalpateError(
             f"--young: at {young_modulus} Pa this press is beyond what numbers can hold; give less"
         )

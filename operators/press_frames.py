@@ -19,6 +19,7 @@ from ..core.tools import Pose
 from . import modal_press, several_fingers, tool_turn
 from .body_frame import BodyFrame
 from .drawn_body import DrawnBody, open_body
+from .drawn_shape import complete_shape
 from .finger_tip import chosen_tip
 from .press_once import keep_shape
 from .several_fingers import FingerForce, ToolPress
@@ -138,20 +139,17 @@ def press_frames(
     guides = leading_objects(scene)
     modulus, friction = thing.palpate.young_modulus, thing.palpate.static_friction
     press: ToolPress | None = None
-    for frame in frames:
-        scene.frame_set(frame)
-        poses = [_pose(guide, scene, drawn.frame) for guide in guides]
-        if press is None:
-            press = ToolPress(drawn.body, tip.tool, modulus, friction, (None,) * len(poses))
-        press = press.to(poses)
-        touching = any(np.any(finger.nodal_forces) for finger in press.fingers)
-        yield PressedFrame(
-            frame,
-            press.fingers,
-            several_fingers.displacements_of(drawn.body, press.fingers, modulus)
-            if touching
-            else None,
-        )
+    with complete_shape(thing, drawn.body) as shape:
+        for frame in frames:
+            scene.frame_set(frame)
+            poses = [_pose(guide, scene, drawn.frame) for guide in guides]
+            if press is None:
+                press = ToolPress(drawn.body, tip.tool, modulus, friction, (None,) * len(poses))
+            press = press.to(poses)
+            touching = any(np.any(finger.nodal_forces) for finger in press.fingers)
+            loads = several_fingers.loads_of(press.fingers)
+            moved = shape(loads, modulus).displacements if touching else None
+            yield PressedFrame(frame, press.fingers, moved)
 
 
 def leading_objects(scene: bpy.types.Scene) -> tuple[bpy.types.Object, ...]:

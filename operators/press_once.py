@@ -15,6 +15,7 @@ from ..core.tool_contact import surface_for
 from ..core.tools import Pose, Tool
 from . import live_shape, several_fingers, tool_turn
 from .drawn_body import DrawnBody, open_body
+from .drawn_shape import complete_shape
 from .finger_tip import chosen_tip
 from .live_settings import contact_mode
 from .several_fingers import FingerForce, ToolPress
@@ -103,7 +104,8 @@ def press_several(
         made = tuple(several_fingers.of_point(touch) for touch in touches)
     else:
         made = _press_tools(drawn, thing, scene, tip.tool, places, inward)
-    displacements = several_fingers.displacements_of(drawn.body, made, young_modulus)
+    with complete_shape(thing, drawn.body) as shape:
+        displacements = shape(several_fingers.loads_of(made), young_modulus).displacements
     return Pressed(
         fingers=tuple(
             PressedFinger(one, world_vector(drawn, one.force), float(np.linalg.norm(way)))

@@ -18,11 +18,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import PalpateError
-from ..core.servo_session import Snapshot, displacements_of
+from ..core.large_deformation.meeting import FingerLoad
+from ..core.servo_session import Snapshot
 from ..core.tool_contact import surface_for
-from . import device_source, drawn_surface, live_shape, recording_writer, servo_words, tool_turn
+from . import (
+    body_store,
+    device_source,
+    drawn_surface,
+    live_shape,
+    recording_writer,
+    servo_words,
+    tool_turn,
+)
 from .device_source import DeviceFrame
 from .drawn_body import DrawnBody, open_body
+from .drawn_shape import DrawnShape, chosen_shape, loads_of
 from .finger_leads import BOTH_POINTER, FingerLead, Lead, leads_of
 from .finger_tip import FingerTip, chosen_tip
 from .force_loop import ForceLoop
@@ -66,6 +76,8 @@ class PressSession:
     """One press of one object. Make one with :func:`begin`; it is :func:`current` until it ends.
 
     ``leads`` says who moves which finger, ``tip`` what touches, ``hand`` what the pointer holds.
+    ``displacements`` (n, 3) of the free surface nodes are those that are drawn, and ``linear`` what
+    the force was computed with; None while nothing touches.
     """
 
     handle: ObjectHandle
@@ -79,9 +91,12 @@ class PressSession:
     loop: ForceLoop | None = None
     snapshot: Snapshot | None = None
     displacements: Array | None = None
+    linear: Array | None = None
     kept_name: str = ""
     said: list[Say] = field(default_factory=list)
     _drawn_contact: tuple[object, ...] = ()
+    _loads: tuple[FingerLoad, ...] = ()
+    _modulus: float = 1.0
     _warned: str = ""
 
     def post(self, event: Event) -> None:
@@ -94,8 +109,9 @@ class PressSession:
                 for effect in reversed(effects):
                     waiting.callback(self._apply, effect)
         finally:
-            if self.state.phase is Phase.ENDED and _current is self:
-                _current = None
+            if self.state.phase is Phase.ENDED:
+                self.shape.close()
+                _current = None if _current is self else _current
 
     def tick(self) -> bool:
         """Follow object, settings and servo, and draw what is new; True if the view changed.
@@ -159,6 +175,13 @@ class PressSession:
         return self.state.phase is Phase.FEELING and waiting
 
     @cached_property
+    def shape(self) -> DrawnShape:
+        """What is drawn of the body under its fingers."""
+        thing = self.handle.find()
+        file = None if thing is None else body_store.locate(thing)
+        return DrawnShape(self.drawn.body, file)
+
+    @cached_property
     def surface_samples(self) -> Array:
         """Places (n, 3) spread over the surface at rest, as closely as the tool needs, metres."""
         tool = self.tip.tool
@@ -183,7 +206,7 @@ class PressSession:
             case PlaceProbe() | MoveProbe() | SwitchForce():
                 self._running.carry_out(effect)
             case DrawRest():
-                self.displacements, self._drawn_contact = None, ()
+                self.displacements, self.linear, self._drawn_contact = None, None, ()
                 self._with_object(lambda thing: live_shape.write(thing.data, self.drawn.rest))
             case StopServo():
                 self._stop_loop()
@@ -207,6 +230,10 @@ class PressSession:
             act(thing)
 
     def _keep(self, thing: bpy.types.Object) -> None:
+        if self._loads and not self._drawn_contact:
+            # What was drawn last lacks something that is still being computed.
+            met = self.shape.finish(self._loads, self._modulus)
+            live_shape.write(thing.data, self.drawn.local_coordinates(met.displacements))
         self.kept_name = live_shape.keep(thing)
         thing.data.update()
 
@@ -330,19 +357,29 @@ class PressSession:
             self.post(Recovered())
 
     def _draw(self, thing: bpy.types.Object, snapshot: Snapshot) -> None:
-        contact = tuple(
+        self.shape.follow(chosen_shape(thing))
+        if self.shape.problem:
+            self._warn(self.shape.problem)
+        modulus = self._running.settings.young_modulus
+        fingers = tuple(
             (finger.touching, finger.nodes.tobytes(), finger.nodal_forces.tobytes())
             for finger in snapshot.fingers
         )
+        contact = (self.shape.name, self.shape.ready, modulus, fingers)
         if contact == self._drawn_contact:
             return
         self._drawn_contact = contact
-        modulus = self._running.settings.young_modulus
-        self.displacements = displacements_of(self.drawn.body, snapshot, modulus)
-        if self.displacements is None:
+        self._loads, self._modulus = tuple(loads_of(self.drawn.body, snapshot)), modulus
+        if not self._loads:
+            self.displacements = self.linear = None
             live_shape.write(thing.data, self.drawn.rest)
-        else:
-            live_shape.write(thing.data, self.drawn.local_coordinates(self.displacements))
+            return
+        met = self.shape.draw(self._loads, modulus)
+        if not met.settled or self.shape.ready < 1.0:
+            # The same contact is drawn better in the next frame.
+            self._drawn_contact = ()
+        self.displacements, self.linear = met.displacements, met.linear
+        live_shape.write(thing.data, self.drawn.local_coordinates(met.displacements))
 
 
 _current: PressSession | None = None

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.contact import Touch
+from ..core.large_deformation.meeting import FingerLoad
 from ..core.soft_body import SoftBody
 from ..core.tool_contact import Load, ToolTouch, press_tool
 from ..core.tools import Pose, Tool
@@ -143,11 +144,11 @@ def between(start: Pose, end: Pose, share: float) -> Pose:
     return end if share >= 1.0 else Pose(position, left @ sign @ right)
 
 
-def displacements_of(body: SoftBody, fingers: Sequence[FingerForce], young_modulus: float) -> Array:
-    """Displacements (n, 3) of the free surface nodes under all fingers (15)."""
-    nodes = np.concatenate([finger.nodes for finger in fingers])
-    forces = np.concatenate([finger.nodal_forces for finger in fingers])
-    return body.deform(nodes, forces, young_modulus)
+def loads_of(fingers: Sequence[FingerForce]) -> list[FingerLoad]:
+    """What the body bears, of all fingers that press."""
+    return [
+        FingerLoad(finger.nodes, finger.nodal_forces) for finger in fingers if len(finger.nodes)
+    ]
 
 
 def _load(touches: Sequence[ToolTouch]) -> Load | None:

@@ -1,0 +1,47 @@
+"""Shapes of large deformation and the felt force in German."""
+
+WORDS = {
+    "Large Deformation": "Große Verformung",
+    "Shape": "Form",
+    "How the deformed shape is computed. Can be changed while you press": (
+        "Wie die verformte Gestalt berechnet wird. Während des Drückens umschaltbar"
+    ),
+    "As the force is computed; large bends look swollen": (
+        "Wie die Kraft berechnet wird; große Biegungen sehen aufgebläht aus"
+    ),
+    "Table (Paper)": "Tabelle (Artikel)",
+    "The paper's (16): corrected by stored large deformations, each solved exactly": (
+        "Gleichung (16) des Artikels: berichtigt durch gespeicherte große Verformungen, jede "
+        "genau gelöst"
+    ),
+    "Series": "Reihe",
+    "As (16), but by power series: computed around the touched place while you press": (
+        "Wie (16), doch durch Potenzreihen: um die berührte Stelle herum berechnet, "
+        "während Sie drücken"
+    ),
+    "Rotation-Strain": "Drehung und Dehnung",
+    "Bends and twists keep their size; needs no table": (
+        "Gebogenes und Verdrehtes behält seine Größe; braucht keine Tabelle"
+    ),
+    "Felt Force": "Gefühlte Kraft",
+    "How the force follows from large depths": "Wie die Kraft aus großen Tiefen folgt",
+    "The paper's: force grows in proportion to the depth, without limit": (
+        "Die des Artikels: Kraft wächst im Verhältnis zur Tiefe, ohne Grenze"
+    ),
+    "Corrected": "Berichtigt",
+    "Gives way at depth as the body really does; the same for light touches": (
+        "Gibt in der Tiefe nach, wie der Körper es wirklich tut; gleich bei leichter Berührung"
+    ),
+    "The linear shape is drawn": "Gezeichnet wird die lineare Form",
+    "Shape {share} %": "Form {share} %",
+    "A Frame, About": "Ein Bild, etwa",
+    "First Touch, About": "Erste Berührung, etwa",
+    "Whole Table, About": "Ganze Tabelle, etwa",
+    "Memory, About": "Speicher, etwa",
+    "Too large a body to be drawn 60 times a second this way": (
+        "Der Körper ist zu groß, um so 60-mal in der Sekunde gezeichnet zu werden"
+    ),
+    "Computed around the touched place first, and kept": (
+        "Wird zuerst um die berührte Stelle berechnet und behalten"
+    ),
+}

@@ -1,0 +1,79 @@
+"""Large deformation: which shape is drawn, what that costs, how far it is, and the felt force."""
+
+import bpy
+
+from ..core.large_deformation.shape_cost import BodySize, ShapeCost, shape_cost
+from ..operators import press_session
+from ..operators.drawn_shape import chosen_shape
+from ..operators.press_session import PressSession
+from ..operators.quantities import duration, memory
+from .panel_base import PalpatePanel, draw_rows, interface, named_properties
+from .sentence import say
+from .shape_properties import FELT_ITEMS, SHAPE_ITEMS
+
+# Below this a frame leaves Blender the time for 60 of them a second.
+SMOOTH_SECONDS = 0.012
+
+
+class PALPATE_PT_shape(PalpatePanel, bpy.types.Panel):
+    bl_idname = "PALPATE_PT_shape"
+    bl_label = "Large Deformation"
+    bl_parent_id = "PALPATE_PT_main"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout, thing = named_properties(self), context.object
+        settings = thing.palpate
+        layout.prop(settings, "shape")
+        say(layout, context, _explained(SHAPE_ITEMS, settings.shape), "BLANK1")
+        _draw_cost(layout, context, thing)
+        press = press_session.current()
+        if press is not None and press.handle.find() == thing:
+            draw_progress(layout, context, press)
+        layout.prop(settings, "felt")
+        say(layout, context, _explained(FELT_ITEMS, settings.felt), "BLANK1")
+
+
+def draw_progress(
+    layout: bpy.types.UILayout, context: bpy.types.Context, press: PressSession
+) -> None:
+    """How far the touched place's share of a table is, or why there is none."""
+    shape = press.shape
+    if shape.problem:
+        say(layout, context, shape.problem, "ERROR")
+        say(layout, context, "The linear shape is drawn", "BLANK1")
+    elif shape.ready < 1.0:
+        text = interface("Shape {share} %").format(share=f"{100 * shape.ready:.0f}")
+        layout.progress(factor=shape.ready, type="BAR", text=text, translate=False)
+
+
+def cost_now(thing: bpy.types.Object) -> ShapeCost | None:
+    """What the chosen shape costs of the object's body; None of an object that is not soft."""
+    baked = thing.palpate
+    if not baked.free_surface_count:
+        return None
+    size = BodySize(baked.node_count, baked.tet_count, baked.free_surface_count)
+    return shape_cost(chosen_shape(thing), size)
+
+
+def _draw_cost(
+    layout: bpy.types.UILayout, context: bpy.types.Context, thing: bpy.types.Object
+) -> None:
+    cost = cost_now(thing)
+    if cost is None or thing.palpate.shape == "LINEAR":
+        return
+    box = layout.box().column(align=True)
+    rows = [("A Frame, About", f"{1000 * cost.frame_seconds:.2g} ms")]
+    if cost.first_seconds >= 0.1:
+        rows.append(("First Touch, About", f"{cost.first_seconds:.1f} s"))
+    if cost.table_seconds:
+        rows.append(("Whole Table, About", duration(cost.table_seconds)))
+    rows.append(("Memory, About", memory(cost.memory_bytes)))
+    draw_rows(box, rows)
+    if cost.frame_seconds > SMOOTH_SECONDS:
+        say(box, context, "Too large a body to be drawn 60 times a second this way", "INFO")
+    if cost.table_seconds:
+        say(box, context, "Computed around the touched place first, and kept", "INFO")
+
+
+def _explained(items: list[tuple[str, str, str]], chosen: str) -> str:
+    return next(text for name, _, text in items if name == chosen)

@@ -1,0 +1,38 @@
+"""What an object remembers of large deformation: the shape drawn and the force felt."""
+
+import bpy
+
+from ..core.large_deformation.shapes import EXPLANATIONS
+
+# Files hold the numbers of these items: add new ones at the end only.
+SHAPE_ITEMS = [
+    ("LINEAR", "Linear", EXPLANATIONS["linear"]),
+    ("TABLE", "Table (Paper)", EXPLANATIONS["table"]),
+    ("SERIES", "Series", EXPLANATIONS["series"]),
+    ("ROTATION_STRAIN", "Rotation-Strain", EXPLANATIONS["rotation-strain"]),
+]
+FELT_ITEMS = [
+    ("LINEAR", "Linear", "The paper's: force grows in proportion to the depth, without limit"),
+    (
+        "CORRECTED",
+        "Corrected",
+        "Gives way at depth as the body really does; the same for light touches",
+    ),
+]
+
+
+class ShapeProperties:
+    """The part of ``object.palpate`` that is about large deformation."""
+
+    shape: bpy.props.EnumProperty(
+        name="Shape",
+        description="How the deformed shape is computed. Can be changed while you press",
+        items=SHAPE_ITEMS,
+        default="LINEAR",
+    )
+    felt: bpy.props.EnumProperty(
+        name="Felt Force",
+        description="How the force follows from large depths",
+        items=FELT_ITEMS,
+        default="LINEAR",
+    )

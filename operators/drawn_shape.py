@@ -1,0 +1,167 @@
+"""The shape that a press draws: as chosen, made in the background, changed while somebody presses.
+
+Until it is made, and where it cannot be, the linear one is drawn.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path
+
+import bpy
+import numpy as np
+
+from ..core.errors import PalpateError
+from ..core.large_deformation.meeting import FingerLoad, Meeting, Met, settled
+from ..core.large_deformation.shapes import LinearShape, Shape, ShapeName, shape, shape_name
+from ..core.servo_session import Snapshot
+from ..core.soft_body import SoftBody
+from . import body_store
+
+
+def chosen_shape(thing: bpy.types.Object) -> ShapeName:
+    """What the object's panel says."""
+    return shape_name(thing.palpate.shape.lower().replace("_", "-"))
+
+
+@dataclass(eq=False)
+class DrawnShape:
+    """Draws a body under its fingers.
+
+    Attributes
+    ----------
+    name : of the shape that is asked for.
+    problem : why the linear one is drawn instead, empty otherwise.
+    """
+
+    body: SoftBody
+    body_file: Path | None
+    name: ShapeName = "linear"
+    problem: str = ""
+    _shape: Shape = field(init=False)
+    _meeting: Meeting = field(init=False)
+    _making: Future[Shape] | None = None
+    _behind: ThreadPoolExecutor | None = None
+
+    def __post_init__(self) -> None:
+        self._take(LinearShape(self.body))
+
+    @classmethod
+    def of(cls, thing: bpy.types.Object, body: SoftBody) -> DrawnShape:
+        """For an object with its body; tables are kept beside its file."""
+        return cls(body, body_store.locate(thing))
+
+    @property
+    def ready(self) -> float:
+        """Share (0 to 1) of what the touched place needs that is there."""
+        return 0.0 if self._making is not None else self._shape.ready
+
+    def follow(self, name: ShapeName) -> None:
+        """Draw this one from now on, as soon as it can be. Waits for nothing."""
+        if name != self.name:
+            self._end()
+            self.name, self.problem = name, ""
+            self._take(LinearShape(self.body))
+            if name != "linear":
+                if self._behind is None:
+                    self._behind = ThreadPoolExecutor(1, "palpate-shape")
+                self._making = self._behind.submit(shape, self.body, name, self.body_file)
+        if self._making is not None and self._making.done():
+            self._take_made()
+
+    def draw(self, fingers: Sequence[FingerLoad], young_modulus: float) -> Met:
+        """The body under these fingers, as well as it is known now."""
+        try:
+            return self._meeting.step(fingers, young_modulus)
+        except PalpateError as problem:
+            self.problem = str(problem)
+            self._end()
+            self._take(LinearShape(self.body))
+            return self._meeting.step(fingers, young_modulus)
+
+    def finish(self, fingers: Sequence[FingerLoad], young_modulus: float) -> Met:
+        """The body under these fingers with all that it needs; waits for it."""
+        if self._making is not None:
+            self._take_made()
+        try:
+            self._meeting.shape.wait_for(np.unique(np.concatenate([f.nodes for f in fingers])))
+        except PalpateError as problem:
+            self.problem = str(problem)
+        return self._meeting.settle(fingers, young_modulus)
+
+    def close(self) -> None:
+        """End what works in the background; what it made is kept. Waits for nothing."""
+        self._end()
+        self._take(LinearShape(self.body))
+        if self._behind is not None:
+            self._behind.shutdown(wait=False)
+            self._behind = None
+
+    def _take_made(self) -> None:
+        """Take what is made in the background, waiting for it if need be."""
+        making, self._making = self._making, None
+        if making is None:
+            return
+        try:
+            self._take(making.result())
+        except PalpateError as problem:
+            self.problem = str(problem)
+
+    def _take(self, made: Shape) -> None:
+        self._shape, self._meeting = made, Meeting(self.body, made)
+
+    def _end(self) -> None:
+        """Close what there is, where that is waited for by nobody: files may be written."""
+        if self._behind is None:
+            return
+        making, self._making = self._making, None
+        if making is not None:
+            self._behind.submit(_close_made, making)
+        else:
+            self._behind.submit(_close, self._shape)
+
+
+@contextmanager
+def complete_shape(
+    thing: bpy.types.Object, body: SoftBody
+) -> Iterator[Callable[[Sequence[FingerLoad], float], Met]]:
+    """What the object's panel asks for, as a function of the fingers' loads and Young's modulus.
+
+    It waits until all is there that these loads need.
+
+    Raises
+    ------
+    PalpateError
+        It cannot be computed.
+    """
+    made = shape(body, chosen_shape(thing), body_store.locate(thing))
+    try:
+        yield partial(settled, body, made)
+    finally:
+        made.close()
+
+
+def loads_of(body: SoftBody, snapshot: Snapshot) -> list[FingerLoad]:
+    """The loads of all fingers that touch."""
+    return [
+        FingerLoad(body.mesh.surface_nodes[finger.nodes], finger.nodal_forces)
+        for finger in snapshot.fingers
+        if len(finger.nodes)
+    ]
+
+
+def _close(made: Shape) -> None:
+    try:
+        made.close()
+    except PalpateError as problem:
+        # Nobody presses any more who could be told; the table is computed again next time.
+        print(f"palpate: {problem}")  # noqa: T201
+
+
+def _close_made(making: Future[Shape]) -> None:
+    if making.exception() is None:
+        _close(making.result())

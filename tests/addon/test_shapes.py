@@ -1,0 +1,269 @@
+"""Shapes of large deformation: chosen, switched while pressing, filled, kept, given up."""
+
+from __future__ import annotations
+
+import threading
+import time
+
+import bpy
+import numpy as np
+import pytest
+from soft_scene import key_coordinates, key_names, mesh_state, part, press_down, soft_cube
+
+TOP, DEPTH = (0.002, 0.001, 0.02501), 0.004
+NAMES = {
+    "LINEAR": "linear",
+    "TABLE": "table",
+    "SERIES": "series",
+    "ROTATION_STRAIN": "rotation-strain",
+}
+
+
+@pytest.fixture
+def states(palpate):
+    return part("operators.press_state")
+
+
+@pytest.fixture
+def sessions(palpate):
+    module = part("operators.press_session")
+    yield module
+    module.give_way("")
+
+
+@pytest.fixture
+def shapes(palpate):
+    return part("core.large_deformation.shapes")
+
+
+class Narrower:
+    """Nine tenths of the linear shape: nothing a body would do, but easy to tell."""
+
+    def __init__(self, body, file):
+        self.body, self.file, self.closed = body, file, threading.Event()
+        self.ready = 1.0
+
+    def displacements(self, nodes, nodal_forces, young_modulus=None):
+        share = 1.0 if self.ready < 1.0 else 0.9
+        return share * self.body.deform(nodes, nodal_forces, young_modulus)
+
+    def wait_for(self, nodes):
+        self.asked, self.ready = nodes, 1.0
+
+    def close(self):
+        self.closed.set()
+
+
+def begin_pressed(sessions, states, thing):
+    session = sessions.begin(thing, bpy.context.scene, states.Source.POINTER)
+    session.post(states.SetDown(TOP))
+    session.post(states.Move((TOP[0], TOP[1], TOP[2] - DEPTH)))
+    session.post(states.Release())
+    wait(session, lambda: session.displacements is not None and depth(session) > 0.99 * DEPTH)
+    return session
+
+
+def wait(session, condition, seconds=20.0):
+    end = time.monotonic() + seconds
+    while True:
+        session.tick()
+        if condition():
+            return
+        assert time.monotonic() < end, "waited in vain"
+        time.sleep(0.005)
+
+
+def depth(session):
+    finger = session.snapshot.fingers[0]
+    return np.linalg.norm(finger.probe - finger.proxy)
+
+
+def drawn_depth(thing, key="Palpate live"):
+    return TOP[2] - key_coordinates(thing, key)[:, 2].max()
+
+
+def test_the_panel_offers_every_shape_with_its_sentence(palpate, shapes):
+    items = bpy.context.object.palpate.bl_rna.properties["shape"].enum_items
+    assert {item.identifier: NAMES[item.identifier] for item in items} == NAMES
+    assert tuple(NAMES.values()) == shapes.SHAPES
+    for item in items:
+        assert item.description == shapes.EXPLANATIONS[NAMES[item.identifier]]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_costs_are_told_before_and_grow_with_the_body(palpate, name):
+    cost = part("core.large_deformation.shape_cost")
+    thing = soft_cube()
+    thing.palpate.shape = name
+    now = part("addon.panel_shape").cost_now(thing)
+    large = cost.shape_cost(NAMES[name], cost.BodySize(20_000, 80_000, 6_400))
+    assert 0.0 < now.frame_seconds < large.frame_seconds
+    assert now.memory_bytes <= large.memory_bytes
+    assert (large.table_seconds > 10.0) == (name in {"TABLE", "SERIES"})
+    thing.palpate.free_surface_count = 0
+    assert part("addon.panel_shape").cost_now(thing) is None
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_script_keeps_the_shape_that_is_chosen(palpate, name):
+    thing = soft_cube()
+    press_down(thing, depth=DEPTH)
+    thing.palpate.shape = name
+    press_down(thing, depth=DEPTH)
+    linear, chosen = (key_coordinates(thing, key) for key in ("Press 1", "Press 2"))
+    largest = np.abs(linear - key_coordinates(thing, "Basis")).max()
+    assert np.abs(chosen - linear).max() < 0.5 * largest
+    assert np.array_equal(chosen, linear) == (name == "LINEAR")
+    # Whatever is drawn, its touched place is where the finger is.
+    top = np.argmax(np.abs(linear - key_coordinates(thing, "Basis")).max(axis=1))
+    assert chosen[top] == pytest.approx(linear[top], abs=0.06 * largest)
+
+
+@pytest.mark.parametrize("name", [name for name in NAMES if name != "LINEAR"])
+def test_a_shape_is_switched_while_pressing_and_nothing_is_lost(sessions, states, name):
+    thing = soft_cube()
+    before = mesh_state(thing)
+    session = begin_pressed(sessions, states, thing)
+    linear = session.displacements
+    thing.palpate.shape = name
+    wait(session, lambda: session.shape.ready == 1.0 and session.displacements is not linear)
+    assert not session.shape.problem
+    assert session.snapshot.touching
+    assert depth(session) == pytest.approx(DEPTH, rel=0.01)
+    assert not np.array_equal(session.displacements, linear)
+    np.testing.assert_array_equal(session.linear, linear)
+    thing.palpate.shape = "LINEAR"
+    wait(session, lambda: np.array_equal(session.displacements, linear))
+    session.post(states.Cancel())
+    thing.palpate.shape = "LINEAR"
+    assert mesh_state(thing) == before
+
+
+def test_until_it_is_made_and_filled_the_linear_shape_is_drawn(
+    sessions, states, shapes, monkeypatch
+):
+    thing, allowed, made = soft_cube(), threading.Event(), []
+
+    def slowly(body, file):
+        allowed.wait(5.0)
+        made.append(Narrower(body, file))
+        made[0].ready = 0.37
+        return made[0]
+
+    monkeypatch.setitem(shapes.MAKERS, "series", slowly)
+    thing.palpate.shape = "SERIES"
+    session = begin_pressed(sessions, states, thing)
+    linear = drawn_depth(thing)
+    assert session.shape.ready == 0.0
+    allowed.set()
+    wait(session, lambda: session.shape.ready == 0.37)
+    assert drawn_depth(thing) == pytest.approx(linear, abs=1e-6)
+    said = [line.text for line in part("addon.hud")._shape_lines(session)]
+    assert said == ["Shape 37 %"]
+    assert made[0].file == part("operators.body_store").locate(thing)
+    made[0].ready = 1.0
+    # It meets the finger then, with more force than the linear one.
+    wait(session, lambda: bool(np.any(session.shape._meeting._added)))
+    assert not part("addon.hud")._shape_lines(session)
+
+
+def test_what_is_kept_is_complete(sessions, states, shapes, monkeypatch):
+    thing, made = soft_cube(), []
+
+    def half(body, file):
+        made.append(Narrower(body, file))
+        made[0].ready = 0.5
+        return made[0]
+
+    monkeypatch.setitem(shapes.MAKERS, "table", half)
+    thing.palpate.shape = "TABLE"
+    session = begin_pressed(sessions, states, thing)
+    wait(session, lambda: session.shape.ready == 0.5)
+    session.post(states.Keep())
+    assert key_names(thing)[-1] == "Press 1"
+    assert made[0].ready == 1.0
+    assert made[0].closed.wait(5.0)
+
+
+def test_a_shape_that_cannot_be_made_is_told_once_and_the_press_goes_on(
+    sessions, states, shapes, monkeypatch
+):
+    def refuse(body, file):
+        raise part("core.errors").PalpateError("shape: no room; choose another")
+
+    monkeypatch.setitem(shapes.MAKERS, "table", refuse)
+    thing = soft_cube()
+    thing.palpate.shape = "TABLE"
+    session = begin_pressed(sessions, states, thing)
+    wait(session, lambda: bool(session.shape.problem))
+    for _ in range(5):
+        session.tick()
+    assert [said.text for said in session.said] == ["shape: no room; choose another"]
+    assert session.state.phase is states.Phase.HOLDING
+    np.testing.assert_array_equal(session.displacements, session.linear)
+    sessions.give_way("")
+    # Without a clock there is nobody to look at the linear one instead.
+    with pytest.raises(RuntimeError, match="no room; choose another"):
+        press_down(thing)
+
+
+@pytest.mark.parametrize("way", ["cancel", "deletion", "another file", "undo"])
+def test_the_end_of_a_press_ends_the_work_behind_it(sessions, states, shapes, monkeypatch, way):
+    thing, made = soft_cube(), []
+    monkeypatch.setitem(
+        shapes.MAKERS,
+        "series",
+        lambda body, file: made.append(Narrower(body, file)) or made[0],
+    )
+    thing.palpate.shape = "SERIES"
+    session = begin_pressed(sessions, states, thing)
+    wait(session, lambda: session.shape.ready == 1.0 and bool(made))
+    if way == "cancel":
+        session.post(states.Cancel())
+    elif way == "deletion":
+        bpy.data.objects.remove(thing)
+        session.tick()
+    elif way == "another file":
+        bpy.ops.wm.read_homefile(use_factory_startup=True)
+    else:
+        part("addon.handlers")._before_undo()
+    assert made[0].closed.wait(5.0)
+    assert sessions.current() is None
+
+
+def test_a_shape_still_being_made_is_closed_when_it_is_there(sessions, states, shapes, monkeypatch):
+    thing, allowed, made = soft_cube(), threading.Event(), []
+
+    def slowly(body, file):
+        allowed.wait(5.0)
+        made.append(Narrower(body, file))
+        return made[0]
+
+    monkeypatch.setitem(shapes.MAKERS, "series", slowly)
+    thing.palpate.shape = "SERIES"
+    session = begin_pressed(sessions, states, thing)
+    session.post(states.Cancel())
+    allowed.set()
+    end = time.monotonic() + 5.0
+    while not made and time.monotonic() < end:
+        time.sleep(0.005)
+    assert made[0].closed.wait(5.0)
+
+
+def test_pressure_is_drawn_on_the_shape_that_is_seen(palpate):
+    reading = part("addon.reading")
+    thing = soft_cube()
+    drawn = part("operators.drawn_body").open_body(thing, bpy.context.scene)
+    mesh = drawn.body.mesh
+
+    class Session:
+        linear = np.zeros((drawn.body.compliance.node_count, 3))
+        displacements = linear + np.array([0.0, 0.0, 0.002])
+
+    class Finger:
+        nodes = np.searchsorted(mesh.surface_nodes, drawn.body.compliance.free_surface[:6])
+
+    Session.drawn = drawn
+    points = mesh.nodes[drawn.body.compliance.free_surface[:3]]
+    moved = reading._as_drawn(Session, Finger, points)
+    np.testing.assert_allclose(moved, points + np.array([0.0, 0.0, 0.002]), atol=1e-12)
