@@ -7,9 +7,12 @@ import json
 from pathlib import Path
 
 from ..core import cache
+from ..core.soft_body import SoftBody
 from ..core.softness.curve_picture import curve_svg
-from ..core.softness.force_depth import MILLIMETRES, force_depth_curve
+from ..core.softness.force_depth import MILLIMETRES, ForceDepthCurve, force_depth_curve
+from ..core.softness.place import nearest_place
 from ..core.whole_file import refuse_missing_folder, whole_file
+from .felt_option import add_felt, refuse_with_tool, softening_table
 from .place_options import add_at, add_young, positive_length, refuse_suffix, young_modulus_of
 from .tool_option import KINDS, tool_from
 
@@ -32,6 +35,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     )
     parser.add_argument("--steps", type=int, default=20, metavar="N", help="default %(default)d")
     add_young(parser)
+    add_felt(parser)
     parser.add_argument("--csv", type=Path, metavar="OUT.csv", help="write the curve as a table")
     parser.add_argument("--picture", type=Path, metavar="OUT.svg", help="write it as a picture")
     parser.add_argument("--json", action="store_true", help="print figures as JSON")
@@ -48,14 +52,7 @@ def run(arguments: argparse.Namespace) -> int:
             refuse_suffix(option, path.name, path.suffix, (suffix,))
             refuse_missing_folder(path)
     body = cache.load(arguments.body)
-    curve = force_depth_curve(
-        body,
-        arguments.at,
-        arguments.depth,
-        tool=None if arguments.tool == POINT else tool_from(arguments.tool),
-        steps=arguments.steps,
-        young_modulus=young_modulus_of(arguments, body),
-    )
+    curve = _curve(arguments, body)
     if arguments.csv is not None:
         with whole_file(arguments.csv) as file:
             file.write(curve.as_csv().encode())
@@ -80,3 +77,23 @@ def run(arguments: argparse.Namespace) -> int:
             f"{curve.depths[-1] * MILLIMETRES:.3g} mm"
         )
     return 0
+
+
+def _curve(arguments: argparse.Namespace, body: SoftBody) -> ForceDepthCurve:
+    softenings = None
+    if arguments.tool != POINT:
+        refuse_with_tool(arguments)
+    elif arguments.felt == "corrected":
+        with softening_table(body, arguments.body) as table:
+            place = nearest_place(body, arguments.at)
+            table.wait_for(body.mesh.surface_triangles[place.triangle])
+            softenings = table.values
+    return force_depth_curve(
+        body,
+        arguments.at,
+        arguments.depth,
+        tool=None if arguments.tool == POINT else tool_from(arguments.tool),
+        steps=arguments.steps,
+        young_modulus=young_modulus_of(arguments, body),
+        softenings=softenings,
+    )

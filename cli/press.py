@@ -18,6 +18,7 @@ from ..core.soft_body import SoftBody
 from ..core.stiffness import lame_parameters
 from ..core.whole_file import whole_file
 from .body_figures import as_lines
+from .felt_option import add_felt, felt_forces, refuse_with_tool
 from .press_tool import pressed_tools, tool_figures, tool_summary
 from .tool_option import KINDS, tool_from
 
@@ -62,6 +63,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         metavar="MU",
         help="coefficient of friction between --tool and body (default 0)",
     )
+    add_felt(parser)
     parser.add_argument(
         "--shape",
         choices=SHAPES,
@@ -95,8 +97,13 @@ def _press_points(arguments: argparse.Namespace, body: SoftBody, young_modulus: 
     touches = body.touch_several(arguments.at, arguments.by, young_modulus, mode)
     loads = [FingerLoad(touch.triangle, touch.nodal_forces) for touch in touches]
     displacements = _deformed(arguments, body, loads, young_modulus)
-    contacts = [_contact_figures(body, touch, displacements) for touch in touches]
-    common = _common_figures(arguments, displacements, young_modulus) | {"mode": mode}
+    felt = felt_forces(arguments, body, touches, young_modulus, mode)
+    contacts = [
+        _contact_figures(body, touch, displacements) | {"force": force.tolist()}
+        for touch, force in zip(touches, felt, strict=True)
+    ]
+    common = _common_figures(arguments, displacements, young_modulus)
+    common |= {"mode": mode, "felt": arguments.felt}
     if len(contacts) == 1:
         figures = contacts[0] | common
         print(json.dumps(figures) if arguments.json else as_lines(figures))
@@ -115,6 +122,7 @@ def _press_points(arguments: argparse.Namespace, body: SoftBody, young_modulus: 
 def _press_tool(arguments: argparse.Namespace, body: SoftBody, young_modulus: float) -> int:
     if arguments.mode is not None:
         raise PalpateError("--mode: it is about points; leave it out with --tool")
+    refuse_with_tool(arguments)
     tool = tool_from(arguments.tool)
     touches = pressed_tools(
         body, tool, arguments.at, arguments.by, young_modulus, arguments.friction or 0.0

@@ -28,9 +28,11 @@ from ..core.servo_session import STATES, native_body, servo_on
 from ..core.soft_body import SoftBody
 from ..core.stiffness import lame_parameters
 from .body_figures import as_lines
+from .felt_option import add_felt, softening_table
 from .haply import add_haply_options, connect_haply
 
 if TYPE_CHECKING:
+    from ..core.large_deformation.softening_table import SofteningTable
     from ..core.servo_session import FingerCounters, Servo, Snapshot
 
 HELLO_SECONDS = 5.0
@@ -63,6 +65,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         default="consistent",
         help="how a contact inside a triangle becomes a force (default: %(default)s)",
     )
+    add_felt(parser)
     parser.add_argument(
         "--seconds", type=float, default=10.0, metavar="S", help="default: %(default)g"
     )
@@ -94,12 +97,18 @@ def run(arguments: argparse.Namespace) -> int:
         others: list[str] = arguments.second_port
         _check_ports([port, *others])
         stopped = stack.enter_context(stopped_by_signals())
+        surface = native_body(body, whole=bool(others))
         servo = servo_on(
-            native_body(body, whole=bool(others)),
+            surface,
             young_modulus=young_modulus,
             rate_hz=arguments.rate,
             mode=arguments.mode,
+            felt=arguments.felt,
         )
+        table = None
+        if arguments.felt == "corrected":
+            table = stack.enter_context(softening_table(body, arguments.body))
+            table.listen(surface.set_softenings)
         stack.callback(servo.stop)
         _add_fingers(servo, others)
         if arguments.record is not None:
@@ -110,7 +119,7 @@ def run(arguments: argparse.Namespace) -> int:
         else:
             _connect(servo, port, stopped)
         _await_greetings(servo, others, stopped)
-        report = _touch(servo, port, arguments.seconds, stopped)
+        report = _touch(servo, port, arguments.seconds, stopped, table)
         if simulated is not None:
             report["simulated_device"] = simulated.stop()
         report["young_modulus"] = young_modulus
@@ -290,12 +299,27 @@ def _of_others(last: Snapshot, counters: Sequence[FingerCounters]) -> dict[str, 
     return {"other_fingers": others} if others else {}
 
 
-def _touch(servo: Servo, port: str, seconds: float, stopped: Sequence[int]) -> dict[str, Any]:
+def _ask_for(table: SofteningTable, snapshot: Snapshot) -> None:
+    """What the touched places lack, and their neighbourhood."""
+    nodes = np.concatenate([finger.nodes for finger in snapshot.fingers])
+    if len(nodes):
+        table.around(table.body.mesh.surface_nodes[nodes])
+
+
+def _touch(
+    servo: Servo,
+    port: str,
+    seconds: float,
+    stopped: Sequence[int],
+    table: SofteningTable | None,
+) -> dict[str, Any]:
     felt = _Felt()
     begin = time.monotonic()
     while not stopped and time.monotonic() < begin + seconds and servo.running:
         time.sleep(LOOK_EVERY_SECONDS)
         felt.take(servo.samples())
+        if table is not None:
+            _ask_for(table, servo.snapshot())
     last = servo.snapshot()
     servo.stop()
     felt.take(servo.samples())
@@ -319,6 +343,7 @@ def _touch(servo: Servo, port: str, seconds: float, stopped: Sequence[int]) -> d
         "interrupted": bool(stopped),
         "last_state": last.state,
         "last_fault": last.fault,
+        "felt": last.felt,
         "touching_ticks": felt.touching,
         **_of_others(last, counters["fingers"]),
         "peak_contact_force_n": felt.contact_force,

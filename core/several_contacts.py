@@ -111,6 +111,17 @@ def solve_distinct(
 ) -> NDArray[np.float64]:
     """As :func:`solve_contacts`, for a C that has been :func:`told_apart`."""
     axes, widths = push_cones(C, pushes)
+    return solve_with_cones(C, u, axes, widths, start)
+
+
+def solve_with_cones(
+    C: NDArray[np.float64],
+    u: NDArray[np.float64],
+    axes: NDArray[np.float64],
+    widths: NDArray[np.float64],
+    start: NDArray[np.float64] | None = None,
+) -> NDArray[np.float64]:
+    """As :func:`solve_distinct`, in cones that are given; see :func:`push_cones`."""
     pressing = Pressing(C, u, axes, widths)
     direct = np.asarray(np.linalg.solve(as_matrix(C), u.ravel()), dtype=np.float64)
     forces = direct.reshape(u.shape)

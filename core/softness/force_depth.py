@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import PalpateError
+from ..large_deformation.felt_force import contact_relation
 from ..soft_body import SoftBody
 from ..tool_contact import ToolTouch, press_tool
 from ..tools import Pose, Tool
@@ -80,6 +81,7 @@ def force_depth_curve(
     tool: Tool | None = None,
     steps: int = 20,
     young_modulus: float | None = None,
+    softenings: NDArray[np.float64] | None = None,
 ) -> ForceDepthCurve:
     """Press straight in at the surface point nearest to ``at`` (3,), metres.
 
@@ -89,6 +91,8 @@ def force_depth_curve(
     tool : a rigid tool, its -z axis along the axis; None for a point.
     steps : how many depths besides 0.
     young_modulus : pascal; the body's own unless given.
+    softenings : (s, 4), for the corrected force of a point
+        (:mod:`..large_deformation.felt_force`); None for the linear one. A tool's is linear.
 
     Raises
     ------
@@ -104,6 +108,8 @@ def force_depth_curve(
     if not 1 <= steps <= MOST_STEPS:
         raise PalpateError(f"force curve: {steps} steps; give a number from 1 to {MOST_STEPS}")
     depths = np.linspace(0.0, end, steps + 1)
+    if tool is None and softenings is not None:
+        return _of_softening_point(body, place, depths, modulus, softenings)
     if tool is None:
         return _of_point(body, place, depths, modulus)
     return _of_tool(body, place, depths, modulus, tool)
@@ -122,6 +128,22 @@ def _of_point(
         stiffness * depths,
         np.full(len(depths), stiffness),
         np.zeros(len(depths)),
+    )
+
+
+def _of_softening_point(
+    body: SoftBody,
+    place: Place,
+    depths: NDArray[np.float64],
+    modulus: float,
+    softenings: NDArray[np.float64],
+) -> ForceDepthCurve:
+    relation = contact_relation(body, softenings, place.triangle, place.alpha)
+    moved = depths[:, None] * place.axis
+    forces = np.array([relation.force(u) @ place.axis for u in moved])
+    stiffness = np.array([place.axis @ relation.tangent(u) @ place.axis for u in moved])
+    return ForceDepthCurve(
+        "point", place, depths, modulus * forces, modulus * stiffness, np.zeros(len(depths))
     )
 
 

@@ -194,6 +194,7 @@ def test_press_takes_several_fingers_in_order(cube_file, tmp_path, capsys, cube)
         "young modulus     1000.0",
         "shape             linear",
         "mode              consistent",
+        "felt              linear",
     ]
 
 
