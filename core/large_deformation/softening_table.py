@@ -1,16 +1,13 @@
 """The softenings of a body's surface, computed around the touched place while it is touched.
 
-One thread in the background takes the unknown nodes nearest to the place asked for last, a few at
-a time, tells whoever listens, and ends when all are known. What it made is kept beside the body
-file. A node that is not known yet has softening zero: there the corrected relation is the linear
-one.
+A thread in the background takes the nodes asked for, then those nearest to them, a few at a time,
+and tells whoever listens. What it made is kept beside the body file. A node that is not known yet
+has softening zero: there the corrected relation is the linear one.
 """
 
 from __future__ import annotations
 
 import threading
-import time
-import weakref
 from collections.abc import Callable
 from pathlib import Path
 from typing import TypeAlias
@@ -23,11 +20,12 @@ from ..errors import PalpateError
 from ..progress import Progress, unwatched
 from ..soft_body import SoftBody
 from .free_solid import FreeSolid
+from .outward_filling import OutwardFilling
 from .softening import NODES_AT_ONCE, node_softening
-from .softening_file import load_softening, save_softening, softening_path
+from .table_file import TableFileError, read_table, table_path, write_table
 
-# Between two steps in the background the other threads have this time for themselves, seconds.
-PAUSE_SECONDS = 0.004
+# Counts changes of how softenings are computed: tables of an older kind are computed anew.
+KIND = "softening-1"
 
 # Measured: a node costs three columns, one more solve and one evaluation of the solid, each in
 # proportion to the tets; the factor in the background more than that on large bodies.
@@ -46,14 +44,14 @@ def whole_table_seconds(nodes: int, tets: int, surface_nodes: int) -> float:
 class SofteningTable:
     """Softenings by node, as far as they are known. Safe to use from several threads.
 
-    ``notice`` says, if a file was found that could not be used, which and why; empty otherwise.
+    ``notice`` says which file could not be used and why; empty otherwise.
     """
 
     def __init__(self, body: SoftBody, body_file: Path | None = None) -> None:
         """Softenings of ``body``; kept beside ``body_file``, or nowhere where that is None."""
         self.body = body
         self.notice = ""
-        self._path = None if body_file is None else softening_path(body_file)
+        self._path = None if body_file is None else table_path(body_file, "softening")
         surface = body.mesh.surface_nodes
         self._inward = -node_normals(body.mesh)
         self._values = np.zeros((len(surface), 4))
@@ -61,12 +59,12 @@ class SofteningTable:
         self._wanted = np.zeros(0, dtype=np.int64)
         self._listeners: list[Listener] = []
         self._solid: FreeSolid | None = None
-        self._thread: threading.Thread | None = None
-        self._failure: PalpateError | None = None
-        self._changed = self._closing = False
-        # Held for a moment at a time; the other one as long as a step takes.
-        self._lock, self._working = threading.RLock(), threading.Lock()
+        self._changed = False
+        self._lock = threading.RLock()
         self._load()
+        self._filling = OutwardFilling(
+            body.mesh.nodes[surface], self._known, self._compute, NODES_AT_ONCE
+        )
 
     @property
     def values(self) -> NDArray[np.float64]:
@@ -104,18 +102,13 @@ class SofteningTable:
         Raises
         ------
         PalpateError
-            The thread in the background failed; told once.
+            The thread in the background has failed.
         """
         with self._lock:
-            failure, self._failure = self._failure, None
-            if failure is not None:
-                raise failure
             self._wanted = self._local(nodes)
-            if self._thread is None and not self._closing and not self._known.all():
-                self._thread = threading.Thread(
-                    target=_fill_in_background, args=(weakref.ref(self),), daemon=True
-                )
-                self._thread.start()
+        self._refuse_failure()
+        if self.share_known < 1.0:
+            self._filling.around(self._wanted)
 
     def wait_for(self, nodes: ArrayLike) -> None:
         """Return when ``nodes`` (k,) of the mesh are known.
@@ -125,22 +118,22 @@ class SofteningTable:
         PalpateError
             They cannot be computed.
         """
-        local = self._local(nodes)
-        with self._working:
-            self._compute(local[~self._known[local]])
+        self._wait_for(self._local(nodes))
 
     def fill(self, progress: Progress = unwatched) -> None:
         """Compute all that is missing, and keep it.
 
-        ``progress`` is called with the share done, 0 to 1; it may raise to cancel, and what was
-        found until then is kept in memory.
+        ``progress`` is called with the share of the surface that is known, 0 to 1; it may raise to
+        cancel, and what was found until then stays.
+
+        Raises
+        ------
+        PalpateError
+            They cannot be computed, or the place beside the body file cannot be written.
         """
-        missing = np.flatnonzero(~self._known)
-        for first in range(0, len(missing), NODES_AT_ONCE):
-            progress(first / len(missing))
-            with self._working:
-                few = missing[first : first + NODES_AT_ONCE]
-                self._compute(few[~self._known[few]])
+        while len(missing := np.flatnonzero(~self._known)):
+            progress(self.share_known)
+            self._wait_for(missing[:NODES_AT_ONCE])
         progress(1.0)
         self.keep()
 
@@ -155,8 +148,9 @@ class SofteningTable:
         with self._lock:
             if self._path is None or not self._changed:
                 return
-            values, known, self._changed = self._values.copy(), self._known.copy(), False
-        save_softening(self._path, self.body.key, values, known)
+            arrays = {"softening": self._values.copy(), "known": self._known.copy()}
+            self._changed = False
+        write_table(self._path, KIND, self.body.key, arrays)
 
     def close(self) -> None:
         """End what works in the background and keep what it made; safe to call twice.
@@ -166,30 +160,30 @@ class SofteningTable:
         UnwritableError
             The place cannot be written.
         """
-        with self._lock:
-            self._closing, thread = True, self._thread
-        if thread is not None:
-            thread.join()
+        self._filling.close()
         self.keep()
 
-    def step(self) -> bool:
-        """Compute the few unknown nodes nearest to the place asked for; False if none is left."""
-        with self._working:
-            with self._lock:
-                few = self._nearest_unknown()
-                if self._closing or not len(few):
-                    return False
-            self._compute(few)
-            return True
+    def _wait_for(self, local: NDArray[np.int64]) -> None:
+        if self._known[local].all():
+            return
+        try:
+            self._filling.wait_for(local)
+        except Exception:
+            self._refuse_failure()
+            raise
+        if not self._known[local].all():
+            raise PalpateError("felt force: its table was closed meanwhile; ask again")
 
-    def failed(self, problem: PalpateError | None) -> None:
-        """The thread in the background ends: by a failure, or because nothing is left."""
-        with self._lock:
-            self._failure, self._thread = problem, None
+    def _refuse_failure(self) -> None:
+        problem = self._filling.problem
+        if isinstance(problem, PalpateError):
+            raise problem
+        if problem is not None:
+            raise PalpateError(
+                f"felt force: softenings cannot be computed ({problem!r}); choose the linear one"
+            ) from problem
 
     def _compute(self, local: NDArray[np.int64]) -> None:
-        if not len(local):
-            return
         if self._solid is None:
             self._solid = FreeSolid.of(self.body)
         places = np.searchsorted(self._solid.free, self.body.mesh.surface_nodes[local])
@@ -199,17 +193,6 @@ class SofteningTable:
             for listener in self._listeners:
                 listener(local, found)
 
-    def _nearest_unknown(self) -> NDArray[np.int64]:
-        unknown = np.flatnonzero(~self._known)
-        if len(self._wanted) == 0:
-            return unknown[:NODES_AT_ONCE]
-        positions = self.body.mesh.nodes[self.body.mesh.surface_nodes]
-        away = positions[unknown] - positions[self._wanted].mean(axis=0)
-        distance = np.linalg.norm(away, axis=1)
-        distance[np.isin(unknown, self._wanted)] = -1.0
-        nearest: NDArray[np.int64] = unknown[np.argsort(distance, kind="stable")[:NODES_AT_ONCE]]
-        return nearest
-
     def _local(self, nodes: ArrayLike) -> NDArray[np.int64]:
         """Places in ``mesh.surface_nodes``, each once."""
         return np.searchsorted(self.body.mesh.surface_nodes, np.unique(np.asarray(nodes)))
@@ -218,25 +201,9 @@ class SofteningTable:
         if self._path is None or not self._path.exists():
             return
         try:
-            self._values, self._known = load_softening(self._path, self.body.key, len(self._values))
-        except PalpateError as problem:
+            arrays = read_table(self._path, KIND, self.body.key)
+        except TableFileError as problem:
             self.notice = str(problem)
-
-
-def _fill_in_background(table: weakref.ref[SofteningTable]) -> None:
-    """Steps until nothing is left, or nobody has the table any longer."""
-    problem: PalpateError | None = None
-    try:
-        while (one := table()) is not None and one.step():
-            del one
-            time.sleep(PAUSE_SECONDS)
-        if (one := table()) is not None:
-            one.keep()
-    except PalpateError as failure:
-        problem = failure
-    except Exception as failure:  # noqa: BLE001 - told to whoever asks next instead of by a thread's traceback
-        problem = PalpateError(
-            f"felt force: the softenings cannot be computed ({failure!r}); choose the linear one"
-        )
-    if (one := table()) is not None:
-        one.failed(problem)
+            return
+        # Their checksum is right, so they are what was written.
+        self._values, self._known = arrays["softening"], arrays["known"]

@@ -8,8 +8,8 @@ import pytest
 from palpate.cli.main import main
 from palpate.core import cache
 from palpate.core.large_deformation.felt_force import corrected_touch
-from palpate.core.large_deformation.softening_file import softening_path
 from palpate.core.large_deformation.softening_table import SofteningTable
+from palpate.core.large_deformation.table_file import table_path
 
 AT, BY = ["0.02", "0.03", "0.05"], ["0", "0", "-0.008"]
 
@@ -50,7 +50,7 @@ def test_press_tells_the_corrected_force_and_draws_the_same(cube_file, capsys):
     assert felt["nodal_forces"] == linear["nodal_forces"]
     assert felt["max_displacement"] == linear["max_displacement"]
     # What was computed is there the next time.
-    assert softening_path(cube_file).exists()
+    assert table_path(cube_file, "softening").exists()
     assert figures_of(capsys, *press, "--felt", "corrected") == felt
 
 
