@@ -5,8 +5,9 @@
 The referee is scikit-fem with quadratic elements and its own contact; see
 ``measuring/contact_reference.py``. A sphere of 14 mm is pressed on the cube of 50 mm, by Palpate on
 8 and 12 cells with contact points 1.5 mm apart, and as users have it, with the sphere's own points.
-Claimed: within 3 % in small strain, up to a tenth of the radius, with the fine points. The exit
-status tells whether that holds. A busy machine changes nothing but the time it takes.
+Claimed: within 3 % in small strain, up to a tenth of the radius, with the fine points, 3.5 % with
+the sphere's own. The exit status tells
+whether that holds. A busy machine changes nothing but the time it takes.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ EDGE, RADIUS = 0.05, 0.014
 YOUNG_MODULUS, POISSON_RATIO = 10_000.0, 0.3
 DEPTHS = (0.0007, 0.0014, 0.002)
 LARGEST_CLAIMED_DEPTH = 0.1 * RADIUS
-LARGEST_ERROR = 0.03
+LARGEST_ERROR, LARGEST_ERROR_OWN = 0.03, 0.035
 FINE_SPACING = 0.0015
 
 
@@ -51,8 +52,9 @@ def main() -> int:
             found = pressed(cells, fine=fine)
             ratios = [force / other for force, other in zip(found, expected, strict=True)]
             for depth, ratio in zip(DEPTHS, ratios, strict=True):
-                claimed = fine and depth <= LARGEST_CLAIMED_DEPTH * (1 + 1e-9)
-                held &= not claimed or abs(ratio - 1) <= LARGEST_ERROR
+                claimed = depth <= LARGEST_CLAIMED_DEPTH * (1 + 1e-9)
+                largest = LARGEST_ERROR if fine else LARGEST_ERROR_OWN
+                held &= not claimed or abs(ratio - 1) <= largest
             which = "fine points" if fine else "own points"
             print(f"Palpate / referee, {cells:2d} cells, {which:11s}", np.round(ratios, 3))
     print("the claim holds" if held else "THE CLAIM DOES NOT HOLD")

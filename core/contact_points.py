@@ -28,13 +28,17 @@ CLOSEST_NODES = 0.75
 CLOSEST_OTHERS = 0.55
 
 # How finely the surface is sampled to share it out among the points, in shares of the spacing.
-SAMPLE_SPACING = 0.3
+SAMPLE_SPACING = 0.4
 
 # How many points there are on the square of the spacing.
 POINTS_PER_SPACING_SQUARED = 1.3
 
-# Points that a body may carry: what belongs to them takes some 10 kB each.
+# Points that a body may carry: what belongs to them takes half a kilobyte each, and a second for
+# every 50,000.
 MOST_ON_BODY = 100_000
+
+# How much wider than a tool asks for points may lie where they would be too many.
+WIDEST = 2.5
 
 # A patch of the surface goes to the nearest of so many points whose normal does not look away.
 NEAREST_ASKED = 6
@@ -114,6 +118,17 @@ def contact_points(body: SoftBody, spacing: float) -> ContactPoints:
         everything.alphas[kept],
         areas,
     )
+
+
+def spacing_on(body: SoftBody, spacing: float) -> float:
+    """The spacing asked for, or the closest one that :data:`MOST_ON_BODY` points allow, metres.
+
+    So a tool may be small for its body: down to where it would fall between the points.
+    """
+    allowed = float(
+        np.sqrt(POINTS_PER_SPACING_SQUARED * _face_areas(body.mesh).sum() / MOST_ON_BODY)
+    )
+    return min(max(spacing, 1.01 * allowed), WIDEST * spacing)
 
 
 def smooth_corner_normals(mesh: TetMesh) -> NDArray[np.float64]:

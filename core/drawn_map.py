@@ -19,10 +19,12 @@ class DrawnMap:
     ----------
     weights : W, sparse (p, n): area coordinates, without the pinned nodes, which do not move.
     offset : float64 (p,), distance of each drawn vertex from the body's surface, metres.
+    normals : float64 (p, 3), outward unit normals of the triangles that they hang on, at rest.
     """
 
     weights: csr_array
     offset: NDArray[np.float64]
+    normals: NDArray[np.float64]
 
     @classmethod
     def hang(cls, vertices: NDArray[np.float64], body: SoftBody) -> DrawnMap:
@@ -37,7 +39,10 @@ class DrawnMap:
             (places.alpha[moves], (row[moves], column[moves])),
             shape=(len(corners), body.compliance.node_count),
         )
-        return cls(weights, places.distance)
+        i, j, k = (body.mesh.nodes[corners[:, corner]] for corner in range(3))
+        normals = np.cross(j - i, k - i)
+        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+        return cls(weights, places.distance, normals)
 
     def displacements(self, free_surface: NDArray[np.float64]) -> NDArray[np.float64]:
         """Displacements (p, 3) of drawn vertices from those of the free surface nodes (n, 3)."""

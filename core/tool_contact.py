@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from .contact_points import ContactPoints, contact_points
+from .contact_points import ContactPoints, contact_points, spacing_on
 from .errors import PalpateError
 from .near_field import NearCorrection, near_correction, point_compliance
 from .soft_body import SoftBody
@@ -308,7 +308,7 @@ def correction_for(body: SoftBody, tool: Tool) -> NearCorrection:
 
 def _known_surface(body: SoftBody, tool: Tool) -> tuple[ContactPoints, NearCorrection]:
     known = _surfaces.setdefault(body, {})
-    spacing = tool.spacing
+    spacing = spacing_on(body, tool.spacing)
     if spacing not in known:
         points = contact_points(body, spacing)
         known[spacing] = points, near_correction(body, points)

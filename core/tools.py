@@ -26,8 +26,10 @@ MOST_CORE_POINTS = 64
 # Core points closer to one plane (line, point) than this share of their extent lie in it.
 FLATNESS = 1e-6
 
-# How far apart contact points are, as a share of a round tool's radius and of a flat tool's width.
-SPACING_PER_RADIUS = 0.25
+# How far apart contact points are, as a share of a sphere's radius, that of a rod (more of which is
+# in contact), and a flat tool's width.
+SPACING_PER_RADIUS = 0.2
+SPACING_PER_ROD_RADIUS = 0.25
 SPACING_PER_WIDTH = 0.125
 
 # Share of its inner radius that a tool goes in one tick at most, so that it jumps over no wall.
@@ -176,7 +178,8 @@ class Tool:
         """How far apart the contact points on a body should be for this tool, metres."""
         if len(self.planes) or _span(self.core)[0] == 2:
             return SPACING_PER_WIDTH * self.size
-        return SPACING_PER_RADIUS * self.radius
+        round_share = SPACING_PER_RADIUS if len(self.core) == 1 else SPACING_PER_ROD_RADIUS
+        return round_share * self.radius
 
     @property
     def stride(self) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 from ..core.drawn_map import DrawnMap
 from ..core.errors import PalpateError
 from ..core.soft_body import SoftBody
+from ..core.tool_dent import PressingTool, kept_out
 from . import body_store, drawn_surface, kept_body, pin_change, ray, soft_object
 from .body_frame import BodyFrame
 from .drawn_surface import DrawnSurface
@@ -68,9 +70,24 @@ class DrawnBody:
         normal = alpha @ self.node_normals[corners]
         return alpha @ mesh.nodes[corners], normal / np.linalg.norm(normal)
 
-    def local_coordinates(self, displacements: Array) -> NDArray[np.float32]:
-        """Flat coordinates (3 p,) of the drawn vertices, from the free surface nodes' (n, 3)."""
-        moved = self.frame.local_from_body(self.hung.displacements(displacements))
+    @cached_property
+    def rest_places(self) -> Array:
+        """The drawn vertices at rest, (p, 3), metres, body coordinates."""
+        return self.frame.body_from_local(self.rest.reshape(-1, 3).astype(np.float64))
+
+    def local_coordinates(
+        self, displacements: Array, tools: Sequence[PressingTool] = ()
+    ) -> NDArray[np.float32]:
+        """Flat coordinates (3 p,) of the drawn vertices, from the free surface nodes' (n, 3), none
+        of them within the tools.
+        """
+        shift = self.hung.displacements(displacements)
+        if tools:
+            places = self.rest_places + shift
+            for pressing in tools:
+                places = kept_out(places, self.hung.normals, pressing)
+            shift = places - self.rest_places
+        moved = self.frame.local_from_body(shift)
         coordinates: NDArray[np.float32] = (self.rest + moved.ravel()).astype(np.float32)
         return coordinates
 

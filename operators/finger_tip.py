@@ -8,7 +8,9 @@ import bpy
 
 from ..core import tools
 from ..core.errors import PalpateError
-from ..core.tools import Tool
+from ..core.servo_session import Snapshot
+from ..core.tool_dent import PressingTool
+from ..core.tools import Pose, Tool
 from . import hull
 from .drawn_surface import metres_per_unit
 
@@ -19,6 +21,16 @@ class FingerTip:
 
     tool: Tool | None = None
     remark: str = ""
+
+    def pressing(self, snapshot: Snapshot) -> tuple[PressingTool, ...]:
+        """The tools that press in a snapshot, for drawing."""
+        if self.tool is None:
+            return ()
+        return tuple(
+            PressingTool(self.tool, Pose(finger.proxy, finger.orientation), finger.contact_force)
+            for finger in snapshot.fingers
+            if finger.touching
+        )
 
 
 def chosen_tip(scene: bpy.types.Scene, pressed: bpy.types.Object) -> FingerTip:

@@ -191,7 +191,8 @@ def keep_frames(thing: bpy.types.Object, drawn: DrawnBody, pressed: list[Pressed
             continue
         key = thing.shape_key_add(name=f"{FRAME_NAME} {here.frame}", from_mix=False)
         key.relative_key = thing.data.shape_keys.reference_key
-        key.points.foreach_set("co", drawn.local_coordinates(here.displacements))
+        tools = several_fingers.pressing_tools(here.fingers)
+        key.points.foreach_set("co", drawn.local_coordinates(here.displacements, tools))
         for other, value in ((number - 1, 0.0), (number, 1.0), (number + 1, 0.0)):
             if 0 <= other < len(pressed):
                 key.value = value

@@ -12,13 +12,14 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.contact import Touch
 from ..core.errors import PalpateError
 from ..core.tool_contact import surface_for
+from ..core.tool_dent import PressingTool
 from ..core.tools import Pose, Tool
 from . import live_shape, several_fingers, tool_turn
 from .drawn_body import DrawnBody, open_body
 from .drawn_shape import complete_shape
 from .finger_tip import chosen_tip
 from .live_settings import contact_mode
-from .several_fingers import FingerForce, ToolPress
+from .several_fingers import FingerForce, ToolPress, pressing_tools
 from .tool_pose import resting_on
 
 Array = NDArray[np.float64]
@@ -112,15 +113,20 @@ def press_several(
             for one, way in zip(made, inward, strict=True)
         ),
         largest_displacement=float(np.linalg.norm(displacements, axis=1).max()),
-        shape_key=keep_shape(thing, drawn, displacements) if keep else "",
+        shape_key=keep_shape(thing, drawn, displacements, pressing_tools(made)) if keep else "",
         remark=tip.remark,
     )
 
 
-def keep_shape(thing: bpy.types.Object, drawn: DrawnBody, displacements: Array) -> str:
-    """Keep displacements (n, 3) of the free surface nodes as the next "Press <n>"."""
+def keep_shape(
+    thing: bpy.types.Object,
+    drawn: DrawnBody,
+    displacements: Array,
+    tools: Sequence[PressingTool] = (),
+) -> str:
+    """Keep displacements (n, 3) of the free surface nodes as the next "Press <n>", out of tools."""
     live_shape.hang(thing)
-    live_shape.write(thing.data, drawn.local_coordinates(displacements))
+    live_shape.write(thing.data, drawn.local_coordinates(displacements, tools))
     name = live_shape.keep(thing)
     thing.data.update()
     return name

@@ -233,7 +233,8 @@ class PressSession:
         if self._loads and not self._drawn_contact:
             # What was drawn last lacks something that is still being computed.
             met = self.shape.finish(self._loads, self._modulus)
-            live_shape.write(thing.data, self.drawn.local_coordinates(met.displacements))
+            tools = self.tip.pressing(snapshot)
+        live_shape.write(thing.data, self.drawn.local_coordinates(met.displacements, tools))
         self.kept_name = live_shape.keep(thing)
         thing.data.update()
 
@@ -379,7 +380,8 @@ class PressSession:
             # The same contact is drawn better in the next frame.
             self._drawn_contact = ()
         self.displacements, self.linear = met.displacements, met.linear
-        live_shape.write(thing.data, self.drawn.local_coordinates(met.displacements))
+        tools = self.tip.pressing(snapshot)
+        live_shape.write(thing.data, self.drawn.local_coordinates(met.displacements, tools))
 
 
 _current: PressSession | None = None

@@ -16,6 +16,7 @@ from ..core.contact import Touch
 from ..core.large_deformation.meeting import FingerLoad
 from ..core.soft_body import SoftBody
 from ..core.tool_contact import Load, ToolTouch, press_tool
+from ..core.tool_dent import PressingTool
 from ..core.tools import Pose, Tool
 
 Array = NDArray[np.float64]
@@ -44,6 +45,15 @@ class FingerForce:
     largest_pressure: float = 0.0
     touch: Touch | None = None
     tool: ToolTouch | None = None
+
+
+def pressing_tools(fingers: Sequence[FingerForce]) -> tuple[PressingTool, ...]:
+    """The tools among the fingers, for drawing."""
+    return tuple(
+        PressingTool(finger.tool.tool, finger.tool.pose, finger.force)
+        for finger in fingers
+        if finger.tool is not None
+    )
 
 
 def of_point(touch: Touch) -> FingerForce:

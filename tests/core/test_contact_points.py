@@ -4,7 +4,13 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from palpate.core.contact_points import _shares, contact_points, smooth_corner_normals
+from palpate.core.contact_points import (
+    MOST_ON_BODY,
+    _shares,
+    contact_points,
+    smooth_corner_normals,
+    spacing_on,
+)
 from palpate.core.errors import PalpateError
 from palpate.core.near_field import point_compliance
 from palpate.core.paper_cube import paper_cube
@@ -161,3 +167,19 @@ def test_the_sides_of_a_thin_plate_take_nothing_from_each_other():
     assert shares.sum() == pytest.approx(surface_area(plate))
     assert 1.0 - 1e-9 < shares[0] < 1.0 + 4 * 0.02
     assert shares[1:].sum() > 1.0 - 1e-9
+
+
+def test_a_tool_small_for_its_body_gets_points_farther_apart(mouse):
+    assert spacing_on(mouse, 0.002) == 0.002
+    area = 0.5 * np.linalg.norm(
+        np.cross(
+            *np.diff(mouse.mesh.nodes[mouse.mesh.surface_triangles], axis=1).transpose(1, 0, 2)
+        ),
+        axis=1,
+    )
+    wider = spacing_on(mouse, 0.0004)
+    assert 0.0004 < wider < 0.001
+    assert 1.3 * area.sum() / wider**2 == pytest.approx(MOST_ON_BODY, rel=0.03)
+    # Smaller still, and it would fall between them: that is refused.
+    with pytest.raises(PalpateError, match="take a larger tool"):
+        contact_points(mouse, spacing_on(mouse, 0.0002))
