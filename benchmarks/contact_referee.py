@@ -6,8 +6,8 @@ The referee is scikit-fem with quadratic elements and its own contact; see
 ``measuring/contact_reference.py``. A sphere of 14 mm is pressed on the cube of 50 mm, by Palpate on
 8 and 12 cells with contact points 1.5 mm apart, and as users have it, with the sphere's own points.
 Claimed: within 3 % in small strain, up to a tenth of the radius, with the fine points, 3.5 % with
-the sphere's own. The exit status tells
-whether that holds. A busy machine changes nothing but the time it takes.
+the sphere's own. The exit status tells whether that holds. A busy machine changes nothing but the
+time it takes.
 """
 
 from __future__ import annotations

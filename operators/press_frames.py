@@ -93,7 +93,8 @@ class PALPATE_OT_press_frames(bpy.types.Operator):
             if pressed[-1].displacements is None:
                 self.report({"ERROR"}, "The tool touches nothing in this frame; choose another")
                 return {"CANCELLED"}
-            name = keep_shape(thing, drawn, pressed[-1].displacements)
+            tools = several_fingers.pressing_tools(pressed[-1].fingers)
+            name = keep_shape(thing, drawn, pressed[-1].displacements, tools)
             self.report({"INFO"}, f"Kept as shape key '{name}'")
             return {"FINISHED"}
         count = keep_frames(thing, drawn, pressed)

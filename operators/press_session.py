@@ -233,8 +233,8 @@ class PressSession:
         if self._loads and not self._drawn_contact:
             # What was drawn last lacks something that is still being computed.
             met = self.shape.finish(self._loads, self._modulus)
-            tools = self.tip.pressing(snapshot)
-        live_shape.write(thing.data, self.drawn.local_coordinates(met.displacements, tools))
+            tools = () if self.snapshot is None else self.tip.pressing(self.snapshot)
+            live_shape.write(thing.data, self.drawn.local_coordinates(met.displacements, tools))
         self.kept_name = live_shape.keep(thing)
         thing.data.update()
 
