@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg.blas import dtrsm
+from scipy.linalg.blas import dtrsm, dtrsv
 from scipy.linalg.lapack import dpotrf
 
 from ..blas_threads import threads_by_work
@@ -51,6 +51,8 @@ class CholeskyFactor:
 
         May be called from several threads at once: the factor is only read.
         """
+        if right.size == len(self.order):
+            return self._solve_one(right.ravel()).reshape(right.shape)
         columns = right.reshape(len(self.order), -1)
         held = np.asfortranarray(columns[self.order], dtype=np.float64)
         for front in self.fronts:
@@ -66,6 +68,23 @@ class CholeskyFactor:
         solution = np.empty_like(held)
         solution[self.order] = held
         return solution.reshape(right.shape)
+
+    def _solve_one(self, right: NDArray[np.float64]) -> NDArray[np.float64]:
+        """For a single right side, of which the triangular solves for many make copies."""
+        held: NDArray[np.float64] = right[self.order].astype(np.float64, copy=False)
+        for front in self.fronts:
+            own = dtrsv(front.pivots, held[front.span], trans=1)
+            held[front.span] = own
+            if front.boundary.size:
+                held[front.boundary] -= own @ front.coupling
+        for front in reversed(self.fronts):
+            own = held[front.span]
+            if front.boundary.size:
+                own = own - front.coupling @ held[front.boundary]
+            held[front.span] = dtrsv(front.pivots, own)
+        solution = np.empty_like(held)
+        solution[self.order] = held
+        return solution
 
 
 @dataclass(frozen=True, eq=False)

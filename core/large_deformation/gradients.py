@@ -30,7 +30,7 @@ class Gradients:
         rows = np.arange(3 * count).reshape(count, 3).T.ravel()
         forward = csr_array(by_domain[rows])
         forward.sort_indices()
-        return cls(forward, csr_array(forward.T))
+        return cls(_narrow(forward), _narrow(csr_array(forward.T)))
 
     @property
     def domain_count(self) -> int:
@@ -51,3 +51,9 @@ class Gradients:
         for axis in range(3):
             forces[axis] = self.backward @ rows[axis]
         return forces
+
+
+def _narrow(matrix: csr_array) -> csr_array:
+    """With indices of 32 bits: frames read these matrices from memory again and again."""
+    parts = (matrix.data, matrix.indices.astype(np.int32), matrix.indptr.astype(np.int32))
+    return csr_array(parts, shape=matrix.shape)
