@@ -91,6 +91,7 @@ def equilibrium(
     forces: NDArray[np.float64],
     start: NDArray[np.float64] | None = None,
     largest_step: float = 1.0,
+    smallest_step: float = SMALLEST_STEP,
 ) -> Equilibrium:
     """The body under ``forces`` (f, 3), newton per pascal of Young's modulus.
 
@@ -114,7 +115,10 @@ def equilibrium(
         iterations += step.iterations
         if step.found:
             return Equilibrium(step.displacements, 1, iterations, step.history[-1], step.history)
-    reached, held, share, steps = np.zeros_like(forces), 0.0, largest_step, 0
+    reached, held, steps = np.zeros_like(forces), 0.0, 0
+    # Newton's first step is the linear one: more load than that can take is not tried at once.
+    share = min(largest_step, 2.0 * unhindered_share(body.solid, reached, body.linear(forces)))
+    smallest_step = min(smallest_step, 0.25 * share)
     while True:
         target = min(held + share, 1.0)
         tolerance = RESIDUAL_SHARE if target == 1.0 else RESIDUAL_SHARE_ON_THE_WAY
@@ -128,7 +132,7 @@ def equilibrium(
                 share = min(2.0 * share, largest_step)
         else:
             share = 0.5 * min(share, target - held)
-            if share < SMALLEST_STEP:
+            if share < smallest_step:
                 raise NoEquilibrium(held, reached)
 
 

@@ -21,6 +21,9 @@ SIGNS = (1.0, -1.0)
 # After so many halvings a freedom is left linear: F0 is a millionth of what was wanted.
 MOST_HALVINGS = 20
 
+# Where a body gives way is found to this share of the load; a half of it or more is what counts.
+SMALLEST_STEP = 1 / 64
+
 # F0 when no other is asked for: the paper's 2 N on its cube of 50 mm and 10 kPa, as a share of
 # Young's modulus times the square of the body's smallest extent.
 PAPER_SHARE = 2.0 / (10_000.0 * 0.05**2)
@@ -67,13 +70,12 @@ def largest_carried(body: FreeSolid, freedom: int, wanted: float) -> tuple[float
     load, start = wanted, None
     for _ in range(MOST_HALVINGS + 1):
         try:
-            return load, equilibrium(body, load * unit, start)
+            return load, equilibrium(body, load * unit, start, smallest_step=SMALLEST_STEP)
         except NoEquilibrium as told:
-            held = told.held
             halved = 0.5 * load
-            while halved > held * load > 0.0:
+            while abs(halved) > (told.held + SMALLEST_STEP) * abs(load):
                 halved *= 0.5
-            start = told.displacements * (halved / (held * load)) if held else None
+            start = told.displacements * (halved / (told.held * load)) if told.held else None
             load = halved
     linear = wanted * body.linear(unit)
     return wanted, Equilibrium(linear, 0, 0, np.nan, ())
