@@ -1,0 +1,218 @@
+"""The shape of (16) with its tables, solved by Newton's method around the touched place.
+
+A table of the whole body takes seconds of Newton's method for each freedom and sign; a press needs
+nine freedoms of it. What a press lacks is drawn linearly until it is there.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..soft_body import SoftBody
+from .free_solid import FreeSolid
+from .newton_table import newton_column, usual_largest_force
+from .outward_filling import OutwardFilling
+from .paper_formula import PaperColumns, paper_displacements
+from .table_file import TableFileError, read_table, table_path, write_table
+
+KIND = "newton-table"
+
+
+class NewtonTable:
+    """L^(+F0) and L^(-F0) of a body, by node, as far as they are solved.
+
+    Beside L itself they take twice its memory, as the paper says, once every node is filled.
+
+    Attributes
+    ----------
+    body : what they belong to.
+    wanted : F0 that is tried first, square metres (newton per pascal of Young's modulus).
+    is_filled : bool (n,), which free surface nodes are known.
+    positive, negative : float32 (n, 3, 3n), laid out as the table of
+        :class:`palpate.core.dense_compliance.DenseCompliance`.
+    largest : float64 (n, 3, 2), F0 of every freedom for positive and negative forces.
+    """
+
+    def __init__(self, body: SoftBody, wanted: float | None = None) -> None:
+        self.body = body
+        self.wanted = usual_largest_force(body.mesh) if wanted is None else wanted
+        count = body.compliance.node_count
+        self.is_filled = np.zeros(count, dtype=np.bool_)
+        # Pages of memory that nothing was written to take none.
+        self.positive = np.zeros((count, 3, 3 * count), dtype=np.float32)
+        self.negative = np.zeros_like(self.positive)
+        self.largest = np.zeros((count, 3, 2))
+        self._solid: FreeSolid | None = None
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of what is filled."""
+        a_node = 2 * self.positive[0].nbytes + self.largest[0].nbytes
+        return int(np.count_nonzero(self.is_filled)) * int(a_node)
+
+    def fill(self, nodes: NDArray[np.int64]) -> None:
+        """Solve the freedoms of nodes (k,), counted by their place in ``free_surface``.
+
+        Raises
+        ------
+        PalpateError
+            The pins do not hold the body.
+        """
+        if self._solid is None:
+            self._solid = FreeSolid.of(self.body)
+        for node in nodes.tolist():
+            for axis in range(3):
+                column = newton_column(self._solid, 3 * node + axis, self.wanted)
+                self.positive[node, axis], self.negative[node, axis] = column.per_force
+                self.largest[node, axis] = column.largest
+            self.is_filled[node] = True
+
+    def columns(self, nodes: NDArray[np.int64]) -> PaperColumns:
+        """What (16) needs of filled nodes (k,): 3k freedoms."""
+        size = 3 * len(nodes)
+        return PaperColumns(
+            self.body.compliance.columns(nodes).T,
+            self.positive[nodes].reshape(size, -1),
+            self.negative[nodes].reshape(size, -1),
+            self.largest[nodes].reshape(size, 2),
+        )
+
+    def load(self, path: Path) -> None:
+        """Take over what a file has.
+
+        Raises
+        ------
+        TableFileError
+            It is damaged, of another body, or for another F0.
+        """
+        stored = read_table(path, KIND, self.body.key)
+        nodes, largest = stored["nodes"], stored["largest"]
+        if float(stored["wanted"]) != self.wanted:
+            raise TableFileError(f"{path}: made for another F0; its table is computed anew")
+        self.positive[nodes], self.negative[nodes] = stored["positive"], stored["negative"]
+        self.largest[nodes], self.is_filled[nodes] = largest, True
+
+    def save(self, path: Path) -> None:
+        """Write what is filled.
+
+        Raises
+        ------
+        UnwritableError
+            The place cannot be written; an older file stays as it was.
+        """
+        nodes = np.flatnonzero(self.is_filled)
+        arrays = {
+            "nodes": nodes,
+            "wanted": np.array(self.wanted),
+            "largest": self.largest[nodes],
+            "positive": self.positive[nodes],
+            "negative": self.negative[nodes],
+        }
+        write_table(path, KIND, self.body.key, arrays)
+
+
+class TableShape:
+    """A :class:`.shapes.Shape`: equation (16) as published, held in proportion beyond F0.
+
+    Parameters
+    ----------
+    body : what is drawn.
+    body_file : where it came from; the table is kept beside it. None keeps it nowhere.
+    wanted : F0 as for :class:`NewtonTable`.
+    """
+
+    def __init__(
+        self, body: SoftBody, body_file: Path | None = None, wanted: float | None = None
+    ) -> None:
+        self.table = NewtonTable(body, wanted)
+        self.notice = ""
+        self._body = body
+        self._path = None if body_file is None else table_path(body_file, KIND)
+        if self._path is not None and self._path.exists():
+            try:
+                self.table.load(self._path)
+            except TableFileError as problem:
+                self.notice = str(problem)
+        self._kept = int(np.count_nonzero(self.table.is_filled))
+        surface = body.mesh.nodes[body.compliance.free_surface]
+        self._filling = OutwardFilling(surface, self.table.is_filled, self.table.fill, 1)
+        self._asked = np.zeros(0, dtype=np.int64)
+
+    @property
+    def ready(self) -> float:
+        """Share (0 to 1) of the touched nodes that are solved."""
+        known = self.table.is_filled[self._asked]
+        return float(known.mean()) if known.size else 1.0
+
+    def displacements(
+        self,
+        nodes: NDArray[np.int64],
+        nodal_forces: NDArray[np.float64],
+        young_modulus: float | None = None,
+    ) -> NDArray[np.float64]:
+        """Displacements (n, 3) of the free surface nodes, metres; see :class:`.shapes.Shape`.
+
+        Raises
+        ------
+        PalpateError
+            The table could not be computed.
+        """
+        modulus = self._body.young_modulus if young_modulus is None else young_modulus
+        places, forces = self._on_free_surface(nodes, nodal_forces)
+        self._asked = places
+        if places.size:
+            self._filling.around(places)
+        self._raise_problem()
+        known = self.table.is_filled[places]
+        others = self._body.compliance.free_surface[places[~known]]
+        moved = self._body.deform(others, forces[~known], modulus)
+        if known.any():
+            columns = self.table.columns(places[known])
+            corrected = paper_displacements(columns, forces[known].ravel() / modulus)
+            moved = moved + corrected.reshape(-1, 3)
+        return moved
+
+    def wait_for(self, nodes: NDArray[np.int64]) -> None:
+        """Return when these nodes (k,) of the mesh are solved: seconds for each.
+
+        Raises
+        ------
+        PalpateError
+            They cannot be.
+        """
+        places = self._body.free_index(np.unique(np.asarray(nodes)))
+        self._asked = places[places >= 0]
+        if self._asked.size:
+            self._filling.wait_for(self._asked)
+
+    def close(self) -> None:
+        """End what works in the background, and keep what it made. Safe to call twice.
+
+        Raises
+        ------
+        UnwritableError
+            The table cannot be kept where the body is.
+        """
+        self._filling.close()
+        filled = int(np.count_nonzero(self.table.is_filled))
+        if self._path is not None and filled > self._kept:
+            self.table.save(self._path)
+            self._kept = filled
+
+    def _on_free_surface(
+        self, nodes: NDArray[np.int64], nodal_forces: NDArray[np.float64]
+    ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        """Places (k,) in the free surface, each once, and the forces (k, 3) there."""
+        free = self._body.free_index(np.asarray(nodes).reshape(-1))
+        forces = np.asarray(nodal_forces, dtype=np.float64).reshape(-1, 3)[free >= 0]
+        places, which = np.unique(free[free >= 0], return_inverse=True)
+        sums = np.zeros((len(places), 3))
+        np.add.at(sums, which, forces)
+        return places, sums
+
+    def _raise_problem(self) -> None:
+        if self._filling.problem is not None:
+            raise self._filling.problem
