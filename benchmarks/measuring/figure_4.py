@@ -36,7 +36,7 @@ def draw_figure_4(path: Path, table: NewtonTable) -> None:
     """Draw it as a picture, and print how far the shapes are from Newton's."""
     body = table.body
     solid = FreeSolid.of(body)
-    figure = plt.figure(figsize=(10.5, 3.5 * len(PRESSES)), layout="constrained")
+    figure = plt.figure(figsize=(10.5, 2.9 * len(PRESSES)), layout="constrained")
     print(f"{'':22s}{'relative error':>32s}{'volume':>34s}\n{'':22s}{'linear':>16s}{'(16)':>16s}")
     for row, (name, share, millimetres) in enumerate(PRESSES):
         node, shapes = _shapes(table, solid, np.array(share), 1e-3 * np.array(millimetres))
@@ -116,7 +116,7 @@ def _draw(ax: plt.Axes, body: SoftBody, shape: NDArray[np.float64], node: int) -
     ax.plot(*np.stack([at_rest, moved]).T, color=CORAL, linewidth=2.0, zorder=10)
     ax.scatter(*moved, color=CORAL, s=18, depthshade=False, zorder=11)
     ax.set(xlim=(-5, 75), ylim=(0, 50), zlim=(0, 60))
-    ax.set_box_aspect((80, 50, 60), zoom=1.15)
+    ax.set_box_aspect((80, 50, 60), zoom=1.3)
     ax.view_init(elev=16, azim=-68)
     ax.set_proj_type("ortho")
     ax.set_axis_off()

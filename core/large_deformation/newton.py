@@ -12,6 +12,7 @@ J. Nocedal, S. J. Wright: Numerical Optimization, 2nd edition, Springer, 2006, c
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,6 +20,7 @@ from numpy.typing import NDArray
 
 from ..elimination.cholesky import NotPositiveDefiniteError
 from ..errors import PalpateError
+from ..progress import unwatched
 from .free_solid import FreeSolid
 from .inversion import is_upright, unhindered_share
 
@@ -92,6 +94,7 @@ def equilibrium(
     start: NDArray[np.float64] | None = None,
     largest_step: float = 1.0,
     smallest_step: float = SMALLEST_STEP,
+    may_go_on: Callable[[], None] = unwatched,
 ) -> Equilibrium:
     """The body under ``forces`` (f, 3), newton per pascal of Young's modulus.
 
@@ -111,7 +114,7 @@ def equilibrium(
         return Equilibrium(np.zeros_like(forces), 0, 0, 0.0, ())
     iterations = 0
     if start is not None and is_upright(body.solid, start):
-        step = _newton(body, forces, start, RESIDUAL_SHARE)
+        step = _newton(body, forces, start, RESIDUAL_SHARE, may_go_on)
         iterations += step.iterations
         if step.found:
             return Equilibrium(step.displacements, 1, iterations, step.history[-1], step.history)
@@ -122,7 +125,7 @@ def equilibrium(
     while True:
         target = min(held + share, 1.0)
         tolerance = RESIDUAL_SHARE if target == 1.0 else RESIDUAL_SHARE_ON_THE_WAY
-        step = _newton(body, target * forces, reached, tolerance)
+        step = _newton(body, target * forces, reached, tolerance, may_go_on)
         iterations += step.iterations
         if step.found:
             reached, held, steps = step.displacements, target, steps + 1
@@ -148,13 +151,18 @@ class _Step:
 
 
 def _newton(
-    body: FreeSolid, forces: NDArray[np.float64], start: NDArray[np.float64], tolerance: float
+    body: FreeSolid,
+    forces: NDArray[np.float64],
+    start: NDArray[np.float64],
+    tolerance: float,
+    may_go_on: Callable[[], None],
 ) -> _Step:
     """Newton's method for one load, from displacements without inverted elements."""
     load = float(np.abs(forces).max())
     point = _Point.at(body, forces, start)
     history: list[float] = []
     for _ in range(MOST_ITERATIONS):
+        may_go_on()
         worst = float(np.abs(point.residual).max())
         history.append(worst / load)
         is_small = worst <= LARGEST_ROUNDING_SHARE * load

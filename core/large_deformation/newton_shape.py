@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from ..errors import CancelledError
 from ..soft_body import SoftBody
 from .free_solid import FreeSolid
 from .newton_table import newton_column, usual_largest_force
@@ -46,6 +47,7 @@ class NewtonTable:
         self.negative = np.zeros_like(self.positive)
         self.largest = np.zeros((count, 3, 2))
         self._solid: FreeSolid | None = None
+        self._is_cancelled = False
 
     @property
     def nbytes(self) -> int:
@@ -60,15 +62,25 @@ class NewtonTable:
         ------
         PalpateError
             The pins do not hold the body.
+        CancelledError
+            By :meth:`cancel`; the node under way is not filled.
         """
         if self._solid is None:
             self._solid = FreeSolid.of(self.body)
         for node in nodes.tolist():
             for axis in range(3):
-                column = newton_column(self._solid, 3 * node + axis, self.wanted)
+                column = newton_column(self._solid, 3 * node + axis, self.wanted, self._may_go_on)
                 self.positive[node, axis], self.negative[node, axis] = column.per_force
                 self.largest[node, axis] = column.largest
             self.is_filled[node] = True
+
+    def cancel(self) -> None:
+        """End :meth:`fill` in another thread within an iteration of Newton's method."""
+        self._is_cancelled = True
+
+    def _may_go_on(self) -> None:
+        if self._is_cancelled:
+            raise CancelledError("the table of (16) is not filled further; choose it again")
 
     def columns(self, nodes: NDArray[np.int64]) -> PaperColumns:
         """What (16) needs of filled nodes (k,): 3k freedoms."""
@@ -196,6 +208,7 @@ class TableShape:
         UnwritableError
             The table cannot be kept where the body is.
         """
+        self.table.cancel()
         self._filling.close()
         filled = int(np.count_nonzero(self.table.is_filled))
         if self._path is not None and filled > self._kept:

@@ -7,11 +7,13 @@ until it does.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..progress import unwatched
 from ..tet_mesh import TetMesh
 from .free_solid import FreeSolid
 from .newton import Equilibrium, NoEquilibrium, equilibrium
@@ -44,21 +46,25 @@ class TableColumn:
     largest: NDArray[np.float64]
 
 
-def newton_column(body: FreeSolid, freedom: int, wanted: float) -> TableColumn:
+def newton_column(
+    body: FreeSolid, freedom: int, wanted: float, may_go_on: Callable[[], None] = unwatched
+) -> TableColumn:
     """The entries of surface freedom ``3 * (place in free_surface) + axis`` for F0 = ``wanted``.
 
     ``wanted`` is in newton per pascal of Young's modulus; see :func:`largest_carried` where the
-    body does not carry it.
+    body does not carry it. ``may_go_on`` is called now and then; it may raise to cancel.
     """
     rows, largest = [], []
     for sign in SIGNS:
-        load, found = largest_carried(body, freedom, sign * wanted)
+        load, found = largest_carried(body, freedom, sign * wanted, may_go_on)
         rows.append(found.displacements[body.surface].ravel() / load)
         largest.append(abs(load))
     return TableColumn(np.array(rows, dtype=np.float32), np.array(largest))
 
 
-def largest_carried(body: FreeSolid, freedom: int, wanted: float) -> tuple[float, Equilibrium]:
+def largest_carried(
+    body: FreeSolid, freedom: int, wanted: float, may_go_on: Callable[[], None] = unwatched
+) -> tuple[float, Equilibrium]:
     """The load ``wanted`` on one surface freedom, halved until the body carries it.
 
     Returns the load and the body under it. Displacements are the linear ones, and the load is
@@ -70,13 +76,17 @@ def largest_carried(body: FreeSolid, freedom: int, wanted: float) -> tuple[float
     load, start = wanted, None
     for _ in range(MOST_HALVINGS + 1):
         try:
-            return load, equilibrium(body, load * unit, start, smallest_step=SMALLEST_STEP)
+            found = equilibrium(
+                body, load * unit, start, smallest_step=SMALLEST_STEP, may_go_on=may_go_on
+            )
         except NoEquilibrium as told:
             halved = 0.5 * load
             while abs(halved) > (told.held + SMALLEST_STEP) * abs(load):
                 halved *= 0.5
             start = told.displacements * (halved / (told.held * load)) if told.held else None
             load = halved
+        else:
+            return load, found
     linear = wanted * body.linear(unit)
     return wanted, Equilibrium(linear, 0, 0, np.nan, ())
 

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from ..errors import PalpateError
 from ..soft_body import SoftBody
+from .newton_shape import TableShape
 from .rotation_strain_shape import RotationStrainShape
 from .series_shape import SeriesShape
 
@@ -99,6 +100,7 @@ MAKERS: dict[ShapeName, Callable[[SoftBody, Path | None], Shape]] = {
     "linear": lambda body, _: LinearShape(body),
     "rotation-strain": lambda body, _: RotationStrainShape(body),
     "series": SeriesShape,
+    "table": TableShape,
 }
 
 

@@ -1,0 +1,115 @@
+"""The shape of (16): its tables around the touched place, kept and taken over again."""
+
+import numpy as np
+import pytest
+
+from palpate.core.errors import CancelledError
+from palpate.core.large_deformation.free_solid import FreeSolid
+from palpate.core.large_deformation.newton import equilibrium
+from palpate.core.large_deformation.newton_shape import KIND, NewtonTable, TableShape
+from palpate.core.large_deformation.table_file import TableFileError, table_path
+from palpate.core.paper_cube import paper_cube
+from palpate.core.soft_body import SoftBody
+from palpate.core.stiffness import assemble
+from palpate.core.surface_compliance import surface_compliance
+
+MODULUS = 5_000.0
+
+
+@pytest.fixture(scope="module")
+def cube():
+    mesh, fixed = paper_cube(cells=2)
+    compliance = surface_compliance(mesh, assemble(mesh, 0.3), fixed)
+    return SoftBody(mesh, fixed, 0.3, compliance, MODULUS)
+
+
+@pytest.fixture(scope="module")
+def corner(cube):
+    return np.array([np.argmax(cube.mesh.nodes.sum(axis=1))])
+
+
+def test_under_the_largest_force_the_shape_is_newtons(cube, corner):
+    shape = TableShape(cube, wanted=1e-5)
+    try:
+        shape.wait_for(corner)
+        assert shape.ready == 1.0
+        force = np.array([[0.0, 1e-5 * MODULUS, 0.0]])
+        found = shape.displacements(corner, force)
+    finally:
+        shape.close()
+    solid = FreeSolid.of(cube)
+    u = equilibrium(solid, solid.on_free_nodes(corner, force / MODULUS)).displacements
+    expected = u[solid.surface]
+    size = np.abs(expected).max()
+    assert np.abs(found - expected).max() < 1e-6 * size
+    assert np.abs(cube.deform(corner, force) - expected).max() > 0.02 * size
+
+
+def test_what_is_not_there_yet_is_linear_and_comes(cube, corner, eventually):
+    shape = TableShape(cube)
+    force = np.array([[0.05, 0.0, 0.0]])
+    try:
+        linear = cube.deform(corner, force)
+        first = shape.displacements(corner, force)
+        assert np.array_equal(first, linear) or shape.ready == 1.0
+        eventually(lambda: shape.displacements(corner, force) is not None and shape.ready == 1.0)
+        assert not np.allclose(shape.displacements(corner, force), linear, rtol=1e-3)
+    finally:
+        shape.close()
+
+
+def test_other_nodes_stay_linear_beside_a_known_one(cube, corner):
+    table = NewtonTable(cube)
+    known = cube.free_index(corner)
+    table.fill(known)
+    shape = TableShape(cube)
+    shape.close()
+    shape.table.is_filled[known] = True
+    for name in ("positive", "negative", "largest"):
+        getattr(shape.table, name)[:] = getattr(table, name)
+    other = cube.compliance.free_surface[[0]]
+    both, forces = np.append(corner, other), np.array([[0.0, 0.1, 0.0], [0.0, 0.0, 0.2]])
+    alone = shape.displacements(corner, forces[:1]) + cube.deform(other, forces[1:])
+    assert np.allclose(shape.displacements(both, forces), alone, rtol=0, atol=1e-12)
+    # Forces on one node that come twice add up before they are squared.
+    twice = shape.displacements(np.append(corner, corner), 0.5 * forces[[0, 0]])
+    assert np.allclose(twice, shape.displacements(corner, forces[:1]), rtol=0, atol=1e-12)
+
+
+def test_a_table_is_kept_beside_the_body_and_taken_over(cube, corner, tmp_path):
+    body_file = tmp_path / "cube.npz"
+    first = TableShape(cube, body_file)
+    first.wait_for(corner)
+    first.close()
+    path = table_path(body_file, KIND)
+    again = TableShape(cube, body_file)
+    try:
+        known = cube.free_index(corner)
+        assert again.table.is_filled[known].all()
+        assert not again.notice
+        assert np.array_equal(again.table.positive[known], first.table.positive[known])
+        assert np.array_equal(again.table.largest[known], first.table.largest[known])
+    finally:
+        again.close()
+    with pytest.raises(TableFileError, match="another F0"):
+        NewtonTable(cube, 1e-5).load(path)
+    path.write_bytes(path.read_bytes()[:-200])
+    damaged = TableShape(cube, body_file)
+    damaged.close()
+    assert str(path) in damaged.notice
+    assert not damaged.table.is_filled.any()
+
+
+def test_a_cancelled_table_ends_and_leaves_the_node_empty(cube):
+    table = NewtonTable(cube)
+    table.cancel()
+    with pytest.raises(CancelledError):
+        table.fill(np.array([3]))
+    assert not table.is_filled.any()
+
+
+def test_three_tables_take_three_times_the_memory(cube):
+    table = NewtonTable(cube)
+    table.is_filled[:] = True
+    both = table.nbytes - table.largest.nbytes
+    assert both == 2 * cube.compliance.nbytes
