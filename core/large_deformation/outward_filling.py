@@ -81,6 +81,16 @@ class OutwardFilling:
             Whatever ended the filling.
         """
         self.around(places)
+        self._wait(places)
+
+    def finish(self) -> None:
+        """Return when everything is filled; errors as for :meth:`wait_for`."""
+        everything = np.arange(len(self._positions))
+        if not len(self._wish):
+            self.around(everything[:1])
+        self._wait(everything)
+
+    def _wait(self, places: NDArray[np.int64]) -> None:
         with self._changed:
             self._last_frame = -np.inf
             self._changed.wait_for(
@@ -88,12 +98,6 @@ class OutwardFilling:
             )
             if self._problem is not None:
                 raise self._problem
-
-    def finish(self) -> None:
-        """Return when everything is filled, or what is under way was closed."""
-        everything = np.arange(len(self._positions))
-        if not self._is_filled.all():
-            self.wait_for(everything)
 
     def close(self) -> None:
         """End after the slice that is under way. Safe to call twice."""

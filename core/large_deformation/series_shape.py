@@ -31,8 +31,10 @@ LARGEST_WHOLE_LOAD = 2500
 # The series of a load goes on straight where its third order is this share of the first: at 0.01
 # it follows less far than it could, beyond 0.1 it overshoots.
 LOAD_SHARE = 0.05
-# Nodes whose freedoms are computed in one slice of the background: 0.1 s at 1,700 nodes.
-NODES_AT_ONCE = 4
+# Nodes times tetrahedra in one slice of the background: three nodes of a body of 1,700, some 0.1 s,
+# and one of a body of 20,000, with 200 MB of strains.
+SLICE = 25_000
+MOST_NODES_AT_ONCE = 3
 
 
 def load_displacements(solid: SeriesSolid, forces: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -75,7 +77,11 @@ class SeriesShape:
         surface = body.compliance.free_surface
         self._is_filled = np.zeros(len(surface), dtype=bool)
         self._filling = OutwardFilling(
-            body.mesh.nodes[surface], self._is_filled, self._fill, NODES_AT_ONCE, self._prepare
+            body.mesh.nodes[surface],
+            self._is_filled,
+            self._fill,
+            max(1, min(SLICE // len(body.mesh.tets), MOST_NODES_AT_ONCE)),
+            self._prepare,
         )
 
     @property

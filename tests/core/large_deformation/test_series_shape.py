@@ -1,0 +1,124 @@
+"""The shape by power series: of the whole load, and from a table that is kept."""
+
+import numpy as np
+import pytest
+
+from palpate.core.large_deformation.free_solid import FreeSolid
+from palpate.core.large_deformation.newton import equilibrium
+from palpate.core.large_deformation.series_shape import SeriesShape
+from palpate.core.large_deformation.series_table import SeriesTable
+from palpate.core.large_deformation.table_file import TableFileError, table_path
+from palpate.core.soft_body import SoftBody
+
+EDGE = 0.05
+
+
+@pytest.fixture(params=[True, False], ids=["whole-load", "freedoms"])
+def whole_load(request):
+    return request.param
+
+
+def touched(cube):
+    """A triangle in the top, and a push of 0.1 N on each of its nodes, a little aslant."""
+    corners = cube.mesh.surface_triangles
+    middles = cube.mesh.nodes[corners].mean(axis=1)
+    nearest = np.argmin(np.linalg.norm(middles - [EDGE / 2, EDGE / 3, EDGE], axis=1))
+    return corners[nearest], np.tile([0.02, 0.0, -0.1], (3, 1))
+
+
+def made(cube, whole_load, path=None):
+    shape = SeriesShape(cube, path, whole_load)
+    shape.wait_for(touched(cube)[0])
+    return shape
+
+
+def test_it_is_nearer_to_the_truth_than_the_linear_shape(cube, whole_load):
+    nodes, forces = touched(cube)
+    solid = FreeSolid.of(cube)
+    load = solid.on_free_nodes(nodes, 2.5 * forces / cube.young_modulus)
+    true = equilibrium(solid, load).displacements[solid.surface]
+    linear = cube.deform(nodes, 2.5 * forces)
+    shape = made(cube, whole_load)
+    drawn = shape.displacements(nodes, 2.5 * forces)
+    shape.close()
+    error, before = np.linalg.norm(drawn - true), np.linalg.norm(linear - true)
+    assert error < (0.2 if whole_load else 0.9) * before
+
+
+def test_it_is_smooth_in_the_force_and_never_runs_away(cube, whole_load):
+    nodes, forces = touched(cube)
+    shape = made(cube, whole_load)
+    steps = np.linspace(-40, 40, 321)
+    drawn = np.array([shape.displacements(nodes, step * forces) for step in steps])
+    shape.close()
+    change = np.linalg.norm(np.diff(drawn, axis=0), axis=(1, 2))
+    linear = np.linalg.norm(cube.deform(nodes, (steps[1] - steps[0]) * forces))
+    assert change.max() < 4 * linear
+    bend = np.linalg.norm(np.diff(drawn, n=2, axis=0), axis=(1, 2))
+    assert bend.max() < 0.5 * linear
+    # Straight in the end, on both sides.
+    assert max(bend[0], bend[-1]) < 1e-3 * linear
+
+
+def test_an_empty_table_is_linear_and_says_so(cube):
+    nodes, forces = touched(cube)
+    table = SeriesTable.empty(cube)
+    assert not table.has(np.arange(3)).any()
+    np.testing.assert_array_equal(table.displacements(nodes, forces), cube.deform(nodes, forces))
+
+
+def test_a_table_is_kept_beside_the_body_and_found_again(cube, tmp_path):
+    nodes, forces = touched(cube)
+    first = made(cube, False, tmp_path / "cube.npz")
+    drawn = first.displacements(nodes, forces)
+    first.close()
+    first.close()
+    assert table_path(tmp_path / "cube.npz", "series").exists()
+    stored = SeriesTable.load(cube, table_path(tmp_path / "cube.npz", "series"))
+    assert stored.has(cube.free_index(nodes)).all()
+    np.testing.assert_array_equal(stored.displacements(nodes, forces), drawn)
+    np.testing.assert_array_equal(stored.bound, first.table.bound)
+
+
+def test_a_whole_table_is_filled_when_asked(cube, tmp_path):
+    shape = made(cube, False, tmp_path / "cube.npz")
+    shape.finish()
+    assert shape.table.is_filled.all()
+    assert (shape.table.bound < 0.025).all()
+    shape.close()
+    again = made(cube, False, tmp_path / "cube.npz")
+    assert again.table.is_filled.all()
+    again.close()
+
+
+def test_a_damaged_or_foreign_file_is_told_and_filled_anew(cube, tmp_path):
+    path = table_path(tmp_path / "cube.npz", "series")
+    nodes, forces = touched(cube)
+    clean = made(cube, False)
+    right = clean.displacements(nodes, forces)
+    clean.close()
+    softer = SoftBody(cube.mesh, cube.fixed, 0.3, cube.compliance, cube.young_modulus)
+    foreign = SeriesTable.empty(softer)
+    foreign.save(path)
+    with pytest.raises(TableFileError, match="another body"):
+        SeriesTable.load(cube, path)
+    shape = made(cube, False, tmp_path / "cube.npz")
+    assert "another body" in shape.warning
+    np.testing.assert_array_equal(shape.displacements(nodes, forces), right)
+    shape.close()
+    assert SeriesTable.load(cube, path).has(cube.free_index(nodes)).all()
+
+
+def test_a_place_that_cannot_be_written_is_a_warning(cube, tmp_path):
+    (tmp_path / "file").write_text("")
+    shape = made(cube, False, tmp_path / "file" / "cube.npz")
+    shape.close()
+    assert "cannot be written" in shape.warning
+
+
+def test_youngs_modulus_is_live(cube, whole_load):
+    nodes, forces = touched(cube)
+    shape = made(cube, whole_load)
+    soft = shape.displacements(nodes, forces, 5_000.0)
+    np.testing.assert_allclose(soft, shape.displacements(nodes, 2 * forces, 10_000.0), rtol=1e-12)
+    shape.close()
