@@ -13,6 +13,7 @@ from typing import NoReturn
 import bpy
 
 from ..core.errors import PalpateError
+from ..core.large_deformation.felt_force import FELT_CHOICES
 from ..core.large_deformation.shapes import SHAPES
 from ..core.materials import MATERIALS
 from ..operators import bake_session, body_store
@@ -112,16 +113,7 @@ def press(arguments: argparse.Namespace) -> dict[str, object]:
         raise PalpateError(
             f"--by: {len(arguments.by)} for {len(arguments.at)} --at; give one for each finger"
         )
-    for option, (name, unit) in FINGER_NUMBERS.items():
-        value = getattr(arguments, option)
-        if value is not None:
-            chosen = bpy.context.scene.palpate
-            setattr(chosen, name, _within(chosen, name, option, value, unit))
-    if arguments.shape is not None:
-        thing.palpate.shape = arguments.shape.upper().replace("-", "_")
-    for option, name in (("mode", "contact_mode"), ("tip", "tip")):
-        if getattr(arguments, option) is not None:
-            setattr(bpy.context.scene.palpate, name, getattr(arguments, option).upper())
+    _choose(thing, arguments)
     pressed = press_several(
         thing, bpy.context.scene, arguments.at, arguments.by, keep=arguments.keep
     )
@@ -137,6 +129,22 @@ def press(arguments: argparse.Namespace) -> dict[str, object]:
         "shape": chosen_shape(thing),
         "shape_key": pressed.shape_key,
     }
+
+
+def _choose(thing: bpy.types.Object, arguments: argparse.Namespace) -> None:
+    """Fill in what touches, how contact, shape and force are computed, as the options say."""
+    for option, (name, unit) in FINGER_NUMBERS.items():
+        value = getattr(arguments, option)
+        if value is not None:
+            chosen = bpy.context.scene.palpate
+            setattr(chosen, name, _within(chosen, name, option, value, unit))
+    if arguments.felt is not None:
+        thing.palpate.felt = arguments.felt.upper()
+    if arguments.shape is not None:
+        thing.palpate.shape = arguments.shape.upper().replace("-", "_")
+    for option, name in (("mode", "contact_mode"), ("tip", "tip")):
+        if getattr(arguments, option) is not None:
+            setattr(bpy.context.scene.palpate, name, getattr(arguments, option).upper())
 
 
 def _figures(finger: PressedFinger) -> dict[str, object]:
@@ -225,6 +233,7 @@ def _parser() -> argparse.ArgumentParser:
     two.add_argument("--tip", choices=tips, help="what touches; else as the scene says")
     two.add_argument("--radius", type=float, metavar="R", help="of fingertip or rod, scene units")
     two.add_argument("--shape", choices=SHAPES, help="how it deforms; else as the object says")
+    two.add_argument("--felt", choices=FELT_CHOICES, help="force; else as the object says")
     two.add_argument("--keep", action="store_true", help="keep a shape key and save the file")
     two.set_defaults(run=press)
     return parser

@@ -25,13 +25,20 @@ WORDS = {
     ),
     "Felt Force": "Gefühlte Kraft",
     "How the force follows from large depths": "Wie die Kraft aus großen Tiefen folgt",
-    "The paper's: force grows in proportion to the depth, without limit": (
-        "Die des Artikels: Kraft wächst im Verhältnis zur Tiefe, ohne Grenze"
+    "The paper's: in proportion to the depth, however deep": (
+        "Die des Artikels: im Verhältnis zur Tiefe, wie tief auch immer"
     ),
     "Corrected": "Berichtigt",
-    "Gives way at depth as the body really does; the same for light touches": (
-        "Gibt in der Tiefe nach, wie der Körper es wirklich tut; gleich bei leichter Berührung"
+    "As a solid of large deformation: softer where it is pressed in far": (
+        "Wie ein Körper großer Verformung: weicher, wo er weit eingedrückt ist"
     ),
+    "Felt force {share} %": "Gefühlte Kraft {share} %",
+    "Tools feel the linear force": "Werkzeuge fühlen die lineare Kraft",
+    "The linear force is felt": "Gefühlt wird die lineare Kraft",
+    "Found around the touched place first, and kept": (
+        "Wird zuerst um die berührte Stelle ermittelt und behalten"
+    ),
+    "Whole Surface, About": "Ganze Oberfläche, etwa",
     "The linear shape is drawn": "Gezeichnet wird die lineare Form",
     "Shape {share} %": "Form {share} %",
     "A Frame, About": "Ein Bild, etwa",

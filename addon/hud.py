@@ -42,7 +42,7 @@ PINCH_STATES = {
     Phase.HOLDING: "Held: drag a handle, look around, or keep it",
 }
 EMPTY_STATES = {Phase.FEELING: "The Empty leads: move it, or play the animation"}
-SHAPE = "Shape {share} %"
+SHAPE, FELT = "Shape {share} %", "Felt force {share} %"
 ABOVE = "Above the surface: drag inward, or turn the wheel"
 KEYS = {
     Phase.READY: "Esc  Leave",
@@ -134,11 +134,14 @@ def _state(session: PressSession, phase: Phase) -> str:
 
 
 def _shape_lines(session: PressSession) -> list[Line]:
-    """How far the table is that the touched place needs."""
-    if session.shape.ready >= 1.0:
-        return []
-    share = f"{100 * session.shape.ready:.0f}"
-    return [Line(bpy.app.translations.pgettext_iface(SHAPE).format(share=share), NORMAL, GREY)]
+    """How far the tables are that the touched place needs."""
+    felt = 1.0 if session.loop is None else session.loop.felt.ready
+    say = bpy.app.translations.pgettext_iface
+    return [
+        Line(say(text).format(share=f"{100 * ready:.0f}"), NORMAL, GREY)
+        for text, ready in ((SHAPE, session.shape.ready), (FELT, felt))
+        if ready < 1.0
+    ]
 
 
 def _buried_lines(session: PressSession) -> list[Line]:

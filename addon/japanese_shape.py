@@ -23,13 +23,18 @@ WORDS = {
     ),
     "Felt Force": "感じる力",
     "How the force follows from large depths": "深く押したときの力の求め方",
-    "The paper's: force grows in proportion to the depth, without limit": (
-        "論文の方法。力は深さに比例して限りなく増えます"
+    "The paper's: in proportion to the depth, however deep": (
+        "論文の方法。どれほど深くても深さに比例します"
     ),
     "Corrected": "補正あり",
-    "Gives way at depth as the body really does; the same for light touches": (
-        "深い所では実際の物体のように応じます。軽い接触では同じです"
+    "As a solid of large deformation: softer where it is pressed in far": (
+        "大変形の固体と同じく、深く押し込んだ所は柔らかくなります"
     ),
+    "Felt force {share} %": "感じる力 {share} %",
+    "Tools feel the linear force": "ツールは線形の力を感じます",
+    "The linear force is felt": "線形の力を感じています",
+    "Found around the touched place first, and kept": ("触れた場所の周りから求め、保存します"),
+    "Whole Surface, About": "表面全体、約",
     "The linear shape is drawn": "線形の形状を描いています",
     "Shape {share} %": "形状 {share} %",
     "A Frame, About": "1 フレーム、約",

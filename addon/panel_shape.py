@@ -3,6 +3,7 @@
 import bpy
 
 from ..core.large_deformation.shape_cost import BodySize, ShapeCost, shape_cost
+from ..core.large_deformation.softening_table import whole_table_seconds
 from ..operators import press_session
 from ..operators.drawn_shape import chosen_shape
 from ..operators.press_session import PressSession
@@ -31,6 +32,8 @@ class PALPATE_PT_shape(PalpatePanel, bpy.types.Panel):
             draw_progress(layout, context, press)
         layout.prop(settings, "felt")
         say(layout, context, _explained(FELT_ITEMS, settings.felt), "BLANK1")
+        if settings.felt == "CORRECTED":
+            _draw_felt(layout, context, thing)
 
 
 def draw_progress(
@@ -73,6 +76,23 @@ def _draw_cost(
         say(box, context, "Too large a body to be drawn 60 times a second this way", "INFO")
     if cost.table_seconds:
         say(box, context, "Computed around the touched place first, and kept", "INFO")
+
+
+def _draw_felt(
+    layout: bpy.types.UILayout, context: bpy.types.Context, thing: bpy.types.Object
+) -> None:
+    """What the corrected force takes, and where it is not felt."""
+    baked, press = thing.palpate, press_session.current()
+    if context.scene.palpate.tip != "POINT":
+        say(layout, context, "Tools feel the linear force", "INFO")
+    elif baked.free_surface_count:
+        box = layout.box().column(align=True)
+        size = (baked.node_count, baked.tet_count, baked.free_surface_count)
+        draw_rows(box, [("Whole Surface, About", duration(whole_table_seconds(*size)))])
+        say(box, context, "Found around the touched place first, and kept", "INFO")
+    if press is not None and press.loop is not None and press.loop.felt.problem:
+        say(layout, context, press.loop.felt.problem, "ERROR")
+        say(layout, context, "The linear force is felt", "BLANK1")
 
 
 def _explained(items: list[tuple[str, str, str]], chosen: str) -> str:

@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..core.large_deformation.felt_force import EXPLANATIONS as FELT_EXPLANATIONS
 from ..core.large_deformation.shapes import EXPLANATIONS
 
 # Files hold the numbers of these items: add new ones at the end only.
@@ -12,12 +13,8 @@ SHAPE_ITEMS = [
     ("ROTATION_STRAIN", "Rotation-Strain", EXPLANATIONS["rotation-strain"]),
 ]
 FELT_ITEMS = [
-    ("LINEAR", "Linear", "The paper's: force grows in proportion to the depth, without limit"),
-    (
-        "CORRECTED",
-        "Corrected",
-        "Gives way at depth as the body really does; the same for light touches",
-    ),
+    ("LINEAR", "Linear", FELT_EXPLANATIONS["linear"]),
+    ("CORRECTED", "Corrected", FELT_EXPLANATIONS["corrected"]),
 ]
 
 

@@ -50,6 +50,7 @@ __all__ = [
     "native_tool",
     "servo_for",
     "servo_on",
+    "touched_nodes",
 ]
 
 
@@ -180,6 +181,13 @@ def servo_on(
         )
     except (ValueError, OverflowError) as problem:
         raise PalpateError(f"servo: {problem}") from problem
+
+
+def touched_nodes(body: SoftBody, snapshot: Snapshot) -> NDArray[np.int64]:
+    """Node numbers of the mesh that fingers of a snapshot press, (k,)."""
+    nodes = [finger.nodes for finger in snapshot.fingers]
+    pressed: NDArray[np.int64] = np.concatenate([np.zeros(0, dtype=np.int64), *nodes])
+    return body.mesh.surface_nodes[pressed]
 
 
 def displacements_of(

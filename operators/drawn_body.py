@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from pathlib import Path
 
 import bpy
 import numpy as np
@@ -36,12 +37,14 @@ class DrawnBody:
     hung : the map W to the drawn vertices.
     rest : flat float32 (3 p,), the drawn vertices at rest, local units.
     frame : between local units, metres and the world.
+    file : where the body came from, beside which its tables are kept; None if that is nowhere.
     """
 
     body: SoftBody
     hung: DrawnMap
     rest: NDArray[np.float32]
     frame: BodyFrame
+    file: Path | None = None
 
     @property
     def size(self) -> float:
@@ -132,6 +135,7 @@ def open_body(thing: bpy.types.Object, scene: bpy.types.Scene) -> DrawnBody:
         hung=DrawnMap.hang(surface.body, body),
         rest=drawn_surface.rest_coordinates(thing.data),
         frame=surface.frame,
+        file=body_store.locate(thing),
     )
 
 

@@ -20,7 +20,7 @@ from ..core.large_deformation.meeting import FingerLoad, Meeting, Met, settled
 from ..core.large_deformation.shapes import LinearShape, Shape, ShapeName, shape, shape_name
 from ..core.servo_session import Snapshot
 from ..core.soft_body import SoftBody
-from . import body_store
+from .drawn_body import DrawnBody
 
 
 def chosen_shape(thing: bpy.types.Object) -> ShapeName:
@@ -49,11 +49,6 @@ class DrawnShape:
 
     def __post_init__(self) -> None:
         self._take(LinearShape(self.body))
-
-    @classmethod
-    def of(cls, thing: bpy.types.Object, body: SoftBody) -> DrawnShape:
-        """For an object with its body; tables are kept beside its file."""
-        return cls(body, body_store.locate(thing))
 
     @property
     def ready(self) -> float:
@@ -127,7 +122,7 @@ class DrawnShape:
 
 @contextmanager
 def complete_shape(
-    thing: bpy.types.Object, body: SoftBody
+    thing: bpy.types.Object, drawn: DrawnBody
 ) -> Iterator[Callable[[Sequence[FingerLoad], float], Met]]:
     """What the object's panel asks for, as a function of the fingers' loads and Young's modulus.
 
@@ -138,9 +133,9 @@ def complete_shape(
     PalpateError
         It cannot be computed.
     """
-    made = shape(body, chosen_shape(thing), body_store.locate(thing))
+    made = shape(drawn.body, chosen_shape(thing), drawn.file)
     try:
-        yield partial(settled, body, made)
+        yield partial(settled, drawn.body, made)
     finally:
         made.close()
 

@@ -12,9 +12,18 @@ import numpy as np
 
 from ..core.devices.simulated_process import SimulatedDevice
 from ..core.errors import PalpateError
-from ..core.servo_session import Body, Servo, Snapshot, native_body, native_tool, servo_on
+from ..core.servo_session import (
+    Body,
+    Servo,
+    Snapshot,
+    native_body,
+    native_tool,
+    servo_on,
+    touched_nodes,
+)
 from . import device_source, recording
 from .drawn_body import DrawnBody
+from .felt_table import FeltTable
 from .finger_leads import second_port
 from .finger_tip import FingerTip
 from .live_settings import LiveSettings
@@ -36,6 +45,7 @@ class ForceLoop:
     drawn: DrawnBody
     touched: Body
     tip: FingerTip
+    felt: FeltTable
     simulated: SimulatedDevice | None = None
     second_simulated: SimulatedDevice | None = None
     port: str = ""
@@ -62,7 +72,8 @@ class ForceLoop:
         )
         with servo_errors():
             settings.hand_over(servo)
-        return cls(servo, settings, Recorder(servo, rate_hz), drawn, touched, tip)
+        felt = FeltTable(drawn.body, touched, drawn.file)
+        return cls(servo, settings, Recorder(servo, rate_hz), drawn, touched, tip, felt)
 
     def give_tools(self, fingers: int) -> None:
         """Give each of so many fingers the tool that was chosen; points stay as they are."""
@@ -180,6 +191,9 @@ class ForceLoop:
         snapshot = self.servo.snapshot()
         self.figures.look(self.servo, time.monotonic())
         self.recorder.follow(snapshot.time)
+        # Tools feel the linear relation.
+        felt = self.settings.felt if self.tip.tool is None else "linear"
+        self.felt.follow(felt, touched_nodes(self.drawn.body, snapshot))
         return snapshot
 
     def stop(self) -> None:
@@ -188,6 +202,7 @@ class ForceLoop:
             self.servo.stop()
             recording.keep(self.recorder)
         finally:
+            self.felt.close()
             for simulated in (self.simulated, self.second_simulated):
                 if simulated is not None:
                     simulated.stop()

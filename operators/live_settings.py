@@ -8,8 +8,10 @@ from dataclasses import dataclass
 import bpy
 
 from ..core.contact import ContactMode
+from ..core.large_deformation.felt_force import FeltName
 from ..core.servo_session import Servo, device_coupling, haply_encoder_step
 from .device_source import DeviceFrame, is_planar
+from .felt_table import chosen_felt
 
 
 @dataclass(frozen=True)
@@ -58,7 +60,7 @@ def contact_mode(scene: bpy.types.Scene) -> ContactMode:
 @dataclass(frozen=True)
 class LiveSettings:
     """``young_modulus`` in pascal; ``device`` is where the first finger's device is, None where it
-    has none; ``mode`` says how the contact is computed.
+    has none; ``mode`` says how the contact is computed, ``felt`` how force follows from depth.
     """
 
     young_modulus: float
@@ -66,6 +68,7 @@ class LiveSettings:
     coupling: Coupling
     device: DeviceFrame | None = None
     mode: ContactMode = "consistent"
+    felt: FeltName = "linear"
 
     @classmethod
     def of(
@@ -78,6 +81,7 @@ class LiveSettings:
             Coupling.of(scene),
             device,
             contact_mode(scene),
+            chosen_felt(thing),
         )
 
     def hand_over(self, servo: Servo, before: LiveSettings | None = None) -> None:
@@ -86,6 +90,8 @@ class LiveSettings:
             servo.set_young_modulus(self.young_modulus)
         if before is None or self.mode != before.mode:
             servo.set_mode(self.mode)
+        if before is None or self.felt != before.felt:
+            servo.set_felt(self.felt)
         if before is None or self.feel != before.feel:
             feel = self.feel
             servo.set_feel(

@@ -140,7 +140,7 @@ def press_frames(
     guides = leading_objects(scene)
     modulus, friction = thing.palpate.young_modulus, thing.palpate.static_friction
     press: ToolPress | None = None
-    with complete_shape(thing, drawn.body) as shape:
+    with complete_shape(thing, drawn) as shape:
         for frame in frames:
             scene.frame_set(frame)
             poses = [_pose(guide, scene, drawn.frame) for guide in guides]

@@ -17,6 +17,7 @@ from ..core.tools import Pose, Tool
 from . import live_shape, several_fingers, tool_turn
 from .drawn_body import DrawnBody, open_body
 from .drawn_shape import complete_shape
+from .felt_table import felt_forces
 from .finger_tip import chosen_tip
 from .live_settings import contact_mode
 from .several_fingers import FingerForce, ToolPress, pressing_tools
@@ -102,10 +103,14 @@ def press_several(
     if tip.tool is None:
         mode = contact_mode(scene)
         touches = drawn.body.touch_several(places, inward, young_modulus, mode=mode)
-        made = tuple(several_fingers.of_point(touch) for touch in touches)
+        felt = felt_forces(thing, drawn, touches, young_modulus, mode)
+        made = tuple(
+            several_fingers.of_point(touch, force)
+            for touch, force in zip(touches, felt, strict=True)
+        )
     else:
         made = _press_tools(drawn, thing, scene, tip.tool, places, inward)
-    with complete_shape(thing, drawn.body) as shape:
+    with complete_shape(thing, drawn) as shape:
         displacements = shape(several_fingers.loads_of(made), young_modulus).displacements
     return Pressed(
         fingers=tuple(

@@ -22,7 +22,6 @@ from ..core.large_deformation.meeting import FingerLoad
 from ..core.servo_session import Snapshot
 from ..core.tool_contact import surface_for
 from . import (
-    body_store,
     device_source,
     drawn_surface,
     live_shape,
@@ -131,6 +130,8 @@ class PressSession:
         moved = self.snapshot is None or snapshot.tick != self.snapshot.tick
         self.snapshot = snapshot
         self._watch_faults(snapshot)
+        if loop.felt.problem:
+            self._warn(loop.felt.problem)
         if self.state.phase is not Phase.LOST and not self.state.withdrawn:
             self._draw(thing, snapshot)
         return moved
@@ -177,9 +178,7 @@ class PressSession:
     @cached_property
     def shape(self) -> DrawnShape:
         """What is drawn of the body under its fingers."""
-        thing = self.handle.find()
-        file = None if thing is None else body_store.locate(thing)
-        return DrawnShape(self.drawn.body, file)
+        return DrawnShape(self.drawn.body, self.drawn.file)
 
     @cached_property
     def surface_samples(self) -> Array:

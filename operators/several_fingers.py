@@ -32,7 +32,7 @@ class FingerForce:
     Attributes
     ----------
     force : (3,), felt by the finger.
-    nodes, nodal_forces : (k,) and (k, 3), on the body.
+    nodes, nodal_forces : (k,) and (k, 3), on the body, by the linear relation.
     area, largest_pressure : m^2 and Pa; 0 for a point.
     touch : the contact of a point finger, None for a tool.
     tool : the contact of a tool, None for a point.
@@ -56,9 +56,9 @@ def pressing_tools(fingers: Sequence[FingerForce]) -> tuple[PressingTool, ...]:
     )
 
 
-def of_point(touch: Touch) -> FingerForce:
-    """A point finger's."""
-    return FingerForce(touch.force, touch.triangle, touch.nodal_forces, touch=touch)
+def of_point(touch: Touch, felt: Array) -> FingerForce:
+    """A point finger's, with the force (3,) that it feels."""
+    return FingerForce(felt, touch.triangle, touch.nodal_forces, touch=touch)
 
 
 def of_tool(touch: ToolTouch) -> FingerForce:

@@ -30,10 +30,14 @@ def test_bake_saves_a_file_that_can_be_pressed(command, scene, capfd):
     assert figures["nodes"] > figures["free_surface_nodes"] > 0
     assert len(list((scene.parent / "palpate").iterdir())) == 1
     words = ["press", str(scene), "--object", "Prop", "--at", "0", "0", "0.025"]
-    words += ["--by", "0", "0", "-5e-3", "--json", "--keep"]
-    assert command(words) == 0
+    words += ["--by", "0", "0", "-5e-3", "--json"]
+    assert command([*words, "--shape", "rotation-strain", "--felt", "corrected"]) == 0
+    softer = json.loads(capfd.readouterr().out.splitlines()[-1])
+    assert command([*words, "--keep"]) == 0
     pressed = json.loads(capfd.readouterr().out.splitlines()[-1])
-    assert pressed["force"][2] > 0
+    assert 0 < softer["force"][2] < pressed["force"][2]
+    assert (softer["shape"], pressed["shape"]) == ("rotation-strain", "linear")
+    assert softer["max_displacement"] != pressed["max_displacement"]
     bpy.ops.wm.open_mainfile(filepath=str(scene))
     keys = bpy.data.objects["Prop"].data.shape_keys.key_blocks.keys()
     assert keys == ["Basis", pressed["shape_key"]]

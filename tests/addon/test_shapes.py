@@ -264,3 +264,46 @@ def test_pressure_is_drawn_on_the_shape_that_is_seen(palpate):
     points = mesh.nodes[drawn.body.compliance.free_surface[:3]]
     moved = reading._as_drawn(Session, Finger, points)
     np.testing.assert_allclose(moved, points + np.array([0.0, 0.0, 0.002]), atol=1e-12)
+
+
+def test_the_corrected_force_is_felt_where_it_is_known_and_switched_live(sessions, states):
+    thing = soft_cube()
+    once = part("operators.press_once").press_once
+    at, by = TOP, (0.0, 0.0, -DEPTH)
+    linear = once(thing, bpy.context.scene, at, by, keep=False)
+    thing.palpate.felt = "CORRECTED"
+    corrected = once(thing, bpy.context.scene, at, by, keep=False)
+    softer = np.linalg.norm(corrected.force) / np.linalg.norm(linear.force)
+    assert 0.05 < softer < 0.97
+    # Only the force is another one.
+    assert corrected.largest_displacement == pytest.approx(linear.largest_displacement)
+    thing.palpate.felt = "LINEAR"
+    session = begin_pressed(sessions, states, thing)
+    read = part("addon.reading").reading
+    firm = read(session).force
+    thing.palpate.felt = "CORRECTED"
+    session.tick()
+    wait(session, lambda: session.loop.felt.ready == 1.0 and session.snapshot.felt_share > 0.999)
+    assert read(session).force / firm == pytest.approx(softer, rel=0.02)
+    assert not part("addon.hud")._shape_lines(session)
+    np.testing.assert_array_equal(session.displacements, session.linear)
+    thing.palpate.felt = "LINEAR"
+    wait(session, lambda: read(session).force == pytest.approx(firm, rel=1e-6))
+
+
+def test_a_felt_force_that_cannot_be_found_is_told_and_the_linear_one_is_felt(
+    sessions, states, monkeypatch
+):
+    table = part("core.large_deformation.softening_table")
+
+    def refuse(*_):
+        raise part("core.errors").PalpateError("felt force: no room; choose the linear one")
+
+    monkeypatch.setattr(table.SofteningTable, "around", refuse)
+    thing = soft_cube()
+    thing.palpate.felt = "CORRECTED"
+    session = begin_pressed(sessions, states, thing)
+    wait(session, lambda: bool(session.loop.felt.problem))
+    session.tick()
+    assert [said.text for said in session.said] == ["felt force: no room; choose the linear one"]
+    assert session.snapshot.felt_share == 0.0
