@@ -16,15 +16,20 @@ that no column is in the cache before it is wanted:
 from __future__ import annotations
 
 import argparse
-import json
-import subprocess
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
-from pathlib import Path
 
 import numpy as np
 from measuring.bodies import MeasuredBody, stored_body
+from measuring.drawn_frame import (
+    DRAWN_VERTICES,
+    Load,
+    blender_write_seconds,
+    drawn_coordinates,
+    hung_vertices,
+    in_turn,
+    random_loads,
+)
 from measuring.prefactored import PrefactoredSolve, cholespy_module
 from measuring.timing import median_seconds
 from numpy.typing import NDArray
@@ -32,15 +37,11 @@ from numpy.typing import NDArray
 from palpate.core.bake import bake
 from palpate.core.bake_settings import BakeSettings
 from palpate.core.compression.compress import compress
-from palpate.core.contact import Touch
 from palpate.core.dense_compliance import DenseCompliance
-from palpate.core.drawn_map import DrawnMap
 from palpate.core.pins import PinNodes
 from palpate.core.servo_session import native_body
 from palpate.core.soft_body import SoftBody
 
-PROJECT = Path(__file__).resolve().parents[1]
-DRAWN_VERTICES = 100_000
 TOUCHES = 400
 ROUNDS = 5
 TOLERANCE = 1e-3
@@ -48,37 +49,6 @@ TOLERANCE = 1e-3
 # At most so many times a copy of the same memory, and at least so many times faster than CHOLMOD.
 LARGEST_COPIES = 2.0
 SMALLEST_GAIN = {"mouse-1.7k": 20.0, "mouse-20k": 500.0}
-
-
-@dataclass(frozen=True)
-class Load:
-    """A touch as the deformation wants it: three nodes and the forces on them."""
-
-    triangle: NDArray[np.int64]
-    nodal_forces: NDArray[np.float64]
-
-
-def in_turn(loads: list[Load], work: Callable[[Load], object]) -> Callable[[], object]:
-    """Work on one load after the other, from the first again after the last."""
-    place = 0
-
-    def next_one() -> object:
-        nonlocal place
-        place = (place + 1) % len(loads)
-        return work(loads[place])
-
-    return next_one
-
-
-def random_loads(body: SoftBody, count: int) -> list[Load]:
-    """Touches of random free triangles by 3 mm, as forces on their nodes."""
-    rng = np.random.default_rng(1999)
-    free = np.isin(body.mesh.surface_triangles, body.compliance.free_surface).all(axis=1)
-    touches: list[Touch] = [
-        body.touch(int(triangle), rng.dirichlet([1, 1, 1]), rng.normal(scale=0.003, size=3))
-        for triangle in rng.choice(np.flatnonzero(free), count)
-    ]
-    return [Load(touch.triangle, touch.nodal_forces) for touch in touches]
 
 
 def copy_seconds(body: SoftBody, table: NDArray[np.floating], loads: list[Load]) -> float:
@@ -169,37 +139,6 @@ def measure_touch(measured: MeasuredBody) -> tuple[SoftBody, SoftBody]:
         least = f"     (at least {wanted:g})" if form == "dense" and wanted else ""
         print(f"  times faster, {form:<10}                    {opponent / seconds:9.0f}{least}")
     return dense, compressed
-
-
-def hung_vertices(body: SoftBody) -> DrawnMap:
-    """A hundred thousand vertices drawn on the body's surface."""
-    rng = np.random.default_rng(1999)
-    triangles = body.mesh.surface_triangles
-    chosen = triangles[rng.integers(0, len(triangles), DRAWN_VERTICES)]
-    weights = rng.dirichlet([1, 1, 1], DRAWN_VERTICES)
-    return DrawnMap.hang(np.einsum("pc,pcx->px", weights, body.mesh.nodes[chosen]), body)
-
-
-def drawn_coordinates(
-    rest: NDArray[np.float32], displacements: NDArray[np.float64]
-) -> NDArray[np.float32]:
-    """What Blender is handed: flat coordinates (3 p,)."""
-    return (rest + displacements.ravel()).astype(np.float32)
-
-
-def blender_write_seconds() -> float | None:
-    """Median time of writing as many coordinates into a shape key; None without bpy."""
-    pythons = sorted(PROJECT.glob(".venv-bpy-*/bin/python"))
-    if not pythons:
-        return None
-    script = Path(__file__).with_name("measuring") / "shape_key_write.py"
-    ended = subprocess.run(
-        [str(pythons[0]), str(script), str(DRAWN_VERTICES), "200"],
-        check=True,
-        capture_output=True,
-        text=True,
-    )
-    return float(json.loads(ended.stdout.splitlines()[-1])["seconds"])
 
 
 def measure_frame(name: str, bodies: tuple[SoftBody, SoftBody], write: float | None) -> None:
