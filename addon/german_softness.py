@@ -28,7 +28,24 @@ WORDS = {
         "Block anzeigt. Setzt den Elastizitätsmodul und folgt ihm"
     ),
     "Softness": "Weichheit",
-    "Measured at the 3D cursor": "Gemessen wird am 3D-Cursor",
+    "Measured At": "Gemessen an",
+    "3D Cursor": "3D-Cursor",
+    "Where durometer and curve press, unless you click a place": (
+        "Wo Durometer und Kurve drücken, wenn keine Stelle angeklickt wird"
+    ),
+    "Selected Vertices": "Ausgewählte Vertices",
+    "The surface point nearest to the 3D cursor": (
+        "Die Stelle der Oberfläche, die dem 3D-Cursor am nächsten liegt"
+    ),
+    "The surface point nearest to the middle of the vertices selected in Edit Mode": (
+        "Die Stelle der Oberfläche, die der Mitte der im Bearbeitungsmodus ausgewählten "
+        "Vertices am nächsten liegt"
+    ),
+    "Pick": "Anklicken",
+    "Click the place in the view": "Die Stelle in der Ansicht anklicken",
+    "Click the place on the object; right click to leave": (
+        "Stelle auf dem Objekt anklicken; Rechtsklick bricht ab"
+    ),
     "Reading": "Anzeige",
     "On a Thick Block": "Auf einem dicken Block",
     "Text Block": "Textblock",
@@ -43,24 +60,23 @@ WORDS = {
         "Wie groß ist, was drückt, für Kurve und Karte; 0 für einen Punkt"
     ),
     "Read Durometer": "Durometer ablesen",
-    "Press the indenter of the chosen scale into the object at the 3D cursor, and read "
-    "what the device would show there": (
-        "Den Eindringkörper der gewählten Skala am 3D-Cursor in das Objekt drücken und "
-        "ablesen, was das Gerät dort anzeigen würde"
+    "Press the indenter of the chosen scale into the object, and read what the device would "
+    "show there": (
+        "Den Eindringkörper der gewählten Skala in das Objekt drücken und ablesen, was das "
+        "Gerät dort anzeigen würde"
     ),
     "Force Curve": "Kraftkurve",
-    "Press straight in at the 3D cursor, deeper and deeper, and write force against depth "
-    "into a text block": (
-        "Am 3D-Cursor gerade hineindrücken, immer tiefer, und die Kraft über der Tiefe in "
-        "einen Textblock schreiben"
+    "Press straight in, deeper and deeper, and write force against depth into a text block": (
+        "Gerade hineindrücken, immer tiefer, und die Kraft über der Tiefe in einen Textblock "
+        "schreiben"
     ),
     "How far to press; 0 for as far as is small there": (
         "Wie weit gedrückt wird; 0 für so weit, wie es dort klein ist"
     ),
-    "The surface point nearest to this is asked, world coordinates. Without one, the 3D "
-    "cursor says where": (
+    "The surface point nearest to this is asked, world coordinates. Without one, the "
+    "panel's Measured At says where": (
         "Gefragt wird die nächste Stelle der Oberfläche, Weltkoordinaten. Ohne Angabe gilt "
-        "der 3D-Cursor"
+        "„Gemessen an“"
     ),
     "Map Softness": "Weichheit kartieren",
     "Colour the object by how hard a fingertip must push for each millimetre: dark is "

@@ -26,7 +26,21 @@ WORDS = {
         "90)。厚いブロックでの硬度計の値です。ヤング率を設定し、ヤング率に追従します"
     ),
     "Softness": "柔らかさ",
-    "Measured at the 3D cursor": "3D カーソルの位置で測定",
+    "Measured At": "測定位置",
+    "3D Cursor": "3D カーソル",
+    "Where durometer and curve press, unless you click a place": (
+        "クリックで場所を選ばないときに硬度計と曲線が押す場所"
+    ),
+    "Selected Vertices": "選択した頂点",
+    "The surface point nearest to the 3D cursor": "3D カーソルに最も近い表面の点",
+    "The surface point nearest to the middle of the vertices selected in Edit Mode": (
+        "編集モードで選択した頂点の中心に最も近い表面の点"
+    ),
+    "Pick": "クリックで指定",
+    "Click the place in the view": "ビュー内で場所をクリック",
+    "Click the place on the object; right click to leave": (
+        "オブジェクト上の場所をクリック、右クリックで中止"
+    ),
     "Reading": "読み",
     "On a Thick Block": "厚いブロックでは",
     "Text Block": "テキストブロック",
@@ -41,19 +55,16 @@ WORDS = {
         "曲線とマップで押すものの大きさ。0 は点"
     ),
     "Read Durometer": "硬度計を読む",
-    "Press the indenter of the chosen scale into the object at the 3D cursor, and read "
-    "what the device would show there": (
-        "選んだスケールの押針を 3D カーソルの位置で押し込み、硬度計が示す値を読みます"
-    ),
+    "Press the indenter of the chosen scale into the object, and read what the device would "
+    "show there": ("選んだスケールの押針を押し込み、硬度計が示す値を読みます"),
     "Force Curve": "力の曲線",
-    "Press straight in at the 3D cursor, deeper and deeper, and write force against depth "
-    "into a text block": (
-        "3D カーソルの位置でまっすぐ深く押し、深さと力の表をテキストブロックに書きます"
+    "Press straight in, deeper and deeper, and write force against depth into a text block": (
+        "まっすぐ深く押し、深さと力の表をテキストブロックに書きます"
     ),
     "How far to press; 0 for as far as is small there": "押す深さ。0 はその場所で小さい深さ",
-    "The surface point nearest to this is asked, world coordinates. Without one, the 3D "
-    "cursor says where": (
-        "これに最も近い表面の点で測定します (ワールド座標)。指定がなければ 3D カーソルの位置です"
+    "The surface point nearest to this is asked, world coordinates. Without one, the "
+    "panel's Measured At says where": (
+        "これに最も近い表面の点で測定します (ワールド座標)。指定がなければ「測定位置」に従います"
     ),
     "Map Softness": "柔らかさをマップ",
     "Colour the object by how hard a fingertip must push for each millimetre: dark is "

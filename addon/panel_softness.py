@@ -19,7 +19,7 @@ class PALPATE_PT_softness(PalpatePanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = named_properties(self)
-        say(layout, context, "Measured at the 3D cursor", "PIVOT_CURSOR")
+        layout.prop(context.object.palpate_softness, "place")
         _draw_reading(layout, context)
         layout.prop(context.object.palpate_softness, "finger_radius")
         _draw_curve(layout, context)
@@ -29,7 +29,7 @@ class PALPATE_PT_softness(PalpatePanel, bpy.types.Panel):
 def _draw_reading(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     softness = context.object.palpate_softness
     layout.prop(softness, "shore_scale")
-    layout.operator("palpate.read_durometer", icon="DRIVER_DISTANCE")
+    _draw_measuring(layout, "palpate.read_durometer", "DRIVER_DISTANCE")
     if not softness.read_scale:
         return
     rows = [
@@ -43,7 +43,7 @@ def _draw_reading(layout: bpy.types.UILayout, context: bpy.types.Context) -> Non
 
 def _draw_curve(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     softness = context.object.palpate_softness
-    layout.operator("palpate.force_curve", icon="FCURVE")
+    _draw_measuring(layout, "palpate.force_curve", "FCURVE")
     if not softness.curve_text:
         return
     rows = [
@@ -53,6 +53,13 @@ def _draw_curve(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         ("Text Block", softness.curve_text),
     ]
     draw_rows(layout.column(align=True), rows)
+
+
+def _draw_measuring(layout: bpy.types.UILayout, operator: str, icon: str) -> None:
+    """The button, and beside it one that lets the place be clicked."""
+    row = layout.row(align=True)
+    row.operator(operator, icon=icon)
+    row.operator(operator, icon="EYEDROPPER", text="").pick = True
 
 
 def _draw_map(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:

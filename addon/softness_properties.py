@@ -85,6 +85,19 @@ class PalpateSoftness(bpy.types.PropertyGroup):
         get=_read_shore,
         set=_set_shore,
     )
+    place: bpy.props.EnumProperty(
+        name="Measured At",
+        description="Where durometer and curve press, unless you click a place",
+        items=[
+            ("CURSOR", "3D Cursor", "The surface point nearest to the 3D cursor"),
+            (
+                "VERTICES",
+                "Selected Vertices",
+                "The surface point nearest to the middle of the vertices selected in Edit Mode",
+            ),
+        ],
+        default="CURSOR",
+    )
     finger_radius: bpy.props.FloatProperty(
         name="Fingertip Radius",
         description="How large what presses is, for curve and map; 0 for a point",

@@ -1,24 +1,23 @@
-"""Force Curve: force against depth at the 3D cursor, as figures and as a table in a text block."""
+"""Force Curve: force against depth at one place, as figures and as a table in a text block."""
 
 import bpy
 
-from ..core.errors import PalpateError
 from ..core.softness.force_depth import MILLIMETRES, force_depth_curve
 from ..core.tools import sphere
-from .drawn_body import open_body
-from .softness_place import at_property, place_in_body, refusal
+from .drawn_body import DrawnBody
+from .softness_operator import SoftnessOperator
+from .softness_place import at_property, pick_property, place_in_body
 
 
-class PALPATE_OT_force_curve(bpy.types.Operator):
+class PALPATE_OT_force_curve(SoftnessOperator, bpy.types.Operator):
     bl_idname = "palpate.force_curve"
     bl_label = "Force Curve"
     bl_description = (
-        "Press straight in at the 3D cursor, deeper and deeper, and write force against depth "
-        "into a text block"
+        "Press straight in, deeper and deeper, and write force against depth into a text block"
     )
-    bl_options = {"REGISTER", "UNDO"}
 
     at: at_property()
+    pick: pick_property()
     depth: bpy.props.FloatProperty(
         name="Depth",
         description="How far to press; 0 for as far as is small there",
@@ -27,36 +26,23 @@ class PALPATE_OT_force_curve(bpy.types.Operator):
         subtype="DISTANCE",
     )
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        reason = refusal(context)
-        if reason:
-            cls.poll_message_set(reason)
-        return not reason
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def measure(self, context: bpy.types.Context, drawn: DrawnBody) -> None:
         thing = context.object
         softness = thing.palpate_softness
-        try:
-            drawn = open_body(thing, context.scene)
-            metres = drawn.frame.metres_per_unit
-            radius = metres * softness.finger_radius
-            curve = force_depth_curve(
-                drawn.body,
-                place_in_body(drawn, context, self),
-                metres * self.depth or None,
-                tool=sphere(radius, "fingertip") if radius > 0.0 else None,
-                young_modulus=thing.palpate.young_modulus,
-            )
-        except PalpateError as problem:
-            self.report({"ERROR"}, str(problem))
-            return {"CANCELLED"}
+        metres = drawn.frame.metres_per_unit
+        radius = metres * softness.finger_radius
+        curve = force_depth_curve(
+            drawn.body,
+            place_in_body(drawn, context, self),
+            metres * self.depth or None,
+            tool=sphere(radius, "fingertip") if radius > 0.0 else None,
+            young_modulus=thing.palpate.young_modulus,
+        )
         softness.curve_depth = curve.depths[-1] * MILLIMETRES
         softness.curve_force = curve.forces[-1]
         softness.curve_stiffness = curve.secant / MILLIMETRES
         softness.curve_text = _write(f"{thing.name} force curve.csv", curve.as_csv())
         self.report({"INFO"}, f"{softness.curve_stiffness:.3g} N/mm; {softness.curve_text}")
-        return {"FINISHED"}
 
 
 def _write(name: str, table: str) -> str:

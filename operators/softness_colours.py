@@ -4,53 +4,39 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.errors import PalpateError
 from ..core.softness.force_depth import MILLIMETRES
 from ..core.softness.ramp import ramp
 from ..core.softness.softness_map import SoftnessMap, softness_map
 from . import soft_object
-from .drawn_body import DrawnBody, open_body
-from .softness_place import refusal
+from .drawn_body import DrawnBody
+from .softness_operator import Place, SoftnessOperator
 
 ATTRIBUTE = "Palpate Softness"
 
 
-class PALPATE_OT_map_softness(bpy.types.Operator):
+class PALPATE_OT_map_softness(SoftnessOperator, bpy.types.Operator):
     bl_idname = "palpate.map_softness"
     bl_label = "Map Softness"
     bl_description = (
         "Colour the object by how hard a fingertip must push for each millimetre: dark is soft, "
         "yellow is firm. Writes the colour attribute Palpate Softness and shows it in the view"
     )
-    bl_options = {"REGISTER", "UNDO"}
+    asks = Place.EVERYWHERE
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        reason = refusal(context)
-        if reason:
-            cls.poll_message_set(reason)
-        return not reason
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def measure(self, context: bpy.types.Context, drawn: DrawnBody) -> None:
         thing = context.object
         softness = thing.palpate_softness
-        try:
-            drawn = open_body(thing, context.scene)
-            found = softness_map(
-                drawn.body,
-                pad_radius=drawn.frame.metres_per_unit * softness.finger_radius,
-                young_modulus=thing.palpate.young_modulus,
-            )
-        except PalpateError as problem:
-            self.report({"ERROR"}, str(problem))
-            return {"CANCELLED"}
+        found = softness_map(
+            drawn.body,
+            pad_radius=drawn.frame.metres_per_unit * softness.finger_radius,
+            young_modulus=thing.palpate.young_modulus,
+        )
         shown = thing.data.color_attributes.active_color_name
         if shown != ATTRIBUTE:
             softness.shown_before = shown
         _write(thing.data, ramp(_at_vertices(drawn, found)))
         softness.map_low, softness.map_high = (end / MILLIMETRES for end in found.span)
         self.report({"INFO"}, "Viewport Shading > Color > Attribute shows it")
-        return {"FINISHED"}
 
 
 class PALPATE_OT_remove_softness_map(bpy.types.Operator):

@@ -1,4 +1,6 @@
-"""Where softness is asked for: the object's body, ready, and the place under the 3D cursor."""
+"""Where softness is asked for: the object's body, ready, and the place: the 3D cursor, the
+selected vertices, or where a script or a click says.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +8,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.errors import PalpateError
 from . import bake_session, press_session, soft_object
 from .drawn_body import DrawnBody
 
@@ -23,11 +26,33 @@ def refusal(context: bpy.types.Context) -> str:
 def place_in_body(
     drawn: DrawnBody, context: bpy.types.Context, operator: bpy.types.Operator
 ) -> NDArray[np.float64]:
-    """The operator's ``at`` if it was set, else the 3D cursor; metres in the body, (3,)."""
+    """The operator's ``at`` if it was set, else what the object's softness is measured at: the 3D
+    cursor, or the middle of the selected vertices. Metres in the body, (3,).
+
+    Raises
+    ------
+    PalpateError
+        No vertex is selected.
+    """
+    softness = context.object.palpate_softness
+    if not operator.properties.is_property_set("at") and softness.place == "VERTICES":
+        return _middle_of_selected(drawn, context.object)
     given = operator.properties.is_property_set("at")
     world = operator.at if given else context.scene.cursor.location
     place: NDArray[np.float64] = drawn.frame.body_from_world(np.array(world, dtype=np.float64))
     return place
+
+
+def _middle_of_selected(drawn: DrawnBody, thing: bpy.types.Object) -> NDArray[np.float64]:
+    selected = np.zeros(len(thing.data.vertices), dtype=np.bool_)
+    thing.data.vertices.foreach_get("select", selected)
+    if not selected.any():
+        raise PalpateError(
+            f"{thing.name} has no selected vertices; select some in Edit Mode and leave it, or "
+            "measure at the 3D cursor"
+        )
+    middle: NDArray[np.float64] = drawn.rest_places[selected].mean(axis=0)
+    return middle
 
 
 def at_property() -> bpy.props.FloatVectorProperty:
@@ -35,8 +60,18 @@ def at_property() -> bpy.props.FloatVectorProperty:
     return bpy.props.FloatVectorProperty(
         name="Place",
         description="The surface point nearest to this is asked, world coordinates. "
-        "Without one, the 3D cursor says where",
+        "Without one, the panel's Measured At says where",
         size=3,
         subtype="TRANSLATION",
         options={"SKIP_SAVE"},
+    )
+
+
+def pick_property() -> bpy.props.BoolProperty:
+    """Whether a click tells the place."""
+    return bpy.props.BoolProperty(
+        name="Pick",
+        description="Click the place in the view",
+        default=False,
+        options={"SKIP_SAVE", "HIDDEN"},
     )

@@ -65,6 +65,29 @@ def test_a_durometer_is_read_at_the_cursor_and_where_a_script_says(palpate):
     assert softness.read_scale == "00"
 
 
+def test_a_durometer_is_read_at_the_selected_vertices(palpate):
+    """Two at one end of a cube's edge: their middle, not the cursor."""
+    thing = soft_cube()
+    softness = thing.palpate_softness
+    softness.place = "VERTICES"
+    for vertex in thing.data.vertices:
+        vertex.select = False
+    assert "no selected vertices" in error_of(bpy.ops.palpate.force_curve)
+    chosen = [v for v in thing.data.vertices if v.co.z > 0 and v.co.x > 0]
+    for vertex in chosen:
+        vertex.select = True
+    middle = thing.matrix_world @ (
+        sum((v.co for v in chosen[1:]), chosen[0].co.copy()) / len(chosen)
+    )
+    bpy.context.scene.cursor.location = MIDDLE
+    assert bpy.ops.palpate.force_curve(depth=0.001) == {"FINISHED"}
+    at_vertices = softness.curve_force
+    assert bpy.ops.palpate.force_curve(depth=0.001, at=middle) == {"FINISHED"}
+    assert softness.curve_force == pytest.approx(at_vertices, rel=1e-5)
+    assert bpy.ops.palpate.force_curve(depth=0.001, at=MIDDLE) == {"FINISHED"}
+    assert softness.curve_force != pytest.approx(at_vertices, rel=0.05)
+
+
 def test_a_force_curve_becomes_figures_and_a_text_block(palpate):
     thing = soft_cube()
     softness = thing.palpate_softness
