@@ -32,7 +32,33 @@ SECOND_ITEMS = [
     ("EMPTY", "Empty", "An Empty of the scene leads a second finger"),
     ("SIMULATED", "Simulated Device", "A program that behaves like a haptic device"),
     ("SERIAL", "Serial Device", "A second haptic device on a serial port"),
+    ("HAPLY", "Haply 2DIY", "A Haply 2DIY on a serial port of its own; it moves in a plane"),
 ]
+HAPLY_ITEMS = [
+    ("2diy-3.1", "2DIY 3.1", "Motors side by side, the newest boards"),
+    ("2diy-3.0", "2DIY 3.0", "Motors side by side, earlier boards"),
+    ("2diy-2", "2DIY 2", "Motors on one axis"),
+    ("kit", "Dev Kit", "The small early kit"),
+]
+
+
+def haply_model() -> object:
+    """Which Haply 2DIY a finger's is."""
+    return bpy.props.EnumProperty(
+        name="Model",
+        description="Which of the 2DIYs it is",
+        items=HAPLY_ITEMS,
+        default="2diy-3.1",
+    )
+
+
+def haply_at_rest() -> object:
+    """Whether its handle lies where its angles are counted from."""
+    return bpy.props.BoolProperty(
+        name="Handle at Rest",
+        description="The handle lies in its rest pose now: let the board count its angles from "
+        "there anew, also if it was in use before",
+    )
 
 
 def _is_empty(settings: bpy.types.PropertyGroup, candidate: bpy.types.Object) -> bool:
@@ -114,6 +140,8 @@ class FingerProperties:
     second_port: bpy.props.StringProperty(
         name="Port", description="Serial port of the second device: a path such as /dev/ttyACM1"
     )
+    second_haply_model: haply_model()
+    second_haply_at_rest: haply_at_rest()
     second_frame: bpy.props.PointerProperty(
         name="Device Frame",
         description="Empty that says where the second device's origin and axes are",

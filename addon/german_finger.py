@@ -90,6 +90,9 @@ WORDS = {
     ),
     "One finger presses": "Ein Finger drückt",
     "An Empty of the scene leads a second finger": "Ein Empty der Szene führt einen zweiten Finger",
+    "A Haply 2DIY on a serial port of its own; it moves in a plane": (
+        "Ein Haply 2DIY an einer eigenen Schnittstelle; er bewegt sich in einer Ebene"
+    ),
     "A second haptic device on a serial port": (
         "Ein zweites haptisches Gerät an einer seriellen Schnittstelle"
     ),

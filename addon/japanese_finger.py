@@ -83,6 +83,9 @@ WORDS = {
     "Who moves a second finger on the same body": "同じボディに触れる2本目の指を動かすもの",
     "One finger presses": "1本の指で押します",
     "An Empty of the scene leads a second finger": "シーンのエンプティが2本目の指を動かします",
+    "A Haply 2DIY on a serial port of its own; it moves in a plane": (
+        "専用のシリアルポートにつないだ Haply 2DIY。平面内で動きます"
+    ),
     "A second haptic device on a serial port": "シリアルポートにつないだ2台目の力覚デバイス",
     "Empty whose place is the second finger's": "2本目の指の位置を決めるエンプティ",
     "Serial port of the second device: a path such as /dev/ttyACM1": (

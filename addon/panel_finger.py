@@ -73,7 +73,10 @@ class PALPATE_PT_second_finger(PalpatePanel, bpy.types.Panel):
         if chosen.second == "EMPTY":
             layout.prop(chosen, "second_empty")
         elif chosen.second != "NONE":
-            if chosen.second == "SERIAL":
+            if chosen.second in {"SERIAL", "HAPLY"}:
                 layout.prop(chosen, "second_port")
+            if chosen.second == "HAPLY":
+                layout.prop(chosen, "second_haply_model")
+                layout.prop(chosen, "second_haply_at_rest")
             layout.prop(chosen, "second_frame")
         say(layout, context, "Pinch leads two fingers with the pointer", "INFO")

@@ -3,7 +3,7 @@
 import bpy
 
 from ..operators import refresh_devices
-from .finger_properties import FingerProperties
+from .finger_properties import FingerProperties, haply_at_rest, haply_model
 
 # Files hold the numbers of these items: add new ones at the end only.
 SOURCE_ITEMS = [
@@ -16,12 +16,6 @@ SOURCE_ITEMS = [
 SIMULATED_ITEMS = [
     ("LINK", "Three Axes", "A device that speaks Palpate's serial link"),
     ("HAPLY", "Haply 2DIY", "A Haply 2DIY with its board; it moves in a plane"),
-]
-HAPLY_ITEMS = [
-    ("2diy-3.1", "2DIY 3.1", "Motors side by side, the newest boards"),
-    ("2diy-3.0", "2DIY 3.0", "Motors side by side, earlier boards"),
-    ("2diy-2", "2DIY 2", "Motors on one axis"),
-    ("kit", "Dev Kit", "The small early kit"),
 ]
 
 
@@ -50,17 +44,8 @@ class PalpateScene(FingerProperties, bpy.types.PropertyGroup):
         items=SIMULATED_ITEMS,
         default="LINK",
     )
-    haply_model: bpy.props.EnumProperty(
-        name="Model",
-        description="Which of the 2DIYs it is",
-        items=HAPLY_ITEMS,
-        default="2diy-3.1",
-    )
-    haply_at_rest: bpy.props.BoolProperty(
-        name="Handle at Rest",
-        description="The handle lies in its rest pose now: let the board count its angles from "
-        "there anew, also if it was in use before",
-    )
+    haply_model: haply_model()
+    haply_at_rest: haply_at_rest()
     port: bpy.props.StringProperty(
         name="Port",
         description="Serial port of the device: one from the list, or a path typed in",

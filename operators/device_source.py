@@ -91,8 +91,9 @@ def device_frame(scene: bpy.types.Scene, body: BodyFrame, home: DeviceFrame) -> 
         raise PalpateError(f"Device Frame {empty.name}: {problem}") from problem
 
 
-def second_frame(scene: bpy.types.Scene, body: BodyFrame) -> DeviceFrame:
-    """Where the second finger's device is: at its Empty, else at the object's origin and axes.
+def second_frame(thing: bpy.types.Object, scene: bpy.types.Scene, body: BodyFrame) -> DeviceFrame:
+    """Where the second finger's device is: at its Empty, else at the object's origin and axes, or
+    upright through its top if it moves in a plane.
 
     Raises
     ------
@@ -100,6 +101,8 @@ def second_frame(scene: bpy.types.Scene, body: BodyFrame) -> DeviceFrame:
         The Empty is flattened to nothing.
     """
     empty, scale = scene.palpate.second_frame, scene.palpate.device_scale
+    if empty is None and scene.palpate.second == "HAPLY":
+        return frame_of_matrix(upright_plane(thing), body, scale)
     if empty is None:
         return DeviceFrame(np.eye(3), np.zeros(3), scale)
     try:

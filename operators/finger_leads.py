@@ -51,7 +51,7 @@ def leads_of(scene: bpy.types.Scene, source: Source) -> tuple[FingerLead, ...]:
         raise PalpateError(
             f"finger: both fingers are led by {first.empty.name}; choose another Empty for one"
         )
-    if chosen.second == "SERIAL":
+    if chosen.second in {"SERIAL", "HAPLY"}:
         port = second_port(scene)
         if chosen.source in {"SERIAL", "HAPLY"} and port == device_source.port_of(scene):
             raise PalpateError(f"device: both fingers use {port}; choose another port for one")

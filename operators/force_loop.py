@@ -91,7 +91,7 @@ class ForceLoop:
         with servo_errors():
             self.servo.add_pointer(position)
 
-    def add_device(self, scene: bpy.types.Scene) -> None:
+    def add_device(self, thing: bpy.types.Object, scene: bpy.types.Scene) -> None:
         """Another finger, led by the device that the scene names as the second; before the start.
 
         Raises
@@ -100,7 +100,7 @@ class ForceLoop:
             There is no such device, or it cannot be used.
         """
         chosen = scene.palpate
-        frame = device_source.second_frame(scene, self.drawn.frame)
+        frame = device_source.second_frame(thing, scene, self.drawn.frame)
         if chosen.second == "SIMULATED":
             self.second_simulated = device_source.start_simulated(
                 self.drawn, frame, towards=device_source.FROM_THE_SIDE
@@ -108,9 +108,20 @@ class ForceLoop:
             port = self.second_simulated.port
         else:
             port = second_port(scene)
+        rotation, translation = frame.rotation, frame.translation
         with servo_errors():
-            self.servo.add_serial(
-                port, rotation=frame.rotation, translation=frame.translation, scale=frame.scale
+            if chosen.second != "HAPLY":
+                self.servo.add_serial(
+                    port, rotation=rotation, translation=translation, scale=frame.scale
+                )
+                return
+            self.servo.add_haply(
+                port,
+                model=chosen.second_haply_model,
+                recalibrate=chosen.second_haply_at_rest,
+                rotation=rotation,
+                translation=translation,
+                scale=frame.scale,
             )
 
     def lead(self, finger: int, place: Point | None, turn: Turn | None) -> None:

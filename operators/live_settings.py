@@ -47,7 +47,9 @@ class Coupling:
         if not chosen.stable_contact:
             return cls(math.inf, 0.0, passivity_control=False)
         if not chosen.own_coupling:
-            step = haply_encoder_step(chosen.haply_model) if is_planar(scene) else 0.0
+            models = [chosen.haply_model] if is_planar(scene) else []
+            models += [chosen.second_haply_model] if chosen.second == "HAPLY" else []
+            step = max(map(haply_encoder_step, models), default=0.0)
             return cls(**device_coupling(chosen.rate, encoder_step=step))
         return cls(chosen.coupling_stiffness, chosen.coupling_damping, chosen.passivity_control)
 

@@ -249,7 +249,7 @@ class PressSession:
         self.loop = ForceLoop.prepare(self.drawn, settings, rate, self.tip, fingers)
         for lead in self.leads[1:]:
             if lead.lead is Lead.DEVICE:
-                self.loop.add_device(scene)
+                self.loop.add_device(thing, scene)
             else:
                 self.loop.add_pointer(self._start_of(lead))
         self.loop.give_tools(fingers)

@@ -115,6 +115,31 @@ def test_a_simulated_device_presses_beside_the_pointer(sessions, states):
     assert not device.running
 
 
+def test_a_haply_presses_beside_the_pointer(sessions, states):
+    """In the upright plane through the top, where its simulated hand comes from above."""
+    thing, scene = soft_cube(), bpy.context.scene
+    chosen = scene.palpate
+    chosen.second = "HAPLY"
+    chosen.second_haply_at_rest = True
+    with pytest.raises(part("core.errors").PalpateError, match="no port"):
+        begin(sessions, states, thing)
+    device_source = part("operators.device_source")
+    drawn = part("operators.drawn_body").open_body(thing, scene)
+    frame = device_source.second_frame(thing, scene, drawn.frame)
+    with device_source.start_simulated(drawn, frame, "2diy-3.1") as device:
+        chosen.second_port = device.port
+        session = begin(sessions, states, thing)
+        assert session.loop.settings.coupling.stiffness < 800
+        session.post(states.SetDown(LEFT, 0))
+        session.post(states.Move(LEFT_IN, 0))
+        wait(session, lambda: session.snapshot.fingers[0].touching, 20.0)
+        wait(session, lambda: session.snapshot.fingers[1].touching, 20.0)
+        second = session.snapshot.fingers[1]
+        assert abs(second.probe[1]) < 1e-6
+        assert second.proxy[2] == pytest.approx(0.025, abs=1e-3)
+        session.post(states.Cancel())
+
+
 def test_the_mode_is_felt_while_pressing(sessions, states):
     thing = soft_cube()
     session = begin(sessions, states, thing)
