@@ -37,7 +37,6 @@ def draw_figure_4(path: Path, table: NewtonTable) -> None:
     body = table.body
     solid = FreeSolid.of(body)
     figure = plt.figure(figsize=(10.5, 2.9 * len(PRESSES)), layout="constrained")
-    print(f"{'':22s}{'relative error':>32s}{'volume':>34s}\n{'':22s}{'linear':>16s}{'(16)':>16s}")
     for row, (name, share, millimetres) in enumerate(PRESSES):
         node, shapes = _shapes(table, solid, np.array(share), 1e-3 * np.array(millimetres))
         for column, (title, shape) in enumerate(zip(TITLES, shapes, strict=True)):
@@ -46,11 +45,11 @@ def draw_figure_4(path: Path, table: NewtonTable) -> None:
             )
             _draw(ax, body, shape, node)
             volume = enclosed(body, shape) / enclosed(body, np.zeros_like(shape))
-            ax.set_title(f"{name}: {title}\nvolume {volume:.3f}", color=INK, fontsize=9.5, y=0.94)
+            ax.set_title(f"{name}: {title}\nvolume {volume:.3f}", color=INK, fontsize=9.5, y=0.98)
         linear, corrected, true = shapes
         size = np.linalg.norm(true)
         errors = [np.linalg.norm(shape - true) / size for shape in (linear, corrected)]
-        print(f"{name:22s}" + "".join(f"{error:16.3f}" for error in errors))
+        print(f"{name}: from Newton {errors[0]:.1%} linear, {errors[1]:.1%} by (16)")
     figure.savefig(path, dpi=110)
     plt.close(figure)
 
@@ -67,9 +66,9 @@ def _shapes(
     place = int(np.linalg.norm(body.mesh.nodes[nodes] - share * 0.05, axis=1).argmin())
     # Equation (9), at unit modulus.
     force = np.linalg.solve(body.compliance.block(place, place), displacement)
-    print(
-        f"force {body.young_modulus * force} N, F0 {body.young_modulus * table.largest[place].T} N"
-    )
+    largest = body.young_modulus * table.largest[place]
+    newton = body.young_modulus * force
+    print(f"force {np.round(newton, 3)} N, F0 {largest[:, 0]} N and {-largest[:, 1]} N")
     columns = table.columns(np.array([place]))
     linear = (force @ columns.linear).reshape(-1, 3)
     corrected = paper_displacements(columns, force).reshape(-1, 3)
