@@ -10,18 +10,17 @@ WORDS = {
         "Wie die Kraft berechnet wird; große Biegungen sehen aufgebläht aus"
     ),
     "Table (Paper)": "Tabelle (Artikel)",
-    "The paper's (16): corrected by stored large deformations, each solved exactly": (
-        "Gleichung (16) des Artikels: berichtigt durch gespeicherte große Verformungen, jede "
-        "genau gelöst"
+    "The paper's (16): stored large deformations, solved exactly; takes long to compute": (
+        "Gleichung (16) des Artikels: gespeicherte große Verformungen, genau gelöst; "
+        "braucht lange zum Berechnen"
     ),
     "Series": "Reihe",
-    "As (16), but by power series: computed around the touched place while you press": (
-        "Wie (16), doch durch Potenzreihen: um die berührte Stelle herum berechnet, "
-        "während Sie drücken"
+    "Power series in the force: right for bends and moderate dents, in milliseconds": (
+        "Potenzreihe in der Kraft: richtig für Biegungen und mäßige Dellen, in Millisekunden"
     ),
     "Rotation-Strain": "Drehung und Dehnung",
-    "Bends and twists keep their size; needs no table": (
-        "Gebogenes und Verdrehtes behält seine Größe; braucht keine Tabelle"
+    "Bends and twists keep their size; nearest to the truth, without a table": (
+        "Gebogenes und Verdrehtes behält seine Größe; der Wahrheit am nächsten, ohne Tabelle"
     ),
     "Felt Force": "Gefühlte Kraft",
     "How the force follows from large depths": "Wie die Kraft aus großen Tiefen folgt",
@@ -33,6 +32,9 @@ WORDS = {
         "Wie ein Körper großer Verformung: weicher, wo er weit eingedrückt ist"
     ),
     "Felt force {share} %": "Gefühlte Kraft {share} %",
+    "It is kept as far as it was computed, {share} %": (
+        "Sie ist so behalten, wie weit sie berechnet war, {share} %"
+    ),
     "Tools feel the linear force": "Werkzeuge fühlen die lineare Kraft",
     "The linear force is felt": "Gefühlt wird die lineare Kraft",
     "Found around the touched place first, and kept": (

@@ -10,16 +10,16 @@ WORDS = {
         "力の計算と同じ。大きく曲げると膨らんで見えます"
     ),
     "Table (Paper)": "テーブル (論文)",
-    "The paper's (16): corrected by stored large deformations, each solved exactly": (
-        "論文の (16)。それぞれ正確に解いた大変形を保存して補正します"
+    "The paper's (16): stored large deformations, solved exactly; takes long to compute": (
+        "論文の (16)。正確に解いて保存した大変形を使います。計算に時間がかかります"
     ),
     "Series": "級数",
-    "As (16), but by power series: computed around the touched place while you press": (
-        "(16) と同様ですがべき級数を使い、押している間に触れた場所の周りから計算します"
+    "Power series in the force: right for bends and moderate dents, in milliseconds": (
+        "力のべき級数。曲げと適度なへこみに正しく、数ミリ秒で計算します"
     ),
     "Rotation-Strain": "回転とひずみ",
-    "Bends and twists keep their size; needs no table": (
-        "曲げやねじりで大きさを保ちます。テーブルは不要です"
+    "Bends and twists keep their size; nearest to the truth, without a table": (
+        "曲げやねじりで大きさを保ちます。テーブルなしで最も真実に近い形です"
     ),
     "Felt Force": "感じる力",
     "How the force follows from large depths": "深く押したときの力の求め方",
@@ -31,6 +31,7 @@ WORDS = {
         "大変形の固体と同じく、深く押し込んだ所は柔らかくなります"
     ),
     "Felt force {share} %": "感じる力 {share} %",
+    "It is kept as far as it was computed, {share} %": ("計算済みの {share} % の形で保存しました"),
     "Tools feel the linear force": "ツールは線形の力を感じます",
     "The linear force is felt": "線形の力を感じています",
     "Found around the touched place first, and kept": ("触れた場所の周りから求め、保存します"),

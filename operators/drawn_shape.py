@@ -5,6 +5,7 @@ Until it is made, and where it cannot be, the linear one is drawn.
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
@@ -13,7 +14,6 @@ from functools import partial
 from pathlib import Path
 
 import bpy
-import numpy as np
 
 from ..core.errors import PalpateError
 from ..core.large_deformation.meeting import FingerLoad, Meeting, Met, settled
@@ -21,6 +21,9 @@ from ..core.large_deformation.shapes import LinearShape, Shape, ShapeName, shape
 from ..core.servo_session import Snapshot
 from ..core.soft_body import SoftBody
 from .drawn_body import DrawnBody
+
+# So long a shape that is kept waits for what it needs, s.
+PATIENCE = 3.0
 
 
 def chosen_shape(thing: bpy.types.Object) -> ShapeName:
@@ -79,14 +82,14 @@ class DrawnShape:
             return self._meeting.step(fingers, young_modulus)
 
     def finish(self, fingers: Sequence[FingerLoad], young_modulus: float) -> Met:
-        """The body under these fingers with all that it needs; waits for it."""
-        if self._making is not None:
-            self._take_made()
-        try:
-            self._meeting.shape.wait_for(np.unique(np.concatenate([f.nodes for f in fingers])))
-        except PalpateError as problem:
-            self.problem = str(problem)
-        return self._meeting.settle(fingers, young_modulus)
+        """The body under these fingers, with what it needs as far as that is there in time."""
+        end = time.monotonic() + PATIENCE
+        self._take_made()
+        met = self.draw(fingers, young_modulus)
+        while self.ready < 1.0 and not self.problem and time.monotonic() < end:
+            time.sleep(0.01)
+            met = self.draw(fingers, young_modulus)
+        return met if met.settled else self._meeting.settle(fingers, young_modulus)
 
     def close(self) -> None:
         """End what works in the background; what it made is kept. Waits for nothing."""

@@ -69,6 +69,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
+KEPT_EARLY = "It is kept as far as it was computed, {share} %"
+
 
 @dataclass(eq=False)
 class PressSession:
@@ -232,6 +234,10 @@ class PressSession:
         if self._loads and not self._drawn_contact:
             # What was drawn last lacks something that is still being computed.
             met = self.shape.finish(self._loads, self._modulus)
+            if self.shape.ready < 1.0:
+                share = f"{100 * self.shape.ready:.0f}"
+                text = bpy.app.translations.pgettext_iface(KEPT_EARLY).format(share=share)
+                self.said.append(Say(text, warning=True))
             tools = () if self.snapshot is None else self.tip.pressing(self.snapshot)
             live_shape.write(thing.data, self.drawn.local_coordinates(met.displacements, tools))
         self.kept_name = live_shape.keep(thing)

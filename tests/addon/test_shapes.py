@@ -8,7 +8,7 @@ import time
 import bpy
 import numpy as np
 import pytest
-from soft_scene import key_coordinates, key_names, mesh_state, part, press_down, soft_cube
+from soft_scene import cube, key_coordinates, key_names, mesh_state, part, press_down, soft_cube
 
 TOP, DEPTH = (0.002, 0.001, 0.02501), 0.004
 NAMES = {
@@ -54,6 +54,14 @@ class Narrower:
         self.closed.set()
 
 
+def coarse_cube():
+    """With as few nodes as there can be."""
+    thing = cube(0.05)
+    thing.palpate.edge_length = 0.5
+    assert bpy.ops.palpate.make_soft() == {"FINISHED"}
+    return thing
+
+
 def begin_pressed(sessions, states, thing):
     session = sessions.begin(thing, bpy.context.scene, states.Source.POINTER)
     session.post(states.SetDown(TOP))
@@ -97,16 +105,19 @@ def test_costs_are_told_before_and_grow_with_the_body(palpate, name):
     thing.palpate.shape = name
     now = part("addon.panel_shape").cost_now(thing)
     large = cost.shape_cost(NAMES[name], cost.BodySize(20_000, 80_000, 6_400))
-    assert 0.0 < now.frame_seconds < large.frame_seconds
+    # Series of large bodies come from a table, which is quicker than to compute them.
+    assert 0.0 < now.frame_seconds < (1.0 if name == "SERIES" else large.frame_seconds)
     assert now.memory_bytes <= large.memory_bytes
     assert (large.table_seconds > 10.0) == (name in {"TABLE", "SERIES"})
+    assert now.first_seconds <= large.first_seconds
     thing.palpate.free_surface_count = 0
     assert part("addon.panel_shape").cost_now(thing) is None
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_script_keeps_the_shape_that_is_chosen(palpate, name):
-    thing = soft_cube()
+    # Newton's table takes seconds for each node.
+    thing = soft_cube() if name != "TABLE" else coarse_cube()
     press_down(thing, depth=DEPTH)
     thing.palpate.shape = name
     press_down(thing, depth=DEPTH)
@@ -116,7 +127,7 @@ def test_a_script_keeps_the_shape_that_is_chosen(palpate, name):
     assert np.array_equal(chosen, linear) == (name == "LINEAR")
 
 
-@pytest.mark.parametrize("name", [name for name in NAMES if name != "LINEAR"])
+@pytest.mark.parametrize("name", ["SERIES", "ROTATION_STRAIN"])
 def test_a_shape_is_switched_while_pressing_and_nothing_is_lost(sessions, states, name):
     thing = soft_cube()
     before = mesh_state(thing)
@@ -164,7 +175,7 @@ def test_until_it_is_made_and_filled_the_linear_shape_is_drawn(
     assert not part("addon.hud")._shape_lines(session)
 
 
-def test_what_is_kept_is_complete(sessions, states, shapes, monkeypatch):
+def test_what_is_kept_waits_a_little_and_says_what_it_lacks(sessions, states, shapes, monkeypatch):
     thing, made = soft_cube(), []
 
     def half(body, file):
@@ -173,12 +184,13 @@ def test_what_is_kept_is_complete(sessions, states, shapes, monkeypatch):
         return made[0]
 
     monkeypatch.setitem(shapes.MAKERS, "table", half)
+    monkeypatch.setattr(part("operators.drawn_shape"), "PATIENCE", 0.2)
     thing.palpate.shape = "TABLE"
     session = begin_pressed(sessions, states, thing)
     wait(session, lambda: session.shape.ready == 0.5)
     session.post(states.Keep())
     assert key_names(thing)[-1] == "Press 1"
-    assert made[0].ready == 1.0
+    assert [said.text for said in session.said] == ["It is kept as far as it was computed, 50 %"]
     assert made[0].closed.wait(5.0)
 
 

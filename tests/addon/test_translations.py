@@ -88,6 +88,7 @@ def said_in_code(palpate):
     yield from hud.KEYS.values()
     yield from (*hud.PINCH_STATES.values(), *hud.EMPTY_STATES.values())
     yield from (hud.ABOVE, hud.SHAPE, hud.FELT, "Space  Force Off", "Space  Force On", "Starting")
+    yield part("operators.press_session").KEPT_EARLY
     yield from ("Contact Area", "Largest Pressure", "Pressure")
     yield from said_of_the_servo()
 
