@@ -50,6 +50,7 @@ class OutwardFilling:
         self._is_closed = False
         self._last_frame = -np.inf
         self._problem: BaseException | None = None
+        self._is_prepared = prepare is None
         self._thread: threading.Thread | None = None
         if prepare is not None:
             self._begin()
@@ -58,6 +59,11 @@ class OutwardFilling:
     def problem(self) -> BaseException | None:
         """What ended the thread, if anything did."""
         return self._problem
+
+    @property
+    def is_prepared(self) -> bool:
+        """Whether what comes first is done."""
+        return self._is_prepared
 
     def around(self, places: NDArray[np.int64]) -> None:
         """Fill these places next, and then outward from them. Returns at once.
@@ -117,6 +123,7 @@ class OutwardFilling:
         try:
             if self._prepare is not None:
                 self._prepare()
+                self._is_prepared = True
                 self._tell()
             while (next_places := self._next()) is not None:
                 began = time.monotonic()

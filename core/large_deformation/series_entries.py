@@ -49,6 +49,7 @@ class SeriesEntries:
         nodes' displacements.
     is_polished : bool (k,), whether second and third order were fitted to Newton's answers at both
         ends.
+    is_short : bool (k,), whether F0 is smaller than wanted, and was not polished.
     """
 
     second: NDArray[np.float64]
@@ -57,13 +58,17 @@ class SeriesEntries:
     largest_force: NDArray[np.float64]
     bound: NDArray[np.float64]
     is_polished: NDArray[np.bool_]
+    is_short: NDArray[np.bool_]
 
 
-def series_entries(body: SeriesSolid, freedoms: NDArray[np.int64]) -> SeriesEntries:
+def series_entries(
+    body: SeriesSolid, freedoms: NDArray[np.int64], may_polish: bool = True
+) -> SeriesEntries:
     """Entries for freedoms (k,), ``3 * place in the free surface + axis``.
 
     Where the claim at the wanted force would be above :data:`TOLERANCE`, Newton's method polishes
-    both ends; where the solid has no equilibrium there, F0 is smaller.
+    both ends, which takes some hundred times longer; where it may not, or where the solid has no
+    equilibrium there, F0 is smaller.
     """
     loads = body.unit_loads(freedoms)
     terms = body.terms(loads, ORDER + 1)
@@ -75,20 +80,21 @@ def series_entries(body: SeriesSolid, freedoms: NDArray[np.int64]) -> SeriesEntr
     largest, bound = wanted.copy(), estimate.bound(wanted)
     is_polished = np.zeros(len(freedoms), dtype=bool)
     at = np.flatnonzero(needs_polish)
-    if at.size:
+    if at.size and may_polish:
         chosen = [term[:, :, at] for term in terms]
         settled, ends = _polished_ends(body, loads[:, :, at], chosen, wanted[at])
-        is_polished[at] = settled
         done = at[settled]
         plus, minus = (end[:, :, settled] for end in ends)
         second[:, :, done] = (plus + minus) / (2 * wanted[done] ** 2)
         odd = (plus - minus) / 2 - surface[0][:, :, done] * wanted[done]
         third[:, :, done] = odd / wanted[done] ** 3
         bound[done] = POLISHED_ERROR
-        left = at[~settled]
-        shorter = [term[:, :, left] for term in terms]
-        largest[left] = _shortened(body, shorter, estimate.within(TOLERANCE)[left])
-        bound[left] = estimate.bound(largest)[left]
+        is_polished[done] = True
+    is_short = needs_polish & ~is_polished
+    if is_short.any():
+        shorter = [term[:, :, is_short] for term in terms]
+        largest[is_short] = _shortened(body, shorter, estimate.within(TOLERANCE)[is_short])
+        bound[is_short] = estimate.bound(largest)[is_short]
     count = len(freedoms)
     return SeriesEntries(
         second.reshape(-1, count),
@@ -97,6 +103,7 @@ def series_entries(body: SeriesSolid, freedoms: NDArray[np.int64]) -> SeriesEntr
         largest,
         bound,
         is_polished,
+        is_short,
     )
 
 

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import PalpateError
+from ..freedoms import freedoms
 from ..soft_body import SoftBody
 from ..whole_file import UnwritableError
 from .continued_powers import continued_powers
@@ -73,6 +74,8 @@ class SeriesShape:
         self._table: SeriesTable | None = None
         self._kept = 0
         self._places = np.zeros(0, dtype=np.int64)
+        # Freedoms that were wanted at once, and could be polished when nobody waits.
+        self._unpolished = np.zeros(0, dtype=np.int64)
         self.warning: str | None = None
         surface = body.compliance.free_surface
         self._is_filled = np.zeros(len(surface), dtype=bool)
@@ -93,12 +96,18 @@ class SeriesShape:
     def ready(self) -> float:
         """Share of the nodes touched last that need not be drawn linear."""
         if not len(self._places):
-            return float(self._is_prepared)
+            return float(self.is_prepared)
         return float(self._is_filled[self._places].mean())
 
     @property
-    def _is_prepared(self) -> bool:
-        return (self._solid if self._by_load else self._table) is not None
+    def is_prepared(self) -> bool:
+        """Whether all is there that does not depend on the touched place, the factor above all."""
+        return self._filling.is_prepared
+
+    @property
+    def filled_share(self) -> float:
+        """Share of the free surface nodes that need not be drawn linear."""
+        return float(self._is_filled.mean())
 
     def displacements(
         self,
@@ -178,9 +187,17 @@ class SeriesShape:
     def _fill(self, places: NDArray[np.int64]) -> None:
         if self._table is None or self._solid is None:
             raise AssertionError("filled before it was prepared")
-        self._table.fill(self._solid, (3 * places[:, None] + np.arange(3)).ravel())
+        table, wanted = self._table, freedoms(places)
+        if np.isin(places, self._places).all():
+            short = table.fill(self._solid, wanted, may_polish=False)
+            self._unpolished = np.concatenate([self._unpolished, short])
+        else:
+            table.fill(self._solid, np.concatenate([wanted, self._unpolished]))
+            self._unpolished = self._unpolished[:0]
         self._is_filled[places] = True
         if self._is_filled.all():
+            if len(self._unpolished):
+                table.fill(self._solid, self._unpolished)
             self._keep()
 
     def _keep(self) -> None:

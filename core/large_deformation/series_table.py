@@ -77,9 +77,16 @@ class SeriesTable:
         """Whether all three freedoms of places (k,) of the free surface are filled, (k,)."""
         return np.asarray(self.is_filled.reshape(-1, 3)[places].all(axis=1), dtype=np.bool_)
 
-    def fill(self, solid: SeriesSolid, freedoms: NDArray[np.int64]) -> None:
-        """Compute the entries of these freedoms (k,)."""
-        self.put(freedoms, series_entries(solid, freedoms))
+    def fill(
+        self, solid: SeriesSolid, freedoms: NDArray[np.int64], may_polish: bool = True
+    ) -> NDArray[np.int64]:
+        """Compute the entries of these freedoms (k,).
+
+        Returns those whose largest force is smaller than wanted, for want of polishing.
+        """
+        entries = series_entries(solid, freedoms, may_polish)
+        self.put(freedoms, entries)
+        return freedoms[entries.is_short]
 
     def put(self, freedoms: NDArray[np.int64], entries: SeriesEntries) -> None:
         """Keep the entries of these freedoms (k,)."""

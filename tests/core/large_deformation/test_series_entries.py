@@ -68,6 +68,17 @@ def test_an_entry_whose_claim_is_too_large_is_polished(cube, monkeypatch):
     assert (true_errors(solid, freedoms, found) <= POLISHED_ERROR).all()
 
 
+def test_an_entry_that_may_not_be_polished_has_a_smaller_force(cube, monkeypatch):
+    solid = SeriesSolid(FreeSolid.of(cube))
+    wanted = series_entries(solid, chosen(solid, 3))
+    monkeypatch.setattr(entries_module, "TOLERANCE", 1e-3)
+    found = series_entries(solid, chosen(solid, 3), may_polish=False)
+    assert found.is_short.all()
+    assert (found.largest_force < wanted.largest_force).all()
+    assert (found.bound <= 1e-3).all()
+    assert (true_errors(solid, chosen(solid, 3), found) <= found.bound[:, None]).all()
+
+
 def test_where_the_solid_gives_way_the_force_is_smaller(cube, monkeypatch):
     solid = SeriesSolid(FreeSolid.of(cube))
     wanted = series_entries(solid, chosen(solid, 4)).largest_force
@@ -75,6 +86,7 @@ def test_where_the_solid_gives_way_the_force_is_smaller(cube, monkeypatch):
     found = series_entries(solid, chosen(solid, 4))
     left = ~found.is_polished
     assert left.any()
+    np.testing.assert_array_equal(left, found.is_short)
     assert (found.bound[left] <= TOLERANCE).all()
     assert (found.largest_force[left] < 3 * wanted[left]).all()
 
