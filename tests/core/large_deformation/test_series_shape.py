@@ -84,7 +84,7 @@ def test_a_whole_table_is_filled_when_asked(cube, tmp_path):
     shape = made(cube, False, tmp_path / "cube.npz")
     shape.finish()
     assert shape.table.is_filled.all()
-    assert (shape.table.bound < 0.025).all()
+    assert (shape.table.bound < 0.015).all()
     shape.close()
     again = made(cube, False, tmp_path / "cube.npz")
     assert again.table.is_filled.all()
