@@ -583,6 +583,29 @@ class ToolSurface:
     def spacing(self) -> float:
         """How far points usually are apart, m."""
 
+class PathCosts(TypedDict):
+    """Of each tick of a tool (t,)."""
+
+    taken: NDArray[np.float64]
+    """CPU time, s."""
+    computing: NDArray[np.float64]
+    """The least CPU time of the same tick, where it was gone through again; else as taken, s."""
+    control: NDArray[np.float64]
+    """CPU time of each round of the fixed work (t / 4,), s."""
+    exact: NDArray[np.bool_]
+    pressed: NDArray[np.int64]
+    linearisations: NDArray[np.int64]
+    near: NDArray[np.int64]
+    """Contact points that were looked at; chosen: those that might have carried force."""
+    chosen: NDArray[np.int64]
+    entered: NDArray[np.int64]
+    left: NDArray[np.int64]
+    fetched: NDArray[np.int64]
+    """Blocks of the compliance that were not at hand."""
+    decompositions: NDArray[np.int64]
+    multiplications: NDArray[np.int64]
+    """About; the bound on a tick's work counts the same."""
+
 @final
 class ToolContact:
     """A tool on a body alone, tick by tick; as the servo's fingers have it."""
@@ -610,10 +633,19 @@ class ToolContact:
         """
 
     def time_path(
-        self, positions: ArrayLike, rotations: ArrayLike, young_modulus: float
-    ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-        """Follow poses (t, 3), (t, 3, 3), one a tick: CPU time of each tick (t,), s, and how many
-        points were pressed (t,). For benchmarks.
+        self,
+        positions: ArrayLike,
+        rotations: ArrayLike,
+        young_modulus: float,
+        *,
+        replay_over: float | None = None,
+        control: float = 0.0,
+    ) -> PathCosts:
+        """Follow poses (t, 3), (t, 3, 3), one a tick, and tell what each cost. For benchmarks.
+
+        replay_over: ticks that took longer, s, are gone through five times again from a state kept
+        before; RuntimeError where one comes out different. control: about as long, s, a loop of
+        fixed work takes after every fourth tick.
         """
 
     @property

@@ -4,6 +4,7 @@ mod bodies;
 
 use bodies::Dice;
 use palpate_servo::tool::MOST_POINTS;
+use palpate_servo::tool::cholesky::Factor;
 use palpate_servo::tool::complementarity::Complementarity;
 
 /// Work enough for any of these.
@@ -130,4 +131,61 @@ fn work_that_ends_early_never_raises_the_energy() {
         let after = energy(&matrix, &gaps, &solver.forces);
         assert!(after <= before + 1e-9 * before.abs(), "{before} {after}");
     }
+}
+
+/// Puts the row of one unknown into a factor, behind those that are in it.
+fn put(factor: &mut Factor, place: usize, matrix: &[Vec<f64>], kept: &[usize], i: usize) {
+    let row = factor.row_mut(place);
+    for (entry, &j) in row.iter_mut().zip(kept) {
+        *entry = matrix[i][j];
+    }
+    row[place] = matrix[i][i];
+}
+
+#[test]
+fn a_factor_kept_up_to_date_is_that_of_the_rows_that_stayed() {
+    let dice = &mut Dice::new(8);
+    let count = 70;
+    let (matrix, right) = problem(dice, count, count, 0.1);
+    let mut kept: Vec<usize> = (0..count).collect();
+    let mut factor = Factor::default();
+    for i in 0..count {
+        put(&mut factor, i, &matrix, &kept[..i], i);
+    }
+    assert!(factor.decompose(count));
+    for round in 0..200 {
+        let away: Vec<usize> = (0..count).filter(|i| !kept.contains(i)).collect();
+        if kept.len() == 1 || (!away.is_empty() && dice.within(0.0, 1.0) < 0.4) {
+            let i = away[dice.within(0.0, away.len() as f64) as usize];
+            put(&mut factor, kept.len(), &matrix, &kept, i);
+            assert!(factor.append(), "{round}");
+            kept.push(i);
+        } else {
+            let k = dice.within(0.0, kept.len() as f64) as usize;
+            factor.remove(k);
+            kept.remove(k);
+        }
+        let mut x: Vec<f64> = kept.iter().map(|&i| right[i]).collect();
+        factor.solve(&mut x);
+        for &i in &kept {
+            let sum: f64 = kept.iter().zip(&x).map(|(&j, x)| matrix[i][j] * x).sum();
+            assert!(
+                (sum - right[i]).abs() < 1e-9,
+                "{round} {i}: {sum} {}",
+                right[i]
+            );
+        }
+    }
+    // The same row twice is not positive definite: it stays out, and all is as it was.
+    let before = kept[0];
+    put(&mut factor, kept.len(), &matrix, &kept, before);
+    assert!(!factor.append());
+    let mut x: Vec<f64> = kept.iter().map(|&i| right[i]).collect();
+    factor.solve(&mut x);
+    let sum: f64 = kept
+        .iter()
+        .zip(&x)
+        .map(|(&j, x)| matrix[before][j] * x)
+        .sum();
+    assert!((sum - right[before]).abs() < 1e-9);
 }

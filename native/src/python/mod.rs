@@ -14,6 +14,7 @@ mod stepped;
 mod stepped_fingers;
 mod tick_cost;
 mod tool;
+mod tool_cost;
 mod vectors;
 
 use pyo3::prelude::*;

@@ -1,19 +1,18 @@
 //! `Tool`, `ToolSurface`, and `ToolContact`: a tool on a body alone, step by step.
 
-use std::hint::black_box;
 use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
 use numpy::{
     AllowTypeChange, PyArray1, PyArray2, PyArrayLike1, PyArrayLike2, PyArrayLike3, PyArrayMethods,
 };
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::body::Body;
+use super::tool_cost::Timing;
 use super::vectors::{Matrix, Rows, Triple, Vector, array, finite, matrix, positive, square};
-use crate::cpu_time::thread_seconds;
 use crate::tool::contact::{self, MOST_NODES};
 use crate::tool::friction::Friction;
 use crate::tool::near_field::{NearField, NodeField, PointField};
@@ -277,13 +276,16 @@ impl ToolContact {
             .map_err(|_| PyValueError::new_err("the contact came out as no number"))
     }
 
+    #[pyo3(signature = (positions, rotations, young_modulus, *, replay_over=None, control=0.0))]
     fn time_path<'py>(
         &mut self,
         py: Python<'py>,
         positions: PyArrayLike2<'_, f64, AllowTypeChange>,
         rotations: PyArrayLike3<'_, f64, AllowTypeChange>,
         young_modulus: f64,
-    ) -> PyResult<(Vector<'py>, Numbers<'py>)> {
+        replay_over: Option<f64>,
+        control: f64,
+    ) -> PyResult<Bound<'py, PyDict>> {
         self.young_modulus = positive("young_modulus", young_modulus)?;
         let positions = vectors("positions", &positions)?;
         let rotations = matrices("rotations", &rotations)?;
@@ -292,21 +294,17 @@ impl ToolContact {
                 "rotations must be as many as positions",
             ));
         }
-        let mut costs = Vec::with_capacity(positions.len());
-        let mut pressed = Vec::with_capacity(positions.len());
-        let mut before = thread_seconds();
-        for (position, rotation) in positions.into_iter().zip(rotations) {
-            let goal = Pose { position, rotation };
-            let felt = self.inner.follow(black_box(&goal), young_modulus, &[]);
-            pressed.push(black_box(felt).map_or(0, |felt| felt.pressed) as i64);
-            let after = thread_seconds();
-            costs.push(after - before);
-            before = after;
-        }
-        Ok((
-            PyArray1::from_vec(py, costs),
-            PyArray1::from_vec(py, pressed),
-        ))
+        let poses: Vec<Pose> = (positions.into_iter().zip(rotations))
+            .map(|(position, rotation)| Pose { position, rotation })
+            .collect();
+        let timing = Timing {
+            young_modulus,
+            replay_over: replay_over.unwrap_or(f64::INFINITY),
+            control,
+        };
+        let inner = &mut self.inner;
+        let costs = py.detach(|| timing.of_path(inner, &poses));
+        costs.map_err(PyRuntimeError::new_err)?.into_dict(py)
     }
 
     #[getter]

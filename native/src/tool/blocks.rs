@@ -12,7 +12,7 @@ const PLACES: usize = 1 << 16;
 const EMPTY: u64 = u64::MAX;
 
 /// Some blocks of one body.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Blocks {
     places: Vec<(u64, DMat3)>,
     fetched: usize,

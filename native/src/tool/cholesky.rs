@@ -1,4 +1,5 @@
-//! A = L L^T of a small symmetric positive definite matrix, in memory that is already there.
+//! A = L L^T of a small symmetric positive definite matrix, in memory that is already there; kept up
+//! to date while rows come and go (Golub and Van Loan 2013, 6.5.4).
 
 use super::wide::widely;
 use super::{MOST_POINTS, room};
@@ -15,19 +16,49 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     let n = a.len().min(b.len());
     let (a, b) = (&a[..n], &b[..n]);
     let mut lanes = [0.0; LANES];
-    let (heads_a, heads_b) = (a.chunks_exact(LANES), b.chunks_exact(LANES));
-    let tail: f64 = (heads_a.remainder().iter())
-        .zip(heads_b.remainder())
-        .map(|(x, y)| x * y)
-        .sum();
-    for (x, y) in heads_a.zip(heads_b) {
-        for (lane, (x, y)) in lanes.iter_mut().zip(x.iter().zip(y)) {
-            *lane += x * y;
+    let mut k = 0;
+    while k + LANES <= n {
+        let (x, y) = (&a[k..k + LANES], &b[k..k + LANES]);
+        for l in 0..LANES {
+            lanes[l] += x[l] * y[l];
         }
+        k += LANES;
+    }
+    total(&lanes, &a[k..], &b[k..])
+}
+
+/// The sum of the lanes, and of products of what was too short for them.
+#[inline(always)]
+fn total(lanes: &[f64; LANES], a: &[f64], b: &[f64]) -> f64 {
+    let mut tail = 0.0;
+    for k in 0..a.len().min(b.len()) {
+        tail += a[k] * b[k];
     }
     ((lanes[0] + lanes[4]) + (lanes[1] + lanes[5]))
         + ((lanes[2] + lanes[6]) + (lanes[3] + lanes[7]))
         + tail
+}
+
+/// The sums of products of four rows with one, each as [`dot`] has it, to the bit: what is loaded of
+/// the one serves all.
+#[inline(always)]
+fn dots(rows: [&[f64]; 4], head: &[f64]) -> [f64; 4] {
+    let n = head.len();
+    let rows = [&rows[0][..n], &rows[1][..n], &rows[2][..n], &rows[3][..n]];
+    let mut lanes = [[0.0; LANES]; 4];
+    let mut k = 0;
+    while k + LANES <= n {
+        let y = &head[k..k + LANES];
+        for r in 0..4 {
+            let x = &rows[r][k..k + LANES];
+            for l in 0..LANES {
+                lanes[r][l] += x[l] * y[l];
+            }
+        }
+        k += LANES;
+    }
+    let rest = |r: usize| total(&lanes[r], &rows[r][k..], &head[k..]);
+    [rest(0), rest(1), rest(2), rest(3)]
 }
 
 /// The lower factor, row by row.
@@ -36,6 +67,8 @@ pub struct Factor {
     size: usize,
     rows: Vec<f64>,
     inverse_pivots: Vec<f64>,
+    /// The column of a row that goes.
+    column: Vec<f64>,
 }
 
 impl Default for Factor {
@@ -44,6 +77,7 @@ impl Default for Factor {
             size: 0,
             rows: room(MOST_POINTS * MOST_POINTS),
             inverse_pivots: vec![0.0; MOST_POINTS],
+            column: vec![0.0; MOST_POINTS],
         }
     }
 }
@@ -58,24 +92,72 @@ impl Factor {
     /// Decomposes the matrix in the rows; false where it is not positive definite to rounding.
     pub fn decompose(&mut self, size: usize) -> bool {
         self.size = size;
-        widely!(decompose(&mut self.rows, &mut self.inverse_pivots, size))
+        decompose(&mut self.rows, &mut self.inverse_pivots, size)
+    }
+
+    /// Takes in the row that was put behind the last; false, and all as before, where the matrix with
+    /// it is not positive definite to rounding.
+    pub fn append(&mut self) -> bool {
+        let (rows, inverse_pivots, size) = (&mut self.rows, &mut self.inverse_pivots, self.size);
+        let done = append(rows, inverse_pivots, size);
+        self.size += usize::from(done);
+        done
+    }
+
+    /// Lets row and column `k` of the matrix go; those behind move up.
+    pub fn remove(&mut self, k: usize) {
+        for i in k + 1..self.size {
+            let (above, here) = self.rows.split_at_mut(i * MOST_POINTS);
+            let up = &mut above[(i - 1) * MOST_POINTS..];
+            self.column[i - 1] = here[k];
+            up[..k].copy_from_slice(&here[..k]);
+            up[k..i].copy_from_slice(&here[k + 1..=i]);
+        }
+        self.size -= 1;
+        // What the column gave to the rows behind, turned into them: a plane rotation for each.
+        for m in k..self.size {
+            let (own, gone) = (self.rows[m * MOST_POINTS + m], self.column[m]);
+            let pivot = (own * own + gone * gone).sqrt();
+            let (cosine, sine) = (own / pivot, gone / pivot);
+            self.rows[m * MOST_POINTS + m] = pivot;
+            self.inverse_pivots[m] = 1.0 / pivot;
+            for i in m + 1..self.size {
+                let (entry, gone) = (&mut self.rows[i * MOST_POINTS + m], &mut self.column[i]);
+                (*entry, *gone) = (
+                    cosine * *entry + sine * *gone,
+                    cosine * *gone - sine * *entry,
+                );
+            }
+        }
     }
 
     /// x with L x = b, in place of b.
     pub fn solve_lower(&self, b: &mut [f64]) {
-        for i in 0..self.size {
-            let row = &self.rows[i * MOST_POINTS..][..i];
-            b[i] = (b[i] - dot(row, &b[..i])) * self.inverse_pivots[i];
-        }
+        solve_lower(&self.rows, &self.inverse_pivots, self.size, b);
     }
 
     /// x with A x = b, in place of b.
     pub fn solve(&self, b: &mut [f64]) {
         self.solve_lower(b);
-        for i in (0..self.size).rev() {
-            b[i] *= self.inverse_pivots[i];
+        solve_upper(&self.rows, &self.inverse_pivots, self.size, b);
+    }
+}
+
+widely! {
+    fn solve_lower(rows: &[f64], inverse_pivots: &[f64], size: usize, b: &mut [f64]) {
+        for i in 0..size {
+            let row = &rows[i * MOST_POINTS..][..i];
+            b[i] = (b[i] - dot(row, &b[..i])) * inverse_pivots[i];
+        }
+    }
+}
+
+widely! {
+    fn solve_upper(rows: &[f64], inverse_pivots: &[f64], size: usize, b: &mut [f64]) {
+        for i in (0..size).rev() {
+            b[i] *= inverse_pivots[i];
             let (rest, x) = b.split_at_mut(i);
-            let row = &self.rows[i * MOST_POINTS..][..i];
+            let row = &rows[i * MOST_POINTS..][..i];
             for (entry, l) in rest.iter_mut().zip(row) {
                 *entry -= x[0] * l;
             }
@@ -83,24 +165,52 @@ impl Factor {
     }
 }
 
-/// Column after column: the entries of one do not wait for each other.
+/// The square root of a pivot, if it is one.
 #[inline(always)]
-fn decompose(rows: &mut [f64], inverse_pivots: &mut [f64], size: usize) -> bool {
-    for j in 0..size {
-        let (above, below) = rows.split_at_mut((j + 1) * MOST_POINTS);
-        let here = &mut above[j * MOST_POINTS..][..=j];
-        let (head, own) = here.split_at_mut(j);
-        let pivot = own[0] - dot(head, head);
-        // Not a number is not greater.
-        let is_positive = pivot > LEAST_PIVOT * own[0] && pivot.is_finite();
-        if !is_positive {
+fn root(own: f64, pivot: f64) -> Option<f64> {
+    // Not a number is not greater.
+    (pivot > LEAST_PIVOT * own && pivot.is_finite()).then(|| pivot.sqrt())
+}
+
+widely! {
+    fn append(rows: &mut [f64], inverse_pivots: &mut [f64], size: usize) -> bool {
+        let (above, row) = rows.split_at_mut(size * MOST_POINTS);
+        for (j, before) in above.chunks_exact(MOST_POINTS).enumerate() {
+            row[j] = (row[j] - dot(&row[..j], &before[..j])) * inverse_pivots[j];
+        }
+        let (head, own) = row.split_at_mut(size);
+        let Some(pivot) = root(own[0], own[0] - dot(head, head)) else {
             return false;
-        }
-        own[0] = pivot.sqrt();
-        inverse_pivots[j] = 1.0 / own[0];
-        for other in below.chunks_exact_mut(MOST_POINTS).take(size - j - 1) {
-            other[j] = (other[j] - dot(&other[..j], head)) * inverse_pivots[j];
-        }
+        };
+        (own[0], inverse_pivots[size]) = (pivot, 1.0 / pivot);
+        true
     }
-    true
+}
+
+widely! {
+    /// Column after column, four rows at once: the entries of one column do not wait for each other.
+    fn decompose(rows: &mut [f64], inverse_pivots: &mut [f64], size: usize) -> bool {
+        for j in 0..size {
+            let (above, below) = rows[..size * MOST_POINTS].split_at_mut((j + 1) * MOST_POINTS);
+            let (head, own) = above[j * MOST_POINTS..][..=j].split_at_mut(j);
+            let Some(pivot) = root(own[0], own[0] - dot(head, head)) else {
+                return false;
+            };
+            let inverse = 1.0 / pivot;
+            (own[0], inverse_pivots[j]) = (pivot, inverse);
+            let mut fours = below.chunks_exact_mut(4 * MOST_POINTS);
+            for four in &mut fours {
+                let row = |k: usize| &four[k * MOST_POINTS..][..j];
+                let sums = dots([row(0), row(1), row(2), row(3)], head);
+                for (k, sum) in sums.into_iter().enumerate() {
+                    let entry = &mut four[k * MOST_POINTS + j];
+                    *entry = (*entry - sum) * inverse;
+                }
+            }
+            for row in fours.into_remainder().chunks_exact_mut(MOST_POINTS) {
+                row[j] = (row[j] - dot(&row[..j], head)) * inverse;
+            }
+        }
+        true
+    }
 }

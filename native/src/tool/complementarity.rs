@@ -4,7 +4,8 @@
 //! least of the energy 1/2 f A f + g f over f >= 0. An exact solve on the points that carry force and
 //! a sweep of projected Gauss-Seidel take turns (Moré and Toraldo 1991). The energy falls in every
 //! step, so nothing cycles, and where the bound on the work ends it early the forces are still a
-//! push, nearer the solution than at the start. Readable reference: `core/complementarity.py`.
+//! push, nearer the solution than at the start. The factor of the exact solves is kept up to date while
+//! points come and go. Readable reference: `core/complementarity.py`.
 
 use super::cholesky::{Factor, dot};
 use super::wide::widely;
@@ -41,16 +42,18 @@ pub struct Complementarity {
     pub forces: Vec<f64>,
     opened: Vec<f64>,
     factor: Factor,
-    /// The unknowns that carry force, and those numbers by themselves.
+    /// The unknowns that the factor is of, in its order, and whether each is one.
     face: Vec<usize>,
+    is_on_face: Vec<bool>,
     exact: Vec<f64>,
     tried: Vec<f64>,
     work: usize,
+    decompositions: usize,
     most_work: usize,
     /// A was found singular in this solve.
     is_shifted: bool,
-    /// The factor is that of A on the unknowns that carry force now.
-    is_fresh: bool,
+    /// The factor is that of A on the face.
+    is_decomposed: bool,
     /// Square roots of the diagonal.
     scale: Vec<f64>,
 }
@@ -65,12 +68,14 @@ impl Default for Complementarity {
             opened: vec![0.0; MOST_POINTS],
             factor: Factor::default(),
             face: Vec::with_capacity(MOST_POINTS),
+            is_on_face: vec![false; MOST_POINTS],
             exact: vec![0.0; MOST_POINTS],
             tried: vec![0.0; MOST_POINTS],
             work: 0,
+            decompositions: 0,
             most_work: 0,
             is_shifted: false,
-            is_fresh: false,
+            is_decomposed: false,
             scale: vec![0.0; MOST_POINTS],
         }
     }
@@ -81,7 +86,7 @@ impl Complementarity {
     pub fn begin(&mut self, count: usize) {
         debug_assert!(count <= MOST_POINTS, "{count}");
         self.count = count;
-        self.is_fresh = false;
+        self.is_decomposed = false;
     }
 
     /// Row `i` of A, of which the first numbers count.
@@ -108,8 +113,9 @@ impl Complementarity {
     pub fn solve(&mut self, most_work: usize) -> Solved {
         let count = self.count;
         (self.work, self.most_work) = (0, most_work);
+        self.decompositions = 0;
         self.is_shifted = false;
-        self.is_fresh = false;
+        self.is_decomposed = false;
         for i in 0..count {
             self.scale[i] = self.row(i)[i].sqrt();
         }
@@ -148,11 +154,17 @@ impl Complementarity {
         self.work
     }
 
+    /// Decompositions that the last solve took.
+    #[inline]
+    pub fn decompositions(&self) -> usize {
+        self.decompositions
+    }
+
     /// A f + g.
     fn open(&mut self) {
         let (matrix, gaps, forces) = (&self.matrix, &self.gaps, &self.forces[..self.count]);
         let opened = &mut self.opened[..self.count];
-        widely!(open(matrix, gaps, forces, opened));
+        open(matrix, gaps, forces, opened);
     }
 
     /// 1/2 f (A f + g) + 1/2 f g, once opened.
@@ -178,31 +190,28 @@ impl Complementarity {
 
     /// One sweep of projected Gauss-Seidel: each force in turn as its own gap demands.
     fn sweep(&mut self) {
-        self.is_fresh = false;
-        for i in 0..self.count {
-            let row = self.row(i);
-            let gap = dot(row, &self.forces[..self.count]) + self.gaps[i];
-            let own = row[i];
-            self.forces[i] = (self.forces[i] - gap / own).max(0.0);
-        }
+        let (matrix, gaps) = (&self.matrix, &self.gaps);
+        let forces = &mut self.forces[..self.count];
+        sweep(matrix, gaps, forces);
     }
 
     /// Least energy among forces on the points that carry any now, dropping what would pull. False
     /// when the bound on the work ended it.
     fn least_on_face(&mut self) -> bool {
         loop {
-            self.face.clear();
-            self.face
-                .extend((0..self.count).filter(|&i| self.forces[i] > 0.0));
-            let size = self.face.len();
+            let size = self.forces[..self.count]
+                .iter()
+                .filter(|&&f| f > 0.0)
+                .count();
             if size == 0 {
                 return true;
             }
-            if self.work > 0 && self.work + size * size * size / 6 > self.most_work {
+            let cost = self.cost_of_face(size) + size * size;
+            if self.work > 0 && self.work + cost > self.most_work {
                 return false;
             }
-            self.work += size * size * size / 6 + 1;
-            if !self.decompose_face() {
+            self.work += cost;
+            if !self.take_face() {
                 // The sweeps alone, which need the diagonal only.
                 return true;
             }
@@ -214,7 +223,6 @@ impl Complementarity {
                 for (&i, &force) in self.face.iter().zip(&self.exact) {
                     self.forces[i] = force;
                 }
-                self.is_fresh = true;
                 return true;
             }
             self.step_towards_exact();
@@ -223,78 +231,125 @@ impl Complementarity {
 
     /// From the forces towards the exact ones, clipped at zero; at least one becomes zero.
     fn step_towards_exact(&mut self) {
-        let size = self.face.len();
-        self.tried[..size].copy_from_slice(&self.exact[..size]);
-        let energy = self.energy_on_face(|k| self.forces[self.face[k]]);
+        let energy = self.energy_on_face(&self.forces);
+        self.work += self.face.len() * self.count;
+        self.tried[..self.count].fill(0.0);
         let mut share = 1.0;
         for _ in 0..MOST_HALVINGS {
             let mut some_zero = false;
-            for k in 0..size {
-                let here = self.forces[self.face[k]];
-                self.tried[k] = (here + share * (self.exact[k] - here)).max(0.0);
-                some_zero |= self.tried[k] == 0.0;
+            for (&i, exact) in self.face.iter().zip(&self.exact) {
+                let here = self.forces[i];
+                self.tried[i] = (here + share * (exact - here)).max(0.0);
+                some_zero |= self.tried[i] == 0.0;
             }
-            if some_zero && self.energy_on_face(|k| self.tried[k]) < energy {
-                for (&i, &force) in self.face.iter().zip(&self.tried) {
-                    self.forces[i] = force;
-                }
+            self.work += self.face.len() * self.count;
+            if some_zero && self.energy_on_face(&self.tried) < energy {
+                self.forces[..self.count].copy_from_slice(&self.tried[..self.count]);
                 return;
             }
             share *= 0.5;
         }
         // As far as the first force that becomes zero: nothing is clipped, so the energy falls.
         let (mut first, mut share) = (0, f64::INFINITY);
-        for k in 0..size {
-            let here = self.forces[self.face[k]];
-            if self.exact[k] <= 0.0 && here / (here - self.exact[k]) < share {
-                (first, share) = (k, here / (here - self.exact[k]));
+        for (&i, exact) in self.face.iter().zip(&self.exact) {
+            let here = self.forces[i];
+            if *exact <= 0.0 && here / (here - exact) < share {
+                (first, share) = (i, here / (here - exact));
             }
         }
-        for (k, &i) in self.face.iter().enumerate() {
+        for (&i, exact) in self.face.iter().zip(&self.exact) {
             let here = self.forces[i];
-            self.forces[i] = (here + share * (self.exact[k] - here)).max(0.0);
+            self.forces[i] = (here + share * (exact - here)).max(0.0);
         }
-        self.forces[self.face[first]] = 0.0;
+        self.forces[first] = 0.0;
     }
 
-    fn energy_on_face(&self, force: impl Fn(usize) -> f64) -> f64 {
-        let mut energy = 0.0;
-        for (k, &i) in self.face.iter().enumerate() {
-            let row = &self.matrix[i * MOST_POINTS..];
-            let mut moved = 0.0;
-            for (l, &j) in self.face[..k].iter().enumerate() {
-                moved += row[j] * force(l);
-            }
-            let own = force(k);
-            energy += own * (moved + 0.5 * row[i] * own + self.gaps[i]);
-        }
-        energy
+    /// 1/2 f A f + g f of forces that are zero off the face.
+    fn energy_on_face(&self, forces: &[f64]) -> f64 {
+        let forces = &forces[..self.count];
+        energy(&self.matrix, &self.gaps, &self.face, forces)
     }
 
     /// The unknowns that carry force, and a factor of A on them; after a solve. `None` where A is
     /// not even semidefinite on them.
     pub fn factor_on_face(&mut self) -> Option<(&[usize], &Factor)> {
-        if !self.is_fresh {
-            self.face.clear();
-            self.face
-                .extend((0..self.count).filter(|&i| self.forces[i] > 0.0));
-            self.is_fresh = self.decompose_face();
-        }
-        self.is_fresh.then_some((&self.face, &self.factor))
+        self.take_face().then_some((&self.face, &self.factor))
     }
 
-    /// The factor of A on the face, shifted where that is singular; false where that does not help.
-    fn decompose_face(&mut self) -> bool {
-        for _ in 0..2 {
-            let growth = if self.is_shifted { 1.0 + SHIFT } else { 1.0 };
-            for (place, &i) in self.face.iter().enumerate() {
-                let from = &self.matrix[i * MOST_POINTS..];
-                let to = self.factor.row_mut(place);
-                for (entry, &j) in to.iter_mut().zip(&self.face[..=place]) {
-                    *entry = from[j];
-                }
-                to[place] *= growth;
+    /// Multiplications that a factor takes on the `size` unknowns that carry force: from the one that
+    /// is there, or as if there were none, whichever is less.
+    fn cost_of_face(&self, size: usize) -> usize {
+        let anew = size * size * size / 6;
+        if self.is_decomposed {
+            self.cost_of_changes().min(anew)
+        } else {
+            anew
+        }
+    }
+
+    /// Multiplications that it takes to bring the factor up to date.
+    fn cost_of_changes(&self) -> usize {
+        let size = self.face.len();
+        let goes = |&(_, &i): &(usize, &usize)| self.forces[i] <= 0.0;
+        let gone = self.face.iter().enumerate().filter(goes);
+        let gone: usize = gone.map(|(k, _)| 2 * (size - k) * (size - k)).sum();
+        let comes = |&i: &usize| self.forces[i] > 0.0 && !self.is_on_face[i];
+        gone + (0..self.count).filter(comes).count() * size * size / 2
+    }
+
+    /// Brings face and factor to the unknowns that carry force; false where A is not even
+    /// semidefinite on them.
+    fn take_face(&mut self) -> bool {
+        if self.is_decomposed {
+            let size = self.forces[..self.count]
+                .iter()
+                .filter(|&&f| f > 0.0)
+                .count();
+            let is_less = self.cost_of_changes() <= size * size * size / 6;
+            self.is_decomposed = is_less && self.change_face();
+        }
+        if !self.is_decomposed {
+            self.is_decomposed = self.decompose_face();
+        }
+        self.is_decomposed
+    }
+
+    /// Takes unknowns out of the factor and others in; false where A is singular with them.
+    fn change_face(&mut self) -> bool {
+        for k in (0..self.face.len()).rev() {
+            if self.forces[self.face[k]] <= 0.0 {
+                self.factor.remove(k);
+                self.is_on_face[self.face.remove(k)] = false;
             }
+        }
+        for i in 0..self.count {
+            if self.forces[i] > 0.0 && !self.is_on_face[i] {
+                self.put_row(self.face.len(), i);
+                if !self.factor.append() {
+                    return false;
+                }
+                self.face.push(i);
+                self.is_on_face[i] = true;
+            }
+        }
+        true
+    }
+
+    /// The factor of A on the unknowns that carry force, anew, shifted where that is singular; false
+    /// where that does not help.
+    fn decompose_face(&mut self) -> bool {
+        self.face.clear();
+        for i in 0..self.count {
+            self.is_on_face[i] = self.forces[i] > 0.0;
+            if self.is_on_face[i] {
+                self.face.push(i);
+            }
+        }
+        for _ in 0..2 {
+            for place in 0..self.face.len() {
+                self.put_row(place, self.face[place]);
+            }
+            self.decompositions += 1;
             if self.factor.decompose(self.face.len()) {
                 return true;
             }
@@ -305,13 +360,48 @@ impl Complementarity {
         }
         false
     }
+
+    /// An unknown's row of A on the face before it, for the factor.
+    fn put_row(&mut self, place: usize, i: usize) {
+        let growth = if self.is_shifted { 1.0 + SHIFT } else { 1.0 };
+        let from = &self.matrix[i * MOST_POINTS..];
+        let to = self.factor.row_mut(place);
+        for (entry, &j) in to.iter_mut().zip(&self.face[..place]) {
+            *entry = from[j];
+        }
+        to[place] = from[i] * growth;
+    }
 }
 
-/// A f + g.
-#[inline(always)]
-fn open(matrix: &[f64], gaps: &[f64], forces: &[f64], opened: &mut [f64]) {
-    let rows = matrix.chunks_exact(MOST_POINTS);
-    for ((opened, gap), row) in opened.iter_mut().zip(gaps).zip(rows) {
-        *opened = dot(&row[..forces.len()], forces) + gap;
+widely! {
+    /// 1/2 f A f + g f of forces that are zero off some unknowns.
+    fn energy(matrix: &[f64], gaps: &[f64], face: &[usize], forces: &[f64]) -> f64 {
+        let mut sum = 0.0;
+        for &i in face {
+            let row = &matrix[i * MOST_POINTS..][..forces.len()];
+            sum += forces[i] * (0.5 * dot(row, forces) + gaps[i]);
+        }
+        sum
+    }
+}
+
+widely! {
+    /// Each force in turn as its own gap demands.
+    fn sweep(matrix: &[f64], gaps: &[f64], forces: &mut [f64]) {
+        for i in 0..forces.len() {
+            let row = &matrix[i * MOST_POINTS..][..forces.len()];
+            let gap = dot(row, forces) + gaps[i];
+            forces[i] = (forces[i] - gap / row[i]).max(0.0);
+        }
+    }
+}
+
+widely! {
+    /// A f + g.
+    fn open(matrix: &[f64], gaps: &[f64], forces: &[f64], opened: &mut [f64]) {
+        for i in 0..opened.len() {
+            let row = &matrix[i * MOST_POINTS..][..forces.len()];
+            opened[i] = dot(row, forces) + gaps[i];
+        }
     }
 }

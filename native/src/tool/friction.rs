@@ -74,7 +74,6 @@ pub(super) struct Rubbing {
     /// Forces along these directions, and how they differ from those to begin with.
     forces: Vec<f64>,
     changes: Vec<f64>,
-    before: Vec<DVec3>,
     work: usize,
 }
 
@@ -86,7 +85,6 @@ impl Rubbing {
             away: vec![0.0; MOST_UNKNOWNS],
             forces: vec![0.0; MOST_UNKNOWNS],
             changes: vec![0.0; MOST_UNKNOWNS],
-            before: vec![DVec3::ZERO; MOST_POINTS],
             work: 0,
         }
     }
@@ -97,7 +95,8 @@ impl Rubbing {
         self.work
     }
 
-    /// Finds the forces aside for the pushes of all slots; the largest change of a displacement, m.
+    /// Finds the forces aside for the pushes of all slots, and moves the slots; false where the bound
+    /// on the sweeps ended it.
     pub(super) fn rub(
         &mut self,
         patch: &mut Patch,
@@ -105,11 +104,11 @@ impl Rubbing {
         pose: &Pose,
         friction: &Friction,
         reach: f64,
-    ) -> f64 {
+    ) -> bool {
         let near = patch.slots().len();
         self.rubbed.clear();
+        let mut pressed = 0;
         for (number, slot) in patch.slots_mut().iter_mut().enumerate() {
-            self.before[number] = slot.moved;
             let limit = friction.limit(slot);
             if limit > 0.0 {
                 slot.aside = shortened(across(slot.aside, slot.normal), limit);
@@ -119,37 +118,29 @@ impl Rubbing {
                 slot.aside = DVec3::ZERO;
             }
             slot.force = slot.normal * slot.push + slot.aside;
+            pressed += usize::from(slot.push > 0.0);
         }
-        let rubbed = self.rubbed.len();
         patch.displace();
-        self.work = 9 * rubbed * near;
-        if rubbed > 0 {
-            self.set_up(patch, surface, pose);
-            let sweep = 4 * rubbed * rubbed;
-            let sweeps = (MOST_WORK / sweep).clamp(1, MOST_SWEEPS);
-            let (rubbing, least) = (&mut *self, CONVERGED * reach);
-            let made = widely!(sweep_through(rubbing, sweeps, least));
-            for (&(number, [first, second], limit), force) in
-                self.rubbed.iter().zip(self.forces.chunks_exact(2))
-            {
-                let slot = &mut patch.slots_mut()[number];
-                slot.aside = shortened(first * force[0] + second * force[1], limit);
-                slot.force = slot.normal * slot.push + slot.aside;
-            }
-            patch.displace();
-            self.work += 27 * rubbed * near + made * sweep;
+        let rubbed = self.rubbed.len();
+        self.work = 9 * pressed * near;
+        if rubbed == 0 {
+            return true;
         }
-        let mut change = 0.0_f64;
-        for (slot, before) in patch.slots().iter().zip(&self.before) {
-            let step = (slot.moved - *before).abs().max_element();
-            // What is no number stays one.
-            change = if change.is_nan() || step.is_nan() {
-                f64::NAN
-            } else {
-                change.max(step)
-            };
+        self.set_up(patch, surface, pose);
+        let sweep = 4 * rubbed * rubbed;
+        let sweeps = (MOST_WORK / sweep).clamp(1, MOST_SWEEPS);
+        let (rubbing, least) = (&mut *self, CONVERGED * reach);
+        let (made, found) = sweep_through(rubbing, sweeps, least);
+        for (&(number, [first, second], limit), force) in
+            self.rubbed.iter().zip(self.forces.chunks_exact(2))
+        {
+            let slot = &mut patch.slots_mut()[number];
+            slot.aside = shortened(first * force[0] + second * force[1], limit);
+            slot.force = slot.normal * slot.push + slot.aside;
         }
-        change
+        patch.displace();
+        self.work += 9 * (rubbed + pressed) * near + 6 * rubbed * rubbed + made * sweep;
+        found
     }
 
     /// Tresca's problem about the forces that the slots have.
@@ -176,33 +167,37 @@ impl Rubbing {
     }
 }
 
-/// Sweeps until the forces stay, at most so many; how many. Each point in turn goes to its anchor,
-/// or as near as its limit lets it: the energy falls.
-#[inline(always)]
-fn sweep_through(rubbing: &mut Rubbing, most: usize, least: f64) -> usize {
-    let unknowns = 2 * rubbing.rubbed.len();
-    for made in 1..=most {
-        let mut largest = 0.0_f64;
-        for (k, &(_, _, limit)) in rubbing.rubbed.iter().enumerate() {
-            let row = |a: usize| &rubbing.matrix[(2 * k + a) * MOST_UNKNOWNS..][..unknowns];
-            let slip =
-                |a: usize| rubbing.away[2 * k + a] + dot(row(a), &rubbing.changes[..unknowns]);
-            let slip = DVec2::new(slip(0), slip(1));
-            let (xx, xy, yy) = (row(0)[2 * k], row(0)[2 * k + 1], row(1)[2 * k + 1]);
-            let last = DVec2::new(rubbing.forces[2 * k], rubbing.forces[2 * k + 1]);
-            let force = nearer(last, slip, [xx, xy, yy], limit);
-            let change = force - last;
-            for a in 0..2 {
-                rubbing.forces[2 * k + a] = force[a];
-                rubbing.changes[2 * k + a] += change[a];
+widely! {
+    /// Sweeps until the forces stay, at most so many; how many, and whether they stayed. Each point
+    /// in turn goes to its anchor, or as near as its limit lets it: the energy falls.
+    fn sweep_through(rubbing: &mut Rubbing, most: usize, least: f64) -> (usize, bool) {
+        let unknowns = 2 * rubbing.rubbed.len();
+        for made in 1..=most {
+            let mut largest = 0.0_f64;
+            for (k, &(_, _, limit)) in rubbing.rubbed.iter().enumerate() {
+                let rows = &rubbing.matrix[2 * k * MOST_UNKNOWNS..][..2 * MOST_UNKNOWNS];
+                let (first, second) = rows.split_at(MOST_UNKNOWNS);
+                let changes = &rubbing.changes[..unknowns];
+                let slip = DVec2::new(
+                    rubbing.away[2 * k] + dot(&first[..unknowns], changes),
+                    rubbing.away[2 * k + 1] + dot(&second[..unknowns], changes),
+                );
+                let (xx, xy, yy) = (first[2 * k], first[2 * k + 1], second[2 * k + 1]);
+                let last = DVec2::new(rubbing.forces[2 * k], rubbing.forces[2 * k + 1]);
+                let force = nearer(last, slip, [xx, xy, yy], limit);
+                let change = force - last;
+                for a in 0..2 {
+                    rubbing.forces[2 * k + a] = force[a];
+                    rubbing.changes[2 * k + a] += change[a];
+                }
+                largest = largest.max(change.abs().max_element() * (xx + yy));
             }
-            largest = largest.max(change.abs().max_element() * (xx + yy));
+            if largest <= least {
+                return (made, true);
+            }
         }
-        if largest <= least {
-            return made;
-        }
+        (most, false)
     }
-    most
 }
 
 /// The force within its limit that brings one point nearer to its anchor: all the way if it may.

@@ -106,6 +106,15 @@ impl Hull {
         }
     }
 
+    /// Faces, none of a point or a segment.
+    #[inline]
+    pub fn face_count(&self) -> usize {
+        match &self.form {
+            Form::Faces(faces) => faces.len(),
+            Form::Point(_) | Form::Segment(..) => 0,
+        }
+    }
+
     /// Signed distance, negative inside, and the outward unit normal; closer than `clear` the normal
     /// is a face's own.
     #[inline]

@@ -8,6 +8,7 @@ mod blocks;
 pub mod cholesky;
 pub mod complementarity;
 pub mod contact;
+pub mod effort;
 pub mod friction;
 pub mod hull;
 pub mod near_field;

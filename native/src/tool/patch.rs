@@ -1,11 +1,15 @@
 //! The contact points near a tool, and how each gives way to a force on each other.
 
+use std::ops::Range;
+
 use glam::{DMat3, DVec3};
 
 use super::blocks::Blocks;
+use super::near_field::NearField;
 use super::points::{Point, ToolSurface};
 use super::wide::widely;
 use super::{MOST_POINTS, room};
+use crate::surface::Body;
 
 /// Numbers of a column: how all slots give way to a force on one, an entry of the blocks after the
 /// other, row by row, each for all slots.
@@ -36,12 +40,26 @@ pub struct Slot {
     pub normal: DVec3,
     /// Signed distance from the tool there, m.
     pub distance: f64,
-    /// Signed distance of the place at rest, m.
-    pub at_rest: f64,
+    /// Distance and normal where the point is now, of the tool as it is, in the tool's frame.
+    pub(super) free: (f64, DVec3),
+    /// The same as pushes are held, in the body's frame: what the next linearisation begins with.
+    pub(super) seen: (f64, DVec3),
+    /// Of the distances now and, where it was asked for, at rest the lesser, m.
+    pub(super) nearest: f64,
+    /// How far the point moves along an axis under a force along it, at most, m/N at unit modulus.
+    pub(super) gives: f64,
+}
+
+/// Displacement of the point that enters per force on a node, and for which entry that was found:
+/// contact points share nodes.
+#[derive(Debug, Clone, Copy, Default)]
+struct OfNode {
+    resolved: (u64, DMat3),
+    beyond: (u64, DMat3),
 }
 
 /// Slots in use and the compliance between them.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Patch {
     slots: Vec<Slot>,
     slot_of: Vec<u16>,
@@ -52,10 +70,13 @@ pub struct Patch {
     blocks: Blocks,
     /// The same beyond a half-space.
     beyond: Blocks,
+    of_nodes: Vec<OfNode>,
+    /// Points that entered so far.
+    entries: u64,
 }
 
 impl Patch {
-    pub(super) fn new(points: usize) -> Self {
+    pub(super) fn new(points: usize, nodes: usize) -> Self {
         Self {
             slots: Vec::with_capacity(MOST_POINTS),
             slot_of: vec![NONE; points],
@@ -63,6 +84,8 @@ impl Patch {
             moved: [[0.0; MOST_POINTS]; 3],
             blocks: Blocks::new(),
             beyond: Blocks::new(),
+            of_nodes: vec![OfNode::default(); nodes],
+            entries: 0,
         }
     }
 
@@ -101,17 +124,17 @@ impl Patch {
         DMat3::from_cols_array_2d(&[0, 1, 2].map(|c| [0, 1, 2].map(|r| entry(r, c))))
     }
 
-    /// How far all slots move under a force on one of them, m at unit modulus, an axis after the
-    /// other.
+    /// How far slots move under a force on one of them, m at unit modulus, an axis after the other:
+    /// that one and those behind it, by symmetry enough for a matrix.
     #[inline]
     pub(super) fn moved_by(&mut self, slot: usize, force: DVec3) -> &[[f64; MOST_POINTS]; 3] {
-        let count = self.slots.len();
+        let range = slot..self.slots.len();
         for axis in &mut self.moved {
-            axis[..count].fill(0.0);
+            axis[range.clone()].fill(0.0);
         }
         let column = &self.compliance[slot * COLUMN..][..COLUMN];
         let moved = &mut self.moved;
-        widely!(add_moved(column, force, moved, count));
+        add_moved(column, force, moved, &range);
         &self.moved
     }
 
@@ -124,7 +147,7 @@ impl Patch {
         for (slot, column) in self.slots.iter().zip(self.compliance.chunks_exact(COLUMN)) {
             if slot.aside != DVec3::ZERO {
                 let (force, moved) = (slot.aside, &mut self.moved);
-                widely!(add_moved(column, force, moved, count));
+                add_moved(column, force, moved, &(0..count));
             }
         }
         &self.moved
@@ -150,11 +173,88 @@ impl Patch {
             ..Slot::default()
         });
         self.slot_of[point as usize] = new as u16;
+        self.entries += 1;
         for slot in 0..=new {
             let other = self.slots[slot].point;
             let block = self.response(surface, point, other);
             self.put(new, slot, block);
         }
+        let own = self.compliance(new, new);
+        let gives = [own.x_axis.x, own.y_axis.y, own.z_axis.z];
+        self.slots[new].gives = gives.into_iter().fold(0.0, f64::max);
+    }
+
+    /// Displacement of the point that enters per force on another.
+    fn response(&mut self, surface: &ToolSurface, point: u32, other: u32) -> DMat3 {
+        let [p, q] = [point, other].map(|k| &surface.points()[k as usize]);
+        let Some(near) = surface.near() else {
+            return self.resolved(surface.body(), p, q);
+        };
+        if point == other {
+            let whole = self.resolved(surface.body(), p, q) + near.points[point as usize].own;
+            return (whole + whole.transpose()) * 0.5;
+        }
+        let normals = [p.normal, q.normal];
+        let share = near.share(point, other, normals);
+        let mut sum = DMat3::ZERO;
+        if share < 1.0 {
+            sum += self.resolved(surface.body(), p, q) * (1.0 - share);
+        }
+        if share > 0.0 {
+            let offset = p.position - q.position;
+            let half_space = near.between_points(point, other, offset, normals);
+            sum += (self.beyond(surface.body(), near, p, q) + half_space) * share;
+        }
+        sum
+    }
+
+    /// What the finite elements have between the point that enters and another.
+    fn resolved(&mut self, body: &Body, entered: &Point, other: &Point) -> DMat3 {
+        let (blocks, kept, entry) = (&mut self.blocks, &mut self.of_nodes, self.entries);
+        let mut found = |node: u32| {
+            let kept = &mut kept[node as usize].resolved;
+            if kept.0 != entry {
+                *kept = (entry, over(entered, |a| blocks.get(body, a, node)));
+            }
+            kept.1
+        };
+        over(other, &mut found)
+    }
+
+    /// What the body does beyond a half-space between the point that enters and another.
+    fn beyond(&mut self, body: &Body, near: &NearField, entered: &Point, other: &Point) -> DMat3 {
+        let (blocks, kept, entry) = (&mut self.beyond, &mut self.of_nodes, self.entries);
+        let mut block = |a: u32, b: u32| {
+            blocks.kept(a, b, |a, b| {
+                let offset = body.nodes[a as usize] - body.nodes[b as usize];
+                let resolved = body.block(a, b).unwrap_or(DMat3::ZERO);
+                near.beyond(a, b, offset, resolved)
+            })
+        };
+        let mut found = |node: u32| {
+            let kept = &mut kept[node as usize].beyond;
+            if kept.0 != entry {
+                *kept = (entry, over(entered, |a| block(a, node)));
+            }
+            kept.1
+        };
+        over(other, &mut found)
+    }
+
+    /// Displaces one slot as the forces and its offset ask for.
+    pub(super) fn displace_one(&mut self, slot: usize) {
+        // By symmetry its own column tells how it moves under forces on the others.
+        let column = &self.compliance[slot * COLUMN..][..COLUMN];
+        let mut moved = self.slots[slot].offset;
+        for (j, other) in self.slots.iter().enumerate() {
+            if other.force != DVec3::ZERO {
+                let entry = |r: usize, c: usize| column[(3 * r + c) * MOST_POINTS + j];
+                let along = |c: usize| DVec3::new(entry(0, c), entry(1, c), entry(2, c));
+                let along = [0, 1, 2].map(|c| along(c).dot(other.force));
+                moved += DVec3::from_array(along);
+            }
+        }
+        self.slots[slot].moved = moved;
     }
 
     #[inline]
@@ -166,40 +266,6 @@ impl Patch {
                 self.compliance[i * COLUMN + (3 * c + r) * MOST_POINTS + j] = entry;
             }
         }
-    }
-
-    /// Displacement of a point per force on another.
-    fn response(&mut self, surface: &ToolSurface, point: u32, other: u32) -> DMat3 {
-        let [p, q] = [point, other].map(|k| &surface.points()[k as usize]);
-        let body = surface.body();
-        let Some(near) = surface.near() else {
-            return between(p, q, |a, b| self.blocks.get(body, a, b));
-        };
-        if point == other {
-            let sum = between(p, q, |a, b| self.blocks.get(body, a, b));
-            let whole = sum + near.points[point as usize].own;
-            return (whole + whole.transpose()) * 0.5;
-        }
-        let normals = [p.normal, q.normal];
-        let share = near.share(point, other, normals);
-        let mut sum = DMat3::ZERO;
-        if share < 1.0 {
-            sum += between(p, q, |a, b| self.blocks.get(body, a, b)) * (1.0 - share);
-        }
-        if share > 0.0 {
-            let beyond = &mut self.beyond;
-            sum += share
-                * between(p, q, |a, b| {
-                    beyond.kept(a, b, |a, b| {
-                        let offset = body.nodes[a as usize] - body.nodes[b as usize];
-                        let resolved = body.block(a, b).unwrap_or(DMat3::ZERO);
-                        near.beyond(a, b, offset, resolved)
-                    })
-                });
-            let offset = p.position - q.position;
-            sum += near.between_points(point, other, offset, normals) * share;
-        }
-        sum
     }
 
     /// Drops a slot; the last one takes its place.
@@ -226,8 +292,8 @@ impl Patch {
         self.slots.clear();
     }
 
-    /// Moves every slot as its forces and the offset ask for; the largest change, m.
-    pub(super) fn displace(&mut self) -> f64 {
+    /// Moves every slot as its forces and the offset ask for.
+    pub(super) fn displace(&mut self) {
         let count = self.slots.len();
         for (i, slot) in self.slots.iter().enumerate() {
             for (axis, offset) in self.moved.iter_mut().zip(slot.offset.to_array()) {
@@ -237,22 +303,12 @@ impl Patch {
         for (slot, column) in self.slots.iter().zip(self.compliance.chunks_exact(COLUMN)) {
             if slot.force != DVec3::ZERO {
                 let (force, moved) = (slot.force, &mut self.moved);
-                widely!(add_moved(column, force, moved, count));
+                add_moved(column, force, moved, &(0..count));
             }
         }
-        let mut change = 0.0_f64;
         for (i, slot) in self.slots.iter_mut().enumerate() {
-            let moved = DVec3::from_array([0, 1, 2].map(|axis| self.moved[axis][i]));
-            let step = (moved - slot.moved).abs().max_element();
-            // What is no number stays one.
-            change = if change.is_nan() {
-                change
-            } else {
-                change.max(step)
-            };
-            slot.moved = moved;
+            slot.moved = DVec3::from_array([0, 1, 2].map(|axis| self.moved[axis][i]));
         }
-        change
     }
 
     /// The contact point of a slot.
@@ -262,29 +318,35 @@ impl Patch {
     }
 }
 
-/// Blocks between the corners of two points' triangles, weighted with their area coordinates.
+/// The mean over the corners of a point's triangle, weighted with its area coordinates.
 #[inline]
-fn between(p: &Point, q: &Point, mut block: impl FnMut(u32, u32) -> DMat3) -> DMat3 {
+fn over(point: &Point, mut block: impl FnMut(u32) -> DMat3) -> DMat3 {
     let mut sum = DMat3::ZERO;
-    for (&a, &weight) in p.nodes.iter().zip(&p.alpha) {
-        for (&b, &load) in q.nodes.iter().zip(&q.alpha) {
-            if weight != 0.0 && load != 0.0 {
-                sum += block(a, b) * (weight * load);
-            }
+    for (&node, &weight) in point.nodes.iter().zip(&point.alpha) {
+        if weight != 0.0 {
+            sum += block(node) * weight;
         }
     }
     sum
 }
 
-/// Adds how far slots move under a force on one of them.
-#[inline(always)]
-fn add_moved(column: &[f64], force: DVec3, moved: &mut [[f64; MOST_POINTS]; 3], count: usize) {
-    for (axis, rows) in moved.iter_mut().zip(column.chunks_exact(3 * MOST_POINTS)) {
-        let (x, rest) = rows.split_at(MOST_POINTS);
-        let (y, z) = rest.split_at(MOST_POINTS);
-        let entries = x.iter().zip(y).zip(z);
-        for (sum, ((x, y), z)) in axis[..count].iter_mut().zip(entries) {
-            *sum += x * force.x + y * force.y + z * force.z;
+widely! {
+    /// Adds how far some slots move under a force on one of them.
+    fn add_moved(
+        column: &[f64],
+        force: DVec3,
+        moved: &mut [[f64; MOST_POINTS]; 3],
+        range: &Range<usize>,
+    ) {
+        for (r, axis) in moved.iter_mut().enumerate() {
+            let rows = &column[3 * r * MOST_POINTS..][..3 * MOST_POINTS];
+            let x = &rows[range.start..range.end];
+            let y = &rows[MOST_POINTS + range.start..MOST_POINTS + range.end];
+            let z = &rows[2 * MOST_POINTS + range.start..2 * MOST_POINTS + range.end];
+            let sums = &mut axis[range.start..range.end];
+            for i in 0..sums.len() {
+                sums[i] += x[i] * force.x + y[i] * force.y + z[i] * force.z;
+            }
         }
     }
 }

@@ -135,6 +135,12 @@ impl Tool {
         (distance - self.radius, normal)
     }
 
+    /// Multiplications that a distance takes, about.
+    #[inline]
+    pub fn effort(&self) -> usize {
+        20 + 10 * self.hull.face_count()
+    }
+
     /// Less than the signed distance, or equal to it, at little cost.
     #[inline]
     pub fn least_distance(&self, point: DVec3) -> f64 {

@@ -125,13 +125,6 @@ fn least(sinusoids: &[Sinusoid], turn: DVec2) -> f64 {
 
 /// Where the least of some sinusoids is greatest: at the peak of one, or where two cross.
 fn highest(sinusoids: &[Sinusoid]) -> DVec2 {
-    let mut best = (f64::NEG_INFINITY, DVec2::X);
-    let mut offer = |turn: DVec2| {
-        let value = least(sinusoids, turn);
-        if value > best.0 {
-            best = (value, turn);
-        }
-    };
     let mut few = [0; MOST_AT_ONCE];
     let few = if sinusoids.len() <= MOST_AT_ONCE {
         (few.iter_mut().enumerate()).for_each(|(k, place)| *place = k);
@@ -140,9 +133,27 @@ fn highest(sinusoids: &[Sinusoid]) -> DVec2 {
         nearest_few(sinusoids, &mut few);
         &few
     };
-    for (place, &i) in few.iter().enumerate() {
+    let mut lowest = [0; MOST_AT_ONCE];
+    let lowest = somewhere_lowest(sinusoids, few, &mut lowest);
+    let mut nearest = [Sinusoid::default(); MOST_AT_ONCE];
+    let compared = if few.len() == sinusoids.len() {
+        for (nearest, &i) in nearest.iter_mut().zip(lowest) {
+            *nearest = sinusoids[i];
+        }
+        &nearest[..lowest.len()]
+    } else {
+        sinusoids
+    };
+    let mut best = (f64::NEG_INFINITY, DVec2::X);
+    let mut offer = |turn: DVec2| {
+        let value = least(compared, turn);
+        if value > best.0 {
+            best = (value, turn);
+        }
+    };
+    for (place, &i) in lowest.iter().enumerate() {
         offer(peak(&sinusoids[i]));
-        for &j in &few[..place] {
+        for &j in &lowest[..place] {
             let between = sinusoids[i].slope - sinusoids[j].slope;
             let length = between.length();
             if length > 0.0 {
@@ -155,6 +166,29 @@ fn highest(sinusoids: &[Sinusoid]) -> DVec2 {
         }
     }
     best.1
+}
+
+/// Of some sinusoids those with none of the others below them all round: of a plate's eight corners
+/// the four of its face.
+fn somewhere_lowest<'a>(
+    sinusoids: &[Sinusoid],
+    few: &[usize],
+    lowest: &'a mut [usize; MOST_AT_ONCE],
+) -> &'a [usize] {
+    let mut count = 0;
+    for &i in few {
+        let is_above = |&j: &usize| {
+            let height = sinusoids[i].level - sinusoids[j].level;
+            let swing = sinusoids[i].slope.distance_squared(sinusoids[j].slope);
+            let is_alike = height == 0.0 && swing == 0.0;
+            height >= 0.0 && height * height >= swing && (j < i || (j != i && !is_alike))
+        };
+        if !few.iter().any(is_above) {
+            lowest[count] = i;
+            count += 1;
+        }
+    }
+    &lowest[..count]
 }
 
 /// The core points that are nearest where the least of all is greatest, of some directions.
