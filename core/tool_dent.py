@@ -17,7 +17,7 @@ from .tools import Pose, Tool
 
 # Over this share of the tool's inner radius to both sides of its surface, never more than it is
 # deep, the shift fades in, so that no edge is drawn around the contact.
-FADE = 0.1
+FADE = 0.25
 
 # A surface whose normal has a smaller product than the first with the force on the tool is not the
 # side that is pressed, from the second on it is wholly: what lies across a thin part stays.

@@ -6,7 +6,7 @@ import pytest
 from palpate.core.contact_points import contact_points
 from palpate.core.drawn_map import DrawnMap
 from palpate.core.tool_contact import press_tool
-from palpate.core.tool_dent import PressingTool, kept_out
+from palpate.core.tool_dent import FADE, PressingTool, kept_out
 from palpate.core.tools import Pose, plate, sphere
 
 RADIUS, DEPTH = 0.008, 0.002
@@ -29,10 +29,11 @@ def test_places_in_the_tool_go_onto_its_surface_and_others_stay():
     distances = on_plane(DEPTH).tool.distance(on_plane(DEPTH).pose.to_tool(drawn))[0]
     assert distances.min() > -1e-12
     rest = on_plane(DEPTH).tool.distance(on_plane(DEPTH).pose.to_tool(places))[0]
-    np.testing.assert_allclose(distances[rest < -0.1 * RADIUS], 0.0, atol=1e-12)
-    np.testing.assert_array_equal(drawn[rest > 0.1 * RADIUS], places[rest > 0.1 * RADIUS])
-    # Nobody is lifted off by more than a fortieth of the radius in between.
-    assert (distances - np.maximum(rest, 0)).max() <= RADIUS / 40 + 1e-12
+    fade = min(FADE * RADIUS, -rest.min())
+    np.testing.assert_allclose(distances[rest < -fade], 0.0, atol=1e-12)
+    np.testing.assert_array_equal(drawn[rest > fade], places[rest > fade])
+    # In between nothing stands off by more than the middle of the parabola.
+    assert (distances - np.maximum(rest, 0)).max() <= fade / 4 + 1e-12
 
 
 def test_no_edge_is_drawn_around_the_contact():
