@@ -1,9 +1,10 @@
 """Equilibrium under forces that do not follow the body, by Newton's method in load steps.
 
-Followed is the branch of stable equilibria that begins at rest: the tangent stays positive
-definite and no element inverts. Where that branch ends, :class:`NoEquilibrium` tells how much of
-the load it has carried. St. Venant-Kirchhoff bodies end early in compression: their stress falls
-again once a cell has lost some tenths of its height.
+Followed is the branch of stable equilibria that begins at rest: tangents are positive definite and
+no element inverts. Where that branch ends, :class:`NoEquilibrium` tells how much of the load it has
+carried. A load step that is taken at once could land on another branch; small ones cannot.
+St. Venant-Kirchhoff bodies end early in compression: their stress falls again once a cell has lost
+some tenths of its height.
 
 References
 ----------
