@@ -140,15 +140,33 @@ def test_without_a_load_the_body_rests(cube):
     assert found.iterations == 0
 
 
-def test_rounding_in_a_slender_body_is_no_collapse():
-    """A beam thirty times as long as thick bends; its stresses are far above its load."""
-    mesh, fixed = paper_cube(1.0, 4)
-    mesh = TetMesh.checked(mesh.nodes * [1.0, 1.0, 30.0], mesh.tets)
+def beam(cells, length, poisson_ratio):
+    """A beam of 1 m square, held at one end."""
+    mesh, fixed = paper_cube(1.0, cells)
+    mesh = TetMesh.checked(mesh.nodes * [1.0, 1.0, length], mesh.tets)
     nodes = np.setdiff1d(mesh.surface_nodes, fixed)
     none = DenseCompliance(nodes, np.empty((len(nodes), 3, 0)))
-    beam = FreeSolid.of(SoftBody(mesh, fixed, 0.49, none, 1.0))
-    forces = np.zeros((beam.node_count, 3))
-    forces[beam.positions[:, 2] > 29.9, 0] = 1.0
-    forces *= 9.0 / np.abs(beam.linear(forces)).max()
-    found = equilibrium(beam, forces)
+    return FreeSolid.of(SoftBody(mesh, fixed, poisson_ratio, none, 1.0))
+
+
+def at_the_end(body, axis, linear_displacement):
+    """A load on the beam's end that would move it so far if it were linear."""
+    forces = np.zeros((body.node_count, 3))
+    forces[body.positions[:, 2] > body.positions[:, 2].max() - 1e-9, axis] = 1.0
+    return forces * (linear_displacement / np.abs(body.linear(forces)).max())
+
+
+def test_the_line_search_takes_a_far_pull_at_once():
+    """Full steps of Newton's method miss this one; without the search it takes two load steps."""
+    body = beam(3, 10.0, 0.3)
+    found = equilibrium(body, at_the_end(body, 2, 30.0))
+    assert found.load_steps == 1
+    assert found.residual < 1e-8
+    assert found.displacements[:, 2].max() > 10.0
+
+
+def test_rounding_in_a_slender_body_is_no_collapse():
+    """Thirty times as long as thick, bent by 9 m: its stresses are far above its load."""
+    body = beam(4, 30.0, 0.49)
+    found = equilibrium(body, at_the_end(body, 0, 9.0))
     assert RESIDUAL_SHARE < found.residual < 1e-8
