@@ -29,6 +29,7 @@ class OutwardFilling:
         fill: Callable[[NDArray[np.int64]], None],
         at_once: int,
         prepare: Callable[[], None] | None = None,
+        complete: Callable[[NDArray[np.int64]], None] | None = None,
     ) -> None:
         """Begin with nothing to do.
 
@@ -39,14 +40,17 @@ class OutwardFilling:
         fill : called in the thread with the numbers (k,) of places that are empty.
         at_once : largest k.
         prepare : called in the thread first of all, at once.
+        complete : called in the thread with the touched places, once all of them are filled.
         """
         self._positions = positions
         self._is_filled = is_filled
         self._fill = fill
         self._at_once = at_once
         self._prepare = prepare
+        self._complete = complete
         self._changed = threading.Condition()
         self._wish: NDArray[np.int64] = np.zeros(0, dtype=np.int64)
+        self._is_complete = True
         self._is_closed = False
         self._last_frame = -np.inf
         self._problem: BaseException | None = None
@@ -75,6 +79,7 @@ class OutwardFilling:
             if np.array_equal(places, self._wish):
                 return
             self._wish = places.copy()
+            self._is_complete = self._complete is None
             self._changed.notify_all()
         self._begin()
 
@@ -87,7 +92,7 @@ class OutwardFilling:
             Whatever ended the filling.
         """
         self.around(places)
-        self._wait(places)
+        self._wait(places, is_touched=True)
 
     def finish(self) -> None:
         """Return when everything is filled; errors as for :meth:`wait_for`."""
@@ -96,11 +101,15 @@ class OutwardFilling:
             self.around(everything[:1])
         self._wait(everything)
 
-    def _wait(self, places: NDArray[np.int64]) -> None:
+    def _wait(self, places: NDArray[np.int64], *, is_touched: bool = False) -> None:
         with self._changed:
             self._last_frame = -np.inf
             self._changed.wait_for(
-                lambda: self._is_closed or self._problem or self._is_filled[places].all()
+                lambda: (
+                    self._is_closed
+                    or self._problem
+                    or (self._is_filled[places].all() and (self._is_complete or not is_touched))
+                )
             )
             if self._problem is not None:
                 raise self._problem
@@ -127,25 +136,36 @@ class OutwardFilling:
                 self._tell()
             while (next_places := self._next()) is not None:
                 began = time.monotonic()
-                self._fill(next_places)
+                if self._is_filled[next_places].all():
+                    self._complete_touched(next_places)
+                else:
+                    self._fill(next_places)
                 self._tell()
                 self._give_way(time.monotonic() - began)
         except Exception as problem:  # noqa: BLE001 - raised again where it is waited for
             self._problem = problem
             self._tell()
 
+    def _complete_touched(self, places: NDArray[np.int64]) -> None:
+        if self._complete is not None:
+            self._complete(places)
+        with self._changed:
+            self._is_complete |= np.array_equal(places, self._wish)
+
     def _tell(self) -> None:
         with self._changed:
             self._changed.notify_all()
 
     def _next(self) -> NDArray[np.int64] | None:
-        """The places of the next slice; None when there will be none."""
+        """The places of the next slice, or touched ones to complete; None when there is none."""
         with self._changed:
             while not self._is_closed:
                 wish = self._wish
                 missing = wish[~self._is_filled[wish]]
                 if missing.size:
                     return missing[: self._at_once]
+                if not self._is_complete:
+                    return wish
                 empty = np.flatnonzero(~self._is_filled)
                 if wish.size and empty.size:
                     middle = self._positions[wish].mean(axis=0)

@@ -60,6 +60,13 @@ class SeriesSolid:
             terms.append(self.solve(lower))
         return terms
 
+    def second(self, first: NDArray[np.float64]) -> NDArray[np.float64]:
+        """a_2 (f, 3, k) of loads whose a_1 is given."""
+        lower = np.zeros_like(first)
+        for field in self.fields:
+            lower -= _PartialSeries(field).next_forces(first)
+        return self.solve(lower)
+
     def forces(self, displacements: NDArray[np.float64]) -> NDArray[np.float64]:
         """Forces (f, 3, k) that hold the body at displacements; as :meth:`FreeSolid.forces`."""
         total = np.zeros_like(displacements)

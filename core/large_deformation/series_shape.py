@@ -5,7 +5,7 @@ together, some two thirds of the second order of a press in its middle. A body w
 frame is therefore drawn by the series of the whole load, two solves a frame, which needs no table
 and errs five to thirty times less. Larger bodies are drawn from a table of freedoms
 (:mod:`.series_table`), filled around the touched place in the background and kept beside the body's
-file.
+file, and from what the touched freedoms do together in the second order (:mod:`.series_pairs`).
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ from .free_solid import FreeSolid
 from .outward_filling import OutwardFilling
 from .power_series import ORDER, SeriesSolid
 from .series_entries import trusted_share
+from .series_pairs import SeriesPairs
 from .series_table import KIND, SeriesTable
 from .table_file import TableFileError, table_path
 
@@ -72,6 +73,7 @@ class SeriesShape:
         self._by_load = free <= LARGEST_WHOLE_LOAD if whole_load is None else whole_load
         self._solid: SeriesSolid | None = None
         self._table: SeriesTable | None = None
+        self._pairs = SeriesPairs()
         self._kept = 0
         self._places = np.zeros(0, dtype=np.int64)
         # Freedoms that were wanted at once, and could be polished when nobody waits.
@@ -85,6 +87,7 @@ class SeriesShape:
             self._fill,
             max(1, min(SLICE // len(body.mesh.tets), MOST_NODES_AT_ONCE)),
             self._prepare,
+            self._complete,
         )
 
     @property
@@ -131,7 +134,7 @@ class SeriesShape:
             forces = np.asarray(nodal_forces, dtype=np.float64).reshape(-1, 3) / modulus
             return load_displacements(solid, solid.body.on_free_nodes(numbers, forces))
         if not self._by_load and (table := self._table) is not None:
-            return table.displacements(numbers, nodal_forces, young_modulus)
+            return self._by_freedoms(table, numbers, nodal_forces, young_modulus)
         return self._body.deform(numbers, nodal_forces, young_modulus)
 
     def wait_for(self, nodes: NDArray[np.int64]) -> None:
@@ -170,11 +173,14 @@ class SeriesShape:
             self._kept = int(self._is_filled.sum())
             if self._is_filled.all():
                 return
-        solid = SeriesSolid(FreeSolid.of(self._body))
-        _ = solid.body.factor, solid.fields
-        self._solid = solid
+        self._solid = self._made_solid()
         if self._by_load:
             self._is_filled[:] = True
+
+    def _made_solid(self) -> SeriesSolid:
+        solid = SeriesSolid(FreeSolid.of(self._body))
+        _ = solid.body.factor, solid.fields
+        return solid
 
     def _kept_table(self) -> SeriesTable:
         if self._path is not None and self._path.exists():
@@ -183,6 +189,27 @@ class SeriesShape:
             except TableFileError as problem:
                 self.warning = str(problem)
         return SeriesTable.empty(self._body)
+
+    def _by_freedoms(
+        self,
+        table: SeriesTable,
+        nodes: NDArray[np.int64],
+        nodal_forces: NDArray[np.float64],
+        young_modulus: float | None,
+    ) -> NDArray[np.float64]:
+        moved = table.displacements(nodes, nodal_forces, young_modulus)
+        places, loads = table.loads(nodes, nodal_forces, young_modulus)
+        if not self._is_filled[places].all():
+            return moved
+        largest = table.largest_force.reshape(-1, 3)[places]
+        return moved + self._pairs.displacements(places, loads, largest)
+
+    def _complete(self, places: NDArray[np.int64]) -> None:
+        """What touched freedoms do together; in the background."""
+        if not self._by_load:
+            if self._solid is None:
+                self._solid = self._made_solid()
+            self._pairs.fill(self._solid, places)
 
     def _fill(self, places: NDArray[np.int64]) -> None:
         if self._table is None or self._solid is None:

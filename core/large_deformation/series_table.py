@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..freedoms import freedoms
 from ..soft_body import SoftBody
 from .column_codec import ColumnCodec
 from .continued_powers import continued_powers
@@ -78,18 +79,18 @@ class SeriesTable:
         return np.asarray(self.is_filled.reshape(-1, 3)[places].all(axis=1), dtype=np.bool_)
 
     def fill(
-        self, solid: SeriesSolid, freedoms: NDArray[np.int64], may_polish: bool = True
+        self, solid: SeriesSolid, wanted: NDArray[np.int64], may_polish: bool = True
     ) -> NDArray[np.int64]:
-        """Compute the entries of these freedoms (k,).
+        """Compute the entries of the ``wanted`` freedoms (k,).
 
         Returns those whose largest force is smaller than wanted, for want of polishing.
         """
-        entries = series_entries(solid, freedoms, may_polish)
-        self.put(freedoms, entries)
-        return freedoms[entries.is_short]
+        entries = series_entries(solid, wanted, may_polish)
+        self.put(wanted, entries)
+        return wanted[entries.is_short]
 
-    def put(self, freedoms: NDArray[np.int64], entries: SeriesEntries) -> None:
-        """Keep the entries of these freedoms (k,)."""
+    def put(self, filled: NDArray[np.int64], entries: SeriesEntries) -> None:
+        """Keep the entries of the ``filled`` freedoms (k,)."""
         force, first = entries.largest_force, entries.first_norm
         second, second_step, second_error = self.codec.encode(
             entries.second, PACKING_ERROR * first / force
@@ -99,14 +100,14 @@ class SeriesTable:
         )
         packing = (second_error * force + third_error * force**2) / first
         with self._lock:
-            for at, freedom in enumerate(freedoms.tolist()):
+            for at, freedom in enumerate(filled.tolist()):
                 self._packed[freedom] = second[at], third[at]
-            self._steps[freedoms] = np.stack([second_step, third_step], axis=1)
-            self.largest_force[freedoms] = force
-            self.bound[freedoms] = entries.bound + packing
-            self.is_polished[freedoms] = entries.is_polished
+            self._steps[filled] = np.stack([second_step, third_step], axis=1)
+            self.largest_force[filled] = force
+            self.bound[filled] = entries.bound + packing
+            self.is_polished[filled] = entries.is_polished
             # Last, since whoever draws looks here first.
-            self.is_filled[freedoms] = True
+            self.is_filled[filled] = True
 
     def columns(self, freedom: int) -> NDArray[np.float32]:
         """Second and third order (2, n, 3) of a freedom that is filled, for a body of 1 Pa."""
@@ -135,18 +136,30 @@ class SeriesTable:
         largest force its displacement goes on straight (:mod:`.continued_powers`).
         """
         moved = self.body.deform(nodes, nodal_forces, young_modulus)
-        modulus = self.body.young_modulus if young_modulus is None else young_modulus
-        loads = np.zeros((self.body.compliance.node_count, 3))
-        places = self.body.free_index(np.asarray(nodes, dtype=np.int64).reshape(-1))
-        free = places >= 0
-        np.add.at(loads, places[free], np.asarray(nodal_forces).reshape(-1, 3)[free] / modulus)
-        flat = loads.ravel()
+        places, loads = self.loads(nodes, nodal_forces, young_modulus)
+        flat = np.zeros(len(self.is_filled))
+        flat[freedoms(places)] = loads.ravel()
         loaded = np.flatnonzero(self.is_filled & (flat != 0.0))
         squares, cubes = continued_powers(flat[loaded], self.largest_force[loaded])
         for freedom, square, cube in zip(loaded.tolist(), squares, cubes, strict=True):
             second, third = self.columns(freedom)
             moved = moved + square * second + cube * third
         return moved
+
+    def loads(
+        self,
+        nodes: NDArray[np.int64],
+        nodal_forces: NDArray[np.float64],
+        young_modulus: float | None = None,
+    ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        """Places (k,) of the free surface, ascending, and the loads (k, 3) on them at 1 Pa."""
+        modulus = self.body.young_modulus if young_modulus is None else young_modulus
+        places = self.body.free_index(np.asarray(nodes, dtype=np.int64).reshape(-1))
+        free = places >= 0
+        once, which = np.unique(places[free], return_inverse=True)
+        loads = np.zeros((len(once), 3))
+        np.add.at(loads, which, np.asarray(nodal_forces).reshape(-1, 3)[free] / modulus)
+        return once, loads
 
     def save(self, path: Path) -> None:
         """Write what is filled; an older file is replaced in one step.

@@ -94,6 +94,22 @@ def test_a_problem_reaches_whoever_waits(table):
     filling.close()
 
 
+def test_touched_places_are_completed_once_they_are_filled(table):
+    completed = []
+
+    def complete(places):
+        assert table.is_filled[places].all()
+        completed.append(places.tolist())
+
+    filling = OutwardFilling(POSITIONS, table.is_filled, table.fill, 2, complete=complete)
+    for wanted in ([4, 5, 6], [20, 21], [4, 5, 6]):
+        filling.wait_for(np.array(wanted))
+        assert completed[-1] == wanted
+    filling.wait_for(np.array([4, 5, 6]))
+    filling.close()
+    assert completed == [[4, 5, 6], [20, 21], [4, 5, 6]]
+
+
 def test_nothing_begins_before_a_touch(table):
     filling = OutwardFilling(POSITIONS, table.is_filled, table.fill, 2)
     filling.close()

@@ -42,7 +42,7 @@ def test_it_is_nearer_to_the_truth_than_the_linear_shape(cube, whole_load):
     drawn = shape.displacements(nodes, 2.5 * forces)
     shape.close()
     error, before = np.linalg.norm(drawn - true), np.linalg.norm(linear - true)
-    assert error < (0.2 if whole_load else 0.9) * before
+    assert error < (0.2 if whole_load else 0.6) * before
 
 
 def test_it_is_smooth_in_the_force_and_never_runs_away(cube, whole_load):
@@ -76,7 +76,12 @@ def test_a_table_is_kept_beside_the_body_and_found_again(cube, tmp_path):
     assert table_path(tmp_path / "cube.npz", "series").exists()
     stored = SeriesTable.load(cube, table_path(tmp_path / "cube.npz", "series"))
     assert stored.has(cube.free_index(nodes)).all()
-    np.testing.assert_array_equal(stored.displacements(nodes, forces), drawn)
+    np.testing.assert_array_equal(
+        stored.displacements(nodes, forces), first.table.displacements(nodes, forces)
+    )
+    again = made(cube, False, tmp_path / "cube.npz")
+    np.testing.assert_array_equal(again.displacements(nodes, forces), drawn)
+    again.close()
     np.testing.assert_array_equal(stored.bound, first.table.bound)
 
 
