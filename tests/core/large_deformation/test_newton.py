@@ -162,7 +162,7 @@ def test_the_line_search_takes_a_far_pull_at_once():
     found = equilibrium(body, at_the_end(body, 2, 30.0))
     assert found.load_steps == 1
     assert found.residual < 1e-8
-    assert found.displacements[:, 2].max() > 10.0
+    assert found.displacements[:, 2].max() > 9.0
 
 
 def test_rounding_in_a_slender_body_is_no_collapse():
