@@ -282,7 +282,7 @@ def _shares(
         members = np.flatnonzero(cuts == count)
         places = (centres @ corners[members]).reshape(-1, 3)
         outward = (centres @ corner_normals[members]).reshape(-1, 3)
-        chosen = np.asarray(tree.query(places)[1], dtype=np.int64)
+        chosen = np.asarray(tree.query(places, workers=-1)[1], dtype=np.int64)
         away = np.einsum("qx,qx->q", normals[chosen], outward) <= 0
         if away.any():
             _, nearest = tree.query(places[away], asked)

@@ -212,11 +212,15 @@ def _lifted(
 ) -> NDArray[np.float64]:
     """What is to be added to ``own`` (P, 3, 3) so that no point is held by more than all of it."""
     body, count = field.body, len(points)
-    corners = body.mesh.surface_local_triangles[points.triangles]
+    # Far fewer triangles than points lie on them.
+    used, place = np.unique(points.triangles, return_inverse=True)
+    corners = body.mesh.surface_local_triangles[used]
     seen, loaded = np.repeat(corners, 3, axis=1), np.tile(corners, (1, 3))
-    resolved = pair_blocks(body, seen.reshape(-1), loaded.reshape(-1)).reshape(count, 3, 3, 3, 3)
-    weights = np.einsum("pa,pb->pab", points.alphas, points.alphas)
-    whole = own + np.einsum("pab,pabxy->pxy", weights, resolved)
+    resolved = pair_blocks(body, seen.reshape(-1), loaded.reshape(-1)).reshape(len(used), 9, 9)
+    weights = (points.alphas[:, :, None] * points.alphas[:, None, :]).reshape(count, 9)
+    whole = own.copy()
+    for pair in range(9):
+        whole += (weights[:, pair, None] * resolved[place, pair]).reshape(count, 3, 3)
     firmest = OWN_PINNED / np.linalg.eigvalsh(body.contact_blocks).max()
     whole += firmest * pinned[:, None, None] * np.eye(3)
     alone = own_displacement(points.areas, points.normals, body.poisson_ratio)
