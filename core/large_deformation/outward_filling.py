@@ -114,13 +114,16 @@ class OutwardFilling:
             if self._problem is not None:
                 raise self._problem
 
-    def close(self) -> None:
-        """End after the slice that is under way. Safe to call twice."""
+    def close(self, patience: float | None = None) -> None:
+        """End after the slice that is under way, waiting for it at most so many seconds.
+
+        What it fills after that is as good, but nobody may come back for it. Safe to call twice.
+        """
         with self._changed:
             self._is_closed = True
             self._changed.notify_all()
         if self._thread is not None:
-            self._thread.join()
+            self._thread.join(patience)
 
     def _begin(self) -> None:
         if self._thread is None and not self._is_closed:

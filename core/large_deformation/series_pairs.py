@@ -19,8 +19,8 @@ from .power_series import SeriesSolid
 
 # Places that are kept, each with 36 columns.
 PLACES_KEPT = 8
-# More nodes at once are no triangle, and their pairs too many.
-MOST_NODES = 3
+# Those of two fingers, with 153 columns; more nodes are a tool's, and their pairs too many.
+MOST_NODES = 6
 COLUMNS_AT_ONCE = 9
 
 

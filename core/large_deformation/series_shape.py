@@ -37,6 +37,8 @@ LOAD_SHARE = 0.05
 # and one of a body of 20,000, with 200 MB of strains.
 SLICE = 25_000
 MOST_NODES_AT_ONCE = 3
+# Seconds that closing waits for a slice under way; on a large body it may take longer, and is lost.
+PATIENCE = 0.25
 
 
 def load_displacements(solid: SeriesSolid, forces: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -157,7 +159,7 @@ class SeriesShape:
 
         Where it cannot be kept, :attr:`warning` says why; it is computed again next time.
         """
-        self._filling.close()
+        self._filling.close(PATIENCE)
         self._keep()
 
     def _touch(self, nodes: NDArray[np.int64]) -> None:

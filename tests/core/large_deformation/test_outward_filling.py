@@ -72,6 +72,8 @@ def test_it_ends_after_the_slice_that_is_under_way(table):
     filling = OutwardFilling(POSITIONS, table.is_filled, fill, 2)
     filling.around(np.array([0]))
     assert entered.wait(10)
+    filling.close(patience=0.01)
+    assert not table.is_filled.any()
     closing = threading.Thread(target=filling.close)
     closing.start()
     leave.set()

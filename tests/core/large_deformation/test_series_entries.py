@@ -87,3 +87,13 @@ def test_the_reach_of_a_tolerance_is_where_the_claim_meets_it():
     assert (reach.bound(share) <= 0.01).all()
     assert reach.bound(1.2 * share)[0] > 0.01
     assert np.isinf(reach.bound(np.array([2.0, 0.6]))[1])
+
+
+def test_a_place_that_is_about_to_give_way_counts_as_much_as_the_whole(rng):
+    body = rng.standard_normal((50, 3, 1))
+    terms = [0.1**order * body for order in range(4)]
+    whole = SeriesReach.of(terms)
+    for order, term in enumerate(terms):
+        term[7] = 0.5**order * 5 * np.abs(body).max()
+    assert whole.ratio[0] == pytest.approx(0.1)
+    assert SeriesReach.of(terms).ratio[0] >= 0.5
