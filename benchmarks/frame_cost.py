@@ -1,6 +1,6 @@
 """What a drawn frame costs in every shape, in its parts.
 
-    python benchmarks/frame_cost.py [--quick]
+    python benchmarks/frame_cost.py [--quick] [--shapes linear series ...]
 
 For ``mouse-1.7k`` and ``mouse-20k``, under touches of 3 mm in the middle of random triangles, one
 after the other, with all at hand that the shapes prepare in the background:
@@ -113,7 +113,9 @@ def main() -> int:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--quick", action="store_true", help="leave out mouse-20k")
-    names = ["mouse-1.7k"] if parser.parse_args().quick else ["mouse-1.7k", "mouse-20k"]
+    parser.add_argument("--shapes", nargs="+", choices=list(MAKERS), default=list(MAKERS))
+    options = parser.parse_args()
+    names = ["mouse-1.7k"] if options.quick else ["mouse-1.7k", "mouse-20k"]
     is_kept = True
     for body_name in names:
         body = baked(stored_body(body_name))
@@ -123,7 +125,9 @@ def main() -> int:
         print(f"  {'':<17}{'prepare':>11}" + "".join(f"{each:>10}" for each in columns))
         touches, draw = random_loads(body, TOUCHES), draw_seconds(body)
         for name in SHAPES:
-            if name not in MAKERS or (name == "table" and nodes > LARGEST_FOR_NEWTONS_TABLE):
+            if name == "table" and nodes > LARGEST_FOR_NEWTONS_TABLE:
+                continue
+            if name not in options.shapes:
                 continue
             seconds = measure(body, name, touches, draw)
             if nodes <= CLAIMED_NODES and seconds > LARGEST_FRAME:
