@@ -64,8 +64,12 @@ def determinants(matrices: Array) -> Array:
     return found
 
 
-def inverse_of_symmetric(matrices: Array) -> Array:
-    """A^-1 of symmetric A."""
+def inverse_above_identity(matrices: Array) -> Array:
+    """A^-1 of symmetric A whose eigenvalues are 1 or more.
+
+    So the determinant is at least 1 and no entry of the inverse is larger, which rounding would not
+    keep where the eigenvalues differ by many orders of magnitude.
+    """
     rows = np.stack(
         [
             cross(matrices[1], matrices[2]),
@@ -73,5 +77,5 @@ def inverse_of_symmetric(matrices: Array) -> Array:
             cross(matrices[0], matrices[1]),
         ]
     )
-    rows /= np.einsum("id,id->d", matrices[0], rows[0])
-    return rows
+    rows /= np.maximum(np.einsum("id,id->d", matrices[0], rows[0]), 1.0)
+    return np.clip(rows, -1.0, 1.0, out=rows)

@@ -24,6 +24,7 @@ Materials, ACM Transactions on Graphics 36, 2017; there in displacements.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -70,17 +71,17 @@ class Relaxation:
         history = [_Change.damped(share, linear, -forces, slope)]
         for step in range(steps):
             direction = _direction(slope, history, self.solve)
-            descent = dot(slope, direction)
-            there = _Place.at(here.linear + direction, forces, self)
-            share = step_length(here.potential, descent, there.potential)
+            most = _bound(dot(forces, linear), -dot(slope, direction))
+            there = _Place.at(here.linear + most * direction, forces, self)
+            share = step_length(here.potential, most * dot(slope, direction), there.potential)
             if step + 1 == steps:
                 # On the chord: warping once more would change little.
                 start, end = here.warped.displacements, there.warped.displacements
                 return start + share * (end - start)
             if share < 1.0:
-                there = _Place.at(here.linear + share * direction, forces, self)
+                there = _Place.at(here.linear + share * most * direction, forces, self)
             after = self._gradient(there, forces)
-            history.append(_Change.damped(share, direction, slope, after))
+            history.append(_Change.damped(share * most, direction, slope, after))
             here, slope = there, after
         return here.warped.displacements
 
@@ -92,6 +93,15 @@ class Relaxation:
     def _gradient(self, place: _Place, forces: Array) -> Array:
         unbalanced = self.energy.forces(place.stressed) - forces
         return self.coordinates.pulled_back(place.warped, unbalanced)
+
+
+def _bound(work: float, descent: float) -> float:
+    """Share of a step, at most 1, whose work on its own stiffness is that of the linear shape.
+
+    ``work`` is F K^-1 F, ``descent`` g H g. Where steps of sense are smaller by far this bounds
+    those of a body beyond its collapse, whose gradients grow with the cube of what is wrong.
+    """
+    return 1.0 if descent <= work else math.sqrt(work / descent)
 
 
 def step_length(start: float, slope: float, end: float) -> float:

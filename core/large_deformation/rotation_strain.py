@@ -31,7 +31,7 @@ from .by_component import (
     axial,
     cross_matrices,
     identity_added,
-    inverse_of_symmetric,
+    inverse_above_identity,
     product,
     symmetric_part,
     transposed_product,
@@ -90,7 +90,7 @@ class RotationStrain:
         strain = symmetric_part(gradient)
         turned = rotations_less_identity(vectors)
         squared = 0.5 * product(strain, strain)
-        bounded = inverse_of_symmetric(identity_added(squared))
+        bounded = inverse_above_identity(identity_added(squared))
         # I - (I + q)^-1 = q (I + q)^-1: what is small is never added to the identity.
         stretch = strain - product(squared, bounded)
         wanted = product(turned, stretch)

@@ -118,6 +118,17 @@ def test_no_force_leaves_the_body_at_rest():
         assert not relaxed(solid, np.zeros((solid.node_count, 3)), steps).any()
 
 
+@pytest.mark.parametrize("direction", [(0.0, 0.0, 1.0), (-1.0, 0.0, 0.0)])
+def test_absurd_forces_give_numbers(direction):
+    solid = beam()
+    for times in (1e3, 1e6):
+        for steps in range(4):
+            with np.errstate(all="raise", under="ignore"):
+                found = relaxed(solid, end_load(solid, times, direction), steps)
+            assert np.isfinite(found).all()
+            assert times > 1e3 or np.abs(found).max() < 1e3 * times
+
+
 @pytest.mark.parametrize(
     ("start", "slope", "end", "share"),
     [
