@@ -101,7 +101,7 @@ class SeriesShape:
     def ready(self) -> float:
         """Share of the nodes touched last that need not be drawn linear."""
         if not len(self._places):
-            return float(self.is_prepared)
+            return 1.0
         return float(self._is_filled[self._places].mean())
 
     @property

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from palpate.core.errors import PalpateError
 from palpate.core.large_deformation.free_solid import FreeSolid
 from palpate.core.large_deformation.newton import equilibrium
 from palpate.core.large_deformation.series_shape import SeriesShape
@@ -65,6 +66,29 @@ def test_an_empty_table_is_linear_and_says_so(cube):
     table = SeriesTable.empty(cube)
     assert not table.has(np.arange(3)).any()
     np.testing.assert_array_equal(table.displacements(nodes, forces), cube.deform(nodes, forces))
+
+
+def test_what_does_not_move_needs_nothing(cube, whole_load):
+    shape = SeriesShape(cube, whole_load=whole_load)
+    pinned, force = cube.fixed[:1], np.ones((1, 3))
+    shape.wait_for(pinned)
+    assert shape.ready == 1.0
+    assert not shape.displacements(pinned, force).any()
+    shape.close()
+
+
+def test_what_ends_the_background_is_told_where_it_is_drawn(cube, whole_load, monkeypatch):
+    def fails(_):
+        raise PalpateError("stiffness: not held")
+
+    monkeypatch.setattr(FreeSolid, "of", fails)
+    shape = SeriesShape(cube, whole_load=whole_load)
+    nodes, forces = touched(cube)
+    with pytest.raises(PalpateError, match="not held"):
+        shape.wait_for(nodes)
+    with pytest.raises(PalpateError, match="shape series: stiffness: not held"):
+        shape.displacements(nodes, forces)
+    shape.close()
 
 
 def test_a_table_is_kept_beside_the_body_and_found_again(cube, tmp_path):
