@@ -45,4 +45,5 @@ def plush_hare(scene: bpy.types.Scene) -> bpy.types.Object:
     scenes.pin(hare, shape.pinned)
     bodies.set_up(hare, scenes.PINNED, material="PLUSH")
     bodies.set_mesh_size(hare, bodies.HARE_SIZE)
+    hare.palpate.shape = "ROTATION_STRAIN"
     return hare
