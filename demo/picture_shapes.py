@@ -16,8 +16,9 @@ HERE = Path(__file__).resolve().parent
 SCENES = HERE.parent / "sample_scenes"
 sys.path[:0] = [str(HERE), str(SCENES)]
 
-# World axes, metres: below the tip of the left ear, to the side and down.
-BELOW, BY = 0.008, (0.0, 0.062, -0.022)
+# World axes, metres: from below the tip of the left ear to the side and down, where an ear comes to
+# that is bent without being stretched.
+BELOW, BY = 0.008, (0.006, 0.064, -0.043)
 SHAPES = ("LINEAR", "TABLE", "SERIES", "ROTATION_STRAIN")
 PERCENT, SAMPLES = 55, 12
 FRAME, LETTERS = (520, 528), 15.0

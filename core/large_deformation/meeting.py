@@ -4,7 +4,9 @@ The force that is felt comes from the linear relation, under which the linear sh
 the fingers do. Under the same force another shape moves its touched places elsewhere: the bend of
 an ear goes along an arc. What is drawn shall touch the finger; so each finger's load is changed by
 a force c, shared by its nodes as the load itself is, until the touched place is where the linear
-shape has it. Broyden's method finds c; between two frames it goes on where it was.
+shape has it. Broyden's method finds c; between two frames it goes on where it was. It begins with
+the softest stiffness of the place in all directions: a body gives way where it is soft, and a
+finger that goes where the body could only be torn to is met as nearly as the body bends.
 
 Reference
 ---------
@@ -16,6 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,17 +28,20 @@ from .shapes import LinearShape, Shape
 
 Array = NDArray[np.float64]
 
-# A place is met when it is missed by less than this share of its way.
-MET = 0.01
-# A step changes the loads by no more than this share of the largest one; it is halved where steps
-# bring nothing, and below the least the fingers cannot be met. What is missed by little is no sign.
-LARGEST_STEP, LEAST_STEP, LITTLE = 0.5, 0.02, 0.05
-# Beyond this many times the linear load a finger is asked for what the shape cannot do.
-LARGEST_LOAD = 20.0
+# A place is met when it is missed by less than this share of its way. To miss it by little is no
+# sign that steps do not help.
+MET, LITTLE = 0.01, 0.05
+# A step goes no farther than this share of the body's size; that is halved where steps bring
+# nothing, and below the least the fingers cannot be met.
+LARGEST_STEP, LEAST_STEP = 0.03, 0.002
+# Nor does it change the loads by more than this share of the largest one.
+LARGEST_CHANGE = 0.3
 # Fingers that moved by this share of their way are followed again.
 MOVED_ON = 0.05
+# The nodes of a load whose compliance is looked up, at most.
+MOST_NODES = 12
 # Steps when somebody waits for the answer.
-MOST_STEPS = 40
+MOST_STEPS = 60
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,14 +90,16 @@ class Meeting:
     body: SoftBody
     shape: Shape
     # All loads are kept at unit modulus, so that the modulus can be changed while it goes on.
-    _fingers: tuple[tuple[int, ...], ...] = ()
-    _added: Array = field(default_factory=lambda: np.zeros((0, 3)))
-    _inverse: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    _nodes: tuple[tuple[int, ...], ...] = ()
+    _loads: Array = field(default_factory=lambda: np.zeros((0, 3)))
+    _stiffness: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    _wanted: Array | None = None
     _before: tuple[Array, Array] | None = None
-    _gave_up: Array | None = None
-    # How large steps may be, and the least that was missed with which added load.
+    # The way of one step, as a share of the body's size, and the least that was missed since the
+    # fingers moved: by how much, with which loads, for which places.
     _trust: float = LARGEST_STEP
-    _best: tuple[float, Array] | None = None
+    _best: tuple[float, Array, Array] | None = None
+    _gave_up: bool = False
 
     def step(self, fingers: Sequence[FingerLoad], young_modulus: float) -> Met:
         """The shape under these loads, one step nearer to the fingers than the last one."""
@@ -101,20 +109,19 @@ class Meeting:
             return Met(linear, linear, 0.0)
         wanted = self._places(loads, linear)
         self._recognise(loads, wanted)
+        if self._wanted is not None and not self._gave_up:
+            self._approach(wanted - self._wanted)
+        self._wanted = wanted
         displacements = self._shape(loads)
         now = self._places(loads, displacements)
         missed = wanted - now
-        resultants = np.array([load.forces.sum(axis=0) for load in loads]) + self._added
-        self._learn(resultants, now)
         share = _longest(missed) / max(_longest(wanted), 1e-12)
-        if self._gave_up is not None:
-            if _longest(wanted - self._gave_up) <= MOVED_ON * _longest(wanted):
-                return Met(displacements, linear, 0.0)
-            self._gave_up, self._trust, self._best = None, LARGEST_STEP, None
-        self._judge(share)
-        if share > MET:
-            self._approach(loads, missed, wanted)
-        return Met(displacements, linear, share)
+        self._learn(now)
+        rests = self._gave_up
+        self._judge(share, wanted)
+        if share > MET and not self._gave_up:
+            self._approach(missed)
+        return Met(displacements, linear, 0.0 if rests and self._gave_up else share)
 
     def settle(self, loads: Sequence[FingerLoad], young_modulus: float) -> Met:
         """Steps until the fingers are met, or as many as help."""
@@ -123,27 +130,45 @@ class Meeting:
             if best.settled:
                 break
             met = self.step(loads, young_modulus)
-            best = min((best, met), key=lambda one: one.missed)
+            best = met if met.missed <= best.missed else best
         return best
 
     def _recognise(self, loads: Sequence[FingerLoad], wanted: Array) -> None:
         """Begin anew with other fingers; go on where the same ones have moved over the surface."""
-        fingers = tuple(tuple(load.nodes.tolist()) for load in loads)
-        if fingers == self._fingers:
+        nodes = tuple(tuple(load.nodes.tolist()) for load in loads)
+        if nodes == self._nodes:
             return
-        if len(fingers) != len(self._fingers):
-            self._added = np.zeros((len(loads), 3))
-            # Per metre, what the linear relation says in the mean: enough to begin with.
-            forces = [float(np.linalg.norm(load.forces.sum(axis=0))) for load in loads]
-            ways = np.maximum(np.linalg.norm(wanted, axis=1), 1e-12)
-            self._inverse = np.diag(np.repeat(np.array(forces) / ways, 3))
-        self._fingers, self._before, self._gave_up = fingers, None, None
-        self._trust, self._best = LARGEST_STEP, None
+        if len(nodes) != len(self._nodes):
+            softest = np.array([self._softest(load) for load in loads])
+            self._loads, self._wanted = softest[:, None] * wanted, None
+            self._stiffness = np.diag(np.repeat(softest, 3))
+        self._nodes, self._before, self._best = nodes, None, None
+        self._trust, self._gave_up = LARGEST_STEP, False
+
+    @cached_property
+    def _size(self) -> float:
+        """Diagonal of the body's bounding box, metres."""
+        return float(np.linalg.norm(np.ptp(self.body.mesh.nodes, axis=0)))
+
+    def _softest(self, load: FingerLoad) -> float:
+        """Load per way of the middle of a load in its softest direction, by the linear relation.
+
+        Steps by this are safe in every direction, where the stiffness itself, once the place has
+        turned, would ask for too much. Large deformations go along the soft ones.
+        """
+        heaviest = np.argsort(-load.weights, kind="stable")[:MOST_NODES]
+        weights = load.weights[heaviest] / load.weights[heaviest].sum()
+        local = np.searchsorted(self.body.mesh.surface_nodes, load.nodes[heaviest])
+        blocks = self.body.surface_blocks(local, local)
+        compliance = np.einsum("a,b,abij->ij", weights, weights, blocks)
+        return 1.0 / float(np.linalg.eigvalsh(0.5 * (compliance + compliance.T))[-1])
 
     def _shape(self, loads: Sequence[FingerLoad]) -> Array:
         changed = [
-            FingerLoad(load.nodes, load.forces + load.weights[:, None] * added)
-            for load, added in zip(loads, self._added, strict=True)
+            FingerLoad(
+                load.nodes, load.forces + load.weights[:, None] * (now - load.forces.sum(axis=0))
+            )
+            for load, now in zip(loads, self._loads, strict=True)
         ]
         return self.shape.displacements(*_joined(changed), 1.0)
 
@@ -156,43 +181,42 @@ class Meeting:
             ways[number] = load.weights[moves] @ displacements[free[moves]]
         return ways
 
-    def _learn(self, resultants: Array, places: Array) -> None:
-        """Broyden's update of the inverse: loads per displacement, from the last two shapes."""
-        before, self._before = self._before, (resultants.copy(), places.copy())
+    def _learn(self, places: Array) -> None:
+        """Broyden's update of the stiffness, from the last two shapes."""
+        before, self._before = self._before, (self._loads, places)
         if before is None:
             return
-        loads, ways = (resultants - before[0]).ravel(), (places - before[1]).ravel()
+        loads, ways = (self._loads - before[0]).ravel(), (places - before[1]).ravel()
         if np.linalg.norm(ways) <= 1e-4 * np.linalg.norm(places):
             # Too little to tell from rounding.
             return
-        through = self._inverse @ ways
+        through = self._stiffness @ ways
         along = float(loads @ through)
         if abs(along) > 1e-3 * float(np.linalg.norm(loads) * np.linalg.norm(through)):
-            change: Array = np.outer((loads - through) / along, loads @ self._inverse)
-            self._inverse = self._inverse + change
+            change: Array = np.outer((loads - through) / along, loads @ self._stiffness)
+            self._stiffness = self._stiffness + change
 
-    def _judge(self, share: float) -> None:
+    def _judge(self, share: float, wanted: Array) -> None:
         """Trust larger steps where they help, smaller ones where they do not."""
-        if self._best is None or share < 0.98 * self._best[0]:
-            self._trust = LARGEST_STEP if self._best is None else min(LARGEST_STEP, 2 * self._trust)
-            self._best = (share, self._added)
-        elif share > LITTLE:
+        best = self._best
+        moved_on = best is None or _longest(wanted - best[2]) > MOVED_ON * _longest(wanted)
+        if best is None or moved_on or share < 0.98 * best[0]:
+            self._trust = LARGEST_STEP if moved_on else min(LARGEST_STEP, 2 * self._trust)
+            self._best, self._gave_up = (share, self._loads, wanted), False
+        elif share > LITTLE and not self._gave_up:
             self._trust *= 0.5
+            if self._trust < LEAST_STEP:
+                # What came nearest is drawn then, until the fingers move on.
+                self._loads, self._before, self._gave_up = best[1], None, True
 
-    def _approach(self, loads: Sequence[FingerLoad], missed: Array, wanted: Array) -> None:
-        largest = _longest(np.array([load.forces.sum(axis=0) for load in loads]))
-        change = (self._inverse @ missed.ravel()).reshape(-1, 3)
-        size = _longest(change)
-        if size > self._trust * largest:
-            change *= self._trust * largest / size
-        added = self._added + change
-        within = np.isfinite(added).all() and np.abs(added).max() <= LARGEST_LOAD * largest
-        if within and self._trust >= LEAST_STEP:
-            self._added = added
-            return
-        # What came nearest is drawn then, until the fingers move on.
-        nearest = np.zeros_like(added) if self._best is None else self._best[1]
-        self._added, self._before, self._gave_up = nearest, None, wanted
+    def _approach(self, missed: Array) -> None:
+        within = min(1.0, self._trust * self._size / max(_longest(missed), 1e-12))
+        change = (self._stiffness @ (within * missed).ravel()).reshape(-1, 3)
+        most = LARGEST_CHANGE * self._trust / LARGEST_STEP * _longest(self._loads)
+        if (size := _longest(change)) > most > 0.0:
+            change *= most / size
+        if np.isfinite(change).all():
+            self._loads = self._loads + change
 
 
 def settled(body: SoftBody, shape: Shape, loads: Sequence[FingerLoad], young_modulus: float) -> Met:
