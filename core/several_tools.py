@@ -3,18 +3,36 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
+from .contact_points import ContactPoints
+from .near_field import point_compliance
 from .soft_body import SoftBody
-from .tool_contact import Load, ToolTouch, press_tool
+from .tool_contact import (
+    MOST_ADDITIONS,
+    MOST_STRIDES,
+    Load,
+    ToolTouch,
+    continued,
+    has_lost,
+    is_outside,
+    looked_at,
+    moved_by,
+    points_entered,
+    press_tool,
+    stride,
+    too_far,
+    touch_of,
+)
+from .tool_law import Candidates, Settled, settle_together
 from .tools import Pose, Tool
 
-# Turns in which each tool is pressed once with the others' last forces (block Gauss-Seidel).
-MOST_TURNS = 200
-
-# Forces that change by less than this share of the largest have been found.
-CONVERGED = 1e-10
+# Eigenvalues of the compliance below this share of the largest, if negative, are rounding.
+ROUNDING = 1e-6
 
 
 def press_tools(
@@ -26,43 +44,174 @@ def press_tools(
 ) -> list[ToolTouch]:
     """Press several tools at once, without friction; one touch for each, in their order.
 
-    Each tool meets the surface as the others' nodal forces have moved it, in turns, until the
-    forces stay. What one does to another goes through the elements alone, in both directions by the
-    same blocks; so the force on each is the slope of one energy in all poses.
+    The points of all tools are one complementarity problem. What one tool does to another goes
+    through the elements alone, in both directions by the same blocks; so the force on each is the
+    slope of one energy in all poses.
 
     Parameters
     ----------
     young_modulus : pascal; the body's own unless given.
-    start : the touches before, in the same order; each tool goes on from there.
+    start : the touches before, in the same order; all tools go on from there together. Without,
+        each comes from outside by itself before they are pressed together.
 
     Raises
     ------
     PalpateError
         As :func:`.tool_contact.press_tool`.
     """
+    if start is None:
+        touches = [
+            press_tool(body, tool, pose, young_modulus=young_modulus) for tool, pose in tools
+        ]
+    else:
+        touches = [
+            replace(continued(touch, body, tool, young_modulus), friction=0.0)
+            for touch, (tool, _) in zip(start, tools, strict=True)
+        ]
+    for _ in range(MOST_STRIDES):
+        steps = [
+            stride(tool, touch.pose, goal)
+            for touch, (tool, goal) in zip(touches, tools, strict=True)
+        ]
+        touches = _settled(touches, [pose for pose, _ in steps])
+        if all(arrived for _, arrived in steps):
+            return touches
+    raise too_far(tools[0][0])
+
+
+def _settled(states: Sequence[ToolTouch], poses: Sequence[Pose]) -> list[ToolTouch]:
+    """All touches with their tools at ``poses``, reached in one step from ``states``."""
     touches = [
-        press_tool(
-            body, tool, pose, young_modulus=young_modulus, start=None if start is None else start[i]
-        )
-        for i, (tool, pose) in enumerate(tools)
+        replace(state, pose=pose, free=state.free or is_outside(state, pose))
+        for state, pose in zip(states, poses, strict=True)
     ]
-    for _ in range(MOST_TURNS):
-        change = 0.0
-        for i, (tool, pose) in enumerate(tools):
-            others = _together(touches[:i] + touches[i + 1 :])
-            touch = press_tool(
-                body,
-                tool,
-                pose,
-                young_modulus=young_modulus,
-                start=touches[i],
-                outside=others,
+    moved = _moved_by_others(touches)
+    chosen = [
+        looked_at(touch, touch.pose, by_others) if touch.free else touch.points
+        for touch, by_others in zip(touches, moved, strict=True)
+    ]
+    if not any(points.size for points in chosen):
+        return touches
+    forces = _forces_on(chosen, touches)
+    for _ in range(MOST_ADDITIONS):
+        parts = _parts(chosen)
+        candidates = _candidates(touches, chosen)
+        tools = [(touch.tool, touch.pose, part) for touch, part in zip(touches, parts, strict=True)]
+        settled = settle_together(candidates, tools, forces)
+        after = [
+            touch_of(touch, points, _of(settled, part), _own(candidates, part), gone)
+            for touch, points, part, gone in zip(
+                touches, chosen, parts, _places(candidates, settled, parts), strict=True
             )
-            change = max(change, float(np.linalg.norm(touch.force - touches[i].force)))
-            touches[i] = touch
-        if change <= CONVERGED * max(float(np.linalg.norm(touch.force)) for touch in touches):
+        ]
+        moved = _moved_by_others(after)
+        new = [
+            points_entered(touch, touch.pose, points, _of(settled, part), by_others)
+            if touch.free
+            else points[:0]
+            for touch, points, part, by_others in zip(after, chosen, parts, moved, strict=True)
+        ]
+        if not (settled.exact and any(points.size for points in new)):
             break
-    return touches
+        chosen = [np.union1d(points, more) for points, more in zip(chosen, new, strict=True)]
+        forces = _forces_on(chosen, after)
+    return [
+        replace(touch, free=state.free and not has_lost(state, touch, by_others))
+        for state, touch, by_others in zip(touches, after, moved, strict=True)
+    ]
+
+
+def _parts(chosen: Sequence[NDArray[np.int64]]) -> list[slice]:
+    """Where the points of each tool stand among those of all."""
+    ends = np.cumsum([0] + [len(points) for points in chosen]).tolist()
+    return [slice(first, end) for first, end in pairwise(ends)]
+
+
+def _forces_on(
+    chosen: Sequence[NDArray[np.int64]], touches: Sequence[ToolTouch]
+) -> NDArray[np.float64]:
+    """Forces (p, 3) that the touches have on the chosen points of all tools."""
+    forces = np.zeros((sum(len(points) for points in chosen), 3))
+    for part, points, touch in zip(_parts(chosen), chosen, touches, strict=True):
+        forces[part][np.searchsorted(points, touch.points)] = touch.forces
+    return forces
+
+
+def _candidates(touches: Sequence[ToolTouch], chosen: Sequence[NDArray[np.int64]]) -> Candidates:
+    """The chosen points of all tools, with the near field among those of each."""
+    taken = [touch.surface.taken(points) for touch, points in zip(touches, chosen, strict=True)]
+    together = ContactPoints(
+        *(
+            np.concatenate([getattr(points, name) for points in taken])
+            for name in ("positions", "normals", "triangles", "alphas", "areas")
+        )
+    )
+    every = np.arange(len(together))
+    elements = _as_matrix(point_compliance(touches[0].body, together, every, every))
+    near = np.zeros_like(elements)
+    for touch, points, part in zip(touches, chosen, _parts(chosen), strict=True):
+        if touch.correction is not None:
+            entries = _entries(part)
+            near[entries, entries] = _as_matrix(touch.correction.between(points, points))
+    matrix = elements + near
+    least, largest = np.linalg.eigvalsh(matrix)[[0, -1]]
+    if least < -ROUNDING * largest:
+        matrix = elements + _without_firmness(near)
+    none = np.zeros_like(together.positions)
+    return Candidates(together.positions, together.normals, matrix / touches[0].young_modulus, none)
+
+
+def _as_matrix(blocks: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Blocks (n, n, 3, 3) as one matrix (3n, 3n)."""
+    return blocks.transpose(0, 2, 1, 3).reshape(3 * len(blocks), -1)
+
+
+def _without_firmness(near: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The near field (3n, 3n) without what makes the elements firmer than they are.
+
+    Of a thin part on a coarse mesh it takes for its own what is the part's bending. Tools on both
+    sides of it would then squeeze less than nothing. Elements with what is left are sound.
+    """
+    values, vectors = np.linalg.eigh(near)
+    kept: NDArray[np.float64] = (vectors * np.maximum(values, 0.0)) @ vectors.T
+    return kept
+
+
+def _entries(part: slice) -> slice:
+    """Where the three coordinates of one tool's points stand among those of all."""
+    return slice(3 * part.start, 3 * part.stop)
+
+
+def _own(candidates: Candidates, part: slice) -> NDArray[np.float64]:
+    """The compliance of one tool's points among themselves, (3p, 3p)."""
+    entries = _entries(part)
+    return candidates.compliance[entries, entries]
+
+
+def _of(settled: Settled, part: slice) -> Settled:
+    return replace(
+        settled,
+        forces=settled.forces[part],
+        pushes=settled.pushes[part],
+        normals=settled.normals[part],
+        displacements=settled.displacements[part],
+    )
+
+
+def _places(
+    candidates: Candidates, settled: Settled, parts: Sequence[slice]
+) -> list[NDArray[np.float64]]:
+    """Where each tool's points are now."""
+    places = candidates.positions + settled.displacements
+    return [places[part] for part in parts]
+
+
+def _moved_by_others(touches: Sequence[ToolTouch]) -> list[NDArray[np.float64]]:
+    """How far the other tools move all contact points of each, (P, 3)."""
+    return [
+        moved_by(touch, np.arange(len(touch.surface)), _together([*touches[:i], *touches[i + 1 :]]))
+        for i, touch in enumerate(touches)
+    ]
 
 
 def energy_of(touches: Sequence[ToolTouch]) -> float:

@@ -216,13 +216,18 @@ def press_tool(
         if shallow and not _is_within(state, pose):
             return _settled(replace(state, free=True), pose, outside)
         start = replace(state, pose=_way_out(state, pose), free=True)
-    touch = replace(_continued(start, body, tool, young_modulus), friction=friction)
+    touch = replace(continued(start, body, tool, young_modulus), friction=friction)
     for _ in range(MOST_STRIDES):
-        between, arrived = _stride(tool, touch.pose, pose)
+        between, arrived = stride(tool, touch.pose, pose)
         touch = _settled(touch, between, outside)
         if arrived:
             return touch
-    raise PalpateError(
+    raise too_far(tool)
+
+
+def too_far(tool: Tool) -> PalpateError:
+    """What is wrong with a pose that is too many strides away."""
+    return PalpateError(
         f"tool {tool.name}: the pose is more than {MOST_STRIDES} strides away; begin nearer"
     )
 
@@ -262,12 +267,12 @@ def set_down(
         vectors,
         friction,
     )
-    return replace(state, free=_is_outside(state, pose))
+    return replace(state, free=is_outside(state, pose))
 
 
 def follow_tool(touch: ToolTouch, pose: Pose, *, outside: Load | None = None) -> ToolTouch:
     """One tick: the tool goes towards a pose by at most one stride, and feels the body there."""
-    between, _ = _stride(touch.tool, touch.pose, pose)
+    between, _ = stride(touch.tool, touch.pose, pose)
     return _settled(touch, between, outside)
 
 
@@ -315,7 +320,7 @@ def _known_surface(body: SoftBody, tool: Tool) -> tuple[ContactPoints, NearCorre
     return known[spacing]
 
 
-def _continued(
+def continued(
     start: ToolTouch, body: SoftBody, tool: Tool, young_modulus: float | None
 ) -> ToolTouch:
     """The touch to go on from, its forces at the modulus asked for."""
@@ -332,44 +337,67 @@ def _continued(
 
 def _settled(state: ToolTouch, pose: Pose, outside: Load | None) -> ToolTouch:
     """The touch with the tool at ``pose``, reached in one step from ``state``."""
-    state = replace(state, pose=pose, free=state.free or _is_outside(state, pose))
+    state = replace(state, pose=pose, free=state.free or is_outside(state, pose))
     if not state.free:
         return state
-    chosen = _looked_at(state, pose)
+    moved = moved_by(state, np.arange(len(state.surface)), outside)
+    chosen = looked_at(state, pose, moved)
     if not chosen.size:
         return state
     forces = np.zeros((len(chosen), 3))
     forces[np.searchsorted(chosen, state.points)] = state.forces
     for _ in range(MOST_ADDITIONS):
-        candidates = _candidates(state, chosen, outside)
+        candidates = _candidates(state, chosen, moved[chosen])
         rubbing = _rubbing(state, pose, chosen)
         if state.friction > 0.0:
             settled = settle_rubbing(candidates, state.tool, pose, forces, rubbing)
         else:
             settled = settle(candidates, state.tool, pose, forces)
-        entered = _entered(state, pose, chosen, settled, outside)
+        entered = points_entered(state, pose, chosen, settled, moved)
         if not entered.size:
             break
         grown = np.union1d(chosen, entered)
         forces = np.zeros((len(grown), 3))
         forces[np.searchsorted(grown, chosen)] = settled.forces
         chosen = grown
+    anchors = moved_anchors(settled, candidates, rubbing)
+    touch = touch_of(state, chosen, settled, candidates.compliance, anchors)
+    return replace(touch, free=not has_lost(state, touch, moved))
+
+
+def touch_of(
+    state: ToolTouch,
+    chosen: NDArray[np.int64],
+    settled: Settled,
+    compliance: NDArray[np.float64],
+    anchors: NDArray[np.float64],
+) -> ToolTouch:
+    """The touch of which the points ``chosen`` (p,) have ``settled``; their compliance (3p, 3p) and
+    anchors (p, 3), in the body's coordinates.
+    """
     pressed = np.flatnonzero(settled.pushes > 0.0)
     own = (3 * pressed[:, None] + np.arange(3)).reshape(-1)
-    touch = replace(
+    return replace(
         state,
         points=chosen[pressed],
         forces=settled.forces[pressed],
         pushes=settled.pushes[pressed],
         normals=settled.normals[pressed],
         displacements=settled.displacements[pressed],
-        compliance=candidates.compliance[np.ix_(own, own)],
-        anchors=pose.to_tool(moved_anchors(settled, candidates, rubbing)[pressed]),
+        compliance=compliance[np.ix_(own, own)],
+        anchors=state.pose.to_tool(anchors[pressed]),
         exact=settled.exact,
     )
-    # A tool that lost the surface while in the body would come out at any side: it is let go.
-    lost = state.touching and not touch.touching and not _is_outside(touch, pose)
-    return replace(touch, free=not lost)
+
+
+def has_lost(before: ToolTouch, touch: ToolTouch, moved: NDArray[np.float64]) -> bool:
+    """Whether a tool lost the surface, which others have ``moved`` (P, 3), while in the body.
+
+    It would come out at any side, so it is let go.
+    """
+    if touch.touching or not before.touching:
+        return False
+    return not is_outside(touch, back(touch, moved))
 
 
 def _rubbing(state: ToolTouch, pose: Pose, chosen: NDArray[np.int64]) -> Rubbing:
@@ -379,22 +407,36 @@ def _rubbing(state: ToolTouch, pose: Pose, chosen: NDArray[np.int64]) -> Rubbing
     return Rubbing(state.friction, anchors)
 
 
-def _looked_at(state: ToolTouch, pose: Pose) -> NDArray[np.int64]:
-    """Points that may be touched: those in or near the tool at rest, and those pressed before."""
-    tool, positions = state.tool, state.surface.positions
-    margin = MARGIN * tool.size
-    near = np.linalg.norm(positions - pose.position, axis=1) < tool.reach + margin
-    within = np.flatnonzero(near)
-    distances, _ = distances_in_body(tool, pose, positions[within])
-    return np.union1d(within[distances < margin], state.points)
+def looked_at(state: ToolTouch, pose: Pose, moved: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Points that may be touched: those in or near the tool, at rest or as others have moved them,
+    (P, 3), and those pressed before.
+    """
+    tool, margin = state.tool, MARGIN * state.tool.size
+    looked_at = state.points
+    for places in (state.surface.positions, state.surface.positions + moved):
+        within = np.flatnonzero(
+            np.linalg.norm(places - pose.position, axis=1) < tool.reach + margin
+        )
+        distances, _ = distances_in_body(tool, pose, places[within])
+        looked_at = np.union1d(within[distances < margin], looked_at)
+    return looked_at
 
 
-def _candidates(state: ToolTouch, chosen: NDArray[np.int64], outside: Load | None) -> Candidates:
+def back(state: ToolTouch, moved: NDArray[np.float64]) -> Pose:
+    """The pose before the other fingers moved the place (P, 3) that is nearest to the tool."""
+    places = state.surface.positions + moved
+    distances, _ = distances_in_body(state.tool, state.pose, places)
+    return Pose(state.pose.position - moved[distances.argmin()], state.pose.rotation)
+
+
+def _candidates(
+    state: ToolTouch, chosen: NDArray[np.int64], offsets: NDArray[np.float64]
+) -> Candidates:
     return Candidates(
         state.surface.positions[chosen],
         state.surface.normals[chosen],
         _compliance(state, chosen, chosen),
-        _offsets(state, chosen, outside),
+        offsets,
     )
 
 
@@ -407,7 +449,7 @@ def _compliance(
     return matrix / state.young_modulus
 
 
-def _offsets(
+def moved_by(
     state: ToolTouch, chosen: NDArray[np.int64], outside: Load | None
 ) -> NDArray[np.float64]:
     """Displacements (k, 3) of the chosen points under the forces of other fingers."""
@@ -427,27 +469,25 @@ def _offsets(
     return at_points
 
 
-def _entered(
+def points_entered(
     state: ToolTouch,
     pose: Pose,
     chosen: NDArray[np.int64],
     settled: Settled,
-    outside: Load | None,
+    offsets: NDArray[np.float64],
 ) -> NDArray[np.int64]:
-    """Points not looked at so far that have been moved into the tool."""
+    """Points not looked at so far that have been moved into the tool, by others by ``offsets``."""
     surface, tool = state.surface, state.tool
     pressed = settled.pushes > 0.0
     farthest = float(np.linalg.norm(settled.displacements, axis=1).max(initial=0.0))
-    if outside is not None:
-        offsets = _offsets(state, np.arange(len(surface)), outside)
-        farthest += float(np.linalg.norm(offsets, axis=1).max(initial=0.0))
+    farthest += float(np.linalg.norm(offsets, axis=1).max(initial=0.0))
     away = np.linalg.norm(surface.positions - pose.position, axis=1)
     others = np.setdiff1d(np.flatnonzero(away < tool.reach + farthest), chosen)
     rest, _ = distances_in_body(tool, pose, surface.positions[others])
     others = others[rest < farthest]
     if not others.size:
         return others
-    moved = _offsets(state, others, outside)
+    moved = offsets[others]
     if pressed.any():
         response = _compliance(state, others, chosen[pressed])
         moved += (response @ settled.forces[pressed].reshape(-1)).reshape(-1, 3)
@@ -462,7 +502,7 @@ def _overlap(state: ToolTouch, pose: Pose) -> float:
     return -float(distances.min())
 
 
-def _is_outside(state: ToolTouch, pose: Pose) -> bool:
+def is_outside(state: ToolTouch, pose: Pose) -> bool:
     """Whether the tool is clear of the body at rest: no point in it, nor it in the body."""
     return _overlap(state, pose) <= 0.0 and not _is_within(state, pose)
 
@@ -486,14 +526,14 @@ def _way_out(state: ToolTouch, pose: Pose) -> Pose:
     direction = push / length if length > 0.0 else surface.normals[nearest]
     for strides in range(1, MOST_STRIDES):
         away = pose.position + strides * state.tool.stride * direction
-        if _is_outside(state, Pose(away, pose.rotation)):
+        if is_outside(state, Pose(away, pose.rotation)):
             return Pose(away, pose.rotation)
     raise PalpateError(
         f"tool {state.tool.name}: there is no way out of the body from where it is; begin outside"
     )
 
 
-def _stride(tool: Tool, start: Pose, goal: Pose) -> tuple[Pose, bool]:
+def stride(tool: Tool, start: Pose, goal: Pose) -> tuple[Pose, bool]:
     """The pose one stride from ``start`` towards ``goal``, and whether that is the goal.
 
     A turn counts as the way of the tool's farthest point.

@@ -57,7 +57,8 @@ def settle_rubbing(
     normals = np.zeros_like(forces)
     pushes, into = np.linalg.norm(forces, axis=1), forces
     for made in range(1, most + 1):
-        distances, normals = linearised(candidates, tool, pose, displacements, into)
+        places = candidates.positions + displacements
+        distances, normals = linearised(tool, pose, places, candidates.normals, into)
         aside = _across(forces, normals) * known[:, None]
         # What the forces aside move counts as given, like the other fingers'.
         given = displacements - candidates.displacements(aside)

@@ -15,6 +15,7 @@ beyond depths of about half a sphere's radius.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -84,35 +85,53 @@ def settle(
     most: int = MOST_LINEARISATIONS,
 ) -> Settled:
     """Find the frictionless equilibrium, beginning with ``forces`` (p, 3)."""
+    return settle_together(candidates, [(tool, pose, slice(None))], forces, most)
+
+
+def settle_together(
+    candidates: Candidates,
+    tools: Sequence[tuple[Tool, Pose, slice]],
+    forces: NDArray[np.float64],
+    most: int = MOST_LINEARISATIONS,
+) -> Settled:
+    """As :func:`settle` for several tools, each with its pose and its part of the candidates."""
     pushes = np.linalg.norm(forces, axis=1)
     displacements = candidates.displacements(forces)
-    normals = np.zeros_like(forces)
+    normals, distances = np.zeros_like(forces), np.zeros(len(forces))
+    limit = CONVERGED * min(tool.size for tool, _, _ in tools)
     for made in range(1, most + 1):
-        distances, normals = linearised(candidates, tool, pose, displacements, forces)
+        for tool, pose, part in tools:
+            distances[part], normals[part] = linearised(
+                tool,
+                pose,
+                candidates.positions[part] + displacements[part],
+                candidates.normals[part],
+                forces[part],
+            )
         pushes = pushes_about(candidates, displacements, distances, normals, pushes)
         forces = pushes[:, None] * normals
         last, displacements = displacements, candidates.displacements(forces)
         change = float(np.abs(displacements - last).max(initial=0.0))
-        if change <= CONVERGED * tool.size:
+        if change <= limit:
             return Settled(forces, pushes, normals, displacements, made, exact=True)
     return Settled(forces, pushes, normals, displacements, most, exact=False)
 
 
 def linearised(
-    candidates: Candidates,
     tool: Tool,
     pose: Pose,
-    displacements: NDArray[np.float64],
+    places: NDArray[np.float64],
+    facing: NDArray[np.float64],
     forces: NDArray[np.float64],
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Distances (p,) and normals (p, 3) where ``displacements`` (p, 3) have taken the points.
+    """Distances (p,) and normals (p, 3) of a tool at ``places`` (p, 3), where the points are now.
 
-    ``forces`` (p, 3) are the last pushes, which tell the direction that pushes are held near.
+    ``forces`` (p, 3) are the last pushes on points with outward normals ``facing`` (p, 3), which
+    tell the direction that pushes are held near.
     """
-    places = candidates.positions + displacements
     distances, normals = distances_in_body(tool, pose, places)
     offsets = places[:, None] - pose.to_body(tool.core)
-    inward, limit = hold(forces, candidates.normals)
+    inward, limit = hold(forces, facing)
     return held_tilt(distances, normals, offsets, inward, limit, tool.radius)
 
 

@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from measuring.soft_block import soft_block
 from scipy.spatial.transform import Rotation
 
 from palpate.core.errors import PalpateError
@@ -217,3 +218,24 @@ def test_two_tools_that_pinch_feel_each_other_alike(cube):
     assert touches[1].force[0] == pytest.approx(slope, rel=2e-4)
     swapped = press_tools(cube, [(tool, right), (tool, left)])
     np.testing.assert_allclose(swapped[0].force, touches[1].force, rtol=1e-6, atol=1e-9)
+
+
+def test_tools_on_both_sides_of_a_part_that_bends_meet_where_it_has_gone():
+    strip, tool = soft_block((0.06, 0.008, 0.04), (8, 2, 6)), sphere(0.012)
+
+    def poses(gap):
+        """One pushes the strip 3 mm aside, the other is a ``gap`` from it at rest."""
+        return [(tool, Pose.at([0.029, y, 0.03])) for y in (-0.009, 0.02 + gap)]
+
+    apart = press_tools(strip, poses(0.004))
+    assert not apart[1].touching
+    touches = press_tools(strip, poses(0.0024), start=apart)
+    # What one pushes the other holds, but for what the strip bears by itself.
+    alone = apart[0].force[1]
+    near, far = (touch.force[1] for touch in touches)
+    assert all(touch.exact for touch in touches)
+    assert near < 1.5 * alone < 0 < far
+    assert near + far == pytest.approx(alone, rel=0.5)
+    # 0.1 mm nearer, and no jump.
+    nearer = press_tools(strip, poses(0.0023), start=touches)[1].force[1]
+    assert far < nearer < 1.4 * far
