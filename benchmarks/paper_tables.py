@@ -51,7 +51,7 @@ def main() -> int:
     print(
         f"solved in {seconds:.0f} s, {1e3 * seconds / table.largest.size:.0f} ms an entry\n"
         f"L {compliance.nbytes / 1e3:.0f} kB, with L+ and L- "
-        f"{(compliance.nbytes + table.positive.nbytes + table.negative.nbytes) / 1e3:.0f} kB"
+        f"{(compliance.nbytes + table.nbytes - table.largest.nbytes) / 1e3:.0f} kB"
     )
     held = checked(table, FreeSolid.of(body), options.sample)
     print("the claim holds" if held else "THE CLAIM DOES NOT HOLD")
@@ -95,7 +95,7 @@ def checked(table: NewtonTable, solid: FreeSolid, sample: int) -> bool:
         unit = np.zeros((solid.node_count, 3))
         unit[solid.surface[node], axis] = 1.0
         found = equilibrium(solid, load * unit, largest_step=SMALL_STEP).displacements
-        entries = (table.negative if sign else table.positive)[node, axis]
+        entries = (table.negative if sign else table.positive)[int(node)][axis]
         expected = found[solid.surface].ravel() / load
         worst = max(worst, float(np.abs(entries - expected).max() / np.abs(expected).max()))
         if abs(load) < 0.99 * table.wanted:

@@ -32,7 +32,7 @@ class NewtonTable:
     body : what they belong to.
     wanted : F0 that is tried first, square metres (newton per pascal of Young's modulus).
     is_filled : bool (n,), which free surface nodes are known.
-    positive, negative : float32 (n, 3, 3n), laid out as the table of
+    positive, negative : of every filled node float32 (3, 3n), rows as in the table of
         :class:`palpate.core.dense_compliance.DenseCompliance`.
     largest : float64 (n, 3, 2), F0 of every freedom for positive and negative forces.
     """
@@ -42,9 +42,8 @@ class NewtonTable:
         self.wanted = usual_largest_force(body.mesh) if wanted is None else wanted
         count = body.compliance.node_count
         self.is_filled = np.zeros(count, dtype=np.bool_)
-        # Pages of memory that nothing was written to take none.
-        self.positive = np.zeros((count, 3, 3 * count), dtype=np.float32)
-        self.negative = np.zeros_like(self.positive)
+        self.positive: dict[int, NDArray[np.float32]] = {}
+        self.negative: dict[int, NDArray[np.float32]] = {}
         self.largest = np.zeros((count, 3, 2))
         self._solid: FreeSolid | None = None
         self._is_cancelled = False
@@ -52,8 +51,8 @@ class NewtonTable:
     @property
     def nbytes(self) -> int:
         """Bytes of what is filled."""
-        a_node = 2 * self.positive[0].nbytes + self.largest[0].nbytes
-        return int(np.count_nonzero(self.is_filled)) * int(a_node)
+        rows = (*self.positive.values(), *self.negative.values())
+        return sum(row.nbytes for row in rows) + self.largest.nbytes
 
     def fill(self, nodes: NDArray[np.int64]) -> None:
         """Solve the freedoms of nodes (k,), counted by their place in ``free_surface``.
@@ -68,10 +67,13 @@ class NewtonTable:
         if self._solid is None:
             self._solid = FreeSolid.of(self.body)
         for node in nodes.tolist():
-            for axis in range(3):
-                column = newton_column(self._solid, 3 * node + axis, self.wanted, self._may_go_on)
-                self.positive[node, axis], self.negative[node, axis] = column.per_force
-                self.largest[node, axis] = column.largest
+            three = [
+                newton_column(self._solid, 3 * node + axis, self.wanted, self._may_go_on)
+                for axis in range(3)
+            ]
+            both = np.stack([column.per_force for column in three], axis=1)
+            self.positive[node], self.negative[node] = both
+            self.largest[node] = [column.largest for column in three]
             self.is_filled[node] = True
 
     def cancel(self) -> None:
@@ -84,12 +86,11 @@ class NewtonTable:
 
     def columns(self, nodes: NDArray[np.int64]) -> PaperColumns:
         """What (16) needs of filled nodes (k,): 3k freedoms."""
-        size = 3 * len(nodes)
         return PaperColumns(
             self.body.compliance.columns(nodes).T,
-            self.positive[nodes].reshape(size, -1),
-            self.negative[nodes].reshape(size, -1),
-            self.largest[nodes].reshape(size, 2),
+            np.concatenate([self.positive[node] for node in nodes.tolist()]),
+            np.concatenate([self.negative[node] for node in nodes.tolist()]),
+            self.largest[nodes].reshape(-1, 2),
         )
 
     def load(self, path: Path) -> None:
@@ -104,7 +105,8 @@ class NewtonTable:
         nodes, largest = stored["nodes"], stored["largest"]
         if float(stored["wanted"]) != self.wanted:
             raise TableFileError(f"{path}: made for another F0; its table is computed anew")
-        self.positive[nodes], self.negative[nodes] = stored["positive"], stored["negative"]
+        self.positive.update(zip(nodes.tolist(), stored["positive"], strict=True))
+        self.negative.update(zip(nodes.tolist(), stored["negative"], strict=True))
         self.largest[nodes], self.is_filled[nodes] = largest, True
 
     def save(self, path: Path) -> None:
@@ -120,10 +122,19 @@ class NewtonTable:
             "nodes": nodes,
             "wanted": np.array(self.wanted),
             "largest": self.largest[nodes],
-            "positive": self.positive[nodes],
-            "negative": self.negative[nodes],
+            "positive": self._stacked(self.positive, nodes),
+            "negative": self._stacked(self.negative, nodes),
         }
         write_table(path, KIND, self.body.key, arrays)
+
+    def _stacked(
+        self, rows: dict[int, NDArray[np.float32]], nodes: NDArray[np.int64]
+    ) -> NDArray[np.float32]:
+        """Rows of nodes (k,), (k, 3, 3n)."""
+        stacked = np.empty((len(nodes), 3, 3 * len(self.is_filled)), dtype=np.float32)
+        for place, node in enumerate(nodes.tolist()):
+            stacked[place] = rows[node]
+        return stacked
 
 
 class TableShape:
