@@ -9,6 +9,7 @@ import subprocess
 import sys
 import tty
 from contextlib import contextmanager
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -20,6 +21,8 @@ from palpate.core.bake import BakeSettings, bake
 from palpate.core.devices import link, ports
 from palpate.core.devices.simulated_options import SimulatedOptions
 from palpate.core.devices.simulated_process import SimulatedDevice
+from palpate.core.large_deformation.table_file import table_path
+from palpate.core.npz_archive import read_arrays
 from palpate.core.paper_cube import paper_cube
 from palpate.core.pins import PinNodes
 from palpate.core.recording import read_recording
@@ -244,10 +247,14 @@ def test_a_rate_or_material_out_of_range_is_an_error(body_file, capsys, device):
 def test_a_press_is_recorded_tick_by_tick(body_file, capsys, tmp_path):
     path = tmp_path / "press.csv"
     arguments = ["servo", body_file, "--simulate", "--seconds", "2.5", "--json"]
-    assert main([*arguments, "--record", str(path)]) == 0
+    assert main([*arguments, "--felt", "corrected", "--record", str(path)]) == 0
     out, told = capsys.readouterr()
     assert "recording; takes up to 1 MB of memory" in told
     report = json.loads(out)
+    assert report["felt"] == "corrected"
+    # The place under the simulated hand was asked for while it was pressed.
+    softenings = read_arrays(table_path(Path(body_file), "softening"))
+    assert np.count_nonzero(softenings["softening"].any(axis=1)) >= 3
     recording = read_recording(path)
     assert report["recording"] == {"file": str(path), "ticks": len(recording.samples), "lost": 0}
     samples = recording.samples
