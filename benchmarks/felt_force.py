@@ -7,11 +7,12 @@ straight in, and 30 degrees aslant, from 2 to 30 % of the thickness there. The f
 linear relation, of the corrected one, and of St. Venant-Kirchhoff's solid with the point held
 exactly there (Newton's method). A row is a depth; shown are medians of |difference| / |force of the
 solid| over the places at which all elements are still upright (least det F > 0), and how many these
-are. Where elements have turned inside out the solid is no referee.
+are. Where elements have turned inside out the solid is no referee. The cube is followed so far, the
+mouse until it gives way.
 
 Claimed:
 
-* upright: in 95 % of all presses the corrected force is nearer to the solid's than the linear one;
+* upright: in 90 % of all presses the corrected force is nearer to the solid's than the linear one;
   its median error is less than a third of the linear one's up to a fifth of the thickness, and less
   than two thirds beyond;
 * everywhere: it grows with the depth and is at most the linear one.
@@ -42,7 +43,7 @@ from palpate.core.softness.place import Place, nearest_place, thickness
 BODIES = ("cube", "mouse-1.7k")
 SHARES = np.array([0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3])
 SLANT = np.radians(30.0)
-LEAST_NEARER = 0.95
+LEAST_NEARER = 0.9
 SHALLOW = 0.2
 LARGEST_MEDIAN_SHARES = (1.0 / 3.0, 2.0 / 3.0)
 
