@@ -92,5 +92,5 @@ def triangle_forces(
 
 def felt_force(nodal_forces: ArrayLike) -> NDArray[np.float64]:
     """Force on the finger, F_f = -(F_i + F_j + F_k) (14). ``nodal_forces`` (3, 3) -> (3,)."""
-    force: NDArray[np.float64] = -np.asarray(nodal_forces, dtype=np.float64).sum(axis=0)
+    force: NDArray[np.float64] = 0.0 - np.asarray(nodal_forces, dtype=np.float64).sum(axis=0)
     return force

@@ -40,6 +40,10 @@ MOST_ON_BODY = 100_000
 # How much wider than a tool asks for points may lie where they would be too many.
 WIDEST = 2.5
 
+# Points are no farther apart than this share of the root of the whole surface, however large the
+# tool: some 500 on any body.
+LARGEST_SHARE = 0.05
+
 # A patch of the surface goes to the nearest of so many points whose normal does not look away.
 NEAREST_ASKED = 6
 
@@ -96,7 +100,7 @@ def contact_points(body: SoftBody, spacing: float) -> ContactPoints:
             "length, for a fingertip about a third of its radius"
         )
     mesh = body.mesh
-    expected = int(POINTS_PER_SPACING_SQUARED * _face_areas(mesh).sum() / spacing**2)
+    expected = int(POINTS_PER_SPACING_SQUARED * surface_area(mesh) / spacing**2)
     if expected > MOST_ON_BODY:
         raise PalpateError(
             f"contact points: {1000 * spacing:.3g} mm apart the body would have about {expected} "
@@ -121,14 +125,16 @@ def contact_points(body: SoftBody, spacing: float) -> ContactPoints:
 
 
 def spacing_on(body: SoftBody, spacing: float) -> float:
-    """The spacing asked for, or the closest one that :data:`MOST_ON_BODY` points allow, metres.
+    """The spacing asked for, as far as the body allows it, metres.
 
-    So a tool may be small for its body: down to where it would fall between the points.
+    No closer than :data:`MOST_ON_BODY` points lie: so a tool may be small for its body, down to
+    where it would fall between the points. No wider than :data:`LARGEST_SHARE` says: so it may be
+    much larger than its body.
     """
-    allowed = float(
-        np.sqrt(POINTS_PER_SPACING_SQUARED * _face_areas(body.mesh).sum() / MOST_ON_BODY)
-    )
-    return min(max(spacing, 1.01 * allowed), WIDEST * spacing)
+    root = float(np.sqrt(surface_area(body.mesh)))
+    allowed = root * float(np.sqrt(POINTS_PER_SPACING_SQUARED / MOST_ON_BODY))
+    asked = min(spacing, LARGEST_SHARE * root)
+    return min(max(asked, 1.01 * allowed), WIDEST * asked)
 
 
 def smooth_corner_normals(mesh: TetMesh) -> NDArray[np.float64]:
@@ -342,6 +348,11 @@ def _face_normals(mesh: TetMesh) -> NDArray[np.float64]:
 def _face_areas(mesh: TetMesh) -> NDArray[np.float64]:
     areas: NDArray[np.float64] = 0.5 * np.linalg.norm(_face_vectors(mesh), axis=1)
     return areas
+
+
+def surface_area(mesh: TetMesh) -> float:
+    """The whole surface of a body, square metres."""
+    return float(_face_areas(mesh).sum())
 
 
 def _edge_lengths(mesh: TetMesh) -> NDArray[np.float64]:

@@ -116,14 +116,15 @@ class ToolTouch:
     @property
     def force(self) -> NDArray[np.float64]:
         """Force that the tool feels, (3,), newton."""
-        force: NDArray[np.float64] = -self.forces.sum(axis=0)
+        # Nothing is 0, not -0.
+        force: NDArray[np.float64] = 0.0 - self.forces.sum(axis=0)
         return force
 
     @property
     def torque(self) -> NDArray[np.float64]:
         """Torque that the tool feels about its reference point, (3,), newton metres."""
         arms = self.places + self.displacements - self.pose.position
-        torque: NDArray[np.float64] = -np.cross(arms, self.forces).sum(axis=0)
+        torque: NDArray[np.float64] = 0.0 - np.cross(arms, self.forces).sum(axis=0)
         return torque
 
     @property

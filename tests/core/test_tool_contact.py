@@ -239,3 +239,9 @@ def test_tools_on_both_sides_of_a_part_that_bends_meet_where_it_has_gone():
     # 0.1 mm nearer, and no jump.
     nearer = press_tools(strip, poses(0.0023), start=touches)[1].force[1]
     assert far < nearer < 1.4 * far
+
+
+def test_a_tool_much_larger_than_the_body_presses_like_a_wide_plate(cube):
+    flat = press_tool(cube, plate(0.08, 0.08), Pose.at([0.025, 0.025, TOP - 0.001]))
+    huge = press_tool(cube, sphere(20.0), Pose.at([0.025, 0.025, TOP + 20.0 - 0.001]))
+    assert huge.force[2] == pytest.approx(flat.force[2], rel=0.05)
