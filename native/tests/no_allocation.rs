@@ -22,6 +22,7 @@ use palpate_servo::safety::Limits;
 use palpate_servo::servo::{Options, Servo, Settings};
 use palpate_servo::snapshot::{Published, State};
 use palpate_servo::stages::Stage;
+use palpate_servo::surface::Body;
 use rtrb::RingBuffer;
 use triple_buffer::triple_buffer;
 
@@ -157,6 +158,18 @@ impl Opener for InMemory {
     }
 }
 
+/// A body that knows how its nodes soften.
+fn softening(body: Arc<Body>) -> Arc<Body> {
+    for node in 0..body.nodes.len() as u32 {
+        let softening = Softening {
+            slope: DVec3::new(5.0, -10.0, 20.0),
+            saturation: 1e3,
+        };
+        body.softenings.tell(node, &softening);
+    }
+    body
+}
+
 /// Settings as a user changes them, other ones at each tick.
 fn changed(tick: u32) -> Settings {
     let mut changed = settings();
@@ -179,14 +192,7 @@ fn ticks_of<D: Device + 'static>(device: D, mut each: impl FnMut(u32)) -> (Publi
     let (snapshots_in, mut snapshots) = triple_buffer(&Published::default());
     // Smaller than the run: a full ring must not allocate either.
     let (samples_in, _samples) = RingBuffer::new(50_000);
-    let body = bodies::giving_cube();
-    for node in 0..body.nodes.len() as u32 {
-        let softening = Softening {
-            slope: DVec3::new(5.0, -10.0, 20.0),
-            saturation: 1e3,
-        };
-        body.softenings.tell(node, &softening);
-    }
+    let body = softening(bodies::giving_cube());
     let mut servo = Servo::new(
         body,
         vec![Box::new(device)],
@@ -366,14 +372,14 @@ fn five_fingers_that_feel_each_other_allocate_nothing() {
     let (snapshots_in, mut snapshots) = triple_buffer(&Published::default());
     let (samples_in, _samples) = RingBuffer::new(50_000);
     let mut servo = Servo::new(
-        bodies::elastic_cube(),
+        softening(bodies::elastic_cube()),
         devices.collect(),
         OPTIONS,
         settings_out,
         snapshots_in,
         samples_in,
     );
-    let mut together = 0;
+    let (mut together, mut softened) = (0, 0);
     let ((), allocations) = counted(|| {
         for tick in 1..=20_000 {
             if tick % 3 == 0 {
@@ -383,10 +389,14 @@ fn five_fingers_that_feel_each_other_allocate_nothing() {
             let told = snapshots.read().fingers();
             let touching = told.iter().filter(|told| told.snapshot.hold.is_some());
             together += u32::from(touching.count() > 2);
+            softened += u32::from(told.iter().any(|told| told.snapshot.felt_share == 1.0));
         }
     });
     assert_eq!(allocations, 0);
-    assert!(together > 3_000, "{together}");
+    assert!(
+        together > 3_000 && softened > 3_000,
+        "{together} {softened}"
+    );
     let last = snapshots.read();
     assert!(
         last.fingers()
