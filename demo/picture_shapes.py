@@ -20,8 +20,7 @@ sys.path[:0] = [str(HERE), str(SCENES)]
 # that is bent without being stretched.
 BELOW, BY = 0.008, (0.006, 0.064, -0.043)
 SHAPES = ("LINEAR", "TABLE", "SERIES", "ROTATION_STRAIN")
-PERCENT, SAMPLES = 55, 12
-FRAME, LETTERS = (520, 528), 15.0
+PERCENT, SAMPLES = 50, 8
 
 
 def main() -> int:
