@@ -72,14 +72,18 @@ class DrawnShape:
             self._take_made()
 
     def draw(self, fingers: Sequence[FingerLoad], young_modulus: float) -> Met:
-        """The body under these fingers, as well as it is known now."""
+        """The body under these fingers; the linear shape until all is there that they need."""
         try:
-            return self._meeting.step(fingers, young_modulus)
+            met = self._meeting.step(fingers, young_modulus)
         except PalpateError as problem:
             self.problem = str(problem)
             self._end()
             self._take(LinearShape(self.body))
             return self._meeting.step(fingers, young_modulus)
+        if self._shape.ready < 1.0:
+            self._take(self._shape)
+            return Met(met.linear, met.linear, 0.0)
+        return met
 
     def finish(self, fingers: Sequence[FingerLoad], young_modulus: float) -> Met:
         """The body under these fingers, with what it needs as far as that is there in time."""

@@ -162,8 +162,7 @@ def test_until_it_is_made_and_filled_the_linear_shape_is_drawn(
     assert said == ["Shape 37 %"]
     assert made[0].file == part("operators.body_store").locate(thing)
     made[0].ready = 1.0
-    # It meets the finger then, with more force than the linear one.
-    wait(session, lambda: bool(np.any(session.shape._meeting._added)))
+    wait(session, lambda: session.displacements is not session.linear)
     assert not part("addon.hud")._shape_lines(session)
 
 
