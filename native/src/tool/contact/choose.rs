@@ -12,6 +12,12 @@ pub(super) const MARGIN: f64 = 1.0;
 const FORGOTTEN: f64 = 1.5;
 /// Once so many blocks of the compliance had to be fetched in a tick, further points wait.
 const MOST_FETCHED: usize = 256;
+/// Points that may enter in one tick times those that are looked at, whose response to each of them
+/// is reckoned.
+const MOST_RESPONSES: usize = 2000;
+/// Points that may take the place of farther ones in one tick: which of two is nearer turns to and fro
+/// where both are about to be touched.
+const MOST_REPLACED: usize = 4;
 /// Points that may be let go in one tick.
 const MOST_LEAVING: usize = 24;
 
@@ -73,13 +79,18 @@ impl ToolContact {
             }
         }
         let first = self.patch.fetched();
+        let mut replaced = 0;
         for place in 0..self.entering.len() {
             let (distance, point) = self.entering[place];
-            if self.patch.fetched() - first > MOST_FETCHED {
+            let reckoned = self.effort.entered * self.patch.slots().len();
+            if self.patch.fetched() - first > MOST_FETCHED || reckoned > MOST_RESPONSES {
                 return false;
             }
-            if self.patch.is_full() && !self.make_room(distance) {
-                return false;
+            if self.patch.is_full() {
+                if replaced == MOST_REPLACED || !self.make_room(distance) {
+                    return false;
+                }
+                replaced += 1;
             }
             self.patch.enter(&self.surface, point);
             let number = self.patch.slots().len() - 1;

@@ -10,15 +10,15 @@ use crate::tool::shape::Pose;
 use crate::tool::tilt::Hold;
 
 /// Linearisations in one tick.
-const MOST_LINEARISATIONS: usize = 4;
+const MOST_LINEARISATIONS: usize = 6;
 /// Multiplications that a tick takes, about, before it leaves the rest to the next.
-const MOST_WORK: usize = 350_000;
+const MOST_WORK: usize = 500_000;
 /// The same with friction.
-const MOST_WORK_RUBBING: usize = 450_000;
+const MOST_WORK_RUBBING: usize = 700_000;
 /// Points farther from the tool than this share of the margin are only watched.
 const WATCHED: f64 = 0.3;
 /// Displacements that are wrong by less than this share of the tool's reach have been found.
-const CONVERGED: f64 = 1e-5;
+const CONVERGED: f64 = 3e-6;
 
 impl ToolContact {
     /// Finds the equilibrium of the points with the tool, from the last tick's forces on: how many
@@ -31,7 +31,7 @@ impl ToolContact {
         for made in 1..=MOST_LINEARISATIONS {
             self.linearise();
             let before = self.effort.multiplications;
-            self.problem.solve(MOST_WORK.min(most_work - before));
+            self.problem.solve(most_work.saturating_sub(before));
             self.push();
             let is_held = !rubs || {
                 let (friction, reach) = (&self.friction, self.tool.reach());
