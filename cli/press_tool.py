@@ -83,6 +83,7 @@ def tool_figures(touch: ToolTouch) -> dict[str, object]:
         "force": touch.force.tolist(),
         "torque": touch.torque.tolist(),
         "stiffness": touch.stiffness.tolist(),
+        "exact": touch.exact,
     }
 
 
@@ -98,6 +99,7 @@ def tool_summary(touch: ToolTouch) -> dict[str, object]:
         "pressed_area_m2": area,
         "largest_pressure_pa": float(touch.pressures.max(initial=0.0)),
         "stiffness_along_force": _along(touch.stiffness, touch.force),
+        "exact": touch.exact,
     }
 
 

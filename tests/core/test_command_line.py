@@ -213,6 +213,7 @@ def test_press_takes_a_tool_instead_of_a_point(tool, cube_file, tmp_path, capsys
     status, printed, _ = palpate(capsys, *words, "--json")
     figures = json.loads(printed)
     assert status == 0
+    assert figures["exact"] is True
     assert figures["force"][2] > 0
     np.testing.assert_allclose(
         -np.sum(figures["nodal_forces"], axis=0), figures["force"], atol=1e-12
