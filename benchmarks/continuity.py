@@ -43,6 +43,7 @@ SCENES = Path(__file__).resolve().parents[1] / "sample_scenes"
 BODIES = ("cube", "mouse", "drumstick")
 YOUNG_MODULUS = 10_000.0
 TOOL_SPEED = 0.05
+TOOL_FRICTION = 0.4
 TOOL_RATES = (1000, 2000, 4000)
 
 # Shares of the force. What is continuous leaves this at the finest steps: the bends of its course.
@@ -156,14 +157,21 @@ def point_rows(body: SoftBody, native: Body, place: Place, reach: float) -> Iter
     yield Row("two fingers", "pinch", STEEP, jump_of(both, pinch(body, place, depth)))
 
 
-def by_tool(native: Body, contact: ToolContact, place: Place, front: float) -> Follow:
+def by_tool(
+    native: Body, contact: ToolContact, place: Place, front: float, friction: float = 0.0
+) -> Follow:
     """Contact forces of a tool that looks at the place, lifted so that its front is on the path."""
     rotation = np.column_stack([place.along, np.cross(place.normal, place.along), place.normal])
     raised = front * place.normal
 
     def follow(path: Vectors, rate: int) -> Vectors:
         fingers = SteppedFingers(
-            native, path[0] + raised, young_modulus=YOUNG_MODULUS, rate_hz=rate
+            native,
+            path[0] + raised,
+            young_modulus=YOUNG_MODULUS,
+            rate_hz=rate,
+            static_friction=friction,
+            dynamic_friction=friction,
         )
         fingers.set_tool(contact, rotation)
         return fingers.follow(path + raised)[0]
@@ -200,6 +208,11 @@ def tool_rows(name: str, body: SoftBody, native: Body, place: Place, reach: floa
         line = slide(body, place, 0.5 * deep, 1.2 * reach, 12)
         claim = UNFINISHED if len(tool.core) <= 2 else SHARP
         yield Row(tool.name, "patch changes, 0.5 deep", claim, tool_jump(follow, line))
+        rubbed = by_tool(native, contact, place, front, TOOL_FRICTION)
+        mode = f"{tool.name}, friction {TOOL_FRICTION:g}"
+        half = press(place, 0.5 * deep, 0.05 * reach)
+        yield Row(mode, "made and broken, 0.5 deep", UNFINISHED, tool_jump(rubbed, half))
+        yield Row(mode, "patch changes, 0.5 deep", claim, tool_jump(rubbed, line))
 
 
 def tool_jump(follow: Follow, path: Vectors) -> Jump:

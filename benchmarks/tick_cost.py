@@ -8,7 +8,7 @@ set down and lifted. "Long" is a tick over 700 us. Time is the thread's own
 (CLOCK_THREAD_CPUTIME_ID), which on a shared or virtual machine counts what others took, too. Two
 things tell these apart:
 
-* a tick over 300 us is gone through again five times from the same state (that it computes the same
+* a tick over 500 us is gone through again five times from the same state (that it computes the same
   is checked): the least time is its computing;
 * after every fourth tick a loop of fixed work runs, of about 100 us: what is long there is the
   machine alone. The table has how many long ticks that makes expect among as much computing.
@@ -53,10 +53,10 @@ if TYPE_CHECKING:
 
 TOP = 0.05
 # With friction and without together a tool makes over 100,000.
-TICKS = 52_000
+TICKS = 50_500
 ROUNDS = 5
 LONGEST = 700e-6
-REPLAYED = 300e-6
+REPLAYED = 500e-6
 CONTROL = 100e-6
 FRICTIONS = (0.0, 0.4)
 # Median us a tick, for how many pressed points.
