@@ -258,6 +258,8 @@ fn board(mut line: File, ends: &AtomicBool) {
 #[test]
 fn a_servo_with_a_serial_device_only_sleeps_reads_and_writes() {
     let (path, line) = terminal();
+    // Keeps the line up after the board has ended: a port that hangs up is closed, with calls.
+    let _line_up = line.try_clone().expect("a descriptor");
     let device = LinkDevice::open(SerialPort {
         path,
         baud: 115_200,
