@@ -28,7 +28,8 @@ from palpate.core.paper_cube import paper_cube
 from palpate.core.soft_body import SoftBody
 from palpate.core.stiffness import assemble
 from palpate.core.surface_compliance import surface_compliance
-from palpate.core.tool_contact import ToolTouch, press_tool
+from palpate.core.tool_contact import press_tool
+from palpate.core.tool_touch import ToolTouch
 from palpate.core.tools import Pose, Tool, plate, rod, sphere
 
 ELEMENT = 1e-3

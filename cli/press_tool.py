@@ -13,7 +13,8 @@ from ..core.several_tools import press_tools
 from ..core.soft_body import SoftBody
 from ..core.softness.force_depth import facing_pose
 from ..core.softness.place import nearest_place
-from ..core.tool_contact import ToolTouch, press_tool
+from ..core.tool_contact import press_tool
+from ..core.tool_touch import ToolTouch
 from ..core.tools import Pose, Tool
 
 # Into how many parts the way of a tool with friction is divided.

@@ -33,7 +33,7 @@ from .dense_compliance import DenseCompliance
 from .errors import PalpateError
 from .mapped_compliance import MappedCompliance
 from .soft_body import SoftBody
-from .tool_contact import correction_for, surface_for
+from .tool_surface import correction_for, surface_for
 from .tools import Tool
 
 __all__ = [

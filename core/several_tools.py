@@ -12,23 +12,11 @@ from numpy.typing import NDArray
 from .contact_points import ContactPoints
 from .near_field import point_compliance
 from .soft_body import SoftBody
-from .tool_contact import (
-    MOST_ADDITIONS,
-    MOST_STRIDES,
-    Load,
-    ToolTouch,
-    continued,
-    has_lost,
-    is_outside,
-    looked_at,
-    moved_by,
-    points_entered,
-    press_tool,
-    stride,
-    too_far,
-    touch_of,
-)
+from .tool_candidates import looked_at, moved_by, points_entered
+from .tool_contact import MOST_ADDITIONS, continued, has_lost, press_tool, touch_of
 from .tool_law import Candidates, Settled, settle_together
+from .tool_touch import Load, ToolTouch
+from .tool_way import MOST_STRIDES, is_outside, stride, too_far
 from .tools import Pose, Tool
 
 # Eigenvalues of the compliance below this share of the largest, if negative, are rounding.

@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.contact import Touch
 from ..core.errors import PalpateError
-from ..core.tool_contact import surface_for
 from ..core.tool_dent import PressingTool
+from ..core.tool_surface import surface_for
 from ..core.tools import Pose, Tool
 from . import live_shape, several_fingers, tool_turn
 from .drawn_body import DrawnBody, open_body

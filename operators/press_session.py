@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from ..core.errors import PalpateError
 from ..core.large_deformation.meeting import FingerLoad
 from ..core.servo_session import Snapshot
-from ..core.tool_contact import surface_for
+from ..core.tool_surface import surface_for
 from . import (
     device_source,
     drawn_surface,

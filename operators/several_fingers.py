@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 from ..core.contact import Touch
 from ..core.large_deformation.meeting import FingerLoad
 from ..core.soft_body import SoftBody
-from ..core.tool_contact import Load, ToolTouch, press_tool
+from ..core.tool_contact import press_tool
 from ..core.tool_dent import PressingTool
+from ..core.tool_touch import Load, ToolTouch
 from ..core.tools import Pose, Tool
 
 Array = NDArray[np.float64]

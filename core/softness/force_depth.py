@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from ..errors import PalpateError
 from ..large_deformation.felt_force import contact_relation
 from ..soft_body import SoftBody
-from ..tool_contact import ToolTouch, press_tool
+from ..tool_contact import press_tool
+from ..tool_touch import ToolTouch
 from ..tools import Pose, Tool
 from .parallel_rays import across
 from .place import Place, nearest_place, thickness

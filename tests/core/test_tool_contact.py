@@ -6,13 +6,8 @@ from scipy.spatial.transform import Rotation
 from palpate.core.errors import PalpateError
 from palpate.core.several_tools import energy_of, press_tools
 from palpate.core.tilt import hold
-from palpate.core.tool_contact import (
-    Load,
-    follow_tool,
-    press_along,
-    press_tool,
-    set_down,
-)
+from palpate.core.tool_contact import follow_tool, press_along, press_tool, set_down
+from palpate.core.tool_touch import Load
 from palpate.core.tools import Pose, convex, plate, rod, sphere
 
 TOP = 0.05

@@ -9,7 +9,9 @@ from scipy.spatial.transform import Rotation
 
 from palpate.core.errors import PalpateError
 from palpate.core.servo_session import native_body, native_tool
-from palpate.core.tool_contact import Load, correction_for, follow_tool, set_down, surface_for
+from palpate.core.tool_contact import follow_tool, set_down
+from palpate.core.tool_surface import correction_for, surface_for
+from palpate.core.tool_touch import Load
 from palpate.core.tools import Pose, convex, plate, rod, sphere
 
 BOX = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * 0.008
