@@ -20,7 +20,7 @@ from contextlib import ExitStack
 from typing import Any
 
 import numpy as np
-from palpate_servo import BareTimer, Body, Servo
+from palpate_servo import BareTimer, Body, Pointer, Servo
 from scipy.stats import binom
 
 RADIUS = 0.025
@@ -112,7 +112,7 @@ def measure(
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Counters of the servo and of the bare thread while `run` goes on."""
     with Servo(body, young_modulus=1000.0, rate_hz=rate_hz, record_seconds=1.0) as servo:
-        servo.start_pointer([0.0, 0.0, 0.03])
+        servo.start(Pointer([0.0, 0.0, 0.03]))
         bare = BareTimer(rate_hz)
         run(servo)
         bare_counters = bare.stop()

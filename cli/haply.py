@@ -11,6 +11,7 @@ from ..core.devices.haply_models import DEFAULT_MODEL, HAPLY_MODELS
 from ..core.devices.plant import Vector
 from ..core.devices.ports import PortError
 from ..core.errors import PalpateError
+from ..core.servo_session import HaplyDevice
 
 if TYPE_CHECKING:
     from ..core.servo_session import Servo
@@ -53,12 +54,14 @@ def connect_haply(
     """
     port = arguments.haply
     try:
-        servo.start_haply(
-            port,
-            model=arguments.model,
-            recalibrate=arguments.recalibrate,
-            rotation=STANDING,
-            translation=at,
+        servo.start(
+            HaplyDevice(
+                port,
+                model=arguments.model,
+                recalibrate=arguments.recalibrate,
+                rotation=STANDING,
+                translation=at,
+            )
         )
     except OSError as error:
         raise PalpateError(str(error)) from error

@@ -24,7 +24,7 @@ from ..core.devices.simulated_process import SimulatedDevice
 from ..core.devices.stop_signals import stopped_by_signals
 from ..core.errors import PalpateError
 from ..core.recording import check_recording_path, check_room, write_recording
-from ..core.servo_session import STATES, native_body, servo_on
+from ..core.servo_session import STATES, LinkDevice, native_body, servo_on
 from ..core.soft_body import SoftBody
 from ..core.stiffness import lame_parameters
 from .body_figures import as_lines
@@ -203,7 +203,7 @@ def _vector(values: NDArray[np.float64]) -> tuple[float, float, float]:
 
 def _connect(servo: Servo, port: str, stopped: Sequence[int]) -> None:
     try:
-        servo.start_serial(port)
+        servo.start(LinkDevice(port))
     except OSError as error:
         raise PalpateError(str(error)) from error
     _await_greeting(servo, 0, port, stopped)
@@ -224,7 +224,7 @@ def _await_greetings(servo: Servo, others: Sequence[str], stopped: Sequence[int]
 def _add_fingers(servo: Servo, ports: Sequence[str]) -> None:
     for port in ports:
         try:
-            servo.add_serial(port)
+            servo.add(LinkDevice(port))
         except (OSError, ValueError) as error:
             raise PalpateError(f"--second-port: {error}") from error
 

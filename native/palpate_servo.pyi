@@ -315,7 +315,6 @@ class Proxy:
     def rescues(self) -> int:
         """How often the sign of the distance had to correct a sweep."""
 
-@final
 class FingerSnapshot:
     """One finger in one tick, whole: all values belong together."""
 
@@ -419,8 +418,8 @@ class FingerSnapshot:
         """On these nodes, N, (k, 3): (12), (13) for a point."""
 
 @final
-class Snapshot:
-    """One tick, whole: all values belong together. Its own are those of finger 0."""
+class Snapshot(FingerSnapshot):
+    """All fingers in one tick, whole; itself that of finger 0."""
 
     @property
     def tick(self) -> int: ...
@@ -439,87 +438,8 @@ class Snapshot:
         """All fingers, by number."""
 
     @property
-    def probe(self) -> NDArray[np.float64]:
-        """Where the finger is, m, body coordinates."""
-
-    @property
-    def proxy(self) -> NDArray[np.float64]:
-        """Contact point that makes the force, m; the probe itself while free. Of a tool it is the
-        reference point, which may be behind the probe.
-        """
-
-    @property
-    def orientation(self) -> NDArray[np.float64]:
-        """How its tool is turned, (3, 3), tool to body."""
-
-    @property
-    def sticking(self) -> bool:
-        """Whether friction holds the contact point where it is."""
-
-    @property
-    def triangle(self) -> NDArray[np.int64]:
-        """Surface-local node numbers of the touched triangle, -1 while free."""
-
-    @property
-    def triangle_index(self) -> int:
-        """Touched triangle, -1 while free."""
-
-    @property
-    def alpha(self) -> NDArray[np.float64]:
-        """Area coordinates; exact zeros on edges and nodes, all zero while free."""
-
-    @property
-    def contact_force(self) -> NDArray[np.float64]:
-        """(14), N, before coupling and safety, body axes."""
-
-    @property
-    def felt(self) -> FeltName:
-        """Which relation was to be felt."""
-
-    @property
-    def felt_share(self) -> float:
-        """How much of the corrected relation is in contact_force, 0 to 1: all of it where the
-        softenings of the touched nodes were told and nothing was changed within 50 ms.
-        """
-
-    @property
-    def output_force(self) -> NDArray[np.float64]:
-        """N, after safety, body axes."""
-
-    @property
-    def torque(self) -> NDArray[np.float64]:
-        """On a tool about its reference point, N m, before safety; zero on a point."""
-
-    @property
-    def surface_point(self) -> NDArray[np.float64] | None:
-        """Where the touched point of the surface is now, m: the contact point plus the displacement
-        that all fingers' forces cause there (15). None while free, and for a body without a
-        compliance.
-        """
-
-    @property
-    def touching(self) -> bool: ...
-    @property
-    def state(self) -> str:
-        """One of STATES."""
-
-    @property
-    def fault(self) -> str:
-        """Name of the fault while the state is "fault" (or "internal error" when stopped)."""
-
-    @property
-    def reason(self) -> str:
-        """Why it waits, ramps, is disabled or stopped, or empty."""
-
-    @property
-    def limited(self) -> str:
-        """Which limiter shortens the force now, one of LIMITERS, or empty."""
-
-    @property
-    def buttons(self) -> int: ...
-    @property
     def nodal_forces(self) -> NDArray[np.float64]:
-        """(12), (13), N, (3, 3)."""
+        """On the nodes of the touched triangle, N, (3, 3): (12), (13); zero for a tool."""
 
 def tick_costs(
     body: Body, paths: ArrayLike, *, young_modulus: float, mode: ContactMode = "consistent"
@@ -709,6 +629,60 @@ class ToolContact:
         """Forces on these nodes, (k, 3), N."""
 
 @final
+class Pointer:
+    """A finger without motors, led by `Servo.set_target`."""
+
+    def __init__(self, position: _Vector) -> None:
+        """Set down at a position, m, body coordinates; ValueError unless finite."""
+
+@final
+class LinkDevice:
+    """A device that speaks the link on a serial port."""
+
+    def __init__(
+        self,
+        port: str,
+        *,
+        baud: int = 115200,
+        rotation: _Matrix = ...,
+        translation: _Vector = ...,
+        scale: float = 1.0,
+    ) -> None:
+        """p_body = scale * rotation @ p_device + translation; the default is the identity.
+
+        ValueError for a rotation that is not orthonormal, or a scale that is not more than 0. The
+        port is opened by `Servo.start` and `Servo.add`.
+        """
+
+@final
+class HaplyDevice:
+    """A Haply 2DIY, whose handle must be in its rest pose when the servo opens it, unless its board
+    has been in use by Palpate since it was plugged in; docs/haply.md tells why.
+
+    The device's plane is the frame's x and y axes: x to the user's right, y away from the user,
+    from the middle of the workspace. A force normal to it is not felt.
+    """
+
+    def __init__(
+        self,
+        port: str,
+        *,
+        model: str = "2diy-3.1",
+        angles: tuple[float, float] | None = None,
+        recalibrate: bool = False,
+        baud: int = 115200,
+        rotation: _Matrix = ...,
+        translation: _Vector = ...,
+        scale: float = 1.0,
+    ) -> None:
+        """Model is one of "2diy-3.1", "2diy-3.0", "2diy-2", "kit". angles (degrees, arm 1 and arm
+        2) are those of the rest pose, if it is another than the makers'. With angles or recalibrate
+        the handle counts as resting when it is opened. The frame is as of a `LinkDevice`.
+
+        ValueError as there, and for a model or angles without sense.
+        """
+
+@final
 class Servo:
     """A native thread between fingers, each led by a device or a pointer, and a body."""
 
@@ -736,78 +710,19 @@ class Servo:
         without a compliance both modes are the paper's.
         """
 
-    def start_pointer(self, position: _Vector) -> None:
-        """Start with the probe set down at a position, then led by set_target."""
+    def start(self, device: Pointer | LinkDevice | HaplyDevice) -> None:
+        """Start with this device as finger 0, beside those that were added.
 
-    def start_serial(
-        self,
-        port: str,
-        *,
-        baud: int = 115200,
-        rotation: _Matrix = ...,
-        translation: _Vector = ...,
-        scale: float = 1.0,
-    ) -> None:
-        """Start with a device on a serial port; OSError when the port cannot be opened.
-
-        p_body = scale * rotation @ p_device + translation; the default is the identity.
+        Raises OSError when its port cannot be opened, RuntimeError while the servo runs.
         """
 
-    def start_haply(
-        self,
-        port: str,
-        *,
-        model: str = "2diy-3.1",
-        angles: tuple[float, float] | None = None,
-        recalibrate: bool = False,
-        baud: int = 115200,
-        rotation: _Matrix = ...,
-        translation: _Vector = ...,
-        scale: float = 1.0,
-    ) -> None:
-        """Start with a Haply 2DIY, whose handle must be in its rest pose unless its board has been
-        in use by Palpate since it was plugged in; docs/haply.md tells why.
-
-        The device's plane is the frame's x and y axes: x to the user's right, y away from the user,
-        from the middle of the workspace. A force normal to it is not felt.
-
-        model is one of "2diy-3.1", "2diy-3.0", "2diy-2", "kit". angles (degrees, arm 1 and arm 2)
-        are those of the rest pose, if it is another than the makers'. With angles or recalibrate
-        the handle counts as resting now. OSError when the port cannot be opened, ValueError for a
-        model or angles without sense.
-        """
-
-    def add_pointer(self, position: _Vector) -> int:
-        """Another finger beside that of the next start, as by start_pointer; its number: 1, 2, ...
+    def add(self, device: Pointer | LinkDevice | HaplyDevice) -> int:
+        """Another finger beside that of the next start; its number: 1, 2, ...
 
         The fingers feel each other through the body, which must be a whole one. Raises ValueError
-        for another body, for more than MAX_FINGERS, RuntimeError while the servo runs.
+        for another body, for more than MAX_FINGERS, RuntimeError while the servo runs, OSError when
+        its port cannot be opened.
         """
-
-    def add_serial(
-        self,
-        port: str,
-        *,
-        baud: int = 115200,
-        rotation: _Matrix = ...,
-        translation: _Vector = ...,
-        scale: float = 1.0,
-    ) -> int:
-        """Another finger, as by start_serial; raises as add_pointer, and OSError as there."""
-
-    def add_haply(
-        self,
-        port: str,
-        *,
-        model: str = "2diy-3.1",
-        angles: tuple[float, float] | None = None,
-        recalibrate: bool = False,
-        baud: int = 115200,
-        rotation: _Matrix = ...,
-        translation: _Vector = ...,
-        scale: float = 1.0,
-    ) -> int:
-        """Another finger, as by start_haply; raises as add_pointer, and as there."""
 
     @property
     def finger_count(self) -> int:
@@ -865,9 +780,9 @@ class Servo:
         and whether energy that the contact would make is taken back. For all fingers; a pointer has
         no motors.
 
-        Unless told otherwise it is `device_coupling` of the servo's rate, with `start_haply` of the
-        model's encoders too. ValueError for a stiffness that is not more than 0, or a damping that
-        is negative or not finite.
+        Unless told otherwise it is `device_coupling` of the servo's rate, with a `HaplyDevice` of
+        the model's encoders too. ValueError for a stiffness that is not more than 0, or a damping
+        that is negative or not finite.
         """
 
     def set_enabled(self, enabled: bool) -> None:

@@ -14,6 +14,9 @@ from ..core.devices.simulated_process import SimulatedDevice
 from ..core.errors import PalpateError
 from ..core.servo_session import (
     Body,
+    HaplyDevice,
+    LinkDevice,
+    Pointer,
     Servo,
     Snapshot,
     native_body,
@@ -89,7 +92,7 @@ class ForceLoop:
         coordinates; before the start.
         """
         with servo_errors():
-            self.servo.add_pointer(position)
+            self.servo.add(Pointer(position))
 
     def add_device(self, thing: bpy.types.Object, scene: bpy.types.Scene) -> None:
         """Another finger, led by the device that the scene names as the second; before the start.
@@ -108,21 +111,9 @@ class ForceLoop:
             port = self.second_simulated.port
         else:
             port = second_port(scene)
-        rotation, translation = frame.rotation, frame.translation
+        haply = chosen.second_haply_model if chosen.second == "HAPLY" else None
         with servo_errors():
-            if chosen.second != "HAPLY":
-                self.servo.add_serial(
-                    port, rotation=rotation, translation=translation, scale=frame.scale
-                )
-                return
-            self.servo.add_haply(
-                port,
-                model=chosen.second_haply_model,
-                recalibrate=chosen.second_haply_at_rest,
-                rotation=rotation,
-                translation=translation,
-                scale=frame.scale,
-            )
+            self.servo.add(_device_at(port, frame, haply, chosen.second_haply_at_rest))
 
     def lead(self, finger: int, place: Point | None, turn: Turn | None) -> None:
         """Where a finger shall be and how its tool is turned, if that is told and new."""
@@ -137,7 +128,7 @@ class ForceLoop:
     def start_pointer(self, position: Point) -> None:
         """Let the pointer lead, from ``position`` in body coordinates."""
         with servo_errors():
-            self.servo.start_pointer(position)
+            self.servo.start(Pointer(position))
 
     def start_device(self, scene: bpy.types.Scene, drawn: DrawnBody) -> None:
         """Let the chosen device lead, where the settings have it.
@@ -156,22 +147,10 @@ class ForceLoop:
             self.port = self.simulated.port
         else:
             self.port = device_source.port_of(scene)
-        rotation, translation = frame.rotation, frame.translation
+        # A simulated one always begins at rest.
+        at_rest = chosen.haply_at_rest or self.simulated is not None
         with servo_errors():
-            if haply is None:
-                self.servo.start_serial(
-                    self.port, rotation=rotation, translation=translation, scale=frame.scale
-                )
-                return
-            self.servo.start_haply(
-                self.port,
-                model=haply,
-                # A simulated one always begins at rest.
-                recalibrate=chosen.haply_at_rest or self.simulated is not None,
-                rotation=rotation,
-                translation=translation,
-                scale=frame.scale,
-            )
+            self.servo.start(_device_at(self.port, frame, haply, at_rest))
 
     def follow(self, settings: LiveSettings) -> None:
         """Take over what has been changed.
@@ -217,6 +196,26 @@ class ForceLoop:
             for simulated in (self.simulated, self.second_simulated):
                 if simulated is not None:
                     simulated.stop()
+
+
+def _device_at(
+    port: str, frame: device_source.DeviceFrame, haply_model: str | None, at_rest: bool
+) -> LinkDevice | HaplyDevice:
+    """What is at a port: a 2DIY of a model, ``at_rest`` if its handle rests now, or a device that
+    speaks the link.
+    """
+    if haply_model is None:
+        return LinkDevice(
+            port, rotation=frame.rotation, translation=frame.translation, scale=frame.scale
+        )
+    return HaplyDevice(
+        port,
+        model=haply_model,
+        recalibrate=at_rest,
+        rotation=frame.rotation,
+        translation=frame.translation,
+        scale=frame.scale,
+    )
 
 
 @contextmanager

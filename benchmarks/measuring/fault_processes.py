@@ -17,7 +17,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
-from palpate_servo import Servo
+from palpate_servo import Pointer, Servo
 
 from palpate.core.devices.simulated_options import SimulatedOptions
 from palpate.core.devices.simulated_process import SimulatedDevice
@@ -290,7 +290,7 @@ def unplugged_row(times: int) -> Row:
 def stalled_reader_row(seconds: float = STOPPED_SECONDS) -> Row:
     """Nobody takes snapshots or samples, and the ring is full; then the reader is there again."""
     with Servo(cube(), young_modulus=YOUNG_MODULUS, record_seconds=0.1) as servo:
-        servo.start_pointer(ABOVE)
+        servo.start(Pointer(ABOVE))
         eventually(lambda: servo.snapshot().tick > 0, "the servo runs")
         first = servo.counters()
         time.sleep(seconds)

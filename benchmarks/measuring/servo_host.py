@@ -13,7 +13,7 @@ import sys
 from typing import Any
 
 import numpy as np
-from palpate_servo import STATES, Body, Servo
+from palpate_servo import STATES, Body, LinkDevice, Servo
 
 EDGE = 0.05
 YOUNG_MODULUS = 10_000.0
@@ -62,7 +62,7 @@ def report(servo: Servo) -> dict[str, Any]:
 def main() -> int:
     """Touch until standard input ends."""
     with Servo(cube(), young_modulus=YOUNG_MODULUS, ramp_seconds=RAMP_SECONDS) as servo:
-        servo.start_serial(sys.argv[1])
+        servo.start(LinkDevice(sys.argv[1]))
         for line in sys.stdin:
             answer = samples(servo) if line.strip() == "samples" else report(servo)
             print(json.dumps(answer), flush=True)

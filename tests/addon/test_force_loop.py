@@ -312,7 +312,7 @@ def test_a_port_that_cannot_be_opened_has_one_remedy(palpate):
         pytest.raises(error, match=r"^device: /no/such/port: cannot be opened \([^;]*\); [^;]*$"),
         part("operators.force_loop").servo_errors(),
     ):
-        servo.start_serial("/no/such/port")
+        servo.start(palpate_servo.LinkDevice("/no/such/port"))
 
 
 def test_a_failed_force_loop_ends_the_press_and_leaves_the_mesh_clean(sessions, states):

@@ -8,7 +8,7 @@ import sys
 
 import numpy as np
 import pytest
-from palpate_servo import Body, Servo
+from palpate_servo import Body, LinkDevice, Servo
 
 from palpate.core.devices import link
 
@@ -76,7 +76,7 @@ def state_is(servo, state):
 
 @pytest.fixture
 def press(board, servo, eventually):
-    servo.start_serial(board.port)
+    servo.start(LinkDevice(board.port))
     eventually(state_is(servo, "free"), servo.snapshot)
     board.move(DEEP, 300)
     eventually(lambda: board.report()["force"][2] > 0.3, board.report)
@@ -118,7 +118,7 @@ def test_a_stylus_that_is_told_no_more_is_a_fault_until_it_is_told_again(board, 
         return servo.counters()["link"][name]
 
     board.tell("turn 0.6 0 0.8 0")
-    servo.start_serial(board.port)
+    servo.start(LinkDevice(board.port))
     eventually(state_is(servo, "free"), servo.snapshot)
     eventually(lambda: seen("orientations") > 100, servo.counters)
     assert seen("orientations_lost") == seen("orientations_unpaired") == seen("unknown") == 0
@@ -138,7 +138,7 @@ def test_a_stylus_that_is_told_no_more_is_a_fault_until_it_is_told_again(board, 
 def test_the_devices_largest_force_holds_at_both_ends(body, start_board, eventually):
     board = start_board("--largest", "0.25")
     with Servo(body, young_modulus=10_000.0) as servo:
-        servo.start_serial(board.port)
+        servo.start(LinkDevice(board.port))
         eventually(state_is(servo, "free"), servo.snapshot)
         board.move(DEEP, 300)
         eventually(lambda: np.linalg.norm(board.report()["force"]) > 0.249, board.report)
@@ -165,9 +165,9 @@ def test_a_board_that_hears_nothing_goes_limp_and_says_so(press, board, servo, e
 HOST = """
 import json, sys, time
 import numpy as np
-from palpate_servo import Body, Servo
+from palpate_servo import Body, LinkDevice, Servo
 servo = Servo(Body(*map(np.array, json.loads(sys.argv[2]))), young_modulus=1e4)
-servo.start_serial(sys.argv[1])
+servo.start(LinkDevice(sys.argv[1]))
 time.sleep(60)
 """
 
@@ -176,7 +176,7 @@ def test_a_host_that_is_killed_leaves_the_board_limp(board, servo, eventually):
     def starts():
         # The killed host's lock on the port lasts until the board has noticed.
         with contextlib.suppress(OSError):
-            servo.start_serial(board.port)
+            servo.start(LinkDevice(board.port))
         return servo.running
 
     with subprocess.Popen([sys.executable, "-c", HOST, board.port, json.dumps(CUBE)]) as host:
@@ -229,7 +229,7 @@ def test_damage_in_the_middle_of_a_press_is_counted_and_survived(press, board, e
 def test_a_board_of_another_protocol_gets_no_force(body, start_board, eventually):
     board = start_board("--protocol", "2")
     with Servo(body, young_modulus=10_000.0) as servo:
-        servo.start_serial(board.port)
+        servo.start(LinkDevice(board.port))
         eventually(lambda: servo.snapshot().fault == "wrong protocol", servo.snapshot)
         eventually(lambda: servo.counters()["link"]["last_fault"] == (2, 1), servo.counters)
         assert servo.counters()["link"]["device"]["protocol"] == 2

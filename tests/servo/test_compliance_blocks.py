@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from palpate_servo import Body, Compliance
+from palpate_servo import Body, Compliance, Pointer
 
 from palpate.core import cache
 from palpate.core.bake import BakeSettings, bake
@@ -72,7 +72,7 @@ def test_snapshots_and_samples_tell_where_the_surface_is(body, eventually):
     above = np.array([*(0.5 * (low + high))[:2], high[2] + 0.01])
     pressed = above - [0, 0, 0.02]
     with servo_for(body) as servo:
-        servo.start_pointer(above)
+        servo.start(Pointer(above))
         eventually(lambda: servo.snapshot().tick > 0)
         assert servo.snapshot().surface_point is None
         servo.set_target(pressed)

@@ -4,7 +4,7 @@ import time
 
 import numpy as np
 import pytest
-from palpate_servo import Proxy
+from palpate_servo import Pointer, Proxy
 
 from palpate.core.errors import PalpateError
 from palpate.core.servo_session import displacements_of, native_body, servo_for
@@ -59,7 +59,7 @@ def test_the_running_servo_publishes_what_the_reference_computes(body, mode):
     low, high = body.mesh.nodes.min(axis=0), body.mesh.nodes.max(axis=0)
     above = np.array([*(0.5 * (low + high))[:2], high[2] + 0.01])
     with servo_for(body, mode=mode) as servo:
-        servo.start_pointer(above)
+        servo.start(Pointer(above))
         servo.set_target(above - [0, 0, 0.02])
         snapshot = servo.snapshot()
         deadline = time.monotonic() + 20

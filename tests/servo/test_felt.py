@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from palpate_servo import SteppedFingers
+from palpate_servo import Pointer, SteppedFingers
 
 from palpate.core.bake import BakeSettings, bake
 from palpate.core.large_deformation.felt_force import contact_relation, corrected_touch
@@ -194,7 +194,7 @@ def test_several_held_fingers_do_no_work_round_a_closed_path(surface):
 
 def test_the_running_servo_takes_the_choice_while_it_runs(baked, surface, eventually):
     with servo_on(surface, young_modulus=1e4, felt="corrected") as servo:
-        servo.start_pointer(TOP + 0.002 * UP)
+        servo.start(Pointer(TOP + 0.002 * UP))
         servo.set_target(TOP - 0.006 * UP)
         eventually(lambda: servo.snapshot().felt_share == pytest.approx(1.0))
         eventually(lambda: servo.snapshot().probe[2] == pytest.approx(EDGE - 0.006))

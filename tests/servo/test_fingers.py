@@ -3,7 +3,7 @@
 import numpy as np
 import palpate_servo
 import pytest
-from palpate_servo import MAX_FINGERS, STATES, Body, Servo
+from palpate_servo import MAX_FINGERS, STATES, Body, LinkDevice, Pointer, Servo
 
 from palpate.core import several_contacts
 from palpate.core.bake import BakeSettings, bake
@@ -51,8 +51,8 @@ def rests_at(servo, depth):
 @pytest.fixture
 def pinched(whole, eventually):
     with Servo(whole, young_modulus=MODULUS) as servo:
-        assert servo.add_pointer(RIGHT) == 1
-        servo.start_pointer(LEFT)
+        assert servo.add(Pointer(RIGHT)) == 1
+        servo.start(Pointer(LEFT))
         pinch(servo, 0.004)
         eventually(rests_at(servo, 0.004))
         yield servo
@@ -130,25 +130,25 @@ def test_another_body_must_be_a_whole_one(body, whole, pinched):
 def test_fingers_are_refused_with_the_reason(body, whole, cube):
     assert isinstance(cube.native, Body)
     with pytest.raises(ValueError, match="whole=True"):
-        Servo(cube.native, young_modulus=MODULUS).add_pointer(LEFT)
+        Servo(cube.native, young_modulus=MODULUS).add(Pointer(LEFT))
     servo = Servo(whole, young_modulus=MODULUS)
     for number in range(1, MAX_FINGERS):
-        assert servo.add_pointer(RIGHT) == number
+        assert servo.add(Pointer(RIGHT)) == number
     with pytest.raises(ValueError, match=f"at most {MAX_FINGERS} fingers"):
-        servo.add_pointer(RIGHT)
+        servo.add(Pointer(RIGHT))
     with pytest.raises(OSError, match="cannot be opened"):
-        Servo(whole, young_modulus=MODULUS).add_serial("/dev/nobody")
+        Servo(whole, young_modulus=MODULUS).add(LinkDevice("/dev/nobody"))
     with pytest.raises(RuntimeError, match="finger 3 is none"):
         Servo(whole, young_modulus=MODULUS).set_target(LEFT, finger=3)
-    with pytest.raises(ValueError, match="orthonormal"):
+    with pytest.raises(ValueError, match="no rotation"):
         servo.set_orientation(2 * np.eye(3))
     with pytest.raises(ValueError, match="fingers 0 to"):
         servo.set_orientation(np.eye(3), finger=MAX_FINGERS)
     with servo:
-        servo.start_pointer(LEFT)
+        servo.start(Pointer(LEFT))
         assert servo.finger_count == MAX_FINGERS
         with pytest.raises(RuntimeError, match="runs already"):
-            servo.add_pointer(RIGHT)
+            servo.add(Pointer(RIGHT))
     assert servo.finger_count == 1
 
 
@@ -167,7 +167,7 @@ def test_a_tool_is_felt_and_shown_and_taken_off_again(body, whole, eventually):
     above = np.array([0.025, 0.025, EDGE + 0.01])
     with Servo(whole, young_modulus=MODULUS) as servo:
         servo.set_tool(tool)
-        servo.start_pointer(above)
+        servo.start(Pointer(above))
         servo.set_target(above - [0, 0, 0.005])
         eventually(lambda: np.isclose(servo.snapshot().probe[2], above[2] - 0.005))
         eventually(lambda: servo.snapshot().fingers[0].state == "touching")
@@ -210,8 +210,8 @@ def test_two_devices_on_pseudo_terminals_press_one_body_and_feel_each_other(
         SimulatedDevice(right) as two,
         Servo(whole, young_modulus=MODULUS) as servo,
     ):
-        assert servo.add_serial(two.port) == 1
-        servo.start_serial(one.port)
+        assert servo.add(LinkDevice(two.port)) == 1
+        servo.start(LinkDevice(one.port))
         eventually(lambda: all(f.touching for f in servo.snapshot().fingers))
         eventually(lambda: all(f["link"]["forces"] > 100 for f in servo.counters()["fingers"]))
         eventually(lambda: any_both_press(servo.samples()))

@@ -9,13 +9,13 @@ import pytest
 SCRIPT = """
 import os, sys, time
 import numpy as np
-from palpate_servo import Body, Servo
+from palpate_servo import Body, Pointer, Servo
 
 nodes = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]) * 0.1
 triangles = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
 servo = Servo(Body(nodes, triangles, np.array([0.01 * np.eye(3)] * 4)), young_modulus=1e4)
 servo.start_recording(10.0)
-servo.start_pointer((0.2, 0.2, 0.2))
+servo.start(Pointer((0.2, 0.2, 0.2)))
 child = os.fork()
 if child == 0:
     assert not servo.running

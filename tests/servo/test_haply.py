@@ -23,7 +23,12 @@ from palpate.core.devices.simulated_options import SimulatedOptions
 from palpate.core.devices.simulated_process import SimulatedDevice
 from palpate.core.paper_cube import paper_cube
 from palpate.core.pins import PinNodes
-from palpate.core.servo_session import device_coupling, haply_encoder_step, servo_for
+from palpate.core.servo_session import (
+    HaplyDevice,
+    device_coupling,
+    haply_encoder_step,
+    servo_for,
+)
 
 MODEL = haply_model(DEFAULT_MODEL)
 TOP = (0.026, 0.024, 0.05)
@@ -60,7 +65,7 @@ def loop(cube):
         servo = servo_for(cube)
         servo.set_coupling(stiffness=math.inf, damping=0.0, passivity_control=False)
         started.append(servo)
-        servo.start_haply(device.port, rotation=PLANES[plane], translation=TOP)
+        servo.start(HaplyDevice(device.port, rotation=PLANES[plane], translation=TOP))
         eventually(lambda: servo.snapshot().state == "free", servo)
         return device, servo
 
@@ -119,7 +124,7 @@ def test_coarse_encoders_soften_the_coupling_unless_another_was_chosen(cube):
         with device, servo_for(cube, young_modulus=1e6) as servo:
             if chosen:
                 servo.set_coupling(**chosen)
-            servo.start_haply(device.port, rotation=PLANES["upright"], translation=TOP)
+            servo.start(HaplyDevice(device.port, rotation=PLANES["upright"], translation=TOP))
             eventually(lambda: servo.snapshot().state == "free", servo)
             device.move_hand(SHALLOW, 0.3)
             eventually(lambda: np.linalg.norm(servo.snapshot().output_force) > 0.15, servo)
@@ -193,7 +198,7 @@ def test_stopping_leaves_no_torque_and_the_board_keeps_its_angles(loop):
     servo.stop()
     assert device.report()["torques"] == [0.0, 0.0]
     # The handle is nowhere near its rest pose now; the board still knows.
-    servo.start_haply(device.port, rotation=PLANES["upright"], translation=TOP)
+    servo.start(HaplyDevice(device.port, rotation=PLANES["upright"], translation=TOP))
     eventually(lambda: servo.snapshot().state in {"free", "touching"}, servo)
     assert device.report()["setups"] == 1
     here = servo.snapshot().probe - TOP
@@ -212,7 +217,7 @@ def test_a_pulled_plug_is_told_and_ends_in_a_new_start_at_rest(loop):
     device.move_hand(MODEL.rest, 0.2)
     eventually(lambda: math.dist(device.report()["position"], MODEL.rest) < 1e-4)
     servo.stop()
-    servo.start_haply(device.port, rotation=PLANES["upright"], translation=TOP)
+    servo.start(HaplyDevice(device.port, rotation=PLANES["upright"], translation=TOP))
     eventually(lambda: servo.snapshot().state == "free", servo)
     press(device, servo)
 
@@ -265,9 +270,9 @@ def test_what_makes_no_sense_is_refused_before_any_port_is_opened(cube):
         ({"scale": 0.0}, "scale"),
     ):
         with pytest.raises(ValueError, match=reason):
-            servo.start_haply("/nowhere", **wrong)
+            servo.start(HaplyDevice("/nowhere", **wrong))
     with pytest.raises(OSError, match="/nowhere"):
-        servo.start_haply("/nowhere")
+        servo.start(HaplyDevice("/nowhere"))
     assert not servo.running
 
 

@@ -1,7 +1,7 @@
 """STATE that an adapter holds back, as the servo's own counters see it."""
 
 import pytest
-from palpate_servo import Servo
+from palpate_servo import LinkDevice, Servo
 
 from palpate.core.devices.latency_timer import explain
 from palpate.core.devices.simulated_options import SimulatedOptions
@@ -17,7 +17,7 @@ def counted(cube, eventually):
             SimulatedDevice(SimulatedOptions(**options)) as device,
             Servo(cube.native, young_modulus=1e4) as servo,
         ):
-            servo.start_serial(device.port)
+            servo.start(LinkDevice(device.port))
             eventually(lambda: servo.counters()["link"]["states"] > states)
             return servo.counters()["link"], device.port
 

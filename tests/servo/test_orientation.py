@@ -90,7 +90,7 @@ def turning(eventually):
         started.append(device)
         servo = palpate_servo.Servo(cube(), young_modulus=YOUNG_MODULUS)
         started.append(servo)
-        servo.start_serial(device.port)
+        servo.start(palpate_servo.LinkDevice(device.port))
         eventually(lambda: servo.snapshot().state == "free")
         return device, servo
 

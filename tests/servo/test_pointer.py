@@ -7,7 +7,7 @@ import textwrap
 
 import numpy as np
 import pytest
-from palpate_servo import STATES, BareTimer, Servo, bare_timer
+from palpate_servo import STATES, BareTimer, Pointer, Servo, bare_timer
 
 ABOVE = np.array([0.02, 0.03, 0.055])
 PRESSED = np.array([0.021, 0.029, 0.047])
@@ -26,7 +26,7 @@ def at(servo, place):
 
 
 def test_pressing_gives_the_formulas_force_and_leaving_gives_none(cube, servo, eventually):
-    servo.start_pointer(ABOVE)
+    servo.start(Pointer(ABOVE))
     eventually(lambda: servo.snapshot().state == "free", servo.snapshot)
     servo.set_target(PRESSED)
     eventually(at(servo, PRESSED), servo.snapshot)
@@ -51,7 +51,7 @@ def test_pressing_gives_the_formulas_force_and_leaving_gives_none(cube, servo, e
 
 
 def test_youngs_modulus_changes_the_force_in_proportion(servo, eventually):
-    servo.start_pointer(ABOVE)
+    servo.start(Pointer(ABOVE))
     servo.set_target(PRESSED)
     eventually(at(servo, PRESSED))
     soft = servo.snapshot().contact_force
@@ -61,7 +61,7 @@ def test_youngs_modulus_changes_the_force_in_proportion(servo, eventually):
 
 def test_the_probe_glides_and_never_jumps(cube, eventually):
     with Servo(cube.native, young_modulus=MODULUS, glide_speed=0.2) as servo:
-        servo.start_pointer(ABOVE)
+        servo.start(Pointer(ABOVE))
         servo.set_target(ABOVE + ASIDE)
         eventually(at(servo, ABOVE + ASIDE))
         steps = np.linalg.norm(np.diff(servo.samples()["probe"], axis=0), axis=1)
@@ -70,7 +70,7 @@ def test_the_probe_glides_and_never_jumps(cube, eventually):
 
 
 def test_restart_sets_the_probe_down_without_a_sweep_through_the_body(servo, eventually):
-    servo.start_pointer(ABOVE)
+    servo.start(Pointer(ABOVE))
     eventually(lambda: servo.snapshot().tick > 0)
     below = ABOVE * [1, 1, -1]
     servo.set_target(below, restart=True)
@@ -84,7 +84,7 @@ def test_restart_sets_the_probe_down_without_a_sweep_through_the_body(servo, eve
 
 def test_a_move_right_after_setting_down_does_not_hide_where(servo, eventually):
     """Both arrive before the thread looks once; only the newest target is seen."""
-    servo.start_pointer(ABOVE + np.array([0, 0, 0.03]))
+    servo.start(Pointer(ABOVE + np.array([0, 0, 0.03])))
     eventually(lambda: servo.snapshot().state == "free")
     for push in range(50):
         inside = PRESSED + np.array([0, 0, -1e-5 * push])
@@ -95,7 +95,7 @@ def test_a_move_right_after_setting_down_does_not_hide_where(servo, eventually):
 
 
 def test_set_down_inside_nothing_is_felt_until_it_was_outside(servo, eventually):
-    servo.start_pointer(PRESSED)
+    servo.start(Pointer(PRESSED))
     eventually(lambda: servo.snapshot().state == "free", servo.snapshot)
     assert servo.snapshot().reason == "inside the body"
     for place, state in ((ABOVE, "free"), (PRESSED, "touching")):
@@ -106,7 +106,7 @@ def test_set_down_inside_nothing_is_felt_until_it_was_outside(servo, eventually)
 
 def test_switching_off_silences_at_once_and_on_ramps(cube, eventually):
     with Servo(cube.native, young_modulus=MODULUS, ramp_seconds=0.2) as servo:
-        servo.start_pointer(ABOVE)
+        servo.start(Pointer(ABOVE))
         servo.set_target(PRESSED)
         eventually(at(servo, PRESSED))
         eventually(
@@ -132,7 +132,7 @@ def test_switching_off_silences_at_once_and_on_ramps(cube, eventually):
 
 def test_the_force_is_clamped_with_its_direction(cube, eventually):
     with Servo(cube.native, young_modulus=MODULUS, max_force=0.1, ramp_seconds=0) as servo:
-        servo.start_pointer(ABOVE)
+        servo.start(Pointer(ABOVE))
         servo.set_target(PRESSED)
         eventually(at(servo, PRESSED))
         shot = servo.snapshot()
@@ -143,7 +143,7 @@ def test_the_force_is_clamped_with_its_direction(cube, eventually):
 
 def test_snapshots_are_never_torn(cube):
     with Servo(cube.native, young_modulus=MODULUS, rate_hz=8000, glide_speed=20) as servo:
-        servo.start_pointer(ABOVE)
+        servo.start(Pointer(ABOVE))
         rng = np.random.default_rng(3)
         seen = touching = 0
         last = -1
@@ -169,7 +169,7 @@ def test_snapshots_are_never_torn(cube):
 
 def test_every_tick_is_recorded_until_the_ring_is_full(cube, eventually):
     with Servo(cube.native, young_modulus=MODULUS, record_seconds=0.1) as servo:
-        servo.start_pointer(ABOVE)
+        servo.start(Pointer(ABOVE))
         eventually(lambda: servo.counters()["samples_lost"] > 10)
         samples = servo.samples()
         assert len(samples) == 100
@@ -180,7 +180,7 @@ def test_every_tick_is_recorded_until_the_ring_is_full(cube, eventually):
 
 
 def test_counters_agree_with_each_other(servo, eventually):
-    servo.start_pointer(ABOVE)
+    servo.start(Pointer(ABOVE))
     eventually(lambda: servo.counters()["ticks"] > 300)
     servo.stop()
     counters = servo.counters()
@@ -205,16 +205,16 @@ def test_stopping_is_idempotent_and_starting_again_works(servo, eventually):
     assert not servo.running
     assert servo.snapshot().state == "stopped"
     for _ in range(3):
-        servo.start_pointer(ABOVE)
+        servo.start(Pointer(ABOVE))
         assert servo.running
         eventually(lambda: servo.snapshot().state == "free")
         with pytest.raises(RuntimeError, match="runs already"):
-            servo.start_pointer(ABOVE)
+            servo.start(Pointer(ABOVE))
         servo.stop()
         servo.stop()
         assert not servo.running
         assert servo.snapshot().state == "stopped"
-    with pytest.raises(RuntimeError, match="start_pointer first"):
+    with pytest.raises(RuntimeError, match=r"start\(Pointer"):
         servo.set_target(ABOVE)
 
 
@@ -224,7 +224,7 @@ def test_two_servos_run_side_by_side(cube, eventually):
         Servo(cube.native, young_modulus=2 * MODULUS, rate_hz=500) as two,
     ):
         for servo in (one, two):
-            servo.start_pointer(ABOVE)
+            servo.start(Pointer(ABOVE))
             servo.set_target(PRESSED)
         for servo in (one, two):
             eventually(at(servo, PRESSED))
@@ -235,7 +235,7 @@ def test_two_servos_run_side_by_side(cube, eventually):
 
 def test_a_forgotten_servo_ends_with_its_object(cube):
     servo = Servo(cube.native, young_modulus=MODULUS)
-    servo.start_pointer(ABOVE)
+    servo.start(Pointer(ABOVE))
     del servo
     gc.collect()
 
@@ -248,7 +248,7 @@ def test_leaving_the_interpreter_with_a_running_servo_does_not_hang():
         body = ps.Body(nodes, triangles, np.tile(np.eye(3), (4, 1, 1)))
         servos = [ps.Servo(body, young_modulus=1.0) for _ in range(3)]
         for servo in servos:
-            servo.start_pointer([2, 2, 2])
+            servo.start(ps.Pointer([2, 2, 2]))
         timer = ps.BareTimer(1000)
         print("leaving")
     """
@@ -264,7 +264,7 @@ def test_leaving_the_interpreter_with_a_running_servo_does_not_hang():
 
 def test_python_that_keeps_the_interpreter_costs_no_ticks(servo, eventually, record_property):
     """Beside a bare native thread in the same run: whatever the machine does hits both."""
-    servo.start_pointer(ABOVE)
+    servo.start(Pointer(ABOVE))
     bare = BareTimer(1000)
     eventually(lambda: servo.snapshot().state == "free")
     start, bare_start = servo.counters(), bare.counters()

@@ -4,7 +4,7 @@ import time
 from itertools import pairwise
 
 import pytest
-from palpate_servo import Servo
+from palpate_servo import LinkDevice, Servo
 
 from palpate.core.devices.simulated_options import SimulatedOptions
 from palpate.core.devices.simulated_process import SimulatedDevice
@@ -40,7 +40,7 @@ def shaken(cube, eventually, coupling):
     ):
         if coupling is not None:
             servo.set_coupling(**coupling)
-        servo.start_serial(device.port)
+        servo.start(LinkDevice(device.port))
         eventually(lambda: servo.snapshot().state == "free")
         device.move_hand(PRESSED, 0.2)
         eventually(lambda: device.report()["largest_force"] > 0.5)

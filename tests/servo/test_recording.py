@@ -5,7 +5,7 @@ import time
 
 import numpy as np
 import pytest
-from palpate_servo import STATES, Servo
+from palpate_servo import STATES, Pointer, Servo
 
 MODULUS = 10_000.0
 ABOVE, PRESSED = (0.02, 0.03, 0.055), (0.02, 0.03, 0.047)
@@ -29,7 +29,7 @@ def same(one, other):
 def test_before_the_start_it_records_from_the_first_tick_to_the_last(servo, eventually):
     assert servo.start_recording(10.0) == 10_000 * 144
     assert not servo.is_recording
-    servo.start_pointer(ABOVE)
+    servo.start(Pointer(ABOVE))
     assert servo.is_recording
     servo.set_target(PRESSED)
     eventually(lambda: servo.snapshot().touching, servo.snapshot)
@@ -46,7 +46,7 @@ def test_before_the_start_it_records_from_the_first_tick_to_the_last(servo, even
 
 def test_samples_and_the_recording_both_hold_every_tick(servo, eventually):
     servo.start_recording()
-    servo.start_pointer(ABOVE)
+    servo.start(Pointer(ABOVE))
     taken = [servo.samples()]
 
     def look():
@@ -60,7 +60,7 @@ def test_samples_and_the_recording_both_hold_every_tick(servo, eventually):
 
 
 def test_it_begins_and_ends_while_the_servo_runs(servo, eventually):
-    servo.start_pointer(ABOVE)
+    servo.start(Pointer(ABOVE))
     assert len(servo.recording()) == 0
     eventually(lambda: servo.counters()["ticks"] > 20)
     servo.start_recording(600.0)
@@ -79,7 +79,7 @@ def test_it_begins_and_ends_while_the_servo_runs(servo, eventually):
 
 def test_it_ends_by_itself_after_the_time_asked_for(servo, eventually):
     servo.start_recording(0.05)
-    servo.start_pointer(ABOVE)
+    servo.start(Pointer(ABOVE))
     eventually(lambda: not servo.is_recording)
     eventually(lambda: servo.counters()["ticks"] > 80)
     assert servo.recording()["tick"].tolist() == list(range(1, 51))
@@ -96,7 +96,7 @@ def test_a_busy_interpreter_costs_no_tick(servo):
 
     hogs = [threading.Thread(target=hog) for _ in range(3)]
     servo.start_recording()
-    servo.start_pointer(ABOVE)
+    servo.start(Pointer(ABOVE))
     for thread in hogs:
         thread.start()
     time.sleep(0.5)
@@ -110,11 +110,11 @@ def test_a_busy_interpreter_costs_no_tick(servo):
 
 def test_a_new_start_records_nothing_unless_asked(servo, eventually):
     servo.start_recording()
-    servo.start_pointer(ABOVE)
+    servo.start(Pointer(ABOVE))
     eventually(lambda: len(servo.recording()) > 5)
     servo.stop()
     assert len(servo.recording()) > 5
-    servo.start_pointer(ABOVE)
+    servo.start(Pointer(ABOVE))
     eventually(lambda: servo.counters()["ticks"] > 20)
     assert len(servo.recording()) == 0
 
@@ -122,7 +122,7 @@ def test_a_new_start_records_nothing_unless_asked(servo, eventually):
 def test_asked_and_thought_better_of_before_the_start(servo, eventually):
     servo.start_recording()
     servo.stop_recording()
-    servo.start_pointer(ABOVE)
+    servo.start(Pointer(ABOVE))
     eventually(lambda: servo.counters()["ticks"] > 20)
     assert len(servo.recording()) == 0
 

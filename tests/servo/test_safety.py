@@ -12,7 +12,7 @@ import pytest
 from measuring.fault_causes import CAUSES, Outcome
 from measuring.servo_host import ABOVE, DEEP, cube
 from measuring.virtual_press import VirtualPress
-from palpate_servo import STATES, Servo
+from palpate_servo import STATES, Pointer, Servo
 
 DOCUMENT = Path(__file__).resolve().parents[2] / "docs" / "safety.md"
 SILENT = next(cause for cause in CAUSES if cause.outcome is Outcome.SILENT)
@@ -72,7 +72,7 @@ def test_a_broken_rule_is_printed_and_is_the_exit_code(monkeypatch, capsys):
 
 def test_a_body_replaced_while_it_is_touched_is_silent_named_and_ramps(eventually):
     with Servo(cube(), young_modulus=1e4, ramp_seconds=0.1) as servo:
-        servo.start_pointer(ABOVE)
+        servo.start(Pointer(ABOVE))
         eventually(lambda: servo.snapshot().state == "free", servo.snapshot)
         servo.set_target(DEEP)
         eventually(lambda: np.allclose(servo.snapshot().probe, DEEP), servo.snapshot)
@@ -104,7 +104,7 @@ def test_a_body_set_before_the_start_is_the_one_that_is_touched(eventually):
     with Servo(cube(), young_modulus=1e4) as servo:
         servo.set_body(cube(0.045), 3e4)
         assert (servo.snapshot().state, servo.snapshot().reason) == ("stopped", "not started")
-        servo.start_pointer(ABOVE)
+        servo.start(Pointer(ABOVE))
         eventually(lambda: servo.snapshot().state == "free", servo.snapshot)
         servo.set_target(DEEP)
         eventually(lambda: np.allclose(servo.snapshot().probe, DEEP), servo.snapshot)

@@ -11,7 +11,7 @@ import tty
 
 import numpy as np
 import pytest
-from palpate_servo import STATES, Servo
+from palpate_servo import STATES, LinkDevice, Servo
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "openpty"), reason="needs pseudo-terminals")
 
@@ -155,7 +155,7 @@ def press(device, servo, eventually):
 
 
 def test_a_press_is_felt_and_what_is_computed_is_sent(device, servo, eventually):
-    servo.start_serial(str(device.path))
+    servo.start(LinkDevice(str(device.path)))
     press(device, servo, eventually)
     eventually(
         lambda: np.allclose(servo.snapshot().output_force, servo.snapshot().contact_force),
@@ -173,7 +173,7 @@ def test_a_press_is_felt_and_what_is_computed_is_sent(device, servo, eventually)
 
 
 def test_stopping_while_pressing_leaves_zero_force_without_enable(device, servo, eventually):
-    servo.start_serial(str(device.path))
+    servo.start(LinkDevice(str(device.path)))
     press(device, servo, eventually)
     servo.stop()
     eventually(lambda: device.forces[-1] == (0, 0, 0, 0), lambda: device.forces[-5:])
@@ -183,7 +183,7 @@ def test_the_devices_own_limit_clamps(cube, tmp_path, eventually):
     device = FakeDevice(tmp_path, max_force=0.05)
     try:
         with Servo(cube.native, young_modulus=MODULUS) as servo:
-            servo.start_serial(str(device.path))
+            servo.start(LinkDevice(str(device.path)))
             press(device, servo, eventually)
             device.glide(ABOVE)
             strengths = np.linalg.norm(servo.samples()["output"], axis=1)
@@ -193,7 +193,7 @@ def test_the_devices_own_limit_clamps(cube, tmp_path, eventually):
 
 
 def test_silence_is_stale_and_the_force_ramps_on_return(device, servo, eventually):
-    servo.start_serial(str(device.path))
+    servo.start(LinkDevice(str(device.path)))
     press(device, servo, eventually)
     device.muted = True
     eventually(state_is(servo, "fault"), servo.snapshot)
@@ -213,7 +213,7 @@ def test_silence_is_stale_and_the_force_ramps_on_return(device, servo, eventuall
 
 
 def test_unplugged_while_pressing_and_plugged_in_again(device, servo, eventually):
-    servo.start_serial(str(device.path))
+    servo.start(LinkDevice(str(device.path)))
     press(device, servo, eventually)
     device.unplug()
     eventually(state_is(servo, "fault"), servo.snapshot)
@@ -228,7 +228,7 @@ def test_unplugged_while_pressing_and_plugged_in_again(device, servo, eventually
 
 
 def test_the_button_silences_at_once(device, servo, eventually):
-    servo.start_serial(str(device.path))
+    servo.start(LinkDevice(str(device.path)))
     press(device, servo, eventually)
     device.buttons = 1
     eventually(state_is(servo, "disabled"), servo.snapshot)
@@ -241,7 +241,7 @@ def test_the_button_silences_at_once(device, servo, eventually):
 
 
 def test_a_jump_is_too_fast_and_silences(device, servo, eventually):
-    servo.start_serial(str(device.path))
+    servo.start(LinkDevice(str(device.path)))
     press(device, servo, eventually)
     device.position = (0.02, 0.03, -0.2)
     eventually(lambda: servo.counters()["faults"]["too fast"] >= 1, servo.snapshot)
@@ -252,7 +252,7 @@ def test_a_jump_is_too_fast_and_silences(device, servo, eventually):
 
 
 def test_a_device_with_a_fault_or_not_ready_gets_no_force(device, servo, eventually):
-    servo.start_serial(str(device.path))
+    servo.start(LinkDevice(str(device.path)))
     press(device, servo, eventually)
     for flags, state in ((3, "fault"), (0, "waiting"), (1, "touching")):
         device.flags = flags
@@ -266,7 +266,7 @@ def test_another_protocol_is_a_fault(cube, tmp_path, eventually):
     device = FakeDevice(tmp_path, protocol=2)
     try:
         with Servo(cube.native, young_modulus=MODULUS) as servo:
-            servo.start_serial(str(device.path))
+            servo.start(LinkDevice(str(device.path)))
             eventually(lambda: servo.snapshot().fault == "wrong protocol", servo.snapshot)
         assert device.forces == []
     finally:
@@ -274,7 +274,7 @@ def test_another_protocol_is_a_fault(cube, tmp_path, eventually):
 
 
 def test_noise_on_the_line_is_counted_and_survived(device, servo, eventually):
-    servo.start_serial(str(device.path))
+    servo.start(LinkDevice(str(device.path)))
     press(device, servo, eventually)
     state = bytearray(to_frame(struct.pack("<BHI3iBB", 2, 0, 0, 1, 2, 3, 0, 1)))
     state[-2] ^= 0x20
@@ -293,7 +293,7 @@ def test_the_device_frame_turns_positions_and_forces(device, servo, eventually):
     turn = np.array([[0.0, 0, 1], [1, 0, 0], [0, 1, 0]])
     place = np.array(PRESSED)
     device.position = tuple(turn.T @ np.array(ABOVE) / 2)
-    servo.start_serial(str(device.path), rotation=turn, scale=2.0)
+    servo.start(LinkDevice(str(device.path), rotation=turn, scale=2.0))
     eventually(state_is(servo, "free"), servo.snapshot)
     device.glide(turn.T @ place / 2)
     eventually(lambda: np.allclose(servo.snapshot().probe, place, atol=2e-6), servo.snapshot)
@@ -306,9 +306,9 @@ def test_the_device_frame_turns_positions_and_forces(device, servo, eventually):
 
 def test_a_port_that_is_not_there_is_said_so(servo, tmp_path):
     with pytest.raises(OSError, match="nowhere"):
-        servo.start_serial(str(tmp_path / "nowhere"))
+        servo.start(LinkDevice(str(tmp_path / "nowhere")))
     with pytest.raises(ValueError, match="orthonormal"):
-        servo.start_serial(str(tmp_path / "nowhere"), rotation=np.ones((3, 3)))
+        servo.start(LinkDevice(str(tmp_path / "nowhere"), rotation=np.ones((3, 3))))
     assert not servo.running
 
 
@@ -318,7 +318,7 @@ def test_a_stopped_servo_gives_the_terminal_back(servo):
     is_exclusive = 0x80045440  # TIOCGEXCL
     master, slave = os.openpty()
     try:
-        servo.start_serial(os.ttyname(slave))
+        servo.start(LinkDevice(os.ttyname(slave)))
         assert fcntl.ioctl(slave, is_exclusive, b"\0\0\0\0") == b"\1\0\0\0"
         servo.stop()
         assert fcntl.ioctl(slave, is_exclusive, b"\0\0\0\0") == b"\0\0\0\0"

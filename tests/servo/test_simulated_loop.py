@@ -40,7 +40,7 @@ def loop(cube, eventually):
         started.append(device)
         servo = servo_for(cube)
         started.append(servo)
-        servo.start_serial(device.port)
+        servo.start(palpate_servo.LinkDevice(device.port))
         eventually(lambda: servo.snapshot().state == "free")
         return device, servo
 

@@ -9,7 +9,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use super::compliance::Compliance;
-use super::servo::{contact_mode, felt_choice};
+use super::settings::{contact_mode, felt_choice};
 use super::vectors::{Matrix, Rows, Triple, Vector, array, finite, rows};
 use crate::felt::{Felt, Softening};
 use crate::{closest, contact, surface};

@@ -5,7 +5,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use super::servo::coupling;
+use super::settings::coupling;
 use super::vectors::{check_rate, positive};
 use crate::closed_loop::{Hand, Plant, Trial, forces, run};
 use crate::coupling::Coupling;

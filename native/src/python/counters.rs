@@ -5,8 +5,9 @@ use pyo3::types::PyDict;
 
 use super::vectors::{check_rate, check_seconds};
 use crate::clock::{LATE_LIMITS_NS, Timing};
-use crate::device::LinkReport;
+use crate::device::{Fault, LinkReport};
 use crate::durations::{BUCKETS, DurationReport, bucket_limit_ns};
+use crate::snapshot::Told;
 use crate::stages::{Stage, Stages};
 use crate::thread::Paced;
 
@@ -155,4 +156,23 @@ pub fn bare_timer<'py>(
     let timer = BareTimer::new(rate_hz)?;
     py.detach(|| std::thread::sleep(std::time::Duration::from_secs_f64(seconds)));
     timer.stop(py)
+}
+
+/// Times each fault began.
+pub fn fault_counters<'py>(py: Python<'py>, told: &Told) -> PyResult<Bound<'py, PyDict>> {
+    let faults = PyDict::new(py);
+    for (fault, count) in Fault::ALL.iter().zip(told.faults) {
+        faults.set_item(fault.name(), count)?;
+    }
+    Ok(faults)
+}
+
+/// What one finger has counted.
+pub fn finger_counters(py: Python<'_>, counters: &Bound<'_, PyDict>, told: &Told) -> PyResult<()> {
+    counters.set_item("faults", fault_counters(py, told)?)?;
+    counters.set_item("link", link_counters(py, &told.link)?)?;
+    let proxy = PyDict::new(py);
+    proxy.set_item("most_steps", told.most_steps)?;
+    proxy.set_item("rescues", told.rescues)?;
+    counters.set_item("proxy", proxy)
 }

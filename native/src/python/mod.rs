@@ -4,12 +4,16 @@ mod body;
 mod closed_loop;
 mod compliance;
 mod counters;
+mod devices;
 mod frames;
 mod haply;
 mod proxy;
+mod samples;
 mod servo;
+mod settings;
 mod several;
 mod snapshot;
+mod started;
 mod stepped;
 mod stepped_fingers;
 mod tick_cost;
@@ -31,6 +35,9 @@ fn palpate_servo(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<body::Body>()?;
     module.add_class::<compliance::Compliance>()?;
     module.add_class::<proxy::Proxy>()?;
+    module.add_class::<devices::PointerSetup>()?;
+    module.add_class::<devices::LinkSetup>()?;
+    module.add_class::<devices::HaplySetup>()?;
     module.add_class::<servo::Servo>()?;
     module.add_class::<snapshot::Snapshot>()?;
     module.add_class::<snapshot::FingerSnapshot>()?;
@@ -49,7 +56,7 @@ fn palpate_servo(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(several::solve_contacts, module)?)?;
     module.add_function(wrap_pyfunction!(tick_cost::tick_costs, module)?)?;
     module.add_function(wrap_pyfunction!(haply::haply_encoder_step, module)?)?;
-    let stop_all = wrap_pyfunction!(servo::stop_all, module)?;
+    let stop_all = wrap_pyfunction!(started::stop_all, module)?;
     py.import("atexit")?
         .call_method1("register", (&stop_all,))?;
     module.add_function(stop_all)?;

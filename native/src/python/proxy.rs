@@ -10,9 +10,10 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use super::body::Body;
-use super::servo::{contact_mode, feel};
+use super::settings::{contact_mode, feel};
 use super::vectors::{Matrix, Triple, Vector, array, check_rate, finite};
 use crate::contact::touch;
+use crate::proxy::Feel;
 use crate::{proxy, surface};
 
 #[pyclass(module = "palpate_servo")]
@@ -55,12 +56,10 @@ impl Proxy {
         Ok(Self {
             body: body.inner.clone(),
             inner: None,
-            feel: feel(
-                shading,
-                static_friction,
-                dynamic_friction,
-                contact_mode(mode)?,
-            )?,
+            feel: Feel {
+                mode: contact_mode(mode)?,
+                ..feel(shading, static_friction, dynamic_friction)?
+            },
             dt: 1.0 / f64::from(rate_hz),
         })
     }

@@ -1,57 +1,38 @@
 //! `Servo`: starts, leads and stops the native thread.
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use glam::{DMat3, DVec3};
 use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use triple_buffer::{Input, triple_buffer};
 
 use super::body::Body;
-use super::counters::{link_counters, stage_counters, timing_counters};
-use super::haply::haply_setup;
-use super::snapshot::{Snapshot, structured, structured_pieces};
-use super::stepped::fault_counters;
-use super::tool::ToolContact;
-use super::vectors::{IDENTITY, Rows, Triple, check_rate, check_seconds, finite, matrix, positive};
+use super::counters::{finger_counters, stage_counters, timing_counters};
+use super::devices::{DeviceSetup, Lead};
+use super::samples::{structured, structured_pieces};
+use super::settings::{contact_mode, coupling, device_frame, feel, felt_choice, options};
+use super::snapshot::Snapshot;
+use super::started::remember;
+use super::tool::{MadeTool, ToolContact, tip};
+use super::vectors::{Rows, Triple, check_seconds, finite, positive, rotation as turn};
 use crate::clock::Timing;
 use crate::cones::MAX_FINGERS;
-use crate::contact::ContactMode;
 use crate::coupling::Coupling;
-use crate::device::{Device, DeviceFrame};
-use crate::felt::Felt;
+use crate::device::Device;
 use crate::finger::FingerSettings;
-use crate::haply::device::HaplyDevice;
-use crate::link::LinkDevice;
-use crate::pointer::{Pointer, Target};
-use crate::port::SerialPort;
 use crate::proxy::Feel;
-use crate::safety::Limits;
 use crate::servo::{Options, Settings};
-use crate::snapshot::{Published, Sample, Told};
+use crate::snapshot::{Published, Sample};
 use crate::surface;
 use crate::thread::Running;
-use crate::tip::Tip;
-use crate::tool;
-use crate::tool::points::ToolSurface;
-use crate::tool::shape::Tool;
 
 /// Why there can be no more than one finger.
 const NOT_WHOLE: &str = "several fingers need the compliance of any two nodes, which this body has \
     not kept; make it with Body(..., whole=True)";
 
-/// Every servo that may still run, so that the interpreter's exit can stop it.
-static STARTED: Mutex<Vec<Weak<Running>>> = Mutex::new(Vec::new());
-
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
-
-type MadeTool = (Arc<ToolSurface>, Tool);
-
-/// Where a pointer is led, and where it was led last.
-type Lead = (Input<Target>, Target);
 
 #[pyclass(frozen, module = "palpate_servo")]
 pub struct Servo {
@@ -78,9 +59,9 @@ impl Servo {
         locked(&self.running).clone()
     }
 
-    fn published(&self) -> Published {
-        self.current()
-            .map_or_else(|| Published::before_the_start(1), |r| r.published())
+    /// While its thread lives.
+    fn alive(&self) -> Option<Arc<Running>> {
+        self.current().filter(|r| r.paced().is_running())
     }
 
     fn change(&self, edit: impl FnOnce(&mut Settings)) {
@@ -91,53 +72,27 @@ impl Servo {
         }
     }
 
-    fn refuse_if_running(&self) -> PyResult<()> {
-        match self.current() {
-            Some(running) if running.paced().is_running() => Err(PyRuntimeError::new_err(
-                "the servo runs already; stop it before starting it again",
-            )),
-            _ => Ok(()),
-        }
-    }
-
-    /// The device that `open` finds at `port`, for a finger.
-    fn open_port<D: Device + 'static>(
+    /// The device of a finger, open, with what it brings: its frame and coupling, or its targets.
+    fn opened(
         &self,
         py: Python<'_>,
         finger: usize,
-        port: SerialPort,
-        frame: DeviceFrame,
-        encoder_step: f64,
-        open: impl FnOnce(SerialPort) -> std::io::Result<D> + Send,
+        device: &DeviceSetup<'_>,
     ) -> PyResult<Box<dyn Device>> {
-        let device = py.detach(|| {
-            let path = port.path.clone();
-            open(port).map_err(|e| {
-                PyOSError::new_err(format!(
-                    "{path}: cannot be opened ({e}); close the program that uses it, or see \
-                         'palpate devices'"
-                ))
-            })
-        })?;
-        let mut settings = locked(&self.settings);
-        settings.fingers[finger].frame = frame;
-        settings.fingers[finger].coupling = locked(&self.own_coupling)
-            .unwrap_or_else(|| Coupling::for_encoders(self.options.rate_hz, encoder_step));
-        locked(&self.targets)[finger] = None;
-        Ok(Box::new(device))
-    }
-
-    /// A pointer for a finger, set down at a position.
-    fn new_pointer(&self, finger: usize, position: DVec3) -> Box<dyn Device> {
-        let start = Target::first(position);
-        let (input, output) = triple_buffer(&start);
-        locked(&self.targets)[finger] = Some((input, start));
-        Box::new(Pointer::new(start, output, self.glide_speed))
+        let opened = device.open(py, self.glide_speed)?;
+        if let Some((frame, encoder_step)) = opened.mount {
+            let settings = &mut locked(&self.settings).fingers[finger];
+            settings.frame = frame;
+            settings.coupling = locked(&self.own_coupling)
+                .unwrap_or_else(|| Coupling::for_encoders(self.options.rate_hz, encoder_step));
+        }
+        locked(&self.targets)[finger] = opened.lead;
+        Ok(opened.device)
     }
 
     /// The number of the next finger but the first.
     fn next_finger(&self) -> PyResult<usize> {
-        if self.current().is_some_and(|r| r.paced().is_running()) {
+        if self.alive().is_some() {
             return Err(PyRuntimeError::new_err(
                 "the servo runs already; stop it, add the fingers, then start it again",
             ));
@@ -155,15 +110,8 @@ impl Servo {
         }
     }
 
-    fn add(&self, finger: usize, device: Box<dyn Device>) -> usize {
-        let mut others = locked(&self.others);
-        others.truncate(finger - 1);
-        others.push(device);
-        finger
-    }
-
-    /// Starts with this device as finger 0.
-    fn start(&self, py: Python<'_>, first: Box<dyn Device>) -> PyResult<()> {
+    /// Runs with this device as finger 0.
+    fn run(&self, py: Python<'_>, first: Box<dyn Device>) -> PyResult<()> {
         let mut devices = vec![first];
         devices.append(&mut locked(&self.others));
         let settings = *locked(&self.settings);
@@ -182,9 +130,7 @@ impl Servo {
         })?;
         *locked(&self.armed_ticks) = 0;
         let running = Arc::new(running);
-        let mut started = locked(&STARTED);
-        started.retain(|weak| weak.strong_count() > 0);
-        started.push(Arc::downgrade(&running));
+        remember(&running);
         *locked(&self.running) = Some(running);
         Ok(())
     }
@@ -213,30 +159,18 @@ impl Servo {
         mode: &str,
         felt: &str,
     ) -> PyResult<Self> {
-        check_rate(rate_hz)?;
-        check_seconds("ramp_seconds", ramp_seconds)?;
         check_seconds("record_seconds", record_seconds)?;
         Ok(Self {
             body: Mutex::new(body.inner.clone()),
-            options: Options {
-                rate_hz,
-                limits: Limits {
-                    max_force: positive("max_force", max_force)?,
-                    max_slew: positive("max_slew", max_slew)?,
-                    ramp_seconds,
-                },
-                max_speed: positive("max_speed", max_speed)?,
-            },
+            options: options(rate_hz, max_force, max_slew, ramp_seconds, max_speed)?,
             glide_speed: positive("glide_speed", glide_speed)?,
             record_samples: (record_seconds * f64::from(rate_hz)).ceil() as usize,
             armed_ticks: Mutex::new(0),
             settings: Mutex::new(Settings {
-                feel: feel(
-                    shading,
-                    static_friction,
-                    dynamic_friction,
-                    contact_mode(mode)?,
-                )?,
+                feel: Feel {
+                    mode: contact_mode(mode)?,
+                    ..feel(shading, static_friction, dynamic_friction)?
+                },
                 felt: felt_choice(felt)?,
                 fingers: [FingerSettings {
                     coupling: Coupling::for_devices(rate_hz),
@@ -252,110 +186,28 @@ impl Servo {
         })
     }
 
-    fn start_pointer(&self, py: Python<'_>, position: Triple) -> PyResult<()> {
-        self.refuse_if_running()?;
-        let position = finite("position", position)?;
-        let pointer = self.new_pointer(0, position);
-        self.start(py, pointer)
+    fn start(&self, py: Python<'_>, device: DeviceSetup<'_>) -> PyResult<()> {
+        if self.alive().is_some() {
+            return Err(PyRuntimeError::new_err(
+                "the servo runs already; stop it before starting it again",
+            ));
+        }
+        let first = self.opened(py, 0, &device)?;
+        self.run(py, first)
     }
 
-    #[pyo3(signature = (port, *, baud=115_200, rotation=IDENTITY, translation=[0.0; 3], scale=1.0))]
-    fn start_serial(
-        &self,
-        py: Python<'_>,
-        port: String,
-        baud: u32,
-        rotation: Rows,
-        translation: Triple,
-        scale: f64,
-    ) -> PyResult<()> {
-        self.refuse_if_running()?;
-        let frame = device_frame(rotation, translation, scale)?;
-        let port = SerialPort { path: port, baud };
-        let device = self.open_port(py, 0, port, frame, 0.0, LinkDevice::open)?;
-        self.start(py, device)
-    }
-
-    #[pyo3(signature = (
-        port, *, model="2diy-3.1", angles=None, recalibrate=false, baud=115_200,
-        rotation=IDENTITY, translation=[0.0; 3], scale=1.0
-    ))]
-    #[allow(clippy::too_many_arguments)] // Keywords in Python.
-    fn start_haply(
-        &self,
-        py: Python<'_>,
-        port: String,
-        model: &str,
-        angles: Option<[f32; 2]>,
-        recalibrate: bool,
-        baud: u32,
-        rotation: Rows,
-        translation: Triple,
-        scale: f64,
-    ) -> PyResult<()> {
-        self.refuse_if_running()?;
-        let (model, calibration) = haply_setup(model, angles, recalibrate, baud)?;
-        let frame = device_frame(rotation, translation, scale)?;
-        let (port, step) = (SerialPort { path: port, baud }, model.encoder_step());
-        let device = self.open_port(py, 0, port, frame, step, |port| {
-            HaplyDevice::open(port, model, calibration)
-        })?;
-        self.start(py, device)
-    }
-
-    fn add_pointer(&self, position: Triple) -> PyResult<usize> {
+    fn add(&self, py: Python<'_>, device: DeviceSetup<'_>) -> PyResult<usize> {
         let finger = self.next_finger()?;
-        let pointer = self.new_pointer(finger, finite("position", position)?);
-        Ok(self.add(finger, pointer))
-    }
-
-    #[pyo3(signature = (port, *, baud=115_200, rotation=IDENTITY, translation=[0.0; 3], scale=1.0))]
-    fn add_serial(
-        &self,
-        py: Python<'_>,
-        port: String,
-        baud: u32,
-        rotation: Rows,
-        translation: Triple,
-        scale: f64,
-    ) -> PyResult<usize> {
-        let finger = self.next_finger()?;
-        let frame = device_frame(rotation, translation, scale)?;
-        let port = SerialPort { path: port, baud };
-        let device = self.open_port(py, finger, port, frame, 0.0, LinkDevice::open)?;
-        Ok(self.add(finger, device))
-    }
-
-    #[pyo3(signature = (
-        port, *, model="2diy-3.1", angles=None, recalibrate=false, baud=115_200,
-        rotation=IDENTITY, translation=[0.0; 3], scale=1.0
-    ))]
-    #[allow(clippy::too_many_arguments)] // Keywords in Python.
-    fn add_haply(
-        &self,
-        py: Python<'_>,
-        port: String,
-        model: &str,
-        angles: Option<[f32; 2]>,
-        recalibrate: bool,
-        baud: u32,
-        rotation: Rows,
-        translation: Triple,
-        scale: f64,
-    ) -> PyResult<usize> {
-        let finger = self.next_finger()?;
-        let (model, calibration) = haply_setup(model, angles, recalibrate, baud)?;
-        let frame = device_frame(rotation, translation, scale)?;
-        let (port, step) = (SerialPort { path: port, baud }, model.encoder_step());
-        let device = self.open_port(py, finger, port, frame, step, |port| {
-            HaplyDevice::open(port, model, calibration)
-        })?;
-        Ok(self.add(finger, device))
+        let device = self.opened(py, finger, &device)?;
+        let mut others = locked(&self.others);
+        others.truncate(finger - 1);
+        others.push(device);
+        Ok(finger)
     }
 
     #[getter]
     fn finger_count(&self) -> usize {
-        match self.current().filter(|r| r.paced().is_running()) {
+        match self.alive() {
             Some(running) => running.finger_count(),
             None => 1 + locked(&self.others).len(),
         }
@@ -372,8 +224,8 @@ impl Servo {
                 Ok(())
             }
             None => Err(PyRuntimeError::new_err(format!(
-                "targets lead a pointer, and finger {finger} is none; call start_pointer first, or \
-                 add_pointer"
+                "targets lead a pointer, and finger {finger} is none; call start(Pointer(...)) \
+                 first, or add(Pointer(...))"
             ))),
         }
     }
@@ -381,8 +233,8 @@ impl Servo {
     #[pyo3(signature = (rotation, finger=0))]
     fn set_orientation(&self, rotation: Rows, finger: usize) -> PyResult<()> {
         check_finger(finger)?;
-        let rotation = rotation_matrix(rotation)?;
-        self.change(|s| s.fingers[finger].orientation = rotation);
+        let orientation = turn("rotation", rotation)?;
+        self.change(|s| s.fingers[finger].orientation = orientation);
         Ok(())
     }
 
@@ -394,9 +246,8 @@ impl Servo {
         finger: usize,
     ) -> PyResult<()> {
         check_finger(finger)?;
-        let made = tool.map(|tool| (tool.inner.surface().clone(), tool.inner.tool().clone()));
-        let fits = |(surface, _): &MadeTool| Arc::ptr_eq(surface.body(), &locked(&self.body));
-        if made.as_ref().is_some_and(|made| !fits(made)) {
+        let made = tool.map(|tool| tool.made());
+        if (made.as_ref()).is_some_and(|made| !made.is_for(&locked(&self.body))) {
             return Err(PyValueError::new_err(
                 "the tool was made for another body; make it with the Body that the servo touches",
             ));
@@ -455,12 +306,7 @@ impl Servo {
 
     #[pyo3(signature = (*, shading, static_friction, dynamic_friction))]
     fn set_feel(&self, shading: bool, static_friction: f64, dynamic_friction: f64) -> PyResult<()> {
-        let feel = feel(
-            shading,
-            static_friction,
-            dynamic_friction,
-            ContactMode::default(),
-        )?;
+        let feel = feel(shading, static_friction, dynamic_friction)?;
         self.change(|s| {
             s.feel = Feel {
                 mode: s.feel.mode,
@@ -498,14 +344,12 @@ impl Servo {
         self.change(|s| s.enabled = enabled);
     }
 
-    fn snapshot(&self) -> Snapshot {
-        match self.current() {
-            Some(running) => {
-                let (published, patches) = running.published_with_patches();
-                Snapshot::of(&published, patches)
-            }
-            None => Snapshot::of(&Published::before_the_start(1), Vec::new()),
-        }
+    fn snapshot(&self, py: Python<'_>) -> PyResult<Py<Snapshot>> {
+        let (published, patches) = match self.current() {
+            Some(running) => running.published_with_patches(),
+            None => (Published::before_the_start(1), Vec::new()),
+        };
+        Snapshot::of(py, &published, &patches)
     }
 
     fn samples<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
@@ -518,7 +362,7 @@ impl Servo {
         check_seconds("seconds", positive("seconds", seconds)?)?;
         let ticks = (seconds * f64::from(self.options.rate_hz)).ceil() as usize;
         let samples = ticks.saturating_mul(self.finger_count());
-        match self.current().filter(|r| r.paced().is_running()) {
+        match self.alive() {
             Some(running) if running.recorder().is_on() => {
                 return Err(PyRuntimeError::new_err(
                     "a recording is on already; call stop_recording first",
@@ -565,15 +409,17 @@ impl Servo {
             }
             None => timing_counters(py, &Timing::default(), "not started")?,
         };
-        let published = self.published();
+        let published = running
+            .as_ref()
+            .map_or_else(|| Published::before_the_start(1), |r| r.published());
         let stages = running.as_deref().map(Running::stages);
         counters.set_item("stages_us", stage_counters(py, stages)?)?;
         counters.set_item("rate_hz", self.options.rate_hz)?;
         counters.set_item("samples_lost", published.samples_lost)?;
-        count_finger(py, &counters, published.first())?;
+        finger_counters(py, &counters, published.first())?;
         let fingers = published.fingers().iter().map(|told| {
             let finger = PyDict::new(py);
-            count_finger(py, &finger, told)?;
+            finger_counters(py, &finger, told)?;
             Ok(finger)
         });
         counters.set_item("fingers", fingers.collect::<PyResult<Vec<_>>>()?)?;
@@ -592,7 +438,7 @@ impl Servo {
 
     #[getter]
     fn running(&self) -> bool {
-        self.current().is_some_and(|r| r.paced().is_running())
+        self.alive().is_some()
     }
 
     fn __enter__(slf: Py<Self>) -> Py<Self> {
@@ -610,23 +456,6 @@ impl Servo {
     }
 }
 
-/// A tip with all its memory; a point for no tool.
-fn tip(made: Option<MadeTool>) -> Tip {
-    made.map_or(Tip::Point, |(surface, tool)| {
-        Tip::Tool(Box::new(tool::contact::ToolContact::new(surface, tool)))
-    })
-}
-
-/// What one finger has counted.
-fn count_finger(py: Python<'_>, counters: &Bound<'_, PyDict>, told: &Told) -> PyResult<()> {
-    counters.set_item("faults", fault_counters(py, told)?)?;
-    counters.set_item("link", link_counters(py, &told.link)?)?;
-    let proxy = PyDict::new(py);
-    proxy.set_item("most_steps", told.most_steps)?;
-    proxy.set_item("rescues", told.rescues)?;
-    counters.set_item("proxy", proxy)
-}
-
 fn check_finger(finger: usize) -> PyResult<()> {
     if finger < MAX_FINGERS {
         return Ok(());
@@ -637,117 +466,8 @@ fn check_finger(finger: usize) -> PyResult<()> {
     )))
 }
 
-fn orthonormal(rows: Rows, refusal: &'static str) -> PyResult<DMat3> {
-    let found = matrix(rows);
-    let error = found * found.transpose() - DMat3::IDENTITY;
-    if error.to_cols_array().iter().all(|e| e.abs() < 1e-6) {
-        Ok(found)
-    } else {
-        Err(PyValueError::new_err(refusal))
-    }
-}
-
-fn rotation_matrix(rows: Rows) -> PyResult<DMat3> {
-    let refusal = "rotation is none; its rows must be orthonormal and right-handed";
-    let found = orthonormal(rows, refusal)?;
-    if found.determinant() > 0.0 {
-        Ok(found)
-    } else {
-        Err(PyValueError::new_err(refusal))
-    }
-}
-
-pub(super) fn device_frame(
-    rotation: Rows,
-    translation: Triple,
-    scale: f64,
-) -> PyResult<DeviceFrame> {
-    Ok(DeviceFrame {
-        rotation: orthonormal(
-            rotation,
-            "rotation is not orthonormal; a device frame may turn and scale, not shear",
-        )?,
-        translation: finite("translation", translation)?,
-        scale: positive("scale", scale)?,
-        epoch: 0,
-    })
-}
-
-pub(super) fn contact_mode(name: &str) -> PyResult<ContactMode> {
-    let found = ContactMode::ALL
-        .into_iter()
-        .find(|mode| mode.name() == name);
-    found.ok_or_else(|| {
-        PyValueError::new_err(format!(
-            "mode is {name:?}; it must be \"paper\" or \"consistent\""
-        ))
-    })
-}
-
-pub(super) fn felt_choice(name: &str) -> PyResult<Felt> {
-    let found = Felt::ALL.into_iter().find(|felt| felt.name() == name);
-    found.ok_or_else(|| {
-        PyValueError::new_err(format!(
-            "felt is {name:?}; it must be \"linear\" or \"corrected\""
-        ))
-    })
-}
-
-pub(super) fn feel(
-    shading: bool,
-    static_friction: f64,
-    dynamic_friction: f64,
-    mode: ContactMode,
-) -> PyResult<Feel> {
-    let are_coefficients = static_friction.is_finite() && dynamic_friction >= 0.0;
-    if !are_coefficients || dynamic_friction > static_friction {
-        return Err(PyValueError::new_err(
-            "friction must be 0 <= dynamic_friction <= static_friction",
-        ));
-    }
-    Ok(Feel {
-        shading,
-        static_friction,
-        dynamic_friction,
-        mode,
-    })
-}
-
-pub(super) fn coupling(
-    stiffness: f64,
-    damping: f64,
-    passivity_control: bool,
-) -> PyResult<Coupling> {
-    if stiffness.is_nan() || stiffness <= 0.0 {
-        return Err(PyValueError::new_err(
-            "stiffness must be more than 0 N/m; infinite for none",
-        ));
-    }
-    if !damping.is_finite() || damping < 0.0 {
-        return Err(PyValueError::new_err(
-            "damping must be finite and at least 0 N s/m",
-        ));
-    }
-    Ok(Coupling {
-        stiffness,
-        damping,
-        passivity_control,
-    })
-}
-
 fn no_thread(error: std::io::Error) -> PyErr {
     PyOSError::new_err(format!(
         "the system gives the servo no thread ({error}); close other programs and start again"
     ))
-}
-
-/// Stops every servo that still runs; called at the interpreter's exit.
-#[pyfunction]
-pub fn stop_all(py: Python<'_>) {
-    let started = std::mem::take(&mut *locked(&STARTED));
-    py.detach(|| {
-        for running in started.iter().filter_map(Weak::upgrade) {
-            running.paced().stop();
-        }
-    });
 }

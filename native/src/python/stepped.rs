@@ -9,17 +9,15 @@ use rtrb::RingBuffer;
 use triple_buffer::{Input, Output, triple_buffer};
 
 use super::body::Body;
-use super::counters::link_counters;
-use super::servo::{contact_mode, coupling, device_frame, felt_choice};
+use super::counters::{fault_counters, link_counters};
+use super::settings::{contact_mode, coupling, device_frame, felt_choice, options};
 use super::snapshot::Snapshot;
-use super::vectors::{Rows, Triple, check_rate, check_seconds, positive};
-use crate::device::Fault;
+use super::vectors::{Rows, Triple, positive};
 use crate::exchange::{Hand, exchange};
 use crate::link::LinkDevice;
 use crate::port::{Opener, Wire};
-use crate::safety::Limits;
-use crate::servo::{Options, Servo, Settings};
-use crate::snapshot::{Published, Told};
+use crate::servo::{Servo, Settings};
+use crate::snapshot::Published;
 
 /// What is on the line in either direction.
 #[derive(Debug, Default)]
@@ -117,17 +115,7 @@ impl SteppedServo {
         max_speed: f64,
         mode: &str,
     ) -> PyResult<Self> {
-        check_rate(rate_hz)?;
-        check_seconds("ramp_seconds", ramp_seconds)?;
-        let options = Options {
-            rate_hz,
-            limits: Limits {
-                max_force: positive("max_force", max_force)?,
-                max_slew: positive("max_slew", max_slew)?,
-                ramp_seconds,
-            },
-            max_speed: positive("max_speed", max_speed)?,
-        };
+        let options = options(rate_hz, max_force, max_slew, ramp_seconds, max_speed)?;
         let mut settings = Settings::new(positive("young_modulus", young_modulus)?);
         settings.feel.mode = contact_mode(mode)?;
         let wire = InMemory::default();
@@ -226,8 +214,8 @@ impl SteppedServo {
         Ok(())
     }
 
-    fn snapshot(&self) -> Snapshot {
-        Snapshot::of(self.stepped().snapshots.read(), Vec::new())
+    fn snapshot(&self, py: Python<'_>) -> PyResult<Py<Snapshot>> {
+        Snapshot::of(py, self.stepped().snapshots.read(), &[])
     }
 
     fn counters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
@@ -237,13 +225,4 @@ impl SteppedServo {
         counters.set_item("link", link_counters(py, &told.link)?)?;
         Ok(counters)
     }
-}
-
-/// Times each fault began.
-pub fn fault_counters<'py>(py: Python<'py>, told: &Told) -> PyResult<Bound<'py, PyDict>> {
-    let faults = PyDict::new(py);
-    for (fault, count) in Fault::ALL.iter().zip(told.faults) {
-        faults.set_item(fault.name(), count)?;
-    }
-    Ok(faults)
 }

@@ -10,17 +10,17 @@ use rtrb::RingBuffer;
 use triple_buffer::{Input, Output, triple_buffer};
 
 use super::body::Body;
-use super::servo::{contact_mode, feel, felt_choice};
+use super::settings::{contact_mode, feel, felt_choice};
 use super::snapshot::Snapshot;
-use super::tool::{ToolContact, rotation as turn};
-use super::vectors::{Rows, Triple, finite, positive};
+use super::tool::{ToolContact, tip};
+use super::vectors::{Rows, Triple, finite, positive, rotation as turn};
 use crate::cones::MAX_FINGERS;
 use crate::device::{Device, DeviceFrame, LinkReport, Probe, Reading};
+use crate::proxy::Feel;
 use crate::safety::Limits;
 use crate::servo::{Options, Servo, Settings};
 use crate::snapshot::Published;
 use crate::tip::{Tip, TipHand, exchange_tips};
-use crate::tool::contact;
 
 /// Forces and torques (ticks, m, 3).
 type Felt<'py> = (Bound<'py, PyArray3<f64>>, Bound<'py, PyArray3<f64>>);
@@ -126,12 +126,10 @@ impl SteppedFingers {
             max_speed: NO_LIMIT,
         };
         let mut settings = Settings::new(positive("young_modulus", young_modulus)?);
-        settings.feel = feel(
-            shading,
-            static_friction,
-            dynamic_friction,
-            contact_mode(mode)?,
-        )?;
+        settings.feel = Feel {
+            mode: contact_mode(mode)?,
+            ..feel(shading, static_friction, dynamic_friction)?
+        };
         settings.felt = felt_choice(felt)?;
         let led: Vec<Led> = (places.into_iter())
             .map(|position| {
@@ -213,10 +211,7 @@ impl SteppedFingers {
         rotation: Rows,
         finger: usize,
     ) -> PyResult<()> {
-        let tip = tool.map_or(Tip::Point, |tool| {
-            let (surface, tool) = (tool.inner.surface().clone(), tool.inner.tool().clone());
-            Tip::Tool(Box::new(contact::ToolContact::new(surface, tool)))
-        });
+        let tip = tip(tool.map(|tool| tool.made()));
         let orientation = turn("rotation", rotation)?;
         let stepped = &mut *self.stepped();
         let (Some(hand), Some(own)) = (
@@ -259,8 +254,8 @@ impl SteppedFingers {
         Ok(())
     }
 
-    fn snapshot(&self) -> Snapshot {
-        Snapshot::of(self.stepped().snapshots.read(), Vec::new())
+    fn snapshot(&self, py: Python<'_>) -> PyResult<Py<Snapshot>> {
+        Snapshot::of(py, self.stepped().snapshots.read(), &[])
     }
 }
 

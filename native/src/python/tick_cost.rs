@@ -10,7 +10,7 @@ use rtrb::RingBuffer;
 use triple_buffer::triple_buffer;
 
 use super::body::Body;
-use super::servo::contact_mode;
+use super::settings::contact_mode;
 use super::vectors::{Vector, positive};
 use crate::cones::MAX_FINGERS;
 use crate::cpu_time::thread_seconds;

@@ -3,40 +3,25 @@
 use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
-use numpy::{
-    AllowTypeChange, PyArray1, PyArray2, PyArrayLike1, PyArrayLike2, PyArrayLike3, PyArrayMethods,
-};
+use numpy::{AllowTypeChange, PyArray1, PyArrayLike1, PyArrayLike2, PyArrayLike3};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::body::Body;
 use super::tool_cost::Timing;
-use super::vectors::{Matrix, Rows, Triple, Vector, array, finite, matrix, positive, square};
+use super::vectors::{
+    Matrix, Rows, Triple, Vector, array, finite, positive, rotation, square, table,
+};
+use crate::surface;
+use crate::tip::Tip;
 use crate::tool::contact::{self, MOST_NODES};
 use crate::tool::friction::Friction;
 use crate::tool::near_field::{NearField, NodeField, PointField};
 use crate::tool::points::{self, Point};
 use crate::tool::shape::{self, Pose};
 
-type Vectors<'py> = Bound<'py, PyArray2<f64>>;
 type Numbers<'py> = Bound<'py, PyArray1<i64>>;
-
-/// Smallest entry of |R R' - 1| that makes a matrix no rotation.
-const SKEW: f64 = 1e-6;
-
-pub fn rotation(name: &str, rows: Rows) -> PyResult<DMat3> {
-    let turn = matrix(rows);
-    let error = turn * turn.transpose() - DMat3::IDENTITY;
-    let largest = (error.to_cols_array().into_iter()).fold(0.0, |m: f64, e| m.max(e.abs()));
-    if turn.is_finite() && largest <= SKEW && turn.determinant() > 0.0 {
-        Ok(turn)
-    } else {
-        Err(PyValueError::new_err(format!(
-            "{name} is no rotation; give orthogonal unit columns, right-handed, without scale"
-        )))
-    }
-}
 
 #[pyclass(frozen, module = "palpate_servo")]
 pub struct Tool {
@@ -72,14 +57,14 @@ impl Tool {
         &self,
         py: Python<'py>,
         points: PyArrayLike2<'_, f64, AllowTypeChange>,
-    ) -> PyResult<(Vector<'py>, Vectors<'py>)> {
+    ) -> PyResult<(Vector<'py>, Matrix<'py>)> {
         let found: Vec<(f64, DVec3)> = (vectors("points", &points)?.into_iter())
             .map(|point| self.inner.distance(point))
             .collect();
         let distances = PyArray1::from_iter(py, found.iter().map(|&(distance, _)| distance));
         Ok((
             distances,
-            stacked(py, found.iter().map(|&(_, normal)| normal))?,
+            table(py, found.iter().map(|&(_, normal)| normal))?,
         ))
     }
 }
@@ -209,7 +194,34 @@ pub struct ToolContact {
     young_modulus: f64,
 }
 
+/// What a finger takes of a tool: which it is, and the contact points that it meets.
+#[derive(Clone)]
+pub struct MadeTool {
+    surface: Arc<points::ToolSurface>,
+    tool: shape::Tool,
+}
+
+impl MadeTool {
+    pub fn is_for(&self, body: &Arc<surface::Body>) -> bool {
+        Arc::ptr_eq(self.surface.body(), body)
+    }
+}
+
+/// A tip with all its memory; a point for no tool.
+pub fn tip(made: Option<MadeTool>) -> Tip {
+    made.map_or(Tip::Point, |made| {
+        Tip::Tool(Box::new(contact::ToolContact::new(made.surface, made.tool)))
+    })
+}
+
 impl ToolContact {
+    pub fn made(&self) -> MadeTool {
+        MadeTool {
+            surface: self.inner.surface().clone(),
+            tool: self.inner.tool().clone(),
+        }
+    }
+
     fn pressed(&self) -> impl Iterator<Item = &crate::tool::patch::Slot> {
         (self.inner.slots().iter()).filter(|slot| slot.force != DVec3::ZERO)
     }
@@ -365,19 +377,19 @@ impl ToolContact {
     }
 
     #[getter]
-    fn forces<'py>(&self, py: Python<'py>) -> PyResult<Vectors<'py>> {
+    fn forces<'py>(&self, py: Python<'py>) -> PyResult<Matrix<'py>> {
         let scale = self.young_modulus;
-        stacked(py, self.pressed().map(|slot| slot.force * scale))
+        table(py, self.pressed().map(|slot| slot.force * scale))
     }
 
     #[getter]
-    fn normals<'py>(&self, py: Python<'py>) -> PyResult<Vectors<'py>> {
-        stacked(py, self.pressed().map(|slot| slot.normal))
+    fn normals<'py>(&self, py: Python<'py>) -> PyResult<Matrix<'py>> {
+        table(py, self.pressed().map(|slot| slot.normal))
     }
 
     #[getter]
-    fn displacements<'py>(&self, py: Python<'py>) -> PyResult<Vectors<'py>> {
-        stacked(py, self.pressed().map(|slot| slot.moved))
+    fn displacements<'py>(&self, py: Python<'py>) -> PyResult<Matrix<'py>> {
+        table(py, self.pressed().map(|slot| slot.moved))
     }
 
     #[getter]
@@ -396,10 +408,10 @@ impl ToolContact {
     }
 
     #[getter]
-    fn nodal_forces<'py>(&self, py: Python<'py>) -> PyResult<Vectors<'py>> {
+    fn nodal_forces<'py>(&self, py: Python<'py>) -> PyResult<Matrix<'py>> {
         debug_assert!(self.inner.nodal_forces().len() <= MOST_NODES);
         let forces = self.inner.nodal_forces().iter();
-        stacked(py, forces.map(|&(_, force)| force * self.young_modulus))
+        table(py, forces.map(|&(_, force)| force * self.young_modulus))
     }
 }
 
@@ -440,10 +452,4 @@ fn indices(name: &str, array: &PyArrayLike1<'_, i64, AllowTypeChange>) -> PyResu
         u32::try_from(n).map_err(|_| PyValueError::new_err(format!("{name} has the number {n}")))
     };
     array.as_array().iter().map(number).collect()
-}
-
-fn stacked(py: Python<'_>, vectors: impl Iterator<Item = DVec3>) -> PyResult<Vectors<'_>> {
-    let flat: Vec<f64> = vectors.flat_map(|v| v.to_array()).collect();
-    let count = flat.len() / 3;
-    PyArray1::from_vec(py, flat).reshape([count, 3])
 }

@@ -56,6 +56,26 @@ pub fn matrix(rows: Rows) -> DMat3 {
     DMat3::from_cols_array_2d(&rows).transpose()
 }
 
+/// Largest entry of |R R' - 1| of a matrix that is orthonormal but for rounding.
+const SKEW: f64 = 1e-6;
+
+pub fn is_orthonormal(m: &DMat3) -> bool {
+    let error = *m * m.transpose() - DMat3::IDENTITY;
+    // Written so that what is no number is not orthonormal either.
+    error.to_cols_array().iter().all(|e| e.abs() <= SKEW)
+}
+
+pub fn rotation(name: &str, rows: Rows) -> PyResult<DMat3> {
+    let turn = matrix(rows);
+    if is_orthonormal(&turn) && turn.determinant() > 0.0 {
+        Ok(turn)
+    } else {
+        Err(PyValueError::new_err(format!(
+            "{name} is no rotation; give orthogonal unit columns, right-handed, without scale"
+        )))
+    }
+}
+
 pub fn check_rate(rate_hz: u32) -> PyResult<()> {
     if (100..=8000).contains(&rate_hz) {
         Ok(())
