@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -33,7 +34,7 @@ def add_felt(parser: argparse.ArgumentParser) -> None:
 def softening_table(body: SoftBody, body_file: Path) -> Iterator[SofteningTable]:
     """The softenings of a body, kept beside its file when the block ends.
 
-    Where they cannot be kept they are computed anew the next time: no reason to fail.
+    Where they cannot be kept they are computed anew the next time: told, but no reason to fail.
     """
     table = SofteningTable(body, body_file)
     try:
@@ -43,6 +44,8 @@ def softening_table(body: SoftBody, body_file: Path) -> Iterator[SofteningTable]
             table.close()
         except PalpateError as problem:
             table.notice = str(problem)
+        if table.notice:
+            print(f"palpate: warning: {table.notice}", file=sys.stderr)
 
 
 def felt_forces(

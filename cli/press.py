@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -152,6 +153,8 @@ def _deformed(
         displacements = settled(body, chosen, loads, young_modulus).displacements
     finally:
         chosen.close()
+        if chosen.notice:
+            print(f"palpate: warning: {chosen.notice}", file=sys.stderr)
     finite = all(np.isfinite(load.forces).all() for load in loads)
     if not (finite and np.isfinite(displacements).all()):
         raise PalpateError(

@@ -11,6 +11,7 @@ from scipy.sparse import csr_array
 
 from ..elimination.cholesky import CholeskyFactor, NotPositiveDefiniteError, RepeatedElimination
 from ..errors import PalpateError
+from ..held_pins import pins_checked
 from ..soft_body import SoftBody
 from .solid import Solid, StrainTerm, solid
 
@@ -41,9 +42,10 @@ class FreeSolid:
         Raises
         ------
         PalpateError
-            As :func:`.solid.solid`.
+            As :func:`.solid.solid`, and where the pins do not hold the body.
         """
         mesh = body.mesh
+        pins_checked(mesh, body.fixed)
         whole = solid(mesh, body.poisson_ratio, body.formulation, body.young_scale)
         free = np.setdiff1d(np.arange(len(mesh.nodes)), body.fixed)
         terms = tuple(

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from ..errors import CancelledError
 from ..soft_body import SoftBody
+from ..whole_file import UnwritableError
 from .free_solid import FreeSolid
 from .newton_table import newton_column, usual_largest_force
 from .outward_filling import OutwardFilling
@@ -151,14 +152,14 @@ class TableShape:
         self, body: SoftBody, body_file: Path | None = None, wanted: float | None = None
     ) -> None:
         self.table = NewtonTable(body, wanted)
-        self.notice = ""
+        self._notice = ""
         self._body = body
         self._path = None if body_file is None else table_path(body_file, KIND)
         if self._path is not None and self._path.exists():
             try:
                 self.table.load(self._path)
             except TableFileError as problem:
-                self.notice = str(problem)
+                self._notice = str(problem)
         self._kept = int(np.count_nonzero(self.table.is_filled))
         surface = body.mesh.nodes[body.compliance.free_surface]
         self._filling = OutwardFilling(surface, self.table.is_filled, self.table.fill, 1)
@@ -169,6 +170,11 @@ class TableShape:
         """Share (0 to 1) of the touched nodes that are solved."""
         known = self.table.is_filled[self._asked]
         return float(known.mean()) if known.size else 1.0
+
+    @property
+    def notice(self) -> str:
+        """Which file could not be used or written, and why; empty otherwise."""
+        return self._notice
 
     def displacements(
         self,
@@ -214,17 +220,17 @@ class TableShape:
     def close(self) -> None:
         """End what works in the background, and keep what it made. Safe to call twice.
 
-        Raises
-        ------
-        UnwritableError
-            The table cannot be kept where the body is.
+        Where it cannot be kept, :attr:`notice` says why; it is solved again next time.
         """
         self.table.cancel()
         self._filling.close()
         filled = int(np.count_nonzero(self.table.is_filled))
         if self._path is not None and filled > self._kept:
-            self.table.save(self._path)
-            self._kept = filled
+            try:
+                self.table.save(self._path)
+                self._kept = filled
+            except UnwritableError as problem:
+                self._notice = str(problem)
 
     def _on_free_surface(
         self, nodes: NDArray[np.int64], nodal_forces: NDArray[np.float64]

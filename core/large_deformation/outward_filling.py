@@ -13,6 +13,8 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from ..errors import PalpateError
+
 # A frame drawn this long ago means that others may be on their way.
 FRAMES_EXPECTED_SECONDS = 0.1
 # Of each span of time while frames are drawn, the share in which the table is filled.
@@ -88,6 +90,8 @@ class OutwardFilling:
 
         Raises
         ------
+        PalpateError
+            It was closed before they were.
         Exception
             Whatever ended the filling.
         """
@@ -104,15 +108,16 @@ class OutwardFilling:
     def _wait(self, places: NDArray[np.int64], *, is_touched: bool = False) -> None:
         with self._changed:
             self._last_frame = -np.inf
-            self._changed.wait_for(
-                lambda: (
-                    self._is_closed
-                    or self._problem
-                    or (self._is_filled[places].all() and (self._is_complete or not is_touched))
-                )
-            )
+
+            def is_there() -> bool:
+                filled = bool(self._is_filled[places].all())
+                return filled and (self._is_complete or not is_touched)
+
+            self._changed.wait_for(lambda: self._is_closed or self._problem or is_there())
             if self._problem is not None:
                 raise self._problem
+            if not is_there():
+                raise PalpateError("large deformation: its table was closed meanwhile; ask again")
 
     def close(self, patience: float | None = None) -> None:
         """End after the slice that is under way, waiting for it at most so many seconds.

@@ -47,6 +47,11 @@ class RotationStrainShape:
         """Share of the preparation that is done; the same for every place."""
         return self._share
 
+    @property
+    def notice(self) -> str:
+        """Always empty: nothing is kept in files."""
+        return ""
+
     def displacements(
         self,
         nodes: NDArray[np.int64],

@@ -80,7 +80,7 @@ class SeriesShape:
         self._places = np.zeros(0, dtype=np.int64)
         # Freedoms that were wanted at once, and could be polished when nobody waits.
         self._unpolished = np.zeros(0, dtype=np.int64)
-        self.warning: str | None = None
+        self._notice = ""
         surface = body.compliance.free_surface
         self._is_filled = np.zeros(len(surface), dtype=bool)
         self._filling = OutwardFilling(
@@ -103,6 +103,11 @@ class SeriesShape:
         if not len(self._places):
             return 1.0
         return float(self._is_filled[self._places].mean())
+
+    @property
+    def notice(self) -> str:
+        """Which file could not be used or written, and why; empty otherwise."""
+        return self._notice
 
     @property
     def is_prepared(self) -> bool:
@@ -157,7 +162,7 @@ class SeriesShape:
     def close(self) -> None:
         """End what works in the background, and keep what it made. Safe to call twice.
 
-        Where it cannot be kept, :attr:`warning` says why; it is computed again next time.
+        Where it cannot be kept, :attr:`notice` says why; it is computed again next time.
         """
         self._filling.close(PATIENCE)
         self._keep()
@@ -189,7 +194,7 @@ class SeriesShape:
             try:
                 return SeriesTable.load(self._body, self._path)
             except TableFileError as problem:
-                self.warning = str(problem)
+                self._notice = str(problem)
         return SeriesTable.empty(self._body)
 
     def _by_freedoms(
@@ -237,4 +242,4 @@ class SeriesShape:
             self._table.save(self._path)
             self._kept = filled
         except UnwritableError as problem:
-            self.warning = str(problem)
+            self._notice = str(problem)

@@ -102,6 +102,8 @@ class SeriesTable:
         with self._lock:
             for at, freedom in enumerate(filled.tolist()):
                 self._packed[freedom] = second[at], third[at]
+                # A polished entry takes the place of an earlier one.
+                self._at_hand.pop(freedom, None)
             self._steps[filled] = np.stack([second_step, third_step], axis=1)
             self.largest_force[filled] = force
             self.bound[filled] = entries.bound + packing

@@ -40,6 +40,11 @@ class Shape(Protocol):
         """
         ...
 
+    @property
+    def notice(self) -> str:
+        """Which file of a table could not be used or written, and why; empty otherwise."""
+        ...
+
     def displacements(
         self,
         nodes: NDArray[np.int64],
@@ -59,12 +64,15 @@ class Shape(Protocol):
         Raises
         ------
         PalpateError
-            It cannot be computed.
+            It cannot be computed, or the shape is closed.
         """
         ...
 
     def close(self) -> None:
-        """End what works in the background, and keep what it made. Safe to call twice."""
+        """End what works in the background, and keep what it made. Safe to call twice.
+
+        Where it cannot be kept, :attr:`notice` says why.
+        """
         ...
 
 
@@ -78,6 +86,11 @@ class LinearShape:
     def ready(self) -> float:
         """Always 1."""
         return 1.0
+
+    @property
+    def notice(self) -> str:
+        """Always empty."""
+        return ""
 
     def displacements(
         self,

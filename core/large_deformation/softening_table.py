@@ -171,8 +171,6 @@ class SofteningTable:
         except Exception:
             self._refuse_failure()
             raise
-        if not self._known[local].all():
-            raise PalpateError("felt force: its table was closed meanwhile; ask again")
 
     def _refuse_failure(self) -> None:
         problem = self._filling.problem

@@ -82,3 +82,26 @@ def test_a_tools_force_is_linear_and_says_so(command, cube_file, capsys):
     words = [command, cube_file, "--at", *AT, *by, "--tool", "sphere:0.008"]
     assert main([str(word) for word in [*words, "--felt", "corrected"]]) != 0
     assert "a tool's force is linear" in capsys.readouterr().err
+
+
+def test_a_table_that_cannot_be_used_or_kept_is_told_and_the_figures_are_there(
+    cube_file, tmp_path, capsys
+):
+    body_file = tmp_path / "cube.npz"
+    body_file.write_bytes(cube_file.read_bytes())
+    press = ["press", str(body_file), "--at", *AT, "--by", *BY, "--felt", "corrected", "--json"]
+    assert main(press) == 0
+    right = capsys.readouterr()
+    assert right.err == ""
+    table = table_path(body_file, "softening")
+    table.write_bytes(table.read_bytes()[:-100])
+    assert main(press) == 0
+    told = capsys.readouterr()
+    assert told.out == right.out
+    assert told.err.startswith(f"palpate: warning: {table}: damaged")
+    table.unlink()
+    table.mkdir()
+    assert main(press) == 0
+    told = capsys.readouterr()
+    assert told.out == right.out
+    assert told.err.count("palpate: warning:") == 1

@@ -1,8 +1,11 @@
 """A pinned body: forces and tangent of its free nodes, and solves with the factored stiffness."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from palpate.core.errors import PalpateError
 from palpate.core.freedoms import freedoms
 from palpate.core.large_deformation.free_solid import FreeSolid
 from palpate.core.large_deformation.solid import solid
@@ -52,3 +55,10 @@ def test_forces_add_up_on_one_node_and_vanish_on_pins(body):
     )
     assert forces[5].tolist() == [1, 0, 2]
     assert np.abs(forces).sum() == 3
+
+
+def test_a_body_that_its_pins_do_not_hold_is_refused(body):
+    on_an_edge = body.fixed[body.mesh.nodes[body.fixed, 0] == 0.0]
+    for pins in (body.fixed[:0], on_an_edge):
+        with pytest.raises(PalpateError, match="could move away; pin at least three"):
+            FreeSolid.of(replace(body, fixed=pins))

@@ -117,3 +117,13 @@ def test_three_tables_take_three_times_the_memory_once_all_is_filled(cube, corne
     table.fill(cube.free_index(corner))
     a_node = table.nbytes - table.largest.nbytes
     assert a_node * cube.compliance.node_count == 2 * cube.compliance.nbytes
+
+
+def test_a_place_that_cannot_be_written_is_told_and_the_shape_is_there(cube, corner, tmp_path):
+    (tmp_path / "file").write_text("")
+    shape = TableShape(cube, tmp_path / "file" / "cube.npz", wanted=1e-6)
+    shape.wait_for(corner)
+    assert shape.notice == ""
+    shape.close()
+    assert "cannot be written" in shape.notice
+    assert shape.ready == 1.0

@@ -5,6 +5,7 @@ import threading
 import numpy as np
 import pytest
 
+from palpate.core.errors import PalpateError
 from palpate.core.large_deformation.outward_filling import OutwardFilling
 
 COUNT = 30
@@ -116,3 +117,28 @@ def test_nothing_begins_before_a_touch(table):
     filling = OutwardFilling(POSITIONS, table.is_filled, table.fill, 2)
     filling.close()
     assert not table.order
+
+
+def test_whoever_waits_is_told_when_it_is_closed(table):
+    begun, may_end = threading.Event(), threading.Event()
+
+    def fill(places):
+        begun.set()
+        may_end.wait(10)
+        table.fill(places)
+
+    filling = OutwardFilling(POSITIONS, table.is_filled, fill, 2)
+
+    def close():
+        begun.wait(10)
+        filling.close(0.0)
+        may_end.set()
+
+    closing = threading.Thread(target=close)
+    closing.start()
+    with pytest.raises(PalpateError, match="closed meanwhile"):
+        filling.wait_for(np.arange(6))
+    closing.join()
+    filling.close()
+    # What was filled is there all the same.
+    filling.wait_for(np.flatnonzero(table.is_filled))

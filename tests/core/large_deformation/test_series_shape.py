@@ -1,11 +1,16 @@
 """The shape by power series: of the whole load, and from a table that is kept."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from palpate.core.errors import PalpateError
+from palpate.core.freedoms import freedoms
 from palpate.core.large_deformation.free_solid import FreeSolid
 from palpate.core.large_deformation.newton import equilibrium
+from palpate.core.large_deformation.power_series import SeriesSolid
+from palpate.core.large_deformation.series_entries import series_entries
 from palpate.core.large_deformation.series_shape import SeriesShape
 from palpate.core.large_deformation.series_table import SeriesTable
 from palpate.core.large_deformation.table_file import TableFileError, table_path
@@ -66,6 +71,22 @@ def test_an_empty_table_is_linear_and_says_so(cube):
     table = SeriesTable.empty(cube)
     assert not table.has(np.arange(3)).any()
     np.testing.assert_array_equal(table.displacements(nodes, forces), cube.deform(nodes, forces))
+
+
+def test_an_entry_that_is_put_again_is_drawn_anew(cube):
+    place = cube.free_index(touched(cube)[0])[:1]
+    solid, table = SeriesSolid(FreeSolid.of(cube)), SeriesTable.empty(cube)
+    freedom = freedoms(place)[:1]
+    entries = series_entries(solid, freedom)
+    table.put(freedom, entries)
+    earlier = table.columns(int(freedom[0]))
+    polished = replace(entries, second=2.0 * entries.second)
+    table.put(freedom, polished)
+    fresh = SeriesTable.empty(cube)
+    fresh.put(freedom, polished)
+    drawn = table.columns(int(freedom[0]))
+    np.testing.assert_array_equal(drawn, fresh.columns(int(freedom[0])))
+    assert not np.array_equal(drawn, earlier)
 
 
 def test_what_does_not_move_needs_nothing(cube, whole_load):
@@ -132,7 +153,7 @@ def test_a_damaged_or_foreign_file_is_told_and_filled_anew(cube, tmp_path):
     with pytest.raises(TableFileError, match="another body"):
         SeriesTable.load(cube, path)
     shape = made(cube, False, tmp_path / "cube.npz")
-    assert "another body" in shape.warning
+    assert "another body" in shape.notice
     np.testing.assert_array_equal(shape.displacements(nodes, forces), right)
     shape.close()
     assert SeriesTable.load(cube, path).has(cube.free_index(nodes)).all()
@@ -142,7 +163,7 @@ def test_a_place_that_cannot_be_written_is_a_warning(cube, tmp_path):
     (tmp_path / "file").write_text("")
     shape = made(cube, False, tmp_path / "file" / "cube.npz")
     shape.close()
-    assert "cannot be written" in shape.warning
+    assert "cannot be written" in shape.notice
 
 
 def test_youngs_modulus_is_live(cube, whole_load):
