@@ -1,6 +1,6 @@
 """Jumps of the compiled servo's force, for every mode and tool on every sample body.
 
-    python benchmarks/continuity.py [--body cube|mouse|drumstick] [--no-tools]
+    python benchmarks/continuity.py [--body cube|mouse|drumstick|hare] [--no-tools | --no-points]
 
 Fingers go at 100 mm/s (tools 50 mm/s) on paths on which contact is made and broken and that lead
 over facets, edges and nodes, through changing patches, beside and through another finger. Every
@@ -10,7 +10,7 @@ which is the change at the finest steps that stands out of those before and afte
 share of the force, beside the share that is claimed; and the exponent with which the largest
 change falls with the step (1: continuous, 0: jump). Exit status 1 where a claim does not hold.
 
-The pinch scene's body is the cube, the fingertip scene's the mouse.
+The pinch scene's body is the cube, the fingertip scene's the mouse, the large scene's the hare.
 """
 
 from __future__ import annotations
@@ -40,7 +40,8 @@ Vectors = NDArray[np.float64]
 Follow = Callable[[Vectors, int], Vectors]
 
 SCENES = Path(__file__).resolve().parents[1] / "sample_scenes"
-BODIES = ("cube", "mouse", "drumstick")
+# Poisson's ratio of each sample scene's body.
+BODIES = {"cube": 0.49, "mouse": 0.49, "drumstick": 0.49, "hare": 0.3}
 YOUNG_MODULUS = 10_000.0
 TOOL_SPEED = 0.05
 TOOL_FRICTION = 0.4
@@ -52,6 +53,9 @@ CONTINUOUS = 0.01
 STEEP = 0.02
 # Facets that turn by more than the contact point's lag takes up (19 degrees in a depth's way).
 FACETS = 0.04
+# Two fingers drawn through each other where facets turn: the one whose force is on the rim of its
+# cone snaps aside.
+SNAP = 0.10
 # From static to dynamic friction of 0.5 and 0.3, while the finger is as deep as before.
 LETTING_GO = 0.25
 # Without shading the cone of friction turns with the facet's normal.
@@ -61,8 +65,13 @@ SHRINKING = 0.9
 # Of a tool, whose ticks end before the displacements have stopped changing.
 UNFINISHED = 0.02
 # Of flat tools, whose edges are sharper than the contact points lie apart: a point passes round
-# such an edge with a snap, for a plate beyond the most points that a tick looks at.
+# such an edge with a snap, for a plate beyond the most points that a tick looks at. The tip of a
+# dull cone is carried by one or two points.
 SHARP = 0.10
+POINTED = 0.25
+POINTED_PRESS = 0.05
+# From how far above tools come, so that a long one begins outside a surface that bends up, metres.
+TOOL_LIFT = 0.015
 
 
 @dataclass(frozen=True)
@@ -89,7 +98,7 @@ def soft_body(name: str) -> SoftBody:
         with np.load(SCENES / f"{name}-tets.npz") as stored:
             mesh = TetMesh.checked(stored["X"], stored["T"])
             fixed = np.unique(stored["fixed"]).astype(np.int64)
-    return bake(mesh, BakeSettings(0.49, YOUNG_MODULUS, PinNodes(fixed)))[0]
+    return bake(mesh, BakeSettings(BODIES[name], YOUNG_MODULUS, PinNodes(fixed)))[0]
 
 
 def places_of(name: str, body: SoftBody) -> tuple[list[Place], float]:
@@ -153,7 +162,8 @@ def point_rows(body: SoftBody, native: Body, place: Place, reach: float) -> Iter
     yield Row("two fingers", "beside, comes and goes", STEEP, jump_of(both, near))
     yield Row("two fingers", "on one triangle", STEEP, jump_of(both, close))
     through = passing(place, depth, 0.6 * reach)
-    yield Row("two fingers", "through each other", max(STEEP, plain), jump_of(both, through))
+    snap = SNAP if place.bend > 0.0 else STEEP
+    yield Row("two fingers", "through each other", snap, jump_of(both, through))
     yield Row("two fingers", "pinch", STEEP, jump_of(both, pinch(body, place, depth)))
 
 
@@ -179,40 +189,57 @@ def by_tool(
     return follow
 
 
-def tools_for(name: str) -> list[tuple[Tool, float]]:
-    """Tools, and how deep "deep" is, m: all on the cube, a fingertip elsewhere."""
+@dataclass(frozen=True)
+class Pressed:
+    """A tool, how deep "deep" is in metres, and what it may jump by drawn along, and pressed."""
+
+    tool: Tool
+    deep: float
+    drawn: float = UNFINISHED
+    pressed: float = UNFINISHED
+
+    @property
+    def front(self) -> float:
+        """From its reference point to its foremost one, metres."""
+        return self.tool.radius if len(self.tool.core) <= 2 else 0.0
+
+
+def tools_for(name: str) -> list[Pressed]:
+    """All kinds of tools; on the cube two fingertips."""
     wide = 0.008 * np.array([[-1, -1, 0.3], [1, -1, 0.3], [1, 1, 0.4], [-1, 1, 0.4], [0, 0, 2]])
     dull = np.vstack([wide, [[0.0, 0.0, 0.0]]])
-    tip = sphere(0.008, "fingertip 8 mm")
-    if name != "cube":
-        return [(tip, tip.radius)]
+    radii = (0.004, 0.012) if name == "cube" else (0.008,)
     return [
-        (sphere(0.004, "fingertip 4 mm"), 0.004),
-        (sphere(0.012, "fingertip 12 mm"), 0.012),
-        (rod(0.006, 0.015), 0.006),
-        (plate(0.016, 0.012), 0.006),
-        (convex(dull), 0.004),
+        *(Pressed(sphere(radius, f"fingertip {1000 * radius:g} mm"), radius) for radius in radii),
+        Pressed(rod(0.006, 0.015), 0.006),
+        Pressed(plate(0.016, 0.012), 0.006, drawn=SHARP),
+        Pressed(convex(dull), 0.004, drawn=POINTED, pressed=POINTED_PRESS),
     ]
 
 
 def tool_rows(name: str, body: SoftBody, native: Body, place: Place, reach: float) -> Iterator[Row]:
     """One tool after the other."""
-    for tool, deep in tools_for(name):
+    for each in tools_for(name):
+        tool, deep = each.tool, each.deep
         contact = native_tool(body, native, tool)
-        front = tool.radius if len(tool.core) <= 2 else 0.0
-        follow = by_tool(native, contact, place, front)
+        follow = by_tool(native, contact, place, each.front)
         for share in (0.1, 0.5, 1.0):
-            path = press(place, share * deep, 0.05 * reach)
+            path = from_above(place, press(place, share * deep, 0.05 * reach))
             event = f"made and broken, {share:g} deep"
-            yield Row(tool.name, event, UNFINISHED, tool_jump(follow, path))
-        line = slide(body, place, 0.5 * deep, 1.2 * reach, 12)
-        claim = UNFINISHED if len(tool.core) <= 2 else SHARP
-        yield Row(tool.name, "patch changes, 0.5 deep", claim, tool_jump(follow, line))
-        rubbed = by_tool(native, contact, place, front, TOOL_FRICTION)
+            yield Row(tool.name, event, each.pressed, tool_jump(follow, path))
+        line = from_above(place, slide(body, place, 0.5 * deep, 1.2 * reach, 12))
+        yield Row(tool.name, "patch changes, 0.5 deep", each.drawn, tool_jump(follow, line))
+        rubbed = by_tool(native, contact, place, each.front, TOOL_FRICTION)
         mode = f"{tool.name}, friction {TOOL_FRICTION:g}"
-        half = press(place, 0.5 * deep, 0.05 * reach)
-        yield Row(mode, "made and broken, 0.5 deep", UNFINISHED, tool_jump(rubbed, half))
-        yield Row(mode, "patch changes, 0.5 deep", claim, tool_jump(rubbed, line))
+        half = from_above(place, press(place, 0.5 * deep, 0.05 * reach))
+        yield Row(mode, "made and broken, 0.5 deep", each.pressed, tool_jump(rubbed, half))
+        yield Row(mode, "patch changes, 0.5 deep", each.drawn, tool_jump(rubbed, line))
+
+
+def from_above(place: Place, corners: Vectors) -> Vectors:
+    """The same path (k, 1, 3) begun and ended farther from the surface."""
+    lift = TOOL_LIFT * place.normal
+    return np.concatenate([corners[:1] + lift, corners, corners[-1:] + lift])
 
 
 def tool_jump(follow: Follow, path: Vectors) -> Jump:
@@ -236,7 +263,9 @@ def main() -> int:
     """Print the table; 1 if a claim does not hold."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n", 1)[0])
     parser.add_argument("--body", choices=BODIES, action="append", help="only this one")
-    parser.add_argument("--no-tools", action="store_true", help="points alone: half a minute")
+    which = parser.add_mutually_exclusive_group()
+    which.add_argument("--no-tools", action="store_true", help="points alone: half a minute")
+    which.add_argument("--no-points", action="store_true", help="tools alone")
     given = parser.parse_args()
     print(f"finest steps: points {RATES[-1]} Hz, tools {TOOL_RATES[-1]} Hz\n")
     print("| body | mode | event | force, N | in 1 ms, N | jump, N | share | claim | exponent |")
@@ -246,7 +275,7 @@ def main() -> int:
         body = soft_body(name)
         native = native_body(body, whole=True)
         places, reach = places_of(name, body)
-        for place in places:
+        for place in () if given.no_points else places:
             where = name if place.bend == 0.0 else f"{name}, facets to {place.bend:.0f} deg"
             holds += [printed(where, row) for row in point_rows(body, native, place, reach)]
         if not given.no_tools:

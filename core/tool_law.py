@@ -131,8 +131,7 @@ def linearised(
     """
     distances, normals = distances_in_body(tool, pose, places)
     offsets = places[:, None] - pose.to_body(tool.core)
-    inward, limit = hold(forces, facing)
-    return held_tilt(distances, normals, offsets, inward, limit, tool.radius)
+    return held_tilt(distances, normals, offsets, facing, hold(forces, facing), tool.radius)
 
 
 def distances_in_body(

@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from measuring.inner_corner import inner_corner
 from measuring.soft_block import soft_block
 from scipy.spatial.transform import Rotation
 
@@ -34,10 +35,10 @@ def moved(pose, by=(0, 0, 0), turn=(0, 0, 0)):
 
 def steep(touch):
     """Which pushes are held at the limit of their tilt."""
-    inward, limit = hold(touch.forces, touch.surface.normals[touch.points])
-    tilts = np.arccos(touch.normals @ inward)
-    assert (tilts < limit + 1e-6).all()
-    return tilts > limit - 1e-6
+    within = hold(touch.forces, touch.surface.normals[touch.points])
+    tilts = np.arccos(touch.normals @ within.inward)
+    assert (tilts < within.limit + 1e-6).all()
+    return tilts > within.limit - 1e-6
 
 
 def test_the_force_is_the_slope_of_the_elastic_energy(pressed):
@@ -93,6 +94,40 @@ def test_deeper_than_its_radius_a_sphere_is_still_resisted_more_and_more(cube):
         touch = press_tool(cube, tool, pose, start=touch)
         forces.append(touch.force[2])
     assert steep(touch).any()
+    assert (np.diff(forces) > 0).all()
+
+
+@pytest.fixture(scope="module")
+def corner():
+    return inner_corner()
+
+
+@pytest.mark.parametrize("depth", [0.001, 0.004])
+def test_in_an_inner_corner_wall_and_floor_are_felt_each_by_itself(corner, depth):
+    """Pushes on the wall are not held near those on the floor."""
+    tool = sphere(0.008)
+
+    def pressed(into_wall):
+        place = [0.025 + tool.radius - into_wall, 0.025, 0.025 + tool.radius - depth]
+        touch = press_tool(corner, tool, Pose.at(place))
+        assert touch.exact
+        return touch.force
+
+    far, near, touching = pressed(-0.003), pressed(-0.0005), pressed(0.0003)
+    assert near[0] == pytest.approx(far[0], abs=0.01 * far[2])
+    assert near[2] == pytest.approx(far[2], rel=0.02)
+    assert far[0] < 0.5 * touching[0] < touching[0] < 0.3 * far[2]
+
+
+def test_what_has_come_through_a_thin_part_does_not_draw_the_tool_on():
+    strip, tool = soft_block((0.06, 0.006, 0.04), (10, 2, 6)), sphere(0.006)
+    depths = 0.001 * np.arange(1, 11)
+    poses = [Pose.at([0.029, 0.006 + tool.radius - depth, 0.012]) for depth in depths]
+    start = set_down(strip, tool, Pose.at([0.029, 0.0125, 0.012]))
+    forces = []
+    for pose in poses:
+        start = press_tool(strip, tool, pose, start=start)
+        forces.append(start.force[1])
     assert (np.diff(forces) > 0).all()
 
 

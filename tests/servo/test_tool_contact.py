@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from measuring.inner_corner import inner_corner
 from measuring.soft_block import soft_block
 from palpate_servo import Tool as NativeTool
 from palpate_servo import ToolContact, ToolSurface, tick_costs
@@ -9,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from palpate.core.errors import PalpateError
 from palpate.core.servo_session import native_body, native_tool
-from palpate.core.tool_contact import follow_tool, set_down
+from palpate.core.tool_contact import follow_tool, press_tool, set_down
 from palpate.core.tool_surface import correction_for, surface_for
 from palpate.core.tool_touch import Load
 from palpate.core.tools import Pose, convex, plate, rod, sphere
@@ -183,3 +184,24 @@ def test_a_thin_part_on_a_firm_base_is_not_passed_through():
             contact.follow(pose.position, pose.rotation, slab.young_modulus)
         forces.append((touch.force[2], contact.force[2]))
     assert (np.diff(forces[2:], axis=0) > 0).all()
+
+
+@pytest.mark.parametrize("tool", [sphere(0.007), rod(0.006, 0.01)], ids=["sphere", "rod"])
+def test_in_an_inner_corner_it_comes_to_rest_where_the_reference_does(tool):
+    """Beside a floor 3 mm deep a wall is approached, touched, and left again."""
+    corner = inner_corner()
+    contact = native_tool(corner, native_body(corner, whole=True), tool)
+    low, left = tool.core.min(axis=0)[[2, 0]] - tool.radius
+    poses = [Pose.at([0.025 - left - into, 0.025, 0.022 - low]) for into in (-5e-4, 6e-4, -1e-4)]
+    touch = set_down(corner, tool, Pose.at(poses[0].position + np.array([0.0, 0.0, 0.004])))
+    contact.restart(touch.pose.position, touch.pose.rotation)
+    aside = []
+    for goal in poses:
+        touch = press_tool(corner, tool, goal, start=touch)
+        settled(contact, goal, corner.young_modulus)
+        assert touch.exact
+        scale = float(np.linalg.norm(touch.force))
+        np.testing.assert_allclose(contact.force, touch.force, atol=1e-5 * scale)
+        aside.append(touch.force[0] / scale)
+    assert abs(aside[0]) < 0.05
+    assert aside[1] > aside[0] + 0.05

@@ -4,7 +4,9 @@
 //! those of no real body do. So pushes are held near the direction that the pressed surface faces. A
 //! signed distance is the greatest separation n x - h(n) among all directions n, with h the farthest
 //! reach of the tool along n; here it is the greatest among the directions within the limit: the
-//! distance to the tool grown by a cone. Readable reference: `core/tilt.py`.
+//! distance to the tool grown by a cone. A tool may touch parts that face different ways, so a point
+//! may besides be pushed near the direction that it faces itself, unless the tool has passed through
+//! a part. Readable reference: `core/tilt.py`.
 
 use std::f64::consts::PI;
 
@@ -22,13 +24,24 @@ const MOST_TILT: f64 = 50.0 / 180.0 * PI;
 /// By how much more where the pressed points face different ways: at most this, were they all
 /// opposed, rad.
 const MORE_WHERE_UNEVEN: f64 = 100.0 / 180.0 * PI;
+/// A push that goes out of the body by more than this cosine has come through a part.
+const OUTWARD: f64 = 0.5;
+
+/// Directions within an angle of an axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Cone {
+    axis: DVec3,
+    cosine: f64,
+    sine: f64,
+}
 
 /// The directions that pushes are held within.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hold {
-    inward: DVec3,
-    cosine: f64,
-    sine: f64,
+    /// Near what all pushes are held.
+    common: Cone,
+    /// Of the cone about what a point faces itself, if a push may be there instead.
+    own: Option<(f64, f64)>,
 }
 
 /// How far a point is from a core point along each direction of the circle: level + slope . (c, s).
@@ -50,19 +63,25 @@ impl Hold {
     /// Only what goes into the body counts: the far side of a thin part is pushed outwards, and the
     /// part would else be felt turned round. Of none, nowhere.
     pub fn of(pushes: impl Iterator<Item = (DVec3, DVec3)>) -> Option<Self> {
-        let (mut facing, mut most) = (DVec3::ZERO, 0.0);
+        let (mut facing, mut most, mut is_through) = (DVec3::ZERO, 0.0, false);
         for (push, normal) in pushes {
-            let into = (-push.dot(normal)).max(0.0);
+            let outward = push.dot(normal);
+            let into = (-outward).max(0.0);
             facing += normal * into;
             most += into;
+            is_through |= outward > OUTWARD * push.length();
         }
         let length = facing.length();
         (length > 0.0).then(|| {
             let limit = MOST_TILT + MORE_WHERE_UNEVEN * (1.0 - length / most);
+            let (sine, cosine) = limit.sin_cos();
             Self {
-                inward: -facing / length,
-                cosine: limit.cos(),
-                sine: limit.sin(),
+                common: Cone {
+                    axis: -facing / length,
+                    cosine,
+                    sine,
+                },
+                own: (!is_through).then(|| (MOST_TILT.cos(), MOST_TILT.sin())),
             }
         })
     }
@@ -70,26 +89,56 @@ impl Hold {
     /// The same in the frame that a rotation takes directions of to these.
     #[must_use]
     pub fn seen_from(self, rotation: &DMat3) -> Self {
-        Self {
-            inward: rotation.transpose() * self.inward,
-            ..self
-        }
+        let common = Cone {
+            axis: rotation.transpose() * self.common.axis,
+            ..self.common
+        };
+        Self { common, ..self }
     }
 
     /// Distance and normal of a tool at a place, held; all of it in the tool's frame. `free` are those
-    /// of the tool as it is.
+    /// of the tool as it is, `facing` is the outward normal of the body there.
     #[inline]
-    pub fn hold(&self, free: (f64, DVec3), place: DVec3, tool: &Tool) -> (f64, DVec3) {
-        let inward = self.inward;
-        if free.1.dot(inward) >= self.cosine {
+    pub fn hold(
+        &self,
+        free: (f64, DVec3),
+        place: DVec3,
+        facing: DVec3,
+        tool: &Tool,
+    ) -> (f64, DVec3) {
+        if self.common.holds(free.1) {
             return free;
         }
-        let first = inward.any_orthonormal_vector();
-        let second = inward.cross(first);
+        let Some((cosine, sine)) = self.own else {
+            return self.common.greatest(place, tool);
+        };
+        let own = Cone {
+            axis: -facing,
+            cosine,
+            sine,
+        };
+        if own.holds(free.1) {
+            return free;
+        }
+        let (common, own) = (self.common.greatest(place, tool), own.greatest(place, tool));
+        if own.0 > common.0 { own } else { common }
+    }
+}
+
+impl Cone {
+    #[inline]
+    fn holds(&self, direction: DVec3) -> bool {
+        direction.dot(self.axis) >= self.cosine
+    }
+
+    /// The greatest separation of a place from the tool among directions on its rim, and which.
+    fn greatest(&self, place: DVec3, tool: &Tool) -> (f64, DVec3) {
+        let first = self.axis.any_orthonormal_vector();
+        let second = self.axis.cross(first);
         let sinusoid = |core: DVec3| {
             let offset = place - core;
             Sinusoid {
-                level: self.cosine * offset.dot(inward),
+                level: self.cosine * offset.dot(self.axis),
                 slope: DVec2::new(offset.dot(first), offset.dot(second)) * self.sine,
             }
         };
@@ -104,7 +153,7 @@ impl Hold {
             }
         };
         let aside = first * turn.x + second * turn.y;
-        let direction = inward * self.cosine + aside * self.sine;
+        let direction = self.axis * self.cosine + aside * self.sine;
         let nearest = |least: f64, core: &DVec3| least.min((place - *core).dot(direction));
         let distance = tool.core().iter().fold(f64::INFINITY, nearest);
         (distance - tool.radius(), direction)

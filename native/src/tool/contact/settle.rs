@@ -93,9 +93,11 @@ impl ToolContact {
         let hold = Hold::of(pushes).map(|hold| hold.seen_from(&pose.rotation));
         let (mut gap, mut turned, mut gives) = (0.0_f64, 0.0, 0.0_f64);
         for slot in self.patch.slots_mut() {
-            let rest = points[slot.point as usize].position;
+            let point = &points[slot.point as usize];
             let (distance, normal) = hold.map_or(slot.free, |hold| {
-                hold.hold(slot.free, pose.to_tool(rest + slot.moved), &self.tool)
+                let place = pose.to_tool(point.position + slot.moved);
+                let facing = pose.rotation.transpose() * point.normal;
+                hold.hold(slot.free, place, facing, &self.tool)
             });
             slot.seen = (distance, pose.rotation * normal);
             if slot.push > 0.0 {
