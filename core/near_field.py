@@ -25,7 +25,14 @@ from .contact_points import ContactPoints
 from .formulation import LINEAR, SMOOTHED
 from .half_space import own_displacement
 from .pair_blocks import pair_blocks
-from .regular_field import BELIEVED, RegularField, facing, half_space_between
+from .regular_field import (
+    BELIEVED,
+    SHORT_NOWHERE,
+    SHORT_WITHIN,
+    RegularField,
+    facing,
+    half_space_between,
+)
 from .soft_body import SoftBody
 from .solid_angle import FLAT, solid_angles
 
@@ -106,17 +113,19 @@ class NearCorrection:
     def arrays(self) -> dict[str, object]:
         """All of it as the native thread takes it; the thread reckons the pairs by itself."""
         field = self.field
-        never, wholly, _, _ = BELIEVED[field.body.formulation]
+        never, wholly, _, outer = BELIEVED[field.body.formulation]
         return {
             "normals": field.normals,
             "edges": field.edges,
             "softness": field.softness,
+            "excess": field.excess,
             "regular": field.regular,
             "slopes": field.slope.reshape(-1, 3, 3),
             "shares": self.shares,
             "softness_of_points": self.softness,
             "own": self.own,
             "believed": (never, wholly),
+            "short": (SHORT_WITHIN * outer, SHORT_NOWHERE * outer),
             "poisson_ratio": field.body.poisson_ratio,
         }
 
@@ -269,9 +278,10 @@ def _node_table(
     doubt = np.clip((wholly - apart) / (wholly - never), 0.0, 1.0)
     blocks = np.zeros((len(a), 3, 3))
     far = np.flatnonzero(doubt < 1)
-    blocks[far] = (1 - doubt[far])[:, None, None] * half_space_between(
+    resembled = field.short(a[far], b[far]) + half_space_between(
         field.body, places, field.normals, field.softness, a[far], b[far]
     )
+    blocks[far] = (1 - doubt[far])[:, None, None] * resembled
     near = np.flatnonzero(doubt > 0)
     resolved = pair_blocks(field.body, a[near], b[near])
     regular = field.between(a[near], b[near])

@@ -80,6 +80,7 @@ fn own_parts(body: &Body, points: &[Point]) -> NearField {
         nodes: vec![node; body.nodes.len()],
         points: vec![point; points.len()],
         believed: [0.6, 1.0],
+        short: [2.2, 4.4],
         poisson_ratio: 0.3,
     }
 }

@@ -151,15 +151,16 @@ fn near_field(arrays: &Bound<'_, PyDict>) -> PyResult<NearField> {
         Ok(given.as_array().to_vec())
     };
     let blocks = |name| -> PyResult<Vec<DMat3>> { matrices(name, &array(name)?.extract()?) };
-    let believed: [f64; 2] = array("believed")?.extract()?;
+    let limits = |name| -> PyResult<[f64; 2]> { array(name)?.extract() };
+    let (believed, short) = (limits("believed")?, limits("short")?);
     let poisson_ratio: f64 = array("poisson_ratio")?.extract()?;
     let normals = vectors("normals", &array("normals")?.extract()?)?;
     let (edges, softness, regular) = (numbers("edges")?, numbers("softness")?, blocks("regular")?);
-    let slopes = blocks("slopes")?;
+    let (slopes, excess) = (blocks("slopes")?, numbers("excess")?);
     let [shares, softness_of_points] = [numbers("shares")?, numbers("softness_of_points")?];
     let own = blocks("own")?;
     let (nodes, points) = (normals.len(), shares.len());
-    if [edges.len(), softness.len(), regular.len()] != [nodes; 3]
+    if [edges.len(), softness.len(), regular.len(), excess.len()] != [nodes; 4]
         || slopes.len() != 3 * nodes
         || [softness_of_points.len(), own.len()] != [points; 2]
     {
@@ -172,6 +173,7 @@ fn near_field(arrays: &Bound<'_, PyDict>) -> PyResult<NearField> {
         normal: normals[k],
         edge: edges[k],
         softness: softness[k],
+        excess: excess[k],
         regular: regular[k],
         slope: [0, 1, 2].map(|axis| slopes[3 * k + axis]),
     };
@@ -184,6 +186,7 @@ fn near_field(arrays: &Bound<'_, PyDict>) -> PyResult<NearField> {
         nodes: (0..nodes).map(node).collect(),
         points: (0..points).map(point).collect(),
         believed,
+        short,
         poisson_ratio,
     })
 }

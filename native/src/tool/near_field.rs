@@ -22,6 +22,9 @@ pub struct NodeField {
     pub edge: f64,
     /// 1 over the factor of Young's modulus around the node.
     pub softness: f64,
+    /// What finite elements add to the coupling of pushes with displacements aside, times the
+    /// distance squared, m^3/N at 1 Pa; negative where they fall short.
+    pub excess: f64,
     /// How far the node gives way beyond a half-space under its own force, m/N at 1 Pa.
     pub regular: DMat3,
     /// How that changes per metre as the force moves away, for each axis.
@@ -49,6 +52,9 @@ pub struct NearField {
     /// Distances in edges: within the first finite elements are not believed, from the second on
     /// they are wholly.
     pub believed: [f64; 2],
+    /// Distances in edges: up to the first finite elements have the nodes' excess, from the second
+    /// on none.
+    pub short: [f64; 2],
     /// Of the body.
     pub poisson_ratio: f64,
 }
@@ -60,6 +66,7 @@ impl NearField {
             f.normal.is_finite()
                 && (f.edge > 0.0 && f.edge.is_finite())
                 && f.softness.is_finite()
+                && f.excess.is_finite()
                 && f.regular.is_finite()
                 && f.slope.iter().all(DMat3::is_finite)
         };
@@ -70,6 +77,8 @@ impl NearField {
             && 0.0 <= self.believed[0]
             && self.believed[0] < self.believed[1]
             && self.believed[1].is_finite()
+            && self.short[0] < self.short[1]
+            && self.short.iter().all(|limit| limit.is_finite())
             && (-1.0..=0.5).contains(&self.poisson_ratio)
     }
 
@@ -91,7 +100,7 @@ impl NearField {
         normals: [DVec3; 2],
     ) -> DMat3 {
         let softness = [p, q].map(|k| self.points[k as usize].softness);
-        self.half_space(offset, normals, softness)
+        self.half_space(offset, normals, softness, 0.0)
     }
 
     /// `L_ab - T_ab`: what the body does beyond a half-space; `resolved` is `L_ab`.
@@ -105,7 +114,11 @@ impl NearField {
         if doubt < 1.0 {
             let normals = [here.normal, there.normal];
             let softness = [here.softness, there.softness];
-            blocks += (resolved - self.half_space(offset, normals, softness)) * (1.0 - doubt);
+            let [within, nowhere] = self.short;
+            let fading = ((nowhere - apart) / (nowhere - within)).clamp(0.0, 1.0);
+            let excess = 0.5 * (here.excess + there.excess) * fading;
+            let resembled = self.half_space(offset, normals, softness, excess);
+            blocks += (resolved - resembled) * (1.0 - doubt);
         }
         if doubt > 0.0 {
             // From a to b is against the offset.
@@ -118,22 +131,29 @@ impl NearField {
         blocks
     }
 
-    /// Boussinesq's and Cerruti's displacement at `offset` from the force, m/N at 1 Pa.
+    /// Boussinesq's and Cerruti's displacement at `offset` from the force, m/N at 1 Pa, with what is
+    /// added to its coupling, times the distance squared.
     #[inline]
-    fn half_space(&self, offset: DVec3, normals: [DVec3; 2], softness: [f64; 2]) -> DMat3 {
+    fn half_space(
+        &self,
+        offset: DVec3,
+        normals: [DVec3; 2],
+        softness: [f64; 2],
+        excess: f64,
+    ) -> DMat3 {
         let sum = normals[0] + normals[1];
         let normal = sum / sum.length().max(0.5);
         let nu = self.poisson_ratio;
         let inverse = offset.length_recip();
         let along = offset * inverse;
-        let coupling = 0.5 - nu;
+        let scale = (1.0 + nu) / PI * inverse * (0.5 * (softness[0] + softness[1]));
+        let coupling = 0.5 - nu + excess * inverse * inverse / scale;
         let column = |axis: usize| {
             let (e, n) = (along[axis], normal[axis]);
             let mut column = along * (nu * e + coupling * n) - normal * (coupling * e);
             column[axis] += 1.0 - nu;
             column
         };
-        let scale = (1.0 + nu) / PI * inverse * (0.5 * (softness[0] + softness[1]));
         DMat3::from_cols(column(0), column(1), column(2)) * scale
     }
 }
