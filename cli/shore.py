@@ -7,7 +7,13 @@ import json
 
 from ..core.errors import PalpateError
 from ..core.softness.relations import RELATIONS, RUBBER_POISSON_RATIO
-from ..core.softness.shore import SCALES, Shore, shore_from_young, young_from_shore
+from ..core.softness.shore import (
+    SCALES,
+    Shore,
+    shore_from_young,
+    young_from_shore,
+    young_range,
+)
 from .body_figures import as_lines
 
 
@@ -57,5 +63,7 @@ def _both_scales(arguments: argparse.Namespace) -> dict[str, object]:
         else:
             figures[f"shore_{scale.lower()}"] = round(shore.value, 1)
     if len(refusals) == len(SCALES):
-        raise refusals[0]
+        # Scales go from soft to firm: what is softer than all of them is refused by the first.
+        softest, _ = young_range(SCALES[0], arguments.poisson)
+        raise refusals[0 if arguments.young < softest else -1]
     return figures

@@ -102,16 +102,21 @@ def shore_from_young(
     Raises
     ------
     PalpateError
-        Softer or firmer than the relation's range says; an unknown scale or relation.
+        No positive number; softer or firmer than the relation's range says; an unknown scale or
+        relation.
     """
+    if not (math.isfinite(young_modulus) and young_modulus > 0.0):
+        raise PalpateError(
+            f"Young's modulus {young_modulus:g} Pa: nothing has it; give a positive number"
+        )
     chosen = relation_for(scale, relation)
     softest, firmest = young_range(scale, poisson_ratio, relation)
-    within = (1.0 - SLACK) * softest <= young_modulus <= (1.0 + SLACK) * firmest
-    if not (math.isfinite(young_modulus) and within):
+    if not (1.0 - SLACK) * softest <= young_modulus <= (1.0 + SLACK) * firmest:
         low, high = Shore(scale, chosen.lowest), Shore(scale, chosen.highest)
         raise PalpateError(
             f"Young's modulus {young_modulus:g} Pa: the scale Shore {scale} is used from {low} to "
-            f"{high}, which is {softest:.3g} to {firmest:.3g} Pa; {_other_scale(scale)}"
+            f"{high}, which is {softest:.3g} to {firmest:.3g} Pa; "
+            f"{_other_scale(scale, young_modulus < softest)}"
         )
     rubber = young_modulus / _against_rubber(poisson_ratio)
     # Within the slack at the ends there is no change of sign to be found.
@@ -162,5 +167,6 @@ def _neighbour(shore: Shore, chosen: Relation) -> str:
     return f"{softer}give Young's modulus itself"
 
 
-def _other_scale(scale: str) -> str:
-    return f"try the scale {'A' if scale == '00' else '00'}, or keep to Young's modulus"
+def _other_scale(scale: str, too_soft: bool) -> str:
+    other = "00" if too_soft else "A"
+    return f"{f'try the scale {other}, or ' if other != scale else ''}keep to Young's modulus"

@@ -152,9 +152,23 @@ def test_readings_beyond_a_relation_are_refused_with_a_remedy(shore, remedy):
         young_from_shore(shore)
 
 
-@pytest.mark.parametrize("young", [1.0, 0.0, -5.0, 1e9, float("nan"), float("inf")])
-def test_moduli_beyond_a_scale_are_refused_with_its_range(young):
-    with pytest.raises(PalpateError, match="00-10 to 00-90"):
+@pytest.mark.parametrize(
+    ("young", "scale", "said"),
+    [
+        (1.0, "00", "00-10 to 00-90, .*; keep to"),
+        (1e9, "00", "00-10 to 00-90, .*; try the scale A"),
+        (1.0, "A", "A 10 to A 90, .*; try the scale 00"),
+        (1e9, "A", "A 10 to A 90, .*; keep to"),
+    ],
+)
+def test_moduli_beyond_a_scale_are_refused_with_its_range(young, scale, said):
+    with pytest.raises(PalpateError, match=said):
+        shore_from_young(young, scale)
+
+
+@pytest.mark.parametrize("young", [0.0, -5.0, float("nan"), float("inf")])
+def test_what_is_no_modulus_is_not_sent_to_another_scale(young):
+    with pytest.raises(PalpateError, match="give a positive number"):
         shore_from_young(young, "00")
 
 

@@ -32,11 +32,12 @@ def test_young_modulus_is_told_on_the_scales_that_reach_it(capsys):
     assert json.loads(firm)["shore_a"] == pytest.approx(30, abs=0.1)
 
 
-def test_what_no_scale_reaches_is_refused_in_one_line(capsys):
-    status, printed, said = palpate(capsys, "shore", "--young", 1000)
+@pytest.mark.parametrize(("young", "nearest"), [(1000, "00-10 to 00-90"), (1e9, "A 10 to A 90")])
+def test_what_no_scale_reaches_is_refused_in_one_line(capsys, young, nearest):
+    status, printed, said = palpate(capsys, "shore", "--young", young)
     assert (status, printed) == (2, "")
     assert len(said.splitlines()) == 1
-    assert "00-10 to 00-90" in said
+    assert nearest in said
 
 
 def test_every_material_is_listed_with_its_source(capsys):
