@@ -22,15 +22,28 @@ from .status_line import bake_status, show, status_line
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Describe the command."""
-    parser = subparsers.add_parser("bake", help="make body files from mesh files")
-    parser.add_argument("meshes", type=Path, nargs="+", metavar="MESH.(obj|ply|stl|npz)")
+    parser = subparsers.add_parser(
+        "bake",
+        help="make body files from mesh files",
+        description="Fill meshes with tetrahedra and compute once how their surfaces give way: "
+        "one body file for each mesh.",
+    )
+    parser.add_argument(
+        "meshes",
+        type=Path,
+        nargs="+",
+        metavar="MESH.(obj|ply|stl|npz)",
+        help="closed or nearly closed surfaces, or tetrahedra (npz)",
+    )
     result = parser.add_mutually_exclusive_group(required=True)
-    result.add_argument("-o", "--output", type=Path, metavar="BODY.npz", help="of one mesh")
+    result.add_argument(
+        "-o", "--output", type=Path, metavar="BODY.npz", help="body file of one mesh"
+    )
     result.add_argument(
         "--output-folder",
         type=Path,
         metavar="FOLDER",
-        help="of many meshes: each becomes FOLDER/NAME.npz",
+        help="folder for many meshes: each becomes FOLDER/NAME.npz",
     )
     result.add_argument(
         "--predict",

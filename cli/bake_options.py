@@ -40,7 +40,7 @@ def add_bake_options(parser: argparse.ArgumentParser) -> None:
         type=float,
         metavar="F",
         help="wanted edge length of tetrahedra as a share of the bounding box diagonal "
-        f"(default {default.edge_length:g}; not for npz)",
+        f"(default: {default.edge_length:g}; not for npz)",
     )
     shape.add_argument(
         "--epsilon",
@@ -48,21 +48,21 @@ def add_bake_options(parser: argparse.ArgumentParser) -> None:
         default=default.epsilon,
         metavar="F",
         help="how far the body's surface may lie from the mesh's, as such a share "
-        "(default %(default)g)",
+        "(default: %(default)g)",
     )
     shape.add_argument(
         "--metres-per-unit",
         type=float,
         default=1.0,
         metavar="S",
-        help="unit of the file (default 1)",
+        help="unit of the file (default: 1)",
     )
     shape.add_argument(
         "--time-limit",
         type=float,
         default=default.time_limit,
         metavar="S",
-        help="give up tetrahedralization after so many seconds (default %(default)g)",
+        help="give up tetrahedralization after so many seconds (default: %(default)g)",
     )
     pins = parser.add_argument_group("pins")
     pins.add_argument(
@@ -72,7 +72,7 @@ def add_bake_options(parser: argparse.ArgumentParser) -> None:
         help="pin surface nodes within this lowest share of the height "
         f"(default: 'fixed' of an npz, else {DEFAULT_PIN_FRACTION:g})",
     )
-    pins.add_argument("--up", choices=AXES, default="z", help="upward axis (default z)")
+    pins.add_argument("--up", choices=AXES, default="z", help="upward axis (default: z)")
     material = parser.add_argument_group("material")
     material.add_argument(
         "--material",
@@ -86,7 +86,7 @@ def add_bake_options(parser: argparse.ArgumentParser) -> None:
         type=float,
         metavar="PA",
         help="Young's modulus stored as the default for presses "
-        f"(default {default.young_modulus:g})",
+        f"(default: {default.young_modulus:g})",
     )
     modulus.add_argument(
         "--shore", metavar="SHORE", help="Young's modulus by its Shore value, such as 00-30 or A20"
@@ -95,28 +95,28 @@ def add_bake_options(parser: argparse.ArgumentParser) -> None:
         "--poisson",
         type=float,
         metavar="NU",
-        help=f"Poisson's ratio (default {default.poisson_ratio:g})",
+        help=f"Poisson's ratio (default: {default.poisson_ratio:g})",
     )
     material.add_argument(
         "--formulation",
         choices=(AUTOMATIC, *FORMULATIONS),
         default=default.formulation,
         help="of the tetrahedra: the paper's linear ones, or smoothed ones, which do not lock "
-        "where Poisson's ratio is near 0.5 (default %(default)s: what suits the ratio)",
+        "where Poisson's ratio is near 0.5 (default: %(default)s, what suits the ratio)",
     )
     compliance = parser.add_argument_group("compliance")
     compliance.add_argument(
         "--form",
         choices=FORMS,
         default=default.form,
-        help="dense as in the paper, or compressed (default %(default)s: compressed when large)",
+        help="dense as in the paper, or compressed (default: %(default)s, compressed when large)",
     )
     compliance.add_argument(
         "--tolerance",
         type=float,
         default=default.tolerance,
         metavar="F",
-        help="largest relative column error that compressing may cause (default %(default)g)",
+        help="largest relative column error that compressing may cause (default: %(default)g)",
     )
     compliance.add_argument(
         "--threads",

@@ -12,6 +12,7 @@ from ..core.softness.curve_picture import curve_svg
 from ..core.softness.force_depth import MILLIMETRES, ForceDepthCurve, force_depth_curve
 from ..core.softness.place import nearest_place
 from ..core.whole_file import refuse_missing_folder, whole_file
+from .body_argument import add_body
 from .felt_option import add_felt, refuse_with_tool, softening_table
 from .place_options import add_at, add_young, positive_length, refuse_suffix, young_modulus_of
 from .tool_option import KINDS, tool_from
@@ -21,19 +22,30 @@ POINT, FINGERTIP = "point", "sphere:0.008"
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Describe the command."""
-    parser = subparsers.add_parser("curve", help="force against depth at a place of a body")
-    parser.add_argument("body", type=Path, metavar="BODY.npz")
+    parser = subparsers.add_parser(
+        "curve",
+        help="print force against depth at a place of a body",
+        description="Press a point or tool into a body in steps, along the surface's normal, and "
+        "print force and stiffness.",
+    )
+    add_body(parser)
     add_at(parser)
     parser.add_argument(
         "--tool",
         default=FINGERTIP,
         metavar="TOOL",
-        help=f"what presses: {POINT}, {KINDS}, in metres (default %(default)s, a fingertip)",
+        help=f"what presses: {POINT}, {KINDS}, in metres (default: %(default)s, a fingertip)",
     )
     parser.add_argument(
         "--depth", type=positive_length, metavar="M", help="how far (default: what is small there)"
     )
-    parser.add_argument("--steps", type=int, default=20, metavar="N", help="default %(default)d")
+    parser.add_argument(
+        "--steps",
+        type=int,
+        default=20,
+        metavar="N",
+        help="steps to that depth (default: %(default)d)",
+    )
     add_young(parser)
     add_felt(parser)
     parser.add_argument("--csv", type=Path, metavar="OUT.csv", help="write the curve as a table")

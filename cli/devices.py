@@ -13,7 +13,11 @@ from ..core.devices.simulated_options import add_simulated_options, simulated_op
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Describe the command and the one below it."""
-    parser = subparsers.add_parser("devices", help="list haptic devices, or simulate one")
+    parser = subparsers.add_parser(
+        "devices",
+        help="list haptic devices, or simulate one",
+        description="List the serial ports and the haptic devices that answer there.",
+    )
     parser.add_argument(
         "--port",
         nargs="+",
@@ -22,9 +26,9 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         metavar="PATH",
         help="ask these ports too, whatever they are",
     )
-    parser.add_argument("--json", action="store_true", help="print as JSON")
+    parser.add_argument("--json", action="store_true", help="print figures as JSON")
     parser.set_defaults(run=run)
-    below = parser.add_subparsers(title="without hardware", metavar="[simulate]")
+    below = parser.add_subparsers(title="without hardware", metavar="COMMAND")
     simulate = below.add_parser(
         "simulate",
         help="be a device on a pseudo-terminal until Ctrl-C",

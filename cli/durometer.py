@@ -5,21 +5,28 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from pathlib import Path
 
 from ..core import cache
 from ..core.softness.durometer import read_durometer
 from ..core.softness.durometer_type import TYPES
+from .body_argument import add_body
 from .body_figures import as_lines
 from .place_options import add_at, add_young, young_modulus_of
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Describe the command."""
-    parser = subparsers.add_parser("durometer", help="read a virtual durometer set on a body")
-    parser.add_argument("body", type=Path, metavar="BODY.npz")
+    parser = subparsers.add_parser(
+        "durometer",
+        help="read a virtual durometer set on a body",
+        description="Press the standard's indenter into a body and print the Shore value that the "
+        "instrument would show there.",
+    )
+    add_body(parser)
     add_at(parser)
-    parser.add_argument("--scale", choices=TYPES, default="00", help="Shore 00 (default) or A")
+    parser.add_argument(
+        "--scale", choices=TYPES, default="00", help="Shore scale (default: %(default)s)"
+    )
     add_young(parser)
     pressed = parser.add_mutually_exclusive_group()
     pressed.add_argument(

@@ -25,8 +25,8 @@ def add_felt(parser: argparse.ArgumentParser) -> None:
         "--felt",
         choices=FELT_CHOICES,
         default="linear",
-        help="force of points: in proportion to the depth, as in the paper (linear, default), or "
-        "softer where pressed in far, as a solid of large deformation is (corrected)",
+        help="force of points: in proportion to the depth, as in the paper (linear, the default), "
+        "or softer where pressed in far, as a solid of large deformation is (corrected)",
     )
 
 

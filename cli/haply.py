@@ -36,7 +36,7 @@ def add_haply_options(
         "--model",
         choices=HAPLY_MODELS,
         default=DEFAULT_MODEL,
-        help="of the 2DIY (default: %(default)s)",
+        help="model of the 2DIY (default: %(default)s)",
     )
     parser.add_argument(
         "--recalibrate",

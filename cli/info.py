@@ -5,16 +5,21 @@ from __future__ import annotations
 import argparse
 import json
 import time
-from pathlib import Path
 
 from ..core import cache
+from .body_argument import add_body
 from .body_figures import as_lines, body_figures
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Describe the command."""
-    parser = subparsers.add_parser("info", help="check a body file and print its figures")
-    parser.add_argument("body", type=Path, metavar="BODY.npz")
+    parser = subparsers.add_parser(
+        "info",
+        help="check a body file and print its figures",
+        description="Check a body file against its checksums and print its size, material and "
+        "pins.",
+    )
+    add_body(parser)
     parser.add_argument("--json", action="store_true", help="print figures as JSON")
     parser.set_defaults(run=run)
 

@@ -23,19 +23,24 @@ class _OneLineParser(argparse.ArgumentParser):
         self.exit(EXIT_ERROR, f"palpate: {message}; see '{self.prog} --help'\n")
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Run one command; 0 when it did what was asked, 2 with one line on standard error if not."""
+def make_parser() -> argparse.ArgumentParser:
+    """The whole command line."""
     parser = _OneLineParser(
         prog="palpate", description="Make props soft, press them, and read the force."
     )
     subparsers = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
     for command in COMMANDS:
         command.add_parser(subparsers)
+    return parser
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command; 0 when it did what was asked, 2 with one line on standard error if not."""
     if not sys.warnoptions:
         # What libraries warn of is for developers; people get a result, or one line.
         warnings.simplefilter("ignore")
     given = sys.argv[1:] if arguments is None else arguments
-    parsed = parser.parse_args([_shielded(word) for word in given])
+    parsed = make_parser().parse_args([_shielded(word) for word in given])
     try:
         status: int = parsed.run(parsed)
     except PalpateError as problem:

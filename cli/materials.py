@@ -10,7 +10,12 @@ from ..core.materials import MATERIALS, Material
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Describe the command."""
-    parser = subparsers.add_parser("materials", help="list the material presets and their sources")
+    parser = subparsers.add_parser(
+        "materials",
+        help="list the material presets and their sources",
+        description="List the materials that 'palpate bake --material' knows, with their constants "
+        "and where these come from.",
+    )
     parser.add_argument("--json", action="store_true", help="print figures as JSON")
     parser.set_defaults(run=run)
 

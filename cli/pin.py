@@ -17,14 +17,21 @@ from ..core.repin import pin_more
 from ..core.soft_body import SoftBody
 from ..core.whole_file import refuse_missing_folder
 from .bake_options import AXES
+from .body_argument import add_body
 from .body_figures import as_lines, body_figures
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Describe the command."""
-    parser = subparsers.add_parser("pin", help="pin more of a body, without a new bake")
-    parser.add_argument("body", type=Path, metavar="BODY.npz")
-    parser.add_argument("-o", "--output", type=Path, required=True, metavar="OUT.npz")
+    parser = subparsers.add_parser(
+        "pin",
+        help="pin more of a body, without a new bake",
+        description="Write the body file that a bake with these nodes pinned besides would give.",
+    )
+    add_body(parser)
+    parser.add_argument(
+        "-o", "--output", type=Path, required=True, metavar="OUT.npz", help="body file to write"
+    )
     which = parser.add_mutually_exclusive_group(required=True)
     which.add_argument(
         "--below",
@@ -38,7 +45,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         metavar="FILE",
         help="pin these nodes besides: numbers in a text file, or an integer array in a .npy",
     )
-    parser.add_argument("--up", choices=AXES, default="z", help="upward axis (default z)")
+    parser.add_argument("--up", choices=AXES, default="z", help="upward axis (default: z)")
     parser.add_argument("--json", action="store_true", help="print figures as JSON")
     parser.set_defaults(run=run)
 

@@ -18,6 +18,7 @@ from ..core.large_deformation.shapes import SHAPES, shape
 from ..core.soft_body import SoftBody
 from ..core.stiffness import lame_parameters
 from ..core.whole_file import whole_file
+from .body_argument import add_body
 from .body_figures import as_lines
 from .felt_option import add_felt, felt_forces, refuse_with_tool
 from .press_tool import pressed_tools, tool_figures, tool_summary
@@ -29,9 +30,11 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser = subparsers.add_parser(
         "press",
         help="press a body with one or several fingers and read the forces",
+        description="Press a body and print the force on each finger, where it touches, and how "
+        "far the surface moves.",
         epilog="Several fingers: give --at and --by once for each, in the same order.",
     )
-    parser.add_argument("body", type=Path, metavar="BODY.npz")
+    add_body(parser)
     for name, what in (
         ("at", "the surface point nearest to this is touched"),
         ("by", "the finger's displacement from there"),
@@ -45,12 +48,14 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
             metavar=("X", "Y", "Z"),
             help=f"{what} (metres, body coordinates); once for each finger",
         )
-    parser.add_argument("--young", type=float, metavar="PA", help="default: the body's own")
+    parser.add_argument(
+        "--young", type=float, metavar="PA", help="Young's modulus (default: the body's own)"
+    )
     parser.add_argument(
         "--mode",
         choices=CONTACT_MODES,
         help="contact inside triangles: its point moves by exactly the finger's displacement "
-        "(consistent, default), or as in the paper",
+        "(consistent, the default), or as in the paper",
     )
     parser.add_argument(
         "--tool",
@@ -62,14 +67,16 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "--friction",
         type=float,
         metavar="MU",
-        help="coefficient of friction between --tool and body (default 0)",
+        help="coefficient of friction between --tool and body (default: 0)",
     )
     add_felt(parser)
     parser.add_argument(
         "--shape",
         choices=SHAPES,
         default="linear",
-        help="how the deformed shape is computed under the forces (default: linear)",
+        help="how the deformed shape is computed under the forces: linear elasticity, the paper's "
+        "(16) by tables or by power series, or linear elasticity bent by the rotations it means "
+        "and relaxed (default: linear)",
     )
     parser.add_argument(
         "--displacements",

@@ -27,6 +27,7 @@ from ..core.recording import check_recording_path, check_room, write_recording
 from ..core.servo_session import STATES, LinkDevice, native_body, servo_on
 from ..core.soft_body import SoftBody
 from ..core.stiffness import lame_parameters
+from .body_argument import add_body
 from .body_figures import as_lines
 from .felt_option import add_felt, softening_table
 from .haply import add_haply_options, connect_haply
@@ -44,8 +45,13 @@ HAND_FORCE = 1.5
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Describe the command."""
-    parser = subparsers.add_parser("servo", help="touch a body with a device, at 1 kHz")
-    parser.add_argument("body", type=Path, metavar="BODY.npz")
+    parser = subparsers.add_parser(
+        "servo",
+        help="touch a body with a device, at 1 kHz",
+        description="Run the real-time thread between a device and a body, then print what was "
+        "felt and how its deadlines were kept. Ctrl-C ends it with zero force.",
+    )
+    add_body(parser)
     device = parser.add_mutually_exclusive_group(required=True)
     device.add_argument("--port", metavar="PORT", help="a device that speaks the link")
     device.add_argument(
@@ -63,18 +69,27 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "--mode",
         choices=("consistent", "paper"),
         default="consistent",
-        help="how a contact inside a triangle becomes a force (default: %(default)s)",
+        help="contact inside triangles: its point moves by exactly the finger's displacement "
+        "(consistent, the default), or as in the paper",
     )
     add_felt(parser)
     parser.add_argument(
-        "--seconds", type=float, default=10.0, metavar="S", help="default: %(default)g"
+        "--seconds",
+        type=float,
+        default=10.0,
+        metavar="S",
+        help="how long to run (default: %(default)g)",
     )
-    parser.add_argument("--rate", type=int, default=1000, metavar="HZ", help="default: %(default)s")
-    parser.add_argument("--young", type=float, metavar="PA", help="default: the body's own")
+    parser.add_argument(
+        "--rate", type=int, default=1000, metavar="HZ", help="ticks a second (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--young", type=float, metavar="PA", help="Young's modulus (default: the body's own)"
+    )
     parser.add_argument(
         "--record", type=Path, metavar="FILE", help="write every tick to FILE.csv or FILE.npz"
     )
-    parser.add_argument("--json", action="store_true", help="print the report as JSON")
+    parser.add_argument("--json", action="store_true", help="print figures as JSON")
     parser.set_defaults(run=run)
 
 

@@ -19,16 +19,25 @@ from .body_figures import as_lines
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Describe the command."""
-    parser = subparsers.add_parser("shore", help="Shore 00 or A to Young's modulus, and back")
+    parser = subparsers.add_parser(
+        "shore",
+        help="convert Shore 00 or A to Young's modulus, and back",
+        description="Print Young's modulus for a Shore value, or the Shore values for Young's "
+        "modulus.",
+    )
     which = parser.add_mutually_exclusive_group(required=True)
-    which.add_argument("value", nargs="?", metavar="SHORE", help="such as 00-30 or A20")
-    which.add_argument("--young", type=float, metavar="PA", help="the other way")
+    which.add_argument(
+        "value", nargs="?", metavar="SHORE", help="Shore value, such as 00-30 or A20"
+    )
+    which.add_argument(
+        "--young", type=float, metavar="PA", help="Young's modulus, to be told as Shore values"
+    )
     parser.add_argument(
         "--poisson",
         type=float,
         default=RUBBER_POISSON_RATIO,
         metavar="NU",
-        help="Poisson's ratio (default %(default)g, rubber)",
+        help="Poisson's ratio (default: %(default)g, rubber)",
     )
     parser.add_argument("--json", action="store_true", help="print figures as JSON")
     parser.set_defaults(run=run)

@@ -14,6 +14,7 @@ from ..core.softness.force_depth import MILLIMETRES
 from ..core.softness.ramp import legend
 from ..core.softness.softness_map import FINGER_RADIUS, softness_map
 from ..core.whole_file import refuse_missing_folder, whole_file
+from .body_argument import add_body
 from .body_figures import as_lines
 from .place_options import add_young, refuse_suffix, young_modulus_of
 
@@ -22,8 +23,12 @@ KINDS = (".npy", ".ply")
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Describe the command."""
-    parser = subparsers.add_parser("softness", help="map how soft a body is all over its surface")
-    parser.add_argument("body", type=Path, metavar="BODY.npz")
+    parser = subparsers.add_parser(
+        "softness",
+        help="map how soft a body is all over its surface",
+        description="Write how firm a body is under a finger at each node of its surface.",
+    )
+    add_body(parser)
     parser.add_argument(
         "-o",
         "--output",
@@ -37,7 +42,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         type=float,
         default=FINGER_RADIUS,
         metavar="M",
-        help="radius of the round pad that presses (default %(default)g); 0 for the bare node, "
+        help="radius of the round pad that presses (default: %(default)g); 0 for the bare node, "
         "which follows the mesh",
     )
     add_young(parser)
