@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 
-use crate::surface::{Body, Face};
+use crate::face::Face;
+use crate::surface::Body;
 use crate::tree::Closest;
 
 /// Nearest surface point and whether `p` lies inside the body.

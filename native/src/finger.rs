@@ -3,6 +3,8 @@
 //! The servo leads all fingers through the stages of a tick, one stage after the other; what happens
 //! between them lies in [`crate::several`].
 
+mod inspection;
+mod output;
 mod point;
 mod tool;
 
@@ -16,19 +18,12 @@ use crate::device::{Device, DeviceFrame, Fault, Probe, Reading};
 use crate::felt::Blend;
 use crate::pressed_patch::PressedPatch;
 use crate::proxy::Proxy;
-use crate::safety::{Limits, Safety};
+use crate::safety::Safety;
 use crate::servo::{Options, Settings};
-use crate::snapshot::{Sample, Snapshot, Told};
-use crate::state::{Findings, Standing, State, reason, transition};
+use crate::snapshot::{Snapshot, Told};
+use crate::state::{Findings, Standing, reason};
 use crate::surface::Body;
 use crate::tip::{Tip, TipHolder, exchange_tips};
-
-/// Two ticks further apart than this were interrupted: the device has gone limp meanwhile, s.
-const SUSPENDED_SECONDS: f64 = 0.02;
-/// For so long after a gap, what the line had stored may have holes, s.
-const HOLES_SECONDS: f64 = 0.05;
-/// A device slower than this part of the largest speed is calm.
-const CALM_PART: f64 = 0.5;
 
 /// What may change of one finger while the servo runs.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -210,44 +205,6 @@ impl Finger {
         self.appear(moment.dt, options.limits.ramp_seconds);
     }
 
-    /// What the clock and the device tell.
-    fn inspect(&mut self, moment: &Moment, max_speed: f64) -> Findings {
-        let Moment { now, gap, .. } = *moment;
-        // While there is no force, a gap endangers nobody.
-        if gap > SUSPENDED_SECONDS {
-            self.interrupted_at = now;
-        }
-        let is_suspended = self.standing.fault == Some(Fault::Suspended);
-        let was_pushing = is_suspended || self.standing.state.may_push();
-        let fault = match &self.reading {
-            _ if was_pushing && gap > SUSPENDED_SECONDS => Some(Fault::Suspended),
-            Reading::At(probe) | Reading::Passive(probe, _) => match fault_of(probe, max_speed) {
-                // What the line had stored has holes, which look like jumps.
-                Some(Fault::TooFast)
-                    if is_suspended || now - self.interrupted_at < HOLES_SECONDS =>
-                {
-                    Some(Fault::Suspended)
-                }
-                fault => fault,
-            },
-            Reading::Waiting(_) => None,
-            Reading::Fault(fault) => Some(*fault),
-        };
-        let probe = self.reading.probe();
-        Findings {
-            fault,
-            waiting: match self.reading {
-                Reading::Waiting(reason) | Reading::Passive(_, reason) => Some(reason),
-                _ => None,
-            },
-            blind: probe.is_none(),
-            button: probe.is_some_and(|p| p.buttons != 0),
-            calm: probe.is_none_or(|p| p.speed <= CALM_PART * max_speed),
-            ramped: self.safety.is_ramped(),
-            ..Findings::default()
-        }
-    }
-
     /// Moves the proxy after the probe, or sets it down anew where no sweep leads there.
     ///
     /// The proxy lives on the rest surface: it sees the probe where it would be, had the others not
@@ -334,107 +291,4 @@ impl Finger {
     fn has_motors(&self) -> bool {
         self.reading.probe().is_some_and(Probe::has_motors)
     }
-
-    /// State and safety, then the device.
-    pub fn send(&mut self, wanted: DVec3, limits: &Limits, own: &FingerSettings, dt: f64) {
-        let found = &self.found;
-        self.standing = transition(&self.standing, found, dt);
-        if self.standing.may_push(found) {
-            let limits = limits_with(limits, &self.reading);
-            match self.safety.limit(wanted, &limits, dt) {
-                Some(limited) => {
-                    self.shot.output_force = limited.force;
-                    self.shot.limited = limited.by;
-                }
-                None => self.standing = Standing::fault(Fault::Nan),
-            }
-        }
-        let may_push = self.standing.may_push(found);
-        if !may_push {
-            self.shot.output_force = self.safety.silence();
-        }
-        self.shot.state = self.standing.state;
-        self.shot.fault = self.standing.fault;
-        self.shot.reason = self.standing.reason;
-        self.coupler.sent(self.shot.output_force);
-        self.device
-            .write(self.shot.output_force, may_push, &own.frame);
-    }
-
-    /// What the tick came to, for others to read.
-    pub fn tell(&mut self, young_modulus: f64) -> &Told {
-        if let (Some(patches), Tip::Tool(tool)) = (&mut self.patches, &self.tips.tip) {
-            let tool = self.shot.touching.then_some(&**tool);
-            patches
-                .input_buffer_mut()
-                .show(self.shot.tick, tool, young_modulus);
-            patches.publish();
-        }
-        if let Some(fault) = self.shot.fault
-            && self.told.snapshot.fault != Some(fault)
-        {
-            self.told.faults[fault as usize] += 1;
-        }
-        self.told.snapshot = self.shot;
-        self.told.link = self.device.report();
-        &self.told
-    }
-
-    /// The tick in the recording.
-    pub fn sample(&self, finger: u32) -> Sample {
-        let shot = &self.shot;
-        Sample {
-            tick: shot.tick,
-            time: shot.time,
-            probe: shot.probe.to_array(),
-            proxy: shot.proxy.to_array(),
-            surface: shot.surface_point.unwrap_or(DVec3::NAN).to_array(),
-            force: shot.contact_force.to_array(),
-            output: shot.output_force.to_array(),
-            state: shot.state as u32,
-            finger,
-        }
-    }
-
-    /// Leaves the device limp and says so.
-    pub fn park(&mut self, fault: Option<Fault>) -> &Told {
-        self.device.park();
-        let shot = &mut self.told.snapshot;
-        shot.state = State::Stopped;
-        shot.output_force = DVec3::ZERO;
-        shot.reason = if fault.is_none() { reason::ASKED } else { "" };
-        shot.limited = "";
-        shot.fault = fault;
-        if let Some(fault) = fault {
-            self.told.faults[fault as usize] += 1;
-        }
-        self.told.link = self.device.report();
-        &self.told
-    }
-}
-
-fn fault_of(probe: &Probe, max_speed: f64) -> Option<Fault> {
-    let are_numbers = probe.position.is_finite()
-        && probe.orientation.is_finite()
-        && probe.speed.is_finite()
-        && probe.max_force >= 0.0
-        && max_speed.is_finite();
-    if !are_numbers {
-        Some(Fault::Nan)
-    } else if probe.speed > max_speed {
-        Some(Fault::TooFast)
-    } else {
-        None
-    }
-}
-
-/// The servo's limits and the device's own, whichever is less; what is no number stays none.
-fn limits_with(limits: &Limits, reading: &Reading) -> Limits {
-    let mut limits = *limits;
-    if let Some(probe) = reading.probe()
-        && probe.max_force < limits.max_force
-    {
-        limits.max_force = probe.max_force;
-    }
-    limits
 }

@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 
-use crate::surface::{BodyError, Corner, Face, Fan, HalfEdge};
+use crate::face::{Corner, Face, Fan, HalfEdge};
+use crate::surface::BodyError;
 
 /// All half-edges with the numbers of their nodes, the lower one first; those of one edge together.
 pub(crate) fn edges_by_nodes(triangles: &[[u32; 3]]) -> Vec<((u32, u32), HalfEdge)> {

@@ -7,7 +7,7 @@
 
 use glam::DVec3;
 
-use crate::surface::{Corner, Face, HalfEdge};
+use crate::face::{Corner, Face, HalfEdge};
 
 /// cos 40 degrees: facets that differ by more meet in a crease.
 const CREASE: f64 = 0.766_044_443_118_978;

@@ -20,7 +20,8 @@ mod walk;
 use glam::DVec3;
 
 use crate::closest::{closest_point, coincident_face};
-use crate::surface::{Body, HalfEdge};
+use crate::face::HalfEdge;
+use crate::surface::Body;
 use crate::tree::{Feature, Sweep};
 use contact_point::{ContactPoint, Judged};
 pub use feel::Feel;

@@ -5,7 +5,8 @@
 
 use glam::DVec3;
 
-use crate::surface::{Body, Face, orientation};
+use crate::face::{Face, orientation};
+use crate::surface::Body;
 
 const LEAF_TRIANGLES: usize = 4;
 /// Halving splits keep the depth below 32 for any count that fits in `u32`.

@@ -12,7 +12,8 @@ use super::descent::descend;
 use super::shading::normal_at;
 use super::{Feel, Hold};
 use crate::contact::contact_stiffness;
-use crate::surface::{Body, HalfEdge};
+use crate::face::HalfEdge;
+use crate::surface::Body;
 
 /// Rounds of slipping in one tick.
 const MAX_ROUNDS: u32 = 8;

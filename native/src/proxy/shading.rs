@@ -9,7 +9,8 @@
 use glam::DVec3;
 
 use super::Hold;
-use crate::surface::{Body, HalfEdge};
+use crate::face::HalfEdge;
+use crate::surface::Body;
 
 /// Triangles tried at most.
 const MAX_TRIANGLES: u32 = 48;

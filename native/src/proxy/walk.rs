@@ -3,7 +3,8 @@
 use glam::DVec3;
 
 use super::{BORDER, Hold, Place, Proxy, snap};
-use crate::surface::{Body, HalfEdge};
+use crate::face::HalfEdge;
+use crate::surface::Body;
 use crate::tree::Feature;
 
 /// Features visited in one tick at most; a tick that ends here goes on in the next one.
