@@ -38,7 +38,6 @@ GRADED_NODES = 0.23
 # Nine of ten runs had between 0.7 and 1.3 times the nodes so predicted; without the bending, which
 # is nil for boxes and large for limbs, between half and twice of them.
 NODE_SPREAD = 1.5
-NODE_SPREAD_WITHOUT_BENDING = 2.0
 
 # Edges sharper than this are edges of the shape, which need no finer triangles.
 SHARP_EDGE = np.radians(60.0)

@@ -7,7 +7,6 @@ the ways to press, and the history.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
@@ -131,25 +130,6 @@ def follow_tool(touch: ToolTouch, pose: Pose, *, outside: Load | None = None) ->
     """One tick: the tool goes towards a pose by at most one stride, and feels the body there."""
     between, _ = stride(touch.tool, touch.pose, pose)
     return _settled(touch, between, outside)
-
-
-def press_along(
-    body: SoftBody,
-    tool: Tool,
-    poses: Iterable[Pose],
-    *,
-    young_modulus: float | None = None,
-    friction: float = 0.0,
-    outside: Load | None = None,
-) -> list[ToolTouch]:
-    """Follow a path, one tick a pose, from where the first one sets the tool down."""
-    touches: list[ToolTouch] = []
-    for pose in poses:
-        last = touches[-1:] or [
-            set_down(body, tool, pose, young_modulus=young_modulus, friction=friction)
-        ]
-        touches.append(follow_tool(last[0], pose, outside=outside))
-    return touches
 
 
 def continued(

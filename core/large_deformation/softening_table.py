@@ -91,11 +91,6 @@ class SofteningTable:
             self._listeners.append(listener)
             listener(known, self._values[known])
 
-    def unlisten(self, listener: Listener) -> None:
-        """Do not tell this one any longer."""
-        with self._lock:
-            self._listeners.remove(listener)
-
     def around(self, nodes: ArrayLike) -> None:
         """Ask for ``nodes`` (k,) of the mesh, then for their neighbourhood; returns at once.
 

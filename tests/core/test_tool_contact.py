@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation
 from palpate.core.errors import PalpateError
 from palpate.core.several_tools import energy_of, press_tools
 from palpate.core.tilt import hold
-from palpate.core.tool_contact import follow_tool, press_along, press_tool, set_down
+from palpate.core.tool_contact import follow_tool, press_tool, set_down
 from palpate.core.tool_touch import Load
 from palpate.core.tools import Pose, convex, plate, rod, sphere
 
@@ -163,7 +163,10 @@ def test_the_force_follows_the_modulus(pressed):
 def test_a_tool_set_down_inside_feels_nothing_until_it_was_outside(cube):
     tool = sphere(0.014)
     heights = np.concatenate([np.linspace(0.03, 0.08, 30), np.linspace(0.08, 0.062, 15)])
-    touches = press_along(cube, tool, [Pose.at([0.025, 0.025, height]) for height in heights])
+    poses = [Pose.at([0.025, 0.025, height]) for height in heights]
+    touches = [set_down(cube, tool, poses[0])]
+    for pose in poses[1:]:
+        touches.append(follow_tool(touches[-1], pose))
     assert not any(touch.touching for touch in touches[:30])
     assert not touches[0].free
     assert touches[29].free
