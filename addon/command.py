@@ -117,8 +117,8 @@ def press(arguments: argparse.Namespace) -> dict[str, object]:
     pressed = press_several(
         thing, bpy.context.scene, arguments.at, arguments.by, keep=arguments.keep
     )
-    if pressed.remark:
-        print(f"palpate: warning: {pressed.remark}", file=sys.stderr)
+    for remark in pressed.remarks:
+        print(f"palpate: warning: {remark}", file=sys.stderr)
     if arguments.keep:
         _save(arguments.file)
     fingers = [_figures(finger) for finger in pressed.fingers]

@@ -133,7 +133,7 @@ WORDS = {
     "A usual soft material, as a start": "Ein übliches weiches Material als Anfang",
     "Plush toy": "Plüschtier",
     "Jelly": "Gelee",
-    "Soft cube of the paper": "Weicher Würfel des Aufsatzes",
+    "Paper's soft cube": "Weicher Würfel des Aufsatzes",
     "Upholstery foam": "Polsterschaum",
     "Soft silicone (Shore 00-30)": "Weiches Silikon (Shore 00-30)",
     "Firm silicone (Shore A 20)": "Festes Silikon (Shore A 20)",

@@ -123,7 +123,7 @@ WORDS = {
     "A usual soft material, as a start": "出発点となる一般的な柔らかい材質",
     "Plush toy": "ぬいぐるみ",
     "Jelly": "ゼリー",
-    "Soft cube of the paper": "論文の柔らかい立方体",
+    "Paper's soft cube": "論文の柔らかい立方体",
     "Upholstery foam": "ウレタンフォーム",
     "Soft silicone (Shore 00-30)": "軟質シリコーン (Shore 00-30)",
     "Firm silicone (Shore A 20)": "硬質シリコーン (Shore A 20)",

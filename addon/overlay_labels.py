@@ -14,6 +14,8 @@ from .pressure_colors import ANCHORS
 SIZE, PADDING, ASIDE = 13, 5, 8
 # The legend: how far from the right, its bar, and the space between bar and figures.
 MARGIN, BAR_WIDTH, BAR_HEIGHT, GAP = 24, 14, 130, 6
+# What Blender's own buttons for the view take at the top, headers included.
+NAVIGATION = 300
 
 
 @dataclass(frozen=True)
@@ -54,7 +56,9 @@ def _overlap(
 
 
 def draw_legend(context: bpy.types.Context, top: float) -> None:
-    """The colours of pressure from 0 to ``top`` (Pa), at the right of the view, half way up."""
+    """The colours of pressure from 0 to ``top`` (Pa), at the right of the view, half way up or
+    lower where Blender's buttons are.
+    """
     scale = context.preferences.system.ui_scale
     size, bar, height = SIZE * scale, BAR_WIDTH * scale, BAR_HEIGHT * scale
     title = bpy.app.translations.pgettext_iface("Pressure")
@@ -64,8 +68,12 @@ def draw_legend(context: bpy.types.Context, top: float) -> None:
         bar + GAP * scale + max(pixels.width_of(figure, size) for figure in figures),
     )
     right = context.region.width - pixels.covered(context, "UI", "RIGHT") - MARGIN * scale
-    left, bottom = right - across, 0.5 * (context.region.height - height)
     around = 10 * scale
+    free = context.region.height - NAVIGATION * scale - height - 2.5 * size - around
+    left, bottom = (
+        right - across,
+        max(around + size, min(0.5 * (context.region.height - height), free)),
+    )
     pixels.rectangle(
         left - around,
         bottom - around - 0.5 * size,

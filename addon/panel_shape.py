@@ -7,7 +7,7 @@ from ..core.large_deformation.softening_table import whole_table_seconds
 from ..operators import press_session
 from ..operators.drawn_shape import chosen_shape
 from ..operators.press_session import PressSession
-from ..operators.quantities import duration, memory
+from ..operators.quantities import duration, memory, waiting
 from .panel_base import PalpatePanel, draw_rows, interface, named_properties
 from .sentence import say
 from .shape_properties import FELT_ITEMS, SHAPE_ITEMS
@@ -67,7 +67,7 @@ def _draw_cost(
     box = layout.box().column(align=True)
     rows = [("A Frame, About", f"{1000 * cost.frame_seconds:.2g} ms")]
     if cost.first_seconds >= 0.1:
-        rows.append(("First Touch, About", f"{cost.first_seconds:.1f} s"))
+        rows.append(("First Touch, About", waiting(cost.first_seconds)))
     if cost.table_seconds:
         rows.append(("Whole Table, About", duration(cost.table_seconds)))
     rows.append(("Memory, About", memory(cost.memory_bytes)))
@@ -88,7 +88,7 @@ def _draw_felt(
     elif baked.free_surface_count:
         box = layout.box().column(align=True)
         size = (baked.node_count, baked.tet_count, baked.free_surface_count)
-        draw_rows(box, [("Whole Surface, About", duration(whole_table_seconds(*size)))])
+        draw_rows(box, [("Whole Surface, About", waiting(whole_table_seconds(*size)))])
         say(box, context, "Found around the touched place first, and kept", "INFO")
     if press is not None and press.loop is not None and press.loop.felt.problem:
         say(layout, context, press.loop.felt.problem, "ERROR")

@@ -80,6 +80,7 @@ class PALPATE_PT_stiff_region(PalpatePanel, bpy.types.Panel):
 class PALPATE_PT_touch(PalpatePanel, bpy.types.Panel):
     bl_label = "Touch"
     bl_parent_id = "PALPATE_PT_material"
+    bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = named_properties(self)
@@ -207,8 +208,8 @@ classes = (
     PALPATE_PT_touch,
     PALPATE_PT_stiff_region,
     PALPATE_PT_pins,
-    panel_shape.PALPATE_PT_shape,
     panel_finger.PALPATE_PT_finger,
+    panel_shape.PALPATE_PT_shape,
     PALPATE_PT_press,
     panel_finger.PALPATE_PT_second_finger,
     *panel_loop.classes,

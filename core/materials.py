@@ -73,7 +73,7 @@ MATERIALS = {
         source=f"a little softer than gelatine of 3 % ({NGUYEN}: 6.0 kPa)",
     ),
     "PAPER_CUBE": Material(
-        "Soft cube of the paper",
+        "Paper's soft cube",
         10_000.0,
         0.49,
         source="Poisson's ratio of Hirota and Kaneko 1999; modulus an order of magnitude",

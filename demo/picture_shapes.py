@@ -1,14 +1,17 @@
-"""All shapes side by side: an ear of large.blend, pulled aside as far in each of them.
+"""All shapes side by side: an ear of large.blend, its tip taken to the same place in each of them.
 
 Run as BLENDER_PYTHON picture_shapes.py --package ZIP --output shapes.png, where BLENDER_PYTHON has
-the bpy module. The same place goes the same way in every picture; Newton's table takes a minute or
-two for it. Prints what each shape does to the volume of the body.
+the bpy module. The last picture is the truth, Newton's equilibrium with the touched place where it
+is in the others, and its outline is drawn over all of them. The paper's table takes a minute or two
+for the touched place, the truth about one. Prints for each shape the volume of the body and how far
+the drawn vertices are from the true ones.
 """
 
 import argparse
 import shutil
 import sys
 import tempfile
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -18,9 +21,20 @@ sys.path[:0] = [str(HERE), str(SCENES)]
 
 # World axes, metres: from below the tip of the left ear to the side and down, where an ear comes to
 # that is bent without being stretched.
-BELOW, BY = 0.008, (0.006, 0.064, -0.043)
+BELOW, BY = 0.008, (0.004, 0.050, -0.022)
 SHAPES = ("LINEAR", "TABLE", "SERIES", "ROTATION_STRAIN")
-PERCENT, SAMPLES = 50, 8
+TRUTH = "Newton's Method"
+SAMPLES, WIDTH, HEIGHT = 12, 400, 500
+OUTLINE = (1.0, 1.0, 1.0, 1.0)
+
+
+@dataclass(frozen=True)
+class Pressed:
+    """One picture: what it is called, the vertices (p, 3) in local units and their volume ratio."""
+
+    title: str
+    vertices: Any
+    volume: float
 
 
 def main() -> int:
@@ -30,74 +44,227 @@ def main() -> int:
         import installed
 
         installed.install(options.package.resolve(), Path(folder) / "blender")
+        hare = opened(Path(folder))
+        cases = [pressed(hare, name) for name in options.shapes]
+        truth = true_one(hare)
+        outline = silhouette(hare, truth)
         pictures = []
-        for name in options.shapes:
-            title, volume = pressed(name, Path(folder), Path(folder) / f"{name}.png")
-            print(f"{title}: volume {volume:.3f} of that at rest", flush=True)
-            pictures.append((title, volume, Path(folder) / f"{name}.png"))
-        join(pictures, options.output)
+        for case in (*cases, truth):
+            off = distance(case, truth) / distance(truth, None, hare)
+            print(f"{case.title}: volume {case.volume:.3f}, {100 * off:.1f} % off the true shape")
+            pictures.append(Path(folder) / f"{len(pictures)}.png")
+            render(hare, case, off, pictures[-1])
+        join(pictures, outline, options.output)
     return 0
 
 
-def pressed(name: str, folder: Path, picture: Path) -> tuple[str, float]:
-    """Render the hare with its ear pulled aside in one shape: its title and volume ratio."""
+def opened(folder: Path) -> Any:
+    """The hare of a copy of large.blend, before a camera that has room for a bent ear."""
     import bpy
-    import hare_shape
-    import numpy as np
-    from photographing import photograph
 
     copy = folder / "large.blend"
-    if not copy.exists():
-        shutil.copyfile(SCENES / copy.name, copy)
+    shutil.copyfile(SCENES / copy.name, copy)
     bpy.ops.wm.open_mainfile(filepath=str(copy))
-    scene, hare = bpy.context.scene, bpy.data.objects["Hare"]
+    hare = bpy.data.objects["Hare"]
     bpy.context.view_layer.objects.active = hare
-    hare.palpate.shape = name
-    at = hare_shape.ear_tip(1.0) - np.array([0.0, 0.0, BELOW])
-    if bpy.ops.palpate.press("EXEC_DEFAULT", at=at.tolist(), by=BY) != {"FINISHED"}:
-        raise RuntimeError(f"{name}: the press did not finish")
-    turn_to_face(scene)
-    scene.cycles.samples = SAMPLES
-    photograph(picture, PERCENT)
-    title: str = hare.palpate.bl_rna.properties["shape"].enum_items[name].name
-    return title, volume(hare, hare.data.shape_keys.key_blocks[-1]) / volume(hare, None)
+    turn_to_face(bpy.context.scene)
+    return hare
 
 
 def turn_to_face(scene: Any) -> None:
-    """The camera before the hare, wide enough for a bent ear."""
+    """The camera before the hare's head and ears."""
     from mathutils import Vector
 
     camera = scene.camera
-    camera.location, aim = (0.66, -0.06, 0.20), Vector((0.0, 0.018, 0.098))
+    camera.location, aim = (0.66, -0.02, 0.20), Vector((0.0, 0.033, 0.125))
     camera.rotation_euler = (aim - camera.location).to_track_quat("-Z", "Y").to_euler()
-    camera.data.lens = 88.0
+    camera.data.lens, camera.data.sensor_fit = 78.0, "VERTICAL"
     scene.objects["Table"].rotation_euler.z = 1.5707963 - 0.1
-    scene.render.resolution_x, scene.render.resolution_y = 800, 960
+    scene.render.resolution_x, scene.render.resolution_y = WIDTH, HEIGHT
+    scene.cycles.samples = SAMPLES
 
 
-def volume(thing: Any, key: Any) -> float:
-    """What the drawn mesh encloses, in a shape key or at rest, cubic units."""
+def pressed_place() -> Any:
+    """Where the finger is, world coordinates."""
+    import hare_shape
     import numpy as np
 
-    places = np.empty(3 * len(thing.data.vertices), dtype=np.float32)
-    (key or thing.data.shape_keys.reference_key).points.foreach_get("co", places)
+    return hare_shape.ear_tip(1.0) - np.array([0.0, 0.0, BELOW])
+
+
+def pressed(hare: Any, name: str) -> Pressed:
+    """The ear pulled aside in one of the shapes of the panel."""
+    import bpy
+
+    hare.palpate.shape = name
+    at = pressed_place().tolist()
+    if bpy.ops.palpate.press("EXEC_DEFAULT", at=at, by=BY) != {"FINISHED"}:
+        raise RuntimeError(f"{name}: the press did not finish")
+    title: str = hare.palpate.bl_rna.properties["shape"].enum_items[name].name
+    return taken(hare, title)
+
+
+def true_one(hare: Any) -> Pressed:
+    """The same by Newton's method, which no panel offers: it takes a second or more for a frame."""
+    import bpy
+    from installed import palpate
+
+    class Newton:
+        """The Shape protocol's part that is used to meet a finger."""
+
+        def __init__(self, body: Any) -> None:
+            self.solid, self.last = (
+                palpate("core.large_deformation.free_solid").FreeSolid.of(body),
+                None,
+            )
+
+        def displacements(self, nodes: Any, nodal_forces: Any, young_modulus: float) -> Any:
+            forces = self.solid.on_free_nodes(nodes, nodal_forces / young_modulus)
+            newton = palpate("core.large_deformation.newton")
+            try:
+                found = newton.equilibrium(self.solid, forces, start=self.last)
+            except newton.NoEquilibrium:
+                found = newton.equilibrium(self.solid, forces)
+            self.last = found.displacements
+            return found.displacements[self.solid.surface]
+
+    meeting = palpate("core.large_deformation.meeting")
+    drawn = palpate("operators.drawn_body").open_body(hare, bpy.context.scene)
+    touch = drawn.body.touch_nearest(at=pressed_place(), by=BY)
+    load = meeting.FingerLoad(touch.triangle, touch.nodal_forces)
+    met = meeting.Meeting(drawn.body, Newton(drawn.body)).settle([load], drawn.body.young_modulus)
+    if not met.settled:
+        raise RuntimeError(f"Newton's method misses the finger by {100 * met.missed:.0f} %")
+    palpate("operators.press_once").keep_shape(hare, drawn, met.displacements)
+    return taken(hare, TRUTH)
+
+
+def taken(hare: Any, title: str) -> Pressed:
+    """The newest shape key, taken off again."""
+    key = hare.data.shape_keys.key_blocks[-1]
+    vertices, rest = places(key), places(hare.data.shape_keys.reference_key)
+    hare.shape_key_remove(key)
+    return Pressed(title, vertices, volume(hare, vertices) / volume(hare, rest))
+
+
+def places(key: Any) -> Any:
+    """Vertices (p, 3) of a shape key, local units."""
+    import numpy as np
+
+    flat = np.empty(3 * len(key.points), dtype=np.float32)
+    key.points.foreach_get("co", flat)
+    return flat.astype(np.float64).reshape(-1, 3)
+
+
+def triangles(thing: Any) -> Any:
+    """The drawn mesh in triangles (t, 3)."""
+    import numpy as np
+
     thing.data.calc_loop_triangles()
-    triangles = np.empty(3 * len(thing.data.loop_triangles), dtype=np.int32)
-    thing.data.loop_triangles.foreach_get("vertices", triangles)
-    a, b, c = places.astype(np.float64).reshape(-1, 3)[triangles.reshape(-1, 3)].transpose(1, 0, 2)
+    corners = np.empty(3 * len(thing.data.loop_triangles), dtype=np.int32)
+    thing.data.loop_triangles.foreach_get("vertices", corners)
+    return corners.reshape(-1, 3)
+
+
+def volume(thing: Any, vertices: Any) -> float:
+    """What the drawn mesh encloses with vertices (p, 3), cubic units."""
+    import numpy as np
+
+    a, b, c = vertices[triangles(thing)].transpose(1, 0, 2)
     return float(np.einsum("ij,ij->", a, np.cross(b, c))) / 6.0
 
 
-def join(pictures: list[tuple[str, float, Path]], output: Path) -> None:
-    """Put the pictures beside each other, named, into one file."""
+def distance(case: Pressed, other: Pressed | None, hare: Any = None) -> float:
+    """Between two shapes, or from rest: the root of the squares' sum over all vertices."""
+    import numpy as np
+
+    origin = places(hare.data.shape_keys.reference_key) if other is None else other.vertices
+    return float(np.linalg.norm(case.vertices - origin))
+
+
+def silhouette(hare: Any, case: Pressed) -> Any:
+    """Share (height, width) of each pixel, from below, that the outline of a shape covers."""
+    import bpy
+    import numpy as np
+    from bpy_extras.object_utils import world_to_camera_view
+    from mathutils import Vector
+
+    fine = 3
+    scene, size = bpy.context.scene, np.array([WIDTH, HEIGHT]) * fine
+    seen = [
+        world_to_camera_view(scene, scene.camera, hare.matrix_world @ Vector(place))[:2]
+        for place in case.vertices.tolist()
+    ]
+    points = np.array(seen) * size
+    covered = np.zeros(size[::-1], dtype=bool)
+    for corners in points[triangles(hare)]:
+        low = np.clip(np.floor(corners.min(axis=0)), 0, size - 1).astype(int)
+        high = np.clip(np.ceil(corners.max(axis=0)) + 1, 0, size).astype(int)
+        x, y = np.meshgrid(np.arange(low[0], high[0]) + 0.5, np.arange(low[1], high[1]) + 0.5)
+        sides = [
+            (b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0])
+            for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True)
+        ]
+        inside = np.all(np.array(sides) >= 0, axis=0) | np.all(np.array(sides) <= 0, axis=0)
+        covered[low[1] : high[1], low[0] : high[0]] |= inside
+    grown = np.pad(covered, fine, mode="edge")
+    for axis in (0, 1):
+        for _ in range(fine):
+            grown |= np.roll(grown, 1, axis) | np.roll(grown, -1, axis)
+    line = grown[fine:-fine, fine:-fine] & ~covered
+    return line.reshape(HEIGHT, fine, WIDTH, fine).mean(axis=(1, 3))
+
+
+def render(hare: Any, case: Pressed, off: float, picture: Path) -> None:
+    """A picture of one shape, named."""
+    from photographing import photograph
+
+    shown = hare.shape_key_add(name="Shown", from_mix=False)
+    shown.points.foreach_set("co", case.vertices.ravel())
+    shown.value = 1.0
+    second = "the truth" if case.title == TRUTH else f"{100 * off:.0f} % off"
+    words = [
+        written(case.title, 0.0400, 0.0058),
+        written(f"volume {100 * (case.volume - 1):+.0f} %, {second}", 0.0350, 0.0042),
+    ]
+    photograph(picture)
+    hare.shape_key_remove(shown)
+    import bpy
+
+    for word in words:
+        bpy.data.objects.remove(word)
+
+
+def written(text: str, height: float, size: float) -> Any:
+    """A line of text in front of the camera, so far above the middle of its picture."""
+    import bpy
+
+    scene, curve = bpy.context.scene, bpy.data.curves.new("Text", "FONT")
+    curve.body, curve.size, curve.align_x = text, size, "CENTER"
+    white = bpy.data.materials.new("White")
+    shader = white.node_tree.nodes["Principled BSDF"].inputs
+    shader["Base Color"].default_value = (0.0, 0.0, 0.0, 1.0)
+    shader["Emission Color"].default_value, shader["Emission Strength"].default_value = OUTLINE, 1.0
+    curve.materials.append(white)
+    word = bpy.data.objects.new("Text", curve)
+    word.parent, word.location = scene.camera, (0.0, height, -0.3)
+    word.visible_shadow = word.visible_diffuse = word.visible_glossy = False
+    scene.collection.objects.link(word)
+    return word
+
+
+def join(pictures: list[Path], outline: Any, output: Path) -> None:
+    """Put the pictures beside each other, an outline over each, into one file."""
     import bpy
     import numpy as np
 
     loaded = []
-    for _, _, path in pictures:
+    for path in pictures:
         image = bpy.data.images.load(str(path))
         width, height = image.size
-        loaded.append(np.array(image.pixels[:]).reshape(height, width, 4))
+        pixels = np.array(image.pixels[:]).reshape(height, width, 4)
+        share = 0.85 * outline[..., None]
+        loaded.append((1.0 - share) * pixels + share * np.array(OUTLINE))
     whole = np.concatenate(loaded, axis=1)
     height, width = whole.shape[:2]
     joined = bpy.data.images.new("Shapes", width, height)

@@ -6,11 +6,10 @@ Until it is made, and where it cannot be, the linear one is drawn.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from functools import partial
 from pathlib import Path
 
 import bpy
@@ -57,6 +56,11 @@ class DrawnShape:
     def ready(self) -> float:
         """Share (0 to 1) of what the touched place needs that is there."""
         return 0.0 if self._making is not None else self._shape.ready
+
+    @property
+    def notice(self) -> str:
+        """Which file of a table could not be used, and why; empty otherwise."""
+        return self._shape.notice
 
     def follow(self, name: ShapeName) -> None:
         """Draw this one from now on, as soon as it can be. Waits for nothing."""
@@ -127,13 +131,32 @@ class DrawnShape:
             self._behind.submit(_close, self._shape)
 
 
-@contextmanager
-def complete_shape(
-    thing: bpy.types.Object, drawn: DrawnBody
-) -> Iterator[Callable[[Sequence[FingerLoad], float], Met]]:
-    """What the object's panel asks for, as a function of the fingers' loads and Young's modulus.
+@dataclass(frozen=True, eq=False)
+class CompleteShape:
+    """A shape that waits until all is there that the fingers' loads need."""
 
-    It waits until all is there that these loads need.
+    body: SoftBody
+    shape: Shape
+
+    def under(self, fingers: Sequence[FingerLoad], young_modulus: float) -> Met:
+        """The body under these fingers.
+
+        Raises
+        ------
+        PalpateError
+            It cannot be computed.
+        """
+        return settled(self.body, self.shape, fingers, young_modulus)
+
+    @property
+    def notice(self) -> str:
+        """Which file of a table could not be used or, once closed, written; empty otherwise."""
+        return self.shape.notice
+
+
+@contextmanager
+def complete_shape(thing: bpy.types.Object, drawn: DrawnBody) -> Iterator[CompleteShape]:
+    """What the object's panel asks for; closed in the end.
 
     Raises
     ------
@@ -142,7 +165,7 @@ def complete_shape(
     """
     made = shape(drawn.body, chosen_shape(thing), drawn.file)
     try:
-        yield partial(settled, drawn.body, made)
+        yield CompleteShape(drawn.body, made)
     finally:
         made.close()
 
@@ -157,11 +180,11 @@ def loads_of(body: SoftBody, snapshot: Snapshot) -> list[FingerLoad]:
 
 
 def _close(made: Shape) -> None:
-    try:
-        made.close()
-    except PalpateError as problem:
+    told = made.notice
+    made.close()
+    if made.notice != told:
         # Nobody presses any more who could be told; the table is computed again next time.
-        print(f"palpate: {problem}")  # noqa: T201
+        print(f"palpate: {made.notice}")  # noqa: T201
 
 
 def _close_made(making: Future[Shape]) -> None:

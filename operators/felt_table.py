@@ -52,6 +52,11 @@ class FeltTable:
         """Share (0 to 1) of what the touched place needs that is known; 1 if it needs nothing."""
         return 1.0 if self._table is None else self._table.ready
 
+    @property
+    def notice(self) -> str:
+        """Which file of softenings could not be used, and why; empty otherwise."""
+        return "" if self._table is None else self._table.notice
+
     def follow(self, felt: FeltName, nodes: NDArray[np.int64]) -> None:
         """Find what the force that is felt needs of touched ``nodes`` (k,); waits for nothing."""
         if felt == "linear" or self.problem:

@@ -67,8 +67,8 @@ class PALPATE_OT_press(ModalPress, bpy.types.Operator):
 
 def report(operator: bpy.types.Operator, pressed: Pressed) -> None:
     """Say what a press without a window measured."""
-    if pressed.remark:
-        operator.report({"WARNING"}, pressed.remark)
+    for remark in pressed.remarks:
+        operator.report({"WARNING"}, remark)
     figures = [
         f"{sum(part**2 for part in finger.force) ** 0.5:.3g} N at {1000 * finger.depth:.3g} mm"
         for finger in pressed.fingers

@@ -19,7 +19,7 @@ from ..core.tools import Pose
 from . import modal_press, several_fingers, tool_turn
 from .body_frame import BodyFrame
 from .drawn_body import DrawnBody, open_body
-from .drawn_shape import complete_shape
+from .drawn_shape import CompleteShape, complete_shape
 from .finger_tip import chosen_tip
 from .press_once import keep_shape
 from .several_fingers import FingerForce, ToolPress
@@ -77,11 +77,13 @@ class PALPATE_OT_press_frames(bpy.types.Operator):
         try:
             frames = self._frames(scene)
             drawn = open_body(thing, scene)
-            with _frame_kept(scene):
-                pressed = list(press_frames(thing, scene, drawn, frames))
+            with _frame_kept(scene), complete_shape(thing, drawn) as shape:
+                pressed = list(press_frames(thing, scene, drawn, frames, shape))
         except PalpateError as problem:
             self.report({"ERROR"}, str(problem))
             return {"CANCELLED"}
+        if shape.notice:
+            self.report({"WARNING"}, shape.notice)
         touched = [frame for frame in pressed if frame.displacements is not None]
         if not touched:
             self.report(
@@ -122,7 +124,11 @@ class PALPATE_OT_press_frames(bpy.types.Operator):
 
 
 def press_frames(
-    thing: bpy.types.Object, scene: bpy.types.Scene, drawn: DrawnBody, frames: list[int]
+    thing: bpy.types.Object,
+    scene: bpy.types.Scene,
+    drawn: DrawnBody,
+    frames: list[int],
+    shape: CompleteShape,
 ) -> Iterator[PressedFrame]:
     """Lead the scene's tools through these frames, one result each.
 
@@ -140,17 +146,16 @@ def press_frames(
     guides = leading_objects(scene)
     modulus, friction = thing.palpate.young_modulus, thing.palpate.static_friction
     press: ToolPress | None = None
-    with complete_shape(thing, drawn) as shape:
-        for frame in frames:
-            scene.frame_set(frame)
-            poses = [_pose(guide, scene, drawn.frame) for guide in guides]
-            if press is None:
-                press = ToolPress(drawn.body, tip.tool, modulus, friction, (None,) * len(poses))
-            press = press.to(poses)
-            touching = any(np.any(finger.nodal_forces) for finger in press.fingers)
-            loads = several_fingers.loads_of(press.fingers)
-            moved = shape(loads, modulus).displacements if touching else None
-            yield PressedFrame(frame, press.fingers, moved)
+    for frame in frames:
+        scene.frame_set(frame)
+        poses = [_pose(guide, scene, drawn.frame) for guide in guides]
+        if press is None:
+            press = ToolPress(drawn.body, tip.tool, modulus, friction, (None,) * len(poses))
+        press = press.to(poses)
+        touching = any(np.any(finger.nodal_forces) for finger in press.fingers)
+        loads = several_fingers.loads_of(press.fingers)
+        moved = shape.under(loads, modulus).displacements if touching else None
+        yield PressedFrame(frame, press.fingers, moved)
 
 
 def leading_objects(scene: bpy.types.Scene) -> tuple[bpy.types.Object, ...]:

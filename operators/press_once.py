@@ -38,12 +38,14 @@ class PressedFinger:
 
 @dataclass(frozen=True, eq=False)
 class Pressed:
-    """What one press did; vectors in world axes, SI units. ``remark`` tells of a changed tool."""
+    """What one press did; vectors in world axes, SI units. ``remarks`` tell of a changed tool and
+    of files that could not be used or written.
+    """
 
     fingers: tuple[PressedFinger, ...]
     largest_displacement: float
     shape_key: str
-    remark: str = ""
+    remarks: tuple[str, ...] = ()
 
     @property
     def touch(self) -> Touch | None:
@@ -111,7 +113,7 @@ def press_several(
     else:
         made = _press_tools(drawn, thing, scene, tip.tool, places, inward)
     with complete_shape(thing, drawn) as shape:
-        displacements = shape(several_fingers.loads_of(made), young_modulus).displacements
+        displacements = shape.under(several_fingers.loads_of(made), young_modulus).displacements
     return Pressed(
         fingers=tuple(
             PressedFinger(one, world_vector(drawn, one.force), float(np.linalg.norm(way)))
@@ -119,7 +121,7 @@ def press_several(
         ),
         largest_displacement=float(np.linalg.norm(displacements, axis=1).max()),
         shape_key=keep_shape(thing, drawn, displacements, pressing_tools(made)) if keep else "",
-        remark=tip.remark,
+        remarks=tuple(filter(None, (tip.remark, shape.notice))),
     )
 
 

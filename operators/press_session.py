@@ -98,7 +98,8 @@ class PressSession:
     _drawn_contact: tuple[object, ...] = ()
     _loads: tuple[FingerLoad, ...] = ()
     _modulus: float = 1.0
-    _warned: str = ""
+    _troubles: list[str] = field(default_factory=list)
+    _told: frozenset[str] = frozenset()
 
     def post(self, event: Event) -> None:
         """Let an event happen: the only way in which a press changes its state."""
@@ -132,8 +133,7 @@ class PressSession:
         moved = self.snapshot is None or snapshot.tick != self.snapshot.tick
         self.snapshot = snapshot
         self._watch_faults(snapshot)
-        if loop.felt.problem:
-            self._warn(loop.felt.problem)
+        self._tell_troubles(loop)
         if self.state.phase is not Phase.LOST and not self.state.withdrawn:
             self._draw(thing, snapshot)
         return moved
@@ -285,7 +285,9 @@ class PressSession:
         for finger, lead in enumerate(self.leads):
             empty = lead.empty.find() if lead.empty is not None else None
             if lead.empty is not None and empty is None:
-                self._warn(f"{lead.empty.name} was deleted; its finger stays where it was")
+                self._troubles.append(
+                    f"{lead.empty.name} was deleted; its finger stays where it was"
+                )
             place = None if empty is None else self._place_of(empty)
             loop.lead(finger, place, self._turn_of(lead, empty))
 
@@ -299,7 +301,7 @@ class PressSession:
         try:
             return tool_turn.as_rows(tool_turn.as_object(leader, scene, self.drawn.frame))
         except PalpateError as problem:
-            self._warn(str(problem))
+            self._troubles.append(str(problem))
             return None
 
     def _stop_loop(self) -> None:
@@ -340,16 +342,18 @@ class PressSession:
         if before is not None:
             try:
                 frame = device_source.device_frame(scene, self.drawn.frame, self.home)
-                self._warned = ""
             except PalpateError as problem:
-                self._warn(str(problem))
+                self._troubles.append(str(problem))
         return LiveSettings.of(thing, scene, frame)
 
-    def _warn(self, text: str) -> None:
-        """Say something once, not in every frame."""
-        if text != self._warned:
-            self._warned = text
-            self.said.append(Say(text, warning=True))
+    def _tell_troubles(self, loop: ForceLoop) -> None:
+        """Say each trouble when it begins, not in every frame."""
+        shape, felt = self.shape, loop.felt
+        found = (*self._troubles, felt.problem, felt.notice, shape.problem, shape.notice)
+        # The same may be found for both fingers.
+        texts = [text for text in dict.fromkeys(found) if text]
+        self.said += [Say(text, warning=True) for text in texts if text not in self._told]
+        self._told, self._troubles = frozenset(texts), []
 
     def _watch_faults(self, snapshot: Snapshot) -> None:
         if snapshot.fault:
@@ -364,8 +368,6 @@ class PressSession:
 
     def _draw(self, thing: bpy.types.Object, snapshot: Snapshot) -> None:
         self.shape.follow(chosen_shape(thing))
-        if self.shape.problem:
-            self._warn(self.shape.problem)
         modulus = self._running.settings.young_modulus
         fingers = tuple(
             (finger.touching, finger.nodes.tobytes(), finger.nodal_forces.tobytes())

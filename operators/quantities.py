@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 MINUTE, HOUR = 60.0, 3600.0
+TENTHS_BELOW = 10.0
 
 
 def duration(seconds: float) -> str:
@@ -14,6 +15,11 @@ def duration(seconds: float) -> str:
         return f"{minutes} min {rest} s" if minutes < 10 and rest else f"{minutes} min"
     hours, minutes = divmod(round(seconds / MINUTE), 60)
     return f"{hours} h {minutes} min"
+
+
+def waiting(seconds: float) -> str:
+    """A time that is waited for: ``0.3 s``, then as :func:`duration`."""
+    return f"{seconds:.1f} s" if seconds < TENTHS_BELOW else duration(seconds)
 
 
 def memory(count: float) -> str:

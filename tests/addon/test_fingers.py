@@ -132,7 +132,7 @@ def test_a_mesh_presses_like_the_tool_it_is_shaped_as(chosen):
     chosen.tip, chosen.tip_object = "MESH", tool
     mesh = pressed(thing, [TOP], [DOWN])
     assert np.isclose(mesh.force[2], sphere.force[2], rtol=0.2)
-    assert "simplified" in mesh.remark
+    assert "simplified" in mesh.remarks[0]
     assert mesh_state(tool) == before
 
 
@@ -155,7 +155,7 @@ def test_a_hollow_mesh_presses_with_its_hull_and_says_so(chosen):
     tool = mesh_object([*corner, dent], [*faces, *top], name="Cup")
     select(thing)
     chosen.tip, chosen.tip_object = "MESH", tool
-    assert "not convex" in pressed(thing, [TOP], [DOWN]).remark
+    assert "not convex" in pressed(thing, [TOP], [DOWN]).remarks[0]
     hull = part("operators.hull").hull_of(tool, bpy.context.scene)
     assert sorted(map(tuple, np.round(hull.corners, 6).tolist())) == sorted(
         map(tuple, np.round(corner, 6).tolist())

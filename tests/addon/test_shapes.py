@@ -39,6 +39,8 @@ def shapes(palpate):
 class Narrower:
     """Nine tenths of the linear shape: nothing a body would do, but easy to tell."""
 
+    notice = ""
+
     def __init__(self, body, file):
         self.body, self.file, self.closed = body, file, threading.Event()
         self.ready = 1.0

@@ -1,0 +1,174 @@
+"""How presses with each shape end, and what the files of their tables are worth."""
+
+from __future__ import annotations
+
+import shutil
+import time
+from pathlib import Path
+
+import bpy
+import numpy as np
+import pytest
+from soft_scene import key_coordinates, key_names, mesh_state, part, press_down, soft_cube
+
+TOP, DEPTH = (0.002, 0.001, 0.02501), 0.004
+SHAPES = ("LINEAR", "TABLE", "SERIES", "ROTATION_STRAIN")
+
+
+@pytest.fixture
+def states(palpate):
+    return part("operators.press_state")
+
+
+@pytest.fixture
+def sessions(palpate):
+    module = part("operators.press_session")
+    yield module
+    module.give_way("")
+
+
+@pytest.fixture
+def series_table(palpate, monkeypatch):
+    """The table of a series, which only large bodies have by themselves."""
+    shape = part("core.large_deformation.series_shape").SeriesShape
+    makers = part("core.large_deformation.shapes").MAKERS
+    monkeypatch.setitem(makers, "series", lambda body, file: shape(body, file, whole_load=False))
+
+
+def begin_pressed(sessions, states, thing):
+    session = sessions.begin(thing, bpy.context.scene, states.Source.POINTER)
+    session.post(states.SetDown(TOP))
+    session.post(states.Move((TOP[0], TOP[1], TOP[2] - DEPTH)))
+    session.post(states.Release())
+    wait(session, lambda: session.displacements is not None)
+    return session
+
+
+def wait(session, condition, seconds=20.0):
+    end = time.monotonic() + seconds
+    while True:
+        session.tick()
+        if condition():
+            return
+        assert time.monotonic() < end, "waited in vain"
+        time.sleep(0.005)
+
+
+def table_file(thing, kind):
+    file = part("operators.body_store").locate(thing)
+    return part("core.large_deformation.table_file").table_path(Path(file), kind)
+
+
+@pytest.mark.parametrize("way", ["escape", "undo"])
+@pytest.mark.parametrize("name", SHAPES)
+def test_every_shape_leaves_the_mesh_as_it_was(sessions, states, name, way):
+    thing = soft_cube()
+    before = mesh_state(thing)
+    thing.palpate.shape = name
+    session = begin_pressed(sessions, states, thing)
+    # Newton's table is left while it is computed.
+    wait(session, lambda: name == "TABLE" or session.shape.ready == 1.0)
+    assert not session.shape.problem
+    assert mesh_state(thing) != before
+    if way == "escape":
+        session.post(states.Cancel())
+    else:
+        part("addon.handlers")._before_undo()
+    assert sessions.current() is None
+    assert mesh_state(thing) == before
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_enter_keeps_what_every_shape_drew(sessions, states, name, monkeypatch):
+    monkeypatch.setattr(part("operators.drawn_shape"), "PATIENCE", 0.2)
+    thing = soft_cube()
+    thing.palpate.shape = name
+    session = begin_pressed(sessions, states, thing)
+    wait(
+        session, lambda: name == "TABLE" or (session.shape.ready == 1.0 and session._drawn_contact)
+    )
+    drawn = key_coordinates(thing, "Palpate live")
+    session.post(states.Keep())
+    assert key_names(thing) == ["Basis", "Press 1"]
+    kept = key_coordinates(thing, "Press 1")
+    assert not np.array_equal(kept, key_coordinates(thing, "Basis"))
+    # Newton's table went on being solved between the last frame and Enter.
+    if name != "TABLE":
+        np.testing.assert_array_equal(kept, drawn)
+
+
+@pytest.mark.parametrize("trouble", ["missing", "damaged", "foreign", "no table"])
+def test_a_table_file_that_is_no_good_is_told_once_and_made_anew(
+    sessions, states, series_table, trouble
+):
+    thing = soft_cube()
+    thing.palpate.shape = "SERIES"
+    press_down(thing, depth=DEPTH)
+    first = key_coordinates(thing, "Press 1")
+    file = table_file(thing, "series")
+    good = file.read_bytes()
+    match trouble:
+        case "missing":
+            file.unlink()
+        case "damaged":
+            file.write_bytes(good[: len(good) // 2])
+        case "foreign":
+            arrays = part("core.npz_archive").read_arrays(file)
+            write = part("core.npz_archive").write_arrays
+            with file.open("wb") as out:
+                write(out, arrays | {"key": np.array("0" * 64)})
+        case "no table":
+            shutil.copyfile(part("operators.body_store").locate(thing), file)
+    thing.shape_key_clear()
+    session = begin_pressed(sessions, states, thing)
+    wait(session, lambda: session.shape.ready == 1.0)
+    for _ in range(5):
+        session.tick()
+    told = [said.text for said in session.said if said.warning]
+    assert len(told) == (0 if trouble == "missing" else 1)
+    assert all(str(file) in text and "computed anew" in text for text in told)
+    sessions.give_way("")
+    press_down(thing, depth=DEPTH)
+    np.testing.assert_allclose(key_coordinates(thing, "Press 1"), first, rtol=0, atol=1e-7)
+
+
+def test_a_table_that_cannot_be_used_is_a_warning_of_the_operator(
+    palpate, series_table, monkeypatch
+):
+    thing = soft_cube()
+    thing.palpate.shape = "SERIES"
+    file = table_file(thing, "series")
+    file.write_bytes(b"nothing")
+    once = part("operators.press_once").press_once
+    pressed = once(thing, bpy.context.scene, TOP, (0.0, 0.0, -DEPTH), keep=False)
+    assert len(pressed.remarks) == 1
+    assert str(file) in pressed.remarks[0]
+    # By now it is whole again.
+    pressed = once(thing, bpy.context.scene, TOP, (0.0, 0.0, -DEPTH), keep=False)
+    assert pressed.remarks == ()
+
+
+def test_a_file_of_softenings_that_is_damaged_is_told_once(sessions, states):
+    thing = soft_cube()
+    file = table_file(thing, "softening")
+    file.write_bytes(b"nothing")
+    thing.palpate.felt = "CORRECTED"
+    session = begin_pressed(sessions, states, thing)
+    wait(session, lambda: session.loop.felt.ready == 1.0)
+    for _ in range(5):
+        session.tick()
+    told = [said.text for said in session.said if said.warning]
+    assert len(told) == 1
+    assert str(file) in told[0]
+
+
+def test_two_troubles_are_told_once_each_not_in_turns(sessions, states, series_table):
+    thing = soft_cube()
+    for kind in ("series", "softening"):
+        table_file(thing, kind).write_bytes(b"nothing")
+    thing.palpate.shape, thing.palpate.felt = "SERIES", "CORRECTED"
+    session = begin_pressed(sessions, states, thing)
+    wait(session, lambda: session.shape.ready == session.loop.felt.ready == 1.0)
+    for _ in range(5):
+        session.tick()
+    assert len([said for said in session.said if said.warning]) == 2

@@ -1,0 +1,190 @@
+"""What the panel Large Deformation says, before and during a press."""
+
+from __future__ import annotations
+
+import threading
+import time
+from itertools import pairwise
+
+import bpy
+import pytest
+from recorded_layout import NARROW_WIDTH, USUAL_WIDTH, drawn
+from soft_scene import cube, part, soft_cube
+
+TOP = (0.002, 0.001, 0.02501)
+SHAPES = {
+    "LINEAR": "linear",
+    "TABLE": "table",
+    "SERIES": "series",
+    "ROTATION_STRAIN": "rotation-strain",
+}
+# Nodes, tetrahedra and free surface nodes of larger bodies.
+LARGE = (20_000, 103_000, 6_400)
+
+
+@pytest.fixture
+def panel(palpate):
+    return part("addon.panel_shape").PALPATE_PT_shape
+
+
+@pytest.fixture
+def press(palpate):
+    sessions, states = part("operators.press_session"), part("operators.press_state")
+
+    def begin(thing):
+        session = sessions.begin(thing, bpy.context.scene, states.Source.POINTER)
+        session.post(states.SetDown(TOP))
+        session.post(states.Move((TOP[0], TOP[1], TOP[2] - 0.004)))
+        session.post(states.Release())
+        wait(session, lambda: session.displacements is not None)
+        return session
+
+    yield begin
+    sessions.give_way("")
+
+
+def wait(session, condition, seconds=20.0):
+    end = time.monotonic() + seconds
+    while True:
+        session.tick()
+        if condition():
+            return
+        assert time.monotonic() < end, "waited in vain"
+        time.sleep(0.005)
+
+
+def as_large(thing):
+    names = ("node_count", "tet_count", "free_surface_count")
+    for name, count in zip(names, LARGE, strict=True):
+        setattr(thing.palpate, name, count)
+
+
+class Halfway:
+    """A shape whose table is filled by half, or that had trouble with its file."""
+
+    notice = ""
+    ready = 0.5
+
+    def __init__(self, body):
+        self.body = body
+
+    def displacements(self, nodes, nodal_forces, young_modulus=None):
+        return self.body.deform(nodes, nodal_forces, young_modulus)
+
+    def close(self):
+        pass
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_each_shape_is_explained_and_its_cost_told_before_the_press(panel, name):
+    thing = soft_cube()
+    thing.palpate.shape = name
+    shapes, felt = (part(f"core.large_deformation.{one}") for one in ("shapes", "felt_force"))
+    said = drawn(panel, thing)
+    assert said.properties == ["shape", "felt"]
+    assert shapes.EXPLANATIONS[SHAPES[name]] in said.text
+    assert felt.EXPLANATIONS["linear"] in said.text
+    assert not said.bars
+    assert ("A Frame, About" in said.lines) == (name != "LINEAR")
+    assert ("Memory, About" in said.lines) == (name != "LINEAR")
+    assert ("Whole Table, About" in said.lines) == (name == "TABLE")
+    # Of a mesh that is not soft yet nobody knows what it costs.
+    thing.palpate.free_surface_count = 0
+    assert "A Frame, About" not in drawn(panel, thing).lines
+
+
+def test_figures_are_those_of_the_prediction_with_their_units(panel):
+    thing = soft_cube()
+    thing.palpate.shape = "TABLE"
+    as_large(thing)
+    cost, size = (
+        getattr(part("core.large_deformation.shape_cost"), name)
+        for name in ("shape_cost", "BodySize")
+    )
+    expected = cost("table", size(*LARGE))
+    quantities = part("operators.quantities")
+    said = drawn(panel, thing).lines
+    rows = dict(pairwise(said))
+    assert rows["A Frame, About"] == f"{1000 * expected.frame_seconds:.2g} ms"
+    assert rows["First Touch, About"] == quantities.duration(expected.first_seconds)
+    assert rows["Whole Table, About"] == quantities.duration(expected.table_seconds)
+    assert rows["Memory, About"] == quantities.memory(expected.memory_bytes)
+
+
+def test_a_body_too_large_for_60_frames_a_second_is_told_so(panel):
+    thing = soft_cube()
+    for name in SHAPES:
+        thing.palpate.shape = name
+        as_large(thing)
+        cost = part("addon.panel_shape").cost_now(thing)
+        told = "60 times a second" in drawn(panel, thing).text
+        assert told == (cost.frame_seconds > 0.012), name
+    thing.palpate.shape = "ROTATION_STRAIN"
+    thing.palpate.node_count, thing.palpate.tet_count, thing.palpate.free_surface_count = (
+        300,
+        1000,
+        150,
+    )
+    assert "60 times a second" not in drawn(panel, thing).text
+
+
+def test_the_corrected_force_tells_its_cost_and_that_tools_do_not_feel_it(panel):
+    thing = soft_cube()
+    thing.palpate.felt = "CORRECTED"
+    assert "Whole Surface, About" in drawn(panel, thing).lines
+    bpy.context.scene.palpate.tip = "SPHERE"
+    said = drawn(panel, thing)
+    assert "Tools feel the linear force" in said.text
+    assert "Whole Surface, About" not in said.lines
+
+
+def test_progress_is_a_bar_while_the_touched_place_is_computed(panel, press, monkeypatch):
+    shapes, made, allowed = part("core.large_deformation.shapes"), [], threading.Event()
+
+    def slowly(body, _):
+        allowed.wait(5.0)
+        made.append(Halfway(body))
+        return made[0]
+
+    monkeypatch.setitem(shapes.MAKERS, "series", slowly)
+    thing = soft_cube()
+    thing.palpate.shape = "SERIES"
+    session = press(thing)
+    assert drawn(panel, thing).bars == [(0.0, "Shape 0 %")]
+    allowed.set()
+    wait(session, lambda: session.shape.ready == 0.5)
+    assert drawn(panel, thing).bars == [(0.5, "Shape 50 %")]
+    # It is of the pressed object only.
+    assert not drawn(panel, cube()).bars
+    made[0].ready = 1.0
+    assert not drawn(panel, thing).bars
+
+
+def test_why_the_linear_shape_is_drawn_stands_in_the_panel(panel, press, monkeypatch):
+    def refuse(*_):
+        raise part("core.errors").PalpateError("shape: no room; choose another")
+
+    monkeypatch.setitem(part("core.large_deformation.shapes").MAKERS, "table", refuse)
+    thing = soft_cube()
+    thing.palpate.shape = "TABLE"
+    session = press(thing)
+    wait(session, lambda: session.shape.problem)
+    said = drawn(panel, thing)
+    assert "shape: no room; choose another" in said.text
+    assert "The linear shape is drawn" in said.text
+    assert "ERROR" in said.icons
+    assert not said.bars
+
+
+@pytest.mark.parametrize("width", [USUAL_WIDTH, NARROW_WIDTH])
+@pytest.mark.parametrize("name", SHAPES)
+def test_no_sentence_of_any_panel_is_wider_than_the_sidebar(palpate, name, width):
+    sentence, panels = part("addon.sentence"), part("addon.panels")
+    thing = soft_cube()
+    as_large(thing)
+    thing.palpate.shape, thing.palpate.felt = name, "CORRECTED"
+    most = max(sentence.FEWEST_LETTERS, width // sentence.LETTER_PIXELS)
+    for cls in panels.classes:
+        if not hasattr(cls, "poll") or cls.poll(bpy.context):
+            for line in drawn(cls, thing, width).lines:
+                assert len(line) <= most, (cls.__name__, line)
