@@ -82,7 +82,7 @@ def press_fingers(
     young_modulus: float | None = None,
 ) -> tuple[Finger, ...]:
     """One tick: the fingers ``before`` have moved to ``probes`` (m, 3), metres."""
-    modulus = body.young_modulus if young_modulus is None else young_modulus
+    modulus = body.modulus(young_modulus)
     fingers = [
         _followed(body, *each)
         for each in zip(god_objects, before, np.asarray(probes, dtype=np.float64), strict=True)

@@ -149,7 +149,7 @@ def servo_for(
     """
     return servo_on(
         native_body(body),
-        young_modulus=body.young_modulus if young_modulus is None else young_modulus,
+        young_modulus=body.modulus(young_modulus),
         rate_hz=rate_hz,
         max_force=max_force,
         record_seconds=record_seconds,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -118,6 +119,19 @@ class SoftBody:
         by = _point_checked("by", by)
         return self.touch(int(place.triangle[0]), place.alpha[0], by, young_modulus, mode)
 
+    def modulus(self, young_modulus: float | None) -> float:
+        """Young's modulus in pascal: the one that is given, or the body's own.
+
+        Raises
+        ------
+        PalpateError
+            It is not a positive number.
+        """
+        modulus = self.young_modulus if young_modulus is None else young_modulus
+        if not (math.isfinite(modulus) and modulus > 0.0):
+            raise PalpateError(f"Young's modulus is {modulus} Pa; give a positive number")
+        return modulus
+
     def touch(
         self,
         triangle: int,
@@ -139,7 +153,7 @@ class SoftBody:
         weights = np.asarray(alpha, dtype=np.float64)
         u = np.asarray(displacement, dtype=np.float64)
         local = self.mesh.surface_local_triangles[triangle]
-        modulus = self.young_modulus if young_modulus is None else young_modulus
+        modulus = self.modulus(young_modulus)
         if _mode_checked(mode) == "paper":
             forces = triangle_forces(modulus * self.contact_blocks[local], weights, u)
         else:
@@ -178,7 +192,7 @@ class SoftBody:
         resting = ~travels.any(axis=1)
         pushes = travels.copy()
         pushes[resting] = -self._outward(np.array(triangles)[resting])
-        modulus = self.young_modulus if young_modulus is None else young_modulus
+        modulus = self.modulus(young_modulus)
         compliance = self.contact_compliance(places.triangle, places.alpha)
         forces = modulus * solve_contacts(compliance, travels, pushes)
         return tuple(
@@ -228,7 +242,7 @@ class SoftBody:
         ``nodes`` (k,) are node numbers of the mesh, ``nodal_forces`` (k, 3) newton. Forces on a
         node that occurs more than once are summed; forces on pinned nodes move nothing.
         """
-        modulus = self.young_modulus if young_modulus is None else young_modulus
+        modulus = self.modulus(young_modulus)
         free, forces = self._on_free_nodes(
             np.asarray(nodes).reshape(-1), np.asarray(nodal_forces).reshape(-1, 3)
         )

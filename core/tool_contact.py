@@ -99,9 +99,7 @@ def set_down(
     correction: NearCorrection | None = None,
 ) -> ToolTouch:
     """A tool that appears at a pose. Inside the body it will feel nothing until it was outside."""
-    modulus = body.young_modulus if young_modulus is None else young_modulus
-    if not (np.isfinite(modulus) and modulus > 0.0):
-        raise PalpateError(f"Young's modulus is {modulus} Pa; give a positive number")
+    modulus = body.modulus(young_modulus)
     if not (np.isfinite(friction) and friction >= 0.0):
         raise PalpateError(f"friction coefficient is {friction}; give zero or more")
     placed: tuple[ContactPoints, NearCorrection | None]
@@ -140,7 +138,7 @@ def continued(
         raise PalpateError(
             f"tool {tool.name}: the touch to start from is of another body or tool; leave it out"
         )
-    modulus = body.young_modulus if young_modulus is None else young_modulus
+    modulus = body.modulus(young_modulus)
     ratio = modulus / start.young_modulus
     return replace(
         start, young_modulus=modulus, forces=start.forces * ratio, pushes=start.pushes * ratio

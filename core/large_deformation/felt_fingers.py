@@ -45,7 +45,7 @@ def corrected_touches(
     PalpateError
         Displacements so large that the forces are not found.
     """
-    modulus = body.young_modulus if young_modulus is None else young_modulus
+    modulus = body.modulus(young_modulus)
     triangles = [_triangle_of(body, touch) for touch in touches]
     if mode == "paper" or len(touches) == 1:
         return tuple(

@@ -179,7 +179,7 @@ def corrected_touch(
         shares = LEAST_SHARE * alone + (1.0 - LEAST_SHARE) * softened
     else:
         shares = np.tile(relation.force(u), (3, 1))
-    modulus = body.young_modulus if young_modulus is None else young_modulus
+    modulus = body.modulus(young_modulus)
     corners = body.mesh.surface_triangles[triangle]
     point = weights @ body.mesh.nodes[corners]
     return Touch(corners, weights, point, u, modulus * weights[:, None] * shares)

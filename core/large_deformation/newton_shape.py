@@ -189,7 +189,7 @@ class TableShape:
         PalpateError
             The table could not be computed.
         """
-        modulus = self._body.young_modulus if young_modulus is None else young_modulus
+        modulus = self._body.modulus(young_modulus)
         places, forces = self._on_free_surface(nodes, nodal_forces)
         self._asked = places
         if places.size:

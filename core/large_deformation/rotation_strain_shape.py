@@ -68,7 +68,7 @@ class RotationStrainShape:
         made = self._made.result() if self._made.done() else None
         if made is None:
             return self._body.deform(nodes, nodal_forces, young_modulus)
-        modulus = self._body.young_modulus if young_modulus is None else young_modulus
+        modulus = self._body.modulus(young_modulus)
         forces = made.solid.on_free_nodes(
             np.asarray(nodes).reshape(-1), np.asarray(nodal_forces).reshape(-1, 3) / modulus
         )

@@ -137,7 +137,7 @@ class SeriesShape:
         if (problem := self._filling.problem) is not None:
             raise PalpateError(f"shape series: {problem}") from problem
         if self._by_load and (solid := self._solid) is not None:
-            modulus = self._body.young_modulus if young_modulus is None else young_modulus
+            modulus = self._body.modulus(young_modulus)
             forces = np.asarray(nodal_forces, dtype=np.float64).reshape(-1, 3) / modulus
             return load_displacements(solid, solid.body.on_free_nodes(numbers, forces))
         if not self._by_load and (table := self._table) is not None:

@@ -155,7 +155,7 @@ class SeriesTable:
         young_modulus: float | None = None,
     ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
         """Places (k,) of the free surface, ascending, and the loads (k, 3) on them at 1 Pa."""
-        modulus = self.body.young_modulus if young_modulus is None else young_modulus
+        modulus = self.body.modulus(young_modulus)
         places = self.body.free_index(np.asarray(nodes, dtype=np.int64).reshape(-1))
         free = places >= 0
         once, which = np.unique(places[free], return_inverse=True)

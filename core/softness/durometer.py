@@ -112,7 +112,7 @@ def read_durometer(
     if scale not in TYPES:
         raise PalpateError(f"Shore {scale}: there is no such durometer here; choose 00 or A")
     kind = TYPES[scale]
-    modulus = body.young_modulus if young_modulus is None else young_modulus
+    modulus = body.modulus(young_modulus)
     for name, value, unit in (("Young's modulus", modulus, "pascal"), ("load", load, "newton")):
         if value is not None and not (np.isfinite(value) and value > 0):
             raise PalpateError(f"durometer: {name} is {value}; give a positive number of {unit}")

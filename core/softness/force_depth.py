@@ -100,7 +100,7 @@ def force_depth_curve(
     PalpateError
         A depth, number of steps or Young's modulus that is not positive.
     """
-    modulus = body.young_modulus if young_modulus is None else young_modulus
+    modulus = body.modulus(young_modulus)
     place = nearest_place(body, at)
     end = usual_depth(body, at, tool) if depth is None else depth
     for name, value in (("depth", end), ("Young's modulus", modulus)):

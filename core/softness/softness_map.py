@@ -74,11 +74,9 @@ def softness_map(
     PalpateError
         A radius that is negative or not finite; a Young's modulus that is not positive.
     """
-    modulus = body.young_modulus if young_modulus is None else young_modulus
+    modulus = body.modulus(young_modulus)
     if not (np.isfinite(pad_radius) and pad_radius >= 0):
         raise PalpateError(f"softness map: pad radius is {pad_radius}; give zero or more metres")
-    if not (np.isfinite(modulus) and modulus > 0):
-        raise PalpateError(f"softness map: Young's modulus is {modulus}; give a positive number")
     normals = node_normals(body.mesh)
     blocks = np.linalg.inv(body.contact_blocks)
     if pad_radius > 0:

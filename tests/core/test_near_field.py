@@ -174,10 +174,12 @@ def test_a_push_draws_its_surroundings_in_alike_on_every_mesh(cubes, cells, apar
     assert drawn_in(cubes[cells]) == pytest.approx(drawn_in(cubes[12]), rel=apart)
 
 
-def test_turning_the_body_turns_the_near_field():
+@pytest.mark.parametrize(("nu", "formulation"), [(0.3, "linear"), (0.45, "smoothed")])
+def test_turning_the_body_turns_the_near_field(nu, formulation):
     turn = np.linalg.qr(np.random.default_rng(3).normal(size=(3, 3)))[0]
     turn *= np.sign(np.linalg.det(turn))
-    straight, turned = cube_of(4), cube_of(4, turn=turn)
+    straight = cube_of(4, nu, formulation)
+    turned = cube_of(4, nu, formulation, turn=turn)
     points = contact_points(straight, 0.005)
     as_turned = replace(
         points, positions=points.positions @ turn.T, normals=points.normals @ turn.T

@@ -117,3 +117,15 @@ def test_touch_nearest_takes_the_closest_surface_point(cube):
 def test_a_place_that_is_no_point_is_refused(cube, at):
     with pytest.raises(PalpateError, match="--at"):
         cube.touch_nearest(at, [0, 0, 0])
+
+
+@pytest.mark.parametrize("modulus", [0.0, -1.0, np.nan, np.inf])
+def test_a_modulus_that_is_none_is_refused(cube, modulus):
+    at, by = [0.02, 0.03, 0.08], [0, 0, -0.005]
+    with pytest.raises(PalpateError, match=f"modulus is {modulus} Pa"):
+        cube.touch_nearest(at, by, modulus)
+    with pytest.raises(PalpateError, match=f"modulus is {modulus} Pa"):
+        cube.touch_several([at], [by], modulus)
+    with pytest.raises(PalpateError, match=f"modulus is {modulus} Pa"):
+        cube.deform([0], [[0, 0, 1.0]], modulus)
+    assert cube.modulus(None) == cube.young_modulus
