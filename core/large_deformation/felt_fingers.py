@@ -8,6 +8,9 @@ What a finger does to the others' places stays linear. In forces this is the lea
 energies, 1/2 F.C F with each block C_pp replaced by the complementary energy of p's relation. Where
 places soften that is convex: each F is unique, and while no finger slides on its cone the forces
 are the gradient of an energy of the displacements. One finger alone has exactly its relation.
+
+Where fingers hold each other, as in a pinch of a slender part, the own parts are many times as long
+as the displacements, and the correction is far too large: docs/large-deformation.md, Limits.
 """
 
 from __future__ import annotations
@@ -43,7 +46,8 @@ def corrected_touches(
     Raises
     ------
     PalpateError
-        Displacements so large that the forces are not found.
+        The forces are not found: displacements that are too large, or fingers that hold each other
+        where a place grows stiffer.
     """
     modulus = body.modulus(young_modulus)
     triangles = [_triangle_of(body, touch) for touch in touches]
@@ -94,7 +98,7 @@ def solve_softened(
     Raises
     ------
     PalpateError
-        Displacements so large that the forces are not found.
+        The forces are not found; see :func:`corrected_touches`.
     """
     asked = np.asarray(displacements, dtype=np.float64)
     each = np.arange(len(asked))
@@ -112,8 +116,8 @@ def solve_softened(
         if np.abs(change).max() <= CONVERGED * np.abs(own).max():
             return forces
     raise PalpateError(
-        "felt force: the corrected forces of these fingers are not found, for they go too far; "
-        "press less or choose the linear one"
+        "felt force: the corrected forces of these fingers are not found, for they go too far or "
+        "hold each other on a slender part; press less or choose the linear one"
     )
 
 

@@ -155,11 +155,8 @@ class TableShape:
         self._notice = ""
         self._body = body
         self._path = None if body_file is None else table_path(body_file, KIND)
-        if self._path is not None and self._path.exists():
-            try:
-                self.table.load(self._path)
-            except TableFileError as problem:
-                self._notice = str(problem)
+        if self._path is not None:
+            self._take_over(self._path)
         self._kept = int(np.count_nonzero(self.table.is_filled))
         surface = body.mesh.nodes[body.compliance.free_surface]
         self._filling = OutwardFilling(surface, self.table.is_filled, self.table.fill, 1)
@@ -226,11 +223,21 @@ class TableShape:
         self._filling.close()
         filled = int(np.count_nonzero(self.table.is_filled))
         if self._path is not None and filled > self._kept:
+            # Another program may have kept other nodes meanwhile: minutes of work.
+            self._take_over(self._path)
             try:
                 self.table.save(self._path)
                 self._kept = filled
             except UnwritableError as problem:
                 self._notice = str(problem)
+
+    def _take_over(self, path: Path) -> None:
+        if not path.exists():
+            return
+        try:
+            self.table.load(path)
+        except TableFileError as problem:
+            self._notice = str(problem)
 
     def _on_free_surface(
         self, nodes: NDArray[np.int64], nodal_forces: NDArray[np.float64]

@@ -197,6 +197,16 @@ class SeriesShape:
                 self._notice = str(problem)
         return SeriesTable.empty(self._body)
 
+    def _filled_in_file(self, path: Path) -> int:
+        """How many places the table in the file has; 0 where it is of no use."""
+        if not path.exists():
+            return 0
+        try:
+            stored = SeriesTable.load(self._body, path)
+        except TableFileError:
+            return 0
+        return int(stored.has(np.arange(len(self._is_filled))).sum())
+
     def _by_freedoms(
         self,
         table: SeriesTable,
@@ -239,7 +249,9 @@ class SeriesShape:
         if self._table is None or self._path is None or filled <= self._kept:
             return
         try:
-            self._table.save(self._path)
+            # Another program may have kept more meanwhile.
+            if filled > self._filled_in_file(self._path):
+                self._table.save(self._path)
             self._kept = filled
         except UnwritableError as problem:
             self._notice = str(problem)

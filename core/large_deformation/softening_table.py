@@ -143,6 +143,7 @@ class SofteningTable:
         with self._lock:
             if self._path is None or not self._changed:
                 return
+            self._load()
             arrays = {"softening": self._values.copy(), "known": self._known.copy()}
             self._changed = False
         write_table(self._path, KIND, self.body.key, arrays)
@@ -191,6 +192,7 @@ class SofteningTable:
         return np.searchsorted(self.body.mesh.surface_nodes, np.unique(np.asarray(nodes)))
 
     def _load(self) -> None:
+        """Take over what the file knows and this table does not."""
         if self._path is None or not self._path.exists():
             return
         try:
@@ -199,4 +201,7 @@ class SofteningTable:
             self.notice = str(problem)
             return
         # Their checksum is right, so they are what was written.
-        self._values, self._known = arrays["softening"], arrays["known"]
+        new = arrays["known"] & ~self._known
+        self._values[new], self._known[new] = arrays["softening"][new], True
+        for listener in self._listeners:
+            listener(np.flatnonzero(new), self._values[new])

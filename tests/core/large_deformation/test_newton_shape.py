@@ -127,3 +127,16 @@ def test_a_place_that_cannot_be_written_is_told_and_the_shape_is_there(cube, cor
     shape.close()
     assert "cannot be written" in shape.notice
     assert shape.ready == 1.0
+
+
+def test_what_another_program_kept_meanwhile_is_not_lost(cube, corner, tmp_path):
+    body_file = tmp_path / "cube.npz"
+    opposite = np.array([cube.compliance.free_surface[0]])
+    shapes = [TableShape(cube, body_file, wanted=1e-6) for _ in range(2)]
+    for shape, node in zip(shapes, (corner, opposite), strict=True):
+        shape.wait_for(node)
+    for shape in shapes:
+        shape.close()
+    kept = NewtonTable(cube, 1e-6)
+    kept.load(table_path(body_file, KIND))
+    assert kept.is_filled[cube.free_index(np.append(corner, opposite))].all()

@@ -172,3 +172,14 @@ def test_youngs_modulus_is_live(cube, whole_load):
     soft = shape.displacements(nodes, forces, 5_000.0)
     np.testing.assert_allclose(soft, shape.displacements(nodes, 2 * forces, 10_000.0), rtol=1e-12)
     shape.close()
+
+
+def test_more_that_another_program_kept_meanwhile_is_not_lost(cube, tmp_path):
+    more, less = (SeriesShape(cube, tmp_path / "cube.npz", False) for _ in range(2))
+    more.finish()
+    less.wait_for(touched(cube)[0])
+    more.close()
+    less._is_filled[-1] = False
+    less.close()
+    kept = SeriesTable.load(cube, table_path(tmp_path / "cube.npz", "series"))
+    assert kept.is_filled.all()

@@ -151,3 +151,20 @@ def test_another_bodys_or_a_damaged_file_is_never_used(body, tmp_path):
         assert not damaged.values.any()
     damaged.fill()
     assert np.array_equal(SofteningTable(body, file).values, damaged.values)
+
+
+def test_what_another_program_kept_meanwhile_is_not_lost(body, tmp_path):
+    file = tmp_path / "toy.npz"
+    free = body.compliance.free_surface
+    tables = [SofteningTable(body, file) for _ in range(2)]
+    told = []
+    tables[1].listen(lambda nodes, _: told.extend(nodes.tolist()))
+    for table, node in zip(tables, (free[:1], free[-1:]), strict=True):
+        table.wait_for(node)
+    for table in tables:
+        table.close()
+    kept = SofteningTable(body, file)
+    kept.around(free[[0, -1]])
+    assert kept.ready == 1.0
+    kept.close()
+    assert np.searchsorted(body.mesh.surface_nodes, free[0]) in told
