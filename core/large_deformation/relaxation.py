@@ -25,12 +25,18 @@ Materials, ACM Transactions on Graphics 36, 2017; there in displacements.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
+from ..elimination.cholesky import CholeskyFactor
 from .by_component import Array
+from .gradients import Gradients
 from .rotation_strain import RotationStrain, Warped
-from .strain_energy import StrainEnergy, Stressed
+from .solid import StrainTerm
+from .springs import Springs
+from .strain_energy import EnergyTerm, StrainEnergy, Stressed
 
 # A parabola at least this far ahead of the end of a step takes the whole step: the energy is no
 # parabola, and a step that is nearly right is cheaper taken than looked at again.
@@ -40,6 +46,41 @@ SHORTEST_STEP = 0.05
 LEAST_CURVATURE = 0.2
 
 Solve = Callable[[Array], Array]
+
+
+def by_component(factor: CholeskyFactor) -> Solve:
+    """Solves by a factor whose freedoms go node by node."""
+
+    def solve(forces: Array) -> Array:
+        moved: Array = factor.solve(forces.T.ravel())
+        return np.ascontiguousarray(moved.reshape(-1, 3).T)
+
+    return solve
+
+
+@dataclass(frozen=True, eq=False)
+class Load:
+    """What pulls at the nodes.
+
+    Attributes
+    ----------
+    dead : (3, f), forces that keep their directions.
+    turning : (3, f), forces on the linear displacements, whose work does not change where the body
+        turns; None for none.
+    """
+
+    dead: Array
+    turning: Array | None = None
+
+    @property
+    def total(self) -> Array:
+        """The load (3, f) of the linear body."""
+        return self.dead if self.turning is None else self.dead + self.turning
+
+    def work(self, place: Warped, linear: Array) -> float:
+        """Of the whole load, joule."""
+        dead = dot(self.dead, place.displacements)
+        return dead if self.turning is None else dead + dot(self.turning, linear)
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,42 +98,64 @@ class Relaxation:
     energy: StrainEnergy
     solve: Solve
 
+    @classmethod
+    def of(
+        cls, terms: Sequence[StrainTerm], solve: Solve, springs: Springs | None = None
+    ) -> Relaxation:
+        """Of the terms of a solid on its free nodes, the first of which has shear; ready for use.
+
+        Parameters
+        ----------
+        solve : by the stiffness of the terms and the springs.
+        """
+        first, *others = terms
+        coordinates = RotationStrain.of(first, springs).factored()
+        # The first term has the same domains: half the memory to read in every frame.
+        own = EnergyTerm.of(first, coordinates.gradients)
+        others_own = (EnergyTerm.of(term, Gradients.of(term.gradients)) for term in others)
+        return cls(coordinates, StrainEnergy((own, *others_own), springs), solve)
+
     def relaxed(self, forces: Array, steps: int) -> Array:
         """Displacements (3, f) of the free nodes under ``forces`` (3, f), after so many steps.
 
         Without steps it is the warped linear displacement.
         """
-        linear = self.solve(forces)
-        if not steps or not forces.any():
+        return self.relaxed_from(self.solve(forces), Load(forces), steps)
+
+    def relaxed_from(self, linear: Array, load: Load, steps: int) -> Array:
+        """As :meth:`relaxed`, under a load whose linear displacement (3, f) is known."""
+        total = load.total
+        if not steps or not total.any():
             return self.coordinates.warp(linear).displacements
-        here, share = self._nearer(_Place.at(linear, forces, self), forces)
-        slope = self._gradient(here, forces)
+        here, share = self._nearer(_Place.at(linear, load, self), load)
+        slope = self._gradient(here, load)
         # At rest the gradient is known without any work, so the way from there counts as a step.
-        history = [_Change.damped(share, linear, -forces, slope)]
+        history = [_Change.damped(share, linear, -total, slope)]
         for step in range(steps):
             direction = _direction(slope, history, self.solve)
-            most = _bound(dot(forces, linear), -dot(slope, direction))
-            there = _Place.at(here.linear + most * direction, forces, self)
+            most = _bound(dot(total, linear), -dot(slope, direction))
+            there = _Place.at(here.linear + most * direction, load, self)
             share = step_length(here.potential, most * dot(slope, direction), there.potential)
             if step + 1 == steps:
                 # On the chord: warping once more would change little.
                 start, end = here.warped.displacements, there.warped.displacements
                 return start + share * (end - start)
             if share < 1.0:
-                there = _Place.at(here.linear + share * most * direction, forces, self)
-            after = self._gradient(there, forces)
+                there = _Place.at(here.linear + share * most * direction, load, self)
+            after = self._gradient(there, load)
             history.append(_Change.damped(share * most, direction, slope, after))
             here, slope = there, after
         return here.warped.displacements
 
-    def _nearer(self, place: _Place, forces: Array) -> tuple[_Place, float]:
+    def _nearer(self, place: _Place, load: Load) -> tuple[_Place, float]:
         """The place on the way from rest: all of it, or the share of it where a body hardens."""
-        share = step_length(0.0, -dot(forces, place.linear), place.potential)
-        return place if share == 1.0 else _Place.at(share * place.linear, forces, self), share
+        share = step_length(0.0, -dot(load.total, place.linear), place.potential)
+        return place if share == 1.0 else _Place.at(share * place.linear, load, self), share
 
-    def _gradient(self, place: _Place, forces: Array) -> Array:
-        unbalanced = self.energy.forces(place.stressed) - forces
-        return self.coordinates.pulled_back(place.warped, unbalanced)
+    def _gradient(self, place: _Place, load: Load) -> Array:
+        unbalanced = self.energy.forces(place.stressed) - load.dead
+        gradient = self.coordinates.pulled_back(place.warped, unbalanced)
+        return gradient if load.turning is None else gradient - load.turning
 
 
 def _bound(work: float, descent: float) -> float:
@@ -117,7 +180,7 @@ def step_length(start: float, slope: float, end: float) -> float:
 
 def dot(a: Array, b: Array) -> float:
     """The work of nodal forces ``a`` on displacements ``b``, both (3, f)."""
-    return float(a.ravel() @ b.ravel())
+    return float(np.einsum("if,if->", a, b))
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,10 +193,10 @@ class _Place:
     potential: float
 
     @classmethod
-    def at(cls, linear: Array, forces: Array, body: Relaxation) -> _Place:
+    def at(cls, linear: Array, load: Load, body: Relaxation) -> _Place:
         warped = body.coordinates.warp(linear)
         stressed = body.energy.stressed(warped.displacements)
-        potential = stressed.energy - dot(forces, warped.displacements)
+        potential = stressed.energy - load.work(warped, linear)
         return cls(linear, warped, stressed, potential)
 
 

@@ -39,6 +39,7 @@ from .by_component import (
 from .gradients import Gradients
 from .rotations import pulled_back_turns, rotations_less_identity
 from .solid import StrainTerm
+from .springs import Springs
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,19 +70,22 @@ class RotationStrain:
     ----------
     gradients : in the domains, of the free nodes.
     weights : (m,), what each counts where gradients do not fit together.
+    springs : what else holds nodes where the linear displacement has them.
     """
 
     gradients: Gradients
     weights: NDArray[np.float64]
+    springs: Springs | None = None
 
     @classmethod
-    def of(cls, term: StrainTerm) -> RotationStrain:
+    def of(cls, term: StrainTerm, springs: Springs | None = None) -> RotationStrain:
         """For the nodes of a term of the strain energy that has shear; all nodes are free.
 
         A domain counts by its volume and its stiffness: what does not fit together then strains
         what is soft, and bone stays bone.
         """
-        return cls(Gradients.of(term.gradients), term.volumes * term.shear_modulus)
+        weights = term.volumes * term.shear_modulus
+        return cls(Gradients.of(term.gradients), weights, springs)
 
     def warp(self, linear: Array) -> Warped:
         """Warp linear displacements (3, f)."""
@@ -96,7 +100,10 @@ class RotationStrain:
         wanted = product(turned, stretch)
         wanted += turned
         wanted += stretch
-        fitted = self._solved(self.gradients.nodal(self.weights * wanted))
+        right = self.gradients.nodal(self.weights * wanted)
+        if self.springs is not None:
+            right += self.springs.forces(linear)
+        fitted = self._solved(right)
         return Warped(fitted, strain, bounded, vectors, identity_added(turned))
 
     def pulled_back(self, warped: Warped, forces: Array) -> Array:
@@ -106,7 +113,8 @@ class RotationStrain:
         on the change of the linear ones that causes it.
         """
         e, bounded = warped.strain, warped.bounded
-        stress = self.weights * self.gradients.of_displacements(self._solved(forces))
+        solved = self._solved(forces)
+        stress = self.weights * self.gradients.of_displacements(solved)
         local = transposed_product(warped.rotations, stress)
         # The work R^T stress does on a turn, [a]x U, with a = J dw ...
         turns = axial(product(local, e + bounded))
@@ -116,7 +124,10 @@ class RotationStrain:
         inner = product(product(bounded, local), bounded)
         local -= symmetric_part(product(e, inner))
         local += 0.5 * cross_matrices(moments)
-        return self.gradients.nodal(local)
+        pulled_back = self.gradients.nodal(local)
+        if self.springs is not None:
+            pulled_back += self.springs.forces(solved)
+        return pulled_back
 
     def factored(self) -> RotationStrain:
         """Itself, after the work that the first warp would do."""
@@ -126,9 +137,11 @@ class RotationStrain:
     @cached_property
     def _poisson(self) -> SuperLU:
         backward, forward = self.gradients.backward, self.gradients.forward
-        matrix = (backward @ diags_array(np.tile(self.weights, 3)) @ forward).tocsc()
+        matrix = backward @ diags_array(np.tile(self.weights, 3)) @ forward
+        if self.springs is not None:
+            matrix = matrix + self.springs.matrix
         return splu(
-            matrix,
+            matrix.tocsc(),
             permc_spec="MMD_AT_PLUS_A",
             diag_pivot_thresh=0.0,
             options={"SymmetricMode": True},

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from .rotation_strain_shape import steps_in_a_frame
+from .rotation_strain_shape import frame_plan
 from .series_shape import LARGEST_WHOLE_LOAD
 from .shapes import ShapeName
 
@@ -56,10 +56,13 @@ def shape_cost(name: ShapeName, size: BodySize) -> ShapeCost:
 
 
 def _rotation_strain(size: BodySize) -> ShapeCost:
-    steps = steps_in_a_frame(size.nodes)
-    frame = (1 + steps) * _solve_seconds(size) + steps * 9e-7 * size.tets
-    if not steps:
-        frame += 4.7e-7 * size.tets
+    plan = frame_plan(size.nodes)
+    if plan.lattice_nodes:
+        lattice = BodySize(plan.lattice_nodes, 0, 0)
+        # Each of a lattice's nodes, in every frame and in every step.
+        frame = _linear_seconds(size) + plan.lattice_nodes * (4e-6 + 3e-6 * plan.steps)
+        return ShapeCost(frame, 0.1 + 5e-5 * size.nodes, 0.0, 4 * _factor_bytes(lattice))
+    frame = (1 + plan.steps) * _solve_seconds(size) + plan.steps * 9e-7 * size.tets
     # Beside the factor of the stiffness one of the Poisson equation that puts the tets together.
     first = _factor_seconds(size) + 0.04 * _grown(size, 1.7)
     return ShapeCost(frame, first, 0.0, 1.3 * _factor_bytes(size) + 200.0 * size.tets)

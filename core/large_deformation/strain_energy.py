@@ -23,6 +23,7 @@ from .by_component import (
 )
 from .gradients import Gradients
 from .solid import StrainTerm
+from .springs import Springs
 
 # J0, and k over the shear modulus.
 RESISTS_BELOW = 0.4
@@ -60,7 +61,7 @@ class EnergyTerm:
         pressure = self.first_lame * (strain[0, 0] + strain[1, 1] + strain[2, 2])
         for axis in range(3):
             stress[axis, axis] += pressure
-        energy = 0.5 * float(stress.ravel() @ strain.ravel())
+        energy = 0.5 * float(np.einsum("ijd,ijd->", stress, strain))
         stress += product(gradient, stress)
         return StressedTerm(energy + self._resist_collapse(gradient, stress), stress)
 
@@ -82,26 +83,42 @@ class EnergyTerm:
 
 @dataclass(frozen=True, eq=False)
 class Stressed:
-    """A solid at some displacements: its strain energy, joule, and the stresses of its terms."""
+    """A solid at some displacements: its strain energy, joule, and what its forces come from.
+
+    Attributes
+    ----------
+    energy : joule.
+    terms : the stresses.
+    springs : (3, f), newton; None without springs.
+    """
 
     energy: float
     terms: tuple[StressedTerm, ...]
+    springs: Array | None = None
 
 
 @dataclass(frozen=True, eq=False)
 class StrainEnergy:
-    """The energy of a solid on its free nodes, at unit modulus."""
+    """The energy of a solid on its free nodes, at unit modulus, and of springs if it has any."""
 
     terms: tuple[EnergyTerm, ...]
+    springs: Springs | None = None
 
     def stressed(self, displacements: Array) -> Stressed:
         """At displacements (3, f)."""
         terms = tuple(term.stressed(displacements) for term in self.terms)
-        return Stressed(sum(term.energy for term in terms), terms)
+        energy = sum(term.energy for term in terms)
+        if self.springs is None:
+            return Stressed(energy, terms)
+        pull = self.springs.forces(displacements)
+        return Stressed(energy + 0.5 * float(np.vdot(pull, displacements)), terms, pull)
 
     def forces(self, stressed: Stressed) -> Array:
         """Forces (3, f) that hold the nodes there: the gradient of the energy."""
-        total = np.zeros((3, self.terms[0].gradients.backward.shape[0]))
+        if stressed.springs is None:
+            total = np.zeros((3, self.terms[0].gradients.backward.shape[0]))
+        else:
+            total = stressed.springs.copy()
         for term, there in zip(self.terms, stressed.terms, strict=True):
             total += term.gradients.nodal(there.stresses)
         return total

@@ -9,7 +9,7 @@ from palpate.core.dense_compliance import DenseCompliance
 from palpate.core.large_deformation.free_solid import FreeSolid
 from palpate.core.large_deformation.newton import NoEquilibrium, equilibrium
 from palpate.core.large_deformation.relaxation import step_length
-from palpate.core.large_deformation.rotation_strain_shape import relaxation, steps_in_a_frame
+from palpate.core.large_deformation.rotation_strain_shape import frame_plan, relaxation
 from palpate.core.large_deformation.strain_energy import RESISTS_BELOW
 from palpate.core.paper_cube import paper_cube
 from palpate.core.soft_body import SoftBody
@@ -186,8 +186,8 @@ def test_a_press_on_one_node_does_not_turn_the_body_inside_out():
         assert np.abs(found).max() < 0.9
 
 
-def test_small_bodies_get_more_steps():
-    steps = [steps_in_a_frame(count) for count in (100, 1000, 1700, 20_000)]
-    assert steps == sorted(steps, reverse=True)
-    assert steps[2] >= 1
-    assert steps[3] == 0
+def test_small_bodies_get_more_steps_and_large_ones_a_lattice():
+    plans = [frame_plan(count) for count in (100, 1000, 1700, 20_000)]
+    assert [plan.steps for plan in plans[:2]] == [3, 2]
+    assert [plan.lattice_nodes > 0 for plan in plans] == [False, False, True, True]
+    assert all(plan.steps >= 1 for plan in plans)
