@@ -4,11 +4,14 @@
 
 *Hertz*: a sphere of a hundred elements' radius pressed on a block, force against depth, beside
 4/3 E* sqrt(R) d^1.5; claimed within 5 % for contact radii of four elements and more, with the
-exponent within 3 %. *Flat punch*: a round face of five elements' radius, beside 2 E* a d; claimed
-within 5 %. The block is no half-space, it ends and its outer elements are large; by how much less
-it gives way is read off between nodes far apart, and taken from the depths. *Closed paths*: the
-work of a tool that goes round and comes back, without friction, as a share of the most energy it
-had in the body on the way; claimed below 1e-6. The exit status tells whether all claims hold.
+exponent within 3 %. *Small contacts*: the same for contact radii from half an element on, at a
+node, on an edge, in a triangle, with points between the nodes, a third of the contact radius apart,
+as a fingertip's own are from a third of its radius deep; claimed within 5 %. *Flat punch*: a round
+face of five elements' radius, beside 2 E* a d; claimed within 5 %. The block is no half-space, it
+ends and its outer elements are large; by how much less it gives way is read off between nodes far
+apart, and taken from the depths. *Closed paths*: the work of a tool that goes round and comes back,
+without friction, as a share of the most energy it had in the body on the way; claimed below 1e-6.
+The exit status tells whether all claims hold.
 """
 
 from __future__ import annotations
@@ -18,13 +21,20 @@ import sys
 from collections.abc import Callable
 
 import numpy as np
-from measuring.graded_block import YOUNG_MODULUS, graded_block, lift, nodes_as_points
+from measuring.graded_block import (
+    YOUNG_MODULUS,
+    graded_block,
+    lift,
+    nodes_as_points,
+    points_around,
+)
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from palpate.core.contact_points import ContactPoints
 from palpate.core.near_field import NearCorrection, near_correction
 from palpate.core.paper_cube import paper_cube
+from palpate.core.regular_field import RegularField
 from palpate.core.soft_body import SoftBody
 from palpate.core.stiffness import assemble
 from palpate.core.surface_compliance import surface_compliance
@@ -38,6 +48,9 @@ HERTZ_RADIUS = 100 * ELEMENT
 LARGEST_FORCE_ERROR = 0.05
 LARGEST_EXPONENT_ERROR = 0.03
 SMALLEST_CLAIMED_RADIUS = 4.0
+SMALL_RADII = (0.5, 1.0, 1.5, 2.0, 3.0)
+SMALL_PLACES = {"node": (0.0, 0.0), "edge": (0.5, 0.0), "triangle": (0.3, 0.2), "next": (1.0, 0.0)}
+POINTS_IN_RADIUS = 3.0
 PUNCH_SIDES = 32
 LARGEST_WORK = 1e-6
 FIRST_STEPS = 60
@@ -65,6 +78,12 @@ def main() -> int:
                     and abs(exponent / 1.5 - 1) <= LARGEST_EXPONENT_ERROR
                 )
                 print(f"  {radius:11.2f}   {force:13.3f}   {exponent:8.3f}")
+            if correction is not None:
+                print("Small contacts: a / element, force / Hertz at " + ", ".join(SMALL_PLACES))
+                for elements in SMALL_RADII:
+                    forces = small_contacts(near.field, shift, elements)
+                    held &= bool((np.abs(np.array(forces) - 1) <= LARGEST_FORCE_ERROR).all())
+                    print(f"  {elements:11.2f}   " + "   ".join(f"{one:.3f}" for one in forces))
             force = punch(body, points, correction, shift)
             held &= abs(force - 1) <= LARGEST_FORCE_ERROR
             print(f"Flat punch of 5 elements' radius: force / closed form {force:.3f}")
@@ -102,6 +121,36 @@ def hertz(
         rows.append((radius, force / closed_form, exponent))
         before = (force, deep)
     return rows
+
+
+def small_contacts(field: RegularField, shift: float, elements: float) -> list[float]:
+    """Force over Hertz's at a contact radius of so many elements, at the small places."""
+    body, radius, forces = field.body, elements * ELEMENT, []
+    for place in SMALL_PLACES.values():
+        middle = ELEMENT * np.array(place)
+        points = points_around(body, middle, radius / POINTS_IN_RADIUS, 1.3 * radius)
+        near = near_correction(body, points, field)
+        forces.append(sphere_force(body, points, near, shift, radius, middle))
+    return forces
+
+
+def sphere_force(
+    body: SoftBody,
+    points: ContactPoints,
+    correction: NearCorrection,
+    shift: float,
+    radius: float,
+    middle: NDArray[np.float64],
+) -> float:
+    """Force over Hertz's of the sphere pressed on ``middle`` (2,) as deep as a contact ``radius``
+    asks for.
+    """
+    depth = radius**2 / HERTZ_RADIUS
+    pose = Pose.at([*middle, HERTZ_RADIUS - depth])
+    touch = press_tool(body, sphere(HERTZ_RADIUS), pose, surface=points, correction=correction)
+    force = float(touch.force[2])
+    modulus = YOUNG_MODULUS / (1.0 - body.poisson_ratio**2)
+    return force / (4.0 / 3.0 * modulus * np.sqrt(HERTZ_RADIUS) * (depth - shift * force) ** 1.5)
 
 
 def punch(

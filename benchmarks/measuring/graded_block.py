@@ -38,26 +38,48 @@ def graded_block(element: float, core: int, poisson_ratio: float) -> SoftBody:
 
 
 def nodes_as_points(body: SoftBody, within: float) -> ContactPoints:
-    """Contact points in the nodes of the top at most ``within`` metres from the origin's axes."""
+    """Contact points in the nodes of the top at most ``within`` metres from the origin's axes.
+
+    Each has what is nearest to it of the surface.
+    """
     mesh = body.mesh
     corners = mesh.nodes[mesh.surface_triangles]
     near = (corners[:, :, 2] == 0.0).all(axis=1)
     near &= (np.abs(corners[:, :, :2]) <= within * (1 + 1e-9)).all(axis=(1, 2))
     triangles = np.flatnonzero(near)
     nodes, first = np.unique(mesh.surface_triangles[triangles], return_index=True)
-    sides = np.cross(
-        corners[triangles, 1] - corners[triangles, 0], corners[triangles, 2] - corners[triangles, 0]
-    )
-    shares = np.zeros(len(mesh.nodes))
-    each = np.linalg.norm(sides, axis=1) / 6.0
-    np.add.at(shares, mesh.surface_triangles[triangles], each[:, None])
+    shares = np.ones(len(nodes))
+    for axis in (0, 1):
+        ticks = np.unique(mesh.nodes[:, axis])
+        middles = 0.5 * (ticks[1:] + ticks[:-1])
+        place = np.searchsorted(ticks, mesh.nodes[nodes, axis])
+        shares *= middles[place] - middles[place - 1]
     return ContactPoints(
         mesh.nodes[nodes],
         np.tile([0.0, 0.0, 1.0], (len(nodes), 1)),
         triangles[first // 3],
         np.eye(3)[first % 3],
-        shares[nodes],
+        shares,
     )
+
+
+def points_around(
+    body: SoftBody, middle: NDArray[np.float64], step: float, radius: float
+) -> ContactPoints:
+    """Contact points of a square lattice on the top within ``radius`` of ``middle`` (2,), metres.
+
+    Neither the mesh's axes nor the middle are the lattice's.
+    """
+    count = int(np.ceil(radius / step)) + 1
+    line = np.arange(-count, count + 1) * step
+    flat = np.stack(np.meshgrid(line + 0.3 * step, line - 0.2 * step), axis=-1).reshape(-1, 2)
+    flat = flat @ np.array([[0.8, 0.6], [-0.6, 0.8]])
+    flat = middle + flat[np.linalg.norm(flat, axis=1) <= radius]
+    places = np.column_stack([flat, np.zeros(len(flat))])
+    found = body.closest_points.query(places)
+    up = np.tile([0.0, 0.0, 1.0], (len(places), 1))
+    areas = np.full(len(places), step**2)
+    return ContactPoints(places, up, found.triangle, found.alpha, areas)
 
 
 def _tetrahedra(x: NDArray[np.float64], y: NDArray[np.float64], z: NDArray[np.float64]) -> TetMesh:

@@ -16,14 +16,15 @@ from numpy.typing import NDArray
 from ..contact_points import ContactPoints, node_normals
 from ..errors import PalpateError
 from ..half_space import OWN_CELL
-from ..near_field import near_correction
+from ..near_field import IN_CONTACT, near_correction
 from ..soft_body import SoftBody
 
 # The pad of a fingertip that rests lightly.
 FINGER_RADIUS = 5e-3
 
 # Mean displacement under an even pressure on a disc, times sqrt(area) pi / (1 - nu^2) per newton at
-# 1 Pa: 16 / (3 sqrt(pi)) (Johnson, Contact Mechanics, section 3.4). The near field has OWN_CELL.
+# 1 Pa: 16 / (3 sqrt(pi)) (Johnson, Contact Mechanics, section 3.4). The near field has OWN_CELL,
+# and of that IN_CONTACT.
 DISC_MEAN = 16.0 / (3.0 * np.sqrt(np.pi))
 
 # Shares of the nodes that lie outside the colours' range at either end.
@@ -98,6 +99,6 @@ def _of_pads(body: SoftBody, normals: NDArray[np.float64], radius: float) -> NDA
         normals=normals,
         triangles=triangle,
         alphas=np.eye(3)[corner],
-        areas=np.full(count, np.pi * radius**2 * (OWN_CELL / DISC_MEAN) ** 2),
+        areas=np.full(count, np.pi * radius**2 * (IN_CONTACT * OWN_CELL / DISC_MEAN) ** 2),
     )
     return near_correction(body, pads).own
