@@ -11,7 +11,8 @@ Array = NDArray[np.float64]
 
 # Lifting off a curved surface comes to its end in a few steps; grazing it may take more.
 MOST_LIFTS = 64
-# A tool is set down this far above the surface, as a share of its size.
+# A tool is set down this far above the surface, as a share of its size or the body's, whichever is
+# less.
 AIR = 1e-4
 
 
@@ -42,12 +43,13 @@ def resting_on(tool: Tool, rotation: Array, point: Array, normal: Array, surface
     which places ``surface`` (n, 3) are known, keeps the tool further off. They should be those that
     the tool will touch, or it may be set down in one of them and feel nothing.
     """
-    position = point + (reach(tool, rotation, -normal) + AIR * tool.size) * normal
+    air = AIR * min(tool.size, float(np.ptp(surface, axis=0).max(initial=0.0)))
+    position = point + (reach(tool, rotation, -normal) + air) * normal
     near = surface[np.linalg.norm(surface - position, axis=1) < 2.0 * tool.reach]
     for _ in range(MOST_LIFTS if len(near) else 0):
         distance, _normals = tool.distance((near - position) @ rotation)
         inside = -float(distance.min())
         if inside < 0.0:
             break
-        position = position + (inside + AIR * tool.size) * normal
+        position = position + (inside + air) * normal
     return Pose(position, rotation)

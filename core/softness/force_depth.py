@@ -98,7 +98,8 @@ def force_depth_curve(
     Raises
     ------
     PalpateError
-        A depth, number of steps or Young's modulus that is not positive.
+        A depth, number of steps or Young's modulus that is not positive; a depth beyond the body's
+        size.
     """
     modulus = body.modulus(young_modulus)
     place = nearest_place(body, at)
@@ -108,6 +109,12 @@ def force_depth_curve(
             raise PalpateError(f"force curve: {name} is {value}; give a positive number")
     if not 1 <= steps <= MOST_STEPS:
         raise PalpateError(f"force curve: {steps} steps; give a number from 1 to {MOST_STEPS}")
+    size = float(np.ptp(body.mesh.nodes, axis=0).max())
+    if end > size:
+        raise PalpateError(
+            f"force curve: a depth of {1000.0 * end:.4g} mm is more than the whole body of "
+            f"{1000.0 * size:.4g} mm; give less"
+        )
     depths = np.linspace(0.0, end, steps + 1)
     if tool is None and softenings is not None:
         return _of_softening_point(body, place, depths, modulus, softenings)
