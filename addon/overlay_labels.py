@@ -12,8 +12,9 @@ from . import pixels
 from .pressure_colors import ANCHORS
 
 SIZE, PADDING, ASIDE = 13, 5, 8
-# The legend: how far from the right, its bar, and the space between bar and figures.
-MARGIN, BAR_WIDTH, BAR_HEIGHT, GAP = 24, 14, 130, 6
+# The legend: how far from the right, its bar, the space between bar and figures,
+# and that around all of it.
+MARGIN, BAR_WIDTH, BAR_HEIGHT, GAP, AROUND = 24, 14, 130, 6, 10
 # What Blender's own buttons for the view take at the top, headers included.
 NAVIGATION = 300
 
@@ -68,12 +69,9 @@ def draw_legend(context: bpy.types.Context, top: float) -> None:
         bar + GAP * scale + max(pixels.width_of(figure, size) for figure in figures),
     )
     right = context.region.width - pixels.covered(context, "UI", "RIGHT") - MARGIN * scale
-    around = 10 * scale
-    free = context.region.height - NAVIGATION * scale - height - 2.5 * size - around
-    left, bottom = (
-        right - across,
-        max(around + size, min(0.5 * (context.region.height - height), free)),
-    )
+    around = AROUND * scale
+    left = right - across
+    bottom = legend_bottom(context.region.height, height, scale)
     pixels.rectangle(
         left - around,
         bottom - around - 0.5 * size,
@@ -89,3 +87,10 @@ def draw_legend(context: bpy.types.Context, top: float) -> None:
         y = bottom + share * height - 0.35 * size
         pixels.write(figure, left + bar + GAP * scale, y, size, pixels.WHITE)
     pixels.write(title, left, bottom + height + 1.0 * size, size, pixels.WHITE)
+
+
+def legend_bottom(region_height: float, height: float, scale: float) -> float:
+    """Where a bar of this height begins: half way up, or lower where Blender's buttons are."""
+    above, below = (2.5 * SIZE + AROUND) * scale, (0.5 * SIZE + AROUND) * scale
+    free = region_height - NAVIGATION * scale - height - above
+    return max(below, min(0.5 * (region_height - height), free))

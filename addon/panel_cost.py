@@ -20,8 +20,8 @@ def draw_summary(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
         return
     cost = prediction.cost
     if prediction.fits:
-        figures = {"nodes": about(cost.nodes), "time": duration(cost.seconds)}
-        say(layout, context, "About {nodes} nodes in {time}", "TIME", **figures)
+        nodes, time = about(cost.nodes), duration(cost.seconds)
+        say(layout, context, "About {nodes} nodes in {time}", "TIME", nodes=nodes, time=time)
     else:
         _draw_alarm(layout, context, prediction)
 
@@ -44,7 +44,7 @@ def draw_prediction(layout: bpy.types.UILayout, context: bpy.types.Context) -> N
     ]
     draw_rows(box, rows)
     if not prediction.fits:
-        _draw_alarm(box, context, prediction)
+        _draw_alarm(box, context, prediction, boxed=True)
 
 
 def draw_figures(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
@@ -78,7 +78,11 @@ def _prediction(context: bpy.types.Context) -> Prediction | None:
 
 
 def _draw_alarm(
-    layout: bpy.types.UILayout, context: bpy.types.Context, prediction: Prediction
+    layout: bpy.types.UILayout,
+    context: bpy.types.Context,
+    prediction: Prediction,
+    *,
+    boxed: bool = False,
 ) -> None:
     column = layout.column(align=True)
     column.alert = True
@@ -86,7 +90,14 @@ def _draw_alarm(
         "needed": memory(prediction.cost.peak_bytes),
         "available": memory(prediction.available),
     }
-    say(column, context, "Takes {needed} of memory; {available} are free", "ERROR", **figures)
+    say(
+        column,
+        context,
+        "Takes {needed} of memory; {available} are free",
+        "ERROR",
+        boxed=boxed,
+        **figures,
+    )
     column = layout.column(align=True)
     if prediction.compressed_fits:
         column.operator("palpate.fit_memory", text="Compress It").by = "COMPRESSED"

@@ -29,9 +29,10 @@ class PALPATE_PT_finger(PalpatePanel, bpy.types.Panel):
         _draw_sizes(column, context, chosen)
         if chosen.tip in TIP_TEXTS:
             say(column, context, TIP_TEXTS[chosen.tip], "INFO")
-        layout.prop(chosen, "contact_mode")
-        say(layout, context, MODE_TEXTS[chosen.contact_mode], "BLANK1")
-        if chosen.tip != "POINT":
+        if chosen.tip == "POINT":
+            layout.prop(chosen, "contact_mode")
+            say(layout, context, MODE_TEXTS[chosen.contact_mode], "BLANK1")
+        else:
             layout.prop(chosen, "show_pressure")
             column = layout.column()
             column.enabled = press_session.current() is None

@@ -73,9 +73,15 @@ def _draw_cost(
     rows.append(("Memory, About", memory(cost.memory_bytes)))
     draw_rows(box, rows)
     if cost.frame_seconds > SMOOTH_SECONDS:
-        say(box, context, "Too large a body to be drawn 60 times a second this way", "INFO")
+        say(
+            box,
+            context,
+            "Too large a body to be drawn 60 times a second this way",
+            "INFO",
+            boxed=True,
+        )
     if cost.table_seconds:
-        say(box, context, "Computed around the touched place first, and kept", "INFO")
+        say(box, context, "Computed around the touched place first, and kept", "INFO", boxed=True)
 
 
 def _draw_felt(
@@ -85,11 +91,14 @@ def _draw_felt(
     baked, press = thing.palpate, press_session.current()
     if context.scene.palpate.tip != "POINT":
         say(layout, context, "Tools feel the linear force", "INFO")
-    elif baked.free_surface_count:
+        return
+    if context.scene.palpate.second != "NONE" or (press is not None and len(press.leads) > 1):
+        say(layout, context, "Too weak where two fingers hold a slender part", "ERROR")
+    if baked.free_surface_count:
         box = layout.box().column(align=True)
         size = (baked.node_count, baked.tet_count, baked.free_surface_count)
         draw_rows(box, [("Whole Surface, About", waiting(whole_table_seconds(*size)))])
-        say(box, context, "Found around the touched place first, and kept", "INFO")
+        say(box, context, "Found around the touched place first, and kept", "INFO", boxed=True)
     if press is not None and press.loop is not None and press.loop.felt.problem:
         say(layout, context, press.loop.felt.problem, "ERROR")
         say(layout, context, "The linear force is felt", "BLANK1")

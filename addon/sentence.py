@@ -7,8 +7,8 @@ import bpy
 
 # Width of a letter in the sidebar, unscaled pixels.
 LETTER_PIXELS = 7
-# Letters that icon and margins take.
-MARGIN_LETTERS, FEWEST_LETTERS = 5, 20
+# Letters that icon and margins take, and the frame of a box besides.
+MARGIN_LETTERS, BOX_LETTERS, FEWEST_LETTERS = 5, 4, 20
 # Marks that do not begin a line in Japanese.
 NEVER_FIRST = "、。」)・"
 
@@ -18,9 +18,13 @@ def say(
     context: bpy.types.Context,
     text: str,
     icon: str,
+    *,
+    boxed: bool = False,
     **figures: str,
 ) -> None:
-    """Write a sentence; ``{names}`` in the text are filled in after it is translated."""
+    """Write a sentence; ``{names}`` in the text are filled in after it is translated. In a box
+    there is less room.
+    """
     scale = context.preferences.system.ui_scale
     across = int(context.region.width / scale / LETTER_PIXELS)
     column = layout.column(align=True)
@@ -28,7 +32,7 @@ def say(
     said = bpy.app.translations.pgettext_iface(text)
     if figures:
         said = said.format(**figures)
-    letters = max(FEWEST_LETTERS, across - MARGIN_LETTERS)
+    letters = max(FEWEST_LETTERS, across - MARGIN_LETTERS - (BOX_LETTERS if boxed else 0))
     for number, line in enumerate(wrapped(said, letters)):
         column.label(text=line, icon=icon if number == 0 else "BLANK1", translate=False)
 

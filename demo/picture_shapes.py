@@ -222,10 +222,11 @@ def render(hare: Any, case: Pressed, off: float, picture: Path) -> None:
     shown = hare.shape_key_add(name="Shown", from_mix=False)
     shown.points.foreach_set("co", case.vertices.ravel())
     shown.value = 1.0
+    change = round(100 * (case.volume - 1))
     second = "the truth" if case.title == TRUTH else f"{100 * off:.0f} % off"
     words = [
         written(case.title, 0.0400, 0.0058),
-        written(f"volume {100 * (case.volume - 1):+.0f} %, {second}", 0.0350, 0.0042),
+        written(f"volume {f'{change:+d}' if change else 0} %, {second}", 0.0350, 0.0042),
     ]
     photograph(picture)
     hare.shape_key_remove(shown)

@@ -14,13 +14,16 @@ USUAL_WIDTH, NARROW_WIDTH = 280, 160
 
 @dataclass
 class Written:
-    """All that a panel drew: lines of text, names of properties and operators, shares of bars."""
+    """All that a panel drew: lines of text, names of properties and operators, shares of bars;
+    ``boxed`` are the lines that stand in a box.
+    """
 
     lines: list[str] = field(default_factory=list)
     icons: list[str] = field(default_factory=list)
     properties: list[str] = field(default_factory=list)
     operators: list[str] = field(default_factory=list)
     bars: list[tuple[float, str]] = field(default_factory=list)
+    boxed: list[str] = field(default_factory=list)
 
     @property
     def text(self) -> str:
@@ -31,17 +34,23 @@ class Written:
 class RecordedLayout:
     """What panels use of `bpy.types.UILayout`."""
 
-    def __init__(self, written: Written | None = None) -> None:
+    def __init__(self, written: Written | None = None, *, boxed: bool = False) -> None:
         self.written = Written() if written is None else written
+        self.is_boxed = boxed
 
     def _part(self, **_: Any) -> RecordedLayout:
-        return RecordedLayout(self.written)
+        return RecordedLayout(self.written, boxed=self.is_boxed)
 
-    row = column = box = split = _part
+    row = column = split = _part
+
+    def box(self) -> RecordedLayout:
+        """A part with a frame."""
+        return RecordedLayout(self.written, boxed=True)
 
     def label(self, *, text: str = "", icon: str = "NONE", translate: bool = True) -> None:
         """A line, translated as Blender does it."""
         self.written.lines.append(bpy.app.translations.pgettext_iface(text) if translate else text)
+        self.written.boxed += self.written.lines[-1:] if self.is_boxed else []
         self.written.icons.append(icon)
 
     def prop(self, data: Any, name: str, **_: Any) -> None:

@@ -79,3 +79,18 @@ def test_small_quantities_keep_their_digits(palpate):
     assert quantities.area(12.34e-6) == "12.3 mm²"
     assert quantities.area(4.56e-4) == "4.56 cm²"
     assert quantities.pressure(1234.5) == "1.23 kPa"
+
+
+@pytest.mark.parametrize("scale", [1.0, 2.0])
+@pytest.mark.parametrize("region_height", [250.0, 500.0, 700.0, 1500.0])
+def test_the_legend_keeps_clear_of_blenders_buttons_and_of_the_rim(palpate, region_height, scale):
+    labels = part("addon.overlay_labels")
+    height, size = labels.BAR_HEIGHT * scale, labels.SIZE * scale
+    bottom = labels.legend_bottom(region_height * scale, height, scale)
+    assert bottom - 0.5 * size >= labels.AROUND * scale
+    if region_height >= 500.0:
+        # The title stands above the bar.
+        top = bottom + height + 2.5 * size + labels.AROUND * scale
+        assert top <= (region_height - labels.NAVIGATION) * scale + 1e-9
+    if region_height == 1500.0:
+        assert bottom == 0.5 * (region_height * scale - height)

@@ -1,4 +1,4 @@
-"""What the panel Large Deformation says, before and during a press."""
+"""What the panels Large Deformation and Finger say, before and during a press."""
 
 from __future__ import annotations
 
@@ -136,6 +136,8 @@ def test_the_corrected_force_tells_its_cost_and_that_tools_do_not_feel_it(panel)
     said = drawn(panel, thing)
     assert "Tools feel the linear force" in said.text
     assert "Whole Surface, About" not in said.lines
+    bpy.context.scene.palpate.tip, bpy.context.scene.palpate.second = "POINT", "EMPTY"
+    assert "two fingers hold a slender part" in drawn(panel, thing).text
 
 
 def test_progress_is_a_bar_while_the_touched_place_is_computed(panel, press, monkeypatch):
@@ -183,8 +185,29 @@ def test_no_sentence_of_any_panel_is_wider_than_the_sidebar(palpate, name, width
     thing = soft_cube()
     as_large(thing)
     thing.palpate.shape, thing.palpate.felt = name, "CORRECTED"
-    most = max(sentence.FEWEST_LETTERS, width // sentence.LETTER_PIXELS)
+    across = width // sentence.LETTER_PIXELS - sentence.MARGIN_LETTERS
     for cls in panels.classes:
         if not hasattr(cls, "poll") or cls.poll(bpy.context):
-            for line in drawn(cls, thing, width).lines:
-                assert len(line) <= most, (cls.__name__, line)
+            said = drawn(cls, thing, width)
+            for line in said.lines:
+                assert len(line) <= max(sentence.FEWEST_LETTERS, across), (cls.__name__, line)
+            for line in said.boxed:
+                # A box takes room at both sides.
+                assert len(line) <= max(sentence.FEWEST_LETTERS, across - 3), (cls.__name__, line)
+
+
+@pytest.mark.parametrize("tip", ["POINT", "SPHERE", "PLATE", "ROD", "MESH"])
+def test_the_finger_panel_asks_a_point_for_its_contact_and_a_tool_for_its_sizes(palpate, tip):
+    bpy.context.scene.palpate.tip = tip
+    asked = set(drawn(part("addon.panel_finger").PALPATE_PT_finger, soft_cube()).properties)
+    assert ("contact_mode" in asked) == (tip == "POINT")
+    assert ("show_pressure" in asked) == (tip != "POINT")
+    sizes = {
+        "POINT": set(),
+        "SPHERE": {"tip_radius"},
+        "PLATE": {"plate_width", "plate_depth"},
+        "ROD": {"tip_radius", "rod_length"},
+        "MESH": {"tip_object"},
+    }
+    known = set().union(*sizes.values())
+    assert asked & known == sizes[tip]
