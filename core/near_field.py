@@ -129,6 +129,8 @@ class NearCorrection:
             "excess": field.excess,
             "regular": field.regular,
             "slopes": field.slope.reshape(-1, 3, 3),
+            "far_nodes": field.far.nodes,
+            "far_weights": field.far.weights,
             "shares": self.shares,
             "softness_of_points": self.softness,
             "own": self.own,

@@ -7,6 +7,10 @@ around, where they are accurate, by a plane fitted to it.
 One thing they are slow to get right: how far a push along the normal draws the surface around it
 sideways, and a force aside lifts it. There they are short by about 1 / r^2, half of it at two
 edges. So that share is told from the ring too, and taken for what it is, an error.
+
+A thin part bends, on the scale of the ring: no plane. But how far the far side moves is nearly all
+bending, and the elements have it right. So that is taken off the ring's samples, and added where
+the fit is used: two forces that squeeze the part between them then meet no bending.
 """
 
 from __future__ import annotations
@@ -19,6 +23,7 @@ from scipy.sparse import csr_array
 from scipy.spatial import cKDTree
 
 from .contact_points import node_normals
+from .far_side import FarSide, far_side
 from .formulation import LINEAR, SMOOTHED
 from .half_space import surface_displacement
 from .pair_blocks import pair_blocks
@@ -32,6 +37,10 @@ BELIEVED = {LINEAR: (0.6, 1.0, 0.9, 2.2), SMOOTHED: (1.2, 2.0, 1.6, 2.8)}
 # Nodes whose normals have a smaller product than the first are not of one side of an edge, from the
 # second on they are wholly.
 SAME_SIDE = (0.2, 0.7)
+
+# Thickness in mean edge lengths up to which what the far side does is taken off before the fit, and
+# from which on it is not.
+THIN = (4.0, 6.0)
 
 # How firmly slopes are held at zero, in mean squares of edge lengths.
 SLOPE_DAMPING = 0.1
@@ -65,6 +74,8 @@ class RegularField:
         aside, times the distance squared, m^3 / N at 1 Pa; negative where they fall short.
     softness : float64 (s,), 1 over the factor of Young's modulus around the node.
     trusted : float64 (s,), 0 where nothing is known and plain finite elements stay, else 1.
+    far : what lies across the body, where it is thin. What a force moves there is no part of
+        ``regular`` and ``slope``.
     """
 
     body: SoftBody
@@ -75,6 +86,7 @@ class RegularField:
     excess: NDArray[np.float64]
     softness: NDArray[np.float64]
     trusted: NDArray[np.float64]
+    far: FarSide
 
     @classmethod
     def of(cls, body: SoftBody) -> RegularField:
@@ -90,10 +102,12 @@ class RegularField:
         ring = np.flatnonzero((apart >= inner * reach) & (apart <= outer * reach) & (alike > 0))
         a, b, weight = a[ring], b[ring], alike[ring]
         beyond = pair_blocks(body, a, b) - half_space_between(body, places, normals, softness, a, b)
+        far = far_side(mesh, edges, THIN)
         # Seen at a with the force at b, and the other way round.
         node, other = np.concatenate([a, b]), np.concatenate([b, a])
         offsets = places[other] - places[node]
         beyond = np.concatenate([beyond, beyond.transpose(0, 2, 1)])
+        beyond -= _seen_across(body, far, node, other)
         weight = np.concatenate([weight, weight])
         coupling = _coupling(-offsets, normals[node] + normals[other])
         excess = _excess(node, offsets, beyond, coupling, weight, edges)
@@ -101,10 +115,8 @@ class RegularField:
         distance = np.linalg.norm(offsets, axis=1)
         beyond -= (excess[node] / distance**2)[:, None, None] * coupling
         regular, slope, known = _fitted(node, offsets, beyond, weight, edges)
-        trusted = known & (body.free_index(mesh.surface_nodes) >= 0)
-        return cls(
-            body, normals, edges, regular, slope, excess, softness, trusted.astype(np.float64)
-        )
+        trusted = (known & (body.free_index(mesh.surface_nodes) >= 0)).astype(np.float64)
+        return cls(body, normals, edges, regular, slope, excess, softness, trusted, far)
 
     def between(self, a: NDArray[np.int64], b: NDArray[np.int64]) -> NDArray[np.float64]:
         """The regular part for nodes near each other, (k, 3, 3): the mean of what both rings tell.
@@ -114,6 +126,8 @@ class RegularField:
         offset = self.places[b] - self.places[a]
         from_a = self.regular[a] + np.einsum("kz,kzxy->kxy", offset, self.slope[a])
         from_b = self.regular[b] - np.einsum("kz,kzxy->kxy", offset, self.slope[b])
+        from_a += _seen_across(self.body, self.far, a, b)
+        from_b += _seen_across(self.body, self.far, b, a)
         mean: NDArray[np.float64] = 0.5 * (from_a + from_b.transpose(0, 2, 1))
         return mean
 
@@ -137,6 +151,20 @@ class RegularField:
         """Where the surface nodes lie, (s, 3), metres."""
         places: NDArray[np.float64] = self.body.mesh.nodes[self.body.mesh.surface_nodes]
         return places
+
+
+def _seen_across(
+    body: SoftBody, far: FarSide, a: NDArray[np.int64], b: NDArray[np.int64]
+) -> NDArray[np.float64]:
+    """How far the places across from nodes ``a`` (k,) move per force on nodes ``b`` (k,),
+    (k, 3, 3); nothing where the body is thick.
+    """
+    moved = np.zeros((len(a), 3, 3))
+    thin = np.flatnonzero(far.weights[a].any(axis=1))
+    for corner in range(3):
+        seen, weight = far.nodes[a[thin], corner], far.weights[a[thin], corner]
+        moved[thin] += weight[:, None, None] * pair_blocks(body, seen, b[thin])
+    return moved
 
 
 def _coupling(offsets: NDArray[np.float64], normals: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -14,7 +14,7 @@ from .near_field import point_compliance
 from .soft_body import SoftBody
 from .tool_candidates import looked_at, moved_by, points_entered
 from .tool_contact import MOST_ADDITIONS, continued, has_lost, press_tool, touch_of
-from .tool_law import Candidates, Settled, settle_together
+from .tool_law import Candidates, Settled, along_normals, settle_together
 from .tool_touch import Load, ToolTouch
 from .tool_way import MOST_STRIDES, is_outside, stride, too_far
 from .tools import Pose, Tool
@@ -142,11 +142,35 @@ def _candidates(touches: Sequence[ToolTouch], chosen: Sequence[NDArray[np.int64]
             entries = _entries(part)
             near[entries, entries] = _as_matrix(touch.correction.between(points, points))
     matrix = elements + near
-    least, largest = np.linalg.eigvalsh(matrix)[[0, -1]]
-    if least < -ROUNDING * largest:
+    if not _is_positive(matrix, together, _facing(touches, chosen)):
         matrix = elements + _without_firmness(near)
     none = np.zeros_like(together.positions)
     return Candidates(together.positions, together.normals, matrix / touches[0].young_modulus, none)
+
+
+def _facing(touches: Sequence[ToolTouch], chosen: Sequence[NDArray[np.int64]]) -> NDArray[np.bool_]:
+    """Which of the chosen points face the middle of their tool, (p,)."""
+    sides = []
+    for touch, points in zip(touches, chosen, strict=True):
+        middle = touch.pose.position + touch.pose.rotation @ touch.tool.core.mean(axis=0)
+        away = middle - touch.surface.positions[points]
+        sides.append(np.einsum("px,px->p", touch.surface.normals[points], away) > 0.0)
+    return np.concatenate(sides)
+
+
+def _is_positive(
+    matrix: NDArray[np.float64], points: ContactPoints, pressable: NDArray[np.bool_]
+) -> bool:
+    """Whether all pushes on the pressable points together take work.
+
+    Points beside and behind the tools, which two tools may share, do not count.
+    """
+    if not pressable.any():
+        return True
+    entries = np.repeat(pressable, 3)
+    own = along_normals(matrix[np.ix_(entries, entries)], points.normals[pressable])
+    least, largest = np.linalg.eigvalsh(own)[[0, -1]]
+    return bool(least > -ROUNDING * largest)
 
 
 def _as_matrix(blocks: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -157,8 +181,8 @@ def _as_matrix(blocks: NDArray[np.float64]) -> NDArray[np.float64]:
 def _without_firmness(near: NDArray[np.float64]) -> NDArray[np.float64]:
     """The near field (3n, 3n) without what makes the elements firmer than they are.
 
-    Of a thin part on a coarse mesh it takes for its own what is the part's bending. Tools on both
-    sides of it would then squeeze less than nothing. Elements with what is left are sound.
+    By the rims of thin parts on coarse meshes the near field can be firmer than two tools may meet:
+    they would squeeze less than nothing. Elements with what is left are sound.
     """
     values, vectors = np.linalg.eigh(near)
     kept: NDArray[np.float64] = (vectors * np.maximum(values, 0.0)) @ vectors.T

@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 from measuring.inner_corner import inner_corner
 from measuring.soft_block import soft_block
+from palpate_servo import SteppedFingers, ToolContact, ToolSurface, tick_costs
 from palpate_servo import Tool as NativeTool
-from palpate_servo import ToolContact, ToolSurface, tick_costs
 from scipy.spatial.transform import Rotation
 
 from palpate.core.errors import PalpateError
 from palpate.core.servo_session import native_body, native_tool
+from palpate.core.several_tools import press_tools
 from palpate.core.tool_contact import follow_tool, press_tool, set_down
 from palpate.core.tool_surface import correction_for, surface_for
 from palpate.core.tool_touch import Load
@@ -205,3 +206,28 @@ def test_in_an_inner_corner_it_comes_to_rest_where_the_reference_does(tool):
         aside.append(touch.force[0] / scale)
     assert abs(aside[0]) < 0.05
     assert aside[1] > aside[0] + 0.05
+
+
+def test_two_fingers_that_squeeze_a_thin_strip_feel_what_the_reference_feels():
+    """12 mm thick, of two elements, by 2 mm from either side."""
+    strip, tool = soft_block((0.06, 0.012, 0.04), (8, 2, 5)), sphere(0.008)
+    native = native_body(strip, whole=True)
+
+    def places(depth):
+        sides = (depth - tool.radius, 0.012 + tool.radius - depth)
+        return np.array([[0.029, y, 0.02] for y in sides])
+
+    fingers = SteppedFingers(native, places(-0.001), young_modulus=strip.young_modulus)
+    for finger in (0, 1):
+        fingers.set_tool(native_tool(strip, native, tool), np.eye(3), finger)
+    pressing = np.array([places(depth) for depth in np.linspace(-0.001, 0.002, 150)])
+    fingers.follow(pressing)
+    forces, _ = fingers.follow(np.repeat(pressing[-1:], 200, axis=0))
+    touches = None
+    for depth in (-0.001, 0.002):
+        tools = [(tool, Pose.at(place)) for place in places(depth)]
+        touches = press_tools(strip, tools, start=touches)
+    assert all(touch.exact for touch in touches)
+    expected = np.array([touch.force for touch in touches])
+    np.testing.assert_allclose(forces[-1], expected, atol=1e-4 * np.abs(expected).max())
+    np.testing.assert_allclose(forces[-50:], forces[-50:-49].repeat(50, 0), atol=1e-4)

@@ -157,10 +157,14 @@ fn near_field(arrays: &Bound<'_, PyDict>) -> PyResult<NearField> {
     let normals = vectors("normals", &array("normals")?.extract()?)?;
     let (edges, softness, regular) = (numbers("edges")?, numbers("softness")?, blocks("regular")?);
     let (slopes, excess) = (blocks("slopes")?, numbers("excess")?);
+    let far_nodes = array("far_nodes")?.extract::<PyArrayLike2<'_, i64>>()?;
+    let far_weights = vectors("far_weights", &array("far_weights")?.extract()?)?;
     let [shares, softness_of_points] = [numbers("shares")?, numbers("softness_of_points")?];
     let own = blocks("own")?;
     let (nodes, points) = (normals.len(), shares.len());
     if [edges.len(), softness.len(), regular.len(), excess.len()] != [nodes; 4]
+        || far_nodes.as_array().dim() != (nodes, 3)
+        || far_weights.len() != nodes
         || slopes.len() != 3 * nodes
         || [softness_of_points.len(), own.len()] != [points; 2]
     {
@@ -176,6 +180,10 @@ fn near_field(arrays: &Bound<'_, PyDict>) -> PyResult<NearField> {
         excess: excess[k],
         regular: regular[k],
         slope: [0, 1, 2].map(|axis| slopes[3 * k + axis]),
+        // What is no number of a node is found to be unsound with the rest.
+        far_nodes: [0, 1, 2]
+            .map(|c| u32::try_from(far_nodes.as_array()[[k, c]]).unwrap_or(u32::MAX)),
+        far_weights: far_weights[k].to_array(),
     };
     let point = |k: usize| PointField {
         share: shares[k],

@@ -25,10 +25,15 @@ pub struct NodeField {
     /// What finite elements add to the coupling of pushes with displacements aside, times the
     /// distance squared, m^3/N at 1 Pa; negative where they fall short.
     pub excess: f64,
-    /// How far the node gives way beyond a half-space under its own force, m/N at 1 Pa.
+    /// How far the node gives way beyond a half-space under its own force, m/N at 1 Pa; on thin parts
+    /// without what the place across from it does.
     pub regular: DMat3,
     /// How that changes per metre as the force moves away, for each axis.
     pub slope: [DMat3; 3],
+    /// Corners of the triangle across the body from it.
+    pub far_nodes: [u32; 3],
+    /// What each counts of how the place across moves; nothing where the body is thick.
+    pub far_weights: [f64; 3],
 }
 
 /// What there is to know at one contact point.
@@ -69,6 +74,10 @@ impl NearField {
                 && f.excess.is_finite()
                 && f.regular.is_finite()
                 && f.slope.iter().all(DMat3::is_finite)
+                && f.far_nodes
+                    .iter()
+                    .all(|&node| (node as usize) < self.nodes.len())
+                && f.far_weights.iter().all(|weight| weight.is_finite())
         };
         let point =
             |f: &PointField| f.share.is_finite() && f.softness.is_finite() && f.own.is_finite();
@@ -103,9 +112,15 @@ impl NearField {
         self.half_space(offset, normals, softness, 0.0)
     }
 
-    /// `L_ab - T_ab`: what the body does beyond a half-space; `resolved` is `L_ab`.
+    /// `L_ab - T_ab`: what the body does beyond a half-space; `resolved` tells `L` of two nodes.
     #[inline]
-    pub(super) fn beyond(&self, a: u32, b: u32, offset: DVec3, resolved: DMat3) -> DMat3 {
+    pub(super) fn beyond(
+        &self,
+        a: u32,
+        b: u32,
+        offset: DVec3,
+        resolved: impl Fn(u32, u32) -> DMat3,
+    ) -> DMat3 {
         let [here, there] = [a, b].map(|node| &self.nodes[node as usize]);
         let apart = offset.length() / (0.5 * (here.edge + there.edge));
         let [never, wholly] = self.believed;
@@ -118,15 +133,25 @@ impl NearField {
             let fading = ((nowhere - apart) / (nowhere - within)).clamp(0.0, 1.0);
             let excess = 0.5 * (here.excess + there.excess) * fading;
             let resembled = self.half_space(offset, normals, softness, excess);
-            blocks += (resolved - resembled) * (1.0 - doubt);
+            blocks += (resolved(a, b) - resembled) * (1.0 - doubt);
         }
         if doubt > 0.0 {
             // From a to b is against the offset.
             let sloped = |f: &NodeField, way: DVec3| {
                 f.regular + f.slope[0] * way.x + f.slope[1] * way.y + f.slope[2] * way.z
             };
-            let from_b = sloped(there, offset).transpose();
-            blocks += (sloped(here, -offset) + from_b) * (0.5 * doubt);
+            let across = |f: &NodeField, loaded: u32| {
+                let mut moved = DMat3::ZERO;
+                for (&node, &weight) in f.far_nodes.iter().zip(&f.far_weights) {
+                    if weight != 0.0 {
+                        moved += resolved(node, loaded) * weight;
+                    }
+                }
+                moved
+            };
+            let from_a = sloped(here, -offset) + across(here, b);
+            let from_b = sloped(there, offset) + across(there, a);
+            blocks += (from_a + from_b.transpose()) * (0.5 * doubt);
         }
         blocks
     }

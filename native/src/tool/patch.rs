@@ -224,10 +224,10 @@ impl Patch {
     /// What the body does beyond a half-space between the point that enters and another.
     fn beyond(&mut self, body: &Body, near: &NearField, entered: &Point, other: &Point) -> DMat3 {
         let (blocks, kept, entry) = (&mut self.beyond, &mut self.of_nodes, self.entries);
+        let resolved = |a: u32, b: u32| body.block(a, b).unwrap_or(DMat3::ZERO);
         let mut block = |a: u32, b: u32| {
             blocks.kept(a, b, |a, b| {
                 let offset = body.nodes[a as usize] - body.nodes[b as usize];
-                let resolved = body.block(a, b).unwrap_or(DMat3::ZERO);
                 near.beyond(a, b, offset, resolved)
             })
         };
