@@ -2,7 +2,7 @@
 
 The St. Venant-Kirchhoff solid collapses under strong compression and then turns inside out, which
 a press on a single node brings about early. What is drawn should not, so a domain that has lost
-more than half its volume is held by k/2 (J0 - J)^2, J its det F. Above J0 nothing differs.
+more than 60 % of its volume is held by k/2 (J0 - J)^2, J its det F. Above J0 nothing differs.
 """
 
 from __future__ import annotations
