@@ -373,8 +373,8 @@ class FingerSnapshot:
     @property
     def surface_point(self) -> NDArray[np.float64] | None:
         """Where the touched point of the surface is now, m: the contact point plus the displacement
-        that all fingers' forces cause there (15). None while free, and for a body without a
-        compliance.
+        that all fingers' forces cause there (15). None while free, for a tool, and for a body
+        without a compliance.
         """
 
     @property

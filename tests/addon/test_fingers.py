@@ -101,6 +101,18 @@ def test_a_larger_fingertip_feels_more(chosen):
     assert felt[1] > 1.1 * felt[0]
 
 
+def test_a_tool_much_larger_than_the_body_presses_as_deep_as_it_is_told(chosen):
+    thing = soft_cube()
+    chosen.tip = "SPHERE"
+
+    def felt(radius):
+        chosen.tip_radius = radius
+        return forces(thing, [TOP], [DOWN])[0][2]
+
+    assert felt(1000.0) == pytest.approx(felt(10.0), rel=0.01)
+    assert felt(1000.0) > 0.02
+
+
 def test_a_plate_takes_the_surface_under_it_along(chosen):
     thing = soft_cube()
     chosen.tip, chosen.plate_width, chosen.plate_depth = "PLATE", 0.03, 0.03
