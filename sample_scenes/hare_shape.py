@@ -34,18 +34,7 @@ def hare() -> QuadMesh:
         parts.append((*ball(seat, np.array([3.8, 3.8, 4.2]), 6), Part.BEAD))
     nose = project(plush, np.array([[46.0, 0.0, 69.0]]), 0.05, rounds=4)[0]
     parts.append((*ball(nose - [1.0, 0, 0], np.array([3.4, 4.2, 3.2]), 6), Part.FELT))
-    offsets = np.cumsum([0] + [len(part[0]) for part in parts])
-    vertices = np.concatenate([part[0] for part in parts])
-    vertices[:, 2] = np.maximum(vertices[:, 2], 0.0)
-    felt, quilt = np.full(len(vertices), 10.0), np.full(len(vertices), -10.0)
-    felt[: len(body)], quilt[: len(body)] = felt_seam(body), quilt_seam(body)
-    return QuadMesh(
-        vertices=1e-3 * vertices,
-        quads=np.concatenate([p[1] + o for p, o in zip(parts, offsets, strict=False)]),
-        part=np.concatenate([np.full(len(p[1]), int(p[2])) for p in parts]),
-        felt=1e-3 * felt,
-        quilt=1e-3 * quilt,
-    )
+    return QuadMesh.of_parts(parts, felt_seam(body), quilt_seam(body))
 
 
 def ear_tip(side: float) -> Points:

@@ -4,8 +4,10 @@ The body is one signed distance field in millimetres; tail, eyes and nose are cl
 own that overlap it. All parts together are one mesh of quads: fTetWild merges them into one solid.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
+from typing import Self
 
 import numpy as np
 from distance import (
@@ -55,6 +57,30 @@ class QuadMesh:
     felt: Distances
     quilt: Distances
 
+    @classmethod
+    def of_parts(
+        cls,
+        parts: Sequence[tuple[Points, NDArray[np.int64], Part]],
+        felt: Distances,
+        quilt: Distances,
+    ) -> Self:
+        """Of parts in millimetres (vertices, quads), set down on z = 0; the seams are those of the
+        vertices of the first one, far from all others.
+        """
+        offsets = np.cumsum([0] + [len(vertices) for vertices, _, _ in parts])
+        vertices = np.concatenate([vertices for vertices, _, _ in parts])
+        vertices[:, 2] = np.maximum(vertices[:, 2], 0.0)
+        beyond = np.full(len(vertices) - len(felt), 10.0)
+        return cls(
+            vertices=1e-3 * vertices,
+            quads=np.concatenate(
+                [quads + first for (_, quads, _), first in zip(parts, offsets, strict=False)]
+            ),
+            part=np.concatenate([np.full(len(quads), int(part)) for _, quads, part in parts]),
+            felt=1e-3 * np.concatenate([felt, beyond]),
+            quilt=1e-3 * np.concatenate([quilt, -beyond]),
+        )
+
     @property
     def pinned(self) -> NDArray[np.int64]:
         """Numbers of the vertices that rest on the table."""
@@ -71,18 +97,7 @@ def mouse() -> QuadMesh:
         seat = project(plush, eye, 0.05, rounds=4)[0] - np.array([0.7, side * 0.5, 0.3])
         parts.append((*ball(seat, np.array([4.4, 4.4, 4.7]), 8), Part.BEAD))
     parts.append((*ball(np.array([61.2, 0.0, 25.0]), np.array([4.4, 5.6, 4.4]), 8), Part.FELT))
-    offsets = np.cumsum([0] + [len(p[0]) for p in parts])
-    vertices = np.concatenate([p[0] for p in parts])
-    vertices[:, 2] = np.maximum(vertices[:, 2], 0.0)
-    felt, quilt = np.full(len(vertices), 10.0), np.full(len(vertices), -10.0)
-    felt[: len(body)], quilt[: len(body)] = felt_seam(body), quilt_seam(body)
-    return QuadMesh(
-        vertices=1e-3 * vertices,
-        quads=np.concatenate([p[1] + o for p, o in zip(parts, offsets, strict=False)]),
-        part=np.concatenate([np.full(len(p[1]), int(p[2])) for p in parts]),
-        felt=1e-3 * felt,
-        quilt=1e-3 * quilt,
-    )
+    return QuadMesh.of_parts(parts, felt_seam(body), quilt_seam(body))
 
 
 def plush(points: Points) -> Distances:
