@@ -16,7 +16,8 @@ from ..core.soft_body import SoftBody
 from ..core.whole_file import refuse_missing_folder
 from . import bake_folder, bake_prediction
 from .bake_options import add_bake_options, bake_input
-from .body_figures import as_lines, body_figures
+from .body_figures import body_figures
+from .figure_lines import as_lines
 from .status_line import bake_status, show, status_line
 
 

@@ -53,11 +53,3 @@ def _compression(compliance: Compliance) -> dict[str, object]:
         "column_error": float(compliance.column_error),
         "dense_bytes": BYTES_PER_PAIR * compliance.node_count**2,
     }
-
-
-def as_lines(figures: dict[str, object]) -> str:
-    """Figures for reading, one a line."""
-    width = max(map(len, figures))
-    return "\n".join(
-        f"{name.replace('_', ' '):{width}}  {value}" for name, value in figures.items()
-    )

@@ -10,7 +10,7 @@ from ..core import cache
 from ..core.softness.durometer import read_durometer
 from ..core.softness.durometer_type import TYPES
 from .body_argument import add_body
-from .body_figures import as_lines
+from .figure_lines import as_lines
 from .place_options import add_at, add_young, young_modulus_of
 
 

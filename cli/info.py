@@ -8,7 +8,8 @@ import time
 
 from ..core import cache
 from .body_argument import add_body
-from .body_figures import as_lines, body_figures
+from .body_figures import body_figures
+from .figure_lines import as_lines
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

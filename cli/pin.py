@@ -18,7 +18,8 @@ from ..core.soft_body import SoftBody
 from ..core.whole_file import refuse_missing_folder
 from .bake_options import AXES
 from .body_argument import add_body
-from .body_figures import as_lines, body_figures
+from .body_figures import body_figures
+from .figure_lines import as_lines
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

@@ -19,8 +19,8 @@ from ..core.soft_body import SoftBody
 from ..core.stiffness import lame_parameters
 from ..core.whole_file import whole_file
 from .body_argument import add_body
-from .body_figures import as_lines
 from .felt_option import add_felt, felt_forces, refuse_with_tool
+from .figure_lines import as_lines
 from .press_tool import pressed_tools, tool_figures, tool_summary
 from .tool_option import KINDS, tool_from
 

@@ -28,8 +28,8 @@ from ..core.servo_session import STATES, LinkDevice, native_body, servo_on
 from ..core.soft_body import SoftBody
 from ..core.stiffness import lame_parameters
 from .body_argument import add_body
-from .body_figures import as_lines
 from .felt_option import add_felt, softening_table
+from .figure_lines import as_lines
 from .haply import add_haply_options, connect_haply
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from ..core.softness.shore import (
     young_from_shore,
     young_range,
 )
-from .body_figures import as_lines
+from .figure_lines import as_lines
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

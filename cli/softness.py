@@ -15,7 +15,7 @@ from ..core.softness.ramp import legend
 from ..core.softness.softness_map import FINGER_RADIUS, softness_map
 from ..core.whole_file import refuse_missing_folder, whole_file
 from .body_argument import add_body
-from .body_figures import as_lines
+from .figure_lines import as_lines
 from .place_options import add_young, refuse_suffix, young_modulus_of
 
 KINDS = (".npy", ".ply")

@@ -156,6 +156,15 @@ def test_every_command_and_option_exists(page):
     assert not [problem for line in ours for problem in wrong_options(line)]
 
 
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
+def test_every_option_of_a_benchmark_exists(page):
+    text = page.read_text(encoding="utf-8")
+    for program, rest in re.findall(r"python ((?:benchmarks|demo)/\w+\.py)([^`|\n]*)", text):
+        source = (REPOSITORY / program).read_text(encoding="utf-8")
+        # An option as it is written where it is declared.
+        assert not [o for o in OPTION.findall(rest) if f'"{o}"' not in source], program
+
+
 def test_an_option_that_does_not_exist_is_noticed():
     assert wrong_options("palpate press B.npz --att 0 0 0") == ["press --att"]
     assert not wrong_options("palpate press B.npz --at 0 0 0")

@@ -124,7 +124,7 @@ def test_people_get_the_stages_of_the_tick_as_a_table():
     text = servo_command._for_people({"ticks": 7, "stages_us": stages, "faults": {}})
     assert text.splitlines() == [
         "ticks   7",
-        "faults  {}",
+        "faults  none",
         "tick, us       mean      p99      max",
         "read           1.23     2.00    34.50",
         "write          1.23     2.00    34.50",

@@ -1,0 +1,60 @@
+"""Figures for reading; programs take them as JSON, where no digit is left out."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+# Beside the largest of its row or table a number below this share is rounding.
+NOTHING = 1e-9
+
+
+def as_lines(figures: dict[str, object]) -> str:
+    """Figures one a line, without those that say nothing; numbers to six digits."""
+    told = {name: value for name, value in figures.items() if value is not None and value != []}
+    width = max(map(len, told), default=0)
+    return "\n".join(
+        f"{name.replace('_', ' '):{width}}  {_text(value)}" for name, value in told.items()
+    )
+
+
+def _text(value: object) -> str:
+    match value:
+        case bool():
+            return "yes" if value else "no"
+        case float():
+            return f"{value:.6g}"
+        case dict() if not value:
+            return "none"
+        case dict():
+            return ", ".join(
+                f"{name.replace('_', ' ')} {_text(one)}" for name, one in value.items()
+            )
+        case list() if _is_numeric(value):
+            return _rows(_without_rounding(np.array(value)))
+        case list():
+            return ", ".join(map(_text, value))
+        case _:
+            return str(value)
+
+
+def _is_numeric(values: list[object]) -> bool:
+    try:
+        return np.array(values).dtype.kind in "if"
+    except ValueError:
+        return False
+
+
+def _without_rounding(table: NDArray[Any]) -> NDArray[Any]:
+    largest = np.abs(table).max(initial=0)
+    kept: NDArray[Any] = np.where(np.abs(table) <= NOTHING * largest, 0, table)
+    return kept
+
+
+def _rows(table: NDArray[Any]) -> str:
+    """Numbers apart by a space, rows of a table by a semicolon."""
+    if table.ndim > 1:
+        return "; ".join(map(_rows, table))
+    return " ".join(map(_text, table.tolist()))
