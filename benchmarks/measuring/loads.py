@@ -1,7 +1,8 @@
-"""Bodies under named loads that deform them far: five presses, three bends."""
+"""Bodies under named loads that deform them far: five presses, three bends, and on large bodies."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -16,9 +17,11 @@ from palpate.core.surface_compliance import surface_compliance
 from palpate.core.tet_mesh import TetMesh
 
 from .bodies import PROJECT, stored_body
+from .solved_body import SolvedBody, cut_in_eight
 
 CUBE_EDGE = 0.05
 BEAM_LENGTH, BEAM_WIDTH, BEAM_CELLS = 0.12, 0.02, 6
+LARGE_BEAM_CELLS = 22
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +58,19 @@ def loads() -> list[Load]:
         twisted("beam, twisted", beam, 1.2),
         pushed("hare, ear bent aside", "bend", hare, tip, 0.012, [0, -np.sign(tip[1]), 0], 0.06),
     ]
+
+
+def large_loads() -> Iterator[Load]:
+    """Two presses and two bends of bodies of 12 to 20 thousand nodes."""
+    hare = large_hare()
+    tip = highest(hare)
+    yield pushed("large hare, ear", "bend", hare, tip, 0.012, [0, -np.sign(tip[1]), 0], 0.06)
+    yield pushed("large hare, belly", "press", hare, [0.05, 0, 0.035], 0.015, [-1, 0, 0], 0.004)
+    mouse = large_mouse()
+    yield pushed("mouse-20k, back", "press", mouse, highest(mouse), 0.015, [0, 0, -1], 0.005)
+    beam = large_beam()
+    end = [BEAM_LENGTH, 0, 0]
+    yield pushed("large beam, bent", "bend", beam, end, 0.03, [0, 0, 1], 0.06)
 
 
 def pushed(
@@ -128,11 +144,14 @@ def cube_body() -> SoftBody:
 @cache
 def beam_body() -> SoftBody:
     """A beam along x with a square section, clamped at x = 0."""
-    mesh, _ = paper_cube(1.0, BEAM_CELLS)
+    return _body(*_beam_tets(BEAM_CELLS), 0.3, 10_000.0)
+
+
+def _beam_tets(cells: int) -> tuple[TetMesh, NDArray[np.int64]]:
+    mesh, _ = paper_cube(1.0, cells)
     nodes = mesh.nodes * [BEAM_LENGTH, BEAM_WIDTH, BEAM_WIDTH]
     nodes[:, 1:] -= BEAM_WIDTH / 2
-    beam = TetMesh.checked(nodes, mesh.tets)
-    return _body(beam, np.flatnonzero(nodes[:, 0] == 0.0), 0.3, 10_000.0)
+    return TetMesh.checked(nodes, mesh.tets), np.flatnonzero(nodes[:, 0] == 0.0)
 
 
 @cache
@@ -145,10 +164,31 @@ def mouse_body() -> SoftBody:
 @cache
 def hare_body() -> SoftBody:
     """The plush hare with long ears, from the sample scenes."""
+    return _body(*hare_tets(), 0.3, 1000.0)
+
+
+def hare_tets() -> tuple[TetMesh, NDArray[np.int64]]:
+    """Its tetrahedra and pins."""
     file: Path = PROJECT / "sample_scenes" / "hare-tets.npz"
     with np.load(file) as stored:
         mesh = TetMesh.checked(stored["X"], stored["T"])
-        return _body(mesh, np.unique(stored["fixed"]).astype(np.int64), 0.3, 1000.0)
+        return mesh, np.unique(stored["fixed"]).astype(np.int64)
+
+
+def large_hare() -> SolvedBody:
+    """The hare with every tetrahedron cut in eight, 12,000 nodes."""
+    return SolvedBody.of(*cut_in_eight(*hare_tets()), 0.3, 1000.0)
+
+
+def large_mouse() -> SolvedBody:
+    """The plush mouse of 20,000 nodes."""
+    mouse = stored_body("mouse-20k")
+    return SolvedBody.of(mouse.mesh, mouse.fixed, 0.3, 1000.0)
+
+
+def large_beam() -> SolvedBody:
+    """The beam of :func:`beam_body` with 12,000 nodes."""
+    return SolvedBody.of(*_beam_tets(LARGE_BEAM_CELLS), 0.3, 10_000.0)
 
 
 def _body(

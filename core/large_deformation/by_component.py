@@ -11,12 +11,20 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+# The axes after and before each, in turn.
+NEXT, LAST = np.array([1, 2, 0]), np.array([2, 0, 1])
+
+
+def diagonal(matrices: Array) -> Array:
+    """A view of the diagonal, (3, d)."""
+    return matrices.reshape(9, -1)[::4]
+
 
 def identity_added(matrices: Array) -> Array:
     """I + A."""
     added = matrices.copy()
-    for axis in range(3):
-        added[axis, axis] += 1.0
+    on_diagonal = diagonal(added)
+    on_diagonal += 1.0
     return added
 
 
@@ -41,21 +49,34 @@ def symmetric_part(matrices: Array) -> Array:
 def axial(matrices: Array) -> Array:
     """The vector w of A - A^T = [w]x, twice the rotation where A is a small displacement's."""
     a = matrices
-    return np.stack([a[2, 1] - a[1, 2], a[0, 2] - a[2, 0], a[1, 0] - a[0, 1]])
+    found = np.empty((3, a.shape[2]))
+    np.subtract(a[2, 1], a[1, 2], out=found[0])
+    np.subtract(a[0, 2], a[2, 0], out=found[1])
+    np.subtract(a[1, 0], a[0, 1], out=found[2])
+    return found
 
 
 def cross_matrices(vectors: Array) -> Array:
     """[w]x, so that [w]x a = w x a."""
-    x, y, z = vectors
-    nothing = np.zeros_like(x)
-    return np.stack([[nothing, -z, y], [z, nothing, -x], [-y, x, nothing]])
+    found = np.zeros((3, 3, vectors.shape[1]))
+    found[2, 1], found[0, 2], found[1, 0] = vectors
+    found[1, 2], found[2, 0], found[0, 1] = -vectors
+    return found
 
 
 def cross(a: Array, b: Array) -> Array:
     """The vector product a x b."""
-    return np.stack(
-        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-    )
+    found: Array = a[NEXT] * b[LAST]
+    found -= a[LAST] * b[NEXT]
+    return found
+
+
+def cofactors(matrices: Array) -> Array:
+    """Cofactors of A, det A times its inverse transposed, (3, 3, d)."""
+    following, last = matrices[NEXT], matrices[LAST]
+    found: Array = following[:, NEXT] * last[:, LAST]
+    found -= following[:, LAST] * last[:, NEXT]
+    return found
 
 
 def determinants(matrices: Array) -> Array:
@@ -70,12 +91,6 @@ def inverse_above_identity(matrices: Array) -> Array:
     So the determinant is at least 1 and no entry of the inverse is larger, which rounding would not
     keep where the eigenvalues differ by many orders of magnitude.
     """
-    rows = np.stack(
-        [
-            cross(matrices[1], matrices[2]),
-            cross(matrices[2], matrices[0]),
-            cross(matrices[0], matrices[1]),
-        ]
-    )
+    rows = cofactors(matrices)
     rows /= np.maximum(np.einsum("id,id->d", matrices[0], rows[0]), 1.0)
     return np.clip(rows, -1.0, 1.0, out=rows)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .by_component import Array, cross, cross_matrices
+from .by_component import Array, cross, cross_matrices, diagonal
 
 # Below this angle squared the closed form of the third coefficient loses digits, and four terms of
 # its series do not.
@@ -23,9 +23,8 @@ def rotations_less_identity(vectors: Array) -> Array:
     scaled = versine * vectors
     turned: Array = np.einsum("id,jd->ijd", scaled, vectors)
     turned += cross_matrices(sine * vectors)
-    squared *= versine
-    for axis in range(3):
-        turned[axis, axis] -= squared
+    on_diagonal = diagonal(turned)
+    on_diagonal -= squared * versine
     return turned
 
 

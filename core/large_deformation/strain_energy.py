@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 
 from .by_component import (
     Array,
-    cross,
+    cofactors,
     determinants,
+    diagonal,
     identity_added,
     product,
     symmetric_part,
@@ -59,8 +60,8 @@ class EnergyTerm:
         strain += 0.5 * transposed_product(gradient, gradient)
         stress = 2.0 * self.shear_modulus * strain
         pressure = self.first_lame * (strain[0, 0] + strain[1, 1] + strain[2, 2])
-        for axis in range(3):
-            stress[axis, axis] += pressure
+        on_diagonal = diagonal(stress)
+        on_diagonal += pressure
         energy = 0.5 * float(np.einsum("ijd,ijd->", stress, strain))
         stress += product(gradient, stress)
         return StressedTerm(energy + self._resist_collapse(gradient, stress), stress)
@@ -74,10 +75,7 @@ class EnergyTerm:
             return 0.0
         stiffness = RESISTANCE * self.shear_modulus[near]
         pressure = stiffness * lacking[near]
-        rows = deformed[:, :, near]
-        for axis in range(3):
-            cofactors = cross(rows[axis - 2], rows[axis - 1])
-            stress[axis][:, near] -= pressure * cofactors
+        stress[:, :, near] -= pressure * cofactors(deformed[:, :, near])
         return 0.5 * float(pressure @ lacking[near])
 
 

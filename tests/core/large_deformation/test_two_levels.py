@@ -135,6 +135,14 @@ def test_pinned_places_stay(beam, end_load):
     assert np.abs(at_pins).max() < 0.005 * np.abs(found).max()
 
 
+def test_forces_are_the_slope_of_the_energy_of_strains_and_springs(beam, rng):
+    energy = beam.levels.relaxation.energy
+    moved, way = 0.01 * rng.normal(size=(2, 3, beam.levels.surface.shape[1]))
+    ends = [energy.stressed(moved + sign * 1e-6 * way).energy for sign in (1, -1)]
+    slope = (energy.forces(energy.stressed(moved)) * way).sum()
+    assert slope == pytest.approx((ends[0] - ends[1]) / 2e-6, rel=1e-6)
+
+
 def test_it_depends_continuously_on_the_forces(beam, end_load):
     """From rest through loads that shorten steps, and from one load to another."""
     crush = beam.loaded(beam.positions[:, 0] == LENGTH, [-1.0, 0.0, 0.0], LENGTH / 2)
