@@ -7,8 +7,9 @@ from .japanese import WORDS as JAPANESE
 
 DOMAIN = __package__
 LANGUAGES = {"de_DE": GERMAN, "de": GERMAN, "ja_JP": JAPANESE, "ja": JAPANESE}
-# Blender looks up labels of operators in a context of their own.
-CONTEXTS = ("*", "Operator")
+# Blender looks up labels of operators in a context of their own, and those that its own dictionary
+# has in another sense in ours.
+CONTEXTS = ("*", "Operator", "Palpate")
 
 
 def register() -> None:

@@ -19,6 +19,8 @@ def _place(name: str, description: str) -> object:
 class PALPATE_OT_pinch(ModalPress, bpy.types.Operator):
     bl_idname = "palpate.pinch"
     bl_label = "Pinch"
+    # In Blender's own dictionary a pinch is what a sculpting brush does, and that one goes first.
+    bl_translation_context = "Palpate"
     bl_description = (
         "Squeeze the soft object between two fingers: drag each handle, the other stays where it "
         "is. Enter keeps the shape, Escape restores it. From scripts: EXEC_DEFAULT with at_1, "

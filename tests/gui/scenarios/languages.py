@@ -6,6 +6,8 @@ import bpy
 from shown import all_panels_open
 from stage import Stage, Wait
 
+from bl_ext.user_default.palpate.addon.translations import LANGUAGES
+
 
 def panel_and_view_speak_japanese_and_german(stage: Stage) -> Wait:
     with all_panels_open():
@@ -24,6 +26,18 @@ def _in_languages(stage: Stage) -> Wait:
             view.language = language
             label = bpy.app.translations.pgettext_iface("Make Soft", "Operator")
             assert label == said
+            assert not _said_otherwise(LANGUAGES[language])
             yield from stage.picture(language)
     finally:
         view.language = before
+
+
+def _said_otherwise(words: dict[str, str]) -> list[str]:
+    """Labels of operators for which Blender's own dictionary has another word, in its sense."""
+    types = [getattr(bpy.ops.palpate, name).get_rna_type() for name in dir(bpy.ops.palpate)]
+    return [
+        kind.name
+        for kind in types
+        if bpy.app.translations.pgettext_iface(kind.name, kind.translation_context)
+        != words[kind.name]
+    ]
