@@ -35,7 +35,7 @@ class FramePlan:
 
 # For bodies of at most so many free nodes, and for all others: what a frame of 60 Hz holds.
 PLANS = ((600, FramePlan(3)), (1200, FramePlan(2)), (3000, FramePlan(2, 600)))
-PLAN_OF_LARGE = FramePlan(1, 1000)
+PLAN_OF_LARGE = FramePlan(2, 1000)
 
 
 def frame_plan(free_nodes: int) -> FramePlan:
