@@ -138,7 +138,7 @@ def _candidates(touches: Sequence[ToolTouch], chosen: Sequence[NDArray[np.int64]
     elements = _as_matrix(point_compliance(touches[0].body, together, every, every))
     near = np.zeros_like(elements)
     for touch, points, part in zip(touches, chosen, _parts(chosen), strict=True):
-        if touch.correction is not None:
+        if touch.correction is not None and points.size:
             entries = _entries(part)
             near[entries, entries] = _as_matrix(touch.correction.between(points, points))
     matrix = elements + near

@@ -231,3 +231,28 @@ def test_two_fingers_that_squeeze_a_thin_strip_feel_what_the_reference_feels():
     expected = np.array([touch.force for touch in touches])
     np.testing.assert_allclose(forces[-1], expected, atol=1e-4 * np.abs(expected).max())
     np.testing.assert_allclose(forces[-50:], forces[-50:-49].repeat(50, 0), atol=1e-4)
+
+
+def test_a_surface_that_another_finger_has_bulged_is_met_where_it_has_gone():
+    """One pushes a strip 3 mm aside, the other comes from beyond: no step, and the reference's."""
+    strip, tool = soft_block((0.06, 0.008, 0.04), (8, 2, 6)), sphere(0.012)
+    native = native_body(strip, whole=True)
+
+    def places(depth, gap):
+        return np.array([[0.029, y, 0.03] for y in (depth - tool.radius, 0.02 + gap)])
+
+    fingers = SteppedFingers(native, places(-0.001, 0.006), young_modulus=strip.young_modulus)
+    for finger in (0, 1):
+        fingers.set_tool(native_tool(strip, native, tool), np.eye(3), finger)
+    fingers.follow(np.array([places(depth, 0.006) for depth in np.linspace(-0.001, 0.003, 150)]))
+    coming = np.array([places(0.003, gap) for gap in np.linspace(0.006, 0.0023, 400)])
+    forces, _ = fingers.follow(coming)
+    meeting = forces[:, 1, 1]
+    touches = None
+    for gap in (0.006, 0.0023):
+        tools = [(tool, Pose.at(place)) for place in places(0.003, gap)]
+        touches = press_tools(strip, tools, start=touches)
+    expected = touches[1].force[1]
+    forces, _ = fingers.follow(np.repeat(coming[-1:], 200, axis=0))
+    assert forces[-1, 1, 1] == pytest.approx(expected, rel=1e-3)
+    assert np.abs(np.diff(meeting)).max() < 0.03 * expected

@@ -76,6 +76,8 @@ pub struct ToolContact {
     place_of: Vec<u16>,
     /// Displacements of nodes by other fingers, in the tick that is told.
     moved_nodes: Vec<(u64, DVec3)>,
+    /// How far they moved the surface nearest to the tool in the last tick, m.
+    carried: DVec3,
     tick: u64,
 }
 
@@ -102,6 +104,7 @@ impl ToolContact {
             nodes: Vec::with_capacity(MOST_NODES),
             place_of: vec![NOWHERE; nodes],
             moved_nodes: vec![(0, DVec3::NAN); nodes],
+            carried: DVec3::ZERO,
             tick: 0,
         }
     }
@@ -148,7 +151,7 @@ impl ToolContact {
 
     /// Forgets all contact; the next pose is where the tool appears.
     pub fn lift(&mut self) {
-        self.pose = None;
+        (self.pose, self.carried) = (None, DVec3::ZERO);
         self.let_go();
     }
 
@@ -212,8 +215,10 @@ impl ToolContact {
             self.lift();
             return Err(NotANumber);
         }
-        // A tool that lost the surface while in the body would come out at any side.
-        if was_pressed && self.felt.pressed == 0 && !self.is_outside(&pose) {
+        // A tool that lost the surface, as others have moved it, while in the body would come out at
+        // any side.
+        let back = pose.moved(-self.carried);
+        if was_pressed && self.felt.pressed == 0 && !self.is_outside(&back) {
             self.is_free = false;
             self.let_go();
         }

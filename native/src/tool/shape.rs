@@ -31,6 +31,15 @@ impl Pose {
         self.position.is_finite() && self.rotation.is_finite()
     }
 
+    /// The same turn elsewhere.
+    #[inline]
+    pub fn moved(&self, by: DVec3) -> Self {
+        Self {
+            position: self.position + by,
+            ..*self
+        }
+    }
+
     /// A place of the body in the tool's frame.
     #[inline]
     pub fn to_tool(&self, point: DVec3) -> DVec3 {

@@ -52,7 +52,8 @@ impl ToolContact {
                 self.effort.left += 1;
             }
         }
-        let tool = &self.tool;
+        self.carried = self.carried_by(pose, outside, young_modulus);
+        let (tool, carried) = (&self.tool, self.carried);
         self.entering.clear();
         let (points, patch) = (self.surface.points(), &self.patch);
         let entering = &mut self.entering;
@@ -70,6 +71,13 @@ impl ToolContact {
             |middle, radius| tool.least_distance(pose.to_tool(middle)) <= margin + radius,
             |point| offer(point, DVec3::ZERO),
         );
+        if carried != DVec3::ZERO {
+            let back = pose.moved(-carried);
+            self.surface.tree().visit(
+                |middle, radius| tool.least_distance(back.to_tool(middle)) <= margin + radius,
+                |point| offer(point, carried),
+            );
+        }
         // Deep in the body the tool is past where the points were at rest: they come in from the side.
         for slot in patch.slots() {
             if slot.force != DVec3::ZERO {
