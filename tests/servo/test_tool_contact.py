@@ -231,6 +231,8 @@ def test_two_fingers_that_squeeze_a_thin_strip_feel_what_the_reference_feels():
     expected = np.array([touch.force for touch in touches])
     np.testing.assert_allclose(forces[-1], expected, atol=1e-4 * np.abs(expected).max())
     np.testing.assert_allclose(forces[-50:], forces[-50:-49].repeat(50, 0), atol=1e-4)
+    for finger, force in zip(fingers.snapshot().fingers, forces[-1], strict=True):
+        np.testing.assert_allclose(finger.point_forces.sum(axis=0), -force, atol=1e-9)
 
 
 def test_a_surface_that_another_finger_has_bulged_is_met_where_it_has_gone():

@@ -16,6 +16,7 @@ use super::tool::{ToolContact, tip};
 use super::vectors::{Rows, Triple, finite, positive, rotation as turn};
 use crate::cones::MAX_FINGERS;
 use crate::device::{Device, DeviceFrame, LinkReport, Probe, Reading};
+use crate::pressed_patch::PressedPatch;
 use crate::proxy::Feel;
 use crate::safety::Limits;
 use crate::servo::{Options, Servo, Settings};
@@ -74,6 +75,7 @@ struct Stepped {
     settings: Settings,
     settings_in: Input<Settings>,
     snapshots: Output<Published>,
+    patches: Vec<Output<PressedPatch>>,
     period: f64,
     ticks: u64,
 }
@@ -154,11 +156,13 @@ impl SteppedFingers {
             samples_in,
         );
         let period = 1.0 / f64::from(options.rate_hz);
-        let mut tips = Vec::new();
+        let (mut tips, mut patches) = (Vec::new(), Vec::new());
         for finger in &mut servo.fingers {
             let (hand, holder) = exchange_tips(Tip::Point);
-            finger.tips = holder;
+            let (patches_in, patches_out) = triple_buffer(&PressedPatch::default());
+            (finger.tips, finger.patches) = (holder, Some(patches_in));
             tips.push(hand);
+            patches.push(patches_out);
         }
         servo.tick(0.0);
         Ok(Self(Mutex::new(Stepped {
@@ -168,6 +172,7 @@ impl SteppedFingers {
             settings,
             settings_in,
             snapshots,
+            patches,
             period,
             ticks: 0,
         })))
@@ -255,7 +260,11 @@ impl SteppedFingers {
     }
 
     fn snapshot(&self, py: Python<'_>) -> PyResult<Py<Snapshot>> {
-        Snapshot::of(py, self.stepped().snapshots.read(), &[])
+        let stepped = &mut *self.stepped();
+        // No tick goes on meanwhile: all of the same one.
+        let patches = stepped.patches.iter_mut();
+        let patches: Vec<PressedPatch> = patches.map(|patch| patch.read().clone()).collect();
+        Snapshot::of(py, stepped.snapshots.read(), &patches)
     }
 }
 
