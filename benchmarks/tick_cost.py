@@ -8,8 +8,10 @@ set down and lifted. "Long" is a tick over 700 us. Time is the thread's own
 (CLOCK_THREAD_CPUTIME_ID), which on a shared or virtual machine counts what others took, too. Two
 things tell these apart:
 
-* a tick over 500 us is gone through again five times from the same state (that it computes the same
-  is checked): the least time is its computing;
+* a tick over 500 us is gone through again from the same state (that it computes the same is
+  checked) until it takes less, ten times at most: the least time is its computing;
+* as taken are all ticks but those, one in 200, before which that state was copied: that leaves
+  little else in the caches, and such a tick takes a quarter to a half longer;
 * after every fourth tick a loop of fixed work runs, of about 100 us: what is long there is the
   machine alone. The table has how many long ticks that makes expect among as much computing.
 
@@ -192,7 +194,7 @@ def expected_by_control(costs: PathCosts) -> float:
     control, taken = costs["control"], costs["taken"]
     lacking = LONGEST - float(np.median(costs["computing"]))
     longer = (control - np.median(control) > lacking).sum()
-    return float(longer * taken.sum() / control.sum())
+    return float(longer * taken[~costs["copied"]].sum() / control.sum())
 
 
 def print_tools(body: SoftBody, surface: Body, ticks: int, only: str | None) -> bool:
@@ -227,7 +229,8 @@ def print_tools(body: SoftBody, surface: Body, ticks: int, only: str | None) -> 
 
 def print_costs(slide: Slide, friction: float, costs: PathCosts) -> None:
     """One row."""
-    computing, taken, pressed = 1e6 * costs["computing"], 1e6 * costs["taken"], costs["pressed"]
+    computing, pressed = 1e6 * costs["computing"], costs["pressed"]
+    taken = 1e6 * costs["taken"][~costs["copied"]]
     middle, higher = np.percentile(computing, [50, 99.9])
     few, many = pressed.min(), pressed.max()
     found = 100.0 * float(costs["exact"].mean())

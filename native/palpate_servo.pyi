@@ -511,6 +511,8 @@ class PathCosts(TypedDict):
     """CPU time, s."""
     computing: NDArray[np.float64]
     """The least CPU time of the same tick, where it was gone through again; else as taken, s."""
+    copied: NDArray[np.bool_]
+    """The state was copied just before, for going through again: the caches were full of that."""
     control: NDArray[np.float64]
     """CPU time of each round of the fixed work (t / 4,), s."""
     exact: NDArray[np.bool_]
@@ -564,9 +566,9 @@ class ToolContact:
     ) -> PathCosts:
         """Follow poses (t, 3), (t, 3, 3), one a tick, and tell what each cost. For benchmarks.
 
-        replay_over: ticks that took longer, s, are gone through five times again from a state kept
-        before; RuntimeError where one comes out different. control: about as long, s, a loop of
-        fixed work takes after every fourth tick.
+        replay_over: ticks that took longer, s, are gone through again from a state kept before,
+        until they do not, ten times at most; RuntimeError where one comes out different. control:
+        about as long, s, a loop of fixed work takes after every fourth tick.
         """
 
     @property

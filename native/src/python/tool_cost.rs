@@ -2,8 +2,9 @@
 //!
 //! A processor that is shared (a virtual one, too) charges a thread with time that it did not have.
 //! A tick computes the same from the same state, so one that took long is led there again from a
-//! state kept before: the least of all its times is the nearest to what it computes. Beside it runs a
-//! loop of fixed work, the control: what is long there is the machine alone.
+//! state kept before, until it does not, some times at most: the least of all its times is the nearest
+//! to what it computes. A tick before which the state was copied finds the caches full of the copy, and
+//! is marked. Beside it runs a loop of fixed work, the control: what is long there is the machine alone.
 
 use std::hint::black_box;
 
@@ -17,8 +18,8 @@ use crate::tool::shape::Pose;
 
 /// Ticks between two states that are kept.
 const STRETCH: usize = 200;
-/// How often a stretch with a long tick is gone through again.
-const REPLAYS: usize = 5;
+/// How often a stretch with a long tick is gone through again, at most.
+const REPLAYS: usize = 10;
 /// Ticks to one round of the control.
 const TICKS_A_CONTROL: usize = 4;
 /// Rounds that its length is found from.
@@ -40,6 +41,8 @@ pub struct Costs {
     taken: Vec<f64>,
     computing: Vec<f64>,
     control: Vec<f64>,
+    /// The state was copied just before: the tick found the caches full of that.
+    copied: Vec<bool>,
     felt: Vec<Felt>,
 }
 
@@ -59,12 +62,16 @@ impl Timing {
                 }
             })?;
             costs.taken.extend(&taken);
-            if let Some(kept) = kept
-                && taken.iter().any(|&seconds| seconds > self.replay_over)
-            {
+            let is_copied = |tick: usize| tick == 0 && kept.is_some();
+            costs.copied.extend((0..taken.len()).map(is_copied));
+            if let Some(kept) = &kept {
                 for _ in 0..REPLAYS {
-                    let (again, same) = self.timed(&mut kept.clone(), stretch, |_| ())?;
-                    if same != felt {
+                    let is_long = |&seconds: &f64| seconds > self.replay_over;
+                    let Some(last) = taken.iter().rposition(is_long) else {
+                        break;
+                    };
+                    let (again, same) = self.timed(&mut kept.clone(), &stretch[..=last], |_| ())?;
+                    if same != felt[..=last] {
                         return Err("a tick from the same state came out different".into());
                     }
                     for (least, again) in taken.iter_mut().zip(again) {
@@ -133,6 +140,7 @@ impl Costs {
         dict.set_item("taken", PyArray1::from_vec(py, self.taken))?;
         dict.set_item("computing", PyArray1::from_vec(py, self.computing))?;
         dict.set_item("control", PyArray1::from_vec(py, self.control))?;
+        dict.set_item("copied", PyArray1::from_vec(py, self.copied))?;
         let felt = &self.felt;
         dict.set_item(
             "exact",

@@ -4,6 +4,9 @@
 use super::wide::widely;
 use super::{MOST_POINTS, room};
 
+/// From one row to the next: an odd number of lines of a processor's cache, so that a column lies in
+/// all of its sets.
+const ROW: usize = MOST_POINTS + 8;
 /// Sums that run beside each other, so that no addition waits for the one before.
 const LANES: usize = 8;
 
@@ -75,7 +78,7 @@ impl Default for Factor {
     fn default() -> Self {
         Self {
             size: 0,
-            rows: room(MOST_POINTS * MOST_POINTS),
+            rows: room(MOST_POINTS * ROW),
             inverse_pivots: vec![0.0; MOST_POINTS],
             column: vec![0.0; MOST_POINTS],
         }
@@ -86,7 +89,7 @@ impl Factor {
     /// Row `i`: the first i + 1 numbers of the matrix are to be put there, the factor's come out.
     #[inline]
     pub fn row_mut(&mut self, i: usize) -> &mut [f64] {
-        &mut self.rows[i * MOST_POINTS..][..MOST_POINTS]
+        &mut self.rows[i * ROW..][..MOST_POINTS]
     }
 
     /// Decomposes the matrix in the rows; false where it is not positive definite to rounding.
@@ -107,8 +110,8 @@ impl Factor {
     /// Lets row and column `k` of the matrix go; those behind move up.
     pub fn remove(&mut self, k: usize) {
         for i in k + 1..self.size {
-            let (above, here) = self.rows.split_at_mut(i * MOST_POINTS);
-            let up = &mut above[(i - 1) * MOST_POINTS..];
+            let (above, here) = self.rows.split_at_mut(i * ROW);
+            let up = &mut above[(i - 1) * ROW..];
             self.column[i - 1] = here[k];
             up[..k].copy_from_slice(&here[..k]);
             up[k..i].copy_from_slice(&here[k + 1..=i]);
@@ -116,13 +119,13 @@ impl Factor {
         self.size -= 1;
         // What the column gave to the rows behind, turned into them: a plane rotation for each.
         for m in k..self.size {
-            let (own, gone) = (self.rows[m * MOST_POINTS + m], self.column[m]);
+            let (own, gone) = (self.rows[m * ROW + m], self.column[m]);
             let pivot = (own * own + gone * gone).sqrt();
             let (cosine, sine) = (own / pivot, gone / pivot);
-            self.rows[m * MOST_POINTS + m] = pivot;
+            self.rows[m * ROW + m] = pivot;
             self.inverse_pivots[m] = 1.0 / pivot;
             for i in m + 1..self.size {
-                let (entry, gone) = (&mut self.rows[i * MOST_POINTS + m], &mut self.column[i]);
+                let (entry, gone) = (&mut self.rows[i * ROW + m], &mut self.column[i]);
                 (*entry, *gone) = (
                     cosine * *entry + sine * *gone,
                     cosine * *gone - sine * *entry,
@@ -146,7 +149,7 @@ impl Factor {
 widely! {
     fn solve_lower(rows: &[f64], inverse_pivots: &[f64], size: usize, b: &mut [f64]) {
         for i in 0..size {
-            let row = &rows[i * MOST_POINTS..][..i];
+            let row = &rows[i * ROW..][..i];
             b[i] = (b[i] - dot(row, &b[..i])) * inverse_pivots[i];
         }
     }
@@ -157,7 +160,7 @@ widely! {
         for i in (0..size).rev() {
             b[i] *= inverse_pivots[i];
             let (rest, x) = b.split_at_mut(i);
-            let row = &rows[i * MOST_POINTS..][..i];
+            let row = &rows[i * ROW..][..i];
             for (entry, l) in rest.iter_mut().zip(row) {
                 *entry -= x[0] * l;
             }
@@ -174,8 +177,8 @@ fn root(own: f64, pivot: f64) -> Option<f64> {
 
 widely! {
     fn append(rows: &mut [f64], inverse_pivots: &mut [f64], size: usize) -> bool {
-        let (above, row) = rows.split_at_mut(size * MOST_POINTS);
-        for (j, before) in above.chunks_exact(MOST_POINTS).enumerate() {
+        let (above, row) = rows.split_at_mut(size * ROW);
+        for (j, before) in above.chunks_exact(ROW).enumerate() {
             row[j] = (row[j] - dot(&row[..j], &before[..j])) * inverse_pivots[j];
         }
         let (head, own) = row.split_at_mut(size);
@@ -191,23 +194,23 @@ widely! {
     /// Column after column, four rows at once: the entries of one column do not wait for each other.
     fn decompose(rows: &mut [f64], inverse_pivots: &mut [f64], size: usize) -> bool {
         for j in 0..size {
-            let (above, below) = rows[..size * MOST_POINTS].split_at_mut((j + 1) * MOST_POINTS);
-            let (head, own) = above[j * MOST_POINTS..][..=j].split_at_mut(j);
+            let (above, below) = rows[..size * ROW].split_at_mut((j + 1) * ROW);
+            let (head, own) = above[j * ROW..][..=j].split_at_mut(j);
             let Some(pivot) = root(own[0], own[0] - dot(head, head)) else {
                 return false;
             };
             let inverse = 1.0 / pivot;
             (own[0], inverse_pivots[j]) = (pivot, inverse);
-            let mut fours = below.chunks_exact_mut(4 * MOST_POINTS);
+            let mut fours = below.chunks_exact_mut(4 * ROW);
             for four in &mut fours {
-                let row = |k: usize| &four[k * MOST_POINTS..][..j];
+                let row = |k: usize| &four[k * ROW..][..j];
                 let sums = dots([row(0), row(1), row(2), row(3)], head);
                 for (k, sum) in sums.into_iter().enumerate() {
-                    let entry = &mut four[k * MOST_POINTS + j];
+                    let entry = &mut four[k * ROW + j];
                     *entry = (*entry - sum) * inverse;
                 }
             }
-            for row in fours.into_remainder().chunks_exact_mut(MOST_POINTS) {
+            for row in fours.into_remainder().chunks_exact_mut(ROW) {
                 row[j] = (row[j] - dot(&row[..j], head)) * inverse;
             }
         }

@@ -20,6 +20,9 @@ const ROUNDING_UNITS: f64 = 64.0;
 /// More points than the mesh has freedom beneath them make A singular: its diagonal grows by this
 /// share then, which shares the force out evenly.
 const SHIFT: f64 = 1e-9;
+/// From one row of the matrix to the next: an odd number of lines of a processor's cache, so that a
+/// column lies in all of its sets.
+const ROW: usize = MOST_POINTS + 8;
 
 /// How a solve ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -34,7 +37,7 @@ pub struct Solved {
 #[derive(Debug, Clone)]
 pub struct Complementarity {
     count: usize,
-    /// A, row by row, [`MOST_POINTS`] numbers apart.
+    /// A, row by row, [`ROW`] numbers apart.
     matrix: Vec<f64>,
     /// g: negative where the points overlap the tool while no force acts.
     pub gaps: Vec<f64>,
@@ -62,7 +65,7 @@ impl Default for Complementarity {
     fn default() -> Self {
         Self {
             count: 0,
-            matrix: room(MOST_POINTS * MOST_POINTS),
+            matrix: room(MOST_POINTS * ROW),
             gaps: vec![0.0; MOST_POINTS],
             forces: vec![0.0; MOST_POINTS],
             opened: vec![0.0; MOST_POINTS],
@@ -92,19 +95,19 @@ impl Complementarity {
     /// Row `i` of A, of which the first numbers count.
     #[inline]
     pub fn row_mut(&mut self, i: usize) -> &mut [f64] {
-        &mut self.matrix[i * MOST_POINTS..][..self.count]
+        &mut self.matrix[i * ROW..][..self.count]
     }
 
     /// A_ij and A_ji at once.
     #[inline]
     pub fn set(&mut self, i: usize, j: usize, value: f64) {
-        self.matrix[i * MOST_POINTS + j] = value;
-        self.matrix[j * MOST_POINTS + i] = value;
+        self.matrix[i * ROW + j] = value;
+        self.matrix[j * ROW + i] = value;
     }
 
     #[inline]
     fn row(&self, i: usize) -> &[f64] {
-        &self.matrix[i * MOST_POINTS..][..self.count]
+        &self.matrix[i * ROW..][..self.count]
     }
 
     /// Solves from the forces that are there; what is negative or no number counts as zero.
@@ -364,7 +367,7 @@ impl Complementarity {
     /// An unknown's row of A on the face before it, for the factor.
     fn put_row(&mut self, place: usize, i: usize) {
         let growth = if self.is_shifted { 1.0 + SHIFT } else { 1.0 };
-        let from = &self.matrix[i * MOST_POINTS..];
+        let from = &self.matrix[i * ROW..];
         let to = self.factor.row_mut(place);
         for (entry, &j) in to.iter_mut().zip(&self.face[..place]) {
             *entry = from[j];
@@ -378,7 +381,7 @@ widely! {
     fn energy(matrix: &[f64], gaps: &[f64], face: &[usize], forces: &[f64]) -> f64 {
         let mut sum = 0.0;
         for &i in face {
-            let row = &matrix[i * MOST_POINTS..][..forces.len()];
+            let row = &matrix[i * ROW..][..forces.len()];
             sum += forces[i] * (0.5 * dot(row, forces) + gaps[i]);
         }
         sum
@@ -389,7 +392,7 @@ widely! {
     /// Each force in turn as its own gap demands.
     fn sweep(matrix: &[f64], gaps: &[f64], forces: &mut [f64]) {
         for i in 0..forces.len() {
-            let row = &matrix[i * MOST_POINTS..][..forces.len()];
+            let row = &matrix[i * ROW..][..forces.len()];
             let gap = dot(row, forces) + gaps[i];
             forces[i] = (forces[i] - gap / row[i]).max(0.0);
         }
@@ -400,7 +403,7 @@ widely! {
     /// A f + g.
     fn open(matrix: &[f64], gaps: &[f64], forces: &[f64], opened: &mut [f64]) {
         for i in 0..opened.len() {
-            let row = &matrix[i * MOST_POINTS..][..forces.len()];
+            let row = &matrix[i * ROW..][..forces.len()];
             opened[i] = dot(row, forces) + gaps[i];
         }
     }

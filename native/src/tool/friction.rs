@@ -27,6 +27,9 @@ const CONVERGED: f64 = 1e-6;
 const SLIPPING: f64 = 1.0 - 1e-7;
 /// Unknowns: two a point.
 const MOST_UNKNOWNS: usize = 2 * MOST_POINTS;
+/// From one row of the matrix to the next. Were that 320 numbers, a column would lie in an eighth of
+/// the sets of a processor's first cache; as an odd number of its lines it lies in all.
+const ROW: usize = MOST_UNKNOWNS + 8;
 
 /// Coefficients of friction; zero for none.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -81,7 +84,7 @@ impl Rubbing {
     pub(super) fn new() -> Self {
         Self {
             rubbed: Vec::with_capacity(MOST_POINTS),
-            matrix: room(MOST_UNKNOWNS * MOST_UNKNOWNS),
+            matrix: room(MOST_UNKNOWNS * ROW),
             away: vec![0.0; MOST_UNKNOWNS],
             forces: vec![0.0; MOST_UNKNOWNS],
             changes: vec![0.0; MOST_UNKNOWNS],
@@ -120,13 +123,12 @@ impl Rubbing {
             slot.force = slot.normal * slot.push + slot.aside;
             pressed += usize::from(slot.push > 0.0);
         }
-        patch.displace();
+        self.set_up(patch, surface, pose);
         let rubbed = self.rubbed.len();
         self.work = 9 * pressed * near;
         if rubbed == 0 {
             return true;
         }
-        self.set_up(patch, surface, pose);
         let sweep = 4 * rubbed * rubbed;
         let sweeps = (MOST_WORK / sweep).clamp(1, MOST_SWEEPS);
         let (rubbing, least) = (&mut *self, CONVERGED * reach);
@@ -143,8 +145,18 @@ impl Rubbing {
         found
     }
 
-    /// Tresca's problem about the forces that the slots have.
+    /// Moves the slots as their forces ask for, and sets up Tresca's problem about these.
     fn set_up(&mut self, patch: &mut Patch, surface: &ToolSurface, pose: &Pose) {
+        patch.begin_displacing();
+        let mut first = 0;
+        for number in 0..patch.slots().len() {
+            patch.add(number, patch.slots()[number].force);
+            if self.rubbed.get(first).is_some_and(|&(k, ..)| k == number) {
+                self.set_rows(patch, first);
+                first += 1;
+            }
+        }
+        patch.end_displacing();
         for (k, &(number, directions, _)) in self.rubbed.iter().enumerate() {
             let slot = patch.slots()[number];
             let place = patch.point(surface, number).position + slot.moved;
@@ -153,14 +165,21 @@ impl Rubbing {
                 self.away[2 * k + a] = direction.dot(place - anchor);
                 self.forces[2 * k + a] = direction.dot(slot.aside);
                 self.changes[2 * k + a] = 0.0;
-                let [x, y, z] = patch.moved_by(number, direction);
-                for (l, &(seen, across, _)) in self.rubbed.iter().enumerate().skip(k) {
-                    let moved = DVec3::new(x[seen], y[seen], z[seen]);
-                    for (b, other) in across.into_iter().enumerate() {
-                        let entry = other.dot(moved);
-                        self.matrix[(2 * l + b) * MOST_UNKNOWNS + 2 * k + a] = entry;
-                        self.matrix[(2 * k + a) * MOST_UNKNOWNS + 2 * l + b] = entry;
-                    }
+            }
+        }
+    }
+
+    /// The matrix between a point and those behind it.
+    fn set_rows(&mut self, patch: &mut Patch, k: usize) {
+        let (number, directions, _) = self.rubbed[k];
+        for (a, direction) in directions.into_iter().enumerate() {
+            let [x, y, z] = patch.moved_by(number, direction);
+            for (l, &(seen, across, _)) in self.rubbed.iter().enumerate().skip(k) {
+                let moved = DVec3::new(x[seen], y[seen], z[seen]);
+                for (b, other) in across.into_iter().enumerate() {
+                    let entry = other.dot(moved);
+                    self.matrix[(2 * l + b) * ROW + 2 * k + a] = entry;
+                    self.matrix[(2 * k + a) * ROW + 2 * l + b] = entry;
                 }
             }
         }
@@ -175,8 +194,8 @@ widely! {
         for made in 1..=most {
             let mut largest = 0.0_f64;
             for (k, &(_, _, limit)) in rubbing.rubbed.iter().enumerate() {
-                let rows = &rubbing.matrix[2 * k * MOST_UNKNOWNS..][..2 * MOST_UNKNOWNS];
-                let (first, second) = rows.split_at(MOST_UNKNOWNS);
+                let rows = &rubbing.matrix[2 * k * ROW..][..2 * ROW];
+                let (first, second) = rows.split_at(ROW);
                 let changes = &rubbing.changes[..unknowns];
                 let slip = DVec2::new(
                     rubbing.away[2 * k] + dot(&first[..unknowns], changes),

@@ -65,8 +65,9 @@ pub struct Patch {
     slot_of: Vec<u16>,
     /// C_ij at unit modulus, a column for each loaded slot j.
     compliance: Vec<f64>,
-    /// Displacements, an axis after the other.
+    /// Displacements under all forces, an axis after the other, and under one.
     moved: [[f64; MOST_POINTS]; 3],
+    by_one: [[f64; MOST_POINTS]; 3],
     blocks: Blocks,
     /// The same beyond a half-space.
     beyond: Blocks,
@@ -82,6 +83,7 @@ impl Patch {
             slot_of: vec![NONE; points],
             compliance: room(COLUMN * MOST_POINTS),
             moved: [[0.0; MOST_POINTS]; 3],
+            by_one: [[0.0; MOST_POINTS]; 3],
             blocks: Blocks::new(),
             beyond: Blocks::new(),
             of_nodes: vec![OfNode::default(); nodes],
@@ -129,28 +131,53 @@ impl Patch {
     #[inline]
     pub(super) fn moved_by(&mut self, slot: usize, force: DVec3) -> &[[f64; MOST_POINTS]; 3] {
         let range = slot..self.slots.len();
-        for axis in &mut self.moved {
+        for axis in &mut self.by_one {
             axis[range.clone()].fill(0.0);
         }
         let column = &self.compliance[slot * COLUMN..][..COLUMN];
-        let moved = &mut self.moved;
+        let moved = &mut self.by_one;
         add_moved(column, force, moved, &range);
+        &self.by_one
+    }
+
+    /// Begins to sum up how far all slots move, from zero.
+    pub(super) fn begin_sum(&mut self) {
+        for axis in &mut self.moved {
+            axis[..self.slots.len()].fill(0.0);
+        }
+    }
+
+    /// The same from what other fingers do.
+    pub(super) fn begin_displacing(&mut self) {
+        for (i, slot) in self.slots.iter().enumerate() {
+            for (axis, offset) in self.moved.iter_mut().zip(slot.offset.to_array()) {
+                axis[i] = offset;
+            }
+        }
+    }
+
+    /// Adds how far all slots move under a force on one of them. The columns of a full patch are more
+    /// than a processor keeps at hand, so each is read once for all that it is needed for: this, and
+    /// [`Self::moved_by`].
+    #[inline]
+    pub(super) fn add(&mut self, slot: usize, force: DVec3) {
+        if force != DVec3::ZERO {
+            let column = &self.compliance[slot * COLUMN..][..COLUMN];
+            add_moved(column, force, &mut self.moved, &(0..self.slots.len()));
+        }
+    }
+
+    /// The sum, m at unit modulus, an axis after the other.
+    #[inline]
+    pub(super) fn sum(&self) -> &[[f64; MOST_POINTS]; 3] {
         &self.moved
     }
 
-    /// How far all slots move under their forces aside, m at unit modulus, an axis after the other.
-    pub(super) fn moved_aside(&mut self) -> &[[f64; MOST_POINTS]; 3] {
-        let count = self.slots.len();
-        for axis in &mut self.moved {
-            axis[..count].fill(0.0);
+    /// Displaces the slots by the sum.
+    pub(super) fn end_displacing(&mut self) {
+        for (i, slot) in self.slots.iter_mut().enumerate() {
+            slot.moved = DVec3::from_array([0, 1, 2].map(|axis| self.moved[axis][i]));
         }
-        for (slot, column) in self.slots.iter().zip(self.compliance.chunks_exact(COLUMN)) {
-            if slot.aside != DVec3::ZERO {
-                let (force, moved) = (slot.aside, &mut self.moved);
-                add_moved(column, force, moved, &(0..count));
-            }
-        }
-        &self.moved
     }
 
     #[inline]
@@ -294,21 +321,11 @@ impl Patch {
 
     /// Moves every slot as its forces and the offset ask for.
     pub(super) fn displace(&mut self) {
-        let count = self.slots.len();
-        for (i, slot) in self.slots.iter().enumerate() {
-            for (axis, offset) in self.moved.iter_mut().zip(slot.offset.to_array()) {
-                axis[i] = offset;
-            }
+        self.begin_displacing();
+        for number in 0..self.slots.len() {
+            self.add(number, self.slots[number].force);
         }
-        for (slot, column) in self.slots.iter().zip(self.compliance.chunks_exact(COLUMN)) {
-            if slot.force != DVec3::ZERO {
-                let (force, moved) = (slot.force, &mut self.moved);
-                add_moved(column, force, moved, &(0..count));
-            }
-        }
-        for (i, slot) in self.slots.iter_mut().enumerate() {
-            slot.moved = DVec3::from_array([0, 1, 2].map(|axis| self.moved[axis][i]));
-        }
+        self.end_displacing();
     }
 
     /// The contact point of a slot.

@@ -31,7 +31,9 @@ impl ToolContact {
         for made in 1..=MOST_LINEARISATIONS {
             self.linearise();
             let before = self.effort.multiplications;
-            self.problem.solve(most_work.saturating_sub(before));
+            // Forces aside take their share: pushes get no more with friction than without.
+            let left = most_work.saturating_sub(before);
+            self.problem.solve(left.min(MOST_WORK));
             self.push();
             let is_held = !rubs || {
                 let (friction, reach) = (&self.friction, self.tool.reach());
@@ -144,18 +146,22 @@ impl ToolContact {
             for slot in self.patch.slots_mut() {
                 slot.aside = across(slot.aside, slot.normal);
             }
-            let [x, y, z] = self.patch.moved_aside();
-            for (place, &number) in self.chosen.iter().enumerate() {
-                let given = DVec3::new(x[number], y[number], z[number]);
-                self.problem.gaps[place] += normals[place].dot(given);
-            }
         }
         self.problem.begin(self.chosen.len());
+        self.patch.begin_sum();
         for (j, &loaded) in self.chosen.iter().enumerate() {
+            self.patch.add(loaded, self.patch.slots()[loaded].aside);
             let [x, y, z] = self.patch.moved_by(loaded, normals[j]);
             for (i, &seen) in self.chosen.iter().enumerate().skip(j) {
                 let moved = DVec3::new(x[seen], y[seen], z[seen]);
                 self.problem.set(i, j, normals[i].dot(moved));
+            }
+        }
+        if !self.friction.is_none() {
+            let [x, y, z] = self.patch.sum();
+            for (place, &number) in self.chosen.iter().enumerate() {
+                let given = DVec3::new(x[number], y[number], z[number]);
+                self.problem.gaps[place] += normals[place].dot(given);
             }
         }
     }
