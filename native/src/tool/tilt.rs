@@ -96,6 +96,15 @@ impl Hold {
         Self { common, ..self }
     }
 
+    /// Whether a place is farther than told from a tool that is held, as is plain from one direction
+    /// among those at the limit: that nearest to where the tool as it is lies.
+    #[inline]
+    pub fn is_beyond(&self, far: f64, free: (f64, DVec3), place: DVec3, tool: &Tool) -> bool {
+        // No direction is farther than that of the tool as it is.
+        free.0 > far
+            && (self.common.on_rim(free.1)).is_some_and(|rim| separation(place, rim, tool) > far)
+    }
+
     /// Distance and normal of a tool at a place, held; all of it in the tool's frame. `free` are those
     /// of the tool as it is, `facing` is the outward normal of the body there.
     #[inline]
@@ -131,6 +140,14 @@ impl Cone {
         direction.dot(self.axis) >= self.cosine
     }
 
+    /// The direction on its rim that is nearest to another; of none along the axis.
+    #[inline]
+    fn on_rim(&self, direction: DVec3) -> Option<DVec3> {
+        let across = direction - self.axis * self.axis.dot(direction);
+        let across = across.try_normalize()?;
+        Some(self.axis * self.cosine + across * self.sine)
+    }
+
     /// The greatest separation of a place from the tool among directions on its rim, and which.
     fn greatest(&self, place: DVec3, tool: &Tool) -> (f64, DVec3) {
         let first = self.axis.any_orthonormal_vector();
@@ -154,10 +171,15 @@ impl Cone {
         };
         let aside = first * turn.x + second * turn.y;
         let direction = self.axis * self.cosine + aside * self.sine;
-        let nearest = |least: f64, core: &DVec3| least.min((place - *core).dot(direction));
-        let distance = tool.core().iter().fold(f64::INFINITY, nearest);
-        (distance - tool.radius(), direction)
+        (separation(place, direction, tool), direction)
     }
+}
+
+/// How far a place is from a tool along a direction.
+#[inline]
+fn separation(place: DVec3, direction: DVec3, tool: &Tool) -> f64 {
+    let nearest = |least: f64, core: &DVec3| least.min((place - *core).dot(direction));
+    tool.core().iter().fold(f64::INFINITY, nearest) - tool.radius()
 }
 
 /// Where a sinusoid is greatest.
@@ -170,6 +192,19 @@ fn peak(sinusoid: &Sinusoid) -> DVec2 {
 fn least(sinusoids: &[Sinusoid], turn: DVec2) -> f64 {
     let at = |least: f64, sinusoid: &Sinusoid| least.min(sinusoid.at(turn));
     sinusoids.iter().fold(f64::INFINITY, at)
+}
+
+/// The least, if it is above a bound: else it ends at the first eight of which one is not.
+#[inline]
+fn least_above(sinusoids: &[Sinusoid], turn: DVec2, bound: f64) -> Option<f64> {
+    let mut value = f64::INFINITY;
+    for eight in sinusoids.chunks(8) {
+        value = value.min(least(eight, turn));
+        if value <= bound {
+            return None;
+        }
+    }
+    (value > bound).then_some(value)
 }
 
 /// Where the least of some sinusoids is greatest: at the peak of one, or where two cross.
@@ -195,9 +230,15 @@ fn highest(sinusoids: &[Sinusoid]) -> DVec2 {
     };
     let mut best = (f64::NEG_INFINITY, DVec2::X);
     let mut offer = |turn: DVec2| {
-        let value = least(compared, turn);
-        if value > best.0 {
-            best = (value, turn);
+        // Most are below the best along one of the nearest already.
+        let some = lowest
+            .iter()
+            .fold(f64::INFINITY, |some, &i| some.min(sinusoids[i].at(turn)));
+        if some > best.0 {
+            let value = least(compared, turn);
+            if value > best.0 {
+                best = (value, turn);
+            }
         }
     };
     for (place, &i) in lowest.iter().enumerate() {
@@ -247,8 +288,7 @@ fn nearest_few(sinusoids: &[Sinusoid], few: &mut [usize; MOST_AT_ONCE]) {
     let (sine, cosine) = (std::f64::consts::TAU / TURNS as f64).sin_cos();
     let (step, mut turn) = (DVec2::new(cosine, sine), DVec2::X);
     for _ in 0..TURNS {
-        let value = least(sinusoids, turn);
-        if value > best.0 {
+        if let Some(value) = least_above(sinusoids, turn, best.0) {
             best = (value, turn);
         }
         turn = step.rotate(turn);

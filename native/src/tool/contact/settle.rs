@@ -88,6 +88,7 @@ impl ToolContact {
     /// the new normals would move.
     fn see(&mut self, pose: &Pose) -> f64 {
         let points = self.surface.points();
+        let watched = WATCHED * MARGIN * self.surface.spacing();
         let pushes = self.patch.slots().iter().map(|slot| {
             let facing = points[slot.point as usize].normal;
             (slot.push * slot.normal, facing)
@@ -98,6 +99,11 @@ impl ToolContact {
             let point = &points[slot.point as usize];
             let (distance, normal) = hold.map_or(slot.free, |hold| {
                 let place = pose.to_tool(point.position + slot.moved);
+                // Which way a point would be pushed that is only watched is not asked.
+                let is_watched = slot.push == 0.0 && slot.force == DVec3::ZERO;
+                if is_watched && hold.is_beyond(watched, slot.free, place, &self.tool) {
+                    return slot.free;
+                }
                 let facing = pose.rotation.transpose() * point.normal;
                 hold.hold(slot.free, place, facing, &self.tool)
             });
