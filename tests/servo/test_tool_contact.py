@@ -133,6 +133,8 @@ def test_wrong_arrays_are_refused(body, surface):
             ToolSurface(surface, *arrays, near | {name: near[name][1:]})
     with pytest.raises(ValueError, match="cannot be reckoned with"):
         ToolSurface(surface, *arrays, near | {"edges": 0 * near["edges"]})
+    with pytest.raises(ValueError, match="near has later, which this palpate_servo does not know"):
+        ToolSurface(surface, *arrays, near | {"later": near["own"]})
     with pytest.raises(ValueError, match="near has no shares"):
         ToolSurface(surface, *arrays, {k: near[k] for k in near if k != "shares"})
     contact = ToolContact(ToolSurface(surface, *arrays), NativeTool([[0, 0, 0]], 0.01))

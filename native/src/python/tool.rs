@@ -139,8 +139,36 @@ impl ToolSurface {
     }
 }
 
+/// The arrays that `core/near_field.py` gives.
+const NEAR_FIELD: [&str; 14] = [
+    "believed",
+    "short",
+    "poisson_ratio",
+    "normals",
+    "edges",
+    "softness",
+    "regular",
+    "slopes",
+    "excess",
+    "far_nodes",
+    "far_weights",
+    "shares",
+    "softness_of_points",
+    "own",
+];
+
 /// From the arrays that `core/near_field.py` names.
 fn near_field(arrays: &Bound<'_, PyDict>) -> PyResult<NearField> {
+    // A servo that is older than core would leave out a part of the field, and press wrongly.
+    for name in arrays.keys() {
+        let name: String = name.extract()?;
+        if !NEAR_FIELD.contains(&name.as_str()) {
+            return Err(PyValueError::new_err(format!(
+                "near has {name}, which this palpate_servo does not know; install the one that \
+                 belongs to this palpate (make package, or make test from the source)"
+            )));
+        }
+    }
     let array = |name: &'static str| {
         arrays.get_item(name)?.ok_or_else(|| {
             PyValueError::new_err(format!("near has no {name}; give what native_tool gives"))
