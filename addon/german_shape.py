@@ -35,8 +35,8 @@ WORDS = {
     "It is kept as far as it was computed, {share} %": (
         "Sie ist so behalten, wie weit sie berechnet war, {share} %"
     ),
-    "Too weak where two fingers hold a slender part": (
-        "Zu schwach, wo zwei Finger einen schlanken Teil halten"
+    "Linear where two fingers hold a slender part": (
+        "Linear, wo zwei Finger einen schlanken Teil halten"
     ),
     "Tools feel the linear force": "Werkzeuge fühlen die lineare Kraft",
     "The linear force is felt": "Gefühlt wird die lineare Kraft",

@@ -32,7 +32,7 @@ WORDS = {
     ),
     "Felt force {share} %": "感じる力 {share} %",
     "It is kept as far as it was computed, {share} %": ("計算済みの {share} % の形で保存しました"),
-    "Too weak where two fingers hold a slender part": "2本の指が細い部分を挟むと弱すぎます",
+    "Linear where two fingers hold a slender part": "2本の指が細い部分を挟むと線形です",
     "Tools feel the linear force": "ツールは線形の力を感じます",
     "The linear force is felt": "線形の力を感じています",
     "Found around the touched place first, and kept": ("触れた場所の周りから求め、保存します"),

@@ -93,7 +93,7 @@ def _draw_felt(
         say(layout, context, "Tools feel the linear force", "INFO")
         return
     if context.scene.palpate.second != "NONE" or (press is not None and len(press.leads) > 1):
-        say(layout, context, "Too weak where two fingers hold a slender part", "ERROR")
+        say(layout, context, "Linear where two fingers hold a slender part", "INFO")
     if baked.free_surface_count:
         box = layout.box().column(align=True)
         size = (baked.node_count, baked.tet_count, baked.free_surface_count)

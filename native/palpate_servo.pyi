@@ -359,7 +359,8 @@ class FingerSnapshot:
     @property
     def felt_share(self) -> float:
         """How much of the corrected relation is in contact_force, 0 to 1: all of it where the
-        softenings of the touched nodes were told and nothing was changed within 50 ms.
+        softenings of the touched nodes were told, nothing was changed within 50 ms, and no other
+        finger holds the place.
         """
 
     @property

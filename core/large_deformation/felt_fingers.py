@@ -10,7 +10,8 @@ places soften that is convex: each F is unique, and while no finger slides on it
 are the gradient of an energy of the displacements. One finger alone has exactly its relation.
 
 Where fingers hold each other, as in a pinch of a slender part, the own parts are many times as long
-as the displacements, and the correction is far too large: docs/large-deformation.md, Limits.
+as the displacements. Their relations are therefore nearer to linear the more strongly the places
+are coupled: :mod:`.felt_coupling`.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from ..contact import ContactMode, Touch
 from ..errors import PalpateError
 from ..several_contacts import push_cones, solve_with_cones, told_apart
 from ..soft_body import SoftBody
+from .felt_coupling import coupled, couplings
 from .felt_force import Relation, contact_relation, corrected_touch
 
 # Newton's rounds; five are enough as a rule. Displacements are taken as found when they change by
@@ -46,8 +48,7 @@ def corrected_touches(
     Raises
     ------
     PalpateError
-        The forces are not found: displacements that are too large, or fingers that hold each other
-        where a place grows stiffer.
+        The forces are not found: displacements that are too large.
     """
     modulus = body.modulus(young_modulus)
     triangles = [_triangle_of(body, touch) for touch in touches]
@@ -68,6 +69,10 @@ def corrected_touches(
     pushes[resting] = -np.array([_outward(touch, body) for touch in touches])[resting]
     compliance = told_apart(body.contact_compliance(triangles, alphas))
     asked = np.array([touch.displacement for touch in touches])
+    relations = [
+        coupled(one, float(coupling))
+        for one, coupling in zip(relations, couplings(compliance, relations), strict=True)
+    ]
     forces = modulus * solve_softened(compliance, relations, asked, pushes)
     return tuple(
         Touch(
@@ -116,8 +121,8 @@ def solve_softened(
         if np.abs(change).max() <= CONVERGED * np.abs(own).max():
             return forces
     raise PalpateError(
-        "felt force: the corrected forces of these fingers are not found, for they go too far or "
-        "hold each other on a slender part; press less or choose the linear one"
+        "felt force: the corrected forces of these fingers are not found, for they go too far; "
+        "press less or choose the linear one"
     )
 
 

@@ -114,7 +114,8 @@ pub struct Relation {
 }
 
 impl Relation {
-    fn mean_stiffness(&self) -> f64 {
+    /// k.
+    pub fn mean_stiffness(&self) -> f64 {
         let k = &self.stiffness;
         (k.x_axis.x + k.y_axis.y + k.z_axis.z) / 3.0
     }

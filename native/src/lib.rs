@@ -24,6 +24,7 @@ mod early;
 pub mod exchange;
 pub mod face;
 pub mod felt;
+pub mod felt_coupling;
 pub mod finger;
 pub mod haply;
 mod joining;

@@ -187,7 +187,7 @@ impl Servo {
                     press.moved_by_tools = moved_by(body, &press.hold, &self.loads, young_modulus);
                 }
             }
-            if let Some(answers) = self.several.solve(body, moment.body, &presses) {
+            if let Some(answers) = (self.several).solve(body, moment.body, &presses, moment.dt) {
                 for (p, finger) in self.fingers.iter_mut().enumerate() {
                     if !finger.has_tool() {
                         wanted[p] = finger.feel(body, settings, &own[p], &answers[p], moment.dt);

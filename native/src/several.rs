@@ -64,6 +64,8 @@ pub struct Answer {
     pub seen_stiffness: DMat3,
     /// Compliance of that which keeps the device from seeing it whole.
     pub spring: f64,
+    /// How much of the place's softening is in the force, 0 to 1.
+    pub felt_share: f64,
 }
 
 /// L between the nodes of two triangles, kept until one of them changes.
@@ -100,13 +102,14 @@ impl Default for Several {
 impl Several {
     /// Forces of all fingers that touch, and how far they move the surface at all that are there.
     ///
-    /// `number` counts the bodies that were exchanged. `None` for a body that does not keep its
+    /// `number` counts the bodies that were exchanged, `dt` is the tick's length in s. `None` for a body that does not keep its
     /// whole compliance, or one of which rounding has made nonsense.
     pub fn solve(
         &mut self,
         body: &Body,
         number: u32,
         presses: &[Option<Press>; MAX_FINGERS],
+        dt: f64,
     ) -> Option<[Answer; MAX_FINGERS]> {
         let mut compliance = self.coupled_compliance(body, number, presses)?;
         tell_apart(&mut compliance, &Members::of(presses))?;
@@ -127,6 +130,7 @@ impl Several {
             let share = (DMat3::IDENTITY + held[p] * spring).inverse();
             answers[p].seen_stiffness = share * held[p];
             answers[p].spring = spring;
+            answers[p].felt_share = 1.0;
             asked[p] = press.displacement - press.moved_by_tools;
             cones[p] = Cone::about(press.push, &series[p][p])?;
         }
@@ -155,7 +159,7 @@ impl Several {
             };
             // Where rounding has made nonsense of it, the linear answers stay.
             if (self.softened)
-                .solve(&pressing, presses, &mut answers)
+                .solve(&pressing, presses, &mut answers, dt)
                 .is_none()
             {
                 self.softened = Softened::default();

@@ -62,7 +62,9 @@ fn two_fingers_on_nodes_press_as_equation_10_says() {
     let u = holds.map(|hold| body.face(hold.triangle).normal * -1e-3);
     let mut presses = [None; MAX_FINGERS];
     (presses[0], presses[1]) = (press(holds[0], u[0]), press(holds[1], u[1]));
-    let answers = Several::default().solve(&body, 0, &presses).expect("sound");
+    let answers = Several::default()
+        .solve(&body, 0, &presses, 1e-3)
+        .expect("sound");
     let node = |k: usize| body.triangles[holds[k].triangle as usize][0];
     assert_ne!(node(0), node(1));
     for (own, other) in [(0, 1), (1, 0)] {
@@ -199,7 +201,7 @@ fn what_one_does_to_the_other_the_other_does_to_the_one() {
                 let by = if k == change { by } else { DVec3::ZERO };
                 presses[k] = press(holds[k], push[k] + by);
             }
-            let answers = Several::default().solve(&body, 0, &presses);
+            let answers = Several::default().solve(&body, 0, &presses, 1e-3);
             answers.expect("a whole body").map(|answer| answer.force)
         };
         let still = forces(3, DVec3::ZERO);
@@ -228,7 +230,10 @@ fn fingers_on_one_place_share_what_one_would_feel() {
             alpha: [0.3, 0.3, 0.4],
         };
         presses[0] = press(hold, body.face(100).normal * -1e-3);
-        Several::default().solve(&body, 0, &presses).expect("sound")[0].force
+        Several::default()
+            .solve(&body, 0, &presses, 1e-3)
+            .expect("sound")[0]
+            .force
     };
     for alpha in [
         [0.3, 0.3, 0.4],
@@ -247,7 +252,9 @@ fn fingers_on_one_place_share_what_one_would_feel() {
                     body.face(100).normal * -1e-3,
                 );
             }
-            let answers = Several::default().solve(&body, 0, &presses).expect("sound");
+            let answers = Several::default()
+                .solve(&body, 0, &presses, 1e-3)
+                .expect("sound");
             let sum: DVec3 = answers.iter().map(|answer| answer.force).sum();
             assert!(
                 sum.distance(alone) < 0.03 * alone.length(),

@@ -5,12 +5,14 @@ import pytest
 from palpate_servo import Pointer, SteppedFingers
 
 from palpate.core.bake import BakeSettings, bake
+from palpate.core.large_deformation.felt_coupling import STRONG, coupled, couplings, share_of
 from palpate.core.large_deformation.felt_force import contact_relation, corrected_touch
 from palpate.core.large_deformation.softening_table import SofteningTable
 from palpate.core.paper_cube import paper_cube
 from palpate.core.pins import PinNodes
 from palpate.core.servo_session import native_body, servo_on
 from palpate.core.several_contacts import told_apart
+from palpate.core.tet_mesh import TetMesh
 
 EDGE = 0.05
 TOP = np.array([0.021, 0.027, EDGE])
@@ -147,8 +149,23 @@ def two_fingers(surface, places, **keywords):
     return fingers
 
 
+def coupled_relations(baked, table, shots):
+    """The reference's compliance of the fingers, their relations and couplings."""
+    compliance = told_apart(
+        baked.contact_compliance(
+            [shot.triangle_index for shot in shots], [shot.alpha for shot in shots]
+        )
+    )
+    alone = [
+        contact_relation(baked, table.values, shot.triangle_index, shot.alpha) for shot in shots
+    ]
+    strengths = couplings(compliance, alone)
+    held = [coupled(one, strength) for one, strength in zip(alone, strengths, strict=True)]
+    return compliance / baked.young_modulus, held, strengths
+
+
 def test_several_fingers_each_soften_their_own_place(baked, table, surface):
-    places = np.array([[0.015, 0.02, EDGE], [0.032, 0.027, EDGE]])
+    places = np.array([[0.01, 0.02, EDGE], [0.036, 0.027, EDGE]])
     depths = np.array([0.008, 0.005])
     fingers = two_fingers(surface, places, felt="corrected")
     way = np.linspace(-0.0005, 1, 400)[:, None, None] * depths[:, None] * -UP
@@ -156,14 +173,12 @@ def test_several_fingers_each_soften_their_own_place(baked, table, surface):
         0
     ][-1]
     shots = fingers.snapshot().fingers
-    assert [shot.felt_share for shot in shots] == pytest.approx([1.0, 1.0])
-    compliance = baked.contact_compliance(
-        [shot.triangle_index for shot in shots], [shot.alpha for shot in shots]
-    )
-    compliance = told_apart(compliance) / 1e4
+    compliance, own, strengths = coupled_relations(baked, table, shots)
+    shares = [share_of(strength) for strength in strengths]
+    assert min(shares) > 0.5
+    assert [shot.felt_share for shot in shots] == pytest.approx(shares, abs=1e-6)
     asked = np.array([shot.probe - shot.proxy for shot in shots])
     # What a finger's place is moved by itself, and by the other one.
-    own = [contact_relation(baked, table.values, shot.triangle_index, shot.alpha) for shot in shots]
     for p, (shot, relation) in enumerate(zip(shots, own, strict=True)):
         by_other = compliance[p, 1 - p] @ -forces[1 - p]
         felt = 1e4 * relation.force(asked[p] - by_other)
@@ -190,6 +205,51 @@ def test_several_held_fingers_do_no_work_round_a_closed_path(surface):
     assert all(shot.sticking for shot in fingers.snapshot().fingers)
     parts = 0.5 * (forces[1:] + forces[:-1]) * np.diff(path, axis=0)
     assert abs(parts.sum()) < 1e-6 * np.abs(parts).sum()
+
+
+@pytest.fixture(scope="module")
+def arm():
+    """A bar 80 mm long and 20 mm thick that is held at one end, and its softenings."""
+    cube, _ = paper_cube(1.0)
+    mesh = TetMesh.checked(cube.nodes * [0.08, 0.02, 0.02], cube.tets)
+    fixed = np.flatnonzero(mesh.nodes[:, 0] == 0.0)
+    body = bake(mesh, BakeSettings(0.3, 10_000.0, PinNodes(fixed)))[0]
+    table = SofteningTable(body)
+    table.fill()
+    return body, table
+
+
+def test_a_pinch_comes_and_goes_without_a_jump_and_is_the_references(arm):
+    body, table = arm
+    surface = native_body(body, whole=True)
+    table.listen(surface.set_softenings)
+    places = np.array([[0.0655, 0.0105, 0.02], [0.0655, 0.0105, 0.0]])
+    outward = np.array([UP, -UP])
+    fingers = SteppedFingers(surface, places + 0.01 * outward, young_modulus=1e4, felt="corrected")
+    first = np.concatenate([np.linspace(0.01, -0.003, 1300), np.full(3200, -0.003)])
+    # 5 mm/s: as the other one comes to touch, the correction may change by far more in a tick than
+    # the way does. It comes from where the first one has bent the bar to.
+    second = np.concatenate([np.full(1300, 0.006), np.linspace(0.006, -0.002, 1600)])
+    second = np.concatenate([second, np.linspace(-0.002, 0.006, 1600)])
+    paths = places + np.stack([first, second], axis=1)[:, :, None] * outward
+    before = fingers.follow(paths[:1300])[0]
+    assert fingers.snapshot().fingers[0].felt_share == pytest.approx(1.0)
+    alone = np.linalg.norm(before[-1, 0])
+    pinched = fingers.follow(paths[1300:2900])[0]
+    shots = fingers.snapshot().fingers
+    compliance, held, strengths = coupled_relations(body, table, shots)
+    assert (strengths > STRONG).all()
+    assert [shot.felt_share for shot in shots] == [0.0, 0.0]
+    asked = np.array([shot.probe - shot.proxy for shot in shots])
+    for p, relation in enumerate(held):
+        by_other = compliance[p, 1 - p] @ -pinched[-1, 1 - p]
+        felt = 1e4 * relation.force(asked[p] - by_other)
+        np.testing.assert_allclose(pinched[-1, p], -felt, rtol=1e-6)
+    gone = fingers.follow(paths[2900:])[0]
+    assert np.linalg.norm(gone[-1, 0]) == pytest.approx(alone, rel=1e-3)
+    everything = np.concatenate([before[-1:], pinched, gone])
+    steps = np.abs(np.diff(everything, axis=0)).max()
+    assert steps < 0.02 * np.linalg.norm(pinched[-1, 0])
 
 
 def test_the_running_servo_takes_the_choice_while_it_runs(baked, surface, eventually):

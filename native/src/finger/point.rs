@@ -160,6 +160,7 @@ impl Finger {
             self.let_go();
             return DVec3::ZERO;
         }
+        self.shot.felt_share *= answer.felt_share;
         let (drawn, carried) = answer.drawn;
         self.shot.nodal_forces = hold.1.map(|share| drawn * (share * young_modulus));
         self.show_surface(body, hold, young_modulus, carried);
