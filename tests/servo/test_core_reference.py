@@ -79,7 +79,14 @@ def test_the_running_servo_publishes_what_the_reference_computes(body, mode):
     )
 
 
-@pytest.mark.parametrize("setting", [{"rate_hz": 10}, {"max_force": -1.0}, {"young_modulus": 0.0}])
-def test_settings_out_of_range_are_refused(body, setting):
-    with pytest.raises(PalpateError, match="servo: "):
+@pytest.mark.parametrize(
+    ("setting", "told"),
+    [
+        ({"rate_hz": 10}, "servo: .*rate"),
+        ({"max_force": -1.0}, "servo: .*force"),
+        ({"young_modulus": 0.0}, "Young's modulus"),
+    ],
+)
+def test_settings_out_of_range_are_refused(body, setting, told):
+    with pytest.raises(PalpateError, match=told):
         servo_for(body, **setting)
