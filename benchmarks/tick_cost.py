@@ -8,8 +8,8 @@ set down and lifted. "Long" is a tick over 700 us. Time is the thread's own
 (CLOCK_THREAD_CPUTIME_ID), which on a shared or virtual machine counts what others took, too. Two
 things tell these apart:
 
-* a tick over 500 us is gone through again from the same state (that it computes the same is
-  checked) until it takes less, ten times at most: the least time is its computing;
+* a tick over 500 us is gone through again from a state 20 ticks or more before (that it computes
+  the same is checked) until it takes less, ten times at most: the least time is its computing;
 * as taken are all ticks but those, one in 200, before which that state was copied: that leaves
   little else in the caches, and such a tick takes a quarter to a half longer;
 * after every fourth tick a loop of fixed work runs, of about 100 us: what is long there is the

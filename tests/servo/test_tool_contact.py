@@ -171,7 +171,7 @@ def test_a_tick_that_is_replayed_comes_out_the_same_and_no_longer(body, surface)
     assert again["pressed"].max() > 0
     assert (again["computing"] <= again["taken"]).all()
     np.testing.assert_array_equal(once["computing"], once["taken"])
-    np.testing.assert_array_equal(np.flatnonzero(again["copied"]), [0, 200, 400])
+    np.testing.assert_array_equal(np.flatnonzero(again["copied"]), [0, 180, 380])
     assert not once["copied"].any()
     assert again["control"].shape == (113,)
     assert once["control"].shape == (0,)

@@ -2,9 +2,9 @@
 //!
 //! A processor that is shared (a virtual one, too) charges a thread with time that it did not have.
 //! A tick computes the same from the same state, so one that took long is led there again from a
-//! state kept before, until it does not, some times at most: the least of all its times is the nearest
-//! to what it computes. A tick before which the state was copied finds the caches full of the copy, and
-//! is marked. Beside it runs a loop of fixed work, the control: what is long there is the machine alone.
+//! state kept some ticks before, until it does not, some times at most: the least of all its times is
+//! the nearest to what it computes. A tick before which the state was copied finds the caches full of
+//! the copy; it is marked, and gone through again from the state before that. Beside it runs a loop of fixed work, the control: what is long there is the machine alone.
 
 use std::hint::black_box;
 
@@ -18,6 +18,9 @@ use crate::tool::shape::Pose;
 
 /// Ticks between two states that are kept.
 const STRETCH: usize = 200;
+/// Ticks before a stretch from which it is gone through again: the first of them finds the caches full
+/// of the copy.
+const WARMING: usize = 20;
 /// How often a stretch with a long tick is gone through again, at most.
 const REPLAYS: usize = 10;
 /// Ticks to one round of the control.
@@ -54,35 +57,71 @@ impl Timing {
     pub fn of_path(&self, tool: &mut ToolContact, poses: &[Pose]) -> Result<Costs, String> {
         let control = Control::lasting(self.control);
         let mut costs = Costs::default();
-        for stretch in poses.chunks(STRETCH) {
-            let kept = self.replay_over.is_finite().then(|| tool.clone());
-            let (mut taken, felt) = self.timed(tool, stretch, |tick| {
-                if tick % TICKS_A_CONTROL == 0 && self.control > 0.0 {
-                    costs.control.push(control.timed());
-                }
-            })?;
-            costs.taken.extend(&taken);
-            let is_copied = |tick: usize| tick == 0 && kept.is_some();
-            costs.copied.extend((0..taken.len()).map(is_copied));
-            if let Some(kept) = &kept {
-                for _ in 0..REPLAYS {
-                    let is_long = |&seconds: &f64| seconds > self.replay_over;
-                    let Some(last) = taken.iter().rposition(is_long) else {
-                        break;
-                    };
-                    let (again, same) = self.timed(&mut kept.clone(), &stretch[..=last], |_| ())?;
-                    if same != felt[..=last] {
-                        return Err("a tick from the same state came out different".into());
-                    }
-                    for (least, again) in taken.iter_mut().zip(again) {
-                        *least = least.min(again);
-                    }
-                }
+        let replays = self.replay_over.is_finite();
+        let mut kept = replays.then(|| (0, tool.clone()));
+        costs.copied.resize(poses.len(), false);
+        for first in (0..poses.len()).step_by(STRETCH) {
+            let behind = poses.len().min(first + STRETCH);
+            let keeping = behind.saturating_sub(WARMING).max(first);
+            self.lead(tool, &poses[first..keeping], &control, &mut costs)?;
+            let goes_on = replays && behind < poses.len();
+            let next = goes_on.then(|| (keeping, tool.clone()));
+            self.lead(tool, &poses[keeping..behind], &control, &mut costs)?;
+            let mut taken = costs.taken[first..].to_vec();
+            if let Some((start, kept)) = &kept {
+                costs.copied[*start] = true;
+                self.replay(kept, poses, *start, &mut taken, &costs.felt)?;
             }
+            kept = next;
             costs.computing.extend(taken);
-            costs.felt.extend(felt);
         }
         Ok(costs)
+    }
+
+    /// Goes on along poses, with rounds of the control between ticks.
+    fn lead(
+        &self,
+        tool: &mut ToolContact,
+        poses: &[Pose],
+        control: &Control,
+        costs: &mut Costs,
+    ) -> Result<(), String> {
+        let (taken, felt) = self.timed(tool, poses, |tick| {
+            if tick % TICKS_A_CONTROL == 0 && self.control > 0.0 {
+                costs.control.push(control.timed());
+            }
+        })?;
+        costs.taken.extend(taken);
+        costs.felt.extend(felt);
+        Ok(())
+    }
+
+    /// Goes through the last ticks, of which `felt` tells to `start`, again and again from the state
+    /// before them until none of `taken`, the times of those at their end, is long.
+    fn replay(
+        &self,
+        kept: &ToolContact,
+        poses: &[Pose],
+        start: usize,
+        taken: &mut [f64],
+        felt: &[Felt],
+    ) -> Result<(), String> {
+        let first = felt.len() - taken.len();
+        for _ in 0..REPLAYS {
+            let is_long = |&seconds: &f64| seconds > self.replay_over;
+            let Some(last) = taken.iter().rposition(is_long) else {
+                break;
+            };
+            let ticks = start..first + last + 1;
+            let (again, same) = self.timed(&mut kept.clone(), &poses[ticks.clone()], |_| ())?;
+            if same != felt[ticks] {
+                return Err("a tick from the same state came out different".into());
+            }
+            for (least, again) in taken.iter_mut().zip(&again[first - start..]) {
+                *least = least.min(*again);
+            }
+        }
+        Ok(())
     }
 
     fn timed(
