@@ -115,7 +115,9 @@ def test_who_cancels_keeps_what_is_there(body):
     table = SofteningTable(body)
     with pytest.raises(KeyboardInterrupt):
         table.fill(cancel)
-    assert 0.5 < table.share_known < 1.0
+    # The thread in the background may have gone on meanwhile: it ends when the table is closed.
+    table.close()
+    assert table.share_known > 0.5
 
 
 def test_what_was_made_is_kept_beside_the_body_file(body, tmp_path):
