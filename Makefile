@@ -110,16 +110,15 @@ build/packages/palpate-windowed.zip: build/servo/.built $(EXTENSION_SOURCES) | $
 REPORT = 2>&1 | tee build/reports/$@.txt
 ON_ALL_CORES := --numprocesses auto --maxprocesses 4 --dist loadfile
 
-# What compiles and downloads goes side by side, and so does what has no deadlines. A make that knows
-# how (4.0 and later) prints each part in one piece.
+# What compiles and downloads goes side by side; a make that knows how (4.0 and later) prints each part
+# in one piece. Tests come one after the other: some have deadlines, the others fill all cores.
 SIDE_BY_SIDE := $(MAKE) --jobs=2 $(if $(filter output-sync,$(.FEATURES)),--output-sync)
 
 .PHONY: test
 test: ## everything that must hold, in a few minutes
 	$(SIDE_BY_SIDE) $(VENV)/.installed $(BPY_VENV)/.installed
 	$(SIDE_BY_SIDE) lint test-native build/packages/.made $(WINDOWED_PACKAGE)
-	$(MAKE) test-servo
-	$(SIDE_BY_SIDE) test-gui test-core test-addon
+	$(MAKE) test-core test-servo test-addon test-gui
 
 .PHONY: test-all
 test-all: test $(ALL_BPY:%=test-addon-%) check-systems ## the same, the extension in every Blender, the servo for every system
