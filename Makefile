@@ -33,7 +33,8 @@ PYTHON_VERSION := $(shell $(PYTHON) -c 'import sys; print("%d.%d" % sys.version_
 BPY ?= $(BPY_OF_$(PYTHON_VERSION))
 BPY_VENV := .venv-bpy-$(BPY)
 
-CARGO := cargo
+# Without make's flags: its own jobs are not make's.
+CARGO := env -u MAKEFLAGS cargo
 CRATE := --locked --manifest-path native/Cargo.toml
 NATIVE_SOURCES := $(wildcard native/*.toml native/*.lock native/*.pyi native/build.rs) \
   $(shell find native/src -name '*.rs' 2>/dev/null)
