@@ -34,7 +34,7 @@ BPY ?= $(BPY_OF_$(PYTHON_VERSION))
 BPY_VENV := .venv-bpy-$(BPY)
 
 # Without make's flags: its own jobs are not make's.
-CARGO := env -u MAKEFLAGS cargo
+CARGO := env -u MAKEFLAGS -u MFLAGS cargo
 CRATE := --locked --manifest-path native/Cargo.toml
 NATIVE_SOURCES := $(wildcard native/*.toml native/*.lock native/*.pyi native/build.rs) \
   $(shell find native/src -name '*.rs' 2>/dev/null)
