@@ -103,8 +103,9 @@ class FakeDevice:
             self.forces.append((x * 1e-3, y * 1e-3, z * 1e-3, flags))
 
     def _stream(self):
-        self._write(self.insert)
-        self.insert = b""
+        # Writing lets other threads run: what is put in meanwhile stays for the next time.
+        inserted, self.insert = self.insert, b""
+        self._write(inserted)
         self.sequence = (self.sequence + 1) & 0xFFFF
         micrometres = [round(x * 1e6) for x in self.position]
         now = time.monotonic_ns() // 1000 & 0xFFFF_FFFF
