@@ -155,7 +155,7 @@ def smooth_corner_normals(mesh: TetMesh) -> NDArray[np.float64]:
     smooth = np.einsum("mx,mx->m", faces[own // 3], faces[other // 3]) > np.cos(CREASE_ANGLE)
     own, other = own[smooth], other[smooth]
     mean = coo_array((angles[other], (own, other // 3)), shape=(count, len(triangles))).tocsr()
-    return _unit((mean @ faces).reshape(-1, 3, 3))
+    return unit((mean @ faces).reshape(-1, 3, 3))
 
 
 @dataclass(frozen=True, eq=False)
@@ -324,7 +324,7 @@ def _normals(
     here[on_edge] += np.einsum("pc,pcx->px", there, corner_normals[others])
     at_node = np.flatnonzero(places.is_node)
     here[at_node] = node_normals(mesh)
-    return _unit(here)
+    return unit(here)
 
 
 def node_normals(mesh: TetMesh) -> NDArray[np.float64]:
@@ -332,21 +332,22 @@ def node_normals(mesh: TetMesh) -> NDArray[np.float64]:
     weighted = _corner_angles(mesh)[:, :, None] * _face_normals(mesh)[:, None, :]
     mean = np.zeros((len(mesh.surface_nodes), 3))
     np.add.at(mean, mesh.surface_local_triangles.reshape(-1), weighted.reshape(-1, 3))
-    return _unit(mean)
+    return unit(mean)
 
 
-def _face_vectors(mesh: TetMesh) -> NDArray[np.float64]:
+def face_vectors(mesh: TetMesh) -> NDArray[np.float64]:
+    """Outward normals of the surface's triangles (S, 3), twice their areas long."""
     i, j, k = (mesh.nodes[mesh.surface_triangles[:, corner]] for corner in range(3))
     vectors: NDArray[np.float64] = np.cross(j - i, k - i)
     return vectors
 
 
 def _face_normals(mesh: TetMesh) -> NDArray[np.float64]:
-    return _unit(_face_vectors(mesh))
+    return unit(face_vectors(mesh))
 
 
 def _face_areas(mesh: TetMesh) -> NDArray[np.float64]:
-    areas: NDArray[np.float64] = 0.5 * np.linalg.norm(_face_vectors(mesh), axis=1)
+    areas: NDArray[np.float64] = 0.5 * np.linalg.norm(face_vectors(mesh), axis=1)
     return areas
 
 
@@ -365,18 +366,18 @@ def _edge_lengths(mesh: TetMesh) -> NDArray[np.float64]:
 def _corner_angles(mesh: TetMesh) -> NDArray[np.float64]:
     """Angle (S, 3) of each triangle at each corner, radians."""
     corners = mesh.nodes[mesh.surface_triangles]
-    ahead = _unit(np.roll(corners, -1, axis=1) - corners)
-    back = _unit(np.roll(corners, 1, axis=1) - corners)
+    ahead = unit(np.roll(corners, -1, axis=1) - corners)
+    back = unit(np.roll(corners, 1, axis=1) - corners)
     angles: NDArray[np.float64] = np.arccos(
         np.clip(np.einsum("tcx,tcx->tc", ahead, back), -1.0, 1.0)
     )
     return angles
 
 
-def _unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+def unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
     """Vectors (..., 3) of length 1; those of no length stay so."""
     lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    unit: NDArray[np.float64] = np.divide(
+    shortened: NDArray[np.float64] = np.divide(
         vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0
     )
-    return unit
+    return shortened

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from .contact_points import face_vectors, unit
 from .tet_mesh import TetMesh
 
 # A ray leaves the body at a face whose normal has at least this product with its direction.
@@ -46,8 +47,8 @@ def far_side(mesh: TetMesh, edges: NDArray[np.float64], reach: tuple[float, floa
     """
     corners, places = mesh.nodes[mesh.surface_triangles], mesh.nodes[mesh.surface_nodes]
     triangles = mesh.surface_local_triangles
-    outward = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    normals = outward / np.linalg.norm(outward, axis=1, keepdims=True)
+    outward = face_vectors(mesh)
+    normals = unit(outward)
     from_faces = _Rays(corners.mean(axis=1), -normals, reach[1] * edges[triangles].mean(axis=1))
     thin = _thinness(_first_exits(corners, normals, from_faces)[2] / from_faces.lengths, reach)
     directions, inward = np.zeros_like(places), np.zeros_like(places)
@@ -55,8 +56,8 @@ def far_side(mesh: TetMesh, edges: NDArray[np.float64], reach: tuple[float, floa
         np.add.at(directions, triangles[:, corner], -thin[:, None] * outward)
         np.add.at(inward, triangles[:, corner], -outward)
     chosen = np.flatnonzero((directions * inward).sum(axis=1) > 0.0)
-    begin = PULLED_IN * edges[chosen, None] * _unit(inward[chosen])
-    rays = _Rays(places[chosen] + begin, _unit(directions[chosen]), reach[1] * edges[chosen])
+    begin = PULLED_IN * edges[chosen, None] * unit(inward[chosen])
+    rays = _Rays(places[chosen] + begin, unit(directions[chosen]), reach[1] * edges[chosen])
     triangle, alphas, depths = _first_exits(corners, normals, rays)
     nodes, weights = np.zeros((len(places), 3), np.int64), np.zeros((len(places), 3))
     nodes[chosen] = triangles[triangle]
@@ -138,9 +139,3 @@ def _crossings(
     c = np.einsum("kx,kx->k", directions, swept) * inverse
     depth = np.einsum("kx,kx->k", across, swept) * inverse
     return depth, np.column_stack([1.0 - b - c, b, c])
-
-
-def _unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Vectors (k, 3), none of them zero, of length 1."""
-    unit: NDArray[np.float64] = vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
-    return unit

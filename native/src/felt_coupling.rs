@@ -1,8 +1,9 @@
-//! How much of the corrected force fingers get that hold each other through the body. Readable reference:
-//! `core/large_deformation/felt_coupling.py`.
+//! How much of the corrected force fingers get that hold each other through the body. Readable
+//! reference: `core/large_deformation/felt_coupling.py`.
+
+use glam::DMat3;
 
 use crate::cones::{Blocks, MAX_FINGERS, Members};
-use crate::contact::inverse_of_definite;
 use crate::felt::{Relation, Softening};
 use crate::several::numbered;
 
@@ -31,18 +32,18 @@ impl Held {
         }
     }
 
-    /// The relation of a finger that is held so.
-    pub fn relation(&self, alone: &Relation) -> Option<Relation> {
+    /// The relation of a finger that is held so, at a place of this `compliance`.
+    pub fn relation(&self, alone: &Relation, compliance: &DMat3) -> Relation {
         let slope = alone.softening.slope * self.share;
-        let yielding = slope.dot(inverse_of_definite(&alone.stiffness)? * slope);
+        let yielding = slope.dot(*compliance * slope);
         let least = alone.mean_stiffness() * yielding * self.firmness;
-        Some(Relation {
+        Relation {
             stiffness: alone.stiffness,
             softening: Softening {
                 slope,
                 saturation: (alone.softening.saturation * self.share).max(least),
             },
-        })
+        }
     }
 }
 

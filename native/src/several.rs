@@ -102,8 +102,8 @@ impl Default for Several {
 impl Several {
     /// Forces of all fingers that touch, and how far they move the surface at all that are there.
     ///
-    /// `number` counts the bodies that were exchanged, `dt` is the tick's length in s. `None` for a body that does not keep its
-    /// whole compliance, or one of which rounding has made nonsense.
+    /// `number` counts the bodies that were exchanged, `dt` is the tick's length in s. `None` for a
+    /// body that does not keep its whole compliance, or one of which rounding has made nonsense.
     pub fn solve(
         &mut self,
         body: &Body,

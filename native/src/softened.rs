@@ -5,9 +5,9 @@
 //!
 //! Own parts v of the displacements are sought with v_p + c_p F_p + sum_q C_pq F_q = u_p for the
 //! others q, and F_p the force of p's own relation at v_p. That is the least of a sum of energies of
-//! forces, convex with the couplings' relations, so the forces are one gradient and unique. Each round replaces
-//! the relations by their tangents at the v found so far and solves as for linear ones, cones and
-//! all: Newton's method, from the tick before.
+//! forces, convex with the couplings' relations, so the forces are one gradient and unique. Each round
+//! replaces the relations by their tangents at the v found so far and solves as for linear ones, cones
+//! and all: Newton's method, from the tick before.
 
 use glam::{DMat3, DVec3};
 
@@ -82,7 +82,7 @@ impl Softened {
         let couplings = couplings(&pressing.compliance, members, &relations);
         let held = couplings.map(Held::at);
         for p in members.numbers() {
-            relations[p] = Some(held[p].relation(&relations[p]?)?);
+            relations[p] = Some(held[p].relation(&relations[p]?, &pressing.compliance[p][p]));
         }
         let same_fingers =
             (0..MAX_FINGERS).all(|p| self.shares[p].is_some() == relations[p].is_some());

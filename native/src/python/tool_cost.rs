@@ -4,7 +4,8 @@
 //! A tick computes the same from the same state, so one that took long is led there again from a
 //! state kept some ticks before, until it does not, some times at most: the least of all its times is
 //! the nearest to what it computes. A tick before which the state was copied finds the caches full of
-//! the copy; it is marked, and gone through again from the state before that. Beside it runs a loop of fixed work, the control: what is long there is the machine alone.
+//! the copy; it is marked, and gone through again from the state before that. Beside it runs a loop of
+//! fixed work, the control: what is long there is the machine alone.
 
 use std::hint::black_box;
 

@@ -2,11 +2,8 @@
 //! to date while rows come and go (Golub and Van Loan 2013, 6.5.4).
 
 use super::wide::widely;
-use super::{MOST_POINTS, room};
+use super::{MOST_POINTS, ROW, room};
 
-/// From one row to the next: an odd number of lines of a processor's cache, so that a column lies in
-/// all of its sets.
-const ROW: usize = MOST_POINTS + 8;
 /// Sums that run beside each other, so that no addition waits for the one before.
 const LANES: usize = 8;
 

@@ -9,7 +9,7 @@
 
 use super::cholesky::{Factor, dot};
 use super::wide::widely;
-use super::{MOST_POINTS, room};
+use super::{MOST_POINTS, ROW, room};
 
 /// Rounds of exact solve and sweep. From the tick before one or two are enough.
 const MOST_ROUNDS: usize = 12;
@@ -20,9 +20,6 @@ const ROUNDING_UNITS: f64 = 64.0;
 /// More points than the mesh has freedom beneath them make A singular: its diagonal grows by this
 /// share then, which shares the force out evenly.
 const SHIFT: f64 = 1e-9;
-/// From one row of the matrix to the next: an odd number of lines of a processor's cache, so that a
-/// column lies in all of its sets.
-const ROW: usize = MOST_POINTS + 8;
 
 /// How a solve ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
