@@ -71,7 +71,7 @@ def explain(link: Mapping[str, Any], path: str = "") -> str | None:
 
 
 def explain_readings(readings: Sequence[tuple[float, Sequence[int]]], path: str = "") -> str | None:
-    """The same from what was read of a port, by the rules of the servo (`native/src/rhythm.rs`).
+    """The same from what was read of a port, by the rules of the servo (`native/src/device/arrival.rs`).
 
     Parameters
     ----------

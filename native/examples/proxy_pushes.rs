@@ -9,9 +9,9 @@ use std::sync::Arc;
 use std::{env, fs};
 
 use glam::DVec3;
-use palpate_servo::contact::ContactMode;
+use palpate_servo::body::surface::Body;
+use palpate_servo::contact::touch::ContactMode;
 use palpate_servo::proxy::Feel;
-use palpate_servo::surface::Body;
 
 #[path = "../tests/bodies/mod.rs"]
 mod bodies;

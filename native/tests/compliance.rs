@@ -6,9 +6,9 @@ use std::sync::Arc;
 
 use bodies::Dice;
 use glam::{DMat3, DVec3};
-use palpate_servo::compliance::{Compliance, Compressed, CompressedParts, Dense, Either};
-use palpate_servo::contact::{ContactMode, surface_displacement, touch};
-use palpate_servo::surface::Body;
+use palpate_servo::body::compliance::{Compliance, Compressed, CompressedParts, Dense, Either};
+use palpate_servo::body::surface::Body;
+use palpate_servo::contact::touch::{ContactMode, surface_displacement, touch};
 
 const NODES: usize = 11;
 const LEAF: usize = 4;

@@ -5,8 +5,8 @@ mod bodies;
 
 use bodies::Dice;
 use glam::DVec3;
-use palpate_servo::contact::{ContactMode, contact_stiffness, surface_displacement, touch};
-use palpate_servo::surface::Body;
+use palpate_servo::body::surface::Body;
+use palpate_servo::contact::touch::{ContactMode, contact_stiffness, surface_displacement, touch};
 
 use ContactMode::{Consistent, Paper};
 

@@ -4,13 +4,13 @@ mod bodies;
 mod scripted;
 
 use glam::DVec3;
-use palpate_servo::contact::{ContactMode, contact_stiffness};
-use palpate_servo::coupling::Coupling;
+use palpate_servo::body::softening::{Felt, Relation, Softening};
+use palpate_servo::contact::touch::{ContactMode, contact_stiffness};
+use palpate_servo::control::coupling::Coupling;
 use palpate_servo::device::{DeviceFrame, Probe, Reading};
-use palpate_servo::felt::{Felt, Relation, Softening};
-use palpate_servo::finger::FingerSettings;
 use palpate_servo::servo::Settings;
-use palpate_servo::snapshot::Snapshot;
+use palpate_servo::servo::finger::FingerSettings;
+use palpate_servo::servo::snapshot::Snapshot;
 use scripted::{ABOVE, PRESSED, Table, probe, settings_of};
 
 const SOFT: Coupling = Coupling {

@@ -4,8 +4,8 @@ mod bodies;
 
 use bodies::Dice;
 use glam::{DMat3, DVec3};
-use palpate_servo::contact::{ContactMode, contact_stiffness, touch};
-use palpate_servo::coupling::{Contact, Coupled, Coupler, Coupling, series_compliance};
+use palpate_servo::contact::touch::{ContactMode, contact_stiffness, touch};
+use palpate_servo::control::coupling::{Contact, Coupled, Coupler, Coupling, series_compliance};
 
 const DT: f64 = 1e-3;
 const LIMITED: Coupling = Coupling {

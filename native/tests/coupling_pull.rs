@@ -1,7 +1,7 @@
 //! The coupling in three dimensions: what it adds to a body's force never draws the finger in.
 
 use glam::{DMat3, DVec3};
-use palpate_servo::coupling::{Contact, Coupler, Coupling};
+use palpate_servo::control::coupling::{Contact, Coupler, Coupling};
 
 /// Softer along one slanted direction than along the others, N/m.
 fn slanted() -> DMat3 {

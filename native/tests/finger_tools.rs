@@ -8,11 +8,11 @@ use std::sync::Arc;
 
 use counting::counted;
 use glam::DVec3;
+use palpate_servo::body::surface::Body;
+use palpate_servo::device::reason;
 use palpate_servo::device::{Fault, Reading};
-use palpate_servo::snapshot::{Snapshot, State};
-use palpate_servo::state::reason;
-use palpate_servo::surface::Body;
-use palpate_servo::tip::{Tip, exchange_tips};
+use palpate_servo::servo::snapshot::{Snapshot, State};
+use palpate_servo::servo::tip::{Tip, exchange_tips};
 use palpate_servo::tool::contact::ToolContact;
 use palpate_servo::tool::points::{Point, ToolSurface};
 use palpate_servo::tool::shape::Tool;

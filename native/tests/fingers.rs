@@ -5,16 +5,16 @@ mod bodies;
 mod scripted;
 
 use glam::{DMat3, DVec3};
-use palpate_servo::cones::MAX_FINGERS;
-use palpate_servo::contact::{ContactMode, touch};
-use palpate_servo::coupling::Coupling;
+use palpate_servo::body::softening::Softening;
+use palpate_servo::contact::cones::MAX_FINGERS;
+use palpate_servo::contact::touch::{ContactMode, touch};
+use palpate_servo::control::coupling::Coupling;
+use palpate_servo::device::reason;
 use palpate_servo::device::{Fault, Probe, Reading};
-use palpate_servo::felt::Softening;
-use palpate_servo::finger::FingerSettings;
+use palpate_servo::fingers::several::{Press, Several};
 use palpate_servo::proxy::Hold;
-use palpate_servo::several::{Press, Several};
-use palpate_servo::snapshot::{Published, Snapshot, State};
-use palpate_servo::state::reason;
+use palpate_servo::servo::finger::FingerSettings;
+use palpate_servo::servo::snapshot::{Published, Snapshot, State};
 use scripted::{ABOVE, DT, OPTIONS, Table, probe, settings};
 
 const TOP: f64 = 0.05;

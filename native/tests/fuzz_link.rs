@@ -9,11 +9,11 @@ use std::sync::{Arc, Mutex};
 
 use damage::{Dice, Digest, frame, stream};
 use glam::DVec3;
-use palpate_servo::codec::{Decoder, Message, parse};
+use palpate_servo::device::link::LinkDevice;
+use palpate_servo::device::link::codec::{Decoder, Message, parse};
+use palpate_servo::device::reason;
+use palpate_servo::device::serial::port::{Opener, Wire};
 use palpate_servo::device::{Device, DeviceFrame, Fault, Reading};
-use palpate_servo::link::LinkDevice;
-use palpate_servo::port::{Opener, Wire};
-use palpate_servo::state::reason;
 
 /// What C++ reads of the same streams (`tests/firmware/test_damage.py`).
 const EXPECTED: &str = include_str!("../../tests/vectors/damage.csv");

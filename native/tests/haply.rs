@@ -6,14 +6,14 @@ use std::f64::consts::TAU;
 
 use glam::{DMat3, DVec2, DVec3};
 use hapi_board::{Board, Cable};
-use palpate_servo::device::{Device, DeviceFrame, Fault, Probe, Reading};
-use palpate_servo::haply::device::{Calibration, HaplyDevice};
-use palpate_servo::haply::message::{
+use palpate_servo::device::haply::device::{Calibration, HaplyDevice};
+use palpate_servo::device::haply::message::{
     ANSWER_BYTES, FILL, parse_answer, setup_message, torque_bytes, torque_message,
 };
-use palpate_servo::haply::model::{MODELS, Model, TORQUE_LIMIT};
-use palpate_servo::haply::pantograph::{Pantograph, Pose};
-use palpate_servo::state::reason;
+use palpate_servo::device::haply::model::{MODELS, Model, TORQUE_LIMIT};
+use palpate_servo::device::haply::pantograph::{Pantograph, Pose};
+use palpate_servo::device::reason;
+use palpate_servo::device::{Device, DeviceFrame, Fault, Probe, Reading};
 
 const TICK: f64 = 1e-3;
 

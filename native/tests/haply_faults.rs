@@ -7,10 +7,10 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 use hapi_board::Cable;
+use palpate_servo::device::haply::device::{Calibration, HaplyDevice};
+use palpate_servo::device::haply::model::{MODELS, Model};
+use palpate_servo::device::reason;
 use palpate_servo::device::{Device, DeviceFrame, Reading};
-use palpate_servo::haply::device::{Calibration, HaplyDevice};
-use palpate_servo::haply::model::{MODELS, Model};
-use palpate_servo::state::reason;
 
 const TICK: f64 = 1e-3;
 const MODEL: &Model = &MODELS[0];

@@ -6,9 +6,9 @@ mod hapi_board;
 use counting::counted;
 use glam::DVec3;
 use hapi_board::Cable;
+use palpate_servo::device::haply::device::{Calibration, HaplyDevice};
+use palpate_servo::device::haply::model::MODELS;
 use palpate_servo::device::{Device, DeviceFrame, Reading};
-use palpate_servo::haply::device::{Calibration, HaplyDevice};
-use palpate_servo::haply::model::MODELS;
 
 #[test]
 fn reading_and_writing_allocate_nothing() {

@@ -6,11 +6,11 @@ mod scripted;
 use std::sync::Arc;
 
 use glam::DVec3;
+use palpate_servo::device::reason;
 use palpate_servo::device::{Fault, Probe, Reading};
 use palpate_servo::servo::Settings;
-use palpate_servo::snapshot::{Published, State};
-use palpate_servo::state::reason;
-use palpate_servo::thread::Running;
+use palpate_servo::servo::snapshot::{Published, State};
+use palpate_servo::servo::thread::Running;
 use scripted::{ABOVE, DT, OPTIONS, PRESSED, Scripted, Table, probe, settings};
 use triple_buffer::triple_buffer;
 

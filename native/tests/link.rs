@@ -7,10 +7,10 @@ use std::io::{self, ErrorKind};
 use std::sync::{Arc, Mutex};
 
 use glam::DVec3;
-use palpate_servo::codec::{Decoder, MAX_FRAME, encode};
+use palpate_servo::device::link::LinkDevice;
+use palpate_servo::device::link::codec::{Decoder, MAX_FRAME, encode};
+use palpate_servo::device::serial::port::{Opener, Wire};
 use palpate_servo::device::{Device, DeviceFrame, Fault, Reading};
-use palpate_servo::link::LinkDevice;
-use palpate_servo::port::{Opener, Wire};
 
 #[derive(Default)]
 struct Line {

@@ -1,7 +1,7 @@
 //! `docs/link.md` by the word: each worked example, field by field and byte by byte.
 
 use glam::DVec3;
-use palpate_servo::codec::{
+use palpate_servo::device::link::codec::{
     Decoder, DeviceOrientation, DeviceState, Greeting, MAX_FRAME, Message, PROTOCOL, checksum,
     encode, force_payload, hello_payload, parse,
 };

@@ -15,14 +15,14 @@ use std::thread::{scope, sleep};
 use std::time::Duration;
 
 use glam::{DMat3, DVec3};
-use palpate_servo::codec::{MAX_FRAME, encode};
+use palpate_servo::control::safety::Limits;
+use palpate_servo::device::link::LinkDevice;
+use palpate_servo::device::link::codec::{MAX_FRAME, encode};
+use palpate_servo::device::serial::port::SerialPort;
 use palpate_servo::device::{Device, DeviceFrame, LinkReport, Probe, Reading};
-use palpate_servo::link::LinkDevice;
-use palpate_servo::port::SerialPort;
-use palpate_servo::safety::Limits;
+use palpate_servo::servo::stages::Stage;
+use palpate_servo::servo::thread::Running;
 use palpate_servo::servo::{Options, Settings};
-use palpate_servo::stages::Stage;
-use palpate_servo::thread::Running;
 use system_calls::{Counter, Watch};
 
 const OPTIONS: Options = Options {

@@ -8,9 +8,9 @@ use bodies::{
     touching_tips, wall,
 };
 use glam::DVec3;
-use palpate_servo::closest::closest_point;
+use palpate_servo::body::closest::closest_point;
+use palpate_servo::body::surface::Body;
 use palpate_servo::proxy::{Feel, Proxy};
-use palpate_servo::surface::Body;
 use pushing::{distance_to_surface, nearest_on, quantised, target, winding};
 
 /// Triangles on the proxy's own sheet of the surface that meet its feature. Where the surface

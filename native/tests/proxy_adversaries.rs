@@ -6,9 +6,9 @@ mod pushing;
 
 use bodies::{Dice, cube, globe, pushed_bodies, sliced, turned, turned_by};
 use glam::DVec3;
-use palpate_servo::closest::closest_point;
+use palpate_servo::body::closest::closest_point;
+use palpate_servo::body::surface::Body;
 use palpate_servo::proxy::{Feel, Proxy};
-use palpate_servo::surface::Body;
 use pushing::{quantised, sticks, target, winding};
 
 const TICK: f64 = 1e-3;

@@ -6,9 +6,9 @@ mod pushing;
 
 use bodies::{Dice, angle_bar, cube, globe, inner_corner, lentil, sphere, turned, voxels};
 use glam::{DMat3, DVec3};
-use palpate_servo::contact::{ContactMode, touch};
+use palpate_servo::body::surface::Body;
+use palpate_servo::contact::touch::{ContactMode, touch};
 use palpate_servo::proxy::{Feel, Proxy};
-use palpate_servo::surface::Body;
 use pushing::target;
 
 const TICK: f64 = 1e-3;
@@ -156,7 +156,8 @@ fn without_depth_nothing_lags() {
             let mut touched = 0;
             for way in around(0.025, 3000) {
                 // Below the facet under it by `depth`.
-                let (closest, _) = palpate_servo::closest::closest_point(&body, way * 0.025, 0);
+                let (closest, _) =
+                    palpate_servo::body::closest::closest_point(&body, way * 0.025, 0);
                 let normal = body.face(closest.triangle).normal;
                 let device = closest.point - normal * depth;
                 proxy.follow(&body, device, &feel, TICK);

@@ -5,12 +5,12 @@ mod bodies;
 use std::time::Duration;
 
 use glam::DVec3;
-use palpate_servo::pointer::{Pointer, Target};
-use palpate_servo::recorder::{RING_SECONDS, Recorder, Tape};
-use palpate_servo::safety::Limits;
+use palpate_servo::control::safety::Limits;
+use palpate_servo::device::pointer::{Pointer, Target};
+use palpate_servo::servo::recorder::{RING_SECONDS, Recorder, Tape};
+use palpate_servo::servo::snapshot::{Published, Sample, State};
+use palpate_servo::servo::thread::Running;
 use palpate_servo::servo::{Options, Servo, Settings};
-use palpate_servo::snapshot::{Published, Sample, State};
-use palpate_servo::thread::Running;
 use rtrb::RingBuffer;
 use triple_buffer::triple_buffer;
 

@@ -1,6 +1,6 @@
 //! Wires that hold bytes back are told apart from slow devices and busy hosts.
 
-use palpate_servo::rhythm::{Arrivals, Rhythm};
+use palpate_servo::device::arrival::{Arrivals, Rhythm};
 
 /// A host that looks at the times `looks` (us), and STATEs made and arriving at `(made, came)`.
 fn seen(looks: impl IntoIterator<Item = u32>, states: &[(u32, u32)]) -> Rhythm {

@@ -6,15 +6,15 @@ mod scripted;
 use std::sync::{Arc, Mutex};
 
 use glam::{DMat3, DVec3};
-use palpate_servo::coupling::Coupling;
+use palpate_servo::control::coupling::Coupling;
+use palpate_servo::control::safety::Limits;
+use palpate_servo::device::reason;
 use palpate_servo::device::{DeviceFrame, Fault, Probe, Reading};
-use palpate_servo::finger::FingerSettings;
 use palpate_servo::proxy::Feel;
-use palpate_servo::safety::Limits;
+use palpate_servo::servo::finger::FingerSettings;
+use palpate_servo::servo::snapshot::State;
+use palpate_servo::servo::thread::Running;
 use palpate_servo::servo::{Options, Settings};
-use palpate_servo::snapshot::State;
-use palpate_servo::state::reason;
-use palpate_servo::thread::Running;
 use scripted::{ABOVE, DT, OPTIONS, PRESSED, Scripted, Table, probe, settings, settings_of};
 
 #[test]
@@ -166,7 +166,7 @@ fn contact_blocks_that_are_no_numbers_are_refused_and_too_large_ones_give_no_for
     let cube = bodies::cube();
     let with = |value: f64| {
         let blocks = vec![DMat3::from_diagonal(DVec3::splat(value)); cube.nodes.len()];
-        palpate_servo::surface::Body::new(cube.nodes.clone(), cube.triangles.clone(), blocks)
+        palpate_servo::body::surface::Body::new(cube.nodes.clone(), cube.triangles.clone(), blocks)
     };
     for bad in [f64::NAN, f64::INFINITY] {
         assert!(with(bad).is_err());

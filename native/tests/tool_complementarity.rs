@@ -3,8 +3,8 @@
 mod bodies;
 
 use bodies::Dice;
-use palpate_servo::tool::MOST_POINTS;
-use palpate_servo::tool::cholesky::Factor;
+use palpate_servo::algebra::MOST_POINTS;
+use palpate_servo::algebra::cholesky::Factor;
 use palpate_servo::tool::complementarity::Complementarity;
 
 /// Work enough for any of these.

@@ -16,7 +16,7 @@ use super::descent::descend;
 use super::friction::Friction;
 use super::shading::shaded;
 use super::{Feel, Hold};
-use crate::surface::Body;
+use crate::body::surface::Body;
 
 /// How much of the device's own way the contact point may gain on the device in a tick.
 const GAIN: f64 = 0.7;

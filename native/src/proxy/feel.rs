@@ -1,6 +1,6 @@
 //! What a surface feels like beyond its shape.
 
-use crate::contact::ContactMode;
+use crate::contact::touch::ContactMode;
 
 /// Optional shading and friction of the touched surface; the default is neither.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

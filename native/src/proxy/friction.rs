@@ -11,9 +11,9 @@ use glam::{DMat3, DVec3};
 use super::descent::descend;
 use super::shading::normal_at;
 use super::{Feel, Hold};
-use crate::contact::contact_stiffness;
-use crate::face::HalfEdge;
-use crate::surface::Body;
+use crate::body::face::HalfEdge;
+use crate::body::surface::Body;
+use crate::contact::touch::contact_stiffness;
 
 /// Rounds of slipping in one tick.
 const MAX_ROUNDS: u32 = 8;

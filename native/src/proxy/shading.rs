@@ -9,8 +9,8 @@
 use glam::DVec3;
 
 use super::Hold;
-use crate::face::HalfEdge;
-use crate::surface::Body;
+use crate::body::face::HalfEdge;
+use crate::body::surface::Body;
 
 /// Triangles tried at most.
 const MAX_TRIANGLES: u32 = 48;

@@ -3,9 +3,9 @@
 use glam::DVec3;
 
 use super::{BORDER, Hold, Place, Proxy, snap};
-use crate::face::HalfEdge;
-use crate::surface::Body;
-use crate::tree::Feature;
+use crate::body::face::HalfEdge;
+use crate::body::surface::Body;
+use crate::body::tree::Feature;
 
 /// Features visited in one tick at most; a tick that ends here goes on in the next one.
 const MAX_STEPS: u32 = 512;

@@ -8,13 +8,13 @@ use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use super::body::Body;
-use super::tool_cost::Timing;
 use super::vectors::{
     Matrix, Rows, Triple, Vector, array, finite, positive, rotation, square, table,
 };
-use crate::surface;
-use crate::tip::Tip;
+use crate::body::surface;
+use crate::python::body::surface::Body;
+use crate::python::harness::tool_cost::Timing;
+use crate::servo::tip::Tip;
 use crate::tool::contact::{self, MOST_NODES};
 use crate::tool::friction::Friction;
 use crate::tool::near_field::{NearField, NodeField, PointField};
@@ -33,7 +33,7 @@ impl Tool {
     #[new]
     fn new(core: PyArrayLike2<'_, f64, AllowTypeChange>, radius: f64) -> PyResult<Self> {
         let core = vectors("core", &core)?;
-        let refused = |e: crate::tool::hull::HullError| PyValueError::new_err(e.to_string());
+        let refused = |e: crate::tool::shape::hull::HullError| PyValueError::new_err(e.to_string());
         let inner = shape::Tool::new(&core, radius).map_err(refused)?;
         Ok(Self { inner })
     }

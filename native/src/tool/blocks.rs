@@ -5,7 +5,7 @@
 
 use glam::DMat3;
 
-use crate::surface::Body;
+use crate::body::surface::Body;
 
 /// Places; a tool over 300 nodes needs 45,000.
 const PLACES: usize = 1 << 16;

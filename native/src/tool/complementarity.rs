@@ -7,9 +7,9 @@
 //! push, nearer the solution than at the start. The factor of the exact solves is kept up to date while
 //! points come and go. Readable reference: `core/complementarity.py`.
 
-use super::cholesky::{Factor, dot};
-use super::wide::widely;
-use super::{MOST_POINTS, ROW, room};
+use crate::algebra::cholesky::{Factor, dot};
+use crate::algebra::wide::widely;
+use crate::algebra::{MOST_POINTS, ROW, room};
 
 /// Rounds of exact solve and sweep. From the tick before one or two are enough.
 const MOST_ROUNDS: usize = 12;

@@ -14,14 +14,14 @@ use std::sync::Arc;
 
 use glam::{DMat3, DQuat, DVec3};
 
-use super::MOST_POINTS;
 use super::complementarity::Complementarity;
 use super::effort::Effort;
 use super::friction::{Friction, Rubbing, take_anchors};
 use super::patch::{Patch, Slot};
 use super::points::ToolSurface;
 use super::shape::{Pose, Tool};
-use crate::closest::closest_point;
+use crate::algebra::MOST_POINTS;
+use crate::body::closest::closest_point;
 
 /// A point counts as in the tool below this share of its reach: one that is just touched is not.
 const IN_TOOL: f64 = 1e-9;

@@ -10,12 +10,12 @@
 
 use glam::{DVec2, DVec3};
 
-use super::cholesky::dot;
 use super::patch::{Patch, Slot};
 use super::points::ToolSurface;
 use super::shape::Pose;
-use super::wide::widely;
-use super::{MOST_POINTS, room};
+use crate::algebra::cholesky::dot;
+use crate::algebra::wide::widely;
+use crate::algebra::{MOST_POINTS, room};
 
 /// Sweeps in one linearisation. From the tick before a few are enough.
 const MOST_SWEEPS: usize = 16;

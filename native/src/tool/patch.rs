@@ -7,9 +7,9 @@ use glam::{DMat3, DVec3};
 use super::blocks::Blocks;
 use super::near_field::NearField;
 use super::points::{Point, ToolSurface};
-use super::wide::widely;
-use super::{MOST_POINTS, room};
-use crate::surface::Body;
+use crate::algebra::wide::widely;
+use crate::algebra::{MOST_POINTS, room};
+use crate::body::surface::Body;
 
 /// Numbers of a column: how all slots give way to a force on one, an entry of the blocks after the
 /// other, row by row, each for all slots.

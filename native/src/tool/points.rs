@@ -2,13 +2,15 @@
 //!
 //! Readable reference: `core/contact_points.py`.
 
+pub(in crate::tool) mod tree;
+
 use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::near_field::NearField;
-use super::tree::PointTree;
-use crate::surface::{Body, BodyError};
+use crate::body::surface::{Body, BodyError};
+use crate::tool::near_field::NearField;
+use crate::tool::points::tree::PointTree;
 
 /// Points within this many times the median distance to the nearest are neighbours.
 const NEIGHBOURHOOD: f64 = 2.0;

@@ -4,9 +4,12 @@
 //! normal are exact: outside the core by the closest point of the hull, inside it by the nearest face
 //! (Ericson 2005, 5.1). Readable reference: `core/tools.py`.
 
+pub mod hull;
+pub mod tilt;
+
 use glam::{DMat3, DVec3};
 
-use super::hull::{Hull, HullError};
+use crate::tool::shape::hull::{Hull, HullError};
 
 /// Core points that a tool may have.
 pub const MOST_CORE_POINTS: usize = 64;

@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
-use palpate_servo::compliance::{Compliance, Compressed, CompressedParts, Dense, Either};
-use palpate_servo::surface::Body;
+use palpate_servo::body::compliance::{Compliance, Compressed, CompressedParts, Dense, Either};
+use palpate_servo::body::surface::Body;
 
 pub fn soft(nodes: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Arc<Body> {
     let blocks = (0..nodes.len())

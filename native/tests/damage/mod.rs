@@ -1,7 +1,7 @@
 //! Streams of sound and damaged frames, the same from the same seed in Rust and in C++
 //! (`tests/firmware/damage.h`): one draws what the other draws, in the same order.
 
-use palpate_servo::codec::{MAX_FRAME, MAX_PAYLOAD, encode};
+use palpate_servo::device::link::codec::{MAX_FRAME, MAX_PAYLOAD, encode};
 
 /// xorshift64* (Vigna 2016).
 pub struct Dice(u64);

@@ -2,9 +2,9 @@
 #![allow(dead_code)] // Each test file takes what it needs.
 
 use glam::DVec3;
-use palpate_servo::closest::closest_point;
+use palpate_servo::body::closest::closest_point;
+use palpate_servo::body::surface::Body;
 use palpate_servo::proxy::{Feel, Proxy};
-use palpate_servo::surface::Body;
 
 use crate::bodies::Dice;
 

@@ -4,13 +4,13 @@
 use std::sync::{Arc, Mutex};
 
 use glam::{DMat3, DVec3};
+use palpate_servo::body::surface::Body;
+use palpate_servo::control::safety::Limits;
 use palpate_servo::device::{Device, DeviceFrame, Fault, LinkReport, Probe, Reading};
-use palpate_servo::exchange::{Hand, exchange};
-use palpate_servo::finger::FingerSettings;
-use palpate_servo::safety::Limits;
+use palpate_servo::servo::exchange::{Hand, exchange};
+use palpate_servo::servo::finger::FingerSettings;
+use palpate_servo::servo::snapshot::{Published, Sample, Snapshot, State};
 use palpate_servo::servo::{Options, Servo, Settings};
-use palpate_servo::snapshot::{Published, Sample, Snapshot, State};
-use palpate_servo::surface::Body;
 use rtrb::{Consumer, RingBuffer};
 use triple_buffer::{Input, Output, triple_buffer};
 

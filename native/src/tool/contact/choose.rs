@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{MOST_ENTERING, ToolContact};
-use crate::tool::MOST_POINTS;
+use crate::algebra::MOST_POINTS;
 use crate::tool::shape::Pose;
 
 /// Points within so many spacings of the tool are looked at.

@@ -3,9 +3,9 @@
 use glam::{DMat3, DVec3};
 
 use super::{Felt, NOWHERE, ToolContact};
-use crate::coupling::largest_eigenvalue;
-use crate::tool::MOST_POINTS;
-use crate::tool::cholesky::dot;
+use crate::algebra::MOST_POINTS;
+use crate::algebra::cholesky::dot;
+use crate::control::coupling::largest_eigenvalue;
 use crate::tool::shape::Pose;
 
 impl ToolContact {

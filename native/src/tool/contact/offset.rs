@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::ToolContact;
-use crate::closest::closest_point;
+use crate::body::closest::closest_point;
 use crate::tool::shape::Pose;
 
 impl ToolContact {

@@ -4,10 +4,10 @@ use glam::DVec3;
 
 use super::ToolContact;
 use super::choose::MARGIN;
-use crate::tool::MOST_POINTS;
+use crate::algebra::MOST_POINTS;
 use crate::tool::friction::across;
 use crate::tool::shape::Pose;
-use crate::tool::tilt::Hold;
+use crate::tool::shape::tilt::Hold;
 
 /// Linearisations in one tick.
 const MOST_LINEARISATIONS: usize = 6;

@@ -1,0 +1,216 @@
+//! A = L L^T of a small symmetric positive definite matrix, in memory that is already there; kept up
+//! to date while rows come and go (Golub and Van Loan 2013, 6.5.4).
+
+use super::{MOST_POINTS, ROW, room};
+use crate::algebra::wide::widely;
+
+/// Sums that run beside each other, so that no addition waits for the one before.
+const LANES: usize = 8;
+
+/// A pivot below this share of its diagonal entry is rounding.
+const LEAST_PIVOT: f64 = 1e-13;
+
+/// The sum of products, in a fixed order of additions.
+#[inline(always)]
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let n = a.len().min(b.len());
+    let (a, b) = (&a[..n], &b[..n]);
+    let mut lanes = [0.0; LANES];
+    let mut k = 0;
+    while k + LANES <= n {
+        let (x, y) = (&a[k..k + LANES], &b[k..k + LANES]);
+        for l in 0..LANES {
+            lanes[l] += x[l] * y[l];
+        }
+        k += LANES;
+    }
+    total(&lanes, &a[k..], &b[k..])
+}
+
+/// The sum of the lanes, and of products of what was too short for them.
+#[inline(always)]
+fn total(lanes: &[f64; LANES], a: &[f64], b: &[f64]) -> f64 {
+    let mut tail = 0.0;
+    for k in 0..a.len().min(b.len()) {
+        tail += a[k] * b[k];
+    }
+    ((lanes[0] + lanes[4]) + (lanes[1] + lanes[5]))
+        + ((lanes[2] + lanes[6]) + (lanes[3] + lanes[7]))
+        + tail
+}
+
+/// The sums of products of four rows with one, each as [`dot`] has it, to the bit: what is loaded of
+/// the one serves all.
+#[inline(always)]
+fn dots(rows: [&[f64]; 4], head: &[f64]) -> [f64; 4] {
+    let n = head.len();
+    let rows = [&rows[0][..n], &rows[1][..n], &rows[2][..n], &rows[3][..n]];
+    let mut lanes = [[0.0; LANES]; 4];
+    let mut k = 0;
+    while k + LANES <= n {
+        let y = &head[k..k + LANES];
+        for r in 0..4 {
+            let x = &rows[r][k..k + LANES];
+            for l in 0..LANES {
+                lanes[r][l] += x[l] * y[l];
+            }
+        }
+        k += LANES;
+    }
+    let rest = |r: usize| total(&lanes[r], &rows[r][k..], &head[k..]);
+    [rest(0), rest(1), rest(2), rest(3)]
+}
+
+/// The lower factor, row by row.
+#[derive(Debug, Clone)]
+pub struct Factor {
+    size: usize,
+    rows: Vec<f64>,
+    inverse_pivots: Vec<f64>,
+    /// The column of a row that goes.
+    column: Vec<f64>,
+}
+
+impl Default for Factor {
+    fn default() -> Self {
+        Self {
+            size: 0,
+            rows: room(MOST_POINTS * ROW),
+            inverse_pivots: vec![0.0; MOST_POINTS],
+            column: vec![0.0; MOST_POINTS],
+        }
+    }
+}
+
+impl Factor {
+    /// Row `i`: the first i + 1 numbers of the matrix are to be put there, the factor's come out.
+    #[inline]
+    pub fn row_mut(&mut self, i: usize) -> &mut [f64] {
+        &mut self.rows[i * ROW..][..MOST_POINTS]
+    }
+
+    /// Decomposes the matrix in the rows; false where it is not positive definite to rounding.
+    pub fn decompose(&mut self, size: usize) -> bool {
+        self.size = size;
+        decompose(&mut self.rows, &mut self.inverse_pivots, size)
+    }
+
+    /// Takes in the row that was put behind the last; false, and all as before, where the matrix with
+    /// it is not positive definite to rounding.
+    pub fn append(&mut self) -> bool {
+        let (rows, inverse_pivots, size) = (&mut self.rows, &mut self.inverse_pivots, self.size);
+        let done = append(rows, inverse_pivots, size);
+        self.size += usize::from(done);
+        done
+    }
+
+    /// Lets row and column `k` of the matrix go; those behind move up.
+    pub fn remove(&mut self, k: usize) {
+        for i in k + 1..self.size {
+            let (above, here) = self.rows.split_at_mut(i * ROW);
+            let up = &mut above[(i - 1) * ROW..];
+            self.column[i - 1] = here[k];
+            up[..k].copy_from_slice(&here[..k]);
+            up[k..i].copy_from_slice(&here[k + 1..=i]);
+        }
+        self.size -= 1;
+        // What the column gave to the rows behind, turned into them: a plane rotation for each.
+        for m in k..self.size {
+            let (own, gone) = (self.rows[m * ROW + m], self.column[m]);
+            let pivot = (own * own + gone * gone).sqrt();
+            let (cosine, sine) = (own / pivot, gone / pivot);
+            self.rows[m * ROW + m] = pivot;
+            self.inverse_pivots[m] = 1.0 / pivot;
+            for i in m + 1..self.size {
+                let (entry, gone) = (&mut self.rows[i * ROW + m], &mut self.column[i]);
+                (*entry, *gone) = (
+                    cosine * *entry + sine * *gone,
+                    cosine * *gone - sine * *entry,
+                );
+            }
+        }
+    }
+
+    /// x with L x = b, in place of b.
+    pub fn solve_lower(&self, b: &mut [f64]) {
+        solve_lower(&self.rows, &self.inverse_pivots, self.size, b);
+    }
+
+    /// x with A x = b, in place of b.
+    pub fn solve(&self, b: &mut [f64]) {
+        self.solve_lower(b);
+        solve_upper(&self.rows, &self.inverse_pivots, self.size, b);
+    }
+}
+
+widely! {
+    fn solve_lower(rows: &[f64], inverse_pivots: &[f64], size: usize, b: &mut [f64]) {
+        for i in 0..size {
+            let row = &rows[i * ROW..][..i];
+            b[i] = (b[i] - dot(row, &b[..i])) * inverse_pivots[i];
+        }
+    }
+}
+
+widely! {
+    fn solve_upper(rows: &[f64], inverse_pivots: &[f64], size: usize, b: &mut [f64]) {
+        for i in (0..size).rev() {
+            b[i] *= inverse_pivots[i];
+            let (rest, x) = b.split_at_mut(i);
+            let row = &rows[i * ROW..][..i];
+            for (entry, l) in rest.iter_mut().zip(row) {
+                *entry -= x[0] * l;
+            }
+        }
+    }
+}
+
+/// The square root of a pivot, if it is one.
+#[inline(always)]
+fn root(own: f64, pivot: f64) -> Option<f64> {
+    // Not a number is not greater.
+    (pivot > LEAST_PIVOT * own && pivot.is_finite()).then(|| pivot.sqrt())
+}
+
+widely! {
+    fn append(rows: &mut [f64], inverse_pivots: &mut [f64], size: usize) -> bool {
+        let (above, row) = rows.split_at_mut(size * ROW);
+        for (j, before) in above.chunks_exact(ROW).enumerate() {
+            row[j] = (row[j] - dot(&row[..j], &before[..j])) * inverse_pivots[j];
+        }
+        let (head, own) = row.split_at_mut(size);
+        let Some(pivot) = root(own[0], own[0] - dot(head, head)) else {
+            return false;
+        };
+        (own[0], inverse_pivots[size]) = (pivot, 1.0 / pivot);
+        true
+    }
+}
+
+widely! {
+    /// Column after column, four rows at once: the entries of one column do not wait for each other.
+    fn decompose(rows: &mut [f64], inverse_pivots: &mut [f64], size: usize) -> bool {
+        for j in 0..size {
+            let (above, below) = rows[..size * ROW].split_at_mut((j + 1) * ROW);
+            let (head, own) = above[j * ROW..][..=j].split_at_mut(j);
+            let Some(pivot) = root(own[0], own[0] - dot(head, head)) else {
+                return false;
+            };
+            let inverse = 1.0 / pivot;
+            (own[0], inverse_pivots[j]) = (pivot, inverse);
+            let mut fours = below.chunks_exact_mut(4 * ROW);
+            for four in &mut fours {
+                let row = |k: usize| &four[k * ROW..][..j];
+                let sums = dots([row(0), row(1), row(2), row(3)], head);
+                for (k, sum) in sums.into_iter().enumerate() {
+                    let entry = &mut four[k * ROW + j];
+                    *entry = (*entry - sum) * inverse;
+                }
+            }
+            for row in fours.into_remainder().chunks_exact_mut(ROW) {
+                row[j] = (row[j] - dot(&row[..j], head)) * inverse;
+            }
+        }
+        true
+    }
+}

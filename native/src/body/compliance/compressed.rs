@@ -1,0 +1,350 @@
+//! Uniform block low rank, as `core/compression` makes it: near blocks whole, far ones in tiles.
+
+use std::collections::BTreeMap;
+
+use glam::{DMat3, DVec3};
+
+use super::{ComplianceError, Either, refuse, some};
+use crate::body::compliance::table::Table;
+
+/// Numbers in a tile's row and column.
+const TILE: usize = 8;
+
+/// The arrays of a compressed compliance, as `core/compression` names and lays them out.
+#[derive(Debug)]
+pub struct CompressedParts {
+    /// Where each node stands among the padded clusters.
+    pub places: Vec<u32>,
+    /// L_ii, row by row.
+    pub own_blocks: Table<f64>,
+    /// A factor for each row of each padded cluster.
+    pub near_scale: Table<f32>,
+    /// Number of the near block between two clusters, from 1 on; 0 for far ones.
+    pub near_table: Vec<u32>,
+    /// Step of each near block.
+    pub near_steps: Table<f32>,
+    /// Near blocks in steps, rows of the lower cluster.
+    pub near: Either<i16, f32>,
+    /// Tiles of each cluster's basis.
+    pub tile_counts: Vec<u32>,
+    /// Bases, one after the other, a row for each row of a padded cluster.
+    pub basis: Table<f32>,
+    /// Step of each cluster's couplings.
+    pub steps: Table<f32>,
+    /// Which tile stands where: 0 none, from 1 on narrow, from -1 down wide.
+    pub tile_table: Vec<i32>,
+    /// Tiles of 8 bits.
+    pub narrow: Table<i8>,
+    /// Tiles of more.
+    pub wide: Either<i16, i32>,
+}
+
+/// Uniform block low rank: near blocks whole, far ones between the bases of two clusters.
+#[derive(Debug)]
+pub struct Compressed {
+    parts: CompressedParts,
+    pub(super) nodes: usize,
+    /// Rows of a padded cluster.
+    rows: usize,
+    /// First tile of each cluster, and the number of all.
+    first_tile: Vec<usize>,
+    /// Places in ascending order, each with its node: so memory is read from front to back.
+    by_place: Vec<(u32, u32)>,
+}
+
+impl Compressed {
+    /// Checks that the parts belong together: every place that is read later lies inside.
+    ///
+    /// # Errors
+    /// [`ComplianceError`] with the part that does not fit.
+    pub fn new(parts: CompressedParts) -> Result<Self, ComplianceError> {
+        let nodes = parts.places.len();
+        let clusters = parts.tile_counts.len();
+        if clusters == 0 || parts.near_scale.len() % (3 * clusters) != 0 {
+            return refuse("near_scale does not fit the number of clusters".into());
+        }
+        let rows = parts.near_scale.len() / clusters;
+        let mut first_tile = vec![0; clusters + 1];
+        for (cluster, &count) in parts.tile_counts.iter().enumerate() {
+            first_tile[cluster + 1] = first_tile[cluster] + count as usize;
+        }
+        let tiles = first_tile[clusters];
+        let Some(tile_pairs) = tiles.checked_mul(tiles) else {
+            return refuse("tile_counts are too large".into());
+        };
+        let near_blocks = parts.near_steps.len();
+        let narrow = parts.narrow.len() / (TILE * TILE);
+        let wide = parts.wide.len() / (TILE * TILE);
+        for (name, found, expected) in [
+            ("own_blocks", parts.own_blocks.len(), 9 * nodes),
+            ("near_table", parts.near_table.len(), clusters * clusters),
+            ("near", parts.near.len(), near_blocks * rows * rows),
+            ("basis", parts.basis.len(), rows * TILE * tiles),
+            ("steps", parts.steps.len(), clusters),
+            ("tile_table", parts.tile_table.len(), tile_pairs),
+            ("narrow", parts.narrow.len(), narrow.max(1) * TILE * TILE),
+            ("wide", parts.wide.len(), wide * TILE * TILE),
+        ] {
+            if found != expected {
+                return refuse(format!("{name} has {found} numbers, not {expected}"));
+            }
+        }
+        let beyond = |name: &str| refuse(format!("{name} points beyond what there is"));
+        if (parts.places.iter()).any(|&place| 3 * place as usize >= rows * clusters) {
+            return beyond("places");
+        }
+        if (parts.near_table.iter()).any(|&number| number as usize > near_blocks) {
+            return beyond("near_table");
+        }
+        let is_tile = |number: i32| {
+            let place = number.unsigned_abs() as usize;
+            if number < 0 {
+                place <= wide
+            } else {
+                place < narrow
+            }
+        };
+        if !parts.tile_table.iter().all(|&number| is_tile(number)) {
+            return beyond("tile_table");
+        }
+        if (0..clusters).any(|c| parts.near_table[c * clusters + c] == 0) {
+            return refuse("a cluster is no neighbour of itself".into());
+        }
+        let mut by_place: Vec<(u32, u32)> = parts.places.iter().copied().zip(0..).collect();
+        by_place.sort_unstable();
+        Ok(Self {
+            parts,
+            nodes,
+            rows,
+            first_tile,
+            by_place,
+        })
+    }
+
+    #[inline]
+    pub(super) fn block(&self, i: usize, j: usize) -> DMat3 {
+        if i == j {
+            let own = |k: usize| self.parts.own_blocks[9 * i + k];
+            return DMat3::from_cols(
+                DVec3::new(own(0), own(3), own(6)),
+                DVec3::new(own(1), own(4), own(7)),
+                DVec3::new(own(2), own(5), own(8)),
+            );
+        }
+        // One of both is computed and the other one turned, as blocks are stored once.
+        let places = &self.parts.places;
+        if places[i] > places[j] {
+            return self
+                .upper(places[j] as usize, places[i] as usize)
+                .transpose();
+        }
+        self.upper(places[i] as usize, places[j] as usize)
+    }
+
+    fn upper(&self, i: usize, j: usize) -> DMat3 {
+        let leaf = self.rows / 3;
+        let (row, column) = (i / leaf, j / leaf);
+        let (a, b) = (3 * (i % leaf), 3 * (j % leaf));
+        let near = self.parts.near_table[row * self.parts.tile_counts.len() + column] as usize;
+        if near == 0 {
+            self.far(row, a, column, b)
+        } else {
+            self.near(near - 1, row, a, column, b)
+        }
+    }
+
+    fn near(&self, number: usize, row: usize, a: usize, column: usize, b: usize) -> DMat3 {
+        let step = f64::from(self.parts.near_steps[number]);
+        let scale = |cluster: usize, inside: usize| {
+            f64::from(self.parts.near_scale[cluster * self.rows + inside])
+        };
+        let entry = |r: usize, c: usize| {
+            let place = (number * self.rows + a + r) * self.rows + b + c;
+            scale(row, a + r) * scale(column, b + c) * (step * self.parts.near.at(place))
+        };
+        DMat3::from_cols_array_2d(&[0, 1, 2].map(|c| [0, 1, 2].map(|r| entry(r, c))))
+    }
+
+    /// B_r M B_c^T for three rows each, tile by tile of M.
+    fn far(&self, row: usize, a: usize, column: usize, b: usize) -> DMat3 {
+        let tiles = self.first_tile[self.first_tile.len() - 1];
+        let mut sum = DMat3::ZERO;
+        for s in 0..self.parts.tile_counts[row] as usize {
+            let line = (self.first_tile[row] + s) * tiles + self.first_tile[column];
+            // M B_c^T for the eight rows of this line of tiles.
+            let mut moved = [DVec3::ZERO; TILE];
+            for t in 0..self.parts.tile_counts[column] as usize {
+                let number = self.parts.tile_table[line + t];
+                if number == 0 {
+                    continue;
+                }
+                let patterns: [DVec3; TILE] =
+                    std::array::from_fn(|k| self.patterns(column, b, t * TILE + k));
+                for (m, line) in moved.iter_mut().enumerate() {
+                    for (k, pattern) in patterns.iter().enumerate() {
+                        *line += *pattern * self.coupling(number, m * TILE + k);
+                    }
+                }
+            }
+            for (m, line) in moved.iter().enumerate() {
+                let pattern = self.patterns(row, a, s * TILE + m);
+                sum.x_axis += pattern * line.x;
+                sum.y_axis += pattern * line.y;
+                sum.z_axis += pattern * line.z;
+            }
+        }
+        let step = |cluster: usize| f64::from(self.parts.steps[cluster]);
+        sum * step(row).min(step(column))
+    }
+
+    /// Three rows of one pattern of a cluster's basis.
+    #[inline]
+    fn patterns(&self, cluster: usize, inside: usize, pattern: usize) -> DVec3 {
+        let rank = TILE * self.parts.tile_counts[cluster] as usize;
+        let first = self.rows * TILE * self.first_tile[cluster] + inside * rank + pattern;
+        let entry = |r: usize| f64::from(self.parts.basis[first + r * rank]);
+        DVec3::new(entry(0), entry(1), entry(2))
+    }
+
+    /// Near blocks and own blocks node by node; far ones cluster by cluster, in single precision.
+    pub(super) fn apply(&self, loads: &[(usize, DVec3)]) -> Vec<DVec3> {
+        let leaf = self.rows / 3;
+        let mut near = vec![0.0_f32; self.rows * self.parts.tile_counts.len()];
+        let mut patterns = vec![[0.0_f32; TILE]; self.first_tile[self.first_tile.len() - 1]];
+        let mut loaded: BTreeMap<usize, Vec<[f32; TILE]>> = BTreeMap::new();
+        for &(node, force) in loads {
+            let place = self.parts.places[node] as usize;
+            let (cluster, inside) = (place / leaf, 3 * (place % leaf));
+            self.add_near(cluster, inside, force, &mut near);
+            let tiles = self.parts.tile_counts[cluster] as usize;
+            let load = (loaded.entry(cluster)).or_insert_with(|| vec![[0.0; TILE]; tiles]);
+            for (pattern, sum) in load.as_flattened_mut().iter_mut().enumerate() {
+                *sum += self.patterns(cluster, inside, pattern).dot(force) as f32;
+            }
+        }
+        for (&cluster, load) in &loaded {
+            self.add_far(cluster, load, &mut patterns);
+        }
+        let mut moved = vec![DVec3::ZERO; self.nodes];
+        for &(place, node) in &self.by_place {
+            moved[node as usize] = self.moved(place as usize, &near, &patterns);
+        }
+        for &(node, force) in loads {
+            moved[node] += self.block(node, node) * force;
+        }
+        moved
+    }
+
+    fn add_near(&self, cluster: usize, inside: usize, force: DVec3, near: &mut [f32]) {
+        let (rows, clusters) = (self.rows, self.parts.tile_counts.len());
+        for other in 0..clusters {
+            let number = self.parts.near_table[cluster * clusters + other] as usize;
+            if number == 0 {
+                continue;
+            }
+            let first = (number - 1) * rows * rows;
+            let step = self.parts.near_steps[number - 1];
+            let scales: [f32; 3] = some(&self.parts.near_scale, cluster * rows + inside);
+            let force: [f32; 3] =
+                std::array::from_fn(|axis| step * scales[axis] * force[axis] as f32);
+            let moved = &mut near[other * rows..][..rows];
+            // Rows of a stored block are of the cluster that counts lower.
+            for (row, sum) in moved.iter_mut().enumerate() {
+                if other <= cluster {
+                    let entries: [f32; 3] = self.parts.near.some(first + row * rows + inside);
+                    *sum += entries[0] * force[0] + entries[1] * force[1] + entries[2] * force[2];
+                } else {
+                    for (axis, force) in force.iter().enumerate() {
+                        let [entry] = self.parts.near.some(first + (inside + axis) * rows + row);
+                        *sum += entry * force;
+                    }
+                }
+            }
+        }
+    }
+
+    fn add_far(&self, cluster: usize, load: &[[f32; TILE]], patterns: &mut [[f32; TILE]]) {
+        let tiles = patterns.len();
+        let first = self.first_tile[cluster];
+        for (other, range) in self.first_tile.windows(2).enumerate() {
+            let step = self.parts.steps[cluster].min(self.parts.steps[other]);
+            for (row, pattern) in (range[0]..).zip(&mut patterns[range[0]..range[1]]) {
+                let mut sum = [0.0_f32; TILE];
+                let numbers = &self.parts.tile_table[row * tiles + first..][..load.len()];
+                for (&number, load) in numbers.iter().zip(load).filter(|(number, _)| **number != 0)
+                {
+                    // Rows of a stored tile are of the cluster that counts lower.
+                    let tile = self.tile(number);
+                    if other < cluster {
+                        for (sum, line) in sum.iter_mut().zip(&tile) {
+                            *sum += total(std::array::from_fn(|k| line[k] * load[k]));
+                        }
+                    } else {
+                        for (line, load) in tile.iter().zip(load) {
+                            for (sum, entry) in sum.iter_mut().zip(line) {
+                                *sum += entry * load;
+                            }
+                        }
+                    }
+                }
+                for (pattern, sum) in pattern.iter_mut().zip(sum) {
+                    *pattern += step * sum;
+                }
+            }
+        }
+    }
+
+    #[inline]
+    fn tile(&self, number: i32) -> [[f32; TILE]; TILE] {
+        let place = number.unsigned_abs() as usize * TILE * TILE;
+        std::array::from_fn(|row| {
+            if number > 0 {
+                some(&self.parts.narrow, place + row * TILE).map(f32::from)
+            } else {
+                self.parts.wide.some(place - TILE * TILE + row * TILE)
+            }
+        })
+    }
+
+    /// What near blocks and patterns move a place among the padded clusters by.
+    fn moved(&self, place: usize, near: &[f32], patterns: &[[f32; TILE]]) -> DVec3 {
+        let (cluster, inside) = (3 * place / self.rows, 3 * place % self.rows);
+        let tiles = self.first_tile[cluster]..self.first_tile[cluster + 1];
+        let rank = TILE * tiles.len();
+        let first = self.rows * TILE * tiles.start + inside * rank;
+        // Three rows at once, eight sums each: no addition waits for the one before.
+        let mut lanes = [[0.0_f32; TILE]; 3];
+        let [x, y, z] = [0, 1, 2].map(|axis| &self.parts.basis[first + axis * rank..][..rank]);
+        let rows = (x.chunks_exact(TILE))
+            .zip(y.chunks_exact(TILE))
+            .zip(z.chunks_exact(TILE));
+        for (((x, y), z), pattern) in rows.zip(&patterns[tiles]) {
+            for k in 0..TILE {
+                lanes[0][k] += x[k] * pattern[k];
+                lanes[1][k] += y[k] * pattern[k];
+                lanes[2][k] += z[k] * pattern[k];
+            }
+        }
+        let near = &near[3 * place..][..3];
+        let scale: [f32; 3] = some(&self.parts.near_scale, 3 * place);
+        DVec3::from_array(std::array::from_fn(|axis| {
+            f64::from(near[axis] * scale[axis] + total(lanes[axis]))
+        }))
+    }
+
+    #[inline]
+    fn coupling(&self, number: i32, entry: usize) -> f64 {
+        let place = number.unsigned_abs() as usize;
+        if number > 0 {
+            f64::from(self.parts.narrow[place * TILE * TILE + entry])
+        } else {
+            self.parts.wide.at((place - 1) * TILE * TILE + entry)
+        }
+    }
+}
+
+/// Pairwise: no addition waits for more than two others.
+#[inline]
+fn total(l: [f32; TILE]) -> f32 {
+    ((l[0] + l[4]) + (l[1] + l[5])) + ((l[2] + l[6]) + (l[3] + l[7]))
+}

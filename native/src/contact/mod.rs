@@ -1,0 +1,4 @@
+//! From a displaced contact point to forces.
+
+pub mod cones;
+pub mod touch;

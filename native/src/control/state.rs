@@ -1,0 +1,359 @@
+//! What the servo is doing and why, as a state machine: pure, one transition a tick.
+//!
+//! `docs/safety.md` has the same table for people. Whatever takes the force away does so in the
+//! tick in which it is found; force comes back only by way of [`State::Ramping`].
+
+use crate::device::Fault;
+use crate::device::reason::{self, after};
+
+/// What the servo is doing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[repr(u8)]
+pub enum State {
+    /// No device yet, or one that is not ready.
+    Waiting,
+    /// The force is coming back, from nothing.
+    Ramping,
+    /// The probe is off the surface.
+    Free,
+    /// The probe presses.
+    Touching,
+    /// Zero force because of a fault.
+    Fault,
+    /// Zero force because the user or the device's button wants it.
+    Disabled,
+    /// The thread does not run.
+    #[default]
+    Stopped,
+}
+
+impl State {
+    /// All states, in the order of their numbers.
+    pub const ALL: [Self; 7] = [
+        Self::Waiting,
+        Self::Ramping,
+        Self::Free,
+        Self::Touching,
+        Self::Fault,
+        Self::Disabled,
+        Self::Stopped,
+    ];
+
+    /// Name for people and tests.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Waiting => "waiting",
+            Self::Ramping => "ramping",
+            Self::Free => "free",
+            Self::Touching => "touching",
+            Self::Fault => "fault",
+            Self::Disabled => "disabled",
+            Self::Stopped => "stopped",
+        }
+    }
+
+    /// Whether force may be given.
+    pub const fn may_push(self) -> bool {
+        matches!(self, Self::Ramping | Self::Free | Self::Touching)
+    }
+}
+
+/// A device that was too fast must be slow for this long before there is force again, s.
+pub const CALM_SECONDS: f64 = 0.1;
+/// After a suspension, ticks must come regularly for this long, s: meanwhile what the line had
+/// stored is read, which is older than it seems.
+pub const STEADY_SECONDS: f64 = 0.02;
+
+/// How long a fault lasts after its cause has gone, s.
+const fn lasts(fault: Fault) -> f64 {
+    match fault {
+        Fault::TooFast => CALM_SECONDS,
+        Fault::Suspended => STEADY_SECONDS,
+        _ => 0.0,
+    }
+}
+
+/// What one tick has found.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Findings {
+    /// Something is wrong now.
+    pub fault: Option<Fault>,
+    /// The device has no position or wants no force; the reason.
+    pub waiting: Option<&'static str>,
+    /// There is no position in this tick.
+    pub blind: bool,
+    /// The user wants no force.
+    pub switched_off: bool,
+    /// A button of the device is held.
+    pub button: bool,
+    /// The body is another one since this tick.
+    pub body_replaced: bool,
+    /// The device moves so slowly that force may come back after it was too fast.
+    pub calm: bool,
+    /// The ramp is through.
+    pub ramped: bool,
+    /// The probe presses.
+    pub touching: bool,
+    /// The probe was set down inside of the body.
+    pub inside: bool,
+}
+
+/// Where the machine stands.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Standing {
+    /// The state.
+    pub state: State,
+    /// The fault while the state is [`State::Fault`].
+    pub fault: Option<Fault>,
+    /// Why, or empty.
+    pub reason: &'static str,
+    /// How much longer the fault lasts at least, s.
+    lasts: f64,
+}
+
+impl Standing {
+    /// A state with its reason.
+    pub const fn new(state: State, reason: &'static str) -> Self {
+        Self {
+            state,
+            fault: None,
+            reason,
+            lasts: 0.0,
+        }
+    }
+
+    /// Zero force because of a fault.
+    pub const fn fault(fault: Fault) -> Self {
+        Self {
+            state: State::Fault,
+            fault: Some(fault),
+            reason: "",
+            lasts: lasts(fault),
+        }
+    }
+
+    /// Whether force may be given in this tick.
+    pub fn may_push(&self, found: &Findings) -> bool {
+        self.state.may_push() && !found.body_replaced
+    }
+}
+
+/// Where the machine stands after a tick of `dt` seconds with these findings.
+///
+/// The first rule that applies decides: a fault; a fault that still lasts; a device that waits; the
+/// user's switch; the device's button; a ramp; touching or free.
+pub fn transition(before: &Standing, found: &Findings, dt: f64) -> Standing {
+    if let Some(fault) = found.fault {
+        return Standing::fault(fault);
+    }
+    if let Some(fault) = before.fault {
+        let left = match fault {
+            Fault::TooFast if !found.calm => lasts(fault),
+            _ => before.lasts - dt,
+        };
+        // Half a tick, for the sum of many dt is not exact.
+        if left > -0.5 * dt && lasts(fault) > 0.0 {
+            return Standing {
+                lasts: left,
+                ..*before
+            };
+        }
+    }
+    if let Some(reason) = found.waiting {
+        return Standing::new(State::Waiting, reason);
+    }
+    if found.switched_off {
+        return Standing::new(State::Disabled, reason::SWITCHED_OFF);
+    }
+    if found.button {
+        return Standing::new(State::Disabled, reason::BUTTON);
+    }
+    if found.body_replaced {
+        return Standing::new(State::Ramping, reason::BODY_REPLACED);
+    }
+    if !before.state.may_push() {
+        return Standing::new(State::Ramping, way_back(before));
+    }
+    if before.state == State::Ramping && !found.ramped {
+        return *before;
+    }
+    if found.touching {
+        Standing::new(State::Touching, "")
+    } else {
+        let reason = if found.inside { reason::INSIDE } else { "" };
+        Standing::new(State::Free, reason)
+    }
+}
+
+/// Why there is a ramp after a state without force.
+fn way_back(before: &Standing) -> &'static str {
+    match (before.fault, before.state) {
+        (Some(fault), _) => after(fault),
+        (_, State::Waiting) => reason::READY,
+        (_, State::Disabled) if before.reason == reason::BUTTON => reason::RELEASED,
+        (_, State::Disabled) => reason::SWITCHED_ON,
+        _ => reason::STARTED,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const DT: f64 = 1e-3;
+    const CALM: Findings = Findings {
+        fault: None,
+        waiting: None,
+        blind: false,
+        switched_off: false,
+        button: false,
+        body_replaced: false,
+        calm: true,
+        ramped: true,
+        touching: false,
+        inside: false,
+    };
+
+    fn every_standing() -> impl Iterator<Item = Standing> {
+        let named = State::ALL
+            .into_iter()
+            .filter(|s| *s != State::Fault)
+            .map(|s| Standing::new(s, ""));
+        named.chain(Fault::ALL.into_iter().map(Standing::fault))
+    }
+
+    fn every_finding() -> impl Iterator<Item = Findings> {
+        let bit = |bits: u32, place: u32| bits >> place & 1 == 1;
+        (0..256).flat_map(move |bits| {
+            let found = Findings {
+                fault: None,
+                waiting: bit(bits, 0).then_some("why"),
+                blind: bit(bits, 0),
+                switched_off: bit(bits, 1),
+                button: bit(bits, 2),
+                body_replaced: bit(bits, 3),
+                calm: bit(bits, 4),
+                ramped: bit(bits, 5),
+                touching: bit(bits, 6),
+                inside: bit(bits, 7),
+            };
+            let faulty = Fault::ALL.map(|fault| Findings {
+                fault: Some(fault),
+                ..found
+            });
+            faulty.into_iter().chain([found])
+        })
+    }
+
+    #[test]
+    fn no_way_leads_past_the_ramp() {
+        for before in every_standing() {
+            for found in every_finding() {
+                let after = transition(&before, &found, DT);
+                if matches!(after.state, State::Free | State::Touching) {
+                    assert!(before.state.may_push(), "{before:?} {found:?}");
+                    assert!(before.state != State::Ramping || found.ramped);
+                }
+                assert_eq!(after.state == State::Fault, after.fault.is_some());
+            }
+        }
+    }
+
+    #[test]
+    fn whatever_takes_the_force_away_does_so_in_the_same_tick() {
+        for before in every_standing() {
+            for found in every_finding() {
+                let after = transition(&before, &found, DT);
+                let reasons_against = found.fault.is_some()
+                    || found.waiting.is_some()
+                    || found.switched_off
+                    || found.button
+                    || found.body_replaced;
+                if reasons_against {
+                    assert!(!after.may_push(&found), "{before:?} {found:?} {after:?}");
+                }
+                if let Some(fault) = found.fault {
+                    assert_eq!(after.fault, Some(fault));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn every_state_is_left_when_its_cause_has_gone() {
+        for before in every_standing() {
+            let mut standing = before;
+            for _ in 0..200 {
+                standing = transition(&standing, &CALM, DT);
+            }
+            assert_eq!(standing.state, State::Free, "{before:?}");
+        }
+    }
+
+    #[test]
+    fn faults_last_as_long_as_told_and_too_fast_until_the_device_is_calm() {
+        for fault in Fault::ALL {
+            let mut standing = Standing::fault(fault);
+            let mut ticks = 0;
+            while standing.state == State::Fault {
+                standing = transition(&standing, &CALM, DT);
+                ticks += 1;
+            }
+            let expected = match fault {
+                Fault::TooFast => 101,
+                Fault::Suspended => 21,
+                _ => 1,
+            };
+            assert_eq!(ticks, expected, "{fault:?}");
+            assert_eq!(standing, Standing::new(State::Ramping, after(fault)));
+        }
+        let mut standing = Standing::fault(Fault::TooFast);
+        let restless = Findings {
+            calm: false,
+            ..CALM
+        };
+        for tick in 0..1000 {
+            let found = if tick % 100 == 99 { &restless } else { &CALM };
+            standing = transition(&standing, found, DT);
+            assert_eq!(standing.fault, Some(Fault::TooFast), "{tick}");
+        }
+    }
+
+    #[test]
+    fn the_ramp_says_what_it_follows() {
+        let from =
+            |found: &Findings| transition(&transition(&Standing::default(), found, DT), &CALM, DT);
+        let off = Findings {
+            switched_off: true,
+            ..CALM
+        };
+        let held = Findings {
+            button: true,
+            ..CALM
+        };
+        let waits = Findings {
+            waiting: Some(reason::NO_STATE),
+            ..CALM
+        };
+        let replaced = Findings {
+            body_replaced: true,
+            ..CALM
+        };
+        assert_eq!(from(&off).reason, reason::SWITCHED_ON);
+        assert_eq!(from(&held).reason, reason::RELEASED);
+        assert_eq!(from(&waits).reason, reason::READY);
+        let started = transition(&Standing::default(), &CALM, DT);
+        assert_eq!(started.reason, reason::STARTED);
+        let touching = Standing::new(State::Touching, "");
+        let other = transition(&touching, &replaced, DT);
+        assert_eq!(
+            (other.state, other.reason),
+            (State::Ramping, reason::BODY_REPLACED)
+        );
+        let growing = Findings {
+            ramped: false,
+            ..CALM
+        };
+        assert_eq!(transition(&other, &growing, DT), other);
+    }
+}

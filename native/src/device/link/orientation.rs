@@ -1,0 +1,200 @@
+//! How the stylus of a device on the link is turned: ORIENTATION messages, each with its STATE.
+
+use glam::{DMat3, DVec3};
+
+use crate::device::link::codec::DeviceOrientation;
+use crate::device::speedometer::Speedometer;
+
+/// An orientation whose next one is lost holds for this long, s: as long as a position.
+const HOLD_SECONDS: f64 = 0.02;
+/// Points that turn with the stylus have their speed looked at like the device's place, m: any turn
+/// moves one of them by 70 % or more of what it moves a point so far from the axis.
+const LEVERS: [DVec3; 2] = [DVec3::new(0.05, 0.0, 0.0), DVec3::new(0.0, 0.0, 0.05)];
+
+/// The newest orientation and the host's time of its STATE, s.
+#[derive(Debug, Clone, Copy)]
+struct Turned {
+    rotation: DMat3,
+    at: f64,
+}
+
+/// What became of the ORIENTATION messages.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct TurningReport {
+    /// Came with their STATE.
+    pub paired: u64,
+    /// Their STATE did not come, or was not used.
+    pub unpaired: u64,
+    /// No unit quaternion.
+    pub refused: u64,
+    /// Missing: STATE without, of a session that has had one.
+    pub lost: u64,
+}
+
+/// The orientation of one session.
+#[derive(Debug, Default)]
+pub struct Turning {
+    /// Told, and waiting for its STATE.
+    told: Option<(u16, DMat3)>,
+    newest: Option<Turned>,
+    levers: [Speedometer; 2],
+    /// Counts of all sessions.
+    pub report: TurningReport,
+}
+
+impl Turning {
+    /// An ORIENTATION came.
+    pub fn tell(&mut self, orientation: DeviceOrientation) {
+        self.dismiss();
+        match orientation.rotation() {
+            Some(q) => self.told = Some((orientation.sequence, DMat3::from_quat(q))),
+            None => self.report.refused += 1,
+        }
+    }
+
+    /// The STATE that came is not used, nor is what was told of it.
+    pub fn dismiss(&mut self) {
+        self.report.unpaired += u64::from(self.told.take().is_some());
+    }
+
+    /// A STATE is used that came at `now` (s) and was made at `time_us` by the device's clock. The
+    /// speed (m/s) of points that turn with the stylus, 50 mm from the tip; 0 without an orientation.
+    pub fn pair(&mut self, sequence: u16, time_us: u32, now: f64) -> f64 {
+        let Some((_, rotation)) = self.told.take_if(|(told, _)| *told == sequence) else {
+            self.dismiss();
+            self.report.lost += u64::from(self.is_known());
+            return 0.0;
+        };
+        self.report.paired += 1;
+        self.newest = Some(Turned { rotation, at: now });
+        let [x, z] = &mut self.levers;
+        x.speed(rotation * LEVERS[0], time_us, now)
+            .max(z.speed(rotation * LEVERS[1], time_us, now))
+    }
+
+    /// Whether this session has had an orientation.
+    pub fn is_known(&self) -> bool {
+        self.newest.is_some()
+    }
+
+    /// Whether the device told its orientation once and does so no more.
+    pub fn is_stale(&self, now: f64) -> bool {
+        self.newest
+            .is_some_and(|newest| now - newest.at > HOLD_SECONDS)
+    }
+
+    /// Rotation from the stylus' axes to the device's; none until it is known.
+    pub fn rotation(&self) -> DMat3 {
+        self.newest
+            .map_or(DMat3::IDENTITY, |newest| newest.rotation)
+    }
+
+    /// After silence: what was told before it belongs to no STATE, and no way leads across it.
+    pub fn interrupt(&mut self) {
+        self.dismiss();
+        self.reset_levers();
+    }
+
+    /// Another session: the device may be one that tells no orientation. What it has told of the STATE
+    /// to come stays.
+    pub fn forget(&mut self) {
+        self.newest = None;
+        self.reset_levers();
+    }
+
+    fn reset_levers(&mut self) {
+        for lever in &mut self.levers {
+            lever.reset();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const UPRIGHT: [i16; 4] = [32_767, 0, 0, 0];
+    /// A quarter turn about z.
+    const QUARTER: [i16; 4] = [23_170, 0, 0, 23_170];
+
+    fn told(turning: &mut Turning, sequence: u16, quaternion: [i16; 4]) {
+        turning.tell(DeviceOrientation {
+            sequence,
+            quaternion,
+        });
+    }
+
+    fn counts(turning: &Turning) -> [u64; 4] {
+        let TurningReport {
+            paired,
+            unpaired,
+            refused,
+            lost,
+        } = turning.report;
+        [paired, unpaired, refused, lost]
+    }
+
+    #[test]
+    fn only_the_state_of_the_same_number_turns_the_stylus() {
+        let mut turning = Turning::default();
+        told(&mut turning, 7, QUARTER);
+        assert!(!turning.is_known(), "its STATE is to come");
+        turning.pair(8, 0, 0.0);
+        assert_eq!(turning.rotation(), DMat3::IDENTITY);
+        turning.pair(7, 0, 0.0);
+        assert!(!turning.is_known(), "it was of the STATE before");
+        told(&mut turning, 8, UPRIGHT);
+        told(&mut turning, 9, QUARTER);
+        turning.pair(9, 0, 0.0);
+        assert!((turning.rotation() * DVec3::X).distance(DVec3::Y) < 1e-12);
+        told(&mut turning, 10, [0; 4]);
+        turning.pair(10, 1000, 0.001);
+        assert!((turning.rotation() * DVec3::X).distance(DVec3::Y) < 1e-12);
+        assert_eq!(counts(&turning), [1, 2, 1, 1]);
+    }
+
+    #[test]
+    fn the_last_one_holds_for_twenty_milliseconds() {
+        let mut turning = Turning::default();
+        assert!(!turning.is_stale(1e9), "a device that tells none");
+        told(&mut turning, 0, QUARTER);
+        turning.pair(0, 0, 5.0);
+        turning.pair(1, 1000, 5.01);
+        assert!(!turning.is_stale(5.0199) && turning.is_stale(5.0201));
+        turning.forget();
+        assert!(!turning.is_stale(6.0) && !turning.is_known());
+    }
+
+    #[test]
+    fn a_turn_is_measured_50_mm_from_the_tip() {
+        // 10 rad/s about each axis; one STATE in three is without.
+        for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
+            let mut turning = Turning::default();
+            for ms in 0..200_u16 {
+                let q = glam::DQuat::from_axis_angle(axis, 0.01 * f64::from(ms));
+                if ms % 3 > 0 {
+                    let steps = [q.w, q.x, q.y, q.z].map(|c| (c * 32_767.0).round() as i16);
+                    told(&mut turning, ms, steps);
+                }
+                let speed = turning.pair(ms, 1000 * u32::from(ms), 1e-3 * f64::from(ms));
+                let expected = if ms % 3 > 0 && ms > 1 { 0.5 } else { 0.0 };
+                assert!((speed - expected).abs() < 0.01, "{ms} {speed}");
+            }
+            assert_eq!(counts(&turning), [133, 0, 0, 66]);
+        }
+    }
+
+    #[test]
+    fn after_silence_nothing_told_before_is_used() {
+        let mut turning = Turning::default();
+        told(&mut turning, 0, UPRIGHT);
+        turning.pair(0, 0, 0.0);
+        told(&mut turning, 1, UPRIGHT);
+        turning.interrupt();
+        turning.pair(1, 1_000_000, 1.0);
+        assert!(turning.is_known() && turning.is_stale(1.0));
+        told(&mut turning, 2, QUARTER);
+        assert_eq!(turning.pair(2, 1_001_000, 1.001), 0.0, "no way across");
+        assert_eq!(counts(&turning), [2, 1, 0, 1]);
+    }
+}

@@ -1,0 +1,252 @@
+//! Several fingers on one body: each feels the others through it, equation (10) and its extension
+//! to places on triangles. Readable reference: `core/several_contacts.py`; `docs/contact.md`.
+//!
+//! Contact point p moves by the forces on all, u_p = sum_q C_pq F_q / E with
+//! C_pq = sum_ab a_pa a_qb L_ab over the nodes of both triangles. A finger may only push: its force
+//! stays in a cone about the direction of its push. The forces are those of least energy under these
+//! cones. Everything here is at unit modulus, of fixed size and bounded.
+
+use glam::{DMat3, DVec3};
+
+use crate::body::softening::Softening;
+use crate::body::surface::Body;
+use crate::contact::cones::{Blocks, Cone, MAX_FINGERS, Members, mean, solve_distinct};
+use crate::contact::touch::{contact_compliance, inverse_of_definite};
+use crate::control::coupling::series_compliance;
+use crate::fingers::softened::{Pressing, Softened};
+use crate::proxy::Hold;
+
+/// Where the others hold a finger, it still finds this share of the compliance it finds alone.
+const DISTINCT: f64 = 0.02;
+/// C_pp is enlarged by this share before looking for what is missing: far less than `DISTINCT`, far
+/// more than what rounding and compression leave of a zero.
+const TELLING_SHIFT: f64 = 1e-3;
+/// Present by less, a finger does not act on the others.
+const LEAST_PRESENCE: f64 = 1e-3;
+
+/// A finger on the body, or near it where the others move the surface.
+#[derive(Debug, Clone, Copy)]
+pub struct Press {
+    /// Where on the surface.
+    pub hold: Hold,
+    /// It touches; otherwise only what the others do there is asked for.
+    pub touches: bool,
+    /// How far it asks the contact point to move from rest, m.
+    pub displacement: DVec3,
+    /// How far tools move it already, m.
+    pub moved_by_tools: DVec3,
+    /// The part of that which it adds to what the others do, m.
+    pub push: DVec3,
+    /// Of all that its device may see, over Young's modulus; infinite for no such limit.
+    pub most_stiffness: f64,
+    /// From 0 to 1 after it was lifted by a fault: how much it acts on the others.
+    pub presence: f64,
+    /// How the place departs from the linear relation.
+    pub softening: Softening,
+}
+
+/// What becomes of a press; times Young's modulus for N and N/m.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Answer {
+    /// On the body, as the device and the other fingers feel it.
+    pub force: DVec3,
+    /// On the body, were there nothing but the body between it and this finger.
+    pub contact_force: DVec3,
+    /// How far the others move the contact point, m.
+    pub by_others: DVec3,
+    /// As `force` and `by_others`, were all relations linear: so the linear body is drawn, in which
+    /// every contact point is where its finger has it.
+    pub drawn: (DVec3, DVec3),
+    /// How far the surface goes beyond what the finger asks, m: zero unless its force is on its cone.
+    pub slip: DVec3,
+    /// Of the contact point while the others hold theirs, in series with what keeps the device from
+    /// seeing it whole: the most that any device sees.
+    pub seen_stiffness: DMat3,
+    /// Compliance of that which keeps the device from seeing it whole.
+    pub spring: f64,
+    /// How much of the place's softening is in the force, 0 to 1.
+    pub felt_share: f64,
+}
+
+/// L between the nodes of two triangles, kept until one of them changes.
+#[derive(Debug, Clone, Copy)]
+struct Cross {
+    triangles: [u32; 2],
+    body: u32,
+    blocks: [[DMat3; 3]; 3],
+}
+
+/// The solver and what it remembers from tick to tick.
+#[derive(Debug, Clone)]
+pub struct Several {
+    cross: [[Cross; MAX_FINGERS]; MAX_FINGERS],
+    forces: [DVec3; MAX_FINGERS],
+    softened: Softened,
+}
+
+impl Default for Several {
+    fn default() -> Self {
+        let unread = Cross {
+            triangles: [u32::MAX; 2],
+            body: u32::MAX,
+            blocks: [[DMat3::ZERO; 3]; 3],
+        };
+        Self {
+            cross: [[unread; MAX_FINGERS]; MAX_FINGERS],
+            forces: [DVec3::ZERO; MAX_FINGERS],
+            softened: Softened::default(),
+        }
+    }
+}
+
+impl Several {
+    /// Forces of all fingers that touch, and how far they move the surface at all that are there.
+    ///
+    /// `number` counts the bodies that were exchanged, `dt` is the tick's length in s. `None` for a
+    /// body that does not keep its whole compliance, or one of which rounding has made nonsense.
+    pub fn solve(
+        &mut self,
+        body: &Body,
+        number: u32,
+        presses: &[Option<Press>; MAX_FINGERS],
+        dt: f64,
+    ) -> Option<[Answer; MAX_FINGERS]> {
+        let mut compliance = self.coupled_compliance(body, number, presses)?;
+        tell_apart(&mut compliance, &Members::of(presses))?;
+        let touching = presses.map(|press| press.filter(|p| p.touches));
+        let members = Members::of(&touching);
+        let held = members.held(&compliance)?;
+        let mut answers = [Answer::default(); MAX_FINGERS];
+        // What lies between a finger and the body gives way in series with the body.
+        let mut series = compliance;
+        let mut between = [0.0; MAX_FINGERS];
+        let mut asked = [DVec3::ZERO; MAX_FINGERS];
+        let mut cones = [Cone::default(); MAX_FINGERS];
+        for (p, press) in numbered(&touching) {
+            let spring = series_compliance(&held[p], press.most_stiffness);
+            let fading = mean(&compliance[p][p]) * (1.0 / press.presence.max(LEAST_PRESENCE) - 1.0);
+            between[p] = spring + fading;
+            series[p][p] += DMat3::IDENTITY * between[p];
+            let share = (DMat3::IDENTITY + held[p] * spring).inverse();
+            answers[p].seen_stiffness = share * held[p];
+            answers[p].spring = spring;
+            answers[p].felt_share = 1.0;
+            asked[p] = press.displacement - press.moved_by_tools;
+            cones[p] = Cone::about(press.push, &series[p][p])?;
+        }
+        self.forces = solve_distinct(&series, &asked, &cones, &members, &self.forces)?;
+        for (p, press) in numbered(presses) {
+            let others = members.numbers().filter(|&q| q != p);
+            let by_points: DVec3 = others.map(|q| compliance[p][q] * self.forces[q]).sum();
+            answers[p].by_others = by_points + press.moved_by_tools;
+            if press.touches {
+                let force = self.forces[p];
+                let own = inverse_of_definite(&compliance[p][p])?;
+                answers[p].force = force;
+                answers[p].contact_force = force + own * force * between[p];
+                let moved = series[p][p] * force + answers[p].by_others;
+                answers[p].slip = moved - press.displacement;
+            }
+            answers[p].drawn = (answers[p].force, answers[p].by_others);
+        }
+        if numbered(&touching).any(|(_, press)| !press.softening.is_none()) {
+            let pressing = Pressing {
+                compliance,
+                between,
+                asked,
+                cones,
+                members,
+            };
+            // Where rounding has made nonsense of it, the linear answers stay.
+            if (self.softened)
+                .solve(&pressing, presses, &mut answers, dt)
+                .is_none()
+            {
+                self.softened = Softened::default();
+            }
+        } else {
+            self.softened = Softened::default();
+        }
+        Some(answers)
+    }
+
+    /// Nobody touches: what was remembered of the forces is over.
+    pub fn release(&mut self) {
+        self.forces = [DVec3::ZERO; MAX_FINGERS];
+        self.softened = Softened::default();
+    }
+
+    /// C_pq of all fingers that are there.
+    fn coupled_compliance(
+        &mut self,
+        body: &Body,
+        number: u32,
+        presses: &[Option<Press>; MAX_FINGERS],
+    ) -> Option<Blocks> {
+        let mut compliance = [[DMat3::ZERO; MAX_FINGERS]; MAX_FINGERS];
+        for (p, press) in numbered(presses) {
+            compliance[p][p] = contact_compliance(body, press.hold.triangle, press.hold.alpha)?;
+            for (q, other) in numbered(presses).take_while(|&(q, _)| q < p) {
+                let triangles = [press.hold.triangle, other.hold.triangle];
+                let cross = &mut self.cross[p][q];
+                if (cross.triangles, cross.body) != (triangles, number) {
+                    cross.blocks = blocks_between(body, triangles)?;
+                    (cross.triangles, cross.body) = (triangles, number);
+                }
+                let mut sum = DMat3::ZERO;
+                for (row, a) in cross.blocks.iter().zip(press.hold.alpha) {
+                    for (block, b) in row.iter().zip(other.hold.alpha) {
+                        sum += *block * (a * b);
+                    }
+                }
+                (compliance[p][q], compliance[q][p]) = (sum, sum.transpose());
+            }
+        }
+        Some(compliance)
+    }
+}
+
+/// Those that are there, by number.
+pub(crate) fn numbered<T: Copy>(
+    some: &[Option<T>; MAX_FINGERS],
+) -> impl Iterator<Item = (usize, T)> + '_ {
+    some.iter()
+        .enumerate()
+        .filter_map(|(number, one)| one.map(|one| (number, one)))
+}
+
+fn blocks_between(body: &Body, [p, q]: [u32; 2]) -> Option<[[DMat3; 3]; 3]> {
+    let mut blocks = [[DMat3::ZERO; 3]; 3];
+    for (row, a) in blocks.iter_mut().zip(body.triangles[p as usize]) {
+        for (block, b) in row.iter_mut().zip(body.triangles[q as usize]) {
+            *block = body.block(a, b)?;
+        }
+    }
+    Some(blocks)
+}
+
+/// Makes contacts distinct that the surface can hardly tell apart: what they do to each other is
+/// reduced, C_pq t_p t_q with t_p^2 = 1 - max(0, DISTINCT - y_p). What p yields while all others are
+/// held is the inverse of the block pp of C^-1; y_p is its share of C_pp, what p yields alone. `None`
+/// unless C is definite.
+pub fn tell_apart(compliance: &mut Blocks, members: &Members) -> Option<()> {
+    if members.count < 2 {
+        return Some(());
+    }
+    let mut shifted = *compliance;
+    for p in members.numbers() {
+        shifted[p][p] *= 1.0 + TELLING_SHIFT;
+    }
+    let held = members.held(&shifted)?;
+    let mut reduced = [1.0; MAX_FINGERS];
+    for p in members.numbers() {
+        let yielded = 1.0 / mean(&(compliance[p][p] * held[p])) - TELLING_SHIFT;
+        reduced[p] = (1.0 - (DISTINCT - yielded).clamp(0.0, DISTINCT)).sqrt();
+    }
+    for p in members.numbers() {
+        for q in members.numbers().filter(|&q| q != p) {
+            compliance[p][q] *= reduced[p] * reduced[q];
+        }
+    }
+    Some(())
+}

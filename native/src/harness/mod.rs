@@ -1,0 +1,3 @@
+//! What benchmarks and tests need and the servo never does.
+
+pub mod closed_loop;

@@ -1,0 +1,4 @@
+//! A body from numpy arrays.
+
+pub mod compliance;
+pub mod surface;

@@ -1,0 +1,232 @@
+//! `Body`: arrays in, contact forces and distances out.
+
+use std::sync::Arc;
+
+use glam::{DMat3, DVec3};
+use numpy::ndarray::ArrayView1;
+use numpy::{AllowTypeChange, PyArray1, PyArrayLike1, PyArrayLike2, PyArrayLike3};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use crate::body::closest;
+use crate::body::softening::{Felt, Softening};
+use crate::body::surface;
+use crate::contact::touch;
+use crate::python::body::compliance::Compliance;
+use crate::python::servo::settings::{contact_mode, felt_choice};
+use crate::python::vectors::{Matrix, Rows, Triple, Vector, array, finite, rows};
+
+#[pyclass(frozen, module = "palpate_servo")]
+pub struct Body {
+    pub inner: Arc<surface::Body>,
+}
+
+#[pymethods]
+impl Body {
+    #[new]
+    #[pyo3(signature = (nodes, triangles, contact_blocks, compliance=None, free_nodes=None, *,
+        whole=false))]
+    fn new(
+        nodes: PyArrayLike2<'_, f64, AllowTypeChange>,
+        triangles: PyArrayLike2<'_, i64, AllowTypeChange>,
+        contact_blocks: PyArrayLike3<'_, f64, AllowTypeChange>,
+        compliance: Option<&Compliance>,
+        free_nodes: Option<PyArrayLike1<'_, i64, AllowTypeChange>>,
+        whole: bool,
+    ) -> PyResult<Self> {
+        let (nodes, triangles, blocks) = (
+            nodes.as_array(),
+            triangles.as_array(),
+            contact_blocks.as_array(),
+        );
+        if nodes.ncols() != 3 || triangles.ncols() != 3 {
+            return Err(PyValueError::new_err(
+                "nodes and triangles must have three columns",
+            ));
+        }
+        if blocks.shape()[1..] != [3, 3] {
+            return Err(PyValueError::new_err(
+                "contact_blocks must have the shape (nodes, 3, 3)",
+            ));
+        }
+        let nodes = nodes
+            .rows()
+            .into_iter()
+            .map(|r| DVec3::new(r[0], r[1], r[2]))
+            .collect();
+        let triangles = triangles
+            .rows()
+            .into_iter()
+            .enumerate()
+            .map(|(t, r)| {
+                let index = |k: usize| {
+                    u32::try_from(r[k]).map_err(|_| {
+                        PyValueError::new_err(format!("triangle {t} names the node {}", r[k]))
+                    })
+                };
+                Ok([index(0)?, index(1)?, index(2)?])
+            })
+            .collect::<PyResult<_>>()?;
+        let blocks = blocks
+            .outer_iter()
+            .map(|b| DMat3::from_cols_array_2d(&[0, 1, 2].map(|c| [0, 1, 2].map(|r| b[[r, c]]))))
+            .collect();
+        let refused = |e: surface::BodyError| PyValueError::new_err(e.to_string());
+        let mut inner = surface::Body::new(nodes, triangles, blocks).map_err(refused)?;
+        if let Some(compliance) = compliance {
+            let free_nodes = match free_nodes {
+                Some(numbers) => node_numbers(&numbers)?,
+                None => (0..inner.nodes.len() as u32).collect(),
+            };
+            inner = if whole {
+                inner.with_whole_compliance(compliance.inner.clone(), &free_nodes)
+            } else {
+                inner.with_compliance(&compliance.inner, &free_nodes)
+            }
+            .map_err(refused)?;
+        }
+        Ok(Self {
+            inner: Arc::new(inner),
+        })
+    }
+
+    #[getter]
+    fn node_count(&self) -> usize {
+        self.inner.nodes.len()
+    }
+
+    #[getter]
+    fn is_whole(&self) -> bool {
+        self.inner.is_whole()
+    }
+
+    #[getter]
+    fn triangle_count(&self) -> usize {
+        self.inner.triangles.len()
+    }
+
+    #[getter]
+    fn has_compliance(&self) -> bool {
+        self.inner.has_compliance()
+    }
+
+    fn set_softenings(
+        &self,
+        nodes: PyArrayLike1<'_, i64, AllowTypeChange>,
+        softenings: PyArrayLike2<'_, f64, AllowTypeChange>,
+    ) -> PyResult<()> {
+        let (numbers, rows) = (node_numbers(&nodes)?, softenings.as_array());
+        if rows.shape() != [numbers.len(), 4] {
+            return Err(PyValueError::new_err(
+                "softenings must have four numbers for each of the nodes",
+            ));
+        }
+        let count = self.inner.nodes.len();
+        if let Some(&node) = numbers.iter().find(|&&node| node as usize >= count) {
+            return Err(PyValueError::new_err(format!(
+                "node {node} is beyond the {count} nodes of the body"
+            )));
+        }
+        let read = |row: ArrayView1<'_, f64>| {
+            let softening = Softening {
+                slope: DVec3::new(row[0], row[1], row[2]),
+                saturation: row[3],
+            };
+            softening.is_sound().then_some(softening)
+        };
+        let sound: Option<Vec<Softening>> = rows.rows().into_iter().map(read).collect();
+        let sound = sound.ok_or_else(|| {
+            PyValueError::new_err(
+                "softenings must be finite, the fourth number not negative, and positive where one \
+                 of the others is not zero",
+            )
+        })?;
+        // The interpreter's lock is held: one thread tells at a time.
+        for (&node, softening) in numbers.iter().zip(&sound) {
+            self.inner.softenings.tell(node, softening);
+        }
+        Ok(())
+    }
+
+    #[pyo3(signature = (triangle, alpha, displacement, young_modulus, mode="consistent",
+        felt="linear"))]
+    #[allow(clippy::too_many_arguments)] // Keywords in Python.
+    fn contact<'py>(
+        &self,
+        py: Python<'py>,
+        triangle: usize,
+        alpha: Triple,
+        displacement: Triple,
+        young_modulus: f64,
+        mode: &str,
+        felt: &str,
+    ) -> PyResult<(Matrix<'py>, Vector<'py>)> {
+        self.check_triangle(triangle)?;
+        let (body, mode, triangle) = (&self.inner, contact_mode(mode)?, triangle as u32);
+        let displacement = DVec3::from_array(displacement);
+        let touch = match felt_choice(felt)? {
+            Felt::Linear => touch::touch(body, mode, triangle, alpha, displacement, young_modulus),
+            Felt::Corrected => {
+                let of = |node| body.softenings.of(node).unwrap_or_default();
+                let softenings = body.triangles[triangle as usize].map(of);
+                let hold = (triangle, alpha);
+                touch::softened_touch(body, mode, hold, &softenings, displacement, young_modulus)
+            }
+        };
+        Ok((rows(py, &touch.nodal_forces)?, array(py, touch.force)))
+    }
+
+    fn surface_displacement<'py>(
+        &self,
+        py: Python<'py>,
+        triangle: usize,
+        alpha: Triple,
+        nodal_forces: Rows,
+        young_modulus: f64,
+    ) -> PyResult<Option<Vector<'py>>> {
+        self.check_triangle(triangle)?;
+        let moved = touch::surface_displacement(
+            &self.inner,
+            triangle as u32,
+            alpha,
+            &nodal_forces.map(DVec3::from_array),
+            young_modulus,
+        );
+        Ok(moved.map(|moved| array(py, moved)))
+    }
+
+    fn closest_point<'py>(
+        &self,
+        py: Python<'py>,
+        p: Triple,
+    ) -> PyResult<(u32, Vector<'py>, Vector<'py>, f64)> {
+        let (found, inside) = closest::closest_point(&self.inner, finite("p", p)?, 0);
+        let sign = if inside { -1.0 } else { 1.0 };
+        Ok((
+            found.triangle,
+            PyArray1::from_slice(py, &found.alpha),
+            array(py, found.point),
+            sign * found.distance,
+        ))
+    }
+}
+
+impl Body {
+    fn check_triangle(&self, triangle: usize) -> PyResult<()> {
+        if triangle < self.inner.triangles.len() {
+            return Ok(());
+        }
+        Err(PyValueError::new_err(format!(
+            "triangle {triangle} is beyond the {} triangles of the body",
+            self.inner.triangles.len()
+        )))
+    }
+}
+
+fn node_numbers(numbers: &PyArrayLike1<'_, i64, AllowTypeChange>) -> PyResult<Vec<u32>> {
+    let number = |&n: &i64| {
+        u32::try_from(n)
+            .map_err(|_| PyValueError::new_err(format!("free_nodes names the node {n}")))
+    };
+    numbers.as_array().iter().map(number).collect()
+}

@@ -1,0 +1,4 @@
+//! Which device is asked for.
+
+pub mod haply;
+pub mod setups;

@@ -1,0 +1,228 @@
+//! `SteppedServo`: the servo's own ticks over the link's own bytes, in a time that the caller makes.
+
+use std::io::{self, ErrorKind};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+use rtrb::RingBuffer;
+use triple_buffer::{Input, Output, triple_buffer};
+
+use crate::device::link::LinkDevice;
+use crate::device::serial::port::{Opener, Wire};
+use crate::python::body::surface::Body;
+use crate::python::servo::counters::{fault_counters, link_counters};
+use crate::python::servo::settings::{contact_mode, coupling, device_frame, felt_choice, options};
+use crate::python::servo::snapshot::Snapshot;
+use crate::python::vectors::{Rows, Triple, positive};
+use crate::servo::exchange::{Hand, exchange};
+use crate::servo::snapshot::Published;
+use crate::servo::{Servo, Settings};
+
+/// What is on the line in either direction.
+#[derive(Debug, Default)]
+struct Line {
+    to_host: Vec<u8>,
+    from_host: Vec<u8>,
+    is_unplugged: bool,
+}
+
+/// A line in memory.
+#[derive(Clone, Default)]
+struct InMemory(Arc<Mutex<Line>>);
+
+impl InMemory {
+    fn line(&self) -> MutexGuard<'_, Line> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Wire for InMemory {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let mut line = self.line();
+        if line.is_unplugged {
+            return Ok(0);
+        }
+        if line.to_host.is_empty() {
+            return Err(ErrorKind::WouldBlock.into());
+        }
+        let length = buffer.len().min(line.to_host.len());
+        buffer[..length].copy_from_slice(&line.to_host[..length]);
+        line.to_host.drain(..length);
+        Ok(length)
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.line().from_host.extend(bytes);
+        Ok(bytes.len())
+    }
+}
+
+impl Opener for InMemory {
+    type Wire = Self;
+
+    fn open(&mut self) -> io::Result<Self> {
+        if self.line().is_unplugged {
+            Err(ErrorKind::NotFound.into())
+        } else {
+            Ok(self.clone())
+        }
+    }
+}
+
+struct Stepped {
+    servo: Servo,
+    hand: Hand,
+    settings: Settings,
+    settings_in: Input<Settings>,
+    snapshots: Output<Published>,
+    period: f64,
+    now: f64,
+}
+
+#[pyclass(frozen, module = "palpate_servo")]
+pub struct SteppedServo {
+    wire: InMemory,
+    stepped: Mutex<Stepped>,
+}
+
+impl SteppedServo {
+    fn stepped(&self) -> MutexGuard<'_, Stepped> {
+        self.stepped.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn change(&self, edit: impl FnOnce(&mut Settings)) {
+        let mut stepped = self.stepped();
+        edit(&mut stepped.settings);
+        let settings = stepped.settings;
+        stepped.settings_in.write(settings);
+    }
+}
+
+#[pymethods]
+impl SteppedServo {
+    #[new]
+    #[pyo3(signature = (body, *, young_modulus, rate_hz=1000, max_force=3.0, max_slew=1000.0,
+        ramp_seconds=0.25, max_speed=2.0, mode="consistent"))]
+    #[allow(clippy::too_many_arguments)] // Keywords in Python.
+    fn new(
+        body: &Body,
+        young_modulus: f64,
+        rate_hz: u32,
+        max_force: f64,
+        max_slew: f64,
+        ramp_seconds: f64,
+        max_speed: f64,
+        mode: &str,
+    ) -> PyResult<Self> {
+        let options = options(rate_hz, max_force, max_slew, ramp_seconds, max_speed)?;
+        let mut settings = Settings::new(positive("young_modulus", young_modulus)?);
+        settings.feel.mode = contact_mode(mode)?;
+        let wire = InMemory::default();
+        let (settings_in, settings_out) = triple_buffer(&settings);
+        let (snapshots_in, snapshots) = triple_buffer(&Published::before_the_start(1));
+        let (samples_in, _nobody_takes_them) = RingBuffer::new(1);
+        let (hand, holder) = exchange(body.inner.clone());
+        let mut servo = Servo::new(
+            body.inner.clone(),
+            vec![Box::new(LinkDevice::open(wire.clone())?)],
+            options,
+            settings_out,
+            snapshots_in,
+            samples_in,
+        );
+        servo.bodies = holder;
+        Ok(Self {
+            wire,
+            stepped: Mutex::new(Stepped {
+                servo,
+                hand,
+                settings,
+                settings_in,
+                snapshots,
+                period: 1.0 / f64::from(rate_hz),
+                now: 0.0,
+            }),
+        })
+    }
+
+    #[pyo3(signature = (received=None, seconds=None))]
+    fn tick<'py>(
+        &self,
+        py: Python<'py>,
+        received: Option<&[u8]>,
+        seconds: Option<f64>,
+    ) -> Bound<'py, PyBytes> {
+        self.wire.line().to_host.extend(received.unwrap_or(&[]));
+        let mut stepped = self.stepped();
+        stepped.now += seconds.unwrap_or(stepped.period);
+        let now = stepped.now;
+        stepped.servo.tick(now);
+        let sent = std::mem::take(&mut self.wire.line().from_host);
+        PyBytes::new(py, &sent)
+    }
+
+    fn unplug(&self) {
+        *self.wire.line() = Line {
+            is_unplugged: true,
+            ..Line::default()
+        };
+    }
+
+    fn plug_in(&self) {
+        self.wire.line().is_unplugged = false;
+    }
+
+    fn set_enabled(&self, enabled: bool) {
+        self.change(|s| s.enabled = enabled);
+    }
+
+    fn set_young_modulus(&self, young_modulus: f64) {
+        self.change(|s| s.young_modulus = young_modulus);
+    }
+
+    fn set_felt(&self, felt: &str) -> PyResult<()> {
+        let felt = felt_choice(felt)?;
+        self.change(|s| s.felt = felt);
+        Ok(())
+    }
+
+    fn set_mode(&self, mode: &str) -> PyResult<()> {
+        let mode = contact_mode(mode)?;
+        self.change(|s| s.feel.mode = mode);
+        Ok(())
+    }
+
+    #[pyo3(signature = (*, stiffness, damping, passivity_control))]
+    fn set_coupling(&self, stiffness: f64, damping: f64, passivity_control: bool) -> PyResult<()> {
+        let coupling = coupling(stiffness, damping, passivity_control)?;
+        self.change(|s| s.fingers[0].coupling = coupling);
+        Ok(())
+    }
+
+    fn set_device_frame(&self, rotation: Rows, translation: Triple, scale: f64) -> PyResult<()> {
+        let frame = device_frame(rotation, translation, scale)?;
+        self.change(|s| s.fingers[0].move_device(frame));
+        Ok(())
+    }
+
+    fn set_body(&self, body: &Body, young_modulus: f64) -> PyResult<()> {
+        let young_modulus = positive("young_modulus", young_modulus)?;
+        self.stepped().hand.give(body.inner.clone());
+        self.change(|s| s.young_modulus = young_modulus);
+        self.stepped().hand.settle();
+        Ok(())
+    }
+
+    fn snapshot(&self, py: Python<'_>) -> PyResult<Py<Snapshot>> {
+        Snapshot::of(py, self.stepped().snapshots.read(), &[])
+    }
+
+    fn counters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let told = *self.stepped().snapshots.read().first();
+        let counters = PyDict::new(py);
+        counters.set_item("faults", fault_counters(py, &told)?)?;
+        counters.set_item("link", link_counters(py, &told.link)?)?;
+        Ok(counters)
+    }
+}

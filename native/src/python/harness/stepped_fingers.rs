@@ -1,0 +1,283 @@
+//! `SteppedFingers`: the servo's own ticks, its fingers led along paths, in a time of their own.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use glam::{DMat3, DVec3};
+use numpy::{AllowTypeChange, PyArray1, PyArray3, PyArrayLike2, PyArrayLike3, PyArrayMethods};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use rtrb::RingBuffer;
+use triple_buffer::{Input, Output, triple_buffer};
+
+use crate::contact::cones::MAX_FINGERS;
+use crate::control::safety::Limits;
+use crate::device::{Device, DeviceFrame, LinkReport, Probe, Reading};
+use crate::proxy::Feel;
+use crate::python::body::surface::Body;
+use crate::python::servo::settings::{contact_mode, feel, felt_choice};
+use crate::python::servo::snapshot::Snapshot;
+use crate::python::tool::{ToolContact, tip};
+use crate::python::vectors::{Rows, Triple, finite, positive, rotation as turn};
+use crate::servo::pressed_patch::PressedPatch;
+use crate::servo::snapshot::Published;
+use crate::servo::tip::{Tip, TipHand, exchange_tips};
+use crate::servo::{Options, Servo, Settings};
+
+/// Forces and torques (ticks, m, 3).
+type Felt<'py> = (Bound<'py, PyArray3<f64>>, Bound<'py, PyArray3<f64>>);
+
+/// N, N/s and m/s: beyond all that is asked for, and still a number.
+const NO_LIMIT: f64 = 1e12;
+
+/// Where a finger is to be in the next tick.
+#[derive(Debug, Clone, Copy)]
+struct Place {
+    position: DVec3,
+    set_down: bool,
+}
+
+/// A device without motors that is wherever it was put.
+#[derive(Clone)]
+struct Led(Arc<Mutex<Place>>);
+
+impl Led {
+    fn place(&self) -> MutexGuard<'_, Place> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Device for Led {
+    fn read(&mut self, _now: f64, _dt: f64, _frame: &DeviceFrame) -> Reading {
+        let mut place = self.place();
+        Reading::At(Probe {
+            position: place.position,
+            orientation: DMat3::IDENTITY,
+            speed: 0.0,
+            restart: std::mem::take(&mut place.set_down),
+            buttons: 0,
+            max_force: f64::INFINITY,
+        })
+    }
+
+    fn write(&mut self, _force: DVec3, _enable: bool, _frame: &DeviceFrame) {}
+
+    fn park(&mut self) {}
+
+    fn report(&self) -> LinkReport {
+        LinkReport::default()
+    }
+}
+
+struct Stepped {
+    servo: Servo,
+    led: Vec<Led>,
+    tips: Vec<TipHand>,
+    settings: Settings,
+    settings_in: Input<Settings>,
+    snapshots: Output<Published>,
+    patches: Vec<Output<PressedPatch>>,
+    period: f64,
+    ticks: u64,
+}
+
+#[pyclass(frozen, module = "palpate_servo")]
+pub struct SteppedFingers(Mutex<Stepped>);
+
+impl SteppedFingers {
+    fn stepped(&self) -> MutexGuard<'_, Stepped> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+#[pymethods]
+impl SteppedFingers {
+    #[new]
+    #[pyo3(signature = (body, positions, *, young_modulus, rate_hz=1000, shading=false,
+        static_friction=0.0, dynamic_friction=0.0, mode="consistent", felt="linear"))]
+    #[allow(clippy::too_many_arguments)] // Keywords in Python.
+    fn new(
+        body: &Body,
+        positions: PyArrayLike2<'_, f64, AllowTypeChange>,
+        young_modulus: f64,
+        rate_hz: u32,
+        shading: bool,
+        static_friction: f64,
+        dynamic_friction: f64,
+        mode: &str,
+        felt: &str,
+    ) -> PyResult<Self> {
+        let places = places_of(&positions)?;
+        if places.is_empty() || places.len() > MAX_FINGERS {
+            return Err(PyValueError::new_err(format!(
+                "{} positions; a servo has 1 to {MAX_FINGERS} fingers",
+                places.len()
+            )));
+        }
+        if places.len() > 1 && !body.inner.is_whole() {
+            return Err(PyValueError::new_err(
+                "several fingers need a whole body; make it with whole=True",
+            ));
+        }
+        let options = Options {
+            rate_hz: rate_hz.max(1),
+            limits: Limits {
+                max_force: NO_LIMIT,
+                max_slew: NO_LIMIT,
+                ramp_seconds: 0.0,
+            },
+            max_speed: NO_LIMIT,
+        };
+        let mut settings = Settings::new(positive("young_modulus", young_modulus)?);
+        settings.feel = Feel {
+            mode: contact_mode(mode)?,
+            ..feel(shading, static_friction, dynamic_friction)?
+        };
+        settings.felt = felt_choice(felt)?;
+        let led: Vec<Led> = (places.into_iter())
+            .map(|position| {
+                Led(Arc::new(Mutex::new(Place {
+                    position,
+                    set_down: true,
+                })))
+            })
+            .collect();
+        let (settings_in, settings_out) = triple_buffer(&settings);
+        let (snapshots_in, snapshots) = triple_buffer(&Published::before_the_start(led.len()));
+        let (samples_in, _nobody_takes_them) = RingBuffer::new(1);
+        let devices = led
+            .iter()
+            .map(|one| Box::new(one.clone()) as Box<dyn Device>);
+        let mut servo = Servo::new(
+            body.inner.clone(),
+            devices.collect(),
+            options,
+            settings_out,
+            snapshots_in,
+            samples_in,
+        );
+        let period = 1.0 / f64::from(options.rate_hz);
+        let (mut tips, mut patches) = (Vec::new(), Vec::new());
+        for finger in &mut servo.fingers {
+            let (hand, holder) = exchange_tips(Tip::Point);
+            let (patches_in, patches_out) = triple_buffer(&PressedPatch::default());
+            (finger.tips, finger.patches) = (holder, Some(patches_in));
+            tips.push(hand);
+            patches.push(patches_out);
+        }
+        servo.tick(0.0);
+        Ok(Self(Mutex::new(Stepped {
+            servo,
+            led,
+            tips,
+            settings,
+            settings_in,
+            snapshots,
+            patches,
+            period,
+            ticks: 0,
+        })))
+    }
+
+    fn follow<'py>(
+        &self,
+        py: Python<'py>,
+        paths: PyArrayLike3<'py, f64, AllowTypeChange>,
+    ) -> PyResult<Felt<'py>> {
+        let paths = paths.as_array();
+        let stepped = &mut *self.stepped();
+        let (ticks, fingers, columns) = paths.dim();
+        if fingers != stepped.led.len() || columns != 3 {
+            return Err(PyValueError::new_err(format!(
+                "paths have shape ({ticks}, {fingers}, {columns}), expected (ticks, {}, 3)",
+                stepped.led.len()
+            )));
+        }
+        let mut forces = Vec::with_capacity(3 * ticks * fingers);
+        let mut torques = Vec::with_capacity(3 * ticks * fingers);
+        for tick in paths.outer_iter() {
+            for (led, row) in stepped.led.iter().zip(tick.rows()) {
+                led.place().position = finite("paths", [row[0], row[1], row[2]])?;
+            }
+            stepped.ticks += 1;
+            stepped.servo.tick(stepped.ticks as f64 * stepped.period);
+            for told in stepped.snapshots.read().fingers() {
+                forces.extend(told.snapshot.contact_force.to_array());
+                torques.extend(told.snapshot.torque.to_array());
+            }
+        }
+        let shaped = |values| PyArray1::from_vec(py, values).reshape([ticks, fingers, 3]);
+        Ok((shaped(forces)?, shaped(torques)?))
+    }
+
+    #[pyo3(signature = (tool, rotation, finger=0))]
+    fn set_tool(
+        &self,
+        tool: Option<PyRef<'_, ToolContact>>,
+        rotation: Rows,
+        finger: usize,
+    ) -> PyResult<()> {
+        let tip = tip(tool.map(|tool| tool.made()));
+        let orientation = turn("rotation", rotation)?;
+        let stepped = &mut *self.stepped();
+        let (Some(hand), Some(own)) = (
+            stepped.tips.get_mut(finger),
+            stepped.settings.fingers.get_mut(finger),
+        ) else {
+            return Err(no_finger(finger, stepped.led.len()));
+        };
+        own.orientation = orientation;
+        stepped.settings_in.write(stepped.settings);
+        hand.free_old();
+        hand.give(tip).map_err(|_| {
+            PyValueError::new_err("tools wait to be taken; let the fingers follow a path first")
+        })
+    }
+
+    fn set_down(&self, position: Triple, finger: usize) -> PyResult<()> {
+        let stepped = self.stepped();
+        let led = (stepped.led.get(finger)).ok_or_else(|| no_finger(finger, stepped.led.len()))?;
+        *led.place() = Place {
+            position: finite("position", position)?,
+            set_down: true,
+        };
+        Ok(())
+    }
+
+    fn set_felt(&self, felt: &str) -> PyResult<()> {
+        let felt = felt_choice(felt)?;
+        let stepped = &mut *self.stepped();
+        stepped.settings.felt = felt;
+        stepped.settings_in.write(stepped.settings);
+        Ok(())
+    }
+
+    fn set_young_modulus(&self, young_modulus: f64) -> PyResult<()> {
+        let young_modulus = positive("young_modulus", young_modulus)?;
+        let stepped = &mut *self.stepped();
+        stepped.settings.young_modulus = young_modulus;
+        stepped.settings_in.write(stepped.settings);
+        Ok(())
+    }
+
+    fn snapshot(&self, py: Python<'_>) -> PyResult<Py<Snapshot>> {
+        let stepped = &mut *self.stepped();
+        // No tick goes on meanwhile: all of the same one.
+        let patches = stepped.patches.iter_mut();
+        let patches: Vec<PressedPatch> = patches.map(|patch| patch.read().clone()).collect();
+        Snapshot::of(py, stepped.snapshots.read(), &patches)
+    }
+}
+
+fn places_of(positions: &PyArrayLike2<'_, f64, AllowTypeChange>) -> PyResult<Vec<DVec3>> {
+    let positions = positions.as_array();
+    if positions.ncols() != 3 {
+        return Err(PyValueError::new_err("positions must have three columns"));
+    }
+    (positions.rows().into_iter())
+        .map(|row| finite("positions", [row[0], row[1], row[2]]))
+        .collect()
+}
+
+fn no_finger(finger: usize, count: usize) -> PyErr {
+    PyValueError::new_err(format!("there is no finger {finger}; there are {count}"))
+}

@@ -1,0 +1,178 @@
+//! Counters as dictionaries, and `BareTimer`, the thread to compare with.
+
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::clock::durations::{BUCKETS, DurationReport, bucket_limit_ns};
+use crate::clock::timing::{LATE_LIMITS_NS, Timing};
+use crate::device::{Fault, LinkReport};
+use crate::python::vectors::{check_rate, check_seconds};
+use crate::servo::snapshot::Told;
+use crate::servo::stages::{Stage, Stages};
+use crate::servo::thread::Paced;
+
+fn us(ns: u64) -> f64 {
+    ns as f64 * 1e-3
+}
+
+pub fn timing_counters<'py>(
+    py: Python<'py>,
+    timing: &Timing,
+    realtime: &str,
+) -> PyResult<Bound<'py, PyDict>> {
+    const LATE_TICK: usize = 2;
+    let report = timing.report();
+    let counters = PyDict::new(py);
+    counters.set_item("ticks", report.ticks())?;
+    counters.set_item("missed", report.missed)?;
+    counters.set_item("late_ticks", report.late[LATE_TICK])?;
+    for (limit, count) in LATE_LIMITS_NS.iter().zip(report.late) {
+        counters.set_item(format!("late_over_{}_us", limit / 1000), count)?;
+    }
+    let lateness = PyDict::new(py);
+    for (name, part) in [("p50", 0.5), ("p99", 0.99), ("p99_9", 0.999)] {
+        lateness.set_item(name, us(report.lateness.percentile_ns(part)))?;
+    }
+    lateness.set_item("max", us(report.lateness.largest_ns))?;
+    counters.set_item("lateness_us", lateness)?;
+    let filled = (0..BUCKETS).filter(|&i| report.lateness.histogram[i] > 0);
+    let histogram: Vec<(f64, u64)> = filled
+        .map(|i| (us(bucket_limit_ns(i)), report.lateness.histogram[i]))
+        .collect();
+    counters.set_item("histogram", histogram)?;
+    counters.set_item("longest_gap_us", us(report.longest_gap_ns))?;
+    let busy = PyDict::new(py);
+    busy.set_item("mean", report.busy.mean_ns() * 1e-3)?;
+    busy.set_item("max", us(report.busy.largest_ns))?;
+    counters.set_item("busy_us", busy)?;
+    let spun = PyDict::new(py);
+    spun.set_item("mean", report.spun.mean_ns() * 1e-3)?;
+    spun.set_item("max", us(report.spun.largest_ns))?;
+    counters.set_item("spun_us", spun)?;
+    counters.set_item("realtime", realtime)?;
+    Ok(counters)
+}
+
+/// Mean, 99 % and largest time of each stage, us.
+pub fn stage_counters<'py>(
+    py: Python<'py>,
+    stages: Option<&Stages>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let counters = PyDict::new(py);
+    for stage in Stage::ALL {
+        let report = stages.map(|s| s.report(stage));
+        let of = |figure: fn(&DurationReport) -> f64| report.as_ref().map_or(0.0, figure);
+        let times = PyDict::new(py);
+        times.set_item("mean", of(|r| r.mean_ns() * 1e-3))?;
+        times.set_item("p99", of(|r| us(r.percentile_ns(0.99))))?;
+        times.set_item("max", of(|r| us(r.largest_ns)))?;
+        counters.set_item(stage.name(), times)?;
+    }
+    Ok(counters)
+}
+
+pub fn link_counters<'py>(py: Python<'py>, link: &LinkReport) -> PyResult<Bound<'py, PyDict>> {
+    let counters = PyDict::new(py);
+    for (name, count) in [
+        ("states", link.states),
+        ("forces", link.forces),
+        ("lost", link.lost),
+        ("duplicates", link.duplicates),
+        ("out_of_order", link.out_of_order),
+        ("crc_errors", link.crc_errors),
+        ("cobs_errors", link.cobs_errors),
+        ("oversize", link.oversize),
+        ("unknown", link.unknown),
+        ("orientations", link.orientations),
+        ("orientations_unpaired", link.orientations_unpaired),
+        ("orientations_refused", link.orientations_refused),
+        ("orientations_lost", link.orientations_lost),
+        ("hellos", link.hellos),
+        ("device_faults", link.device_faults),
+        ("unsent", link.unsent),
+        ("reopened", link.reopened),
+    ] {
+        counters.set_item(name, count)?;
+    }
+    counters.set_item("last_fault", link.last_fault)?;
+    let rhythm = &link.rhythm;
+    let mean = |sum: f64, count: u64, unit: f64| sum * unit / count.max(1) as f64;
+    let interval = PyDict::new(py);
+    interval.set_item("mean", mean(rhythm.pause_seconds, rhythm.pauses, 1e6))?;
+    interval.set_item("max", rhythm.longest_pause * 1e6)?;
+    interval.set_item("device", mean(rhythm.device_seconds, rhythm.states, 1e6))?;
+    counters.set_item("state_interval_us", interval)?;
+    counters.set_item("bursts", rhythm.bursts)?;
+    counters.set_item("burst_ms", mean(rhythm.burst_seconds, rhythm.bursts, 1e3))?;
+    counters.set_item("burst_states", rhythm.burst_states)?;
+    let device = link.greeting.map(|g| -> PyResult<_> {
+        let device = PyDict::new(py);
+        let name = String::from_utf8_lossy(&g.name);
+        device.set_item("name", name.trim_end_matches('\0'))?;
+        device.set_item("protocol", g.protocol)?;
+        device.set_item("axes", g.axes)?;
+        device.set_item("max_force", g.max_force)?;
+        device.set_item("half_extents", g.half_extents)?;
+        device.set_item("rate_hz", g.rate_hz)?;
+        Ok(device)
+    });
+    counters.set_item("device", device.transpose()?)?;
+    Ok(counters)
+}
+
+#[pyclass(frozen, module = "palpate_servo")]
+pub struct BareTimer {
+    paced: Paced,
+}
+
+#[pymethods]
+impl BareTimer {
+    #[new]
+    #[pyo3(signature = (rate_hz=1000))]
+    fn new(rate_hz: u32) -> PyResult<Self> {
+        check_rate(rate_hz)?;
+        Ok(Self {
+            paced: Paced::bare(rate_hz)?,
+        })
+    }
+
+    fn counters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        timing_counters(py, self.paced.timing(), &self.paced.realtime())
+    }
+
+    fn stop<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        py.detach(|| self.paced.stop());
+        self.counters(py)
+    }
+}
+
+#[pyfunction]
+pub fn bare_timer<'py>(
+    py: Python<'py>,
+    rate_hz: u32,
+    seconds: f64,
+) -> PyResult<Bound<'py, PyDict>> {
+    check_seconds("seconds", seconds)?;
+    let timer = BareTimer::new(rate_hz)?;
+    py.detach(|| std::thread::sleep(std::time::Duration::from_secs_f64(seconds)));
+    timer.stop(py)
+}
+
+/// Times each fault began.
+pub fn fault_counters<'py>(py: Python<'py>, told: &Told) -> PyResult<Bound<'py, PyDict>> {
+    let faults = PyDict::new(py);
+    for (fault, count) in Fault::ALL.iter().zip(told.faults) {
+        faults.set_item(fault.name(), count)?;
+    }
+    Ok(faults)
+}
+
+/// What one finger has counted.
+pub fn finger_counters(py: Python<'_>, counters: &Bound<'_, PyDict>, told: &Told) -> PyResult<()> {
+    counters.set_item("faults", fault_counters(py, told)?)?;
+    counters.set_item("link", link_counters(py, &told.link)?)?;
+    let proxy = PyDict::new(py);
+    proxy.set_item("most_steps", told.most_steps)?;
+    proxy.set_item("rescues", told.rescues)?;
+    counters.set_item("proxy", proxy)
+}

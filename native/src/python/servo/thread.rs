@@ -1,0 +1,475 @@
+//! `Servo`: starts, leads and stops the native thread.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::body::surface;
+use crate::clock::timing::Timing;
+use crate::contact::cones::MAX_FINGERS;
+use crate::control::coupling::Coupling;
+use crate::device::Device;
+use crate::proxy::Feel;
+use crate::python::body::surface::Body;
+use crate::python::device::setups::{DeviceSetup, Lead};
+use crate::python::servo::counters::{finger_counters, stage_counters, timing_counters};
+use crate::python::servo::samples::{structured, structured_pieces};
+use crate::python::servo::settings::{
+    contact_mode, coupling, device_frame, feel, felt_choice, options,
+};
+use crate::python::servo::snapshot::Snapshot;
+use crate::python::servo::started::remember;
+use crate::python::tool::{MadeTool, ToolContact, tip};
+use crate::python::vectors::{Rows, Triple, check_seconds, finite, positive, rotation as turn};
+use crate::servo::finger::FingerSettings;
+use crate::servo::snapshot::{Published, Sample};
+use crate::servo::thread::Running;
+use crate::servo::{Options, Settings};
+
+/// Why there can be no more than one finger.
+const NOT_WHOLE: &str = "several fingers need the compliance of any two nodes, which this body has \
+    not kept; make it with Body(..., whole=True)";
+
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+#[pyclass(frozen, module = "palpate_servo")]
+pub struct Servo {
+    body: Mutex<Arc<surface::Body>>,
+    options: Options,
+    glide_speed: f64,
+    record_samples: usize,
+    /// What the next start shall record.
+    armed_ticks: Mutex<usize>,
+    settings: Mutex<Settings>,
+    /// The user's, if one was set; else that of the device.
+    own_coupling: Mutex<Option<Coupling>>,
+    running: Mutex<Option<Arc<Running>>>,
+    /// Fingers 1, 2, ... of the next start.
+    others: Mutex<Vec<Box<dyn Device>>>,
+    /// By finger: its tool, on the body that it was made for.
+    tools: Mutex<[Option<MadeTool>; MAX_FINGERS]>,
+    /// Of pointers, by finger.
+    targets: Mutex<[Option<Lead>; MAX_FINGERS]>,
+}
+
+impl Servo {
+    fn current(&self) -> Option<Arc<Running>> {
+        locked(&self.running).clone()
+    }
+
+    /// While its thread lives.
+    fn alive(&self) -> Option<Arc<Running>> {
+        self.current().filter(|r| r.paced().is_running())
+    }
+
+    fn change(&self, edit: impl FnOnce(&mut Settings)) {
+        let mut settings = locked(&self.settings);
+        edit(&mut settings);
+        if let Some(running) = self.current() {
+            running.set(*settings);
+        }
+    }
+
+    /// The device of a finger, open, with what it brings: its frame and coupling, or its targets.
+    fn opened(
+        &self,
+        py: Python<'_>,
+        finger: usize,
+        device: &DeviceSetup<'_>,
+    ) -> PyResult<Box<dyn Device>> {
+        let opened = device.open(py, self.glide_speed)?;
+        if let Some((frame, encoder_step)) = opened.mount {
+            let settings = &mut locked(&self.settings).fingers[finger];
+            settings.frame = frame;
+            settings.coupling = locked(&self.own_coupling)
+                .unwrap_or_else(|| Coupling::for_encoders(self.options.rate_hz, encoder_step));
+        }
+        locked(&self.targets)[finger] = opened.lead;
+        Ok(opened.device)
+    }
+
+    /// The number of the next finger but the first.
+    fn next_finger(&self) -> PyResult<usize> {
+        if self.alive().is_some() {
+            return Err(PyRuntimeError::new_err(
+                "the servo runs already; stop it, add the fingers, then start it again",
+            ));
+        }
+        if !locked(&self.body).is_whole() {
+            return Err(PyValueError::new_err(NOT_WHOLE));
+        }
+        let number = 1 + locked(&self.others).len();
+        if number < MAX_FINGERS {
+            Ok(number)
+        } else {
+            Err(PyValueError::new_err(format!(
+                "a servo has at most {MAX_FINGERS} fingers; start another one with its own body"
+            )))
+        }
+    }
+
+    /// Runs with this device as finger 0.
+    fn run(&self, py: Python<'_>, first: Box<dyn Device>) -> PyResult<()> {
+        let mut devices = vec![first];
+        devices.append(&mut locked(&self.others));
+        let settings = *locked(&self.settings);
+        let armed_ticks = *locked(&self.armed_ticks);
+        let tools = locked(&self.tools).clone();
+        let running = py.detach(|| {
+            Running::start_with_tips(
+                locked(&self.body).clone(),
+                devices,
+                tools.into_iter().map(tip).collect(),
+                self.options,
+                settings,
+                (self.record_samples, armed_ticks),
+            )
+            .map_err(no_thread)
+        })?;
+        *locked(&self.armed_ticks) = 0;
+        let running = Arc::new(running);
+        remember(&running);
+        *locked(&self.running) = Some(running);
+        Ok(())
+    }
+}
+
+#[pymethods]
+impl Servo {
+    #[new]
+    #[pyo3(signature = (body, *, young_modulus, rate_hz=1000, max_force=3.0, max_slew=1000.0,
+        ramp_seconds=0.25, max_speed=2.0, glide_speed=0.5, record_seconds=10.0, shading=false,
+        static_friction=0.0, dynamic_friction=0.0, mode="consistent", felt="linear"))]
+    #[allow(clippy::too_many_arguments)] // Keywords in Python.
+    fn new(
+        body: &Body,
+        young_modulus: f64,
+        rate_hz: u32,
+        max_force: f64,
+        max_slew: f64,
+        ramp_seconds: f64,
+        max_speed: f64,
+        glide_speed: f64,
+        record_seconds: f64,
+        shading: bool,
+        static_friction: f64,
+        dynamic_friction: f64,
+        mode: &str,
+        felt: &str,
+    ) -> PyResult<Self> {
+        check_seconds("record_seconds", record_seconds)?;
+        Ok(Self {
+            body: Mutex::new(body.inner.clone()),
+            options: options(rate_hz, max_force, max_slew, ramp_seconds, max_speed)?,
+            glide_speed: positive("glide_speed", glide_speed)?,
+            record_samples: (record_seconds * f64::from(rate_hz)).ceil() as usize,
+            armed_ticks: Mutex::new(0),
+            settings: Mutex::new(Settings {
+                feel: Feel {
+                    mode: contact_mode(mode)?,
+                    ..feel(shading, static_friction, dynamic_friction)?
+                },
+                felt: felt_choice(felt)?,
+                fingers: [FingerSettings {
+                    coupling: Coupling::for_devices(rate_hz),
+                    ..FingerSettings::default()
+                }; MAX_FINGERS],
+                ..Settings::new(positive("young_modulus", young_modulus)?)
+            }),
+            own_coupling: Mutex::new(None),
+            running: Mutex::new(None),
+            others: Mutex::default(),
+            tools: Mutex::default(),
+            targets: Mutex::default(),
+        })
+    }
+
+    fn start(&self, py: Python<'_>, device: DeviceSetup<'_>) -> PyResult<()> {
+        if self.alive().is_some() {
+            return Err(PyRuntimeError::new_err(
+                "the servo runs already; stop it before starting it again",
+            ));
+        }
+        let first = self.opened(py, 0, &device)?;
+        self.run(py, first)
+    }
+
+    fn add(&self, py: Python<'_>, device: DeviceSetup<'_>) -> PyResult<usize> {
+        let finger = self.next_finger()?;
+        let device = self.opened(py, finger, &device)?;
+        let mut others = locked(&self.others);
+        others.truncate(finger - 1);
+        others.push(device);
+        Ok(finger)
+    }
+
+    #[getter]
+    fn finger_count(&self) -> usize {
+        match self.alive() {
+            Some(running) => running.finger_count(),
+            None => 1 + locked(&self.others).len(),
+        }
+    }
+
+    #[pyo3(signature = (position, restart=false, finger=0))]
+    fn set_target(&self, position: Triple, restart: bool, finger: usize) -> PyResult<()> {
+        let position = finite("position", position)?;
+        let mut targets = locked(&self.targets);
+        match targets.get_mut(finger).and_then(Option::as_mut) {
+            Some((input, last)) => {
+                *last = last.next(position, restart);
+                input.write(*last);
+                Ok(())
+            }
+            None => Err(PyRuntimeError::new_err(format!(
+                "targets lead a pointer, and finger {finger} is none; call start(Pointer(...)) \
+                 first, or add(Pointer(...))"
+            ))),
+        }
+    }
+
+    #[pyo3(signature = (rotation, finger=0))]
+    fn set_orientation(&self, rotation: Rows, finger: usize) -> PyResult<()> {
+        check_finger(finger)?;
+        let orientation = turn("rotation", rotation)?;
+        self.change(|s| s.fingers[finger].orientation = orientation);
+        Ok(())
+    }
+
+    #[pyo3(signature = (tool, finger=0))]
+    fn set_tool(
+        &self,
+        py: Python<'_>,
+        tool: Option<PyRef<'_, ToolContact>>,
+        finger: usize,
+    ) -> PyResult<()> {
+        check_finger(finger)?;
+        let made = tool.map(|tool| tool.made());
+        if (made.as_ref()).is_some_and(|made| !made.is_for(&locked(&self.body))) {
+            return Err(PyValueError::new_err(
+                "the tool was made for another body; make it with the Body that the servo touches",
+            ));
+        }
+        locked(&self.tools)[finger].clone_from(&made);
+        let Some(running) = self.current().filter(|r| finger < r.finger_count()) else {
+            return Ok(());
+        };
+        py.detach(|| running.set_tip(finger, tip(made))).map_err(|_| {
+            PyRuntimeError::new_err(
+                "the servo's thread has not taken the tools that it was given before; try again",
+            )
+        })
+    }
+
+    fn set_young_modulus(&self, young_modulus: f64) -> PyResult<()> {
+        let young_modulus = positive("young_modulus", young_modulus)?;
+        self.change(|s| s.young_modulus = young_modulus);
+        Ok(())
+    }
+
+    fn set_body(&self, py: Python<'_>, body: &Body, young_modulus: f64) -> PyResult<()> {
+        let young_modulus = positive("young_modulus", young_modulus)?;
+        let body = body.inner.clone();
+        let is_enough = self.finger_count() == 1 || body.is_whole();
+        if !is_enough {
+            return Err(PyValueError::new_err(NOT_WHOLE));
+        }
+        // Whoever waits for a lock in here may hold the interpreter's.
+        py.detach(|| {
+            let mut settings = locked(&self.settings);
+            settings.young_modulus = young_modulus;
+            (*locked(&self.body)).clone_from(&body);
+            // Tools are made for one body.
+            *locked(&self.tools) = Default::default();
+            if let Some(running) = self.current() {
+                running.set_body(body, *settings);
+            }
+        });
+        Ok(())
+    }
+
+    #[pyo3(signature = (rotation, translation, scale, finger=0))]
+    fn set_device_frame(
+        &self,
+        rotation: Rows,
+        translation: Triple,
+        scale: f64,
+        finger: usize,
+    ) -> PyResult<()> {
+        check_finger(finger)?;
+        let frame = device_frame(rotation, translation, scale)?;
+        self.change(|s| s.fingers[finger].move_device(frame));
+        Ok(())
+    }
+
+    #[pyo3(signature = (*, shading, static_friction, dynamic_friction))]
+    fn set_feel(&self, shading: bool, static_friction: f64, dynamic_friction: f64) -> PyResult<()> {
+        let feel = feel(shading, static_friction, dynamic_friction)?;
+        self.change(|s| {
+            s.feel = Feel {
+                mode: s.feel.mode,
+                ..feel
+            }
+        });
+        Ok(())
+    }
+
+    fn set_mode(&self, mode: &str) -> PyResult<()> {
+        let mode = contact_mode(mode)?;
+        self.change(|s| s.feel.mode = mode);
+        Ok(())
+    }
+
+    fn set_felt(&self, felt: &str) -> PyResult<()> {
+        let felt = felt_choice(felt)?;
+        self.change(|s| s.felt = felt);
+        Ok(())
+    }
+
+    #[pyo3(signature = (*, stiffness, damping, passivity_control))]
+    fn set_coupling(&self, stiffness: f64, damping: f64, passivity_control: bool) -> PyResult<()> {
+        let coupling = coupling(stiffness, damping, passivity_control)?;
+        *locked(&self.own_coupling) = Some(coupling);
+        self.change(|s| {
+            for finger in &mut s.fingers {
+                finger.coupling = coupling;
+            }
+        });
+        Ok(())
+    }
+
+    fn set_enabled(&self, enabled: bool) {
+        self.change(|s| s.enabled = enabled);
+    }
+
+    fn snapshot(&self, py: Python<'_>) -> PyResult<Py<Snapshot>> {
+        let (published, patches) = match self.current() {
+            Some(running) => running.published_with_patches(),
+            None => (Published::before_the_start(1), Vec::new()),
+        };
+        Snapshot::of(py, &published, &patches)
+    }
+
+    fn samples<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let samples = self.current().map(|r| r.drain()).unwrap_or_default();
+        structured(py, &samples)
+    }
+
+    #[pyo3(signature = (seconds=600.0))]
+    fn start_recording(&self, py: Python<'_>, seconds: f64) -> PyResult<usize> {
+        check_seconds("seconds", positive("seconds", seconds)?)?;
+        let ticks = (seconds * f64::from(self.options.rate_hz)).ceil() as usize;
+        let samples = ticks.saturating_mul(self.finger_count());
+        match self.alive() {
+            Some(running) if running.recorder().is_on() => {
+                return Err(PyRuntimeError::new_err(
+                    "a recording is on already; call stop_recording first",
+                ));
+            }
+            Some(running) => py.detach(|| running.recorder().start(samples))?,
+            None => *locked(&self.armed_ticks) = ticks,
+        }
+        Ok(samples.saturating_mul(size_of::<Sample>()))
+    }
+
+    fn stop_recording(&self, py: Python<'_>) {
+        *locked(&self.armed_ticks) = 0;
+        if let Some(running) = self.current() {
+            py.detach(|| running.recorder().stop());
+        }
+    }
+
+    fn recording<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        match self.current() {
+            Some(running) => running
+                .recorder()
+                .read(|pieces| structured_pieces(py, pieces)),
+            None => structured(py, &[]),
+        }
+    }
+
+    #[getter]
+    fn recording_lost(&self) -> u64 {
+        self.current().map_or(0, |r| r.recorder().lost())
+    }
+
+    #[getter]
+    fn is_recording(&self) -> bool {
+        self.current().is_some_and(|r| r.recorder().is_on())
+    }
+
+    fn counters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let running = self.current();
+        let counters = match &running {
+            Some(running) => {
+                let paced = running.paced();
+                timing_counters(py, paced.timing(), &paced.realtime())?
+            }
+            None => timing_counters(py, &Timing::default(), "not started")?,
+        };
+        let published = running
+            .as_ref()
+            .map_or_else(|| Published::before_the_start(1), |r| r.published());
+        let stages = running.as_deref().map(Running::stages);
+        counters.set_item("stages_us", stage_counters(py, stages)?)?;
+        counters.set_item("rate_hz", self.options.rate_hz)?;
+        counters.set_item("samples_lost", published.samples_lost)?;
+        finger_counters(py, &counters, published.first())?;
+        let fingers = published.fingers().iter().map(|told| {
+            let finger = PyDict::new(py);
+            finger_counters(py, &finger, told)?;
+            Ok(finger)
+        });
+        counters.set_item("fingers", fingers.collect::<PyResult<Vec<_>>>()?)?;
+        Ok(counters)
+    }
+
+    fn stop(&self, py: Python<'_>) {
+        if let Some(running) = self.current() {
+            py.detach(|| {
+                running.paced().stop();
+                running.recorder().stop();
+            });
+        }
+        *locked(&self.targets) = Default::default();
+    }
+
+    #[getter]
+    fn running(&self) -> bool {
+        self.alive().is_some()
+    }
+
+    fn __enter__(slf: Py<Self>) -> Py<Self> {
+        slf
+    }
+
+    fn __exit__(
+        &self,
+        py: Python<'_>,
+        _kind: &Bound<'_, PyAny>,
+        _value: &Bound<'_, PyAny>,
+        _trace: &Bound<'_, PyAny>,
+    ) {
+        self.stop(py);
+    }
+}
+
+fn check_finger(finger: usize) -> PyResult<()> {
+    if finger < MAX_FINGERS {
+        return Ok(());
+    }
+    Err(PyValueError::new_err(format!(
+        "finger is {finger}; a servo has fingers 0 to {}",
+        MAX_FINGERS - 1
+    )))
+}
+
+fn no_thread(error: std::io::Error) -> PyErr {
+    PyOSError::new_err(format!(
+        "the system gives the servo no thread ({error}); close other programs and start again"
+    ))
+}

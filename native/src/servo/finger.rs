@@ -1,0 +1,295 @@
+//! One finger: a device, its god object, its coupling, its safety and its state.
+//!
+//! The servo leads all fingers through the stages of a tick, one stage after the other; what happens
+//! between them lies in [`crate::fingers::several`].
+
+mod inspection;
+mod output;
+mod point;
+mod tool;
+
+use glam::{DMat3, DVec3};
+use triple_buffer::Input;
+
+use tool::ToolTouch;
+
+use crate::body::softening::Blend;
+use crate::body::surface::Body;
+use crate::control::coupling::{Coupler, Coupling};
+use crate::control::safety::Safety;
+use crate::control::state::{Findings, Standing};
+use crate::device::reason;
+use crate::device::{Device, DeviceFrame, Fault, Probe, Reading};
+use crate::proxy::Proxy;
+use crate::servo::pressed_patch::PressedPatch;
+use crate::servo::snapshot::{Snapshot, Told};
+use crate::servo::tip::{Tip, TipHolder, exchange_tips};
+use crate::servo::{Options, Settings};
+
+/// What may change of one finger while the servo runs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FingerSettings {
+    /// Device to body.
+    pub frame: DeviceFrame,
+    /// Between body and motors.
+    pub coupling: Coupling,
+    /// How a tool is attached to the device: turns its directions to those of the device's stylus.
+    pub orientation: DMat3,
+}
+
+impl Default for FingerSettings {
+    fn default() -> Self {
+        Self {
+            frame: DeviceFrame::default(),
+            coupling: Coupling::default(),
+            orientation: DMat3::IDENTITY,
+        }
+    }
+}
+
+impl FingerSettings {
+    /// Maps the device elsewhere: the probe jumps then, and is set down anew.
+    pub fn move_device(&mut self, frame: DeviceFrame) {
+        self.frame = DeviceFrame {
+            epoch: self.frame.epoch.wrapping_add(1),
+            ..frame
+        };
+    }
+}
+
+/// What a tick is for all fingers.
+#[derive(Debug, Clone, Copy)]
+pub struct Moment {
+    /// Counts from 1.
+    pub tick: u64,
+    /// Since the start, s.
+    pub now: f64,
+    /// Nominal period, s.
+    pub dt: f64,
+    /// Since the last tick, s; 0 in the first.
+    pub gap: f64,
+    /// Counts the exchanges of the body.
+    pub body: u32,
+    /// The body is another one since this tick.
+    pub body_replaced: bool,
+}
+
+/// A finger.
+pub struct Finger {
+    /// What moves it.
+    pub device: Box<dyn Device>,
+    /// What it touches with.
+    pub tips: TipHolder,
+    /// Where the patch of a tool is shown.
+    pub patches: Option<Input<PressedPatch>>,
+    /// Whether the tip can touch the body.
+    tip_fits: bool,
+    tool_touch: ToolTouch,
+    proxy: Option<Proxy>,
+    probe: DVec3,
+    /// How far the others moved the surface where it touches or will touch in the last tick, m.
+    by_others: DVec3,
+    /// How far it is moved back from its place before the proxy sees it, m: onto the rest surface.
+    moved_back: DVec3,
+    /// Unit vector of its push on the body, zero while it has none.
+    push_direction: DVec3,
+    /// Set down anew: what the others do there is not known yet.
+    is_fresh: bool,
+    /// That is known since the last tick: it decides on which side the finger was set down.
+    set_down_again: bool,
+    /// From 0 to 1 after a fault: how much it acts on the others.
+    presence: f64,
+    frame_epoch: u32,
+    coupler: Coupler,
+    blend: Blend,
+    safety: Safety,
+    standing: Standing,
+    /// Time of the last tick after a gap, s.
+    interrupted_at: f64,
+    /// Of this tick.
+    tip_changed: bool,
+    reading: Reading,
+    found: Findings,
+    shot: Snapshot,
+    told: Told,
+}
+
+impl Finger {
+    /// A finger at rest.
+    pub fn new(device: Box<dyn Device>, settings: &FingerSettings) -> Self {
+        Self {
+            device,
+            tips: exchange_tips(Tip::Point).1,
+            patches: None,
+            tip_fits: true,
+            tool_touch: ToolTouch::default(),
+            proxy: None,
+            probe: DVec3::ZERO,
+            by_others: DVec3::ZERO,
+            moved_back: DVec3::ZERO,
+            push_direction: DVec3::ZERO,
+            is_fresh: true,
+            set_down_again: false,
+            presence: 1.0,
+            frame_epoch: settings.frame.epoch,
+            coupler: Coupler::default(),
+            blend: Blend::default(),
+            safety: Safety::default(),
+            standing: Standing::default(),
+            interrupted_at: f64::NEG_INFINITY,
+            tip_changed: false,
+            reading: Reading::Waiting(""),
+            found: Findings::default(),
+            shot: Snapshot::default(),
+            told: Told::default(),
+        }
+    }
+
+    /// Asks the device where it is.
+    pub fn read(&mut self, moment: &Moment, own: &FingerSettings) {
+        self.reading = self.device.read(moment.now, moment.dt, &own.frame);
+        self.shot = Snapshot {
+            tick: moment.tick,
+            time: moment.now,
+            body: moment.body,
+            orientation: self.shot.orientation,
+            ..Snapshot::default()
+        };
+    }
+
+    /// Finds out what is wrong, and moves the proxy after the probe.
+    pub fn follow(
+        &mut self,
+        body: &Body,
+        moment: &Moment,
+        settings: &Settings,
+        own: &FingerSettings,
+        options: &Options,
+    ) {
+        self.tip_changed = self.tips.exchange();
+        if self.tip_changed {
+            (self.proxy, self.tool_touch) = (None, ToolTouch::default());
+        }
+        if moment.body_replaced {
+            // Even in a tick without a probe: nothing may be left of the old body.
+            self.forget_others();
+            self.blend.let_go();
+            if let Some(proxy) = &mut self.proxy {
+                proxy.restart(body, self.probe);
+            }
+        }
+        self.found = self.inspect(moment, options.max_speed);
+        self.shot.felt = settings.felt;
+        self.found.switched_off = !settings.enabled;
+        self.found.body_replaced = moment.body_replaced;
+        self.tip_fits = self.tips.tip.fits(body);
+        if !self.tip_fits {
+            self.found.waiting = self.found.waiting.or(Some(reason::OTHER_BODY));
+        }
+        if !(settings.young_modulus > 0.0 && settings.young_modulus.is_finite()) {
+            self.found.fault = self.found.fault.or(Some(Fault::Nan));
+        }
+        if let Some(&probe) = self.reading.probe() {
+            self.shot.buttons = probe.buttons;
+            self.shot.orientation = probe.orientation * own.orientation;
+            self.move_proxy(body, &probe, moment, settings, own);
+        }
+        (self.shot.probe, self.shot.proxy) = (self.probe, self.probe);
+        if let Some(proxy) = &self.proxy {
+            self.told.most_steps = self.told.most_steps.max(proxy.steps());
+            self.told.rescues = proxy.rescues();
+            self.found.inside = proxy.is_buried();
+            if proxy.hold().is_some() {
+                self.shot.proxy = proxy.position();
+            }
+        }
+        self.appear(moment.dt, options.limits.ramp_seconds);
+    }
+
+    /// Moves the proxy after the probe, or sets it down anew where no sweep leads there.
+    ///
+    /// The proxy lives on the rest surface: it sees the probe where it would be, had the others not
+    /// moved the surface. Across its push a finger holds the surface as it met it.
+    fn move_proxy(
+        &mut self,
+        body: &Body,
+        probe: &Probe,
+        moment: &Moment,
+        settings: &Settings,
+        own: &FingerSettings,
+    ) {
+        if !probe.position.is_finite() {
+            return;
+        }
+        self.probe = probe.position;
+        let epoch = own.frame.epoch;
+        let jumped = std::mem::replace(&mut self.frame_epoch, epoch) != epoch;
+        // A device beyond the limit may be one whose encoder has lost its place: where it seems to
+        // have gone must not become a depth.
+        let lost_its_place =
+            self.found.fault == Some(Fault::TooFast) || self.standing.fault == Some(Fault::TooFast);
+        let lifted =
+            probe.restart || jumped || lost_its_place || moment.body_replaced || self.tip_changed;
+        if lifted {
+            self.forget_others();
+            (self.is_fresh, self.set_down_again) = (true, false);
+        }
+        if self.has_tool() {
+            if lifted && self.tip_fits {
+                self.set_tool_down();
+            }
+            return;
+        }
+        let lifted = lifted || std::mem::take(&mut self.set_down_again);
+        let n = self.push_direction;
+        self.moved_back = if n == DVec3::ZERO {
+            self.by_others
+        } else {
+            self.moved_back + n * n.dot(self.by_others - self.moved_back)
+        };
+        let seen = self.probe - self.moved_back;
+        match &mut self.proxy {
+            Some(proxy) if !lifted => proxy.follow(body, seen, &settings.feel, moment.dt),
+            Some(proxy) => proxy.restart(body, seen),
+            None => self.proxy = Some(Proxy::new(body, seen)),
+        }
+    }
+
+    /// Whether the finger is really there; after a fault the others feel it come back gradually.
+    fn appear(&mut self, dt: f64, ramp_seconds: f64) {
+        let is_lifted = self.found.fault.is_some()
+            || self.standing.fault.is_some()
+            || self.found.waiting.is_some();
+        self.presence = if is_lifted {
+            0.0
+        } else if ramp_seconds > 0.0 {
+            (self.presence + dt / ramp_seconds).min(1.0)
+        } else {
+            1.0
+        };
+    }
+
+    /// Whether it touches in this tick, by a proxy that can be trusted.
+    pub fn touches(&self) -> bool {
+        let is_sound = !self.found.blind && self.found.fault != Some(Fault::Nan);
+        is_sound
+            && match self.tool() {
+                Some(tool) => self.tip_fits && tool.felt().pressed > 0,
+                None => self.proxy.as_ref().is_some_and(|p| p.hold().is_some()),
+            }
+    }
+
+    /// Whether the others feel it.
+    pub fn acts(&self) -> bool {
+        self.presence > 0.0 && self.touches()
+    }
+
+    /// Whether it has to reckon with what others do or did.
+    pub fn is_moved(&self) -> bool {
+        self.by_others != DVec3::ZERO || self.moved_back != DVec3::ZERO
+    }
+
+    fn has_motors(&self) -> bool {
+        self.reading.probe().is_some_and(Probe::has_motors)
+    }
+}

@@ -1,0 +1,155 @@
+//! A finger whose tip is a tool.
+
+use glam::{DMat3, DVec3};
+
+use super::{Finger, FingerSettings};
+use crate::control::coupling::{Contact, series_compliance};
+use crate::device::Fault;
+use crate::proxy::Feel;
+use crate::servo::tip::Tip;
+use crate::tool::contact::ToolContact;
+use crate::tool::friction::Friction;
+use crate::tool::shape::Pose;
+
+/// The coupling sees a tool's stiffness smoothed over this time, s: it jumps where a point comes to
+/// bear, which the force must not.
+const STIFFNESS_SECONDS: f64 = 0.01;
+
+/// What the coupling remembers of a tool's touch.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct ToolTouch {
+    /// Where the probe was when it last did not touch, m.
+    begin: DVec3,
+    /// Smoothed, N/m.
+    stiffness: DMat3,
+}
+
+impl Finger {
+    /// The tool, if it has one.
+    pub fn tool(&self) -> Option<&ToolContact> {
+        match &self.tips.tip {
+            Tip::Tool(tool) => Some(tool),
+            Tip::Point => None,
+        }
+    }
+
+    /// Whether its tip is a tool.
+    pub fn has_tool(&self) -> bool {
+        self.tool().is_some()
+    }
+
+    fn pose(&self) -> Pose {
+        Pose {
+            position: self.probe,
+            rotation: self.shot.orientation,
+        }
+    }
+
+    /// Sets the tool down where the finger is.
+    pub(super) fn set_tool_down(&mut self) {
+        let pose = self.pose();
+        if let Tip::Tool(tool) = &mut self.tips.tip {
+            tool.restart(&pose);
+        }
+    }
+
+    /// Adds the forces on nodes by which it acts on the others, N.
+    pub fn add_loads(&self, young_modulus: f64, loads: &mut Vec<(u32, DVec3)>) {
+        if !self.acts() {
+            return;
+        }
+        match &self.tips.tip {
+            Tip::Point => {
+                let forces = self.shot.triangle.iter().zip(self.shot.nodal_forces);
+                loads.extend(forces.map(|(&node, force)| (node, force)));
+            }
+            Tip::Tool(tool) => {
+                let scale = young_modulus * self.presence;
+                let forces = tool.nodal_forces().iter();
+                loads.extend(forces.map(|&(node, force)| (node, force * scale)));
+            }
+        }
+    }
+
+    /// The contact of a tool, with the forces of the others on nodes; what goes to the motors, N.
+    pub fn feel_tool(
+        &mut self,
+        young_modulus: f64,
+        feel: &Feel,
+        own: &FingerSettings,
+        others: &[(u32, DVec3)],
+        dt: f64,
+    ) -> DVec3 {
+        let pose = self.pose();
+        let is_sound = !self.found.blind && self.found.fault != Some(Fault::Nan) && self.tip_fits;
+        let Tip::Tool(tool) = &mut self.tips.tip else {
+            return DVec3::ZERO;
+        };
+        if !is_sound {
+            self.let_go();
+            return DVec3::ZERO;
+        }
+        tool.set_friction(Friction {
+            sticking: feel.static_friction,
+            slipping: feel.dynamic_friction,
+        });
+        let felt = match tool.follow(&pose, young_modulus, others) {
+            Ok(felt) => *felt,
+            Err(_) => {
+                self.found.fault = self.found.fault.or(Some(Fault::Nan));
+                self.let_go();
+                return DVec3::ZERO;
+            }
+        };
+        self.found.inside = !tool.is_free();
+        if let Some(pose) = tool.pose() {
+            self.shot.proxy = pose.position;
+        }
+        if felt.pressed == 0 {
+            self.tool_touch = ToolTouch {
+                begin: self.probe,
+                stiffness: DMat3::ZERO,
+            };
+            self.let_go();
+            return DVec3::ZERO;
+        }
+        self.found.touching = true;
+        self.shot.touching = true;
+        self.shot.contact_force = felt.force;
+        self.shot.torque = felt.torque;
+        if self.has_motors() {
+            self.couple_tool(felt.force, felt.stiffness, own, dt)
+        } else {
+            felt.force
+        }
+    }
+
+    /// The force of the body and the coupling's spring in series, damped.
+    fn couple_tool(
+        &mut self,
+        force: DVec3,
+        stiffness: DMat3,
+        own: &FingerSettings,
+        dt: f64,
+    ) -> DVec3 {
+        let touch = &mut self.tool_touch;
+        touch.stiffness += (stiffness - touch.stiffness) * (dt / (STIFFNESS_SECONDS + dt));
+        let scale = own.frame.scale;
+        let compliance = if touch.stiffness == DMat3::ZERO {
+            0.0
+        } else {
+            series_compliance(&touch.stiffness, own.coupling.stiffness / scale)
+        };
+        let share = if compliance > 0.0 {
+            (DMat3::IDENTITY + touch.stiffness * compliance).inverse()
+        } else {
+            DMat3::IDENTITY
+        };
+        let seen = Contact {
+            stiffness: share * touch.stiffness,
+            displacement: self.probe - touch.begin,
+            force: share * force,
+        };
+        self.coupler.drive(&seen, &own.coupling, scale, dt)
+    }
+}

@@ -1,0 +1,271 @@
+//! One tick: read, proxy, contact, safety, write, publish. No allocation, no lock.
+
+mod child_thread;
+pub mod exchange;
+pub mod finger;
+pub mod pressed_patch;
+pub mod recorder;
+pub mod snapshot;
+pub mod stages;
+pub mod thread;
+pub mod tip;
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use glam::DVec3;
+use rtrb::Producer;
+use triple_buffer::{Input, Output};
+
+use crate::body::softening::Felt;
+use crate::body::surface::Body;
+use crate::contact::cones::{MAX_FINGERS, Vectors};
+use crate::contact::touch::ContactMode;
+use crate::control::safety::Limits;
+use crate::device::{Device, Fault};
+use crate::fingers::several::Several;
+use crate::proxy::{Feel, Hold};
+use crate::servo::exchange::{Holder, exchange};
+use crate::servo::finger::{Finger, FingerSettings, Moment};
+use crate::servo::recorder::Tape;
+use crate::servo::snapshot::{Published, Sample};
+use crate::servo::stages::{Stage, Stages};
+use crate::tool::contact::MOST_NODES;
+
+/// What may change while the servo runs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// Pa.
+    pub young_modulus: f64,
+    /// False: zero force at once.
+    pub enabled: bool,
+    /// Shading, friction and how a contact becomes a force.
+    pub feel: Feel,
+    /// Which relation between displacement and force is felt.
+    pub felt: Felt,
+    /// Of each finger by number; those that are not there have theirs, too.
+    pub fingers: [FingerSettings; MAX_FINGERS],
+}
+
+impl Settings {
+    /// Whatever was not asked for is as plain as it can be.
+    pub fn new(young_modulus: f64) -> Self {
+        Self {
+            young_modulus,
+            enabled: true,
+            feel: Feel::default(),
+            felt: Felt::default(),
+            fingers: [FingerSettings::default(); MAX_FINGERS],
+        }
+    }
+}
+
+/// What is fixed when the servo starts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Options {
+    /// Ticks a second.
+    pub rate_hz: u32,
+    /// Force limits; a device's own limit is applied too.
+    pub limits: Limits,
+    /// Fastest device motion under force, m/s.
+    pub max_speed: f64,
+}
+
+/// The loop's body and memory.
+pub struct Servo {
+    /// The body to touch, and those that come.
+    pub bodies: Holder,
+    /// Those that touch it, at least one.
+    pub fingers: Vec<Finger>,
+    options: Options,
+    settings: Output<Settings>,
+    snapshots: Input<Published>,
+    samples: Producer<Sample>,
+    /// Where ticks go while they are recorded.
+    pub tape: Option<Tape>,
+    several: Several,
+    /// Forces of others on nodes, N.
+    loads: Vec<(u32, DVec3)>,
+    tick: u64,
+    /// Time of the last tick, s.
+    ticked_at: Option<f64>,
+    samples_lost: u64,
+    stages: Arc<Stages>,
+}
+
+impl Servo {
+    /// A servo at rest, with as many fingers as devices: one to [`MAX_FINGERS`].
+    pub fn new(
+        body: Arc<Body>,
+        devices: Vec<Box<dyn Device>>,
+        options: Options,
+        mut settings: Output<Settings>,
+        snapshots: Input<Published>,
+        samples: Producer<Sample>,
+    ) -> Self {
+        assert!((1..=MAX_FINGERS).contains(&devices.len()));
+        let own = settings.read().fingers;
+        let fingers = devices.into_iter().zip(&own);
+        Self {
+            bodies: exchange(body).1,
+            fingers: fingers.map(|(d, own)| Finger::new(d, own)).collect(),
+            options,
+            settings,
+            snapshots,
+            samples,
+            tape: None,
+            several: Several::default(),
+            loads: Vec::with_capacity(MAX_FINGERS * MOST_NODES),
+            tick: 0,
+            ticked_at: None,
+            samples_lost: 0,
+            stages: Arc::default(),
+        }
+    }
+
+    /// Times of the tick's parts, for other threads to read.
+    pub fn stages(&self) -> Arc<Stages> {
+        self.stages.clone()
+    }
+
+    /// Does one tick at `now`, s since the start.
+    pub fn tick(&mut self, now: f64) {
+        let mut since = Instant::now();
+        // The body before the settings that belong to it. The exchange keeps it: the end of this
+        // tick never frees it.
+        let (body, number, body_replaced) = self.bodies.newest();
+        let body = Arc::clone(body);
+        let settings = *self.settings.read();
+        self.tick += 1;
+        let moment = Moment {
+            tick: self.tick,
+            now,
+            dt: 1.0 / f64::from(self.options.rate_hz),
+            gap: self.ticked_at.replace(now).map_or(0.0, |last| now - last),
+            body: number,
+            body_replaced,
+        };
+        for (finger, own) in self.fingers.iter_mut().zip(&settings.fingers) {
+            finger.read(&moment, own);
+        }
+        self.stages.end_of(Stage::Read, &mut since);
+
+        for (finger, own) in self.fingers.iter_mut().zip(&settings.fingers) {
+            finger.follow(&body, &moment, &settings, own, &self.options);
+        }
+        self.stages.end_of(Stage::Proxy, &mut since);
+
+        let wanted = self.feel(&body, &moment, &settings);
+        self.stages.end_of(Stage::Contact, &mut since);
+
+        let fingers = self.fingers.iter_mut().zip(&settings.fingers);
+        for ((finger, own), wanted) in fingers.zip(wanted) {
+            finger.send(wanted, &self.options.limits, own, moment.dt);
+        }
+        self.stages.end_of(Stage::Write, &mut since);
+        self.publish(settings.young_modulus);
+    }
+
+    /// What the body makes each finger feel; what is to go to the motors, N.
+    fn feel(&mut self, body: &Body, moment: &Moment, settings: &Settings) -> Vectors {
+        let mut wanted = self.feel_points(body, moment, settings);
+        // Tools in turn, each with what all others do by now: block Gauss-Seidel over the ticks.
+        for (p, wanted) in wanted.iter_mut().enumerate().take(self.fingers.len()) {
+            if self.fingers[p].has_tool() {
+                self.gather_loads(settings.young_modulus, |q, _| q != p);
+                let (finger, own) = (&mut self.fingers[p], &settings.fingers[p]);
+                let (modulus, feel) = (settings.young_modulus, &settings.feel);
+                *wanted = finger.feel_tool(modulus, feel, own, &self.loads, moment.dt);
+            }
+        }
+        wanted
+    }
+
+    /// What all fingers feel whose tips are points.
+    fn feel_points(&mut self, body: &Body, moment: &Moment, settings: &Settings) -> Vectors {
+        let mut wanted = [DVec3::ZERO; MAX_FINGERS];
+        let (own, young_modulus) = (&settings.fingers, settings.young_modulus);
+        // The paper couples fingers on nodes alone (10); in its mode each feels as if it were alone.
+        let are_coupled = self.fingers.len() > 1 && settings.feel.mode == ContactMode::Consistent;
+        let reckons = |finger: &Finger| finger.acts() || finger.is_moved();
+        if are_coupled && self.fingers.iter().any(reckons) {
+            self.gather_loads(young_modulus, |_, finger| finger.has_tool());
+            let mut presses = [None; MAX_FINGERS];
+            for ((press, finger), own) in presses.iter_mut().zip(&mut self.fingers).zip(own) {
+                *press = finger.press(body, settings, own, moment.dt);
+                if let Some(press) = press {
+                    press.moved_by_tools = moved_by(body, &press.hold, &self.loads, young_modulus);
+                }
+            }
+            if let Some(answers) = (self.several).solve(body, moment.body, &presses, moment.dt) {
+                for (p, finger) in self.fingers.iter_mut().enumerate() {
+                    if !finger.has_tool() {
+                        wanted[p] = finger.feel(body, settings, &own[p], &answers[p], moment.dt);
+                    }
+                }
+                return wanted;
+            }
+        }
+        self.several.release();
+        for (p, finger) in self.fingers.iter_mut().enumerate() {
+            finger.forget_others();
+            if !finger.has_tool() {
+                wanted[p] = finger.feel_alone(body, settings, &own[p], moment.dt);
+            }
+        }
+        wanted
+    }
+
+    /// Puts the forces on nodes of some fingers into `loads`, N.
+    fn gather_loads(&mut self, young_modulus: f64, counts: impl Fn(usize, &Finger) -> bool) {
+        self.loads.clear();
+        for (number, finger) in self.fingers.iter().enumerate() {
+            if counts(number, finger) {
+                finger.add_loads(young_modulus, &mut self.loads);
+            }
+        }
+    }
+
+    fn publish(&mut self, young_modulus: f64) {
+        let published = self.snapshots.input_buffer_mut();
+        published.count = self.fingers.len();
+        for (number, finger) in self.fingers.iter_mut().enumerate() {
+            published.told[number] = *finger.tell(young_modulus);
+            let sample = finger.sample(number as u32);
+            if self.samples.push(sample).is_err() {
+                self.samples_lost += 1;
+            }
+            if let Some(tape) = &mut self.tape {
+                tape.put(sample);
+            }
+        }
+        published.samples_lost = self.samples_lost;
+        self.snapshots.publish();
+    }
+
+    /// Leaves all devices limp and says so.
+    pub fn park(&mut self, fault: Option<Fault>) {
+        let published = self.snapshots.input_buffer_mut();
+        published.count = self.fingers.len();
+        published.samples_lost = self.samples_lost;
+        for (told, finger) in published.told.iter_mut().zip(&mut self.fingers) {
+            *told = *finger.park(fault);
+        }
+        self.snapshots.publish();
+    }
+}
+
+/// How far forces on nodes (N) move a place on the surface, m.
+fn moved_by(body: &Body, hold: &Hold, loads: &[(u32, DVec3)], young_modulus: f64) -> DVec3 {
+    let mut moved = DVec3::ZERO;
+    for (node, weight) in body.triangles[hold.triangle as usize]
+        .into_iter()
+        .zip(hold.alpha)
+    {
+        if weight != 0.0 {
+            let by = |&(loaded, force): &(u32, DVec3)| body.block(node, loaded).map(|l| l * force);
+            moved += loads.iter().filter_map(by).sum::<DVec3>() * weight;
+        }
+    }
+    moved / young_modulus
+}

@@ -1,0 +1,134 @@
+//! What a tick tells the rest of the world: named state, positions, forces and counters.
+
+use glam::{DMat3, DVec3};
+
+use crate::body::softening::Felt;
+use crate::contact::cones::MAX_FINGERS;
+pub use crate::control::state::State;
+use crate::device::reason;
+use crate::device::{Fault, LinkReport};
+
+/// One finger in one tick, whole: all fields belong together.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Snapshot {
+    /// Counts from 1; 0 before the first tick.
+    pub tick: u64,
+    /// Since the start, s.
+    pub time: f64,
+    /// Where the finger is, m.
+    pub probe: DVec3,
+    /// How its tool is turned, tool to body.
+    pub orientation: DMat3,
+    /// Contact point that makes the force, m: the god object, shaded or held back by friction.
+    pub proxy: DVec3,
+    /// It presses on the body.
+    pub touching: bool,
+    /// Triangle and area coordinates while touching with a point.
+    pub hold: Option<(u32, [f64; 3])>,
+    /// Whether friction holds the contact point where it is.
+    pub sticking: bool,
+    /// Which relation was to be felt.
+    pub felt: Felt,
+    /// Node numbers of that triangle.
+    pub triangle: [u32; 3],
+    /// (12), (13), of the linear relation whatever is felt: with them the linear body gives way as
+    /// far as the finger has come, N.
+    pub nodal_forces: [DVec3; 3],
+    /// How much of the corrected relation is in the felt force, 0 to 1.
+    pub felt_share: f64,
+    /// (14) before coupling and safety, N.
+    pub contact_force: DVec3,
+    /// On a tool about its reference point, N m, before safety; none on a point.
+    pub torque: DVec3,
+    /// Where the touched point of the surface is now, m; known while touching, if the body has a
+    /// compliance.
+    pub surface_point: Option<DVec3>,
+    /// Sent to the device, N, body axes.
+    pub output_force: DVec3,
+    /// Named state.
+    pub state: State,
+    /// The fault while `state` is [`State::Fault`].
+    pub fault: Option<Fault>,
+    /// Why it waits, ramps, is disabled or stopped, or empty.
+    pub reason: &'static str,
+    /// Which limiter shortens the force now, one of [`LIMITERS`](crate::control::safety::LIMITERS), or empty.
+    pub limited: &'static str,
+    /// A bit a button.
+    pub buttons: u8,
+    /// Counts the exchanges of the body: to which one the triangles belong.
+    pub body: u32,
+}
+
+/// A finger's snapshot with its counters of the same tick.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Told {
+    /// The tick.
+    pub snapshot: Snapshot,
+    /// The link.
+    pub link: LinkReport,
+    /// Times each of [`Fault::ALL`] began.
+    pub faults: [u64; Fault::ALL.len()],
+    /// Most features the proxy visited in one tick.
+    pub most_steps: u32,
+    /// Sweeps corrected by the sign of the distance.
+    pub rescues: u64,
+}
+
+/// One tick of all fingers.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Published {
+    /// By number; beyond `count` nothing.
+    pub told: [Told; MAX_FINGERS],
+    /// Fingers in use.
+    pub count: usize,
+    /// Samples not recorded because nobody emptied the ring.
+    pub samples_lost: u64,
+}
+
+impl Published {
+    /// What is told of so many fingers before the first tick.
+    pub fn before_the_start(count: usize) -> Self {
+        let mut published = Self {
+            count,
+            ..Self::default()
+        };
+        for told in &mut published.told[..count] {
+            told.snapshot.reason = reason::NOT_STARTED;
+        }
+        published
+    }
+
+    /// Of the fingers in use.
+    pub fn fingers(&self) -> &[Told] {
+        &self.told[..self.count]
+    }
+
+    /// Of finger 0, which is always there.
+    pub fn first(&self) -> &Told {
+        &self.told[0]
+    }
+}
+
+/// One finger's tick in the recording.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[repr(C)]
+pub struct Sample {
+    /// Counts from 1.
+    pub tick: u64,
+    /// Since the start, s.
+    pub time: f64,
+    /// m.
+    pub probe: [f64; 3],
+    /// m.
+    pub proxy: [f64; 3],
+    /// Where the touched point of the surface is, m; not a number while free or unknown.
+    pub surface: [f64; 3],
+    /// (14), N.
+    pub force: [f64; 3],
+    /// After safety, N.
+    pub output: [f64; 3],
+    /// [`State`] as a number.
+    pub state: u32,
+    /// From 0 on.
+    pub finger: u32,
+}

@@ -1,0 +1,334 @@
+//! The servo's thread and the ends that stay outside of it.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
+use std::time::{Duration, Instant};
+
+use rtrb::Consumer;
+use triple_buffer::{Input, Output, triple_buffer};
+
+use crate::body::surface::Body;
+use crate::clock::realtime::{Granted, ask_for_real_time};
+use crate::clock::suspension::Asleep;
+use crate::clock::timing::{Pace, Timing, Waking};
+use crate::device::{Device, Fault};
+use crate::servo::child_thread::ChildThread;
+use crate::servo::exchange::{Hand, exchange};
+use crate::servo::pressed_patch::PressedPatch;
+use crate::servo::recorder::{RING_SECONDS, Recorder, touched_ring};
+use crate::servo::snapshot::{Published, Sample};
+use crate::servo::stages::Stages;
+use crate::servo::tip::{Tip, TipHand, exchange_tips};
+use crate::servo::{Options, Servo, Settings};
+
+/// How long an exchange of the body waits for the thread.
+const EXCHANGE_SECONDS: Duration = Duration::from_millis(200);
+
+/// Reads of a snapshot until it is of the same tick as the patches.
+const SAME_TICK_TRIES: usize = 100;
+
+/// A thread that wakes at a fixed rate until it is stopped.
+#[derive(Debug)]
+pub struct Paced {
+    stop: Arc<AtomicBool>,
+    thread: Mutex<Option<ChildThread>>,
+    timing: Arc<Timing>,
+    realtime: Arc<OnceLock<Granted>>,
+}
+
+impl Paced {
+    fn spawn(
+        name: &str,
+        rate_hz: u32,
+        waking: Waking,
+        work: impl FnOnce(&mut dyn FnMut() -> Option<f64>) + Send + 'static,
+    ) -> std::io::Result<Self> {
+        let stop = Arc::new(AtomicBool::new(false));
+        let timing = Arc::new(Timing::default());
+        let realtime = Arc::new(OnceLock::new());
+        let thread = ChildThread::spawn(name, {
+            let (stop, timing, realtime) = (stop.clone(), timing.clone(), realtime.clone());
+            move || {
+                touch_stack();
+                let (granted, _tenure) = ask_for_real_time(rate_hz);
+                let _ = realtime.set(granted);
+                let mut pace = Pace::new(rate_hz, waking);
+                work(&mut || {
+                    let wake = pace.wait(&timing, || !stop.load(Relaxed));
+                    wake.map(|wake| wake.seconds)
+                });
+            }
+        })?;
+        Ok(Self {
+            stop,
+            thread: Mutex::new(Some(thread)),
+            timing,
+            realtime,
+        })
+    }
+
+    /// A thread that does nothing but wake: what the machine can do at best.
+    ///
+    /// # Errors
+    /// When the system gives no thread.
+    pub fn bare(rate_hz: u32) -> std::io::Result<Self> {
+        Self::spawn("palpate-bare", rate_hz, Waking::Plain, |wake| {
+            while wake().is_some() {}
+        })
+    }
+
+    /// Its timing counters.
+    pub fn timing(&self) -> &Timing {
+        &self.timing
+    }
+
+    /// What the system said to the wish for real-time priority.
+    pub fn realtime(&self) -> String {
+        let granted = self.realtime.get();
+        granted.map_or_else(|| "not asked yet".to_owned(), Granted::text)
+    }
+
+    /// Whether the thread has not been stopped and has not ended.
+    pub fn is_running(&self) -> bool {
+        locked(&self.thread)
+            .as_ref()
+            .is_some_and(ChildThread::is_running)
+    }
+
+    /// Ends the thread and waits for it; nothing happens the second time.
+    pub fn stop(&self) {
+        self.stop.store(true, Relaxed);
+        let thread = locked(&self.thread).take();
+        if let Some(thread) = thread {
+            // A panic was caught inside and is told in the last snapshot.
+            thread.join();
+        }
+    }
+}
+
+impl Drop for Paced {
+    fn drop(&mut self) {
+        self.stop();
+    }
+}
+
+/// Has the system hand out the stack now: each page untouched would stop the tick that reaches it
+/// first.
+#[inline(never)]
+fn touch_stack() {
+    const PAGE: usize = 4096;
+    let mut stack = [0_u8; 64 * PAGE];
+    for place in stack.iter_mut().step_by(PAGE) {
+        // SAFETY: a place of an array of our own; volatile, so that the compiler leaves it there.
+        unsafe { std::ptr::write_volatile(place, 1) };
+    }
+}
+
+/// These locks are among callers only; the servo thread holds none.
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A running servo, seen from outside.
+pub struct Running {
+    paced: Paced,
+    bodies: Mutex<Hand>,
+    tips: Mutex<Vec<TipHand>>,
+    patches: Mutex<Vec<Output<PressedPatch>>>,
+    settings: Mutex<Input<Settings>>,
+    snapshots: Mutex<Output<Published>>,
+    samples: Mutex<Consumer<Sample>>,
+    recorder: Recorder,
+    stages: Arc<Stages>,
+    finger_count: usize,
+}
+
+impl Running {
+    /// Starts a thread for these devices, a finger each; `recorded_ticks` are recorded from the
+    /// first one on. Samples are kept of `record_samples` ticks.
+    ///
+    /// # Errors
+    /// When the system gives no thread.
+    pub fn start(
+        body: Arc<Body>,
+        devices: Vec<Box<dyn Device>>,
+        options: Options,
+        settings: Settings,
+        record_samples: usize,
+        recorded_ticks: usize,
+    ) -> std::io::Result<Self> {
+        let points = devices.iter().map(|_| Tip::Point).collect();
+        let recording = (record_samples, recorded_ticks);
+        Self::start_with_tips(body, devices, points, options, settings, recording)
+    }
+
+    /// The same with a tip for each finger, from the first tick on.
+    ///
+    /// # Errors
+    /// When the system gives no thread.
+    pub fn start_with_tips(
+        body: Arc<Body>,
+        devices: Vec<Box<dyn Device>>,
+        tips: Vec<Tip>,
+        options: Options,
+        settings: Settings,
+        (record_samples, recorded_ticks): (usize, usize),
+    ) -> std::io::Result<Self> {
+        let (hand, holder) = exchange(body.clone());
+        let (settings_in, settings_out) = triple_buffer(&settings);
+        let (snapshots_in, snapshots_out) =
+            triple_buffer(&Published::before_the_start(devices.len()));
+        let (samples_in, samples_out) = touched_ring(record_samples * devices.len());
+        let (tape, recorder) =
+            Recorder::new((RING_SECONDS * options.rate_hz) as usize * devices.len());
+        if recorded_ticks > 0 {
+            recorder.start(recorded_ticks * devices.len())?;
+        }
+        let finger_count = devices.len();
+        let mut servo = Servo::new(
+            body,
+            devices,
+            options,
+            settings_out,
+            snapshots_in,
+            samples_in,
+        );
+        servo.bodies = holder;
+        let mut hands = Vec::new();
+        let mut patches = Vec::new();
+        for (finger, tip) in servo.fingers.iter_mut().zip(tips) {
+            let (tip_hand, tip_holder) = exchange_tips(tip);
+            let (patches_in, patches_out) = triple_buffer(&PressedPatch::default());
+            (finger.tips, finger.patches) = (tip_holder, Some(patches_in));
+            hands.push(tip_hand);
+            patches.push(patches_out);
+        }
+        servo.tape = Some(tape);
+        let stages = servo.stages();
+        let paced = Paced::spawn(
+            "palpate-servo",
+            options.rate_hz,
+            Waking::Early,
+            move |wake| {
+                let run = catch_unwind(AssertUnwindSafe(|| {
+                    let mut asleep = Asleep::default();
+                    while let Some(now) = wake() {
+                        servo.tick(now + asleep.seconds());
+                    }
+                }));
+                servo.park(run.is_err().then_some(Fault::Internal));
+            },
+        )?;
+        Ok(Self {
+            paced,
+            bodies: Mutex::new(hand),
+            tips: Mutex::new(hands),
+            patches: Mutex::new(patches),
+            settings: Mutex::new(settings_in),
+            snapshots: Mutex::new(snapshots_out),
+            samples: Mutex::new(samples_out),
+            recorder,
+            stages,
+            finger_count,
+        })
+    }
+
+    /// Hands new settings to the thread.
+    pub fn set(&self, settings: Settings) {
+        locked(&self.settings).write(settings);
+    }
+
+    /// Hands another body and the settings that belong to it to the thread, waits until that uses
+    /// them, and frees the body that it used before.
+    ///
+    /// Should the thread not get to it within [`EXCHANGE_SECONDS`], the old body is freed with the
+    /// next exchange or the end.
+    pub fn set_body(&self, body: Arc<Body>, settings: Settings) {
+        let mut bodies = locked(&self.bodies);
+        let number = bodies.give(body);
+        self.set(settings);
+        bodies.settle();
+        let since = Instant::now();
+        while self.published().first().snapshot.body != number {
+            if since.elapsed() > EXCHANGE_SECONDS || !self.paced.is_running() {
+                return;
+            }
+            std::thread::sleep(Duration::from_micros(200));
+        }
+        bodies.forget_older();
+    }
+
+    /// Gives a finger another tip, waits until the thread uses it, and frees the one before.
+    ///
+    /// Should the thread not get to it within [`EXCHANGE_SECONDS`], the old tip is freed with the
+    /// next exchange or the end.
+    ///
+    /// # Errors
+    /// The tip, while the thread has not got to several others before it.
+    pub fn set_tip(&self, finger: usize, tip: Tip) -> Result<(), Tip> {
+        let mut tips = locked(&self.tips);
+        tips[finger].free_old();
+        tips[finger].give(tip)?;
+        let since = Instant::now();
+        while self.paced.is_running() && since.elapsed() < EXCHANGE_SECONDS {
+            if tips[finger].free_old() > 0 {
+                break;
+            }
+            std::thread::sleep(Duration::from_micros(200));
+        }
+        Ok(())
+    }
+
+    /// The newest tick with the patches of its tools, as far as these are of the same tick.
+    pub fn published_with_patches(&self) -> (Published, Vec<PressedPatch>) {
+        let mut patches = locked(&self.patches);
+        let mut published = self.published();
+        let mut newest: Vec<PressedPatch> = Vec::new();
+        for _ in 0..SAME_TICK_TRIES {
+            newest = patches
+                .iter_mut()
+                .map(|patch| patch.read().clone())
+                .collect();
+            // A tool's patch is written just before the tick is told.
+            let tick = newest.iter().map(|patch| patch.tick).max().unwrap_or(0);
+            if tick <= published.first().snapshot.tick {
+                break;
+            }
+            published = self.published();
+        }
+        (published, newest)
+    }
+
+    /// Fingers that it was started with.
+    pub fn finger_count(&self) -> usize {
+        self.finger_count
+    }
+
+    /// The newest tick.
+    pub fn published(&self) -> Published {
+        *locked(&self.snapshots).read()
+    }
+
+    /// Takes all recorded samples out of the ring.
+    pub fn drain(&self) -> Vec<Sample> {
+        let mut consumer = locked(&self.samples);
+        let count = consumer.slots();
+        (0..count).map_while(|_| consumer.pop().ok()).collect()
+    }
+
+    /// The recording of every tick.
+    pub fn recorder(&self) -> &Recorder {
+        &self.recorder
+    }
+
+    /// Times of the tick's parts.
+    pub fn stages(&self) -> &Stages {
+        &self.stages
+    }
+
+    /// The thread.
+    pub fn paced(&self) -> &Paced {
+        &self.paced
+    }
+}

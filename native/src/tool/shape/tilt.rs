@@ -1,0 +1,310 @@
+//! How far to the side a tool may push a point of the surface.
+//!
+//! Points round a sphere pressed about as deep as its radius would slide off round its equator, as
+//! those of no real body do. So pushes are held near the direction that the pressed surface faces. A
+//! signed distance is the greatest separation n x - h(n) among all directions n, with h the farthest
+//! reach of the tool along n; here it is the greatest among the directions within the limit: the
+//! distance to the tool grown by a cone. A tool may touch parts that face different ways, so a point
+//! may besides be pushed near the direction that it faces itself, unless the tool has passed through
+//! a part. Readable reference: `core/tilt.py`.
+
+use std::f64::consts::PI;
+
+use glam::{DMat3, DVec2, DVec3};
+
+use crate::tool::shape::{MOST_CORE_POINTS, Tool};
+
+/// Directions on the circle at the limit that are looked at first.
+const TURNS: usize = 24;
+/// Core points that can be nearest at once on that circle, of those nearest where it was looked at.
+const MOST_AT_ONCE: usize = 8;
+
+/// Largest angle between a push and the direction against which an even surface is pressed, rad.
+const MOST_TILT: f64 = 50.0 / 180.0 * PI;
+/// By how much more where the pressed points face different ways: at most this, were they all
+/// opposed, rad.
+const MORE_WHERE_UNEVEN: f64 = 100.0 / 180.0 * PI;
+/// A push that goes out of the body by more than this cosine has come through a part.
+const OUTWARD: f64 = 0.5;
+
+/// Directions within an angle of an axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Cone {
+    axis: DVec3,
+    cosine: f64,
+    sine: f64,
+}
+
+/// The directions that pushes are held within.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hold {
+    /// Near what all pushes are held.
+    common: Cone,
+    /// Of the cone about what a point faces itself, if a push may be there instead.
+    own: Option<(f64, f64)>,
+}
+
+/// How far a point is from a core point along each direction of the circle: level + slope . (c, s).
+#[derive(Debug, Clone, Copy, Default)]
+struct Sinusoid {
+    level: f64,
+    slope: DVec2,
+}
+
+impl Sinusoid {
+    #[inline]
+    fn at(&self, turn: DVec2) -> f64 {
+        self.level + self.slope.dot(turn)
+    }
+}
+
+impl Hold {
+    /// From pushes (along the tool's normals) and the outward normals of the body where they push.
+    /// Only what goes into the body counts: the far side of a thin part is pushed outwards, and the
+    /// part would else be felt turned round. Of none, nowhere.
+    pub fn of(pushes: impl Iterator<Item = (DVec3, DVec3)>) -> Option<Self> {
+        let (mut facing, mut most, mut is_through) = (DVec3::ZERO, 0.0, false);
+        for (push, normal) in pushes {
+            let outward = push.dot(normal);
+            let into = (-outward).max(0.0);
+            facing += normal * into;
+            most += into;
+            is_through |= outward > OUTWARD * push.length();
+        }
+        let length = facing.length();
+        (length > 0.0).then(|| {
+            let limit = MOST_TILT + MORE_WHERE_UNEVEN * (1.0 - length / most);
+            let (sine, cosine) = limit.sin_cos();
+            Self {
+                common: Cone {
+                    axis: -facing / length,
+                    cosine,
+                    sine,
+                },
+                own: (!is_through).then(|| (MOST_TILT.cos(), MOST_TILT.sin())),
+            }
+        })
+    }
+
+    /// The same in the frame that a rotation takes directions of to these.
+    #[must_use]
+    pub fn seen_from(self, rotation: &DMat3) -> Self {
+        let common = Cone {
+            axis: rotation.transpose() * self.common.axis,
+            ..self.common
+        };
+        Self { common, ..self }
+    }
+
+    /// Whether a place is farther than told from a tool that is held, as is plain from one direction
+    /// among those at the limit: that nearest to where the tool as it is lies.
+    #[inline]
+    pub fn is_beyond(&self, far: f64, free: (f64, DVec3), place: DVec3, tool: &Tool) -> bool {
+        // No direction is farther than that of the tool as it is.
+        free.0 > far
+            && (self.common.on_rim(free.1)).is_some_and(|rim| separation(place, rim, tool) > far)
+    }
+
+    /// Distance and normal of a tool at a place, held; all of it in the tool's frame. `free` are those
+    /// of the tool as it is, `facing` is the outward normal of the body there.
+    #[inline]
+    pub fn hold(
+        &self,
+        free: (f64, DVec3),
+        place: DVec3,
+        facing: DVec3,
+        tool: &Tool,
+    ) -> (f64, DVec3) {
+        if self.common.holds(free.1) {
+            return free;
+        }
+        let Some((cosine, sine)) = self.own else {
+            return self.common.greatest(place, tool);
+        };
+        let own = Cone {
+            axis: -facing,
+            cosine,
+            sine,
+        };
+        if own.holds(free.1) {
+            return free;
+        }
+        let (common, own) = (self.common.greatest(place, tool), own.greatest(place, tool));
+        if own.0 > common.0 { own } else { common }
+    }
+}
+
+impl Cone {
+    #[inline]
+    fn holds(&self, direction: DVec3) -> bool {
+        direction.dot(self.axis) >= self.cosine
+    }
+
+    /// The direction on its rim that is nearest to another; of none along the axis.
+    #[inline]
+    fn on_rim(&self, direction: DVec3) -> Option<DVec3> {
+        let across = direction - self.axis * self.axis.dot(direction);
+        let across = across.try_normalize()?;
+        Some(self.axis * self.cosine + across * self.sine)
+    }
+
+    /// The greatest separation of a place from the tool among directions on its rim, and which.
+    fn greatest(&self, place: DVec3, tool: &Tool) -> (f64, DVec3) {
+        let first = self.axis.any_orthonormal_vector();
+        let second = self.axis.cross(first);
+        let sinusoid = |core: DVec3| {
+            let offset = place - core;
+            Sinusoid {
+                level: self.cosine * offset.dot(self.axis),
+                slope: DVec2::new(offset.dot(first), offset.dot(second)) * self.sine,
+            }
+        };
+        let turn = match tool.core() {
+            [core] => peak(&sinusoid(*core)),
+            core => {
+                let mut sinusoids = [Sinusoid::default(); MOST_CORE_POINTS];
+                for (sinusoid_of, &core) in sinusoids.iter_mut().zip(core) {
+                    *sinusoid_of = sinusoid(core);
+                }
+                highest(&sinusoids[..core.len()])
+            }
+        };
+        let aside = first * turn.x + second * turn.y;
+        let direction = self.axis * self.cosine + aside * self.sine;
+        (separation(place, direction, tool), direction)
+    }
+}
+
+/// How far a place is from a tool along a direction.
+#[inline]
+fn separation(place: DVec3, direction: DVec3, tool: &Tool) -> f64 {
+    let nearest = |least: f64, core: &DVec3| least.min((place - *core).dot(direction));
+    tool.core().iter().fold(f64::INFINITY, nearest) - tool.radius()
+}
+
+/// Where a sinusoid is greatest.
+#[inline]
+fn peak(sinusoid: &Sinusoid) -> DVec2 {
+    sinusoid.slope.try_normalize().unwrap_or(DVec2::X)
+}
+
+#[inline]
+fn least(sinusoids: &[Sinusoid], turn: DVec2) -> f64 {
+    let at = |least: f64, sinusoid: &Sinusoid| least.min(sinusoid.at(turn));
+    sinusoids.iter().fold(f64::INFINITY, at)
+}
+
+/// The least, if it is above a bound: else it ends at the first eight of which one is not.
+#[inline]
+fn least_above(sinusoids: &[Sinusoid], turn: DVec2, bound: f64) -> Option<f64> {
+    let mut value = f64::INFINITY;
+    for eight in sinusoids.chunks(8) {
+        value = value.min(least(eight, turn));
+        if value <= bound {
+            return None;
+        }
+    }
+    (value > bound).then_some(value)
+}
+
+/// Where the least of some sinusoids is greatest: at the peak of one, or where two cross.
+fn highest(sinusoids: &[Sinusoid]) -> DVec2 {
+    let mut few = [0; MOST_AT_ONCE];
+    let few = if sinusoids.len() <= MOST_AT_ONCE {
+        (few.iter_mut().enumerate()).for_each(|(k, place)| *place = k);
+        &few[..sinusoids.len()]
+    } else {
+        nearest_few(sinusoids, &mut few);
+        &few
+    };
+    let mut lowest = [0; MOST_AT_ONCE];
+    let lowest = somewhere_lowest(sinusoids, few, &mut lowest);
+    let mut nearest = [Sinusoid::default(); MOST_AT_ONCE];
+    let compared = if few.len() == sinusoids.len() {
+        for (nearest, &i) in nearest.iter_mut().zip(lowest) {
+            *nearest = sinusoids[i];
+        }
+        &nearest[..lowest.len()]
+    } else {
+        sinusoids
+    };
+    let mut best = (f64::NEG_INFINITY, DVec2::X);
+    let mut offer = |turn: DVec2| {
+        // Most are below the best along one of the nearest already.
+        let some = lowest
+            .iter()
+            .fold(f64::INFINITY, |some, &i| some.min(sinusoids[i].at(turn)));
+        if some > best.0 {
+            let value = least(compared, turn);
+            if value > best.0 {
+                best = (value, turn);
+            }
+        }
+    };
+    for (place, &i) in lowest.iter().enumerate() {
+        offer(peak(&sinusoids[i]));
+        for &j in &lowest[..place] {
+            let between = sinusoids[i].slope - sinusoids[j].slope;
+            let length = between.length();
+            if length > 0.0 {
+                let level = (sinusoids[j].level - sinusoids[i].level) / length;
+                let level = level.clamp(-1.0, 1.0);
+                let (along, apart) = (between / length, (1.0 - level * level).sqrt());
+                offer(along * level + along.perp() * apart);
+                offer(along * level - along.perp() * apart);
+            }
+        }
+    }
+    best.1
+}
+
+/// Of some sinusoids those with none of the others below them all round: of a plate's eight corners
+/// the four of its face.
+fn somewhere_lowest<'a>(
+    sinusoids: &[Sinusoid],
+    few: &[usize],
+    lowest: &'a mut [usize; MOST_AT_ONCE],
+) -> &'a [usize] {
+    let mut count = 0;
+    for &i in few {
+        let is_above = |&j: &usize| {
+            let height = sinusoids[i].level - sinusoids[j].level;
+            let swing = sinusoids[i].slope.distance_squared(sinusoids[j].slope);
+            let is_alike = height == 0.0 && swing == 0.0;
+            height >= 0.0 && height * height >= swing && (j < i || (j != i && !is_alike))
+        };
+        if !few.iter().any(is_above) {
+            lowest[count] = i;
+            count += 1;
+        }
+    }
+    &lowest[..count]
+}
+
+/// The core points that are nearest where the least of all is greatest, of some directions.
+fn nearest_few(sinusoids: &[Sinusoid], few: &mut [usize; MOST_AT_ONCE]) {
+    let mut best = (f64::NEG_INFINITY, DVec2::X);
+    // The first turn of the circle, over and over: no sine is asked for in the tick.
+    let (sine, cosine) = (std::f64::consts::TAU / TURNS as f64).sin_cos();
+    let (step, mut turn) = (DVec2::new(cosine, sine), DVec2::X);
+    for _ in 0..TURNS {
+        if let Some(value) = least_above(sinusoids, turn, best.0) {
+            best = (value, turn);
+        }
+        turn = step.rotate(turn);
+    }
+    let mut count = 0;
+    for (k, sinusoid) in sinusoids.iter().enumerate() {
+        let value = sinusoid.at(best.1);
+        let before = |other: &usize| sinusoids[*other].at(best.1) <= value;
+        let place = few[..count]
+            .iter()
+            .take_while(|other| before(other))
+            .count();
+        if place < MOST_AT_ONCE {
+            count = (count + 1).min(MOST_AT_ONCE);
+            few.copy_within(place..count - 1, place + 1);
+            few[place] = k;
+        }
+    }
+}
