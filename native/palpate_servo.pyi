@@ -632,6 +632,104 @@ class ToolContact:
     def nodal_forces(self) -> NDArray[np.float64]:
         """Forces on these nodes, (k, 3), N."""
 
+PointTarget: TypeAlias = tuple[int, _Vector, _Vector]
+"""Triangle, area coordinates there, and how far from that place, m."""
+PoseTarget: TypeAlias = tuple[_Vector, _Matrix]
+"""Position, m, and rotation of a tool."""
+
+class SettledPoint(TypedDict):
+    """What a point came to."""
+
+    force: NDArray[np.float64]
+    """Felt by the finger, (3,), N."""
+    triangle: int
+    alpha: NDArray[np.float64]
+    """Area coordinates of its place there, (3,)."""
+    nodes: NDArray[np.int64]
+    """Surface nodes of the triangle, (3,)."""
+    nodal_forces: NDArray[np.float64]
+    """On these nodes by the linear relation, (3, 3), N: what is drawn."""
+
+class SettledTool(TypedDict):
+    """What a tool came to. Of p pressed points and k nodes that carry force."""
+
+    force: NDArray[np.float64]
+    """On the tool, (3,), N."""
+    torque: NDArray[np.float64]
+    """On the tool about its reference point, (3,), N m."""
+    stiffness: NDArray[np.float64]
+    """How the force resists a small move of the tool, (3, 3), N/m."""
+    free: bool
+    """It did not lose the surface while in the body."""
+    position: NDArray[np.float64]
+    rotation: NDArray[np.float64]
+    points: NDArray[np.int64]
+    """Numbers of the pressed contact points, (p,), in no order."""
+    areas: NDArray[np.float64]
+    """Their shares of the surface, (p,), m^2."""
+    pushes: NDArray[np.float64]
+    """Along the tool's normals, (p,), N."""
+    pressures: NDArray[np.float64]
+    """(p,), Pa."""
+    places: NDArray[np.float64]
+    """At rest, (p, 3), m."""
+    point_forces: NDArray[np.float64]
+    """On the body, (p, 3), N."""
+    normals: NDArray[np.float64]
+    """Outward from the tool where the points have gone to, (p, 3)."""
+    displacements: NDArray[np.float64]
+    """(p, 3), m."""
+    nodes: NDArray[np.int64]
+    """Surface nodes that carry force, (k,)."""
+    nodal_forces: NDArray[np.float64]
+    """On these nodes, (k, 3), N."""
+
+@final
+class ContactEngine:
+    """Fingers on a body without a clock: the servo's own contact, stepped until it is settled.
+
+    What it holds is kept from call to call: frames of an animation, or one depth after the other,
+    go on from where they were.
+    """
+
+    def __init__(
+        self,
+        body: Body,
+        tips: Sequence[tuple[ToolSurface, Tool] | None],
+        *,
+        young_modulus: float,
+        friction: float = 0.0,
+        mode: ContactMode = "consistent",
+        felt: FeltName = "linear",
+    ) -> None:
+        """Take a tip for each finger, a tool or None for a point. Nothing is touched yet.
+
+        Tools that share one ToolSurface feel each other's near field. friction is of tools: points
+        stick to the place that they are given. Softenings are those that the body was told.
+
+        Raises ValueError for more fingers than MAX_FINGERS, several on a body that is not whole, a
+        tool for another body, and numbers that cannot be.
+        """
+
+    young_modulus: float
+    """Pa; may be set from call to call."""
+
+    def settle(
+        self, targets: Sequence[PointTarget | PoseTarget]
+    ) -> list[SettledPoint | SettledTool]:
+        """Lead all fingers to their targets together, and step until nothing changes any more.
+
+        Tools go in equal steps of at most a stride; with friction each step of the way is settled,
+        else its end. The first targets are come to from outside of the body, on the way on which it
+        pushes the tool out.
+
+        Raises ValueError for targets that are none, and RuntimeError where the forces do not
+        settle; both name the finger.
+        """
+
+    def lift(self) -> None:
+        """Forget all contact: the next targets are come to from outside again."""
+
 @final
 class Pointer:
     """A finger without motors, led by `Servo.set_target`."""

@@ -12,6 +12,7 @@ pub mod clock;
 pub mod contact;
 pub mod control;
 pub mod device;
+pub mod engine;
 pub mod fingers;
 pub mod harness;
 pub mod proxy;

@@ -2,6 +2,7 @@
 
 mod body;
 mod device;
+mod engine;
 mod harness;
 mod servo;
 mod tool;
@@ -33,6 +34,7 @@ fn palpate_servo(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<tool::Tool>()?;
     module.add_class::<tool::ToolSurface>()?;
     module.add_class::<tool::ToolContact>()?;
+    module.add_class::<engine::ContactEngine>()?;
     module.add_class::<servo::counters::BareTimer>()?;
     module.add_class::<harness::frames::Decoder>()?;
     module.add_function(wrap_pyfunction!(servo::counters::bare_timer, module)?)?;

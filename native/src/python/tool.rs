@@ -271,10 +271,7 @@ impl ToolContact {
     #[new]
     #[pyo3(signature = (surface, tool, *, friction=0.0))]
     fn new(surface: &ToolSurface, tool: &Tool, friction: f64) -> PyResult<Self> {
-        let friction = Friction {
-            sticking: friction,
-            slipping: friction,
-        };
+        let friction = Friction::of(friction);
         if !friction.is_sound() {
             return Err(PyValueError::new_err(format!(
                 "friction is {}; give a coefficient, zero or more",
@@ -454,7 +451,7 @@ impl ToolContact {
     }
 }
 
-fn pose(position: Triple, rows: Rows) -> PyResult<Pose> {
+pub fn pose(position: Triple, rows: Rows) -> PyResult<Pose> {
     Ok(Pose {
         position: finite("position", position)?,
         rotation: rotation("rotation", rows)?,

@@ -27,6 +27,8 @@ use crate::body::closest::closest_point;
 const IN_TOOL: f64 = 1e-9;
 /// Points that may enter in one tick.
 const MOST_ENTERING: usize = 24;
+/// Strides within which any tool is outside of any body.
+const MOST_STRIDES_OUT: u32 = 2000;
 /// Nodes that can carry force.
 pub const MOST_NODES: usize = 3 * MOST_POINTS;
 
@@ -225,6 +227,26 @@ impl ToolContact {
         Ok(&self.felt)
     }
 
+    /// The nearest pose outside of the body at rest, on the way on which that would push the tool out.
+    pub fn way_out(&self, pose: &Pose) -> Option<Pose> {
+        if self.is_outside(pose) {
+            return Some(*pose);
+        }
+        let (mut push, mut nearest) = (DVec3::ZERO, (f64::INFINITY, DVec3::ZERO));
+        for point in self.surface.points() {
+            let distance = self.tool.distance(pose.to_tool(point.position)).0;
+            push += point.normal * (-distance).max(0.0) * point.area;
+            if distance < nearest.0 {
+                nearest = (distance, point.normal);
+            }
+        }
+        // Pushed alike from all sides: through the nearest one.
+        let way = push.try_normalize().unwrap_or(nearest.1) * self.tool.stride();
+        (1..MOST_STRIDES_OUT)
+            .map(|strides| pose.moved(way * f64::from(strides)))
+            .find(|pose| self.is_outside(pose))
+    }
+
     /// Whether the tool is clear of the body at rest: no point in it, nor it in the body.
     fn is_outside(&self, pose: &Pose) -> bool {
         let mut overlaps = false;
@@ -244,9 +266,7 @@ impl ToolContact {
 
 /// The pose one stride on the way to a goal; a turn counts as the way of the farthest point.
 fn stride(tool: &Tool, start: &Pose, goal: &Pose) -> Pose {
-    let way = goal.position - start.position;
-    let turn = DQuat::from_mat3(&(goal.rotation * start.rotation.transpose())).normalize();
-    let turn = turn.to_scaled_axis();
+    let (way, turn) = start.way_to(goal);
     let length = way.length() + turn.length() * tool.reach();
     if length <= tool.stride() {
         return *goal;

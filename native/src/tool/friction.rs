@@ -41,6 +41,14 @@ pub struct Friction {
 }
 
 impl Friction {
+    /// The same whether points stick or slip.
+    pub fn of(coefficient: f64) -> Self {
+        Self {
+            sticking: coefficient,
+            slipping: coefficient,
+        }
+    }
+
     /// Whether there is none at all.
     #[inline]
     pub fn is_none(&self) -> bool {

@@ -7,7 +7,7 @@
 pub mod hull;
 pub mod tilt;
 
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DQuat, DVec3};
 
 use crate::tool::shape::hull::{Hull, HullError};
 
@@ -41,6 +41,13 @@ impl Pose {
             position: self.position + by,
             ..*self
         }
+    }
+
+    /// The way to another pose, m, and the turn, about an axis by its length in rad.
+    #[inline]
+    pub fn way_to(&self, goal: &Self) -> (DVec3, DVec3) {
+        let turn = DQuat::from_mat3(&(goal.rotation * self.rotation.transpose())).normalize();
+        (goal.position - self.position, turn.to_scaled_axis())
     }
 
     /// A place of the body in the tool's frame.

@@ -1,0 +1,365 @@
+//! Fingers without a clock: the tick's own contact, stepped until nothing changes any more.
+
+use std::sync::Arc;
+
+use glam::{DMat3, DQuat, DVec3};
+
+use crate::body::softening::{Felt, Softening};
+use crate::body::surface::Body;
+use crate::contact::cones::MAX_FINGERS;
+use crate::contact::touch::{ContactMode, softened_touch, touch};
+use crate::fingers::several::{Press, Several};
+use crate::proxy::Hold;
+use crate::tool::contact::ToolContact;
+use crate::tool::shape::Pose;
+
+/// Forces have settled when they change by less than this share of the largest one in a tick.
+const SETTLED: f64 = 1e-11;
+/// In so many ticks one after the other.
+const QUIET_TICKS: usize = 3;
+/// Ticks that a place is given to settle.
+const MOST_TICKS: usize = 5000;
+/// Steps that a way may take.
+const MOST_STEPS: usize = 10_000;
+
+/// Where a finger is to go.
+#[derive(Debug, Clone, Copy)]
+pub enum Goal {
+    /// A point on a place of the surface, by how far it moves that from rest, m.
+    Point(Hold, DVec3),
+    /// A tool.
+    Tool(Pose),
+}
+
+/// What touches the body.
+#[derive(Debug, Clone)]
+pub enum Toucher {
+    /// A point.
+    Point(PointTouch),
+    /// A tool.
+    Tool(Box<ToolContact>),
+}
+
+/// A point and what it last felt.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct PointTouch {
+    /// Where it touches, and how far it is from there, m; none before the first goal.
+    pub at: Option<(Hold, DVec3)>,
+    /// Felt, N.
+    pub force: DVec3,
+    /// On the nodes of its triangle, by the linear relation, N.
+    pub nodal_forces: [DVec3; 3],
+}
+
+/// What keeps fingers from coming to rest.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Unsettled {
+    /// A finger's goal is for another kind of tip.
+    OtherTip(usize),
+    /// A finger's tool is too many strides away.
+    TooFar(usize),
+    /// From within the body no way leads a finger's tool out.
+    NoWayOut(usize),
+    /// A finger's force is no number.
+    NotANumber(usize),
+    /// Forces still change by this share, most of all a finger's.
+    Moving(usize, f64),
+}
+
+/// Fingers on one body.
+#[derive(Debug, Clone)]
+pub struct Settling {
+    body: Arc<Body>,
+    /// Pa.
+    pub young_modulus: f64,
+    mode: ContactMode,
+    felt: Felt,
+    /// All of the way matters, not its end alone.
+    rubs: bool,
+    several: Several,
+    /// By number.
+    pub touchers: Vec<Toucher>,
+}
+
+impl Settling {
+    /// Fingers that touch nothing yet.
+    pub fn new(
+        body: Arc<Body>,
+        touchers: Vec<Toucher>,
+        young_modulus: f64,
+        (mode, felt): (ContactMode, Felt),
+        rubs: bool,
+    ) -> Self {
+        Self {
+            body,
+            young_modulus,
+            mode,
+            felt,
+            rubs,
+            several: Several::default(),
+            touchers,
+        }
+    }
+
+    /// Forgets all contact: the next goals are come to from outside.
+    pub fn lift(&mut self) {
+        self.several = Several::default();
+        for toucher in &mut self.touchers {
+            match toucher {
+                Toucher::Point(point) => *point = PointTouch::default(),
+                Toucher::Tool(tool) => tool.lift(),
+            }
+        }
+    }
+
+    /// All fingers go to their goals together, in equal steps of at most a stride of each tool; where
+    /// tools rub each step is settled, else the end.
+    ///
+    /// # Errors
+    /// [`Unsettled`]; the contact is where it came to.
+    pub fn settle(&mut self, goals: &[Goal]) -> Result<(), Unsettled> {
+        let starts = self.starts(goals)?;
+        let mut steps = 1;
+        for (number, (start, goal)) in starts.iter().zip(goals).enumerate() {
+            let needed = self.strides(number, start, goal);
+            if needed > MOST_STEPS as f64 {
+                return Err(Unsettled::TooFar(number));
+            }
+            steps = steps.max(needed as usize);
+        }
+        for step in 1..=steps {
+            let share = step as f64 / steps as f64;
+            let between = |(start, goal)| between(start, goal, share);
+            let here: Vec<Goal> = starts.iter().zip(goals).map(between).collect();
+            if self.rubs || step == steps {
+                self.rest_at(&here)?;
+            } else {
+                self.tick(&here)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Where the way to the goals begins: where fingers are, or outside of the body.
+    fn starts(&mut self, goals: &[Goal]) -> Result<Vec<Goal>, Unsettled> {
+        let mut starts = Vec::with_capacity(goals.len());
+        for (number, (toucher, goal)) in self.touchers.iter_mut().zip(goals).enumerate() {
+            starts.push(match (toucher, goal) {
+                (Toucher::Point(point), Goal::Point(hold, _)) => {
+                    let same = point.at.filter(|(at, _)| at == hold);
+                    Goal::Point(*hold, same.map_or(DVec3::ZERO, |(_, moved)| moved))
+                }
+                (Toucher::Tool(tool), Goal::Tool(pose)) => {
+                    if tool.pose().is_none() {
+                        let out = tool.way_out(pose).ok_or(Unsettled::NoWayOut(number))?;
+                        tool.restart(&out);
+                    }
+                    Goal::Tool(tool.pose().copied().unwrap_or(*pose))
+                }
+                _ => return Err(Unsettled::OtherTip(number)),
+            });
+        }
+        Ok(starts)
+    }
+
+    /// How many strides a finger is from its goal.
+    fn strides(&self, number: usize, start: &Goal, goal: &Goal) -> f64 {
+        match (&self.touchers[number], start, goal) {
+            (Toucher::Tool(tool), Goal::Tool(start), Goal::Tool(goal)) => {
+                let (way, turn) = start.way_to(goal);
+                let tool = tool.tool();
+                let length = way.length() + turn.length() * tool.reach();
+                (length / tool.stride() * (1.0 - 1e-12)).ceil()
+            }
+            _ => 1.0,
+        }
+    }
+
+    /// Ticks at one place until the forces stay.
+    fn rest_at(&mut self, goals: &[Goal]) -> Result<(), Unsettled> {
+        let (mut quiet, mut moving) = (0, (0, f64::INFINITY));
+        for _ in 0..MOST_TICKS {
+            moving = self.tick(goals)?;
+            quiet = if moving.1 <= SETTLED { quiet + 1 } else { 0 };
+            if quiet == QUIET_TICKS {
+                return Ok(());
+            }
+        }
+        Err(Unsettled::Moving(moving.0, moving.1))
+    }
+
+    /// One tick: whose force changed most, and by which share of the largest.
+    fn tick(&mut self, goals: &[Goal]) -> Result<(usize, f64), Unsettled> {
+        let before: Vec<DVec3> = (0..goals.len()).map(|number| self.force(number)).collect();
+        self.press_points(goals)?;
+        for (number, goal) in goals.iter().enumerate() {
+            let outside = self.loads(|other, _| other != number);
+            let (Toucher::Tool(tool), Goal::Tool(pose)) = (&mut self.touchers[number], goal) else {
+                continue;
+            };
+            tool.follow(pose, self.young_modulus, &outside)
+                .map_err(|_| Unsettled::NotANumber(number))?;
+        }
+        let largest = (before.iter().enumerate())
+            .map(|(number, before)| self.force(number).length().max(before.length()))
+            .fold(0.0, f64::max);
+        let mut most = (0, 0.0);
+        for (number, before) in before.iter().enumerate() {
+            let force = self.force(number);
+            if !force.is_finite() {
+                return Err(Unsettled::NotANumber(number));
+            }
+            let change = force.distance(*before);
+            if change > most.1 * largest {
+                most = (number, change / largest);
+            }
+        }
+        Ok(most)
+    }
+
+    fn force(&self, number: usize) -> DVec3 {
+        match &self.touchers[number] {
+            Toucher::Point(point) => point.force,
+            Toucher::Tool(tool) => tool.felt().force,
+        }
+    }
+
+    /// Forces on nodes of some fingers, N.
+    fn loads(&self, counts: impl Fn(usize, &Toucher) -> bool) -> Vec<(u32, DVec3)> {
+        let mut loads = Vec::new();
+        for (number, toucher) in self.touchers.iter().enumerate() {
+            if !counts(number, toucher) {
+                continue;
+            }
+            match toucher {
+                Toucher::Point(PointTouch {
+                    at: Some((hold, _)),
+                    nodal_forces,
+                    ..
+                }) => {
+                    let nodes = self.body.triangles[hold.triangle as usize];
+                    loads.extend(nodes.into_iter().zip(*nodal_forces));
+                }
+                Toucher::Point(_) => (),
+                Toucher::Tool(tool) => {
+                    let forces = tool.nodal_forces().iter();
+                    loads.extend(forces.map(|&(node, force)| (node, force * self.young_modulus)));
+                }
+            }
+        }
+        loads
+    }
+
+    fn press_points(&mut self, goals: &[Goal]) -> Result<(), Unsettled> {
+        let mut presses = [None; MAX_FINGERS];
+        let loads = self.loads(|_, toucher| matches!(toucher, Toucher::Tool(_)));
+        for (press, goal) in presses.iter_mut().zip(goals) {
+            if let Goal::Point(hold, displacement) = goal {
+                *press = Some(self.press(*hold, *displacement, &loads));
+            }
+        }
+        let are_coupled = goals.len() > 1 && self.mode == ContactMode::Consistent;
+        // Nothing fades in or out here: whatever was asked for is there at once.
+        let answers = if are_coupled {
+            (self.several).solve(&self.body, 0, &presses, f64::INFINITY)
+        } else {
+            None
+        };
+        for (number, goal) in goals.iter().enumerate() {
+            let Goal::Point(hold, displacement) = goal else {
+                continue;
+            };
+            let (force, nodal_forces) = match &answers {
+                Some(answers) => {
+                    let answer = &answers[number];
+                    let share = |alpha| answer.drawn.0 * (alpha * self.young_modulus);
+                    (
+                        answer.contact_force * -self.young_modulus,
+                        hold.alpha.map(share),
+                    )
+                }
+                None => self.alone(hold, *displacement),
+            };
+            let Toucher::Point(point) = &mut self.touchers[number] else {
+                return Err(Unsettled::OtherTip(number));
+            };
+            *point = PointTouch {
+                at: Some((*hold, *displacement)),
+                force,
+                nodal_forces,
+            };
+        }
+        Ok(())
+    }
+
+    /// The force felt by a point that is alone, and those on the nodes by the linear relation, N.
+    fn alone(&self, hold: &Hold, displacement: DVec3) -> (DVec3, [DVec3; 3]) {
+        let (body, modulus) = (&self.body, self.young_modulus);
+        let linear = touch(
+            body,
+            self.mode,
+            hold.triangle,
+            hold.alpha,
+            displacement,
+            modulus,
+        );
+        let softenings = self.softenings(hold);
+        if softenings.iter().all(Softening::is_none) {
+            return (linear.force, linear.nodal_forces);
+        }
+        let place = (hold.triangle, hold.alpha);
+        let softened = softened_touch(body, self.mode, place, &softenings, displacement, modulus);
+        (softened.force, linear.nodal_forces)
+    }
+
+    fn softenings(&self, hold: &Hold) -> [Softening; 3] {
+        let of = |node| match self.felt {
+            Felt::Corrected => self.body.softenings.of(node).unwrap_or_default(),
+            Felt::Linear => Softening::default(),
+        };
+        self.body.triangles[hold.triangle as usize].map(of)
+    }
+
+    /// A point as the others see it. One that does not travel rests, and pushes back inwards.
+    fn press(&self, hold: Hold, displacement: DVec3, loads: &[(u32, DVec3)]) -> Press {
+        let nodes = self.body.triangles[hold.triangle as usize];
+        let mut moved = DVec3::ZERO;
+        for (node, weight) in nodes.into_iter().zip(hold.alpha) {
+            let by = |&(loaded, force): &(u32, DVec3)| {
+                (self.body.block(node, loaded)).map(|block| block * force)
+            };
+            moved += loads.iter().filter_map(by).sum::<DVec3>() * weight;
+        }
+        let push = if displacement == DVec3::ZERO {
+            -self.body.face(hold.triangle).normal
+        } else {
+            displacement
+        };
+        Press {
+            hold,
+            touches: true,
+            displacement,
+            moved_by_tools: moved / self.young_modulus,
+            push,
+            most_stiffness: f64::INFINITY,
+            presence: 1.0,
+            softening: Softening::mixed(&self.softenings(&hold), hold.alpha),
+        }
+    }
+}
+
+/// A part of the way from one goal to another.
+fn between(start: &Goal, goal: &Goal, share: f64) -> Goal {
+    match (start, goal) {
+        _ if share >= 1.0 => *goal,
+        (Goal::Point(_, from), Goal::Point(hold, to)) => Goal::Point(*hold, from.lerp(*to, share)),
+        (Goal::Tool(from), Goal::Tool(to)) => {
+            let (way, turn) = from.way_to(to);
+            Goal::Tool(Pose {
+                position: from.position + way * share,
+                rotation: DMat3::from_quat(DQuat::from_scaled_axis(turn * share)) * from.rotation,
+            })
+        }
+        _ => *goal,
+    }
+}

@@ -1,0 +1,228 @@
+//! `ContactEngine`: fingers on a body without a clock.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use numpy::PyArray1;
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+
+use crate::body::surface;
+use crate::contact::cones::MAX_FINGERS;
+use crate::engine::settling::{Goal, PointTouch, Settling, Toucher, Unsettled};
+use crate::proxy::Hold;
+use crate::python::body::surface::Body;
+use crate::python::servo::settings::{contact_mode, felt_choice};
+use crate::python::tool::{Tool, ToolSurface, pose};
+use crate::python::vectors::{array, finite, positive, rows, square, table};
+use crate::tool::contact::ToolContact;
+use crate::tool::friction::Friction;
+use crate::tool::patch::Slot;
+
+#[pyclass(module = "palpate_servo")]
+pub struct ContactEngine {
+    inner: Settling,
+    body: Arc<surface::Body>,
+}
+
+#[pymethods]
+impl ContactEngine {
+    #[new]
+    #[pyo3(signature = (body, tips, *, young_modulus, friction=0.0, mode="consistent",
+        felt="linear"))]
+    fn new(
+        body: &Body,
+        tips: Vec<Option<(PyRef<'_, ToolSurface>, PyRef<'_, Tool>)>>,
+        young_modulus: f64,
+        friction: f64,
+        mode: &str,
+        felt: &str,
+    ) -> PyResult<Self> {
+        if !(1..=MAX_FINGERS).contains(&tips.len()) {
+            return Err(PyValueError::new_err(format!(
+                "{} tips; give one to {MAX_FINGERS} fingers",
+                tips.len()
+            )));
+        }
+        if tips.len() > 1 && !body.inner.is_whole() {
+            return Err(PyValueError::new_err(
+                "several fingers need a whole body; make it with whole=True",
+            ));
+        }
+        let friction = Friction::of(friction);
+        if !friction.is_sound() {
+            return Err(PyValueError::new_err(format!(
+                "friction is {}; give a coefficient, zero or more",
+                friction.sticking
+            )));
+        }
+        let mut touchers = Vec::with_capacity(tips.len());
+        for (number, tip) in tips.into_iter().enumerate() {
+            touchers.push(match tip {
+                None => Toucher::Point(PointTouch::default()),
+                Some((surface, _)) if !Arc::ptr_eq(surface.inner.body(), &body.inner) => {
+                    return Err(PyValueError::new_err(format!(
+                        "tip {number} has contact points on another body; spread them on this one"
+                    )));
+                }
+                Some((surface, tool)) => {
+                    let mut tool = ToolContact::new(surface.inner.clone(), tool.inner.clone());
+                    tool.set_friction(friction);
+                    Toucher::Tool(Box::new(tool))
+                }
+            });
+        }
+        Ok(Self {
+            inner: Settling::new(
+                body.inner.clone(),
+                touchers,
+                positive("young_modulus", young_modulus)?,
+                (contact_mode(mode)?, felt_choice(felt)?),
+                !friction.is_none(),
+            ),
+            body: body.inner.clone(),
+        })
+    }
+
+    #[getter]
+    fn young_modulus(&self) -> f64 {
+        self.inner.young_modulus
+    }
+
+    #[setter]
+    fn set_young_modulus(&mut self, young_modulus: f64) -> PyResult<()> {
+        self.inner.young_modulus = positive("young_modulus", young_modulus)?;
+        Ok(())
+    }
+
+    fn lift(&mut self) {
+        self.inner.lift();
+    }
+
+    fn settle<'py>(
+        &mut self,
+        py: Python<'py>,
+        targets: Vec<Bound<'py, PyTuple>>,
+    ) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        if targets.len() != self.inner.touchers.len() {
+            return Err(PyValueError::new_err(format!(
+                "{} targets; give one for each of the {} fingers",
+                targets.len(),
+                self.inner.touchers.len()
+            )));
+        }
+        let goals = (targets.iter().enumerate())
+            .map(|(number, target)| self.goal(number, target))
+            .collect::<PyResult<Vec<Goal>>>()?;
+        let inner = &mut self.inner;
+        py.detach(|| inner.settle(&goals)).map_err(unsettled)?;
+        let touchers = self.inner.touchers.iter();
+        touchers.map(|toucher| self.told(py, toucher)).collect()
+    }
+}
+
+impl ContactEngine {
+    fn goal(&self, number: usize, target: &Bound<'_, PyTuple>) -> PyResult<Goal> {
+        if let Ok((position, rotation)) = target.extract() {
+            return Ok(Goal::Tool(pose(position, rotation)?));
+        }
+        let (triangle, alpha, by): (u32, [f64; 3], [f64; 3]) = target.extract().map_err(|_| {
+            PyValueError::new_err(format!(
+                "target {number} is neither (position, rotation) nor (triangle, alpha, by)"
+            ))
+        })?;
+        if triangle as usize >= self.body.triangles.len() {
+            return Err(PyValueError::new_err(format!(
+                "target {number} is on triangle {triangle}, beyond the {} of the body",
+                self.body.triangles.len()
+            )));
+        }
+        let alpha = finite("alpha", alpha)?.to_array();
+        Ok(Goal::Point(Hold { triangle, alpha }, finite("by", by)?))
+    }
+
+    fn told<'py>(&self, py: Python<'py>, toucher: &Toucher) -> PyResult<Bound<'py, PyDict>> {
+        match toucher {
+            Toucher::Point(point) => self.point(py, point),
+            Toucher::Tool(tool) => self.tool(py, tool),
+        }
+    }
+
+    fn point<'py>(&self, py: Python<'py>, point: &PointTouch) -> PyResult<Bound<'py, PyDict>> {
+        let told = PyDict::new(py);
+        told.set_item("force", array(py, point.force))?;
+        told.set_item("nodal_forces", rows(py, &point.nodal_forces)?)?;
+        if let Some((hold, _)) = point.at {
+            let nodes = self.body.triangles[hold.triangle as usize].map(i64::from);
+            told.set_item("triangle", hold.triangle)?;
+            told.set_item("alpha", PyArray1::from_slice(py, &hold.alpha))?;
+            told.set_item("nodes", PyArray1::from_slice(py, &nodes))?;
+        }
+        Ok(told)
+    }
+
+    fn tool<'py>(&self, py: Python<'py>, tool: &ToolContact) -> PyResult<Bound<'py, PyDict>> {
+        let (felt, modulus) = (tool.felt(), self.inner.young_modulus);
+        let points = tool.surface().points();
+        let pressed = || (tool.slots().iter()).filter(|slot| slot.force != DVec3::ZERO);
+        let numbers = |of: &dyn Fn(&Slot) -> f64| PyArray1::from_iter(py, pressed().map(of));
+        let vectors = |of: &dyn Fn(&Slot) -> DVec3| table(py, pressed().map(of));
+        let area = |slot: &Slot| points[slot.point as usize].area;
+        let told = PyDict::new(py);
+        told.set_item("force", array(py, felt.force))?;
+        told.set_item("torque", array(py, felt.torque))?;
+        told.set_item("stiffness", square(py, felt.stiffness)?)?;
+        told.set_item("free", tool.is_free())?;
+        if let Some(pose) = tool.pose() {
+            told.set_item("position", array(py, pose.position))?;
+            told.set_item("rotation", square(py, pose.rotation)?)?;
+        }
+        let which = pressed().map(|slot| i64::from(slot.point));
+        told.set_item("points", PyArray1::from_iter(py, which))?;
+        told.set_item("areas", numbers(&area))?;
+        told.set_item("pushes", numbers(&|slot| slot.push * modulus))?;
+        told.set_item(
+            "pressures",
+            numbers(&|slot| slot.push * modulus / area(slot)),
+        )?;
+        told.set_item(
+            "places",
+            vectors(&|slot| points[slot.point as usize].position)?,
+        )?;
+        told.set_item("point_forces", vectors(&|slot| slot.force * modulus)?)?;
+        told.set_item("normals", vectors(&|slot| slot.normal)?)?;
+        told.set_item("displacements", vectors(&|slot| slot.moved)?)?;
+        let nodes = tool.nodal_forces().iter();
+        let (numbers, forces): (Vec<i64>, Vec<DVec3>) =
+            (nodes.map(|&(node, force)| (i64::from(node), force * modulus))).unzip();
+        told.set_item("nodes", PyArray1::from_vec(py, numbers))?;
+        told.set_item("nodal_forces", table(py, forces.into_iter())?)?;
+        Ok(told)
+    }
+}
+
+fn unsettled(reason: Unsettled) -> PyErr {
+    let told = match reason {
+        Unsettled::OtherTip(finger) => {
+            return PyValueError::new_err(format!(
+                "target {finger} is not one for that finger's tip; give (position, rotation) of a \
+                 tool, (triangle, alpha, by) of a point"
+            ));
+        }
+        Unsettled::TooFar(finger) => {
+            format!("finger {finger}: the goal is too many strides away; begin nearer")
+        }
+        Unsettled::NoWayOut(finger) => format!(
+            "finger {finger}: there is no way out of the body from where it is; begin outside"
+        ),
+        Unsettled::NotANumber(finger) => {
+            format!("finger {finger}: its force came out as no number; press less deep")
+        }
+        Unsettled::Moving(finger, share) => format!(
+            "finger {finger}: its force does not settle, it still changes by {share:.1e} of the \
+             largest one in a step; press less deep or with a rounder tool"
+        ),
+    };
+    PyRuntimeError::new_err(told)
+}
