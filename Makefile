@@ -176,6 +176,10 @@ demo: $(VENV)/.servo-installed build/packages/.made ## the main job on a plush m
 	$(BIN)/python demo/make_demo.py --blender $(BPY_VENV)/bin/python \
 	  --package build/packages/palpate-[0-9]*.zip --output build/demo
 
+.PHONY: translations
+translations: $(VENV)/.installed ## new texts into addon/translations/*.po, and old ones out
+	$(BIN)/python release/translations.py
+
 .PHONY: bench
 bench: $(VENV)/.servo-installed | build/reports ## how long things take on this machine, beside others; see build/reports/bench.txt
 	$(BIN)/pip install --quiet --editable '.[dev,bench]'

@@ -69,9 +69,10 @@ def _is_mesh(settings: bpy.types.PropertyGroup, candidate: bpy.types.Object) -> 
     return candidate.type == "MESH"
 
 
-def _length(name: str, description: str, default: float) -> object:
+def _length(name: str, description: str, default: float, context: str = "*") -> object:
     return bpy.props.FloatProperty(
         name=name,
+        translation_context=context,
         description=description,
         default=default,
         min=1e-6,
@@ -98,7 +99,8 @@ class FingerProperties:
     tip_radius: _length("Radius", "Radius of the fingertip or rod", 0.008)
     rod_length: _length("Length", "Length of the rod without its round ends", 0.03)
     plate_width: _length("Width", "Width of the plate", 0.02)
-    plate_depth: _length("Depth", "Depth of the plate, across its width", 0.02)
+    # Elsewhere a depth is how far something is pressed: some languages have two words.
+    plate_depth: _length("Depth", "Depth of the plate, across its width", 0.02, "Palpate")
     tip_object: bpy.props.PointerProperty(
         name="Tool",
         description="Mesh object that presses. Its convex hull is used; it is never changed",

@@ -112,8 +112,7 @@ def _draw_status(
     elif status.fit is Fit.FILE_DAMAGED:
         say(layout, context, "The body file is damaged; press Rebuild Body", "ERROR")
     else:
-        # As it begins a line, so that it is found in the dictionary.
-        say(layout, context, status.text[:1].upper() + status.text[1:], "ERROR")
+        say(layout, context, status.text, "ERROR")
         say(layout, context, "Press Make Soft Again", "BLANK1")
     _draw_changes(layout, context, status)
 

@@ -5,6 +5,9 @@ import unicodedata
 
 import bpy
 
+from ..core.sentence import Sentence
+from ..operators.translated import shown
+
 # Width of a letter in the sidebar, unscaled pixels.
 LETTER_PIXELS = 7
 # Letters that icon and margins take, and the frame of a box besides.
@@ -22,16 +25,17 @@ def say(
     boxed: bool = False,
     **figures: str,
 ) -> None:
-    """Write a sentence; ``{names}`` in the text are filled in after it is translated. In a box
-    there is less room.
+    """Write a sentence in the user's language; figures stand for the ``{names}`` in the text.
+
+    It begins a line, so it begins with a capital, unless with a name. In a box there is less room.
     """
     scale = context.preferences.system.ui_scale
     across = int(context.region.width / scale / LETTER_PIXELS)
     column = layout.column(align=True)
     column.use_property_split = False
-    said = bpy.app.translations.pgettext_iface(text)
-    if figures:
-        said = said.format(**figures)
+    said = shown(text, **figures)
+    if not (text.template if isinstance(text, Sentence) else text).startswith("{"):
+        said = said[:1].upper() + said[1:]
     letters = max(FEWEST_LETTERS, across - MARGIN_LETTERS - (BOX_LETTERS if boxed else 0))
     for number, line in enumerate(wrapped(said, letters)):
         column.label(text=line, icon=icon if number == 0 else "BLANK1", translate=False)

@@ -1,12 +1,22 @@
 """The one exception that is meant for a person to read."""
 
+from .sentence import Sentence
+
 
 class PalpateError(Exception):
     """Something the user can act on.
 
-    The message is one line and names the thing, the reason and the remedy; command
-    line, panel and report show it as it is.
+    The message is one line and names the thing, the reason and the remedy. The command line shows
+    it as it is; Blender translates its template, so what differs is given by name:
+
+    >>> PalpateError("{file}: damaged; bake again", file="hare.npz")
+    PalpateError('hare.npz: damaged; bake again')
     """
+
+    def __init__(self, template: str, /, **values: object) -> None:
+        known = isinstance(template, Sentence)
+        self.sentence = template if known else Sentence(template, **values)
+        super().__init__(self.sentence)
 
 
 class CancelledError(PalpateError):

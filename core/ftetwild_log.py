@@ -5,13 +5,13 @@ from __future__ import annotations
 import re
 
 # Words of its log, in the order they come, and what they mean to a person.
-STAGES = (
-    ("Starting tetrahedralization", "reading the mesh"),
-    ("collapsing", "simplifying the surface"),
-    ("triangle insertion start", "inserting the surface"),
-    ("initializing...", "improving tetrahedra"),
-    ("postprocessing", "finishing"),
-)
+STAGES = {
+    "Starting tetrahedralization": "reading the mesh",
+    "collapsing": "simplifying the surface",
+    "triangle insertion start": "inserting the surface",
+    "initializing...": "improving tetrahedra",
+    "postprocessing": "finishing",
+}
 
 
 def stage(log: str) -> str:
@@ -20,7 +20,7 @@ def stage(log: str) -> str:
     fTetWild stops once the worst energy has fallen to 10, which is the only progress it shows.
     """
     reached = "reading the mesh"
-    for words, meaning in STAGES:
+    for words, meaning in STAGES.items():
         if words in log:
             reached = meaning
     passes = re.findall(r"/ pass (\d+) /", log)

@@ -14,6 +14,8 @@ from dataclasses import asdict, dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.sentence import Sentence
+
 PROJECTIONS = 8
 # Rounding of a float32 matrix is about 1e-7 of the size; a real edit moves far more than this.
 TOLERANCE = 2e-6
@@ -79,17 +81,21 @@ def digest(*arrays: NDArray[np.int64]) -> str:
 def changed_body(old: Fingerprint, new: Fingerprint) -> str:
     """What makes the baked body unusable now, in words for the panel; empty if nothing does."""
     if (old.vertices, old.faces) != (new.vertices, new.faces):
-        return (
-            f"the mesh has {new.vertices} vertices and {new.faces} faces now, "
-            f"{old.vertices} and {old.faces} when it was baked"
+        return Sentence(
+            "the mesh has {vertices} vertices and {faces} faces now, {old_vertices} and "
+            "{old_faces} when it was baked",
+            vertices=new.vertices,
+            faces=new.faces,
+            old_vertices=old.vertices,
+            old_faces=old.faces,
         )
     if old.topology != new.topology:
-        return "the faces are connected differently than when it was baked"
+        return Sentence("the faces are connected differently than when it was baked")
     if _same(old.body, new.body, old.size, old.vertices):
         return ""
     if _same(old.local, new.local, old.local_size, old.vertices):
-        return "the object's scale or the scene's unit scale changed since the bake"
-    return "the shape was edited since the bake"
+        return Sentence("the object's scale or the scene's unit scale changed since the bake")
+    return Sentence("the shape was edited since the bake")
 
 
 def _project(points: NDArray[np.float64]) -> tuple[float, ...]:

@@ -7,7 +7,7 @@ it would install and then not press, and is therefore refused:
         --servo-wheel build/servo/palpate_servo-0.1.0-cp311-abi3-linux_x86_64.whl \
         --blender .venv-bpy-5.2.3 --output build/packages
 
-Needs nothing but Python's standard library, pip, and a Blender (or bpy) for its extension tool.
+Needs Babel, which reads the translations, pip, and a Blender (or bpy) for its extension tool.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from pathlib import Path
 
 import blender_tool
 import bundled_wheels
+import translations
 from bundled_wheels import PackagingError
 from extension_files import extension_files
 from package_check import faults, runs_on
@@ -101,6 +102,7 @@ def _package(platform: Platform, wheels: list[Path], options: argparse.Namespace
     for relative in extension_files(REPOSITORY):
         (stage / relative).parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(REPOSITORY / relative, stage / relative)
+    (stage / translations.PACKAGED).write_text(translations.compiled(), encoding="utf-8")
     (stage / "wheels").mkdir()
     for wheel in wheels:
         shutil.copyfile(wheel, stage / "wheels" / wheel.name)

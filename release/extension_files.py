@@ -13,6 +13,8 @@ TOP_FILES = ("__init__.py", "LICENSE")
 FOLDERS = ("addon", "operators", "core", "cli")
 # What these folders may hold for Blender's sake; anything else is refused, not shipped by accident.
 SHIPPED = {".py", ".json", ".toml", ".glsl", ".png", ".svg"}
+# Translations, which the package holds in another form: see translations.py.
+SOURCES = {".po"}
 
 
 def extension_files(repository: Path) -> list[Path]:
@@ -25,7 +27,10 @@ def extension_files(repository: Path) -> list[Path]:
         files += sorted(
             path
             for path in (repository / folder).rglob("*")
-            if path.is_file() and "__pycache__" not in path.parts and not path.name.startswith(".")
+            if path.is_file()
+            and "__pycache__" not in path.parts
+            and not path.name.startswith(".")
+            and path.suffix not in SOURCES
         )
     missing = [name for name in (*TOP_FILES, *FOLDERS) if not (repository / name).exists()]
     if missing:

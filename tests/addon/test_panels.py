@@ -172,7 +172,7 @@ def test_why_the_linear_shape_is_drawn_stands_in_the_panel(panel, press, monkeyp
     session = press(thing)
     wait(session, lambda: session.shape.problem)
     said = drawn(panel, thing)
-    assert "shape: no room; choose another" in said.text
+    assert "Shape: no room; choose another" in said.text
     assert "The linear shape is drawn" in said.text
     assert "ERROR" in said.icons
     assert not said.bars

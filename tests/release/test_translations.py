@@ -1,0 +1,63 @@
+"""Every text that Blender may show is there in every language, and nothing else is."""
+
+from __future__ import annotations
+
+import json
+from string import Formatter
+
+import pytest
+import translations
+
+LANGUAGES = translations.languages()
+CONTEXTS = {None, "Operator", "Palpate"}
+
+
+@pytest.fixture(scope="module", params=LANGUAGES)
+def words(request):
+    return [message for message in translations.catalog(LANGUAGES[request.param]) if message.id]
+
+
+def names(text):
+    """The {names} that are filled into a text, with their formats."""
+    return sorted(field[1:] for field in Formatter().parse(text) if field[1] is not None)
+
+
+def test_texts_are_found_in_sources():
+    source = '''"""Docstring of a module."""
+label = "Make Soft"
+text = f"Never {label} found"
+raise PalpateError("a file is missing")
+STEP_TEXTS = {"start": "starting"}
+'''
+    assert set(translations.texts(source, marked=False)) == {"Make Soft", "starting"}
+    assert set(translations.texts(source, marked=True)) == {"starting"}
+
+
+def test_there_are_hundreds_of_texts():
+    assert len(translations.texts_in_sources()) > 400
+
+
+def test_no_text_is_missing_and_none_is_unused(words):
+    shown = translations.texts_in_sources()
+    known = {message.id for message in words if message.context is None}
+    assert not shown - known
+    assert not {message.id for message in words} - shown
+
+
+def test_every_text_is_translated(words):
+    assert not [message.id for message in words if not message.string or message.fuzzy]
+
+
+def test_translations_fill_in_the_same_names(words):
+    assert not [message.id for message in words if names(message.id) != names(message.string)]
+
+
+def test_contexts_are_those_that_the_extension_registers(words):
+    assert {message.context for message in words} <= CONTEXTS
+
+
+def test_the_package_holds_all_translations():
+    packaged = json.loads(translations.compiled())
+    assert packaged.keys() == LANGUAGES.keys()
+    assert packaged["de"]["*"]["Make Soft"] == "Weich machen"
+    assert packaged["ja"]["Palpate"]["Depth"] != packaged["ja"]["*"]["Depth"]
