@@ -39,7 +39,7 @@ CRATE := --locked --manifest-path native/Cargo.toml
 NATIVE_SOURCES := $(wildcard native/*.toml native/*.lock native/*.pyi native/build.rs) \
   $(shell find native/src -name '*.rs' 2>/dev/null)
 EXTENSION_SOURCES := __init__.py LICENSE blender_manifest.toml \
-  $(shell find addon operators core cli -type f -not -path '*/__pycache__/*' 2>/dev/null) \
+  $(shell find addon operators core simulated cli -type f -not -path '*/__pycache__/*' 2>/dev/null) \
   $(shell find release -name '*.py' -o -name '*.txt')
 
 .PHONY: help
@@ -142,7 +142,7 @@ test-native: $(VENV)/.installed | build/reports ## the servo's own tests
 
 .PHONY: test-core
 test-core: $(VENV)/.servo-installed | build/reports ## core, command line and packages, without Blender
-	$(BIN)/pytest -q $(ON_ALL_CORES) tests/core tests/demo tests/release tests/test_architecture.py tests/test_docs.py $(REPORT)
+	$(BIN)/pytest -q $(ON_ALL_CORES) tests/core tests/simulated tests/cli tests/passivity tests/demo tests/release tests/test_architecture.py tests/test_docs.py $(REPORT)
 
 .PHONY: test-servo
 test-servo: $(VENV)/.servo-installed | build/reports ## servo and firmware: they have deadlines, so one test after the other

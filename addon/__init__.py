@@ -2,41 +2,28 @@
 
 import bpy
 
-from ..operators import (
+from ..operators.bake import (
     cancel_bake,
     fit_memory,
-    force_curve,
     make_soft,
-    pin_below,
-    pinch,
-    press,
-    press_frames,
-    read_durometer,
     rebuild_body,
-    record,
-    recording_writer,
-    refresh_devices,
     remove_softness,
-    save_recording,
-    softness_colours,
-    switch_force,
     update_pins,
 )
-from . import (
-    command,
-    handlers,
-    overlay,
-    panels,
-    preferences,
-    properties,
-    softness_properties,
-    translations,
-)
+from ..operators.device import refresh_devices
+from ..operators.pins import pin_below
+from ..operators.press import pinch, press, press_frames, record, save_recording, switch_force
+from ..operators.record import recording_writer
+from ..operators.softness import force_curve, read_durometer, softness_colours
+from . import command, handlers, preferences, translations
+from .overlay import view
+from .panels import sidebar
+from .properties import soft_object, softness
 
 # In the order of registration; properties first, since all others refer to them.
 modules = (
-    properties,
-    softness_properties,
+    soft_object,
+    softness,
     preferences,
     make_soft,
     rebuild_body,
@@ -56,8 +43,8 @@ modules = (
     read_durometer,
     force_curve,
     softness_colours,
-    panels,
-    overlay,
+    sidebar,
+    view,
     handlers,
     command,
     translations,

@@ -13,14 +13,15 @@ from typing import NoReturn
 import bpy
 
 from ..core.errors import PalpateError
-from ..core.large_deformation.felt_force import FELT_CHOICES
-from ..core.large_deformation.shapes import SHAPES
-from ..core.materials import MATERIALS
-from ..operators import bake_session, body_store
-from ..operators.drawn_shape import chosen_shape
-from ..operators.press_once import PressedFinger, press_several
-from .finger_properties import MODE_ITEMS, TIP_ITEMS
-from .properties import FORM_ITEMS, FORMULATION_ITEMS
+from ..core.shape.force_at_depth.felt_force import FELT_CHOICES
+from ..core.shape.shapes import SHAPES
+from ..core.softness.scales.materials import MATERIALS
+from ..operators.bake import bake_session
+from ..operators.object import body_store
+from ..operators.press.press_once import PressedFinger, press_several
+from ..operators.shape.drawn_shape import chosen_shape
+from .properties.finger import MODE_ITEMS, TIP_ITEMS
+from .properties.soft_object import FORM_ITEMS, FORMULATION_ITEMS
 
 NAME = "palpate"
 EXIT_ERROR = 2

@@ -7,9 +7,12 @@ import bpy
 from bpy.app.handlers import persistent
 
 from ..core.errors import PalpateError
-from ..operators import bake_session, body_store, kept_body, live_shape, press_session
-from ..operators.package_preferences import preferences
-from ..operators.press_state import SaveBegins, SaveEnds
+from ..operators.bake import bake_session
+from ..operators.object import body_store, kept_body
+from ..operators.scene import live_shape
+from ..operators.scene.package_preferences import preferences
+from ..operators.session import press_session
+from ..operators.session.press_state import SaveBegins, SaveEnds
 from . import known_status
 
 # Where body files were before a save that may change the .blend's folder.

@@ -13,16 +13,18 @@ from dataclasses import dataclass, field
 
 import bpy
 
-from ..core.bake_cost import ShapeSize
-from ..core.bake_settings import BakeSettings
+from ..core.bake.bake_cost import ShapeSize
+from ..core.bake.settings import BakeSettings
 from ..core.errors import PalpateError
-from ..core.machine_speed import dgemm_rate
-from ..core.pins import Pins
-from ..operators import bake_prediction, drawn_surface, soft_object
-from ..operators.bake_prediction import Prediction
-from ..operators.drawn_surface import DrawnSurface
-from ..operators.soft_object import BodyStatus, Fit
-from ..operators.viewport import redraw_views
+from ..core.machine.machine_speed import dgemm_rate
+from ..core.stiffness.pins import Pins
+from ..operators.bake import bake_prediction
+from ..operators.bake.bake_prediction import Prediction
+from ..operators.object import soft_object
+from ..operators.object.soft_object import BodyStatus, Fit
+from ..operators.scene import drawn_surface
+from ..operators.scene.drawn_surface import DrawnSurface
+from ..operators.scene.viewport import redraw_views
 
 # The panel appears first, then the machine's speed is measured, a tenth of a second.
 SECONDS_TO_MEASURING = 0.2
@@ -70,7 +72,7 @@ _sizes: dict[Values, ShapeSize] = {}
 
 
 def body_status(thing: bpy.types.Object, scene: bpy.types.Scene) -> BodyStatus:
-    """As :func:`operators.soft_object.body_status`, but the mesh is read only after changes."""
+    """As ``body_status``, but the mesh is read only after changes."""
     try:
         known = _mesh(thing, scene)
     except PalpateError as problem:

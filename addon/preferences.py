@@ -2,8 +2,8 @@
 
 import bpy
 
-from ..operators.package_preferences import PACKAGE
-from .scene_properties import SOURCE_ITEMS
+from ..operators.scene.package_preferences import PACKAGE
+from .properties.scene import SOURCE_ITEMS
 
 
 class PalpatePreferences(bpy.types.AddonPreferences):

@@ -22,11 +22,11 @@ import numpy as np
 from measuring.bodies import stored_body
 from measuring.memory import in_fresh_process
 
-from palpate.core import cache
-from palpate.core.bake import bake
-from palpate.core.bake_settings import BakeSettings
-from palpate.core.pins import PinNodes
-from palpate.core.servo_session import native_body
+from palpate.core.bake.settings import BakeSettings
+from palpate.core.bake.steps import bake
+from palpate.core.body import body_file
+from palpate.core.servo.session import native_body
+from palpate.core.stiffness.pins import PinNodes
 
 BODIES = ("mouse-1.7k", "mouse-20k")
 FORMS = ("dense", "compressed")
@@ -75,11 +75,11 @@ def _measure(name: str, form: str, file: Path) -> bool:
     start = time.perf_counter()
     baked, _ = bake(body.mesh, settings)
     seconds = time.perf_counter() - start
-    cache.save(baked, file)
+    body_file.save(baked, file)
     size = file.stat().st_size
     missed = False
     whole_only = (
-        cache.MAPPED_FROM_BYTES is None or baked.compliance.nbytes < cache.MAPPED_FROM_BYTES
+        body_file.MAPPED_FROM_BYTES is None or baked.compliance.nbytes < body_file.MAPPED_FROM_BYTES
     )
     for way in ("whole",) if whole_only or form != "dense" else ("in place", "whole"):
         for pages in ("cold", "warm"):
@@ -101,7 +101,7 @@ def _measure(name: str, form: str, file: Path) -> bool:
 def _first_press(file: Path, in_place: bool) -> FirstPress:
     """Load, prepare and deform once, as the first Press does."""
     marks = [time.perf_counter()]
-    body = cache.load(file) if in_place else cache.load(file, mapped_from_bytes=None)
+    body = body_file.load(file) if in_place else body_file.load(file, mapped_from_bytes=None)
     marks.append(time.perf_counter())
     _ = body.contact_blocks
     marks.append(time.perf_counter())

@@ -18,11 +18,11 @@ import numpy as np
 from numpy.typing import NDArray
 from palpate_servo import SteppedFingers
 
-from palpate.core.bake import BakeSettings, bake
-from palpate.core.paper_cube import paper_cube
-from palpate.core.pins import PinNodes
-from palpate.core.servo_session import native_body, native_tool
-from palpate.core.tools import sphere
+from palpate.core.bake.steps import BakeSettings, bake
+from palpate.core.contact.tool.tools import sphere
+from palpate.core.mesh.paper_cube import paper_cube
+from palpate.core.servo.session import native_body, native_tool
+from palpate.core.stiffness.pins import PinNodes
 
 Vectors = NDArray[np.float64]
 

@@ -20,12 +20,12 @@ from measuring.bodies import stored_body
 from measuring.timing import seconds_of
 from numpy.typing import NDArray
 
-from palpate.core.available_cores import available_cores
-from palpate.core.blas_threads import blas_threads
-from palpate.core.clusters_on_workers import clusters_on
-from palpate.core.compression.compress import compress
-from palpate.core.elimination.surface_columns import SurfaceColumns, factor_for_columns
-from palpate.core.stiffness import assemble
+from palpate.core.compliance.compression.clusters_on_workers import clusters_on
+from palpate.core.compliance.compression.compress import compress
+from palpate.core.compliance.elimination.surface_columns import SurfaceColumns, factor_for_columns
+from palpate.core.machine.available_cores import available_cores
+from palpate.core.machine.blas_threads import blas_threads
+from palpate.core.stiffness.assembly import assemble
 
 TOLERANCE = 1e-3
 

@@ -22,15 +22,15 @@ from measuring.timing import times_seconds
 from numpy.typing import NDArray
 from precompute import Problem, at_least, at_most
 
-from palpate.core.compliance import Compliance
-from palpate.core.compression.compress import compress
-from palpate.core.compression.compressed_compliance import CompressedCompliance
-from palpate.core.dense_compliance import DenseCompliance
-from palpate.core.elimination.surface_columns import factor_for_columns
-from palpate.core.freedoms import freedoms
-from palpate.core.servo_session import native_compliance
-from palpate.core.stiffness import assemble
-from palpate.core.surface_compliance import surface_compliance
+from palpate.core.compliance.compression.compress import compress
+from palpate.core.compliance.compression.compressed_compliance import CompressedCompliance
+from palpate.core.compliance.dense import DenseCompliance
+from palpate.core.compliance.elimination.surface_columns import factor_for_columns
+from palpate.core.compliance.protocol import Compliance
+from palpate.core.compliance.surface_compliance import surface_compliance
+from palpate.core.servo.session import native_compliance
+from palpate.core.stiffness.assembly import assemble
+from palpate.core.stiffness.freedoms import freedoms
 
 POISSON_RATIO = 0.3
 TOLERANCES = (1e-4, 1e-3, 6e-3)

@@ -31,16 +31,16 @@ from measuring.graded_block import (
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from palpate.core.contact_points import ContactPoints
-from palpate.core.near_field import NearCorrection, near_correction
-from palpate.core.paper_cube import paper_cube
-from palpate.core.regular_field import RegularField
-from palpate.core.soft_body import SoftBody
-from palpate.core.stiffness import assemble
-from palpate.core.surface_compliance import surface_compliance
-from palpate.core.tool_contact import press_tool
-from palpate.core.tool_touch import ToolTouch
-from palpate.core.tools import Pose, Tool, plate, rod, sphere
+from palpate.core.body.soft_body import SoftBody
+from palpate.core.compliance.surface_compliance import surface_compliance
+from palpate.core.contact.near_field.compliance_beneath import NearCorrection, near_correction
+from palpate.core.contact.near_field.contact_points import ContactPoints
+from palpate.core.contact.near_field.regular_field import RegularField
+from palpate.core.contact.tool.tool_contact import press_tool
+from palpate.core.contact.tool.tool_touch import ToolTouch
+from palpate.core.contact.tool.tools import Pose, Tool, plate, rod, sphere
+from palpate.core.mesh.paper_cube import paper_cube
+from palpate.core.stiffness.assembly import assemble
 
 ELEMENT = 1e-3
 POISSON_RATIOS = (0.3, 0.45)

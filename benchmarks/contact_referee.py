@@ -20,15 +20,15 @@ import sys
 import numpy as np
 from measuring.contact_reference import reference_forces
 
-from palpate.core.contact_points import contact_points
-from palpate.core.near_field import near_correction
-from palpate.core.paper_cube import paper_cube
-from palpate.core.soft_body import SoftBody
-from palpate.core.stiffness import assemble
-from palpate.core.surface_compliance import surface_compliance
-from palpate.core.tet_mesh import TetMesh
-from palpate.core.tool_contact import press_tool
-from palpate.core.tools import Pose, sphere
+from palpate.core.body.soft_body import SoftBody
+from palpate.core.compliance.surface_compliance import surface_compliance
+from palpate.core.contact.near_field.compliance_beneath import near_correction
+from palpate.core.contact.near_field.contact_points import contact_points
+from palpate.core.contact.tool.tool_contact import press_tool
+from palpate.core.contact.tool.tools import Pose, sphere
+from palpate.core.mesh.paper_cube import paper_cube
+from palpate.core.mesh.tet_mesh import TetMesh
+from palpate.core.stiffness.assembly import assemble
 
 EDGE, RADIUS = 0.05, 0.014
 YOUNG_MODULUS, POISSON_RATIO = 10_000.0, 0.3

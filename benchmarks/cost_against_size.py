@@ -29,11 +29,11 @@ from measuring.bodies import made_body
 from measuring.memory import in_fresh_process, with_peak
 from measuring.timing import dgemm_rate, median_seconds
 
-from palpate.core import cache
-from palpate.core.bake import bake
-from palpate.core.bake_settings import BakeSettings
+from palpate.core.bake.settings import BakeSettings
+from palpate.core.bake.steps import bake
+from palpate.core.body import body_file
 from palpate.core.errors import PalpateError
-from palpate.core.pins import PinNodes
+from palpate.core.stiffness.pins import PinNodes
 
 PROJECT = Path(__file__).resolve().parents[1]
 KEPT = PROJECT / "build" / "cost"
@@ -101,7 +101,7 @@ def bake_once(size: int, form: str) -> Cost:
     loads = iter(rng.integers(0, count, (2 * TOUCHES, 3)))
     touch = median_seconds(lambda: body.compliance.apply(forces, next(loads)), TOUCHES)
     with tempfile.TemporaryDirectory() as folder:
-        cache.save(body, Path(folder) / "body.npz")
+        body_file.save(body, Path(folder) / "body.npz")
         file_bytes = (Path(folder) / "body.npz").stat().st_size
     return Cost(
         nodes=len(body.mesh.nodes),

@@ -15,11 +15,11 @@ import numpy as np
 from measuring.soft_block import soft_block
 from numpy.typing import NDArray
 
-from palpate.core.soft_body import SoftBody
+from palpate.core.body.soft_body import SoftBody
 from palpate.core.softness.durometer import block_reading, read_durometer
-from palpate.core.softness.durometer_type import TYPE_00, TYPES
-from palpate.core.softness.indentation import indenter_force
-from palpate.core.softness.shore import Shore, young_from_shore
+from palpate.core.softness.scales.durometer_type import TYPE_00, TYPES
+from palpate.core.softness.scales.indentation import indenter_force
+from palpate.core.softness.scales.shore import Shore, young_from_shore
 from palpate.core.softness.softness_map import softness_map
 
 BLOCK = (0.08, 0.08, 0.05)

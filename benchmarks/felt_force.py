@@ -31,14 +31,14 @@ from measuring.bodies import stored_body
 from measuring.pressed_point import pressed_point
 from numpy.typing import NDArray
 
-from palpate.core.bake import BakeSettings, bake
-from palpate.core.large_deformation.felt_force import contact_relation
-from palpate.core.large_deformation.free_solid import FreeSolid
-from palpate.core.large_deformation.softening_table import SofteningTable
-from palpate.core.paper_cube import paper_cube
-from palpate.core.pins import PinNodes
-from palpate.core.soft_body import SoftBody
+from palpate.core.bake.steps import BakeSettings, bake
+from palpate.core.body.soft_body import SoftBody
+from palpate.core.mesh.paper_cube import paper_cube
+from palpate.core.shape.force_at_depth.felt_force import contact_relation
+from palpate.core.shape.force_at_depth.softening_table import SofteningTable
+from palpate.core.shape.solid.free_solid import FreeSolid
 from palpate.core.softness.place import Place, nearest_place, thickness
+from palpate.core.stiffness.pins import PinNodes
 
 BODIES = ("cube", "mouse-1.7k")
 SHARES = np.array([0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3])

@@ -7,7 +7,7 @@ after the other, with all at hand that the shapes prepare in the background:
 
 - prepare: seconds until the first touch is drawn as it should be, from a body just loaded;
 - shape: the displacements of the free surface nodes, every frame;
-- draw: to 100,000 vertices (:class:`palpate.core.drawn_map.DrawnMap`), as coordinates, written into
+- draw: to 100,000 vertices (``DrawnMap``), as coordinates, written into
   Blender's shape key;
 - frame: all of it.
 
@@ -40,13 +40,13 @@ from measuring.drawn_frame import (
     random_loads,
 )
 
-from palpate.core import cache
-from palpate.core.bake import bake
-from palpate.core.bake_settings import BakeSettings
-from palpate.core.large_deformation.newton_shape import TableShape
-from palpate.core.large_deformation.shapes import MAKERS, SHAPES, Shape, ShapeName, shape
-from palpate.core.pins import PinNodes
-from palpate.core.soft_body import SoftBody
+from palpate.core.bake.settings import BakeSettings
+from palpate.core.bake.steps import bake
+from palpate.core.body import body_file
+from palpate.core.body.soft_body import SoftBody
+from palpate.core.shape.paper.newton_shape import TableShape
+from palpate.core.shape.shapes import MAKERS, SHAPES, Shape, ShapeName, shape
+from palpate.core.stiffness.pins import PinNodes
 
 KEPT = Path(__file__).resolve().parents[1] / "build" / "frame-cost"
 TOUCHES = 3
@@ -62,8 +62,8 @@ def baked(measured: MeasuredBody) -> SoftBody:
     if not file.exists():
         file.parent.mkdir(parents=True, exist_ok=True)
         settings = BakeSettings(0.3, 1000.0, PinNodes(measured.fixed))
-        cache.save(bake(measured.mesh, settings)[0], file)
-    return cache.load(file)
+        body_file.save(bake(measured.mesh, settings)[0], file)
+    return body_file.load(file)
 
 
 def median_times(work: Callable[[], object], frames: int) -> tuple[float, float]:

@@ -31,21 +31,21 @@ from scipy.sparse import coo_array, csc_array, csr_array, kron
 from scipy.sparse.linalg import eigsh, splu
 from scipy.spatial import Delaunay
 
-from palpate.core import strain_smoothing
-from palpate.core.elimination.plan import plan_surface_inverse
-from palpate.core.formulation import FORMULATIONS, LINEAR, SMOOTHED
-from palpate.core.freedoms import freedoms
-from palpate.core.paper_cube import paper_cube
-from palpate.core.stiffness import assemble, isotropic, lame_parameters, shape_gradients
-from palpate.core.strain_smoothing import (
+from palpate.core.compliance.elimination.plan import plan_surface_inverse
+from palpate.core.compliance.surface_compliance import surface_compliance
+from palpate.core.mesh.paper_cube import paper_cube
+from palpate.core.mesh.tet_mesh import TetMesh, signed_volumes
+from palpate.core.stiffness import strain_smoothing
+from palpate.core.stiffness.assembly import assemble, isotropic, lame_parameters, shape_gradients
+from palpate.core.stiffness.formulation import FORMULATIONS, LINEAR, SMOOTHED
+from palpate.core.stiffness.freedoms import freedoms
+from palpate.core.stiffness.strain_smoothing import (
     SmoothingDomains,
     edge_domains,
     gradient_products,
     node_domains,
     tet_domains,
 )
-from palpate.core.surface_compliance import surface_compliance
-from palpate.core.tet_mesh import TetMesh, signed_volumes
 
 POISSON_RATIOS = (-0.3, 0.0, 0.3, 0.4, 0.45, 0.49, 0.499, 0.4999, 0.49999)
 PRESSES = 40

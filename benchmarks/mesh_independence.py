@@ -25,16 +25,16 @@ from numpy.typing import NDArray
 from scipy.sparse import diags_array
 from scipy.sparse.linalg import cg
 
-from palpate.core.contact_points import ContactPoints, contact_points
-from palpate.core.half_space import surface_displacement
-from palpate.core.near_field import NearCorrection, near_correction
-from palpate.core.paper_cube import paper_cube
-from palpate.core.soft_body import SoftBody
-from palpate.core.stiffness import assemble
-from palpate.core.surface_compliance import surface_compliance
-from palpate.core.tet_mesh import TetMesh
-from palpate.core.tool_contact import press_tool
-from palpate.core.tools import Pose, Tool, sphere
+from palpate.core.body.soft_body import SoftBody
+from palpate.core.compliance.surface_compliance import surface_compliance
+from palpate.core.contact.near_field.compliance_beneath import NearCorrection, near_correction
+from palpate.core.contact.near_field.contact_points import ContactPoints, contact_points
+from palpate.core.contact.near_field.half_space import surface_displacement
+from palpate.core.contact.tool.tool_contact import press_tool
+from palpate.core.contact.tool.tools import Pose, Tool, sphere
+from palpate.core.mesh.paper_cube import paper_cube
+from palpate.core.mesh.tet_mesh import TetMesh
+from palpate.core.stiffness.assembly import assemble
 
 POISSON_RATIO = 0.3
 EDGE = 0.05

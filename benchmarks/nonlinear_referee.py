@@ -24,11 +24,11 @@ from measuring.large_loads import carried, large_loads
 from measuring.nonlinear_reference import NonlinearReference
 from numpy.typing import NDArray
 
-from palpate.core.dense_compliance import DenseCompliance
-from palpate.core.large_deformation.free_solid import FreeSolid
-from palpate.core.paper_cube import paper_cube
-from palpate.core.soft_body import SoftBody
-from palpate.core.tet_mesh import TetMesh
+from palpate.core.body.soft_body import SoftBody
+from palpate.core.compliance.dense import DenseCompliance
+from palpate.core.mesh.paper_cube import paper_cube
+from palpate.core.mesh.tet_mesh import TetMesh
+from palpate.core.shape.solid.free_solid import FreeSolid
 
 LARGEST_DIFFERENCE = 1e-5
 # scikit-fem takes even load steps, and at least so many.

@@ -20,13 +20,13 @@ from pathlib import Path
 import numpy as np
 from measuring.figure_4 import draw_figure_4
 
-from palpate.core.large_deformation.free_solid import FreeSolid
-from palpate.core.large_deformation.newton import NoEquilibrium, equilibrium
-from palpate.core.large_deformation.newton_shape import NewtonTable
-from palpate.core.paper_cube import paper_cube
-from palpate.core.soft_body import SoftBody
-from palpate.core.stiffness import assemble
-from palpate.core.surface_compliance import surface_compliance
+from palpate.core.body.soft_body import SoftBody
+from palpate.core.compliance.surface_compliance import surface_compliance
+from palpate.core.mesh.paper_cube import paper_cube
+from palpate.core.shape.paper.newton_shape import NewtonTable
+from palpate.core.shape.solid.free_solid import FreeSolid
+from palpate.core.shape.solid.newton import NoEquilibrium, equilibrium
+from palpate.core.stiffness.assembly import assemble
 
 YOUNG_MODULUS, POISSON_RATIO = 10_000.0, 0.49
 LARGEST_FORCE = 2.0

@@ -3,7 +3,7 @@
     python benchmarks/passivity_map.py [--plants N] [--docs]
 
 Searches for the stiffest passive body of a typical desktop device (the loop is the servo's own
-code, the hands are those of core/stability/passivity.py), draws the borders in
+code, the hands are those of tests/passivity/passivity.py), draws the borders in
 build/reports/passivity.png and, with ``--docs``, in docs/images/passivity.png. Then it tries the
 default coupling on all corners of the documented range and on N plants inside (100 unless told
 otherwise). A plant that is not passive is named, and the exit code is 1.
@@ -23,15 +23,15 @@ from pathlib import Path
 
 import matplotlib as mpl
 import matplotlib.pyplot as plt
+import measuring  # noqa: F401 - finds tests/passivity
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter
 from numpy.typing import NDArray
-
-from palpate.core.stability.closed_forms import stable_stiffness
-from palpate.core.stability.contact_loop import NONE, CouplingSettings, DevicePlant
-from palpate.core.stability.passivity import judge, stiffest_passive_body
-from palpate.core.stability.plant_range import COARSE, RANGE
+from passivity.closed_forms import stable_stiffness
+from passivity.contact_loop import NONE, CouplingSettings, DevicePlant
+from passivity.plant_range import COARSE, RANGE
+from passivity.trials import judge, stiffest_passive_body
 
 PROJECT = Path(__file__).resolve().parents[1]
 DESKTOP = DevicePlant(mass=0.1, damping=0.5, coulomb=0.09, force_step=1e-3)

@@ -32,11 +32,11 @@ from numpy.typing import NDArray
 from scipy.sparse import csc_array, csr_array
 from scipy.sparse.linalg import SuperLU, splu
 
-from palpate.core.blas_threads import blas_threads
-from palpate.core.elimination.plan import plan_surface_inverse
-from palpate.core.freedoms import freedoms
-from palpate.core.stiffness import assemble
-from palpate.core.surface_compliance import surface_compliance
+from palpate.core.compliance.elimination.plan import plan_surface_inverse
+from palpate.core.compliance.surface_compliance import surface_compliance
+from palpate.core.machine.blas_threads import blas_threads
+from palpate.core.stiffness.assembly import assemble
+from palpate.core.stiffness.freedoms import freedoms
 
 # Right-hand sides solved in one go; SuperLU and CHOLMOD are at their best around here.
 BLOCK = 96

@@ -30,16 +30,16 @@ import numpy as np
 from measuring.bodies import stored_body
 from numpy.typing import NDArray
 
-from palpate.core.large_deformation.free_solid import FreeSolid
-from palpate.core.large_deformation.newton import equilibrium
-from palpate.core.large_deformation.power_series import SeriesSolid, value
-from palpate.core.large_deformation.preconditioned_newton import polished
-from palpate.core.large_deformation.series_entries import SeriesEntries, series_entries
-from palpate.core.large_deformation.series_shape import SeriesShape
-from palpate.core.large_deformation.series_table import SeriesTable
-from palpate.core.soft_body import SoftBody
-from palpate.core.stiffness import assemble
-from palpate.core.surface_compliance import surface_compliance
+from palpate.core.body.soft_body import SoftBody
+from palpate.core.compliance.surface_compliance import surface_compliance
+from palpate.core.shape.paper.power_series import SeriesSolid, value
+from palpate.core.shape.paper.preconditioned_newton import polished
+from palpate.core.shape.paper.series_entries import SeriesEntries, series_entries
+from palpate.core.shape.paper.series_shape import SeriesShape
+from palpate.core.shape.paper.series_table import SeriesTable
+from palpate.core.shape.solid.free_solid import FreeSolid
+from palpate.core.shape.solid.newton import equilibrium
+from palpate.core.stiffness.assembly import assemble
 
 POISSON_RATIO, YOUNG_MODULUS = 0.3, 1000.0
 LEAST_CHEAPER, LEAST_SMALLER, LONGEST_WAIT, LONGEST_FRAME = 40.0, 5.0, 0.15, 0.016

@@ -3,7 +3,7 @@
     python benchmarks/shape_error.py [--shapes linear rotation-strain ...] [--markdown] [--large]
 
 The truth is Newton's equilibrium of the same St. Venant-Kirchhoff solid under the same forces
-(:mod:`palpate.core.large_deformation.newton`). For every shape the table has
+(:mod:`palpate.core.shape.solid.newton`). For every shape the table has
 
 - error: displacements of the free surface nodes against the true ones, relative L2;
 - volume: of the body, as a share of that at rest; the true one stands in the first row;
@@ -30,15 +30,15 @@ from measuring.loads import Load, large_loads, loads
 from measuring.solved_body import SolvedBody
 from numpy.typing import NDArray
 
-from palpate.core.elimination.block_matrix import free_blocks
-from palpate.core.elimination.cholesky import CholeskyFactor, RepeatedElimination
-from palpate.core.large_deformation.free_solid import FreeSolid
-from palpate.core.large_deformation.newton import equilibrium
-from palpate.core.large_deformation.newton_table import largest_carried, usual_largest_force
-from palpate.core.large_deformation.paper_formula import PaperColumns, paper_displacements
-from palpate.core.large_deformation.shapes import MAKERS, SHAPES, ShapeName, shape
-from palpate.core.soft_body import SoftBody
-from palpate.core.tet_mesh import signed_volumes
+from palpate.core.body.soft_body import SoftBody
+from palpate.core.compliance.elimination.block_matrix import free_blocks
+from palpate.core.compliance.elimination.cholesky import CholeskyFactor, RepeatedElimination
+from palpate.core.mesh.tet_mesh import signed_volumes
+from palpate.core.shape.paper.newton_table import largest_carried, usual_largest_force
+from palpate.core.shape.paper.paper_formula import PaperColumns, paper_displacements
+from palpate.core.shape.shapes import MAKERS, SHAPES, ShapeName, shape
+from palpate.core.shape.solid.free_solid import FreeSolid
+from palpate.core.shape.solid.newton import equilibrium
 
 LARGEST_SHARE_ON_BENDS = 0.5
 DEFAULT: ShapeName = "rotation-strain"

@@ -42,12 +42,12 @@ import numpy as np
 from numpy.typing import NDArray
 from palpate_servo import Body, tick_costs
 
-from palpate.core.bake import BakeSettings, bake
-from palpate.core.paper_cube import paper_cube
-from palpate.core.pins import PinNodes
-from palpate.core.servo_session import native_body, native_tool
-from palpate.core.soft_body import SoftBody
-from palpate.core.tools import Tool, convex, plate, rod, sphere
+from palpate.core.bake.steps import BakeSettings, bake
+from palpate.core.body.soft_body import SoftBody
+from palpate.core.contact.tool.tools import Tool, convex, plate, rod, sphere
+from palpate.core.mesh.paper_cube import paper_cube
+from palpate.core.servo.session import native_body, native_tool
+from palpate.core.stiffness.pins import PinNodes
 
 if TYPE_CHECKING:
     # Types only: the module itself does not have them.

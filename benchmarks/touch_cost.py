@@ -34,13 +34,13 @@ from measuring.prefactored import PrefactoredSolve, cholespy_module
 from measuring.timing import median_seconds
 from numpy.typing import NDArray
 
-from palpate.core.bake import bake
-from palpate.core.bake_settings import BakeSettings
-from palpate.core.compression.compress import compress
-from palpate.core.dense_compliance import DenseCompliance
-from palpate.core.pins import PinNodes
-from palpate.core.servo_session import native_body
-from palpate.core.soft_body import SoftBody
+from palpate.core.bake.settings import BakeSettings
+from palpate.core.bake.steps import bake
+from palpate.core.body.soft_body import SoftBody
+from palpate.core.compliance.compression.compress import compress
+from palpate.core.compliance.dense import DenseCompliance
+from palpate.core.servo.session import native_body
+from palpate.core.stiffness.pins import PinNodes
 
 TOUCHES = 400
 ROUNDS = 5

@@ -9,7 +9,10 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from ..core.errors import PalpateError
-from . import bake, curve, devices, durometer, info, materials, pin, press, servo, shore, softness
+from .bake import bake, pin
+from .body import info
+from .press import devices, press, servo
+from .softness import curve, durometer, materials, shore, softness
 
 COMMANDS = (bake, info, pin, press, servo, devices, materials, shore, durometer, curve, softness)
 EXIT_ERROR = 2

@@ -17,7 +17,7 @@ def rebuild_body(thing: bpy.types.Object) -> dict[str, Any]:
 
 
 def _bake(thing: bpy.types.Object, *, rebuild: bool) -> dict[str, Any]:
-    session = palpate("operators.bake_session")
+    session = palpate("operators.bake.bake_session")
     body, report = session.run(thing, bpy.context.scene, rebuild=rebuild)
-    figures: dict[str, Any] = palpate("cli.body_figures").body_figures(body)
+    figures: dict[str, Any] = palpate("cli.body.body_figures").body_figures(body)
     return {**figures, "seconds": report.seconds}

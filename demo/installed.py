@@ -31,5 +31,5 @@ def install(package: Path, home: Path) -> None:
 
 
 def palpate(module: str) -> ModuleType:
-    """A module of the installed extension, for instance `operators.press_session`."""
+    """A module of the installed extension, for instance `operators.session.press_session`."""
     return importlib.import_module(f"bl_ext.{REPOSITORY}.palpate.{module}")

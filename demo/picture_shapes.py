@@ -114,13 +114,13 @@ def true_one(hare: Any) -> Pressed:
 
         def __init__(self, body: Any) -> None:
             self.solid, self.last = (
-                palpate("core.large_deformation.free_solid").FreeSolid.of(body),
+                palpate("core.shape.solid.free_solid").FreeSolid.of(body),
                 None,
             )
 
         def displacements(self, nodes: Any, nodal_forces: Any, young_modulus: float) -> Any:
             forces = self.solid.on_free_nodes(nodes, nodal_forces / young_modulus)
-            newton = palpate("core.large_deformation.newton")
+            newton = palpate("core.shape.solid.newton")
             try:
                 found = newton.equilibrium(self.solid, forces, start=self.last)
             except newton.NoEquilibrium:
@@ -128,14 +128,14 @@ def true_one(hare: Any) -> Pressed:
             self.last = found.displacements
             return found.displacements[self.solid.surface]
 
-    meeting = palpate("core.large_deformation.meeting")
-    drawn = palpate("operators.drawn_body").open_body(hare, bpy.context.scene)
+    meeting = palpate("core.shape.meeting")
+    drawn = palpate("operators.object.drawn_body").open_body(hare, bpy.context.scene)
     touch = drawn.body.touch_nearest(at=pressed_place(), by=BY)
     load = meeting.FingerLoad(touch.triangle, touch.nodal_forces)
     met = meeting.Meeting(drawn.body, Newton(drawn.body)).settle([load], drawn.body.young_modulus)
     if not met.settled:
         raise RuntimeError(f"Newton's method misses the finger by {100 * met.missed:.0f} %")
-    palpate("operators.press_once").keep_shape(hare, drawn, met.displacements)
+    palpate("operators.press.press_once").keep_shape(hare, drawn, met.displacements)
     return taken(hare, TRUTH)
 
 

@@ -31,7 +31,7 @@ class Place:
 
 def place_near(thing: bpy.types.Object, near: Array) -> Place:
     """The free surface node of the body nearest to `near`, and the surface's direction there."""
-    body = palpate("operators.body_store").load(thing)
+    body = palpate("operators.object.body_store").load(thing)
     mesh = body.mesh
     free = body.compliance.free_surface
     node = free[np.argmin(np.linalg.norm(mesh.nodes[free] - near, axis=1))]
@@ -56,9 +56,12 @@ def press_with_device(
 
     Returns figures and the servo's samples of every tick.
     """
-    session_module, state = palpate("operators.press_session"), palpate("operators.press_state")
-    simulated = palpate("core.devices.simulated_process")
-    options = palpate("core.devices.simulated_options")
+    session_module, state = (
+        palpate("operators.session.press_session"),
+        palpate("operators.session.press_state"),
+    )
+    simulated = palpate("simulated.simulated_process")
+    options = palpate("simulated.options")
     hand = folder / "hand.json"
     write_hand(hand, place, depth)
     scene = bpy.context.scene

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 TOP_FILES = ("__init__.py", "LICENSE")
-FOLDERS = ("addon", "operators", "core", "cli")
+FOLDERS = ("addon", "operators", "core", "simulated", "cli")
 # What these folders may hold for Blender's sake; anything else is refused, not shipped by accident.
 SHIPPED = {".py", ".json", ".toml", ".glsl", ".png", ".svg"}
 # Translations, which the package holds in another form: see translations.py.

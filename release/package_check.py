@@ -70,6 +70,6 @@ def faults(package: Path, platform: Platform, python_versions: list[str]) -> lis
         for name in names
         if name.split("/")[0]
         not in {"__init__.py", "LICENSE", "blender_manifest.toml", "wheels", "addon", "operators"}
-        | {"core", "cli"}
+        | {"core", "simulated", "cli"}
     ]
     return found

@@ -29,7 +29,7 @@ def stored_tets(name: str) -> Tets:
 
 def cube_tets() -> Tets:
     """The paper's cube, Table 1, standing on the origin."""
-    mesh, fixed = palpate("core.paper_cube").paper_cube()
+    mesh, fixed = palpate("core.mesh.paper_cube").paper_cube()
     return mesh.nodes - np.array([0.025, 0.025, 0.0]), mesh.tets, fixed
 
 
@@ -58,11 +58,11 @@ def attach(thing: bpy.types.Object, tets: Tets) -> None:
     """Give an object these tetrahedra, as a bake would have, and let Rebuild Body do the rest."""
     scene = bpy.context.scene
     baked = thing.palpate
-    for name, array in zip(palpate("operators.body_store").EMBEDDED, tets, strict=True):
+    for name, array in zip(palpate("operators.object.body_store").EMBEDDED, tets, strict=True):
         kind = np.float64 if array.dtype.kind == "f" else np.int32
         baked[name] = array.astype(kind).ravel()
-    surface = palpate("operators.drawn_surface").read(thing, scene)
-    rule = palpate("operators.pin_group").pin_rule(thing)
+    surface = palpate("operators.scene.drawn_surface").read(thing, scene)
+    rule = palpate("operators.pins.pin_group").pin_rule(thing)
     # The stored tetrahedra are equally stiff: Rebuild Body looks up the region that is set.
     baked.fingerprint = surface.fingerprint(rule, stiffness="").to_text()
     baked.body_key = "stored tetrahedra"

@@ -55,7 +55,7 @@ def pinch_scene() -> list[bpy.types.Object]:
 
 def keep_pinches() -> None:
     """Both cubes pinched as the paper's Figure 5 shows it, in shape keys that are off at first."""
-    press = palpate("operators.press_once").press_several
+    press = palpate("operators.press.press_once").press_several
     for name, x, places in (("Nodes", -APART, ON_NODES), ("Triangles", APART, IN_TRIANGLES)):
         cube = bpy.data.objects[name]
         ats = list(np.array(places) + np.array([x, 0.0, 0.0]))

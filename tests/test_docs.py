@@ -90,28 +90,20 @@ def test_every_file_that_is_named_exists(page):
 
 
 def tree_paths(lines: list[str]) -> list[str]:
-    """Full names of what a tree of names and remarks, indented by four, stands for."""
+    """Full names of the folders that a tree, indented by four, stands for."""
     found: list[str] = []
     above: list[tuple[int, str]] = []
     for line in lines:
         depth = len(line) - len(line.lstrip())
-        while above and above[-1][0] >= depth:
-            above.pop()
-        names = re.split(r"\s{2,}", line.strip())[0].rstrip(":").split(", ")
-        if depth == 4:
-            folder = ""
-        else:
-            top = above[0][1]
-            folder = top if top.endswith("/") else str(Path(top).parent) + "/"
-        names = [folder + name for name in names]
-        above.append((depth, names[-1]))
-        found += names
+        above = [(d, name) for d, name in above if d < depth]
+        found.append("".join(name for _, name in above) + line.split()[0])
+        above.append((depth, line.split()[0]))
     return found
 
 
-def test_the_tree_of_the_readme_is_true():
-    text = (REPOSITORY / "README.md").read_text(encoding="utf-8")
-    section = text.split("## From a surface to a force")[1].split("##")[0]
+def test_the_tree_of_the_architecture_is_true():
+    text = (REPOSITORY / "docs/architecture.md").read_text(encoding="utf-8")
+    section = text.split("## The tree")[1].split("##")[0]
     tree = [line for line in section.splitlines() if line.startswith("    ")]
     paths = tree_paths(tree)
     assert len(paths) > 30

@@ -1,1 +1,6 @@
-"""What benchmarks share: stopwatches, the machine's own speed, memory, and bodies to measure on."""
+"""What benchmarks share, beside the bodies and trials that they have in common with the tests."""
+
+import sys
+from pathlib import Path
+
+sys.path.append(str(Path(__file__).resolve().parents[2] / "tests"))

@@ -14,9 +14,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from palpate.core.surface import Surface
-from palpate.core.tet_mesh import TetMesh
-from palpate.core.tetrahedralize import tetrahedralize
+from palpate.core.mesh.surface import Surface
+from palpate.core.mesh.tet_mesh import TetMesh
+from palpate.core.mesh.tetrahedralize import tetrahedralize
 
 PROJECT = Path(__file__).resolve().parents[2]
 STORED = (PROJECT / "tests" / "meshes", PROJECT.parent / "shared" / "meshes")

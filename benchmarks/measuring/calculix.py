@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from palpate.core.tet_mesh import TetMesh
+from palpate.core.mesh.tet_mesh import TetMesh
 
 # CalculiX compares some numbers with fixed small ones, so it is given millimetres.
 MILLIMETRES = 1e3

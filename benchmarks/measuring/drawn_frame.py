@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from palpate.core.contact import Touch
-from palpate.core.drawn_map import DrawnMap
-from palpate.core.soft_body import SoftBody
+from palpate.core.body.drawn_map import DrawnMap
+from palpate.core.body.soft_body import SoftBody
+from palpate.core.contact.equations import Touch
 
 PROJECT = Path(__file__).resolve().parents[2]
 DRAWN_VERTICES = 100_000

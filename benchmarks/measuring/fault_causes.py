@@ -11,8 +11,8 @@ from random import Random
 
 import numpy as np
 
-from palpate.core.devices import link
-from palpate.core.devices.quaternion import UPRIGHT, about
+from palpate.core.servo import link
+from palpate.simulated.hand.quaternion import UPRIGHT, about
 
 from .servo_host import ABOVE, YOUNG_MODULUS, cube
 from .virtual_press import Shot, VirtualPress, state_in

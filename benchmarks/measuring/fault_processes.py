@@ -19,8 +19,8 @@ from typing import Any, Self
 
 from palpate_servo import Pointer, Servo
 
-from palpate.core.devices.simulated_options import SimulatedOptions
-from palpate.core.devices.simulated_process import SimulatedDevice
+from palpate.simulated.options import SimulatedOptions
+from palpate.simulated.simulated_process import SimulatedDevice
 
 from .fault_rows import Row
 from .servo_host import ABOVE, DEEP, RAMP_SECONDS, YOUNG_MODULUS, cube

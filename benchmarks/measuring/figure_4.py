@@ -15,11 +15,11 @@ from matplotlib.colors import LightSource
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from numpy.typing import NDArray
 
-from palpate.core.large_deformation.free_solid import FreeSolid
-from palpate.core.large_deformation.newton import NoEquilibrium, equilibrium
-from palpate.core.large_deformation.newton_shape import NewtonTable
-from palpate.core.large_deformation.paper_formula import paper_displacements
-from palpate.core.soft_body import SoftBody
+from palpate.core.body.soft_body import SoftBody
+from palpate.core.shape.paper.newton_shape import NewtonTable
+from palpate.core.shape.paper.paper_formula import paper_displacements
+from palpate.core.shape.solid.free_solid import FreeSolid
+from palpate.core.shape.solid.newton import NoEquilibrium, equilibrium
 
 FACE, CORAL, INK = "#7cc4c4", "#e4572e", "#263238"
 TITLES = ("linear (15)", "corrected (16)", "Newton, same force")

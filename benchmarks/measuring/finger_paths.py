@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from palpate.core.soft_body import SoftBody
+from palpate.core.body.soft_body import SoftBody
 
 from .smooth_places import Place
 

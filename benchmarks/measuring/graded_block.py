@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from palpate.core.contact_points import ContactPoints
-from palpate.core.pair_blocks import pair_blocks
-from palpate.core.paper_cube import FIVE_TETS, MIRRORED_TETS
-from palpate.core.soft_body import SoftBody
-from palpate.core.stiffness import assemble
-from palpate.core.surface_compliance import surface_compliance
-from palpate.core.tet_mesh import TetMesh
+from palpate.core.body.pair_blocks import pair_blocks
+from palpate.core.body.soft_body import SoftBody
+from palpate.core.compliance.surface_compliance import surface_compliance
+from palpate.core.contact.near_field.contact_points import ContactPoints
+from palpate.core.mesh.paper_cube import FIVE_TETS, MIRRORED_TETS
+from palpate.core.mesh.tet_mesh import TetMesh
+from palpate.core.stiffness.assembly import assemble
 
 # From cell to cell, outside the fine core: four times gently, then quickly to where the body ends.
 GROWTH = (1.4, 1.4, 1.4, 1.4, 2.0, 2.0, 2.0, 2.0, 2.0)
@@ -83,7 +83,7 @@ def points_around(
 
 
 def _tetrahedra(x: NDArray[np.float64], y: NDArray[np.float64], z: NDArray[np.float64]) -> TetMesh:
-    """The boxes between the planes, five tetrahedra each, as in :mod:`palpate.core.paper_cube`."""
+    """The boxes between the planes, five tetrahedra each, as in ``paper_cube``."""
     grid = np.meshgrid(z, y, x, indexing="ij")
     nodes = np.column_stack([grid[2].ravel(), grid[1].ravel(), grid[0].ravel()])
     k, j, i = (index.ravel() for index in np.indices((len(z) - 1, len(y) - 1, len(x) - 1)))

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from palpate.core.bake import BakeSettings, bake
-from palpate.core.paper_cube import paper_cube
-from palpate.core.pins import PinNodes
-from palpate.core.soft_body import SoftBody
-from palpate.core.tet_mesh import TetMesh
+from palpate.core.bake.steps import BakeSettings, bake
+from palpate.core.body.soft_body import SoftBody
+from palpate.core.mesh.paper_cube import paper_cube
+from palpate.core.mesh.tet_mesh import TetMesh
+from palpate.core.stiffness.pins import PinNodes
 
 
 def inner_corner() -> SoftBody:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from palpate.core.large_deformation.free_solid import FreeSolid
-from palpate.core.large_deformation.newton import Equilibrium, NoEquilibrium, equilibrium
+from palpate.core.shape.solid.free_solid import FreeSolid
+from palpate.core.shape.solid.newton import Equilibrium, NoEquilibrium, equilibrium
 
 # The end of the body is this share of its length; spread loads act there.
 END = 0.15

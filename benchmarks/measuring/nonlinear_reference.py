@@ -17,7 +17,7 @@ from skfem import Basis, BilinearForm, ElementTetP1, ElementVector, LinearForm, 
 from skfem.helpers import ddot, eye, grad, mul, trace, transpose
 from skfem.models.elasticity import lame_parameters
 
-from palpate.core.tet_mesh import TetMesh
+from palpate.core.mesh.tet_mesh import TetMesh
 
 CONVERGED = 1e-10
 MOST_ITERATIONS = 25

@@ -9,9 +9,9 @@ from types import ModuleType
 import numpy as np
 from numpy.typing import NDArray
 
-from palpate.core.freedoms import freedoms
-from palpate.core.soft_body import SoftBody
-from palpate.core.stiffness import assemble
+from palpate.core.body.soft_body import SoftBody
+from palpate.core.stiffness.assembly import assemble
+from palpate.core.stiffness.freedoms import freedoms
 
 
 def cholespy_module() -> ModuleType | None:

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse.linalg import splu
 
-from palpate.core.elimination.cholesky import NotPositiveDefiniteError
-from palpate.core.large_deformation.free_solid import FreeSolid
+from palpate.core.compliance.elimination.cholesky import NotPositiveDefiniteError
+from palpate.core.shape.solid.free_solid import FreeSolid
 
 MOST_ITERATIONS = 12
 CONVERGED = 1e-9

@@ -13,8 +13,8 @@ from scipy.sparse import block_array, csc_array, csr_array, eye_array, kron, vst
 from scipy.sparse.linalg import SuperLU, splu
 from skfem.helpers import ddot, div, dot, sym_grad
 
-from palpate.core.stiffness import lame_parameters
-from palpate.core.tet_mesh import TetMesh
+from palpate.core.mesh.tet_mesh import TetMesh
+from palpate.core.stiffness.assembly import lame_parameters
 
 # Below it the pressure would be divided by a first Lame parameter near zero, and nothing locks.
 MIXED_FROM = 0.2

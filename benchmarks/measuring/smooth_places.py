@@ -8,9 +8,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from palpate.core.soft_body import SoftBody
-from palpate.core.surface import Surface
-from palpate.core.winding_volume import is_inside
+from palpate.core.body.soft_body import SoftBody
+from palpate.core.mesh.surface import Surface
+from palpate.core.mesh.winding_volume import is_inside
 
 Vectors = NDArray[np.float64]
 

@@ -6,10 +6,10 @@ import itertools
 
 import numpy as np
 
-from palpate.core.soft_body import SoftBody
-from palpate.core.stiffness import assemble
-from palpate.core.surface_compliance import surface_compliance
-from palpate.core.tet_mesh import TetMesh
+from palpate.core.body.soft_body import SoftBody
+from palpate.core.compliance.surface_compliance import surface_compliance
+from palpate.core.mesh.tet_mesh import TetMesh
+from palpate.core.stiffness.assembly import assemble
 
 
 def soft_block(

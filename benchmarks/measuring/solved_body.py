@@ -8,10 +8,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from palpate.core.dense_compliance import DenseCompliance
-from palpate.core.large_deformation.free_solid import FreeSolid
-from palpate.core.soft_body import SoftBody
-from palpate.core.tet_mesh import TetMesh
+from palpate.core.body.soft_body import SoftBody
+from palpate.core.compliance.dense import DenseCompliance
+from palpate.core.mesh.tet_mesh import TetMesh
+from palpate.core.shape.solid.free_solid import FreeSolid
 
 
 @dataclass(frozen=True, eq=False)

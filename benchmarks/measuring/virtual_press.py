@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 from palpate_servo import Body, SteppedServo
 
-from palpate.core.devices import link
-from palpate.core.devices.quaternion import Quaternion
-from palpate.core.devices.simulated_firmware import Firmware
+from palpate.core.servo import link
+from palpate.simulated.board.simulated_firmware import Firmware
+from palpate.simulated.hand.quaternion import Quaternion
 
 from .servo_host import ABOVE, DEEP, YOUNG_MODULUS
 

@@ -7,7 +7,7 @@ from typing import IO
 import numpy as np
 from plyfile import PlyData, PlyElement
 
-from ..soft_body import SoftBody
+from ..body.soft_body import SoftBody
 from .ramp import ramp
 from .softness_map import SoftnessMap
 

@@ -19,15 +19,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
 
-from ..complementarity import solve_complementarity
+from ..body.soft_body import SoftBody
+from ..contact.complementarity import solve_complementarity
+from ..contact.near_field.compliance_beneath import near_correction, point_compliance
 from ..errors import PalpateError
-from ..near_field import near_correction, point_compliance
-from ..soft_body import SoftBody
 from .durometer_points import Seat, set_on
-from .durometer_type import MILLIMETRE, TYPES, DurometerType
-from .indentation import indenter_force
 from .place import Place
-from .shore import Shore
+from .scales.durometer_type import MILLIMETRE, TYPES, DurometerType
+from .scales.indentation import indenter_force
+from .scales.shore import Shore
 
 # What the standard asks of a specimen, and when the body is not to be believed any more.
 LEAST_THICKNESS = 6.0 * MILLIMETRE

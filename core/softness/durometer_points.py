@@ -11,11 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..contact_points import ContactPoints, smooth_corner_normals
-from ..soft_body import SoftBody
-from .durometer_type import DurometerType
+from ..body.soft_body import SoftBody
+from ..contact.near_field.contact_points import ContactPoints, smooth_corner_normals
 from .parallel_rays import Crossings, across, crossings
 from .place import Place, nearest_place, thickness
+from .scales.durometer_type import DurometerType
 
 # Rings of points around the middle one under the indenter, and across the foot's width.
 TIP_RINGS = 6

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..body.soft_body import SoftBody
+from ..contact.tool.tool_contact import press_tool
+from ..contact.tool.tool_touch import ToolTouch
+from ..contact.tool.tools import Pose, Tool
 from ..errors import PalpateError
-from ..large_deformation.felt_force import contact_relation
-from ..soft_body import SoftBody
-from ..tool_contact import press_tool
-from ..tool_touch import ToolTouch
-from ..tools import Pose, Tool
+from ..shape.force_at_depth.felt_force import contact_relation
 from .parallel_rays import across
 from .place import Place, nearest_place, thickness
 

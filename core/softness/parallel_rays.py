@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..tet_mesh import TetMesh
+from ..mesh.tet_mesh import TetMesh
 
 # Pairs of line and triangle looked at together; bounds memory to some 100 MB.
 PAIRS_TOGETHER = 1_000_000

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..contact_points import smooth_corner_normals
-from ..coordinates import refuse_unusable
+from ..body.soft_body import SoftBody
+from ..contact.near_field.contact_points import smooth_corner_normals
 from ..errors import PalpateError
-from ..soft_body import SoftBody
+from ..mesh.coordinates import refuse_unusable
 from .parallel_rays import crossings
 
 

@@ -13,11 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..contact_points import ContactPoints, node_normals
+from ..body.soft_body import SoftBody
+from ..contact.near_field.compliance_beneath import IN_CONTACT, near_correction
+from ..contact.near_field.contact_points import ContactPoints, node_normals
+from ..contact.near_field.half_space import OWN_CELL
 from ..errors import PalpateError
-from ..half_space import OWN_CELL
-from ..near_field import IN_CONTACT, near_correction
-from ..soft_body import SoftBody
 
 # The pad of a fingertip that rests lightly.
 FINGER_RADIUS = 5e-3

@@ -5,7 +5,7 @@ scipy, pytetwild and palpate_servo can only come from the wheels inside the pack
 once, the way a user does it, into a user folder that is thrown away:
 
     def test_something(palpate):                          # the installed package, as a module
-        from bl_ext.user_default.palpate.core.bake import BakeSettings
+        from bl_ext.user_default.palpate.core.bake.steps import BakeSettings
         bpy.ops.palpate...                                # the operators, synchronously
 
 Every test begins with Blender's factory scene and the extension enabled.

@@ -19,7 +19,7 @@ COARSE = 0.2
 
 
 def part(name: str) -> ModuleType:
-    """A module of the installed extension, such as `operators.press_state`."""
+    """A module of the installed extension, such as `operators.session.press_state`."""
     return importlib.import_module(f"{MODULE}.{name}")
 
 
@@ -56,21 +56,21 @@ def soft_cube(edge: float = 0.05) -> bpy.types.Object:
         _give_body(thing, kept)
     else:
         assert bpy.ops.palpate.make_soft() == {"FINISHED"}
-        shutil.copyfile(part("operators.body_store").locate(thing), kept)
+        shutil.copyfile(part("operators.object.body_store").locate(thing), kept)
     return thing
 
 
 def _give_body(thing: bpy.types.Object, kept: Path) -> None:
     """What Make Soft leaves on an object and beside it, without its bake."""
-    store, scene = part("operators.body_store"), bpy.context.scene
-    body = part("core.cache").load(kept)
+    store, scene = part("operators.object.body_store"), bpy.context.scene
+    body = part("core.body.body_file").load(kept)
     file = store.folder_for_new_files() / store.file_name(thing, body.key)
     file.parent.mkdir(exist_ok=True)
     shutil.copyfile(kept, file)
-    drawn = part("operators.drawn_surface").read(thing, scene)
-    pins = part("operators.pin_group").pin_rule(thing)
-    fingerprint = drawn.fingerprint(pins, part("operators.stiff_region").stiff_rule(thing))
-    part("operators.baked_record").record(thing, body, file.name, drawn, fingerprint)
+    drawn = part("operators.scene.drawn_surface").read(thing, scene)
+    pins = part("operators.pins.pin_group").pin_rule(thing)
+    fingerprint = drawn.fingerprint(pins, part("operators.pins.stiff_region").stiff_rule(thing))
+    part("operators.object.baked_record").record(thing, body, file.name, drawn, fingerprint)
     thing.palpate.baked_edge_length = thing.palpate.edge_length
     thing.palpate.baked_epsilon = thing.palpate.epsilon
 

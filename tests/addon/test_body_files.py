@@ -12,11 +12,11 @@ from soft_scene import cube, error_of, key_names, part, press_down, select, soft
 
 
 def status(thing):
-    return part("operators.soft_object").body_status(thing, bpy.context.scene)
+    return part("operators.object.soft_object").body_status(thing, bpy.context.scene)
 
 
 def locate(thing):
-    return part("operators.body_store").locate(thing)
+    return part("operators.object.body_store").locate(thing)
 
 
 @pytest.fixture
@@ -49,7 +49,7 @@ def test_the_body_goes_along_when_the_file_is_saved_elsewhere(saved, tmp_path):
 @pytest.mark.parametrize("by_hand", [True, False], ids=["by Rebuild Body", "by Press itself"])
 def test_a_missing_body_file_is_said_and_computed_again_the_same(saved, by_hand):
     key, path = saved.palpate.body_key, locate(saved)
-    wanted = part("core.cache").load(path).compliance.table
+    wanted = part("core.body.body_file").load(path).compliance.table
     path.unlink()
     assert status(saved).fit.name == "FILE_MISSING"
     if by_hand:
@@ -58,7 +58,7 @@ def test_a_missing_body_file_is_said_and_computed_again_the_same(saved, by_hand)
         press_down(saved)
     assert saved.palpate.body_key == key
     assert status(saved).fit.name == "READY"
-    assert np.array_equal(part("core.cache").load(locate(saved)).compliance.table, wanted)
+    assert np.array_equal(part("core.body.body_file").load(locate(saved)).compliance.table, wanted)
     press_down(saved)
 
 
@@ -183,7 +183,7 @@ def test_pins_and_ratio_changed_later_are_said_and_taken_over_without_tetrahedra
     assert status(saved).changed == ()
     assert np.array_equal(np.array(saved.palpate["tets"]), tets)
     assert saved.palpate.body_key != key
-    body = part("operators.body_store").load(saved)
+    body = part("operators.object.body_store").load(saved)
     assert body.poisson_ratio == 0.35
     assert body.mesh.nodes[body.fixed, 2].max() > -0.025 + 0.2 * 0.05
 

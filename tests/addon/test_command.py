@@ -57,7 +57,7 @@ def test_form_formulation_and_stiff_region_are_chosen_by_options(command, scene,
     baked = bpy.data.objects["Prop"].palpate
     assert baked.baked_formulation == "smoothed"
     assert baked.column_error <= 2.0
-    scale = part("operators.body_store").load(bpy.data.objects["Prop"]).young_scale
+    scale = part("operators.object.body_store").load(bpy.data.objects["Prop"]).young_scale
     assert scale.max() == pytest.approx(5.0, rel=1e-5)
     words = ["press", str(scene), "--object", "Prop", "--at", "0", "0", "0.025"]
     assert command([*words, "--by", "0", "0", "-5e-3", "--json"]) == 0

@@ -31,7 +31,9 @@ def chosen(palpate):
 
 
 def pressed(thing, ats, bys, *, keep=False):
-    return part("operators.press_once").press_several(thing, bpy.context.scene, ats, bys, keep=keep)
+    return part("operators.press.press_once").press_several(
+        thing, bpy.context.scene, ats, bys, keep=keep
+    )
 
 
 def forces(thing, ats, bys):
@@ -70,7 +72,7 @@ def test_a_kept_shape_lies_outside_the_tool(chosen):
     corner = np.array([0.025, 0.025, 0.025])
     press = pressed(thing, [corner - [0.002, 0.002, 0.0]], [(0.0, 0.0, -0.006)], keep=True)
     touch = press.fingers[0].made.tool
-    drawn = part("operators.drawn_body").open_body(thing, bpy.context.scene)
+    drawn = part("operators.object.drawn_body").open_body(thing, bpy.context.scene)
     moved = drawn.body.deform(touch.nodes, touch.nodal_forces, thing.palpate.young_modulus)
     kept = key_coordinates(thing, press.shape_key).reshape(-1, 3)
     inside = [
@@ -168,7 +170,7 @@ def test_a_hollow_mesh_presses_with_its_hull_and_says_so(chosen):
     select(thing)
     chosen.tip, chosen.tip_object = "MESH", tool
     assert "not convex" in pressed(thing, [TOP], [DOWN]).remarks[0]
-    hull = part("operators.hull").hull_of(tool, bpy.context.scene)
+    hull = part("operators.tool.hull").hull_of(tool, bpy.context.scene)
     assert sorted(map(tuple, np.round(hull.corners, 6).tolist())) == sorted(
         map(tuple, np.round(corner, 6).tolist())
     )
@@ -291,8 +293,8 @@ def test_animations_without_a_tool_or_a_leader_are_refused(chosen):
 
 
 def test_who_leads_is_refused_in_words_where_nobody_does(chosen):
-    leads = part("operators.finger_leads")
-    source = part("operators.press_state").Source
+    leads = part("operators.session.finger_leads")
+    source = part("operators.session.press_state").Source
     scene, guide = bpy.context.scene, empty()
     refused = part("core.errors").PalpateError
     with pytest.raises(refused, match="no Empty is chosen; pick one below Press With"):

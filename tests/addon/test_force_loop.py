@@ -17,7 +17,7 @@ __all__ = ["sessions", "states"]
 
 
 def said(session):
-    return part("operators.servo_words").standing(session.snapshot)
+    return part("operators.device.servo_words").standing(session.snapshot)
 
 
 def simulated_press(sessions, states, thing):
@@ -35,13 +35,13 @@ def test_force_off_is_zero_at_once_and_force_on_rises_from_nothing(sessions, sta
     assert said(session).word == "Force Off"
     assert "Space" in said(session).why
     # Neither view nor panel tells a force that nobody feels.
-    assert part("addon.reading").reading(session).force == 0.0
+    assert part("addon.overlay.reading").reading(session).force == 0.0
     # Struck once more in alarm: it stays off.
     bpy.ops.palpate.switch_force()
     time.sleep(0.1)
     session.tick()
     assert session.snapshot.state == "disabled"
-    time.sleep(part("operators.press_state").CALM_SECONDS)
+    time.sleep(part("operators.session.press_state").CALM_SECONDS)
     bpy.ops.palpate.switch_force()
     wait(session, lambda: session.snapshot.state != "disabled")
     wait(session, lambda: np.linalg.norm(session.snapshot.output_force) > 0.005)
@@ -61,7 +61,7 @@ class Said:
 
 
 def test_an_adapter_that_holds_bytes_back_is_explained_in_the_panel(sessions, states, monkeypatch):
-    panel = part("addon.panel_loop")
+    panel = part("addon.panels.loop")
     session = begin(sessions, states, soft_cube())
     session.tick()
     scaled = SimpleNamespace(system=SimpleNamespace(ui_scale=1.0))
@@ -77,14 +77,14 @@ def test_an_adapter_that_holds_bytes_back_is_explained_in_the_panel(sessions, st
 
 
 def test_the_coupling_is_the_default_of_the_rate_until_own_values_are_chosen(palpate):
-    scene, of = bpy.context.scene, part("operators.live_settings").Coupling.of
+    scene, of = bpy.context.scene, part("operators.session.live_settings").Coupling.of
     scene.palpate.rate = 2000
     default = of(scene)
     assert default.passivity_control
     assert 0.0 < default.stiffness < np.inf
-    assert vars(default) == part("core.servo_session").device_coupling(2000)
+    assert vars(default) == part("core.servo.session").device_coupling(2000)
     scene.palpate.source = "HAPLY"
-    servo = part("core.servo_session")
+    servo = part("core.servo.session")
     step = servo.haply_encoder_step(scene.palpate.haply_model)
     assert vars(of(scene)) == servo.device_coupling(2000, encoder_step=step) != vars(default)
     scene.palpate.own_coupling = True
@@ -135,7 +135,7 @@ def test_the_loop_runs_at_the_chosen_rate_and_tells_its_times(sessions, states):
     session.tick()
     counters = session.loop.figures.counters
     assert counters["rate_hz"] == 500
-    assert set(part("addon.panel_loop").STAGE_NAMES) == set(counters["stages_us"])
+    assert set(part("addon.panels.loop").STAGE_NAMES) == set(counters["stages_us"])
 
 
 def test_a_recording_misses_no_tick_while_blender_is_busy_and_outlives_the_press(
@@ -155,7 +155,7 @@ def test_a_recording_misses_no_tick_while_blender_is_busy_and_outlives_the_press
     for name in ("felt.csv", "felt.npz"):
         path = tmp_path / name
         assert bpy.ops.palpate.save_recording(filepath=str(path)) == {"FINISHED"}
-        samples = part("core.recording").read_recording(path).samples
+        samples = part("core.servo.recording").read_recording(path).samples
         assert len(samples) > 300
         assert np.array_equal(samples["tick"], np.arange(1, len(samples) + 1))
         assert np.linalg.norm(samples["force"], axis=1).max() > 0.01
@@ -171,7 +171,7 @@ def test_a_recording_is_begun_and_ended_while_pressing_and_saved_meanwhile(
     path = tmp_path / "meanwhile.npz"
     bpy.ops.palpate.save_recording(filepath=str(path))
     assert sessions.current() is session
-    samples = part("core.recording").read_recording(path).samples
+    samples = part("core.servo.recording").read_recording(path).samples
     assert samples["tick"][0] > 50
     bpy.ops.palpate.record()
     session.tick()
@@ -204,17 +204,19 @@ def test_a_recording_that_cannot_be_written_is_refused_with_a_remedy(sessions, s
 def test_a_long_recording_is_written_while_the_press_goes_on(
     sessions, states, tmp_path, monkeypatch
 ):
-    writer, scene = part("operators.recording_writer"), bpy.context.scene
+    writer, scene = part("operators.record.recording_writer"), bpy.context.scene
     scene.palpate.record_from_start = True
     session = begin(sessions, states, soft_cube())
     wait(session, lambda: session.snapshot.tick > 50)
-    may_write, write = threading.Event(), part("operators.recording").write
+    may_write, write = threading.Event(), part("operators.record.recording").write
     monkeypatch.setattr(
-        part("operators.recording"), "write", lambda *given: may_write.wait(10.0) and write(*given)
+        part("operators.record.recording"),
+        "write",
+        lambda *given: may_write.wait(10.0) and write(*given),
     )
     path = tmp_path / "felt.csv"
     try:
-        writer.begin(path, part("operators.save_recording").recorded())
+        writer.begin(path, part("operators.press.save_recording").recorded())
         assert "is being written" in error_of(bpy.ops.palpate.save_recording, filepath=str(path))
         before = session.snapshot.tick
         wait(session, lambda: session.snapshot.tick > before)
@@ -222,13 +224,13 @@ def test_a_long_recording_is_written_while_the_press_goes_on(
     finally:
         may_write.set()
         writer.unregister()
-    assert len(part("core.recording").read_recording(path).samples) > 50
+    assert len(part("core.servo.recording").read_recording(path).samples) > 50
     assert writer.latest().problem == ""
     session.post(states.Cancel())
     monkeypatch.undo()
     (tmp_path / "taken.csv").mkdir()
     with pytest.raises(part("core.errors").PalpateError, match="folder"):
-        writer.begin(tmp_path / "taken.csv", part("operators.recording").last())
+        writer.begin(tmp_path / "taken.csv", part("operators.record.recording").last())
     begin(sessions, states, soft_cube())
     assert writer.latest() is None
 
@@ -244,7 +246,7 @@ def test_a_haply_presses_in_the_upright_plane_through_the_top(sessions, states):
     assert "2DIY" in device["name"]
     # The plane is the world's X and Z through the cube's middle.
     assert abs(session.snapshot.probe[1]) < 1e-6
-    lines = part("addon.workspace").outline(bpy.context, session)
+    lines = part("addon.overlay.workspace").outline(bpy.context, session)
     ends = np.array(lines).reshape(-1, 3)
     assert len(lines) == 4
     assert np.allclose(np.ptp(ends, axis=0), [0.12, 0.0, 0.07], atol=1e-6)
@@ -258,11 +260,11 @@ def test_an_empty_turns_the_plane_of_a_haply(palpate):
     bpy.ops.object.empty_add(location=(0.0, 0.1, 0.3))
     scene.palpate.device_frame = bpy.context.object
     select(thing)
-    ends = np.array(part("addon.workspace").outline(bpy.context, None)).reshape(-1, 3)
+    ends = np.array(part("addon.overlay.workspace").outline(bpy.context, None)).reshape(-1, 3)
     assert np.allclose(ends[:, 2], 0.3)
     assert np.allclose(ends.mean(axis=0), [0.0, 0.1, 0.3])
     scene.palpate.show_workspace = False
-    assert part("addon.workspace").outline(bpy.context, None) == []
+    assert part("addon.overlay.workspace").outline(bpy.context, None) == []
 
 
 def test_a_flattened_device_frame_is_said_and_the_press_goes_on(sessions, states):
@@ -293,7 +295,7 @@ def test_what_the_servo_refuses_is_a_sentence_with_a_remedy(palpate, problem):
     error = part("core.errors").PalpateError
     with (
         pytest.raises(error, match=r"servo: why; "),
-        part("operators.force_loop").servo_errors(),
+        part("operators.session.force_loop").servo_errors(),
     ):
         raise problem("why")
 
@@ -310,7 +312,7 @@ def test_a_port_that_cannot_be_opened_has_one_remedy(palpate):
     error = part("core.errors").PalpateError
     with (
         pytest.raises(error, match=r"^device: /no/such/port: cannot be opened \([^;]*\); [^;]*$"),
-        part("operators.force_loop").servo_errors(),
+        part("operators.session.force_loop").servo_errors(),
     ):
         servo.start(palpate_servo.LinkDevice("/no/such/port"))
 
@@ -341,6 +343,6 @@ def test_a_failed_force_loop_ends_the_press_and_leaves_the_mesh_clean(sessions, 
 )
 def test_each_state_is_told_with_its_reason_and_what_to_do(palpate, shot, signal, words):
     whole = {"fault": "", "reason": "", "limited": ""} | shot
-    standing = part("operators.servo_words").standing(SimpleNamespace(**whole))
+    standing = part("operators.device.servo_words").standing(SimpleNamespace(**whole))
     assert standing.signal.name == signal
     assert words in f"{standing.why} {standing.limit}"

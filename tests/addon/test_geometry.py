@@ -17,7 +17,7 @@ def rng():
 
 @pytest.fixture
 def frames(installed):
-    return part("operators.body_frame").BodyFrame
+    return part("operators.scene.body_frame").BodyFrame
 
 
 def matrix(linear, origin=(0.1, -0.2, 0.3)):
@@ -58,7 +58,7 @@ def test_a_transform_without_volume_is_refused_with_a_remedy(frames, scale):
 
 
 def test_a_ray_meets_what_it_was_aimed_at_and_only_from_the_front(installed, rng):
-    ray = part("operators.ray")
+    ray = part("operators.scene.ray")
     triangles = np.array([[0, 1, 2]])
     fronts = 0
     for _ in range(500):
@@ -77,7 +77,7 @@ def test_a_ray_meets_what_it_was_aimed_at_and_only_from_the_front(installed, rng
 
 
 def drag(normal, **more):
-    module = part("operators.probe_drag")
+    module = part("operators.scene.probe_drag")
     view = module.View(np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0]), 0.001)
     return module.ProbeDrag(
         point=np.zeros(3), normal=np.array(normal), view=view, size=0.1, start=(100, 100), **more
@@ -104,7 +104,7 @@ def test_wheel_and_pen_add_depth(installed):
 
 @pytest.fixture
 def prints(installed):
-    return part("operators.fingerprint")
+    return part("operators.scene.fingerprint")
 
 
 def fingerprint(prints, local, body, corners=(0, 1, 2)):

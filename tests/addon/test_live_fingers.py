@@ -15,12 +15,12 @@ LEFT_IN, RIGHT_IN = (-0.022, 0.0, 0.01), (0.022, 0.0, 0.01)
 
 @pytest.fixture
 def states(palpate):
-    return part("operators.press_state")
+    return part("operators.session.press_state")
 
 
 @pytest.fixture
 def sessions(palpate):
-    module = part("operators.press_session")
+    module = part("operators.session.press_session")
     yield module
     module.give_way("")
 
@@ -58,7 +58,7 @@ def empty(name, at):
 def test_a_pinch_is_felt_by_both_and_agrees_with_the_one_without_a_clock(sessions, states):
     thing = soft_cube()
     before = mesh_state(thing)
-    once = part("operators.press_once").press_several(
+    once = part("operators.press.press_once").press_several(
         thing,
         bpy.context.scene,
         [LEFT, RIGHT],
@@ -72,7 +72,7 @@ def test_a_pinch_is_felt_by_both_and_agrees_with_the_one_without_a_clock(session
     session.post(states.SetDown(RIGHT, 1))
     session.post(states.Move(RIGHT_IN, 1))
     wait(session, lambda: arrived(session, LEFT_IN, RIGHT_IN))
-    figures = part("addon.reading").readings(session)
+    figures = part("addon.overlay.reading").readings(session)
     for seen, told in zip(figures, once.fingers, strict=True):
         assert np.allclose(seen.force_vector, told.force, rtol=0.05, atol=0.02 * seen.force)
         assert seen.depth == pytest.approx(0.003, abs=1e-4)
@@ -123,8 +123,8 @@ def test_a_haply_presses_beside_the_pointer(sessions, states):
     chosen.second_haply_at_rest = True
     with pytest.raises(part("core.errors").PalpateError, match="no port"):
         begin(sessions, states, thing)
-    device_source = part("operators.device_source")
-    drawn = part("operators.drawn_body").open_body(thing, scene)
+    device_source = part("operators.device.device_source")
+    drawn = part("operators.object.drawn_body").open_body(thing, scene)
     frame = device_source.second_frame(thing, scene, drawn.frame)
     with device_source.start_simulated(drawn, frame, "2diy-3.1") as device:
         chosen.second_port = device.port
@@ -162,7 +162,7 @@ def test_a_fingertip_is_felt_as_without_a_clock_and_its_patch_is_seen(sessions, 
     chosen.tip, chosen.tip_radius = "SPHERE", 0.02
     before = mesh_state(thing)
     top, deep = (0.0, 0.0, 0.025), 0.003
-    once = part("operators.press_once").press_once(
+    once = part("operators.press.press_once").press_once(
         thing, bpy.context.scene, top, (0.0, 0.0, -deep), keep=False
     )
     session = begin(sessions, states, thing)
@@ -172,7 +172,7 @@ def test_a_fingertip_is_felt_as_without_a_clock_and_its_patch_is_seen(sessions, 
     session.post(states.Move(pressed))
     wait(session, lambda: arrived(session, pressed))
     wait(session, lambda: session.snapshot.tick > 400)
-    seen = part("addon.reading").reading(session)
+    seen = part("addon.overlay.reading").reading(session)
     assert np.allclose(seen.force_vector, once.force, atol=0.05 * once.force[2])
     assert seen.depth == pytest.approx(deep, rel=0.1)
     made = once.fingers[0].made
@@ -210,7 +210,7 @@ def test_the_next_press_does_not_read_the_body_again_unless_its_file_changed(ses
     bodies = []
     for touch_file in (False, False, True):
         if touch_file:
-            part("operators.body_store").locate(thing).touch()
+            part("operators.object.body_store").locate(thing).touch()
         session = begin(sessions, states, thing)
         bodies.append(session.drawn.body)
         session.post(states.Cancel())

@@ -23,7 +23,7 @@ from soft_scene import (
 
 
 def body_of(thing):
-    return part("operators.body_store").load(thing)
+    return part("operators.object.body_store").load(thing)
 
 
 def test_a_cube_gets_a_body_of_its_own_size_pinned_at_the_bottom(palpate):
@@ -149,7 +149,7 @@ def test_what_cannot_be_solid_is_refused_with_a_remedy_and_stays_as_it_is(palpat
     assert mesh_state(thing) == before
     assert not thing.palpate.body_key
     assert not thing.vertex_groups
-    assert part("operators.bake_session").current() is None
+    assert part("operators.bake.bake_session").current() is None
 
 
 def test_a_scale_of_zero_is_refused_with_a_remedy(palpate):
@@ -210,7 +210,7 @@ def test_cancelling_leaves_no_process_no_file_and_no_change(palpate, tmp_path):
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"))
     thing = select(bpy.data.objects[thing.name])
     before = mesh_state(thing)
-    bake = part("operators.bake_session")
+    bake = part("operators.bake.bake_session")
     session = bake.start(thing, bpy.context.scene)
     child, folder = session.job._child, session.job._folder
     assert child.poll() is None
@@ -226,7 +226,7 @@ def test_cancelling_leaves_no_process_no_file_and_no_change(palpate, tmp_path):
 
 def test_an_object_edited_or_deleted_during_the_bake_gets_no_body(palpate):
     error = part("core.errors").PalpateError
-    bake = part("operators.bake_session")
+    bake = part("operators.bake.bake_session")
     thing = cube()
     session = bake.start(thing, bpy.context.scene)
     thing.data.vertices[0].co.x += 0.01
@@ -245,7 +245,7 @@ def test_an_object_edited_or_deleted_during_the_bake_gets_no_body(palpate):
 
 
 def test_opening_another_file_ends_the_bake(palpate):
-    bake = part("operators.bake_session")
+    bake = part("operators.bake.bake_session")
     session = bake.start(cube(), bpy.context.scene)
     child = session.job._child
     bpy.ops.wm.read_homefile(use_factory_startup=True)
@@ -256,7 +256,7 @@ def test_opening_another_file_ends_the_bake(palpate):
 def test_remove_softness_takes_the_body_and_leaves_the_shapes(palpate):
     thing = soft_cube()
     press_down(thing)
-    path = part("operators.body_store").locate(thing)
+    path = part("operators.object.body_store").locate(thing)
     assert path.is_file()
     assert bpy.ops.palpate.remove_softness() == {"FINISHED"}
     assert not path.exists()

@@ -10,11 +10,11 @@ from soft_scene import cube, error_of, part, press_down, select, soft_cube
 
 
 def status(thing):
-    return part("operators.soft_object").body_status(thing, bpy.context.scene)
+    return part("operators.object.soft_object").body_status(thing, bpy.context.scene)
 
 
 def body_of(thing):
-    return part("operators.body_store").load(thing)
+    return part("operators.object.body_store").load(thing)
 
 
 def boned_cube(factor=1000.0):
@@ -56,10 +56,10 @@ def test_a_stiff_region_is_baked_in_and_embedded(palpate):
     assert np.abs(middles).max() < 0.013
     key = thing.palpate.body_key
     assert np.array_equal(np.array(thing.palpate["young_scale"]), body.young_scale)
-    part("operators.body_store").locate(thing).unlink()
+    part("operators.object.body_store").locate(thing).unlink()
     press_down(thing)
     assert thing.palpate.body_key == key, "Press restored another body"
-    part("operators.body_store").locate(thing).unlink()
+    part("operators.object.body_store").locate(thing).unlink()
     assert bpy.ops.palpate.rebuild_body() == {"FINISHED"}
     assert thing.palpate.body_key == key, "Rebuild Body made another body"
     assert np.array_equal(body_of(thing).young_scale, body.young_scale)
@@ -107,7 +107,7 @@ def test_a_compressed_body_is_pressed_and_restored(compressed):
     assert status(compressed).changed == ()
     press_down(compressed)
     key = compressed.palpate.body_key
-    part("operators.body_store").locate(compressed).unlink()
+    part("operators.object.body_store").locate(compressed).unlink()
     press_down(compressed)
     assert body_of(compressed).compliance.form == "compressed"
     assert compressed.palpate.body_key == key
@@ -134,7 +134,7 @@ def test_more_pins_of_a_compressed_body(compressed):
 
 def test_a_prediction_follows_the_settings(palpate):
     known = part("addon.known_status")
-    part("core.machine_speed").dgemm_rate()
+    part("core.machine.machine_speed").dgemm_rate()
     thing, scene = cube(), bpy.context.scene
     thing.palpate.edge_length = 0.05
     before = known.prediction(thing, scene).cost
@@ -153,9 +153,9 @@ def test_a_prediction_follows_the_settings(palpate):
 
 @pytest.mark.parametrize("by", ["COMPRESSED", "COARSER"])
 def test_a_bake_that_is_too_large_is_made_to_fit(palpate, monkeypatch, by):
-    module = part("operators.bake_prediction")
+    module = part("operators.bake.bake_prediction")
     thing, scene = cube(), bpy.context.scene
-    part("core.machine_speed").dgemm_rate()
+    part("core.machine.machine_speed").dgemm_rate()
     thing.palpate.edge_length = 0.025
     needed = {}
     for form in ("COMPRESSED", "DENSE"):

@@ -24,12 +24,15 @@ LARGE = (20_000, 103_000, 6_400)
 
 @pytest.fixture
 def panel(palpate):
-    return part("addon.panel_shape").PALPATE_PT_shape
+    return part("addon.panels.shape").PALPATE_PT_shape
 
 
 @pytest.fixture
 def press(palpate):
-    sessions, states = part("operators.press_session"), part("operators.press_state")
+    sessions, states = (
+        part("operators.session.press_session"),
+        part("operators.session.press_state"),
+    )
 
     def begin(thing):
         session = sessions.begin(thing, bpy.context.scene, states.Source.POINTER)
@@ -98,11 +101,10 @@ def test_figures_are_those_of_the_prediction_with_their_units(panel):
     thing.palpate.shape = "TABLE"
     as_large(thing)
     cost, size = (
-        getattr(part("core.large_deformation.shape_cost"), name)
-        for name in ("shape_cost", "BodySize")
+        getattr(part("core.shape.shape_cost"), name) for name in ("shape_cost", "BodySize")
     )
     expected = cost("table", size(*LARGE))
-    quantities = part("operators.quantities")
+    quantities = part("operators.scene.quantities")
     said = drawn(panel, thing).lines
     rows = dict(pairwise(said))
     assert rows["A Frame, About"] == f"{1000 * expected.frame_seconds:.2g} ms"
@@ -116,7 +118,7 @@ def test_a_body_too_large_for_60_frames_a_second_is_told_so(panel):
     for name in SHAPES:
         thing.palpate.shape = name
         as_large(thing)
-        cost = part("addon.panel_shape").cost_now(thing)
+        cost = part("addon.panels.shape").cost_now(thing)
         told = "60 times a second" in drawn(panel, thing).text
         assert told == (cost.frame_seconds > 0.012), name
     thing.palpate.shape = "ROTATION_STRAIN"
@@ -141,7 +143,7 @@ def test_the_corrected_force_tells_its_cost_and_that_tools_do_not_feel_it(panel)
 
 
 def test_progress_is_a_bar_while_the_touched_place_is_computed(panel, press, monkeypatch):
-    shapes, made, allowed = part("core.large_deformation.shapes"), [], threading.Event()
+    shapes, made, allowed = part("core.shape.shapes"), [], threading.Event()
 
     def slowly(body, _):
         allowed.wait(5.0)
@@ -166,7 +168,7 @@ def test_why_the_linear_shape_is_drawn_stands_in_the_panel(panel, press, monkeyp
     def refuse(*_):
         raise part("core.errors").PalpateError("shape: no room; choose another")
 
-    monkeypatch.setitem(part("core.large_deformation.shapes").MAKERS, "table", refuse)
+    monkeypatch.setitem(part("core.shape.shapes").MAKERS, "table", refuse)
     thing = soft_cube()
     thing.palpate.shape = "TABLE"
     session = press(thing)
@@ -181,7 +183,7 @@ def test_why_the_linear_shape_is_drawn_stands_in_the_panel(panel, press, monkeyp
 @pytest.mark.parametrize("width", [USUAL_WIDTH, NARROW_WIDTH])
 @pytest.mark.parametrize("name", SHAPES)
 def test_no_sentence_of_any_panel_is_wider_than_the_sidebar(palpate, name, width):
-    sentence, panels = part("addon.sentence"), part("addon.panels")
+    sentence, panels = part("addon.panels.sentence"), part("addon.panels.sidebar")
     thing = soft_cube()
     as_large(thing)
     thing.palpate.shape, thing.palpate.felt = name, "CORRECTED"
@@ -199,7 +201,7 @@ def test_no_sentence_of_any_panel_is_wider_than_the_sidebar(palpate, name, width
 @pytest.mark.parametrize("tip", ["POINT", "SPHERE", "PLATE", "ROD", "MESH"])
 def test_the_finger_panel_asks_a_point_for_its_contact_and_a_tool_for_its_sizes(palpate, tip):
     bpy.context.scene.palpate.tip = tip
-    asked = set(drawn(part("addon.panel_finger").PALPATE_PT_finger, soft_cube()).properties)
+    asked = set(drawn(part("addon.panels.finger").PALPATE_PT_finger, soft_cube()).properties)
     assert ("contact_mode" in asked) == (tip == "POINT")
     assert ("show_pressure" in asked) == (tip != "POINT")
     sizes = {

@@ -9,7 +9,7 @@ from soft_scene import cube, error_of, key_coordinates, part, press_down, select
 
 
 def status(thing):
-    return part("operators.soft_object").body_status(thing, bpy.context.scene)
+    return part("operators.object.soft_object").body_status(thing, bpy.context.scene)
 
 
 def fit(thing):
@@ -17,7 +17,7 @@ def fit(thing):
 
 
 def body_of(thing):
-    return part("operators.body_store").load(thing)
+    return part("operators.object.body_store").load(thing)
 
 
 @pytest.fixture
@@ -35,7 +35,7 @@ def test_more_pins_take_effect_without_a_bake_as_a_bake_would_have_them(soft):
     assert len(body.fixed) > len(old.fixed)
     assert body.mesh.nodes[body.fixed, 2].max() > -0.025 + 0.3 * 0.05
     key, table = soft.palpate.body_key, body.compliance.columns(np.arange(20))
-    part("operators.body_store").locate(soft).unlink()
+    part("operators.object.body_store").locate(soft).unlink()
     assert bpy.ops.palpate.rebuild_body() == {"FINISHED"}
     assert soft.palpate.body_key == key
     baked = body_of(soft).compliance.columns(np.arange(20))

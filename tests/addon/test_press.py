@@ -26,12 +26,12 @@ DEEP = (0.0, 0.0, 0.02)
 
 @pytest.fixture
 def states(palpate):
-    return part("operators.press_state")
+    return part("operators.session.press_state")
 
 
 @pytest.fixture
 def sessions(palpate):
-    module = part("operators.press_session")
+    module = part("operators.session.press_session")
     yield module
     module.give_way("")
 
@@ -77,8 +77,8 @@ def test_without_keep_nothing_changes(palpate):
 
 def test_force_grows_with_the_modulus_and_the_shape_does_not_without_a_bake(palpate):
     thing = soft_cube()
-    press = part("operators.press_once").press_once
-    path = part("operators.body_store").locate(thing)
+    press = part("operators.press.press_once").press_once
+    path = part("operators.object.body_store").locate(thing)
     stamp = path.stat().st_mtime_ns
     soft = press(thing, bpy.context.scene, TOP, (0, 0, -0.005))
     thing.palpate.young_modulus *= 3
@@ -86,12 +86,15 @@ def test_force_grows_with_the_modulus_and_the_shape_does_not_without_a_bake(palp
     assert np.allclose(np.array(firm.force), 3 * np.array(soft.force))
     assert np.array_equal(key_coordinates(thing, "Press 1"), key_coordinates(thing, "Press 2"))
     assert path.stat().st_mtime_ns == stamp
-    assert part("operators.soft_object").body_status(thing, bpy.context.scene).fit.name == "READY"
+    assert (
+        part("operators.object.soft_object").body_status(thing, bpy.context.scene).fit.name
+        == "READY"
+    )
 
 
 def test_the_felt_force_points_back_out(palpate):
     thing = soft_cube()
-    pressed = part("operators.press_once").press_once(
+    pressed = part("operators.press.press_once").press_once(
         thing, bpy.context.scene, TOP, (0, 0, -0.005), keep=False
     )
     assert pressed.force[2] > 0
@@ -278,7 +281,7 @@ def test_a_port_that_is_not_there_is_refused_and_leaves_the_mesh_clean(sessions,
 
 
 def test_a_port_is_taken_as_typed_or_with_what_the_list_says_of_it(palpate):
-    port_of, scene = part("operators.device_source").port_of, bpy.context.scene
+    port_of, scene = part("operators.device.device_source").port_of, bpy.context.scene
     for text, port in {
         "/dev/ttyACM0 (Arduino Uno (R3))": "/dev/ttyACM0",
         " COM3": "COM3",
@@ -297,7 +300,9 @@ def test_a_device_that_says_nothing_is_waited_for(sessions, states):
         session = begin(sessions, states, thing, "DEVICE")
         wait(session, lambda: session.snapshot.tick > 50)
         assert session.awaits_device
-        assert not part("addon.overlay")._worth_drawing(session, part("addon.reading").NOTHING)
+        assert not part("addon.overlay.view")._worth_drawing(
+            session, part("addon.overlay.reading").NOTHING
+        )
         sessions.give_way("")
         assert key_names(thing) == []
     finally:
@@ -351,8 +356,8 @@ def test_an_empty_places_the_device(sessions, states):
     scene = bpy.context.scene
     scene.palpate.device_frame, scene.palpate.device_scale = bpy.context.object, 2.0
     bpy.context.view_layer.update()
-    body = part("operators.drawn_surface").frame_of(thing, scene)
-    source = part("operators.device_source")
+    body = part("operators.scene.drawn_surface").frame_of(thing, scene)
+    source = part("operators.device.device_source")
     frame = source.device_frame(scene, body, source.home_of_device(thing, scene, body))
     device = np.array([0.01, 0.02, 0.03])
     expected = np.array(bpy.context.object.matrix_world.to_3x3()) @ (2 * device) + [0, 0, 0.3]
@@ -365,9 +370,9 @@ def test_an_empty_places_the_device(sessions, states):
 def test_bounding_box_and_normals_follow_each_frame(palpate):
     """Blender 5.0 leaves both stale after bulk writes in some places."""
     thing = soft_cube()
-    live = part("operators.live_shape")
+    live = part("operators.scene.live_shape")
     live.hang(thing)
-    rest = part("operators.drawn_surface").rest_coordinates(thing.data).reshape(-1, 3)
+    rest = part("operators.scene.drawn_surface").rest_coordinates(thing.data).reshape(-1, 3)
     graph = bpy.context.evaluated_depsgraph_get()
     for factor in (1.5, 2.0):
         live.write(thing.data, (rest * [1, 1, factor]).astype(np.float32).ravel())

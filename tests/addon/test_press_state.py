@@ -12,7 +12,7 @@ POINT = (0.0, 0.0, 0.1)
 
 @pytest.fixture
 def ps(installed):
-    return part("operators.press_state")
+    return part("operators.session.press_state")
 
 
 def play(ps, *events):

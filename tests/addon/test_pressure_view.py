@@ -15,7 +15,7 @@ TOOLS = {
 
 
 def test_more_pressure_is_brighter(palpate):
-    colors = part("addon.pressure_colors").color_of(np.linspace(0.0, 1.2, 40))
+    colors = part("addon.overlay.pressure_colors").color_of(np.linspace(0.0, 1.2, 40))
     brightness = colors @ (0.2126, 0.7152, 0.0722)
     assert (np.diff(brightness[:33]) > 0.0).all()
     assert colors.min() >= 0.0
@@ -26,11 +26,11 @@ def test_more_pressure_is_brighter(palpate):
     ("pressure", "top"), [(0.0, 1.0), (3.0, 5.0), (1000.0, 1000.0), (1001.0, 2000.0)]
 )
 def test_the_scale_is_a_round_number(palpate, pressure, top):
-    assert part("addon.pressure_colors").round_up(pressure) == pytest.approx(top)
+    assert part("addon.overlay.pressure_colors").round_up(pressure) == pytest.approx(top)
 
 
 def test_the_scale_does_not_flicker(palpate):
-    scale = part("addon.pressure_colors").PressureScale()
+    scale = part("addon.overlay.pressure_colors").PressureScale()
     assert scale.follow(900.0) == 1000.0
     assert scale.follow(400.0) == 1000.0
     assert scale.follow(1100.0) == 2000.0
@@ -40,8 +40,8 @@ def test_the_scale_does_not_flicker(palpate):
 @pytest.mark.parametrize("name", TOOLS)
 def test_a_tool_is_drawn_where_it_is_felt(palpate, name):
     """The drawn shape lies on the tool's own surface, wound outward, and is closed."""
-    tool = TOOLS[name](part("core.tools"))
-    shape = part("addon.overlay_shapes").tool_shape(tool)
+    tool = TOOLS[name](part("core.contact.tool.tools"))
+    shape = part("addon.overlay.shapes").tool_shape(tool)
     distance, normals = tool.distance(shape.vertices)
     assert np.abs(distance).max() < 0.05 * tool.radius
     corners = shape.vertices[shape.triangles]
@@ -54,7 +54,7 @@ def test_a_tool_is_drawn_where_it_is_felt(palpate, name):
 def test_discs_lie_across_the_pressure(palpate):
     places, normals = np.zeros((2, 3)), np.array([[0.0, 0.0, 1.0], [0.6, 0.8, 0.0]])
     radii, colors = np.array([1.0, 2.0]), np.ones((2, 3))
-    vertices, rgba, triangles = part("addon.overlay_shapes").discs(places, normals, radii, colors)
+    vertices, rgba, triangles = part("addon.overlay.shapes").discs(places, normals, radii, colors)
     each = vertices.reshape(2, -1, 3)
     assert np.allclose(np.einsum("dvx,dx->dv", each, normals), 0.0, atol=1e-6)
     away = np.linalg.norm(each, axis=2) / radii[:, None]
@@ -66,7 +66,7 @@ def test_discs_lie_across_the_pressure(palpate):
 
 
 def test_a_tool_is_as_deep_as_the_surface_is_in_it(palpate):
-    tools, reading = part("core.tools"), part("addon.reading")
+    tools, reading = part("core.contact.tool.tools"), part("addon.overlay.reading")
     surface = np.array([[x, 0.0, 0.0] for x in np.linspace(-1.0, 1.0, 21)])
     pose = tools.Pose(np.array([0.0, 0.0, 0.7]), np.eye(3))
     assert reading.depth_of(tools.sphere(1.0), pose, surface) == pytest.approx(0.3)
@@ -75,7 +75,7 @@ def test_a_tool_is_as_deep_as_the_surface_is_in_it(palpate):
 
 
 def test_small_quantities_keep_their_digits(palpate):
-    quantities = part("operators.quantities")
+    quantities = part("operators.scene.quantities")
     assert quantities.area(12.34e-6) == "12.3 mm²"
     assert quantities.area(4.56e-4) == "4.56 cm²"
     assert quantities.pressure(1234.5) == "1.23 kPa"
@@ -84,7 +84,7 @@ def test_small_quantities_keep_their_digits(palpate):
 @pytest.mark.parametrize("scale", [1.0, 2.0])
 @pytest.mark.parametrize("region_height", [250.0, 500.0, 700.0, 1500.0])
 def test_the_legend_keeps_clear_of_blenders_buttons_and_of_the_rim(palpate, region_height, scale):
-    labels = part("addon.overlay_labels")
+    labels = part("addon.overlay.labels")
     height, size = labels.BAR_HEIGHT * scale, labels.SIZE * scale
     bottom = labels.legend_bottom(region_height * scale, height, scale)
     assert bottom - 0.5 * size >= labels.AROUND * scale

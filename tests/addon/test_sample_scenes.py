@@ -25,7 +25,7 @@ def opened(name, folder):
 
 
 def force(thing, at):
-    pressed = part("operators.press_once").press_once(
+    pressed = part("operators.press.press_once").press_once(
         thing, bpy.context.scene, at, (0.0, 0.0, -0.004), keep=False
     )
     return np.linalg.norm(pressed.force)
@@ -34,7 +34,7 @@ def force(thing, at):
 @pytest.mark.parametrize("name", MATERIALS)
 def test_a_sample_scene_only_lacks_its_body_file(palpate, tmp_path, name):
     thing = opened(name, tmp_path)
-    status = part("operators.soft_object").body_status(thing, bpy.context.scene)
+    status = part("operators.object.soft_object").body_status(thing, bpy.context.scene)
     assert status.fit.name == "FILE_MISSING"
     assert status.changed == ()
     assert status.pins.fit.name == "SAME"
@@ -64,7 +64,7 @@ def pinch_file(palpate, tmp_path):
 @pytest.mark.parametrize("name", ["Nodes", "Triangles"])
 def test_the_pinched_cubes_open_ready_and_undented(pinch_file, name):
     thing = select(bpy.data.objects[name])
-    status = part("operators.soft_object").body_status(thing, pinch_file)
+    status = part("operators.object.soft_object").body_status(thing, pinch_file)
     assert status.fit.name == "FILE_MISSING"
     assert thing.data.shape_keys.key_blocks["Pinched"].value == 0.0
 
@@ -76,17 +76,17 @@ def test_the_cube_of_figure_5_is_pinched_as_the_paper_s_equation_10_says(pinch_f
     assert pinch_file.palpate.second_empty == right
     middle = np.array(thing.location) + np.array([0.0, 0.0, 0.025])
     ways = np.array([[0.008, 0.0, 0.0], [-0.008, 0.0, 0.0]])
-    pressed = part("operators.press_once").press_several(
+    pressed = part("operators.press.press_once").press_several(
         thing, pinch_file, list(middle - 0.025 * np.sign(ways)), list(ways), keep=False
     )
-    body = part("operators.body_store").load(thing)
+    body = part("operators.object.body_store").load(thing)
     nodes = [
         int(np.argmin(np.linalg.norm(body.mesh.nodes - p, axis=1)))
         for p in ((-0.025, 0.0, 0.025), (0.025, 0.0, 0.025))
     ]
     local = np.searchsorted(body.mesh.surface_nodes, nodes)
     blocks = body.surface_blocks(local, local) / thing.palpate.young_modulus
-    by_paper = part("core.contact").two_node_forces(blocks, *ways)
+    by_paper = part("core.contact.equations").two_node_forces(blocks, *ways)
     for finger, force in zip(pressed.fingers, by_paper, strict=True):
         assert np.allclose(finger.force, -force, rtol=1e-5, atol=1e-7)
     # The one on triangles is not symmetric, and not on nodes.

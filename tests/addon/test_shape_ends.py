@@ -17,12 +17,12 @@ SHAPES = ("LINEAR", "TABLE", "SERIES", "ROTATION_STRAIN")
 
 @pytest.fixture
 def states(palpate):
-    return part("operators.press_state")
+    return part("operators.session.press_state")
 
 
 @pytest.fixture
 def sessions(palpate):
-    module = part("operators.press_session")
+    module = part("operators.session.press_session")
     yield module
     module.give_way("")
 
@@ -30,8 +30,8 @@ def sessions(palpate):
 @pytest.fixture
 def series_table(palpate, monkeypatch):
     """The table of a series, which only large bodies have by themselves."""
-    shape = part("core.large_deformation.series_shape").SeriesShape
-    makers = part("core.large_deformation.shapes").MAKERS
+    shape = part("core.shape.paper.series_shape").SeriesShape
+    makers = part("core.shape.shapes").MAKERS
     monkeypatch.setitem(makers, "series", lambda body, file: shape(body, file, whole_load=False))
 
 
@@ -55,8 +55,8 @@ def wait(session, condition, seconds=20.0):
 
 
 def table_file(thing, kind):
-    file = part("operators.body_store").locate(thing)
-    return part("core.large_deformation.table_file").table_path(Path(file), kind)
+    file = part("operators.object.body_store").locate(thing)
+    return part("core.shape.paper.table_file").table_path(Path(file), kind)
 
 
 @pytest.mark.parametrize("way", ["escape", "undo"])
@@ -80,7 +80,7 @@ def test_every_shape_leaves_the_mesh_as_it_was(sessions, states, name, way):
 
 @pytest.mark.parametrize("name", SHAPES)
 def test_enter_keeps_what_every_shape_drew(sessions, states, name, monkeypatch):
-    monkeypatch.setattr(part("operators.drawn_shape"), "PATIENCE", 0.2)
+    monkeypatch.setattr(part("operators.shape.drawn_shape"), "PATIENCE", 0.2)
     thing = soft_cube()
     thing.palpate.shape = name
     session = begin_pressed(sessions, states, thing)
@@ -113,12 +113,12 @@ def test_a_table_file_that_is_no_good_is_told_once_and_made_anew(
         case "damaged":
             file.write_bytes(good[: len(good) // 2])
         case "foreign":
-            arrays = part("core.npz_archive").read_arrays(file)
-            write = part("core.npz_archive").write_arrays
+            arrays = part("core.files.npz_archive").read_arrays(file)
+            write = part("core.files.npz_archive").write_arrays
             with file.open("wb") as out:
                 write(out, arrays | {"key": np.array("0" * 64)})
         case "no table":
-            shutil.copyfile(part("operators.body_store").locate(thing), file)
+            shutil.copyfile(part("operators.object.body_store").locate(thing), file)
     thing.shape_key_clear()
     session = begin_pressed(sessions, states, thing)
     wait(session, lambda: session.shape.ready == 1.0)
@@ -139,7 +139,7 @@ def test_a_table_that_cannot_be_used_is_a_warning_of_the_operator(
     thing.palpate.shape = "SERIES"
     file = table_file(thing, "series")
     file.write_bytes(b"nothing")
-    once = part("operators.press_once").press_once
+    once = part("operators.press.press_once").press_once
     pressed = once(thing, bpy.context.scene, TOP, (0.0, 0.0, -DEPTH), keep=False)
     assert len(pressed.remarks) == 1
     assert str(file) in pressed.remarks[0]

@@ -21,19 +21,19 @@ NAMES = {
 
 @pytest.fixture
 def states(palpate):
-    return part("operators.press_state")
+    return part("operators.session.press_state")
 
 
 @pytest.fixture
 def sessions(palpate):
-    module = part("operators.press_session")
+    module = part("operators.session.press_session")
     yield module
     module.give_way("")
 
 
 @pytest.fixture
 def shapes(palpate):
-    return part("core.large_deformation.shapes")
+    return part("core.shape.shapes")
 
 
 class Narrower:
@@ -94,10 +94,10 @@ def test_the_panel_offers_every_shape_with_its_sentence(palpate, shapes):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_costs_are_told_before_and_grow_with_the_body(palpate, name):
-    cost = part("core.large_deformation.shape_cost")
+    cost = part("core.shape.shape_cost")
     thing = soft_cube()
     thing.palpate.shape = name
-    now = part("addon.panel_shape").cost_now(thing)
+    now = part("addon.panels.shape").cost_now(thing)
     large = cost.shape_cost(NAMES[name], cost.BodySize(20_000, 80_000, 6_400))
     # Series of large bodies come from a table, which is quicker than to compute them.
     assert 0.0 < now.frame_seconds < (1.0 if name == "SERIES" else large.frame_seconds)
@@ -105,7 +105,7 @@ def test_costs_are_told_before_and_grow_with_the_body(palpate, name):
     assert (large.table_seconds > 10.0) == (name in {"TABLE", "SERIES"})
     assert now.first_seconds <= large.first_seconds
     thing.palpate.free_surface_count = 0
-    assert part("addon.panel_shape").cost_now(thing) is None
+    assert part("addon.panels.shape").cost_now(thing) is None
 
 
 # Newton's table takes seconds for each node: tests of the core compute some.
@@ -160,12 +160,12 @@ def test_until_it_is_made_and_filled_the_linear_shape_is_drawn(
     allowed.set()
     wait(session, lambda: session.shape.ready == 0.37)
     assert drawn_depth(thing) == pytest.approx(linear, abs=1e-6)
-    said = [line.text for line in part("addon.hud")._shape_lines(session)]
+    said = [line.text for line in part("addon.overlay.hud")._shape_lines(session)]
     assert said == ["Shape 37 %"]
-    assert made[0].file == part("operators.body_store").locate(thing)
+    assert made[0].file == part("operators.object.body_store").locate(thing)
     made[0].ready = 1.0
     wait(session, lambda: session.displacements is not session.linear)
-    assert not part("addon.hud")._shape_lines(session)
+    assert not part("addon.overlay.hud")._shape_lines(session)
 
 
 def test_what_is_kept_waits_a_little_and_says_what_it_lacks(sessions, states, shapes, monkeypatch):
@@ -177,7 +177,7 @@ def test_what_is_kept_waits_a_little_and_says_what_it_lacks(sessions, states, sh
         return made[0]
 
     monkeypatch.setitem(shapes.MAKERS, "table", half)
-    monkeypatch.setattr(part("operators.drawn_shape"), "PATIENCE", 0.2)
+    monkeypatch.setattr(part("operators.shape.drawn_shape"), "PATIENCE", 0.2)
     thing.palpate.shape = "TABLE"
     session = begin_pressed(sessions, states, thing)
     wait(session, lambda: session.shape.ready == 0.5)
@@ -253,9 +253,9 @@ def test_a_shape_still_being_made_is_closed_when_it_is_there(sessions, states, s
 
 
 def test_pressure_is_drawn_on_the_shape_that_is_seen(palpate):
-    reading = part("addon.reading")
+    reading = part("addon.overlay.reading")
     thing = soft_cube()
-    drawn = part("operators.drawn_body").open_body(thing, bpy.context.scene)
+    drawn = part("operators.object.drawn_body").open_body(thing, bpy.context.scene)
     mesh = drawn.body.mesh
 
     class Session:
@@ -273,7 +273,7 @@ def test_pressure_is_drawn_on_the_shape_that_is_seen(palpate):
 
 def test_the_corrected_force_is_felt_where_it_is_known_and_switched_live(sessions, states):
     thing = soft_cube()
-    once = part("operators.press_once").press_once
+    once = part("operators.press.press_once").press_once
     at, by = TOP, (0.0, 0.0, -DEPTH)
     linear = once(thing, bpy.context.scene, at, by, keep=False)
     thing.palpate.felt = "CORRECTED"
@@ -284,20 +284,20 @@ def test_the_corrected_force_is_felt_where_it_is_known_and_switched_live(session
     assert corrected.largest_displacement == pytest.approx(linear.largest_displacement)
     thing.palpate.felt = "LINEAR"
     session = begin_pressed(sessions, states, thing)
-    read = part("addon.reading").reading
+    read = part("addon.overlay.reading").reading
     firm = read(session).force
     thing.palpate.felt = "CORRECTED"
     session.tick()
     wait(session, lambda: session.loop.felt.ready == 1.0 and session.snapshot.felt_share > 0.999)
     assert read(session).force / firm == pytest.approx(softer, rel=0.02)
-    assert not part("addon.hud")._shape_lines(session)
+    assert not part("addon.overlay.hud")._shape_lines(session)
     np.testing.assert_array_equal(session.displacements, session.linear)
     thing.palpate.felt = "LINEAR"
     wait(session, lambda: read(session).force == pytest.approx(firm, rel=1e-6))
 
 
 def test_a_felt_force_that_cannot_be_found_is_told_once(sessions, states, monkeypatch):
-    table = part("core.large_deformation.softening_table")
+    table = part("core.shape.force_at_depth.softening_table")
 
     def refuse(*_):
         raise part("core.errors").PalpateError("felt force: no room; choose the linear one")

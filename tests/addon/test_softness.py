@@ -12,7 +12,7 @@ def test_shore_sets_young_modulus_and_follows_it(palpate):
     material, softness = thing.palpate, thing.palpate_softness
     material.poisson_ratio = 0.48
     softness.shore = 30.0
-    shore = part("core.softness.shore")
+    shore = part("core.softness.scales.shore")
     expected = shore.young_from_shore(shore.Shore("00", 30.0), material.poisson_ratio)
     assert material.young_modulus == pytest.approx(expected, rel=1e-5)
     assert material.material == "CUSTOM"

@@ -1,73 +1,17 @@
-"""Bodies the core tests share: the paper's cube and a stored plush mouse."""
+"""Bodies for the tests of core, and the same examples in every run."""
 
-from pathlib import Path
-
-import numpy as np
-import pytest
+from bodies.shared import (  # noqa: F401
+    body,
+    cube,
+    cube_mesh,
+    mouse,
+    mouse_mesh,
+    rng,
+    solved_displacements,
+)
 from hypothesis import settings
-from scipy.sparse.linalg import spsolve
-
-from palpate.core.paper_cube import paper_cube
-from palpate.core.soft_body import SoftBody
-from palpate.core.stiffness import assemble
-from palpate.core.surface_compliance import surface_compliance
-from palpate.core.tet_mesh import TetMesh
 
 # For all that is drawn: the same examples in every run, so that a red test means a changed program,
 # and no limit of time, which a busy machine would break.
 settings.register_profile("repeatable", derandomize=True, deadline=None)
 settings.load_profile("repeatable")
-
-MESHES = Path(__file__).resolve().parents[1] / "meshes"
-
-
-def make_body(mesh, fixed, poisson_ratio, young_modulus, dtype=np.float32):
-    compliance = surface_compliance(mesh, assemble(mesh, poisson_ratio), fixed, dtype=dtype)
-    return SoftBody(mesh, np.unique(fixed), poisson_ratio, compliance, young_modulus)
-
-
-@pytest.fixture(scope="session")
-def cube_mesh():
-    return paper_cube()
-
-
-@pytest.fixture(scope="session")
-def mouse_mesh():
-    with np.load(MESHES / "mouse-1.7k.npz") as file:
-        return TetMesh.checked(file["X"], file["T"]), file["fixed"]
-
-
-@pytest.fixture(scope="session")
-def cube(cube_mesh):
-    return make_body(*cube_mesh, 0.49, 10_000.0)
-
-
-@pytest.fixture(scope="session")
-def mouse(mouse_mesh):
-    return make_body(*mouse_mesh, 0.3, 1_000.0)
-
-
-@pytest.fixture(scope="session", params=["cube", "mouse"])
-def body(request):
-    return request.getfixturevalue(request.param)
-
-
-@pytest.fixture
-def rng():
-    return np.random.default_rng(1999)
-
-
-@pytest.fixture(scope="session")
-def solved_displacements():
-    """The referee of every touch: a sparse solve of the whole body."""
-
-    def solve(body, nodal_forces):
-        """Displacements (N, 3) by a sparse solve of the whole body at its own modulus."""
-        K = assemble(body.mesh, body.poisson_ratio, body.young_modulus).tocsc()
-        free = np.setdiff1d(np.arange(len(body.mesh.nodes)), body.fixed)
-        dofs = (3 * free[:, None] + np.arange(3)).ravel()
-        u = np.zeros(3 * len(body.mesh.nodes))
-        u[dofs] = spsolve(K[dofs][:, dofs], nodal_forces.ravel()[dofs])
-        return u.reshape(-1, 3)
-
-    return solve

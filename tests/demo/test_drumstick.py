@@ -7,9 +7,9 @@ import pytest
 from drumstick_shape import Part, bone, bone_vertices, drumstick, top_of_meat
 from mouse_shape import QuadMesh
 
-from palpate.core.regional_stiffness import StiffRegion, young_scale
-from palpate.core.surface import Surface
-from palpate.core.tet_mesh import TetMesh
+from palpate.core.mesh.surface import Surface
+from palpate.core.mesh.tet_mesh import TetMesh
+from palpate.core.stiffness.regions import StiffRegion, young_scale
 
 SCENES = Path(__file__).resolve().parents[2] / "sample_scenes"
 

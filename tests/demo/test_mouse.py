@@ -7,10 +7,10 @@ import pytest
 from mouse_shape import Part, QuadMesh, mouse
 from surface_net import surface_net
 
-from palpate.core.decimate import decimate
-from palpate.core.surface import Surface
-from palpate.core.tet_mesh import TetMesh
-from palpate.core.tetrahedralize import check_fit
+from palpate.core.mesh.decimate import decimate
+from palpate.core.mesh.surface import Surface
+from palpate.core.mesh.tet_mesh import TetMesh
+from palpate.core.mesh.tetrahedralize import check_fit
 
 SCENES = Path(__file__).resolve().parents[2] / "sample_scenes"
 # Table 1 of the paper.

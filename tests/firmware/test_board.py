@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from palpate_servo import Body, LinkDevice, Servo
 
-from palpate.core.devices import link
+from palpate.core.servo import link
 
 # Corners, triangles and stiffness of a cube of 50 mm: 100 N/m at 10 kPa everywhere.
 SQUARES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]

@@ -9,7 +9,7 @@ from pathlib import Path
 import palpate_servo
 import pytest
 
-from palpate.core.devices import link
+from palpate.core.servo import link
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 VECTORS = json.loads((REPOSITORY / "tests/vectors/link.json").read_text(encoding="utf-8"))

@@ -10,7 +10,7 @@ from pathlib import Path
 import palpate_servo
 import pytest
 
-from palpate.core.devices import link
+from palpate.core.servo import link
 
 VECTORS = Path(__file__).resolve().parents[1] / "vectors" / "damage.csv"
 LINES = VECTORS.read_text(encoding="ascii").splitlines()

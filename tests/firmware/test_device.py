@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from palpate.core.devices import link
-from palpate.core.devices.simulated_firmware import Firmware
+from palpate.core.servo import link
+from palpate.simulated.board.simulated_firmware import Firmware
 
 HELLO = link.DeviceHello("Test", 3, 2.0, (0.125, 0.125, 0.125), 1000)
 ENABLE, DAMP = link.ForceFlag.ENABLE, link.ForceFlag.DAMP

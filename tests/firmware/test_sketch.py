@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from palpate.core.devices import link
+from palpate.core.servo import link
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 ENABLE, DAMP = link.ForceFlag.ENABLE, link.ForceFlag.DAMP

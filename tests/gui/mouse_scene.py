@@ -11,7 +11,7 @@ import numpy as np
 from stage import Pixel, Stage, Wait
 
 from bl_ext.user_default.palpate.operators import press_session
-from bl_ext.user_default.palpate.operators.press_state import Phase
+from bl_ext.user_default.palpate.operators.session.press_state import Phase
 
 SCENE, NAME = "sample_scenes/mouse.blend", "Mouse"
 # A place on the back, world coordinates: its inward normal points down and right on the screen.

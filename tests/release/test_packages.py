@@ -140,10 +140,11 @@ def test_a_python_without_a_list_of_wheels_says_which_there_are():
 
 
 def test_a_file_that_nobody_foresaw_is_not_shipped(tmp_path):
-    for name in ("__init__.py", "LICENSE", "addon/a.py", "operators/a.py", "core/a.py", "cli/a.py"):
+    folders = ("addon", "operators", "core", "simulated", "cli")
+    for name in ("__init__.py", "LICENSE", *(f"{folder}/a.py" for folder in folders)):
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).touch()
-    assert len(extension_files(tmp_path)) == 6
+    assert len(extension_files(tmp_path)) == 7
     (tmp_path / "core" / "notes.txt").touch()
     with pytest.raises(PackagingError, match=r"core/notes\.txt"):
         extension_files(tmp_path)

@@ -11,16 +11,16 @@ import numpy as np
 import pytest
 from palpate_servo import Body
 
-from palpate.core.bake import BakeSettings, bake
-from palpate.core.paper_cube import paper_cube
-from palpate.core.pins import PinNodes
-from palpate.core.servo_session import native_body
-from palpate.core.tet_mesh import TetMesh
+from palpate.core.bake.steps import BakeSettings, bake
+from palpate.core.mesh.paper_cube import paper_cube
+from palpate.core.mesh.tet_mesh import TetMesh
+from palpate.core.servo.session import native_body
+from palpate.core.stiffness.pins import PinNodes
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from palpate.core.soft_body import SoftBody
+    from palpate.core.body.soft_body import SoftBody
 
 YOUNG_MODULUS = 10_000.0
 MOUSE = Path(__file__).resolve().parents[1] / "meshes" / "mouse-1.7k.npz"

@@ -1,6 +1,6 @@
 //! The felt force at large depth: the choices, and what the softer one does to a contact's relation.
 //!
-//! Readable reference: `core/large_deformation/felt_force.py`, which says why this is convex, and
+//! Readable reference: `core/shape/force_at_depth/felt_force.py`, which says why this is convex, and
 //! hence continuous, growing and without gain on closed paths, for every softening there may be.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};

@@ -1,5 +1,5 @@
 //! How much of the corrected force fingers get that hold each other through the body. Readable
-//! reference: `core/large_deformation/felt_coupling.py`.
+//! reference: `core/shape/force_at_depth/felt_coupling.py`.
 
 use glam::DMat3;
 

@@ -139,7 +139,7 @@ impl ToolSurface {
     }
 }
 
-/// The arrays that `core/near_field.py` gives.
+/// The arrays that `core/contact/near_field/compliance_beneath.py` gives.
 const NEAR_FIELD: [&str; 14] = [
     "believed",
     "short",
@@ -157,7 +157,7 @@ const NEAR_FIELD: [&str; 14] = [
     "own",
 ];
 
-/// From the arrays that `core/near_field.py` names.
+/// From the arrays that `core/contact/near_field/compliance_beneath.py` names.
 fn near_field(arrays: &Bound<'_, PyDict>) -> PyResult<NearField> {
     // A servo that is older than core would leave out a part of the field, and press wrongly.
     for name in arrays.keys() {

@@ -3,7 +3,7 @@
 //! Each contact point's force pushes along the tool's normal where the point has gone to:
 //! F_i = f_i n_i, n_i = grad phi(x_i + u_i), f_i >= 0, phi >= 0, one of both zero. The distance is
 //! linearised about the displacements of the last tick, a few times at most; what that leaves to be
-//! found the next ticks find. Readable reference: `core/tool_contact.py` and `core/tool_law.py`.
+//! found the next ticks find. Readable reference: `core/contact/tool/tool_contact.py` and `core/contact/tool/tool_law.py`.
 
 mod choose;
 mod feel;

@@ -6,7 +6,7 @@
 //! energy within their discs (Tresca's problem, convex), found by projected Gauss-Seidel from the
 //! forces before; pushes and forces aside take turns, once a linearisation (P. D. Panagiotopoulos,
 //! 1975). What a tick leaves to be found the next ones find; the discs hold at any moment. Readable
-//! reference: `core/tool_friction.py`.
+//! reference: `core/contact/tool/tool_friction.py`.
 
 use glam::{DVec2, DVec3};
 

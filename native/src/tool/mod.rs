@@ -2,7 +2,7 @@
 //!
 //! The [`shape`] of a tool meets [`points`] fixed on the body's surface; those near it form a
 //! [`patch`], whose forces may only push ([`complementarity`]). [`contact`] follows the pose from tick
-//! to tick. Readable references: `core/tools.py`, `core/contact_points.py`, `core/tool_contact.py`.
+//! to tick. Readable references: `core/contact/tool/tools.py`, `core/contact/near_field/contact_points.py`, `core/contact/tool/tool_contact.py`.
 
 mod blocks;
 pub mod complementarity;

@@ -3,7 +3,7 @@
 //! C(x, y) = H(x - y) + sum_ab alpha_a(x) alpha_b(y) (L_ab - T_ab), where H is a half-space and T_ab
 //! what stands for it in the finite elements. Nothing of it is kept pair by pair: under a tool there
 //! are a few thousand pairs, on the body hundreds of millions. Readable reference:
-//! `core/near_field.py`, `core/regular_field.py`.
+//! `core/contact/near_field/compliance_beneath.py`, `core/contact/near_field/regular_field.py`.
 
 use std::f64::consts::PI;
 

@@ -1,6 +1,6 @@
 //! Where a body can be touched by a tool: points fixed on its surface.
 //!
-//! Readable reference: `core/contact_points.py`.
+//! Readable reference: `core/contact/near_field/contact_points.py`.
 
 pub(in crate::tool) mod tree;
 

@@ -2,7 +2,7 @@
 //!
 //! One point is a sphere, two a rod with round ends, a box a plate with rounded edges. Distance and
 //! normal are exact: outside the core by the closest point of the hull, inside it by the nearest face
-//! (Ericson 2005, 5.1). Readable reference: `core/tools.py`.
+//! (Ericson 2005, 5.1). Readable reference: `core/contact/tool/tools.py`.
 
 pub mod hull;
 pub mod tilt;

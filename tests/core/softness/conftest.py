@@ -5,10 +5,10 @@ import itertools
 import numpy as np
 import pytest
 
-from palpate.core.soft_body import SoftBody
-from palpate.core.stiffness import assemble
-from palpate.core.surface_compliance import surface_compliance
-from palpate.core.tet_mesh import TetMesh
+from palpate.core.body.soft_body import SoftBody
+from palpate.core.compliance.surface_compliance import surface_compliance
+from palpate.core.mesh.tet_mesh import TetMesh
+from palpate.core.stiffness.assembly import assemble
 
 
 def block(size, cells, poisson_ratio=0.45, formulation="smoothed", jitter=0.0):

@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from palpate.core.compliance.surface_compliance import surface_compliance
+from palpate.core.contact.near_field.half_space import own_displacement, surface_displacement
 from palpate.core.errors import PalpateError
-from palpate.core.half_space import own_displacement, surface_displacement
+from palpate.core.mesh.tet_mesh import TetMesh
 from palpate.core.softness.durometer import balanced, block_reading, read_durometer
 from palpate.core.softness.durometer_points import Seat, rings
-from palpate.core.softness.durometer_type import TYPE_00, TYPE_A, TYPES
-from palpate.core.softness.indentation import indenter_force
-from palpate.core.softness.shore import Shore, shore_from_young, young_from_shore
-from palpate.core.stiffness import assemble
-from palpate.core.surface_compliance import surface_compliance
-from palpate.core.tet_mesh import TetMesh
+from palpate.core.softness.scales.durometer_type import TYPE_00, TYPE_A, TYPES
+from palpate.core.softness.scales.indentation import indenter_force
+from palpate.core.softness.scales.shore import Shore, shore_from_young, young_from_shore
+from palpate.core.stiffness.assembly import assemble
 
 RUBBER = 0.5
 MIDDLE = (0.041, 0.0385, 0.05)

@@ -7,12 +7,12 @@ from xml.etree import ElementTree as ET
 import numpy as np
 import pytest
 
+from palpate.core.contact.tool.tool_contact import press_tool
+from palpate.core.contact.tool.tools import plate, rod, sphere
 from palpate.core.errors import PalpateError
 from palpate.core.softness.curve_picture import curve_svg, ticks
 from palpate.core.softness.force_depth import facing_pose, force_depth_curve, usual_depth
 from palpate.core.softness.place import nearest_place, thickness
-from palpate.core.tool_contact import press_tool
-from palpate.core.tools import plate, rod, sphere
 
 MIDDLE = (0.041, 0.0385, 0.05)
 # Large ones: their contact points are few.

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from palpate.core.errors import PalpateError
-from palpate.core.materials import MATERIALS
-from palpate.core.softness import indentation
-from palpate.core.softness.durometer_type import TYPE_00, TYPE_A
-from palpate.core.softness.relations import RELATIONS
-from palpate.core.softness.shore import (
+from palpate.core.softness.scales import indentation
+from palpate.core.softness.scales.durometer_type import TYPE_00, TYPE_A
+from palpate.core.softness.scales.materials import MATERIALS
+from palpate.core.softness.scales.relations import RELATIONS
+from palpate.core.softness.scales.shore import (
     Shore,
     shore_from_young,
     young_from_shore,

@@ -7,9 +7,9 @@ import numpy as np
 from mouse_scene import over_the_view, own_copy, type_key
 from stage import Pixel, Stage, Wait
 
-from bl_ext.user_default.palpate.addon.reading import Reading, readings
+from bl_ext.user_default.palpate.addon.overlay.reading import Reading, readings
 from bl_ext.user_default.palpate.operators import press_session
-from bl_ext.user_default.palpate.operators.press_state import Phase
+from bl_ext.user_default.palpate.operators.session.press_state import Phase
 
 PINCH, FINGERTIP = "sample_scenes/pinch.blend", "sample_scenes/fingertip.blend"
 # A place on the mouse's back that the view shows from above, world coordinates.

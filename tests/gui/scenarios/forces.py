@@ -8,9 +8,9 @@ from mouse_scene import depth, open_mouse, start_press, type_key
 from shown import all_panels_open
 from stage import Stage, Wait
 
-from bl_ext.user_default.palpate.core.recording import read_recording
+from bl_ext.user_default.palpate.core.servo.recording import read_recording
 from bl_ext.user_default.palpate.operators import press_session
-from bl_ext.user_default.palpate.operators.press_state import CALM_SECONDS
+from bl_ext.user_default.palpate.operators.session.press_state import CALM_SECONDS
 
 
 def space_lets_the_device_go_and_what_it_did_is_saved(stage: Stage) -> Wait:

@@ -23,7 +23,7 @@ from stage import MODULE, Stage, Wait
 
 from bl_ext.user_default.palpate.addon import pixels
 from bl_ext.user_default.palpate.operators import bake_session, body_store, press_session
-from bl_ext.user_default.palpate.operators.press_state import Phase
+from bl_ext.user_default.palpate.operators.session.press_state import Phase
 
 
 def dragging_dents_the_surface_and_enter_keeps_the_shape(stage: Stage) -> Wait:

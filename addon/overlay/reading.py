@@ -1,0 +1,154 @@
+"""What a press measures now, in numbers for panel and HUD."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.contact.tool.tools import Pose, Tool
+from ...core.servo.session import FingerSnapshot
+from ...operators.press.several_fingers import contact_area
+from ...operators.session.press_session import PressSession
+from ...operators.session.press_state import Phase
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Patch:
+    """Where a tool touches: places (p, 3) and outward directions (p, 3) in the world, pressures
+    (p,) in Pa, and the radius (p,) of the disc that each stands for, in world units.
+    """
+
+    places: Array
+    normals: Array
+    pressures: Array
+    radii: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Reading:
+    """One finger's force (N, on the finger), depth (m), and where it happens, world coordinates
+    (3,).
+
+    ``contact`` lies on the surface as it is seen; ``force_vector`` has world axes. ``turn`` (3, 3)
+    takes the tool's axes to the world's. ``area`` (m^2) and ``largest_pressure`` (Pa) are 0 for a
+    point.
+    """
+
+    force: float
+    depth: float
+    touching: bool
+    probe: Array
+    contact: Array
+    force_vector: Array
+    turn: Array
+    patch: Patch | None = None
+    area: float = 0.0
+    largest_pressure: float = 0.0
+
+
+NOTHING = Reading(0.0, 0.0, False, np.zeros(3), np.zeros(3), np.zeros(3), np.eye(3))
+
+
+def reading(session: PressSession) -> Reading:
+    """The first finger's."""
+    return readings(session)[0]
+
+
+def readings(session: PressSession) -> tuple[Reading, ...]:
+    """What the newest snapshot says of each finger; nothing before the first, and while the device
+    is away.
+    """
+    snapshot = session.snapshot
+    if snapshot is None or session.state.phase is Phase.LOST:
+        return (NOTHING,) * len(session.leads)
+    tool = session.tip.tool
+    if tool is None:
+        return tuple(_of_point(session, finger) for finger in snapshot.fingers)
+    return tuple(_of_tool(session, finger, tool) for finger in snapshot.fingers)
+
+
+def _of_point(session: PressSession, finger: FingerSnapshot) -> Reading:
+    frame, turn = session.drawn.frame, np.eye(3)
+    probe, proxy = np.asarray(finger.probe), np.asarray(finger.proxy)
+    if not finger.touching:
+        place = frame.world_from_body(probe)
+        return Reading(0.0, 0.0, False, place, place, np.zeros(3), turn)
+    contact = proxy
+    if session.displacements is not None:
+        corners = session.drawn.body.mesh.surface_nodes[np.asarray(finger.triangle)]
+        moved = session.drawn.node_displacements(session.displacements)[corners]
+        contact = proxy + np.asarray(finger.alpha) @ moved
+    force = _force(finger)
+    return Reading(
+        force=float(np.linalg.norm(force)),
+        depth=float(np.linalg.norm(probe - proxy)),
+        touching=True,
+        probe=frame.world_from_body(probe),
+        contact=frame.world_from_body(contact),
+        force_vector=frame.turn_to_world(force),
+        turn=turn,
+    )
+
+
+def _of_tool(session: PressSession, finger: FingerSnapshot, tool: Tool) -> Reading:
+    frame, rotation = session.drawn.frame, np.asarray(finger.orientation)
+    probe, turn = frame.world_from_body(np.asarray(finger.probe)), frame.rotation @ rotation
+    pressures = np.asarray(finger.pressures)
+    if not finger.touching or not np.any(pressures > 0.0):
+        return Reading(0.0, 0.0, False, probe, probe, np.zeros(3), turn)
+    force, pushes = _force(finger), np.asarray(finger.point_forces)
+    carries = pressures > 0.0
+    sizes = np.linalg.norm(pushes[carries], axis=1)
+    # Three times its own area, so that neighbours flow into each other.
+    radii = np.sqrt(3.0 * sizes / pressures[carries] / np.pi) / frame.metres_per_unit
+    points = _as_drawn(session, finger, np.asarray(finger.points)[carries])
+    places = frame.world_from_body(points)
+    outward = frame.turn_to_world(-pushes[carries] / sizes[:, None])
+    pose = Pose(np.asarray(finger.probe), rotation)
+    return Reading(
+        force=float(np.linalg.norm(force)),
+        depth=depth_of(tool, pose, session.surface_samples),
+        touching=True,
+        probe=probe,
+        contact=sizes @ places / sizes.sum(),
+        force_vector=frame.turn_to_world(force),
+        turn=turn,
+        patch=Patch(places, outward, pressures[carries], radii),
+        area=contact_area(pushes, pressures),
+        largest_pressure=float(pressures.max()),
+    )
+
+
+def _as_drawn(session: PressSession, finger: FingerSnapshot, points: Array) -> Array:
+    """Points (p, 3) of the surface by the linear shape, on the shape that is drawn."""
+    if session.displacements is None or session.linear is None or not len(finger.nodes):
+        return points
+    mesh, drawn = session.drawn.body.mesh, session.drawn
+    nodes = mesh.surface_nodes[np.asarray(finger.nodes)]
+    linear = drawn.node_displacements(session.linear)[nodes]
+    beyond = drawn.node_displacements(session.displacements)[nodes] - linear
+    if not beyond.any():
+        return points
+    # Weighted by nearness, so that neighbouring points go alike.
+    away = np.linalg.norm(points[:, None] - (mesh.nodes[nodes] + linear), axis=2)
+    nearness = 1.0 / (away + 1e-3 * drawn.size) ** 2
+    moved: Array = points + nearness @ beyond / nearness.sum(axis=1, keepdims=True)
+    return moved
+
+
+def depth_of(tool: Tool, pose: Pose, surface: Array) -> float:
+    """How deep a tool is in the surface at rest, of which places (n, 3) are known, m."""
+    near = surface[np.linalg.norm(surface - pose.position, axis=1) <= tool.reach]
+    if not len(near):
+        return 0.0
+    distance, _ = tool.distance(pose.to_tool(near))
+    return max(0.0, -float(distance.min()))
+
+
+def _force(finger: FingerSnapshot) -> Array:
+    # A limp device gives nothing, however deep it is.
+    return np.zeros(3) if finger.state == "disabled" else np.asarray(finger.contact_force)

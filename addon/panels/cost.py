@@ -1,0 +1,106 @@
+"""What a bake would take, before it starts, and what the last one made."""
+
+import bpy
+
+from ...core.errors import PalpateError
+from ...operators.bake.bake_prediction import Prediction
+from ...operators.scene.quantities import about, duration, memory, percent
+from .. import known_status
+from .base import draw_rows, interface
+from .sentence import say
+
+FORM_NAMES = {"dense": "Full", "compressed": "Compressed"}
+FORMULATION_NAMES = {"linear": "Linear", "smoothed": "Smoothed"}
+
+
+def draw_summary(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """One line below Make Soft, and the alarm where the memory would not suffice."""
+    prediction = _prediction(context)
+    if prediction is None:
+        return
+    cost = prediction.cost
+    if prediction.fits:
+        nodes, time = about(cost.nodes), duration(cost.seconds)
+        say(layout, context, "About {nodes} nodes in {time}", "TIME", nodes=nodes, time=time)
+    else:
+        _draw_alarm(layout, context, prediction)
+
+
+def draw_prediction(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """What a bake with the settings of now would take."""
+    prediction = _prediction(context)
+    if prediction is None:
+        return
+    cost = prediction.cost
+    box = layout.box().column(align=True)
+    box.label(text="The Next Bake, About")
+    rows = [
+        ("Nodes", about(cost.nodes)),
+        ("Free Surface Nodes", about(cost.free_surface_nodes)),
+        ("Bake Time", duration(cost.seconds)),
+        ("Peak Memory", memory(cost.peak_bytes)),
+        ("File", memory(cost.file_bytes)),
+        ("Compliance", interface(FORM_NAMES[cost.form])),
+    ]
+    draw_rows(box, rows)
+    if not prediction.fits:
+        _draw_alarm(box, context, prediction, boxed=True)
+
+
+def draw_figures(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """What the last bake made."""
+    baked = context.object.palpate
+    form = interface(FORM_NAMES.get(baked.baked_form, baked.baked_form))
+    box = layout.column(align=True)
+    rows = [
+        ("Nodes", f"{baked.node_count:,}"),
+        ("Tetrahedra", f"{baked.tet_count:,}"),
+        ("Free Surface Nodes", f"{baked.free_surface_count:,}"),
+        ("Formulation", interface(FORMULATION_NAMES.get(baked.baked_formulation, ""))),
+        ("Compliance", form),
+        ("Memory", memory(1e6 * baked.compliance_megabytes)),
+    ]
+    if baked.baked_form == "compressed":
+        rows.append(("Uncompressed", memory(36.0 * baked.free_surface_count**2)))
+        rows.append(("Largest Error", percent(baked.column_error / 100)))
+    rows.append(("Bake Time", f"{baked.bake_seconds:.1f} s"))
+    draw_rows(box, rows)
+    for warning in filter(None, baked.bake_warnings.split("\n")):
+        say(layout, context, warning[:1].upper() + warning[1:], "ERROR")
+
+
+def _prediction(context: bpy.types.Context) -> Prediction | None:
+    try:
+        return known_status.prediction(context.object, context.scene)
+    except PalpateError:
+        # What cannot be baked says so when it is to be baked, with the remedy.
+        return None
+
+
+def _draw_alarm(
+    layout: bpy.types.UILayout,
+    context: bpy.types.Context,
+    prediction: Prediction,
+    *,
+    boxed: bool = False,
+) -> None:
+    column = layout.column(align=True)
+    column.alert = True
+    figures = {
+        "needed": memory(prediction.cost.peak_bytes),
+        "available": memory(prediction.available),
+    }
+    say(
+        column,
+        context,
+        "Takes {needed} of memory; {available} are free",
+        "ERROR",
+        boxed=boxed,
+        **figures,
+    )
+    column = layout.column(align=True)
+    if prediction.compressed_fits:
+        column.operator("palpate.fit_memory", text="Compress It").by = "COMPRESSED"
+    if prediction.edge_length is not None:
+        text = interface("Use Edge Length {length}").format(length=f"{prediction.edge_length:g}")
+        column.operator("palpate.fit_memory", text=text, translate=False).by = "COARSER"

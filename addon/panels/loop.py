@@ -1,0 +1,135 @@
+"""The force loop: how fast it shall run, and while somebody presses how well it does."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import bpy
+
+from ...core.servo import latency_timer
+from ...operators.device.servo_words import FAULT_NAMES
+from ...operators.scene.quantities import microseconds
+from ...operators.session import press_session
+from .base import PalpatePanel, draw_rows, named_properties
+from .sentence import say
+
+if TYPE_CHECKING:
+    from ...core.servo.session import LinkCounters, ServoCounters
+
+STAGE_NAMES = {"read": "Read", "proxy": "Proxy", "contact": "Contact", "write": "Write"}
+NO_PRIORITY = "none: "
+
+
+class PALPATE_PT_loop(PalpatePanel, bpy.types.Panel):
+    bl_idname = "PALPATE_PT_loop"
+    bl_label = "Force Loop"
+    bl_parent_id = "PALPATE_PT_press"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = named_properties(self)
+        session = press_session.current()
+        row = layout.row()
+        row.enabled = session is None
+        row.prop(context.scene.palpate, "rate")
+        _draw_coupling(layout, context.scene)
+        loop = session.loop if session is not None else None
+        counters = loop.figures.counters if loop is not None else None
+        if counters is None:
+            say(layout, context, "While you press, its figures appear here", "INFO")
+            return
+        _draw_timing(layout, context, counters)
+        _draw_stages(layout, counters)
+        _draw_faults(layout, counters)
+        link = counters["link"]
+        if link["hellos"]:
+            _draw_link(layout, link)
+
+
+def _draw_coupling(layout: bpy.types.UILayout, scene: bpy.types.Scene) -> None:
+    """What keeps the contact of a device with motors stable."""
+    chosen = scene.palpate
+    if chosen.source == "POINTER" or not chosen.stable_contact:
+        return
+    column = layout.column(align=True)
+    column.prop(chosen, "own_coupling")
+    if chosen.own_coupling:
+        column.prop(chosen, "coupling_stiffness", text="Stiffness")
+        column.prop(chosen, "coupling_damping")
+        column.prop(chosen, "passivity_control")
+
+
+def draw_adapter_warning(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Whether the USB adapter of the device that presses holds bytes back, and what helps."""
+    session = press_session.current()
+    loop = session.loop if session is not None else None
+    if loop is None or loop.figures.counters is None:
+        return
+    warning = latency_timer.explain(loop.figures.counters["link"], loop.port)
+    if warning:
+        say(layout, context, warning, "ERROR")
+
+
+def _draw_timing(
+    layout: bpy.types.UILayout, context: bpy.types.Context, counters: ServoCounters
+) -> None:
+    priority = counters["realtime"]
+    has_priority = not priority.startswith(NO_PRIORITY)
+    rows = [
+        ("Ticks", f"{counters['ticks']:,}"),
+        ("Late by 0.2 ms", f"{counters['late_over_200_us']:,}"),
+        ("Late by 1 ms", f"{counters['late_over_1000_us']:,}"),
+        ("Longest Gap", microseconds(counters["longest_gap_us"])),
+    ]
+    if has_priority:
+        rows.append(("Priority", priority))
+    draw_rows(layout.column(align=True), rows)
+    if not has_priority:
+        reason = priority.removeprefix(NO_PRIORITY)
+        say(layout, context, "No real-time priority: {reason}", "INFO", reason=reason)
+
+
+def _draw_stages(layout: bpy.types.UILayout, counters: ServoCounters) -> None:
+    """Where the time of a tick goes: mean, and what 99 of 100 ticks keep below."""
+    stages = counters["stages_us"]
+    rows = [
+        (name, f"{microseconds(stages[stage]['mean'])}, {microseconds(stages[stage]['p99'])}")
+        for stage, name in STAGE_NAMES.items()
+    ]
+    box = layout.box().column(align=True)
+    box.label(text="Time in a Tick: Mean, 99 %")
+    draw_rows(box, rows)
+
+
+def _draw_faults(layout: bpy.types.UILayout, counters: ServoCounters) -> None:
+    rows = [
+        (FAULT_NAMES.get(name, name), f"{count:,}")
+        for name, count in counters["faults"].items()
+        if count
+    ]
+    if rows:
+        box = layout.box().column(align=True)
+        box.label(text="Faults", icon="ERROR")
+        draw_rows(box, rows)
+
+
+def _draw_link(layout: bpy.types.UILayout, link: LinkCounters) -> None:
+    damaged = link["crc_errors"] + link["cobs_errors"] + link["oversize"] + link["unknown"]
+    rows = [
+        ("Received", f"{link['states']:,}"),
+        ("Sent", f"{link['forces']:,}"),
+        ("Lost", f"{link['lost']:,}"),
+        ("Damaged", f"{damaged:,}"),
+        ("Out of Order", f"{link['duplicates'] + link['out_of_order']:,}"),
+        ("Not Sent", f"{link['unsent']:,}"),
+        ("Opened Again", f"{link['reopened']:,}"),
+    ]
+    device = link["device"]
+    if device is not None:
+        rows.insert(0, ("Device", device["name"]))
+    box = layout.box().column(align=True)
+    box.label(text="Connection")
+    draw_rows(box, rows)
+
+
+classes = (PALPATE_PT_loop,)

@@ -1,0 +1,108 @@
+"""Large deformation: which shape is drawn, what that costs, how far it is, and the felt force."""
+
+import bpy
+
+from ...core.shape.force_at_depth.softening_table import whole_table_seconds
+from ...core.shape.shape_cost import BodySize, ShapeCost, shape_cost
+from ...operators.scene.quantities import duration, memory, waiting
+from ...operators.session import press_session
+from ...operators.session.press_session import PressSession
+from ...operators.shape.drawn_shape import chosen_shape
+from ..properties.shape import FELT_ITEMS, SHAPE_ITEMS
+from .base import PalpatePanel, draw_rows, interface, named_properties
+from .sentence import say
+
+# Below this a frame leaves Blender the time for 60 of them a second.
+SMOOTH_SECONDS = 0.012
+
+
+class PALPATE_PT_shape(PalpatePanel, bpy.types.Panel):
+    bl_idname = "PALPATE_PT_shape"
+    bl_label = "Large Deformation"
+    bl_parent_id = "PALPATE_PT_main"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout, thing = named_properties(self), context.object
+        settings = thing.palpate
+        layout.prop(settings, "shape")
+        say(layout, context, _explained(SHAPE_ITEMS, settings.shape), "BLANK1")
+        _draw_cost(layout, context, thing)
+        press = press_session.current()
+        if press is not None and press.handle.find() == thing:
+            draw_progress(layout, context, press)
+        layout.prop(settings, "felt")
+        say(layout, context, _explained(FELT_ITEMS, settings.felt), "BLANK1")
+        if settings.felt == "CORRECTED":
+            _draw_felt(layout, context, thing)
+
+
+def draw_progress(
+    layout: bpy.types.UILayout, context: bpy.types.Context, press: PressSession
+) -> None:
+    """How far the touched place's share of a table is, or why there is none."""
+    shape = press.shape
+    if shape.problem:
+        say(layout, context, shape.problem, "ERROR")
+        say(layout, context, "The linear shape is drawn", "BLANK1")
+    elif shape.ready < 1.0:
+        text = interface("Shape {share} %").format(share=f"{100 * shape.ready:.0f}")
+        layout.progress(factor=shape.ready, type="BAR", text=text, translate=False)
+
+
+def cost_now(thing: bpy.types.Object) -> ShapeCost | None:
+    """What the chosen shape costs of the object's body; None of an object that is not soft."""
+    baked = thing.palpate
+    if not baked.free_surface_count:
+        return None
+    size = BodySize(baked.node_count, baked.tet_count, baked.free_surface_count)
+    return shape_cost(chosen_shape(thing), size)
+
+
+def _draw_cost(
+    layout: bpy.types.UILayout, context: bpy.types.Context, thing: bpy.types.Object
+) -> None:
+    cost = cost_now(thing)
+    if cost is None or thing.palpate.shape == "LINEAR":
+        return
+    box = layout.box().column(align=True)
+    rows = [("A Frame, About", f"{1000 * cost.frame_seconds:.2g} ms")]
+    if cost.first_seconds >= 0.1:
+        rows.append(("First Touch, About", waiting(cost.first_seconds)))
+    if cost.table_seconds:
+        rows.append(("Whole Table, About", duration(cost.table_seconds)))
+    rows.append(("Memory, About", memory(cost.memory_bytes)))
+    draw_rows(box, rows)
+    if cost.frame_seconds > SMOOTH_SECONDS:
+        say(
+            box,
+            context,
+            "Too large a body to be drawn 60 times a second this way",
+            "INFO",
+            boxed=True,
+        )
+    if cost.table_seconds:
+        say(box, context, "Computed around the touched place first, and kept", "INFO", boxed=True)
+
+
+def _draw_felt(
+    layout: bpy.types.UILayout, context: bpy.types.Context, thing: bpy.types.Object
+) -> None:
+    """What the corrected force takes, and where it is not felt."""
+    baked, press = thing.palpate, press_session.current()
+    if context.scene.palpate.tip != "POINT":
+        say(layout, context, "Tools feel the linear force", "INFO")
+        return
+    if context.scene.palpate.second != "NONE" or (press is not None and len(press.leads) > 1):
+        say(layout, context, "Linear where two fingers hold a slender part", "INFO")
+    if baked.free_surface_count:
+        box = layout.box().column(align=True)
+        size = (baked.node_count, baked.tet_count, baked.free_surface_count)
+        draw_rows(box, [("Whole Surface, About", waiting(whole_table_seconds(*size)))])
+        say(box, context, "Found around the touched place first, and kept", "INFO", boxed=True)
+    if press is not None and press.loop is not None and press.loop.felt.problem:
+        say(layout, context, press.loop.felt.problem, "ERROR")
+        say(layout, context, "The linear force is felt", "BLANK1")
+
+
+def _explained(items: list[tuple[str, str, str]], chosen: str) -> str:
+    return next(text for name, _, text in items if name == chosen)

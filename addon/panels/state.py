@@ -1,0 +1,144 @@
+"""The top of the sidebar tab: what goes on, what is missing, and what to do about it."""
+
+import bpy
+
+from ...operators.bake import bake_words
+from ...operators.bake.bake_session import BakeSession
+from ...operators.object import soft_object
+from ...operators.object.drawn_body import restores_quickly
+from ...operators.object.pin_change import PinFit
+from ...operators.object.soft_object import BodyStatus, Fit
+from ...operators.scene.quantities import duration
+from ...operators.session.press_session import PressSession
+from ...operators.session.press_state import Phase, Source
+from .. import known_status
+from ..overlay.reading import readings
+from . import cost, force
+from .sentence import say
+
+# Why other pins need what they need.
+PIN_TEXTS = {
+    PinFit.KNOWN: "These pins were computed before: no bake needed",
+    PinFit.MORE: "More is pinned: takes effect in about {time}, no bake needed",
+    PinFit.LESS: "Less is pinned than before: needs a bake",
+    PinFit.OTHER: "The pins changed and need a bake",
+}
+
+
+def draw_bake(layout: bpy.types.UILayout, context: bpy.types.Context, bake: BakeSession) -> None:
+    """While a bake runs."""
+    progress = bake.progress
+    layout.label(text=bake.handle.name, icon="MOD_SOFT", translate=False)
+    # A share that nobody can know yet is shown as time only.
+    factor = progress.share or 0.0
+    layout.progress(factor=factor, type="BAR", text=bake_words.how_far(progress), translate=False)
+    say(layout, context, bake_words.step(progress), "TIME")
+    layout.operator("palpate.cancel_bake", icon="CANCEL")
+
+
+def draw_press(layout: bpy.types.UILayout, context: bpy.types.Context, press: PressSession) -> None:
+    """While somebody presses."""
+    layout.label(text=press.handle.name, icon="MOD_SOFT", translate=False)
+    if press.state.source is Source.DEVICE:
+        force.draw(layout, context, press)
+    elif press.state.message:
+        say(layout, context, press.state.message, "ERROR")
+    for figures in readings(press):
+        row = layout.row()
+        row.label(text=f"{figures.force:.3f} N", icon="FORCE_FORCE", translate=False)
+        row.label(text=f"{1000 * figures.depth:.1f} mm", icon="DRIVER_DISTANCE", translate=False)
+    if press.state.phase is not Phase.LOST:
+        say(layout, context, "Enter keeps the shape, Escape restores it", "INFO")
+
+
+def draw_idle(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Otherwise: what can be done with the object."""
+    thing = context.object
+    refusal = soft_object.refusal(thing)
+    column = layout.column(align=True)
+    column.scale_y = 1.5
+    if refusal:
+        say(layout, context, refusal, "INFO")
+        return
+    status = known_status.body_status(thing, context.scene)
+    if status.fit is Fit.NEVER_BAKED:
+        column.operator("palpate.make_soft", icon="MOD_SOFT")
+        cost.draw_summary(layout, context)
+        say(layout, context, "Choose a material and pins, then press Make Soft", "INFO")
+        return
+    row = column.row()
+    row.enabled = status.fit is Fit.READY or _press_restores(thing, status)
+    row.operator("palpate.press", icon="FORCE_FORCE")
+    row.operator("palpate.pinch", icon="ARROW_LEFTRIGHT")
+    column = layout.column(align=True)
+    if _update_suffices(status):
+        column.operator("palpate.update_pins", icon="PINNED")
+    elif _rebuild_helps(status):
+        column.operator("palpate.rebuild_body", icon="FILE_REFRESH")
+    column.operator("palpate.make_soft", icon="MOD_SOFT", text="Make Soft Again")
+    if status.fit is Fit.CHANGED:
+        cost.draw_summary(layout, context)
+    _draw_status(layout, context, status)
+
+
+def _press_restores(thing: bpy.types.Object, status: BodyStatus) -> bool:
+    """Whether Press itself computes the missing body again."""
+    return status.fit is Fit.FILE_MISSING and restores_quickly(thing)
+
+
+def _pins_alone(status: BodyStatus) -> bool:
+    """Whether pins are all that differs from the body."""
+    return status.fit is Fit.READY and not status.changed and status.pins.fit is not PinFit.SAME
+
+
+def _update_suffices(status: BodyStatus) -> bool:
+    """Whether Update Pins makes the body as it is set."""
+    return _pins_alone(status) and status.pins.quick
+
+
+def _rebuild_helps(status: BodyStatus) -> bool:
+    lost = status.fit in {Fit.FILE_MISSING, Fit.FILE_DAMAGED}
+    other_pins = status.pins.fit not in {PinFit.SAME, PinFit.UNUSABLE}
+    return lost or bool(status.changed) or other_pins
+
+
+def _draw_status(
+    layout: bpy.types.UILayout, context: bpy.types.Context, status: BodyStatus
+) -> None:
+    if status.fit is Fit.READY:
+        say(layout, context, "Ready to press", "CHECKMARK")
+    elif _press_restores(context.object, status):
+        say(layout, context, "The body file is missing; Press computes it again", "INFO")
+    elif status.fit is Fit.FILE_MISSING:
+        say(layout, context, "The body file is missing; press Rebuild Body", "ERROR")
+    elif status.fit is Fit.FILE_DAMAGED:
+        say(layout, context, "The body file is damaged; press Rebuild Body", "ERROR")
+    else:
+        say(layout, context, status.text, "ERROR")
+        say(layout, context, "Press Make Soft Again", "BLANK1")
+    _draw_changes(layout, context, status)
+
+
+def _draw_changes(
+    layout: bpy.types.UILayout, context: bpy.types.Context, status: BodyStatus
+) -> None:
+    """What is set otherwise than the body has it, and what takes it over."""
+    pins = status.pins
+    if pins.fit is PinFit.UNUSABLE:
+        say(layout, context, pins.reason, "ERROR")
+    elif _pins_alone(status):
+        say(layout, context, PIN_TEXTS[pins.fit], "INFO", time=duration(max(1.0, pins.seconds)))
+        if _update_suffices(status):
+            say(layout, context, "Press does it by itself, too", "BLANK1")
+    names = list(status.changed)
+    if pins.fit not in {PinFit.SAME, PinFit.UNUSABLE} and not _pins_alone(status):
+        names.append("Pins")
+    names += status.meshing
+    if names:
+        known = bpy.app.translations.pgettext_iface
+        listed = ", ".join(known(name) for name in names)
+        say(layout, context, "Changed since the bake: {names}", "INFO", names=listed)
+    if status.meshing:
+        say(layout, context, "Make Soft Again takes it over", "BLANK1")
+    elif status.fit is Fit.READY and _rebuild_helps(status) and not _update_suffices(status):
+        say(layout, context, "Rebuild Body takes it over", "BLANK1")

@@ -1,0 +1,1 @@
+"""What Blender keeps with objects, scenes and preferences."""

@@ -1,0 +1,141 @@
+"""``object.palpate_softness``: softness in the maker's words.
+
+The Shore value is no number of its own but Young's modulus read and set in other words: so the two
+cannot disagree, and it takes effect while somebody presses, as Young's modulus does.
+"""
+
+import bpy
+
+from ...core.errors import PalpateError
+from ...core.softness.ramp import ramp
+from ...core.softness.scales.relations import RELATIONS, USUAL
+from ...core.softness.scales.shore import Shore, shore_from_young, young_from_shore
+
+# Files hold the numbers of these items: add new ones at the end only.
+SCALE_ITEMS = [
+    ("00", "Shore 00", "For gels, soft silicones and foams: a ball on a light spring"),
+    ("A", "Shore A", "For rubbers: a blunt cone on a stronger spring"),
+]
+LEGEND_STEPS = 5
+
+
+def shore_now(thing: bpy.types.Object) -> Shore:
+    """The Shore value of the object's material on the scale that is chosen.
+
+    Raises
+    ------
+    PalpateError
+        The material is softer or firmer than the scale says.
+    """
+    material = thing.palpate
+    scale = thing.palpate_softness.shore_scale
+    return shore_from_young(material.young_modulus, scale, material.poisson_ratio)
+
+
+def _read_shore(settings: bpy.types.PropertyGroup) -> float:
+    try:
+        return shore_now(settings.id_data).value
+    except PalpateError:
+        # A property cannot refuse to be read; the panel says that this is not the material's.
+        return 0.0
+
+
+def _set_shore(settings: bpy.types.PropertyGroup, value: float) -> None:
+    material = settings.id_data.palpate
+    relation = RELATIONS[USUAL[settings.shore_scale]]
+    within = min(max(value, relation.lowest), relation.highest)
+    shore = Shore(settings.shore_scale, within)
+    material.young_modulus = young_from_shore(shore, material.poisson_ratio)
+
+
+def legend_colour(step: int) -> bpy.props.FloatVectorProperty:
+    """One colour of the map's legend, for show."""
+    colour = tuple(ramp([step / (LEGEND_STEPS - 1)])[0].tolist())
+    return bpy.props.FloatVectorProperty(
+        name="Colour",
+        description="A colour of the map",
+        size=3,
+        subtype="COLOR_GAMMA",
+        min=0.0,
+        max=1.0,
+        get=lambda _: colour,
+        # Without a way to be set it would be drawn as switched off, darker than it is.
+        set=lambda _, __: None,
+        options={"HIDDEN"},
+    )
+
+
+class PalpateSoftness(bpy.types.PropertyGroup):
+    """``object.palpate_softness``."""
+
+    shore_scale: bpy.props.EnumProperty(
+        name="Scale",
+        description="Which durometer the Shore value is of",
+        items=SCALE_ITEMS,
+        default="00",
+    )
+    shore: bpy.props.FloatProperty(
+        name="Shore",
+        description="Softness as data sheets tell it, from 10 to 90: what a durometer reads on a "
+        "thick block. Sets Young's modulus, and follows it",
+        min=0.0,
+        max=100.0,
+        precision=0,
+        step=100,
+        get=_read_shore,
+        set=_set_shore,
+    )
+    place: bpy.props.EnumProperty(
+        name="Measured At",
+        description="Where durometer and curve press, unless you click a place",
+        items=[
+            ("CURSOR", "3D Cursor", "The surface point nearest to the 3D cursor"),
+            (
+                "VERTICES",
+                "Selected Vertices",
+                "The surface point nearest to the middle of the vertices selected in Edit Mode",
+            ),
+        ],
+        default="CURSOR",
+    )
+    finger_radius: bpy.props.FloatProperty(
+        name="Fingertip Radius",
+        description="How large what presses is, for curve and map; 0 for a point",
+        default=0.005,
+        min=0.0,
+        soft_max=0.05,
+        precision=4,
+        step=0.1,
+        subtype="DISTANCE",
+    )
+    colours_0: legend_colour(0)
+    colours_1: legend_colour(1)
+    colours_2: legend_colour(2)
+    colours_3: legend_colour(3)
+    colours_4: legend_colour(4)
+
+    # What was found last. Written by the operators only; lengths in mm, stiffness in N/mm.
+    read_scale: bpy.props.StringProperty(options={"HIDDEN"})
+    read_value: bpy.props.FloatProperty(options={"HIDDEN"})
+    read_block: bpy.props.FloatProperty(options={"HIDDEN"})
+    read_warnings: bpy.props.StringProperty(options={"HIDDEN"})
+    curve_text: bpy.props.StringProperty(options={"HIDDEN"})
+    curve_depth: bpy.props.FloatProperty(options={"HIDDEN"})
+    curve_force: bpy.props.FloatProperty(options={"HIDDEN"})
+    curve_stiffness: bpy.props.FloatProperty(options={"HIDDEN"})
+    map_low: bpy.props.FloatProperty(options={"HIDDEN"})
+    map_high: bpy.props.FloatProperty(options={"HIDDEN"})
+    shown_before: bpy.props.StringProperty(options={"HIDDEN"})
+
+
+classes = (PalpateSoftness,)
+
+
+def register() -> None:
+    """Give objects their softness."""
+    bpy.types.Object.palpate_softness = bpy.props.PointerProperty(type=PalpateSoftness)
+
+
+def unregister() -> None:
+    """Take it away; files keep what is stored in them."""
+    del bpy.types.Object.palpate_softness

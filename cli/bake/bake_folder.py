@@ -1,0 +1,161 @@
+"""``palpate bake --output-folder``: many meshes, on this computer's cores or on a cluster."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import time
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor, ThreadPoolExecutor
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from ...core.bake.many import BakeOutcome, BakeTask, always, bake_many
+from ...core.errors import PalpateError
+from ...core.machine.available_cores import available_cores
+from .bake_options import bake_input
+from .status_line import clear, duration, show, status_line
+
+EXIT_ERROR = 2
+
+
+@dataclass(frozen=True)
+class Workers:
+    """Who bakes.
+
+    Attributes
+    ----------
+    executor : takes the tasks.
+    count : how many tasks it works on at once.
+    threads : of BLAS for each task.
+    wanted : how workers far away learn that nobody waits for them any more.
+    """
+
+    executor: Executor
+    count: int
+    threads: int
+    wanted: Callable[[], bool] = always
+
+
+def run(arguments: argparse.Namespace, stopped: Sequence[int]) -> int:
+    """Bake all meshes; 0 when each became a body, 2 when some did not, each with its reason."""
+    names = _file_names(arguments.meshes, arguments.output_folder)
+    outcomes: list[BakeOutcome] = []
+    started = time.monotonic()
+
+    def note(outcome: BakeOutcome) -> None:
+        outcomes.append(outcome)
+        clear()
+        _tell(outcome, as_json=arguments.json)
+
+    def watch(running: int) -> None:
+        if stopped:
+            raise KeyboardInterrupt
+        show(
+            f"{len(outcomes)} of {len(names)} done, {running} under way, "
+            f"{duration(time.monotonic() - started)}"
+        )
+
+    with _workers(arguments, len(names)) as workers, status_line():
+        bake_many(
+            _tasks(arguments, names, workers.threads, note),
+            arguments.output_folder,
+            workers.executor,
+            on_done=note,
+            on_wait=watch,
+            # As many in store as there are workers, so that none waits for a mesh to be read.
+            at_once=2 * workers.count,
+            wanted=workers.wanted,
+        )
+    if arguments.json:
+        print(json.dumps({"bodies": [_figures(outcome) for outcome in outcomes]}))
+    return EXIT_ERROR if any(outcome.error for outcome in outcomes) else 0
+
+
+def _file_names(meshes: Sequence[Path], folder: Path) -> dict[Path, str]:
+    """The body file of each mesh, if they do not get into each other's way."""
+    if folder.exists() and not folder.is_dir():
+        raise PalpateError(f"--output-folder: {folder} is a file; name a folder, existing or new")
+    names: dict[Path, str] = {}
+    makers: dict[str, Path] = {}
+    for mesh in meshes:
+        name = f"{mesh.stem}.npz"
+        if name in makers:
+            raise PalpateError(
+                f"{mesh}: its body would be {folder / name}, and so would that of "
+                f"{makers[name]}; rename one, or bake them into two folders"
+            )
+        if (folder / name).exists() and mesh.exists() and (folder / name).samefile(mesh):
+            raise PalpateError(
+                f"{mesh}: its body would take its place; choose another --output-folder"
+            )
+        names[mesh], makers[name] = name, mesh
+    return names
+
+
+@contextmanager
+def _workers(arguments: argparse.Namespace, meshes: int) -> Iterator[Workers]:
+    if arguments.scheduler is not None:
+        from .scheduler import cluster
+
+        with cluster(arguments.scheduler) as found:
+            # A worker of a cluster has its share of the machine's cores already.
+            yield Workers(found.executor, found.slots, _threads(arguments, 1), found.wanted)
+        return
+    cores = available_cores()
+    jobs = min(cores if arguments.jobs is None else arguments.jobs, meshes)
+    if jobs < 1:
+        raise PalpateError(f"--jobs: {arguments.jobs} bakes do nothing; give 1 or more")
+    with ThreadPoolExecutor(jobs) as executor:
+        yield Workers(executor, jobs, _threads(arguments, max(1, cores // jobs)))
+
+
+def _threads(arguments: argparse.Namespace, share: int) -> int:
+    return share if arguments.threads is None else arguments.threads
+
+
+def _tasks(
+    arguments: argparse.Namespace,
+    names: dict[Path, str],
+    threads: int,
+    note: Callable[[BakeOutcome], None],
+) -> Iterator[BakeTask]:
+    """Read meshes as they are asked for; those that cannot be read are noted."""
+    for mesh, file_name in names.items():
+        try:
+            given = bake_input(arguments, mesh, threads)
+        except PalpateError as problem:
+            note(BakeOutcome(str(mesh), error=str(problem).removeprefix(f"{mesh}: ")))
+        else:
+            yield BakeTask(str(mesh), file_name, given.source, given.settings)
+
+
+def _tell(outcome: BakeOutcome, *, as_json: bool) -> None:
+    if outcome.error is not None or outcome.report is None:
+        print(f"palpate: {outcome.name}: {outcome.error}", file=sys.stderr)
+        return
+    for warning in outcome.report.warnings:
+        print(f"palpate: warning: {outcome.name}: {warning}", file=sys.stderr)
+    if not as_json:
+        seconds = sum(outcome.report.seconds.values())
+        print(
+            f"{outcome.name} -> {outcome.path}  {outcome.nodes} nodes, "
+            f"{outcome.free_surface_nodes} free on the surface, {outcome.form}, "
+            f"{duration(seconds)}",
+            flush=True,
+        )
+
+
+def _figures(outcome: BakeOutcome) -> dict[str, object]:
+    if outcome.report is None:
+        return {"mesh": outcome.name, "error": outcome.error}
+    return {
+        "mesh": outcome.name,
+        "body": str(outcome.path),
+        "nodes": outcome.nodes,
+        "free_surface_nodes": outcome.free_surface_nodes,
+        "form": outcome.form,
+        **outcome.report.as_dict(),
+    }

@@ -1,0 +1,99 @@
+"""``palpate pin``: hold a body at more of its surface, without a new bake."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import time
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.bake.repin import pin_more
+from ...core.body import body_file
+from ...core.body.soft_body import SoftBody
+from ...core.errors import PalpateError
+from ...core.files.whole_file import refuse_missing_folder
+from ...core.stiffness.pins import PinBelow, pinned_nodes
+from ..body.body_argument import add_body
+from ..body.body_figures import body_figures
+from ..body.figure_lines import as_lines
+from .bake_options import AXES
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Describe the command."""
+    parser = subparsers.add_parser(
+        "pin",
+        help="pin more of a body, without a new bake",
+        description="Write the body file that a bake with these nodes pinned besides would give.",
+    )
+    add_body(parser)
+    parser.add_argument(
+        "-o", "--output", type=Path, required=True, metavar="OUT.npz", help="body file to write"
+    )
+    which = parser.add_mutually_exclusive_group(required=True)
+    which.add_argument(
+        "--below",
+        type=float,
+        metavar="FRACTION",
+        help="pin surface nodes within this lowest share of the height, besides those pinned",
+    )
+    which.add_argument(
+        "--nodes",
+        type=Path,
+        metavar="FILE",
+        help="pin these nodes besides: numbers in a text file, or an integer array in a .npy",
+    )
+    parser.add_argument("--up", choices=AXES, default="z", help="upward axis (default: z)")
+    parser.add_argument("--json", action="store_true", help="print figures as JSON")
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Load, pin, write, describe."""
+    refuse_missing_folder(arguments.output)
+    start = time.perf_counter()
+    body = body_file.load(arguments.body)
+    pinned = pin_more(body, _added(arguments, body))
+    body_file.save(pinned, arguments.output)
+    figures = {
+        **body_figures(pinned),
+        "pinned_before": len(body.fixed),
+        "body": str(arguments.output),
+        "seconds": {"pin": time.perf_counter() - start},
+    }
+    print(json.dumps(figures) if arguments.json else as_lines(figures))
+    return 0
+
+
+def _added(arguments: argparse.Namespace, body: SoftBody) -> NDArray[np.int64]:
+    if arguments.nodes is not None:
+        return _read_numbers(arguments.nodes)
+    return pinned_nodes(PinBelow(arguments.below, AXES[arguments.up]), body.mesh, None)
+
+
+def _read_numbers(file: Path) -> NDArray[np.int64]:
+    """Node numbers, (k,).
+
+    Raises
+    ------
+    PalpateError
+        There is no such file, or it holds something else than whole numbers.
+    """
+    if not file.is_file():
+        raise PalpateError(f"{file}: there is no such file; give node numbers in a text file")
+    try:
+        if file.suffix.lower() == ".npy":
+            numbers = np.load(file, allow_pickle=False)
+        else:
+            numbers = np.array([int(word) for word in file.read_text(encoding="utf-8").split()])
+    except (ValueError, EOFError) as problem:
+        raise PalpateError(
+            f"{file}: cannot be read as node numbers ({problem}); give whole numbers with blanks "
+            "or lines between them"
+        ) from problem
+    if not numbers.size or not np.issubdtype(numbers.dtype, np.integer):
+        raise PalpateError(f"{file}: holds no node numbers; give at least one whole number")
+    return np.asarray(numbers, dtype=np.int64).ravel()

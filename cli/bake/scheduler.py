@@ -1,0 +1,147 @@
+"""A Dask cluster as the workers of ``palpate bake --scheduler``."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import json
+import logging
+import secrets
+from collections.abc import Iterator
+from concurrent.futures import Executor
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ...core.errors import PalpateError
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+CONNECT_SECONDS = 10
+
+
+@dataclass(frozen=True)
+class StillWanted:
+    """Asked within a task of the cluster: whether the one who submitted it still waits.
+
+    ``event`` is the name of a cluster-wide event that is set once nobody does.
+    """
+
+    event: str
+
+    def __call__(self) -> bool:
+        """Ask the scheduler."""
+        from distributed import Event
+
+        return not Event(self.event).is_set()
+
+
+@dataclass(frozen=True)
+class Cluster:
+    """Workers that were found at an address, all with this Palpate.
+
+    Attributes
+    ----------
+    executor : hands tasks to them.
+    slots : how many tasks they work on at once.
+    wanted : tells them when nobody waits any more.
+    """
+
+    executor: Executor
+    slots: int
+    wanted: StillWanted
+
+
+@contextmanager
+def cluster(address: str) -> Iterator[Cluster]:
+    """The cluster whose scheduler is at ``address``, or described in a scheduler file.
+
+    Raises
+    ------
+    PalpateError
+        Dask is not installed, nothing answers, there are no workers, or they have no Palpate or
+        another one.
+    """
+    with _connected(address) as client:
+        _refuse_other_palpates(client, address)
+        from distributed import Event
+
+        stop = Event(f"palpate-stop-{secrets.token_hex(8)}", client=client)
+        try:
+            yield Cluster(
+                # Not pure: Dask would look through every mesh for tasks that are the same.
+                client.get_executor(pure=False),
+                sum(client.nthreads().values()),
+                StillWanted(stop.name),
+            )
+        except BaseException:
+            # A cluster that is gone cannot be told, and has nobody left to tell.
+            with suppress(OSError):
+                stop.set()
+            raise
+
+
+@contextmanager
+def _connected(address: str) -> Iterator[Client]:
+    try:
+        from distributed import Client
+    except ImportError as missing:
+        raise PalpateError(
+            "--scheduler: Dask is not installed here; install it with "
+            "'pip install palpate[scheduler]'"
+        ) from missing
+    # What it has to say of connections is said here, in one line.
+    for name in list(logging.root.manager.loggerDict):
+        if name.split(".")[0] == "distributed":
+            logging.getLogger(name).setLevel(logging.CRITICAL)
+    where = _address_in(Path(address)) if Path(address).is_file() else address
+    try:
+        client = Client(where, timeout=CONNECT_SECONDS)
+    except (OSError, ValueError) as problem:
+        reason = str(problem) or type(problem).__name__
+        raise PalpateError(
+            f"--scheduler: nothing answers at {address} ({reason}); "
+            "start 'dask scheduler' and workers, and give the address it prints"
+        ) from problem
+    with client:
+        try:
+            client.wait_for_workers(1, timeout=CONNECT_SECONDS)
+        except TimeoutError as problem:
+            raise PalpateError(
+                f"--scheduler: {address} has no workers; start some with 'dask worker {address}'"
+            ) from problem
+        yield client
+
+
+def _address_in(file: Path) -> str:
+    """The address in a scheduler file, as ``dask scheduler --scheduler-file`` writes it."""
+    try:
+        address = json.loads(file.read_text(encoding="utf-8"))["address"]
+    except (ValueError, LookupError, TypeError) as problem:
+        raise PalpateError(
+            f"--scheduler: {file} is no scheduler file; give the one that "
+            "'dask scheduler --scheduler-file' wrote, or the address it prints"
+        ) from problem
+    return str(address)
+
+
+def _refuse_other_palpates(client: Client, address: str) -> None:
+    ours = installed_version()
+    theirs = client.run(installed_version, on_error="return")
+    for worker, version in theirs.items():
+        if isinstance(version, BaseException):
+            raise PalpateError(
+                f"--scheduler: the worker {worker} cannot load Palpate ({version}); install "
+                f"palpate {ours} where the workers of {address} run"
+            )
+        if version != ours:
+            raise PalpateError(
+                f"--scheduler: the worker {worker} has palpate {version}, and this is {ours}; "
+                "install the same on both sides"
+            )
+
+
+def installed_version() -> str:
+    """Palpate's, where this is called."""
+    return importlib.metadata.version("palpate")

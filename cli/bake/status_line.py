@@ -1,0 +1,55 @@
+"""One line on a terminal that says where long work stands; nothing where nobody looks."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from ...core.bake.job import JobProgress
+
+CLEAR_LINE = "\r\x1b[K"
+LONGEST_AS_SECONDS = 2 * 60
+LONGEST_AS_MINUTES = 2 * 3600
+
+
+@contextmanager
+def status_line() -> Iterator[None]:
+    """Whatever :func:`show` printed within is gone afterwards."""
+    try:
+        yield
+    finally:
+        clear()
+
+
+def show(text: str) -> None:
+    """Replace the line, if standard error is a terminal."""
+    if sys.stderr.isatty():
+        print(f"{CLEAR_LINE}{text}", end="", file=sys.stderr, flush=True)
+
+
+def clear() -> None:
+    """Take the line away, so that something else can be printed."""
+    show("")
+
+
+def bake_status(progress: JobProgress) -> str:
+    """Step, share, elapsed and remaining time in words."""
+    parts = [progress.text if progress.share is None else _with_share(progress)]
+    parts.append(duration(progress.seconds))
+    if progress.remaining is not None:
+        parts.append(f"about {duration(progress.remaining)} left")
+    return ", ".join(parts)
+
+
+def duration(seconds: float) -> str:
+    """Seconds for reading: ``12 s``, ``3.5 min``, ``2.2 h``."""
+    if seconds < LONGEST_AS_SECONDS:
+        return f"{seconds:.0f} s"
+    if seconds < LONGEST_AS_MINUTES:
+        return f"{seconds / 60:.1f} min"
+    return f"{seconds / 3600:.1f} h"
+
+
+def _with_share(progress: JobProgress) -> str:
+    return f"{progress.text} {100 * (progress.share or 0.0):.0f} %"

@@ -1,0 +1,1 @@
+"""palpate info, and what commands say of bodies."""

@@ -1,0 +1,34 @@
+"""``palpate info``: what a body file holds."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import time
+
+from ...core.body import body_file
+from .body_argument import add_body
+from .body_figures import body_figures
+from .figure_lines import as_lines
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Describe the command."""
+    parser = subparsers.add_parser(
+        "info",
+        help="check a body file and print its figures",
+        description="Check a body file against its checksums and print its size, material and "
+        "pins.",
+    )
+    add_body(parser)
+    parser.add_argument("--json", action="store_true", help="print figures as JSON")
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Load, check and describe."""
+    start = time.perf_counter()
+    body = body_file.load(arguments.body)
+    figures = {**body_figures(body), "seconds": {"load": time.perf_counter() - start}}
+    print(json.dumps(figures) if arguments.json else as_lines(figures))
+    return 0

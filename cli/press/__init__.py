@@ -1,0 +1,1 @@
+"""palpate press, servo and devices."""

@@ -1,0 +1,76 @@
+"""``palpate devices``: haptic devices on this computer, and a simulated one."""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import json
+
+from ...core.servo.ports import Port, list_ports
+from ...simulated import device_process
+from ...simulated.options import add_simulated_options, simulated_options
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Describe the command and the one below it."""
+    parser = subparsers.add_parser(
+        "devices",
+        help="list haptic devices, or simulate one",
+        description="List the serial ports and the haptic devices that answer there.",
+    )
+    parser.add_argument(
+        "--port",
+        nargs="+",
+        action="extend",
+        default=[],
+        metavar="PATH",
+        help="ask these ports too, whatever they are",
+    )
+    parser.add_argument("--json", action="store_true", help="print figures as JSON")
+    parser.set_defaults(run=run)
+    below = parser.add_subparsers(title="without hardware", metavar="COMMAND")
+    simulate = below.add_parser(
+        "simulate",
+        help="be a device on a pseudo-terminal until Ctrl-C",
+        description="Be a device on a pseudo-terminal, held by a hand that moves by itself.",
+    )
+    device_process.add_haply_option(simulate)
+    add_simulated_options(simulate)
+    simulate.add_argument(
+        "--json", action="store_true", default=argparse.SUPPRESS, help="print as JSON lines"
+    )
+    simulate.set_defaults(run=run_simulate)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """List all ports with what answers there."""
+    ports = list_ports(arguments.port)
+    if arguments.json:
+        print(json.dumps({"ports": [dataclasses.asdict(port) for port in ports]}))
+        return 0
+    if not ports:
+        print("no serial ports; plug a device in, or try 'palpate devices simulate'")
+    for port in ports:
+        print(_line(port))
+        if port.warning:
+            print(f"  {port.warning}")
+    return 0
+
+
+def run_simulate(arguments: argparse.Namespace) -> int:
+    """Simulate until somebody says stop."""
+    options = simulated_options(arguments)
+    device_process.run(options, haply=arguments.haply, json_lines=arguments.json)
+    return 0
+
+
+def _line(port: Port) -> str:
+    words = dict.fromkeys((port.vendor, port.product or port.description, port.usb_id))
+    what = " ".join(word for word in words if word)
+    answer = port.reason
+    if port.hello is not None:
+        hello = port.hello
+        answer = f"{hello.name}: {hello.axes} axes, {hello.largest_force:g} N, {hello.rate_hz} Hz"
+        if port.tells_orientation:
+            answer += ", tells its orientation"
+    return f"{port.path}  {f'[{what}]  ' if what else ''}{answer}"

@@ -1,0 +1,213 @@
+"""``palpate press``: press a body at one or several places and read the forces."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.body import body_file
+from ...core.body.soft_body import SoftBody
+from ...core.contact.equations import CONTACT_MODES, ContactMode, Touch
+from ...core.errors import PalpateError
+from ...core.files.whole_file import whole_file
+from ...core.shape.meeting import FingerLoad, settled
+from ...core.shape.shapes import SHAPES, shape
+from ...core.stiffness.assembly import lame_parameters
+from ..body.body_argument import add_body
+from ..body.figure_lines import as_lines
+from .felt_option import add_felt, felt_forces, refuse_with_tool
+from .press_tool import pressed_tools, tool_figures, tool_summary
+from .tool_option import KINDS, tool_from
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Describe the command."""
+    parser = subparsers.add_parser(
+        "press",
+        help="press a body with one or several fingers and read the forces",
+        description="Press a body and print the force on each finger, where it touches, and how "
+        "far the surface moves.",
+        epilog="Several fingers: give --at and --by once for each, in the same order.",
+    )
+    add_body(parser)
+    for name, what in (
+        ("at", "the surface point nearest to this is touched"),
+        ("by", "the finger's displacement from there"),
+    ):
+        parser.add_argument(
+            f"--{name}",
+            type=float,
+            nargs=3,
+            action="append",
+            required=True,
+            metavar=("X", "Y", "Z"),
+            help=f"{what} (metres, body coordinates); once for each finger",
+        )
+    parser.add_argument(
+        "--young", type=float, metavar="PA", help="Young's modulus (default: the body's own)"
+    )
+    parser.add_argument(
+        "--mode",
+        choices=CONTACT_MODES,
+        help="contact inside triangles: its point moves by exactly the finger's displacement "
+        "(consistent, the default), or as in the paper",
+    )
+    parser.add_argument(
+        "--tool",
+        metavar="TOOL",
+        help=f"press this instead of a point: {KINDS} (metres); its -z side is set down at --at, "
+        "against the surface, and moved by --by",
+    )
+    parser.add_argument(
+        "--friction",
+        type=float,
+        metavar="MU",
+        help="coefficient of friction between --tool and body (default: 0)",
+    )
+    add_felt(parser)
+    parser.add_argument(
+        "--shape",
+        choices=SHAPES,
+        default="linear",
+        help="how the deformed shape is computed under the forces: linear elasticity, the paper's "
+        "(16) by tables or by power series, or linear elasticity bent by the rotations it means "
+        "and relaxed (default: linear)",
+    )
+    parser.add_argument(
+        "--displacements",
+        type=Path,
+        metavar="OUT.npy",
+        help="write displacements of the free surface nodes, float64 (n, 3)",
+    )
+    parser.add_argument("--json", action="store_true", help="print figures as JSON")
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Touch, deform, print."""
+    body = body_file.load(arguments.body)
+    young_modulus = body.young_modulus if arguments.young is None else arguments.young
+    lame_parameters(young_modulus, body.poisson_ratio)
+    if arguments.tool is not None:
+        return _press_tool(arguments, body, young_modulus)
+    if arguments.friction is not None:
+        raise PalpateError("--friction: points have none; give it with --tool")
+    return _press_points(arguments, body, young_modulus)
+
+
+def _press_points(arguments: argparse.Namespace, body: SoftBody, young_modulus: float) -> int:
+    mode: ContactMode = arguments.mode or "consistent"
+    touches = body.touch_several(arguments.at, arguments.by, young_modulus, mode)
+    loads = [FingerLoad(touch.triangle, touch.nodal_forces) for touch in touches]
+    displacements = _deformed(arguments, body, loads, young_modulus)
+    felt = felt_forces(arguments, body, touches, young_modulus, mode)
+    contacts = [
+        _contact_figures(body, touch, displacements) | {"force": force.tolist()}
+        for touch, force in zip(touches, felt, strict=True)
+    ]
+    common = _common_figures(arguments, displacements, young_modulus)
+    common |= {"mode": mode, "felt": arguments.felt}
+    if len(contacts) == 1:
+        figures = contacts[0] | common
+        print(json.dumps(figures) if arguments.json else as_lines(figures))
+        return 0
+    coupling = _coupling(body, arguments.at, young_modulus)
+    if arguments.json:
+        print(json.dumps({"contacts": contacts, "coupling": coupling.tolist(), **common}))
+        return 0
+    for number, contact in enumerate(contacts, start=1):
+        print(f"contact {number}\n{_indented(as_lines(contact))}")
+    print(f"coupling, m/N (how far each contact moves per newton on each)\n{_as_table(coupling)}")
+    print(as_lines(common))
+    return 0
+
+
+def _press_tool(arguments: argparse.Namespace, body: SoftBody, young_modulus: float) -> int:
+    if arguments.mode is not None:
+        raise PalpateError("--mode: it is about points; leave it out with --tool")
+    refuse_with_tool(arguments)
+    tool = tool_from(arguments.tool)
+    touches = pressed_tools(
+        body, tool, arguments.at, arguments.by, young_modulus, arguments.friction or 0.0
+    )
+    loads = [FingerLoad(touch.nodes, touch.nodal_forces) for touch in touches]
+    displacements = _deformed(arguments, body, loads, young_modulus)
+    common = _common_figures(arguments, displacements, young_modulus)
+    figures = [(tool_figures if arguments.json else tool_summary)(touch) for touch in touches]
+    if arguments.json:
+        several: dict[str, object] = {"contacts": figures}
+        print(json.dumps((figures[0] if len(figures) == 1 else several) | common))
+    elif len(figures) == 1:
+        print(as_lines(figures[0] | common))
+    else:
+        for number, contact in enumerate(figures, start=1):
+            print(f"contact {number}\n{_indented(as_lines(contact))}")
+        print(as_lines(common))
+    return 0
+
+
+def _deformed(
+    arguments: argparse.Namespace, body: SoftBody, loads: list[FingerLoad], young_modulus: float
+) -> NDArray[np.float64]:
+    """Displacements (n, 3) under the fingers' forces, written where that is asked for."""
+    chosen = shape(body, arguments.shape, arguments.body)
+    try:
+        displacements = settled(body, chosen, loads, young_modulus).displacements
+    finally:
+        chosen.close()
+        if chosen.notice:
+            print(f"palpate: warning: {chosen.notice}", file=sys.stderr)
+    finite = all(np.isfinite(load.forces).all() for load in loads)
+    if not (finite and np.isfinite(displacements).all()):
+        raise PalpateError(
+            f"--young: at {young_modulus} Pa this press is beyond what numbers can hold; give less"
+        )
+    if arguments.displacements is not None:
+        with whole_file(arguments.displacements) as file:
+            np.save(file, displacements)
+    return displacements
+
+
+def _common_figures(
+    arguments: argparse.Namespace, displacements: NDArray[np.float64], young_modulus: float
+) -> dict[str, object]:
+    return {
+        "max_displacement": float(np.linalg.norm(displacements, axis=1).max()),
+        "young_modulus": young_modulus,
+        "shape": arguments.shape,
+    }
+
+
+def _contact_figures(
+    body: SoftBody, touch: Touch, displacements: NDArray[np.float64]
+) -> dict[str, object]:
+    return {
+        "triangle": touch.triangle.tolist(),
+        "alpha": touch.alpha.tolist(),
+        "point": touch.point.tolist(),
+        "nodal_forces": touch.nodal_forces.tolist(),
+        "force": touch.force.tolist(),
+        "contact_displacement": body.contact_displacement(touch, displacements).tolist(),
+    }
+
+
+def _coupling(body: SoftBody, at: list[list[float]], young_modulus: float) -> NDArray[np.float64]:
+    """C_pq / E, (m, m, 3, 3), m/N."""
+    places = body.closest_points.query(np.array(at))
+    return body.contact_compliance(places.triangle, places.alpha) / young_modulus
+
+
+def _as_table(coupling: NDArray[np.float64]) -> str:
+    """The blocks as one matrix, three rows and columns for each contact."""
+    size = 3 * len(coupling)
+    rows = coupling.transpose(0, 2, 1, 3).reshape(size, size)
+    return "\n".join("".join(f"{value:11.3e}" for value in row) for row in rows)
+
+
+def _indented(lines: str) -> str:
+    return "\n".join(f"  {line}" for line in lines.splitlines())

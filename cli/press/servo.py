@@ -1,0 +1,367 @@
+"""``palpate servo``: run the native thread against a device, without Blender."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import sys
+import time
+from collections.abc import Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.body import body_file
+from ...core.body.soft_body import SoftBody
+from ...core.errors import PalpateError
+from ...core.machine.stop_signals import stopped_by_signals
+from ...core.servo.latency_timer import explain
+from ...core.servo.ports import PortError, check_port
+from ...core.servo.recording import check_recording_path, check_room, write_recording
+from ...core.servo.session import STATES, LinkDevice, native_body, servo_on
+from ...core.stiffness.assembly import lame_parameters
+from ...simulated.options import SimulatedOptions
+from ...simulated.simulated_process import SimulatedDevice
+from ..body.body_argument import add_body
+from ..body.figure_lines import as_lines
+from .felt_option import add_felt, softening_table
+from .haply import add_haply_options, connect_haply
+
+if TYPE_CHECKING:
+    from ...core.servo.session import FingerCounters, Servo, Snapshot
+    from ...core.shape.force_at_depth.softening_table import SofteningTable
+
+HELLO_SECONDS = 5.0
+LOOK_EVERY_SECONDS = 0.02
+LONGEST_RECORDING_SECONDS = 3600.0
+HAND_FORCE = 1.5
+"""What the simulated hand presses with at most, N: half of what its device can give."""
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Describe the command."""
+    parser = subparsers.add_parser(
+        "servo",
+        help="touch a body with a device, at 1 kHz",
+        description="Run the real-time thread between a device and a body, then print what was "
+        "felt and how its deadlines were kept. Ctrl-C ends it with zero force.",
+    )
+    add_body(parser)
+    device = parser.add_mutually_exclusive_group(required=True)
+    device.add_argument("--port", metavar="PORT", help="a device that speaks the link")
+    device.add_argument(
+        "--simulate", action="store_true", help="a simulated device that presses from above"
+    )
+    add_haply_options(parser, device)
+    parser.add_argument(
+        "--second-port",
+        action="append",
+        default=[],
+        metavar="PORT",
+        help="another device that speaks the link, which presses the same body; repeatable",
+    )
+    parser.add_argument(
+        "--mode",
+        choices=("consistent", "paper"),
+        default="consistent",
+        help="contact inside triangles: its point moves by exactly the finger's displacement "
+        "(consistent, the default), or as in the paper",
+    )
+    add_felt(parser)
+    parser.add_argument(
+        "--seconds",
+        type=float,
+        default=10.0,
+        metavar="S",
+        help="how long to run (default: %(default)g)",
+    )
+    parser.add_argument(
+        "--rate", type=int, default=1000, metavar="HZ", help="ticks a second (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--young", type=float, metavar="PA", help="Young's modulus (default: the body's own)"
+    )
+    parser.add_argument(
+        "--record", type=Path, metavar="FILE", help="write every tick to FILE.csv or FILE.npz"
+    )
+    parser.add_argument("--json", action="store_true", help="print figures as JSON")
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Load, connect, touch for some seconds, report."""
+    if not 0.0 < arguments.seconds < math.inf:
+        raise PalpateError("--seconds: the time must be more than 0 s and have an end")
+    if arguments.record is not None:
+        _check_recording(arguments.record, arguments.seconds)
+    body = body_file.load(arguments.body)
+    young_modulus = body.young_modulus if arguments.young is None else arguments.young
+    lame_parameters(young_modulus, body.poisson_ratio)
+    with ExitStack() as stack:
+        simulated = None
+        port = arguments.port or arguments.haply
+        if arguments.simulate:
+            hand = press_from_above(body, young_modulus)
+            simulated = stack.enter_context(SimulatedDevice(hand))
+            port = simulated.port
+        others: list[str] = arguments.second_port
+        _check_ports([port, *others])
+        stopped = stack.enter_context(stopped_by_signals())
+        surface = native_body(body, whole=bool(others))
+        servo = servo_on(
+            surface,
+            young_modulus=young_modulus,
+            rate_hz=arguments.rate,
+            mode=arguments.mode,
+            felt=arguments.felt,
+        )
+        table = None
+        if arguments.felt == "corrected":
+            table = stack.enter_context(softening_table(body, arguments.body))
+            table.listen(surface.set_softenings)
+        stack.callback(servo.stop)
+        _add_fingers(servo, others)
+        if arguments.record is not None:
+            _start_recording(servo, arguments.record, arguments.seconds)
+        if arguments.haply:
+            _, at, _ = _highest_place(body)
+            connect_haply(servo, arguments, _vector(at), stopped)
+        else:
+            _connect(servo, port, stopped)
+        _await_greetings(servo, others, stopped)
+        report = _touch(servo, port, arguments.seconds, stopped, table)
+        if simulated is not None:
+            report["simulated_device"] = simulated.stop()
+        report["young_modulus"] = young_modulus
+        try:
+            if arguments.record is not None:
+                report["recording"] = _write_recording(arguments.record, servo)
+        finally:
+            # A file that cannot be written shall not take the report with it.
+            print(json.dumps(report) if arguments.json else _for_people(report))
+    return 0
+
+
+def _check_recording(path: Path, seconds: float) -> None:
+    check_recording_path(path)
+    if seconds + HELLO_SECONDS > LONGEST_RECORDING_SECONDS:
+        longest = LONGEST_RECORDING_SECONDS - HELLO_SECONDS
+        raise PalpateError(f"--record: a recording ends after {longest:g} s; give fewer --seconds")
+
+
+def _start_recording(servo: Servo, path: Path, seconds: float) -> None:
+    most_bytes = servo.start_recording(seconds + HELLO_SECONDS)
+    # Now, for a disk that is full shows only when all has been felt.
+    check_room(path, most_bytes)
+    sys.stderr.write(f"recording; takes up to {most_bytes / 1e6:.0f} MB of memory\n")
+
+
+def _write_recording(path: Path, servo: Servo) -> dict[str, object]:
+    samples = servo.recording()
+    write_recording(path, samples, STATES, servo.counters()["rate_hz"])
+    return {"file": str(path), "ticks": len(samples), "lost": servo.recording_lost}
+
+
+def press_from_above(body: SoftBody, young_modulus: float) -> SimulatedOptions:
+    """A simulated hand that presses the body where it is highest, against the surface's normal.
+
+    It goes in by a tenth of the body's height or until it takes `HAND_FORCE`, whichever is less.
+    """
+    mesh = body.mesh
+    extents = np.ptp(mesh.nodes, axis=0)
+    highest, at, normal = _highest_place(body)
+    blocks = body.contact_blocks[mesh.surface_local_triangles[highest]]
+    stiffness = young_modulus * float(normal @ blocks.mean(axis=0) @ normal)
+    depth = min(0.1 * float(extents[2]), HAND_FORCE / stiffness)
+    hand = SimulatedOptions()
+    # The hand reaches deeper than the device gets, for its spring gives way to the body's force.
+    reach = depth * (1.0 + stiffness / hand.hand_stiffness)
+    height = 0.2 * float(extents.max())
+    return SimulatedOptions(
+        rest=_vector(at + height * normal),
+        at=_vector(at),
+        by=_vector(-reach * normal),
+        # Slow enough for any size of body: at most half a metre per second.
+        approach=max(0.5, 4.0 * height),
+        period=max(2.0, 8.0 * reach),
+    )
+
+
+def _highest_place(body: SoftBody) -> tuple[int, NDArray[np.float64], NDArray[np.float64]]:
+    """The surface triangle to press from above: its index, its centre (m) and its normal."""
+    mesh = body.mesh
+    corners = mesh.nodes[mesh.surface_triangles]
+    centres = corners.mean(axis=1)
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    pinned = np.isin(mesh.surface_triangles, body.fixed).any(axis=1)
+    extents = np.ptp(mesh.nodes, axis=0)
+    # Free places that look up come before steep ones and those before pinned ones; of places as
+    # high as the highest, such as a flat top, the middle.
+    fit = ~pinned & (normals[:, 2] > 0.7)
+    candidates = next(choice for choice in (fit, ~pinned, ~fit) if choice.any())
+    high = candidates & (centres[:, 2] >= centres[candidates, 2].max() - 0.01 * extents[2])
+    off_centre = np.linalg.norm((centres - centres[high].mean(axis=0))[:, :2], axis=1)
+    highest = int(np.where(high, off_centre, np.inf).argmin())
+    return highest, centres[highest], normals[highest]
+
+
+def _vector(values: NDArray[np.float64]) -> tuple[float, float, float]:
+    x, y, z = values.tolist()
+    return (x, y, z)
+
+
+def _connect(servo: Servo, port: str, stopped: Sequence[int]) -> None:
+    try:
+        servo.start(LinkDevice(port))
+    except OSError as error:
+        raise PalpateError(str(error)) from error
+    _await_greeting(servo, 0, port, stopped)
+
+
+def _check_ports(ports: Sequence[str]) -> None:
+    for port in ports:
+        check_port(port)
+    if len(set(ports)) < len(ports):
+        raise PalpateError("--second-port: a port is named twice; give each device its own")
+
+
+def _await_greetings(servo: Servo, others: Sequence[str], stopped: Sequence[int]) -> None:
+    for finger, port in enumerate(others, start=1):
+        _await_greeting(servo, finger, port, stopped)
+
+
+def _add_fingers(servo: Servo, ports: Sequence[str]) -> None:
+    for port in ports:
+        try:
+            servo.add(LinkDevice(port))
+        except (OSError, ValueError) as error:
+            raise PalpateError(f"--second-port: {error}") from error
+
+
+def _await_greeting(servo: Servo, finger: int, port: str, stopped: Sequence[int]) -> None:
+    def counters() -> FingerCounters:
+        return servo.counters()["fingers"][finger]
+
+    deadline = time.monotonic() + HELLO_SECONDS
+    while counters()["link"]["device"] is None and not stopped:
+        if counters()["faults"]["wrong protocol"]:
+            break
+        if time.monotonic() > deadline:
+            raise PortError(
+                port,
+                f"does not answer HELLO within {HELLO_SECONDS:g} s; check that it is a haptic "
+                "device that speaks Palpate's link",
+            )
+        time.sleep(LOOK_EVERY_SECONDS)
+    if counters()["faults"]["wrong protocol"]:
+        raise PortError(
+            port,
+            "speaks another version of the link than this Palpate; update the older of the two",
+        )
+
+
+@dataclass
+class _Felt:
+    """Extremes of the first finger in all ticks so far, SI units."""
+
+    samples: int = 0
+    touching: int = 0
+    contact_force: float = 0.0
+    output_force: float = 0.0
+    depth: float = 0.0
+
+    def take(self, samples: NDArray[np.void]) -> None:
+        samples = samples[samples["finger"] == 0]
+        if not len(samples):
+            return
+        contact, output, depth = (
+            np.linalg.norm(vectors, axis=1)
+            for vectors in (
+                samples["force"],
+                samples["output"],
+                samples["probe"] - samples["proxy"],
+            )
+        )
+        self.samples += len(samples)
+        self.touching += int(np.count_nonzero(contact))
+        self.contact_force = max(self.contact_force, float(contact.max()))
+        self.output_force = max(self.output_force, float(output.max()))
+        self.depth = max(self.depth, float(depth[contact > 0.0].max(initial=0.0)))
+
+
+def _for_people(report: dict[str, Any]) -> str:
+    """The report one figure a line, and the stages of the tick as a table."""
+    lines = as_lines({name: value for name, value in report.items() if name != "stages_us"})
+    columns = ("mean", "p99", "max")
+    rows = [f"{'tick, us':10}" + "".join(f"{column:>9}" for column in columns)]
+    for stage, times in report["stages_us"].items():
+        rows.append(f"{stage:10}" + "".join(f"{times[column]:9.2f}" for column in columns))
+    return "\n".join([lines, *rows])
+
+
+def _of_others(last: Snapshot, counters: Sequence[FingerCounters]) -> dict[str, Any]:
+    """State, faults and link of the fingers beside the first; nothing if there are none."""
+    others = [
+        {"last_state": finger.state, "last_fault": finger.fault, **counted}
+        for finger, counted in zip(last.fingers[1:], counters[1:], strict=False)
+    ]
+    return {"other_fingers": others} if others else {}
+
+
+def _ask_for(table: SofteningTable, snapshot: Snapshot) -> None:
+    """What the touched places lack, and their neighbourhood."""
+    nodes = np.concatenate([finger.nodes for finger in snapshot.fingers])
+    if len(nodes):
+        table.around(table.body.mesh.surface_nodes[nodes])
+
+
+def _touch(
+    servo: Servo,
+    port: str,
+    seconds: float,
+    stopped: Sequence[int],
+    table: SofteningTable | None,
+) -> dict[str, Any]:
+    felt = _Felt()
+    begin = time.monotonic()
+    while not stopped and time.monotonic() < begin + seconds and servo.running:
+        time.sleep(LOOK_EVERY_SECONDS)
+        felt.take(servo.samples())
+        if table is not None:
+            _ask_for(table, servo.snapshot())
+    last = servo.snapshot()
+    servo.stop()
+    felt.take(servo.samples())
+    counters = servo.counters()
+    return {
+        **{name: counters[name] for name in ("rate_hz", "ticks", "missed", "late_ticks")},
+        "lateness_us": counters["lateness_us"],
+        **{
+            name: counters[name]
+            for name in (
+                *("late_over_10_us", "late_over_50_us", "late_over_200_us", "late_over_1000_us"),
+                *("longest_gap_us", "stages_us", "busy_us", "spun_us"),
+            )
+        },
+        "realtime": counters["realtime"],
+        "link": counters["link"],
+        "warning": explain(counters["link"], port) or "",
+        "faults": counters["faults"],
+        "samples_lost": counters["samples_lost"],
+        "seconds": time.monotonic() - begin,
+        "interrupted": bool(stopped),
+        "last_state": last.state,
+        "last_fault": last.fault,
+        "felt": last.felt,
+        "touching_ticks": felt.touching,
+        **_of_others(last, counters["fingers"]),
+        "peak_contact_force_n": felt.contact_force,
+        "peak_output_force_n": felt.output_force,
+        "deepest_mm": felt.depth * 1e3,
+    }

@@ -1,0 +1,1 @@
+"""palpate shore, materials, durometer, curve and softness."""

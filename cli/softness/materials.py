@@ -1,0 +1,67 @@
+"""``palpate materials``: the presets, with what is known of them."""
+
+from __future__ import annotations
+
+import argparse
+import json
+
+from ...core.softness.scales.materials import MATERIALS, Material
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Describe the command."""
+    parser = subparsers.add_parser(
+        "materials",
+        help="list the material presets and their sources",
+        description="List the materials that 'palpate bake --material' knows, with their constants "
+        "and where these come from.",
+    )
+    parser.add_argument("--json", action="store_true", help="print figures as JSON")
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Print all of them."""
+    if arguments.json:
+        print(json.dumps({name: _figures(material) for name, material in MATERIALS.items()}))
+        return 0
+    for name, material in MATERIALS.items():
+        shore = "" if material.shore is None else f", Shore {material.shore}"
+        constants = f"{_pascal(material.young_modulus)}, {material.poisson_ratio:g}{shore}"
+        print(f"{name.lower().replace('_', '-'):16}{material.name}: {constants}")
+        print(f"{'':16}{material.basis}: {material.source}{_measured(material)}")
+    return 0
+
+
+def material_named(word: str) -> Material:
+    """The preset of a name as it is printed, for ``argparse``."""
+    key = word.upper().replace("-", "_")
+    if key not in MATERIALS:
+        raise argparse.ArgumentTypeError(
+            f"'{word}' is no material; 'palpate materials' lists them, such as ecoflex-30"
+        )
+    return MATERIALS[key]
+
+
+def _figures(material: Material) -> dict[str, object]:
+    return {
+        "name": material.name,
+        "young_modulus": material.young_modulus,
+        "poisson_ratio": material.poisson_ratio,
+        "basis": material.basis,
+        "source": material.source,
+        "shore": None if material.shore is None else str(material.shore),
+        "density": material.density,
+        "measured_modulus": material.measured_modulus,
+    }
+
+
+def _measured(material: Material) -> str:
+    modulus = material.measured_modulus
+    return "" if modulus is None else f" ({_pascal(modulus)})"
+
+
+def _pascal(modulus: float) -> str:
+    if modulus >= 1e6:
+        return f"{modulus / 1e6:.3g} MPa"
+    return f"{modulus / 1e3:.3g} kPa"

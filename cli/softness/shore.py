@@ -1,0 +1,78 @@
+"""``palpate shore``: a Shore value as Young's modulus by every relation, or the other way."""
+
+from __future__ import annotations
+
+import argparse
+import json
+
+from ...core.errors import PalpateError
+from ...core.softness.scales.relations import RELATIONS, RUBBER_POISSON_RATIO
+from ...core.softness.scales.shore import (
+    SCALES,
+    Shore,
+    shore_from_young,
+    young_from_shore,
+    young_range,
+)
+from ..body.figure_lines import as_lines
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Describe the command."""
+    parser = subparsers.add_parser(
+        "shore",
+        help="convert Shore 00 or A to Young's modulus, and back",
+        description="Print Young's modulus for a Shore value, or the Shore values for Young's "
+        "modulus.",
+    )
+    which = parser.add_mutually_exclusive_group(required=True)
+    which.add_argument(
+        "value", nargs="?", metavar="SHORE", help="Shore value, such as 00-30 or A20"
+    )
+    which.add_argument(
+        "--young", type=float, metavar="PA", help="Young's modulus, to be told as Shore values"
+    )
+    parser.add_argument(
+        "--poisson",
+        type=float,
+        default=RUBBER_POISSON_RATIO,
+        metavar="NU",
+        help="Poisson's ratio (default: %(default)g, rubber)",
+    )
+    parser.add_argument("--json", action="store_true", help="print figures as JSON")
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Convert and print."""
+    figures = _both_scales(arguments) if arguments.value is None else _moduli(arguments)
+    print(json.dumps(figures) if arguments.json else as_lines(figures))
+    return 0
+
+
+def _moduli(arguments: argparse.Namespace) -> dict[str, object]:
+    shore = Shore.parse(arguments.value)
+    usual = young_from_shore(shore, arguments.poisson)
+    figures: dict[str, object] = {"shore": str(shore), "young_modulus": usual}
+    for name, relation in RELATIONS.items():
+        if relation.scale == shore.scale and relation.lowest <= shore.value <= relation.highest:
+            figures[f"young_by_{name}"] = young_from_shore(shore, arguments.poisson, name)
+    return figures
+
+
+def _both_scales(arguments: argparse.Namespace) -> dict[str, object]:
+    """The value on each scale that reaches to this modulus; where none does, its refusal."""
+    figures: dict[str, object] = {"young_modulus": arguments.young}
+    refusals = []
+    for scale in SCALES:
+        try:
+            shore = shore_from_young(arguments.young, scale, arguments.poisson)
+        except PalpateError as refusal:
+            refusals.append(refusal)
+        else:
+            figures[f"shore_{scale.lower()}"] = round(shore.value, 1)
+    if len(refusals) == len(SCALES):
+        # Scales go from soft to firm: what is softer than all of them is refused by the first.
+        softest, _ = young_range(SCALES[0], arguments.poisson)
+        raise refusals[0 if arguments.young < softest else -1]
+    return figures

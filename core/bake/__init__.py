@@ -1,0 +1,1 @@
+"""The bake: settings, prediction, the job and its child process."""

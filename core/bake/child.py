@@ -1,0 +1,84 @@
+"""Run one bake in a process of its own, so that it can be stopped at any moment.
+
+Started by ``run_module.py``. What needs numpy is imported only after the parent's path is known.
+"""
+
+import ctypes
+import faulthandler
+import json
+import os
+import signal
+import sys
+import time
+import traceback
+from pathlib import Path
+from typing import TextIO
+
+PROGRESS_FILE = "progress.jsonl"
+BODY_FILE = "body.npz"
+OUTCOME_FILE = "outcome.json"
+SECONDS_BETWEEN_LINES = 0.05
+LINUX_PR_SET_PDEATHSIG = 1
+
+
+def die_with_parent(longest_seconds: float) -> None:
+    """Leave no orphan: on Linux the kernel ends us with the parent, elsewhere a timer does."""
+    faulthandler.dump_traceback_later(longest_seconds, exit=True)
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(LINUX_PR_SET_PDEATHSIG, signal.SIGKILL)
+
+
+class ProgressLines:
+    """Progress as lines of a file: each new step, and its share some times a second."""
+
+    def __init__(self, lines: TextIO) -> None:
+        self._lines = lines
+        self._step = ""
+        self._next = 0.0
+
+    def tell(self, step: str, share: float | None) -> None:
+        """Write a line, unless one was just written for the same step."""
+        now = time.monotonic()
+        if step != self._step or now >= self._next:
+            self._step, self._next = step, now + SECONDS_BETWEEN_LINES
+            print(json.dumps([step, share]), file=self._lines)
+
+
+def run(folder: Path) -> dict[str, object]:
+    """Bake what the folder asks for; the outcome says how it went."""
+    from ..body import body_file
+    from ..errors import PalpateError
+    from .request import BakeRequest
+    from .steps import bake
+
+    request = BakeRequest.read(folder)
+    with (folder / PROGRESS_FILE).open("a", encoding="utf-8", buffering=1) as lines:
+        tell = ProgressLines(lines).tell
+        try:
+            body, report = bake(request.source, request.settings, tell, request.surface)
+            tell("store", 1.0)
+            body_file.save(body, folder / BODY_FILE)
+        except PalpateError as problem:
+            return {"error": str(problem)}
+    return {"report": report.as_dict()}
+
+
+def main() -> int:
+    """Entry point; the only argument is the folder."""
+    folder = Path(sys.argv[1])
+    context = json.loads((folder / "context.json").read_text(encoding="utf-8"))
+    die_with_parent(context["longest_seconds"])
+    # fTetWild drops files where it stands.
+    os.chdir(folder)
+    sys.path[:] = context["path"]
+    try:
+        outcome = run(folder)
+    except MemoryError:
+        outcome = {
+            "error": "bake: the memory does not suffice for this many surface nodes; choose the "
+            "compressed form or use a larger edge length"
+        }
+    except Exception:  # noqa: BLE001  the parent raises it again, with this traceback
+        outcome = {"crash": traceback.format_exc()}
+    (folder / OUTCOME_FILE).write_text(json.dumps(outcome), encoding="utf-8")
+    return 0

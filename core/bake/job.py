@@ -1,0 +1,248 @@
+"""A bake that runs beside the caller: started, polled, cancelled; leaves nothing when cancelled."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+from ..body import body_file
+from ..body.soft_body import SoftBody
+from ..compliance.mapped import MappedCompliance
+from ..errors import PalpateError
+from ..files.whole_file import refuse_unwritable
+from ..machine import run_module
+from ..machine.remaining_time import RemainingTime
+from ..mesh.ftetwild_log import stage
+from ..mesh.surface import Surface
+from ..mesh.tet_mesh import TetMesh
+from ..mesh.tetrahedralize import Fit
+from ..progress import unwatched
+from .child import BODY_FILE, OUTCOME_FILE, PROGRESS_FILE
+from .request import BakeRequest
+from .steps import BakeReport, BakeSettings
+
+# More than any line of progress has.
+LINE_BYTES = 200
+LOG_FILE = "log.txt"
+STEP_TEXTS = {
+    "start": "Starting",
+    "tetrahedralize": "Filling with tetrahedra",
+    "check": "Comparing with the mesh",
+    "stiffness": "Assembling the stiffness",
+    "plan": "Planning the elimination",
+    "compliance": "Inverting the stiffness",
+    "compress": "Compressing the compliance",
+    "store": "Writing the body file",
+}
+
+
+@dataclass(frozen=True)
+class JobProgress:
+    """Where a job stands.
+
+    Attributes
+    ----------
+    step, text : what it is doing, as a word for programs and in words for people.
+    share : of the whole that is done; None while nobody can know.
+    seconds : since it began.
+    remaining : seconds until it is done; None while nobody can know.
+    """
+
+    step: str
+    text: str
+    share: float | None
+    seconds: float
+    remaining: float | None = None
+
+
+class BakeJob:
+    """One bake in a child process and a temporary folder, both gone when the job is closed.
+
+    Parameters
+    ----------
+    source, settings, surface : as for :func:`palpate.core.bake.steps.bake`.
+    python : how to start Python, for example ``(sys.executable, *bpy.app.python_args)``.
+
+    Raises
+    ------
+    PalpateError
+        Settings outside their range; Python cannot be started.
+    """
+
+    def __init__(
+        self,
+        source: Surface | TetMesh,
+        settings: BakeSettings,
+        surface: Surface | None = None,
+        python: Sequence[str] = (sys.executable,),
+    ) -> None:
+        settings.checked()
+        self._time_limit = settings.time_limit
+        self._started = time.monotonic()
+        self._remaining = RemainingTime()
+        self._folder = Path(tempfile.mkdtemp(prefix="palpate-bake-"))
+        try:
+            BakeRequest(source, settings, surface).write(self._folder)
+            self._child = self._start(python)
+        except BaseException:
+            shutil.rmtree(self._folder)
+            raise
+
+    def poll(self) -> JobProgress:
+        """Where the bake stands now.
+
+        Raises
+        ------
+        PalpateError
+            Tetrahedralization took longer than its time limit; the job is closed.
+        """
+        seconds = time.monotonic() - self._started
+        step, share = self._newest_progress()
+        text = STEP_TEXTS[step]
+        if step == "tetrahedralize":
+            if seconds > self._time_limit and not self.finished:
+                self.close()
+                raise PalpateError(
+                    f"tetrahedralization: not done within {self._time_limit:g} s; use a larger "
+                    "edge length or epsilon, decimate the mesh first, or allow more time"
+                )
+            text = f"{text}: {stage(self._log())}"
+        return JobProgress(step, text, share, seconds, self._remaining.update(seconds, share))
+
+    @property
+    def finished(self) -> bool:
+        """Whether the child has ended, well or not."""
+        return self._child.poll() is not None
+
+    def result(self, target: Path | Callable[[SoftBody], Path]) -> tuple[SoftBody, BakeReport]:
+        """The body and what to know about its bake; its file is put at ``target`` in one step.
+
+        Waits until the job has finished and closes it. The target may depend on the body: some
+        systems do not let a file be renamed once its numbers are in use.
+
+        Raises
+        ------
+        PalpateError
+            Whatever kept the bake from succeeding. No file is left then.
+        """
+        try:
+            self._child.wait()
+            report = self._report()
+            # Seen to be sound before it replaces another; read where it stays, since a large one
+            # is not read whole.
+            found = body_file.load(self._folder / BODY_FILE)
+            place = target(found) if callable(target) else target
+            body_file.adopt(self._folder / BODY_FILE, place)
+            # Of one that was read whole nothing is left in the folder that goes.
+            in_file = isinstance(found.compliance, MappedCompliance)
+            body = body_file.load(place) if in_file else found
+        finally:
+            self.close()
+        return body, report
+
+    def close(self) -> None:
+        """Stop the child if it still runs and remove the temporary folder. Safe to repeat."""
+        if self._child.poll() is None:
+            self._child.kill()
+        self._child.wait()
+        if self._folder.exists():
+            shutil.rmtree(self._folder)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        problem: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def _start(self, python: Sequence[str]) -> subprocess.Popen[bytes]:
+        context = {
+            "path": sys.path,
+            # For a parent that died where the kernel does not tell: twice the limit and an hour.
+            "longest_seconds": 2 * self._time_limit + 3600,
+        }
+        (self._folder / "context.json").write_text(json.dumps(context), encoding="utf-8")
+        command = [*python, *run_module.command("core.bake.child"), str(self._folder)]
+        try:
+            with (self._folder / LOG_FILE).open("wb") as log:
+                return subprocess.Popen(  # noqa: S603  our own script, by path
+                    command,
+                    stdin=subprocess.DEVNULL,
+                    stdout=log,
+                    stderr=subprocess.STDOUT,
+                )
+        except OSError as problem:
+            raise PalpateError(
+                f"bake: {command[0]} cannot be started ({problem}); reinstall Blender or Python"
+            ) from problem
+
+    def _newest_progress(self) -> tuple[str, float | None]:
+        file = self._folder / PROGRESS_FILE
+        whole_lines = _end_of(file, 2 * LINE_BYTES).split("\n")[:-1] if file.exists() else []
+        if not whole_lines:
+            return "start", None
+        step, share = json.loads(whole_lines[-1])
+        return step, share
+
+    def _log(self) -> str:
+        file = self._folder / LOG_FILE
+        return file.read_text(encoding="utf-8", errors="replace") if file.exists() else ""
+
+    def _report(self) -> BakeReport:
+        file = self._folder / OUTCOME_FILE
+        if not file.exists():
+            last = " | ".join(self._log().strip().splitlines()[-3:])
+            raise PalpateError(
+                f"bake: the process ended unexpectedly (exit status {self._child.returncode}"
+                f"{', last words: ' + last if last else ''}); use a larger edge length or epsilon, "
+                "or clean the mesh (merge by distance, recalculate normals)"
+            )
+        outcome = json.loads(file.read_text(encoding="utf-8"))
+        if "error" in outcome:
+            raise PalpateError(outcome["error"])
+        if "crash" in outcome:
+            raise RuntimeError(f"the bake process failed:\n{outcome['crash']}")
+        report = outcome["report"]
+        fit = Fit(**report["fit"]) if report["fit"] else None
+        return BakeReport(report["seconds"], fit, report["warnings"])
+
+
+def _end_of(file: Path, count: int) -> str:
+    """The last ``count`` bytes of a text file, or all it has."""
+    with file.open("rb") as stream:
+        stream.seek(0, 2)
+        stream.seek(max(0, stream.tell() - count))
+        return stream.read().decode("utf-8")
+
+
+def run_bake(
+    source: Surface | TetMesh,
+    settings: BakeSettings,
+    target: Path,
+    on_progress: Callable[[JobProgress], None] = unwatched,
+    surface: Surface | None = None,
+    python: Sequence[str] = (sys.executable,),
+) -> tuple[SoftBody, BakeReport]:
+    """Bake in a child process and wait; parameters and errors as for :class:`BakeJob`.
+
+    An exception out of ``on_progress``, KeyboardInterrupt included, stops the child.
+    """
+    refuse_unwritable(target)
+    with BakeJob(source, settings, surface, python) as job:
+        while not job.finished:
+            on_progress(job.poll())
+            time.sleep(0.05)
+        return job.result(target)

@@ -1,0 +1,54 @@
+"""A sign beside the results of work on many machines that somebody still waits for them."""
+
+from __future__ import annotations
+
+import secrets
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..files.whole_file import refuse_unwritable, whole_file
+
+
+@dataclass(frozen=True)
+class Lease:
+    """A small file in the folder of the results, there as long as they are wanted.
+
+    Who sees it works in the same folder as the one who waits, and stops once it is gone.
+
+    Attributes
+    ----------
+    path : where the file is.
+    word : what it holds, so that another machine's folder of the same name is not mistaken for it.
+    """
+
+    path: Path
+    word: str
+
+    def is_seen(self) -> bool:
+        """Whether this process reaches the same folder, and the results are still wanted."""
+        try:
+            return self.path.read_text(encoding="ascii") == self.word
+        except FileNotFoundError:
+            return False
+
+
+@contextmanager
+def lease(folder: Path) -> Iterator[Lease]:
+    """Hold a lease in ``folder``, which is made if need be.
+
+    Raises
+    ------
+    UnwritableError
+        The folder cannot be made or written.
+    """
+    word = secrets.token_hex(16)
+    sign = Lease(folder / f".palpate-bake-{word[:8]}", word)
+    refuse_unwritable(sign.path)
+    with whole_file(sign.path, make_folders=True) as file:
+        file.write(word.encode("ascii"))
+    try:
+        yield sign
+    finally:
+        sign.path.unlink(missing_ok=True)

@@ -1,0 +1,200 @@
+"""More pins for a body that is baked: its compliance, held at further nodes of its surface.
+
+A dense compliance is downdated, which takes seconds where a bake takes minutes. Where the numbers
+as they are stored do not suffice for that, the body's own tetrahedra are eliminated again; a new
+tetrahedralization is never needed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.linalg import LinAlgError, cho_factor, cho_solve
+from scipy.linalg.blas import dgemm
+
+from ..body.soft_body import SoftBody
+from ..compliance.compression.compress import compress
+from ..compliance.compression.compressed_compliance import CompressedCompliance
+from ..compliance.dense import DenseCompliance
+from ..compliance.elimination.surface_columns import factor_for_columns
+from ..compliance.mapped import MappedCompliance
+from ..compliance.protocol import Compliance
+from ..compliance.surface_compliance import surface_compliance
+from ..errors import PalpateError
+from ..machine.machine_speed import dgemm_rate
+from ..mesh.tet_mesh import TetMesh
+from ..stiffness.assembly import assemble
+from ..stiffness.freedoms import freedoms
+from ..stiffness.held_pins import pins_checked
+from .bake_cost import MeshSize, estimate_cost
+from .settings import BakeSettings
+
+# The largest relative error of a column that a downdate may cause.
+LARGEST_ERROR = 2e-5
+
+# Standard deviation of a rounding error, as a share of the distance between neighbouring numbers.
+ROUNDING_DEVIATION = 0.29
+
+# Rows that are computed at once: large enough for BLAS to run at full speed.
+ROWS_PER_PRODUCT = 384
+
+# Seconds for each number of a table that is read, changed and written, on one core.
+SECONDS_PER_ENTRY = 2e-8
+
+PinsChange = Literal["same", "more", "bake"]
+
+
+def pins_change(mesh: TetMesh, old: ArrayLike, new: ArrayLike) -> PinsChange:
+    """What other pins ask for: nothing, :func:`pin_more`, or a bake.
+
+    Parameters
+    ----------
+    mesh : the body's tetrahedra.
+    old, new : pinned node numbers, in any order.
+
+    Returns
+    -------
+    ``same``; ``more`` where pins of surface nodes are added and none is taken away; else ``bake``.
+    """
+    before, after = np.unique(np.asarray(old)), np.unique(np.asarray(new))
+    if np.setdiff1d(before, after).size:
+        return "bake"
+    added = np.setdiff1d(after, before)
+    if not added.size:
+        return "same"
+    return "more" if np.isin(added, mesh.surface_nodes).all() else "bake"
+
+
+def pin_more(body: SoftBody, added_nodes: ArrayLike) -> SoftBody:
+    """The same body, held at further nodes of its surface; equal to a bake with these pins.
+
+    A dense compliance is downdated, L' = L - L_:P L_PP^-1 L_P: for the nodes that stay free: minus
+    the displacements by the forces that keep the nodes P where they are. Its columns are right to
+    :data:`LARGEST_ERROR`; where rounding in what is stored would cause more, and for a compressed
+    one (whose error L_PP^-1 would amplify beyond its tolerance), the compliance is computed anew
+    from the body's tetrahedra.
+
+    Parameters
+    ----------
+    body : as it is; it stays so.
+    added_nodes : numbers of nodes to pin besides; what is pinned already changes nothing.
+
+    Raises
+    ------
+    PalpateError
+        A node inside the body, which needs a bake; no such node; nothing left to touch.
+    """
+    added = np.setdiff1d(np.asarray(added_nodes, dtype=np.int64), body.fixed)
+    fixed = pins_checked(body.mesh, np.union1d(body.fixed, added))
+    inside = np.setdiff1d(added, body.mesh.surface_nodes)
+    if inside.size:
+        raise PalpateError(
+            f"pins: node {inside[0]} lies inside the body, and only its surface can be pinned "
+            "without a new bake; bake again with these pins"
+        )
+    if not added.size:
+        return body
+    compliance: Compliance | None = None
+    if isinstance(body.compliance, (DenseCompliance, MappedCompliance)):
+        compliance = _downdated(body.compliance, body.free_index(added))
+    return replace(body, fixed=fixed, compliance=compliance or _computed(body, fixed))
+
+
+def pin_more_seconds(
+    size: MeshSize, settings: BakeSettings, free_surface_nodes: int, added: int
+) -> float:
+    """About how long :func:`pin_more` will compute, so that a panel can choose another way.
+
+    Parameters
+    ----------
+    size : of the body's tetrahedra.
+    settings : that it was baked with: form, formulation, tolerance. A ``dense`` body is taken to
+        be downdated, a ``compressed`` one is computed anew.
+    free_surface_nodes : before the new pins.
+    added : number of nodes to pin besides.
+    """
+    if settings.form == "compressed":
+        return estimate_cost(size, settings).seconds
+    pinned, rows = 3.0 * added, 3.0 * free_surface_nodes
+    flops = pinned * rows**2 + 2 * pinned**2 * rows
+    return flops / dgemm_rate(settings.threads) + SECONDS_PER_ENTRY * rows**2
+
+
+def _downdated(
+    compliance: DenseCompliance | MappedCompliance, pinned: NDArray[np.int64]
+) -> DenseCompliance | None:
+    """L' where ``pinned`` are the places, among the free surface nodes, of those now held.
+
+    None where the numbers of the table are not exact enough for it.
+    """
+    count = compliance.node_count
+    kept = np.setdiff1d(np.arange(count), pinned)
+    pinned_rows, kept_rows = freedoms(pinned), freedoms(kept)
+    stored = compliance.table.reshape(3 * count, 3 * count)
+    loaded = stored[pinned_rows].astype(np.float64)
+    reach = loaded[:, kept_rows]
+    try:
+        # (3p, 3k): for 1 N on a kept freedom, the forces that hold the pinned ones.
+        holding = cho_solve(cho_factor(loaded[:, pinned_rows]), reach)
+    except LinAlgError:
+        return None
+    noise = _rounding_noise(stored, pinned_rows, kept_rows, holding)
+    table = np.empty((len(kept_rows), len(kept_rows)), dtype=np.float32)
+    for first in range(0, len(kept_rows), ROWS_PER_PRODUCT):
+        rows = slice(first, min(first + ROWS_PER_PRODUCT, len(kept_rows)))
+        part = stored[kept_rows[rows]].take(kept_rows[: rows.stop], axis=1).astype(np.float64)
+        part -= dgemm(1.0, reach.T[: rows.stop], holding[:, rows]).T
+        # Only one half is computed: so L' is symmetric to the last bit, as L is.
+        table[rows, : rows.stop] = part
+        table[:first, rows] = part[:, :first].T
+        table[rows, rows] = 0.5 * (part[:, first:] + part[:, first:].T)
+    norms = np.linalg.norm(table, axis=1)
+    if (noise > LARGEST_ERROR * norms).any():
+        return None
+    return DenseCompliance(
+        compliance.free_surface[kept], table.reshape(len(kept), 3, 3 * len(kept))
+    )
+
+
+def _rounding_noise(
+    table: NDArray[np.floating],
+    pinned_rows: NDArray[np.int64],
+    kept_rows: NDArray[np.int64],
+    holding: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """What rounding of L makes of the columns of L', 2-norm, (3k,), as far as can be expected.
+
+    L' = Q^T L Q with Q = [I, -H] of the kept and the pinned freedoms. If every L_ab is off by an
+    independent error of deviation r |L_ab|, the squares of the errors of L' are those of Q, L and
+    Q^T multiplied.
+    """
+    weights = np.ones(len(kept_rows) + len(pinned_rows))
+    squares = holding**2
+    weights[pinned_rows] = squares.sum(axis=1)
+    spread = np.empty_like(weights)
+    for first in range(0, len(table), ROWS_PER_PRODUCT):
+        rows = slice(first, first + ROWS_PER_PRODUCT)
+        spread[rows] = np.square(table[rows], dtype=np.float64) @ weights
+    rounding = ROUNDING_DEVIATION * np.finfo(table.dtype).eps
+    noise: NDArray[np.float64] = rounding * np.sqrt(
+        spread[kept_rows] + spread[pinned_rows] @ squares
+    )
+    return noise
+
+
+def _computed(body: SoftBody, fixed: NDArray[np.int64]) -> Compliance:
+    """The compliance by elimination, in the form that the body has it."""
+    stiffness = assemble(
+        body.mesh,
+        body.poisson_ratio,
+        formulation=body.formulation,
+        young_scale=body.young_scale,
+    )
+    if not isinstance(body.compliance, CompressedCompliance):
+        return surface_compliance(body.mesh, stiffness, fixed)
+    source = factor_for_columns(body.mesh, stiffness, fixed)
+    positions = body.mesh.nodes[source.free_surface]
+    return compress(source, positions, body.compliance.tolerance)

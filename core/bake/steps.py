@@ -1,0 +1,185 @@
+"""The bake, step by step: surface -> tetrahedra -> stiffness -> compliance -> body."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..body.soft_body import SoftBody
+from ..compliance.compression.compress import compress
+from ..compliance.elimination.plan import EliminationPlan, plan_surface_inverse
+from ..compliance.elimination.surface_columns import planned_columns
+from ..compliance.protocol import Compliance
+from ..compliance.surface_compliance import planned_compliance
+from ..machine.available_memory import available_memory
+from ..machine.blas_threads import blas_threads
+from ..machine.machine_speed import dgemm_rate
+from ..mesh.decimate import decimate
+from ..mesh.surface import Surface
+from ..mesh.tet_mesh import TetMesh
+from ..mesh.tetrahedralize import Fit, check_fit, tetrahedralize
+from ..progress import unwatched
+from ..stiffness.assembly import assemble
+from ..stiffness.formulation import formulation_for
+from ..stiffness.pins import pinned_nodes
+from ..stiffness.regions import StiffRegion, TetScale, young_scale
+from .bake_cost import MeshSize, affordable_form, check_seconds, rest_seconds
+from .settings import BakeSettings
+from .work import BakeProgress, BakeWork
+
+__all__ = ["BakeProgress", "BakeReport", "BakeSettings", "bake"]
+
+# Beyond these the drawn shape and the body visibly part ways, and the maker should know.
+NOTABLE_DISTANCE = 0.02
+NOTABLE_VOLUME_ERROR = 0.1
+
+# Bodies of less arithmetic (in operations) are done within a second by one thread; several, waiting
+# for one another on a machine that is busy otherwise, would take longer.
+LEAST_WEIGHT_FOR_THREADS = 2e10
+
+
+@dataclass(frozen=True)
+class BakeReport:
+    """What a bake did: seconds of each step, the fit to the input, and what to tell the maker."""
+
+    seconds: dict[str, float]
+    fit: Fit | None
+    warnings: list[str]
+
+    def as_dict(self) -> dict[str, object]:
+        """The report as plain values for JSON."""
+        return asdict(self)
+
+
+def bake(
+    source: Surface | TetMesh,
+    settings: BakeSettings,
+    progress: BakeProgress = unwatched,
+    surface: Surface | None = None,
+    available: Callable[[], int] = available_memory,
+) -> tuple[SoftBody, BakeReport]:
+    """Make a body, in this process.
+
+    Tetrahedralization cannot be interrupted here, nor can the assembly of the stiffness (seconds
+    for tens of thousands of nodes, smoothed); programs with a person in front use
+    :class:`palpate.core.bake.job.BakeJob`, which runs this function in a child process.
+
+    Parameters
+    ----------
+    source : a surface, or tetrahedra that exist already.
+    settings : see :class:`BakeSettings`.
+    progress : told the step and the share of the whole that is done; may raise to cancel.
+    surface : for tetrahedra with painted pins, the surface the weights were painted on.
+    available : asked, before the compliance is computed, how many bytes of memory can be had.
+
+    Raises
+    ------
+    PalpateError
+        Anything that keeps the mesh from becoming a body, with the remedy.
+    """
+    settings.checked()
+    report = BakeReport({}, None, [])
+    work = BakeWork(progress)
+    if isinstance(source, Surface):
+        mesh, fit = _tetrahedra(source, settings, work, report.seconds)
+        report = replace(report, fit=fit, warnings=_fit_warnings(fit, mesh))
+        surface = source
+    else:
+        mesh = source
+        work.expect(rest_seconds(MeshSize.of(mesh), settings))
+    fixed = pinned_nodes(settings.pins, mesh, surface)
+    formulation = formulation_for(settings.formulation, settings.poisson_ratio)
+    scale = _young_scale(settings.stiffness, mesh, surface)
+    with _timed(report.seconds, "stiffness"):
+        work.begin("stiffness")
+        stiffness = assemble(
+            mesh, settings.poisson_ratio, formulation=formulation, young_scale=scale
+        )
+    with _timed(report.seconds, "plan"):
+        plan = plan_surface_inverse(mesh, stiffness, fixed, progress=work.begin("plan"))
+        form, warnings = affordable_form(plan, settings, available())
+    with _timed(report.seconds, "compliance"):
+        compliance = _compliance(plan, form, mesh, settings, work)
+    body = SoftBody(
+        mesh,
+        np.unique(fixed),
+        settings.poisson_ratio,
+        compliance,
+        settings.young_modulus,
+        formulation,
+        scale,
+    )
+    return body, replace(report, warnings=[*report.warnings, *warnings])
+
+
+def _tetrahedra(
+    source: Surface, settings: BakeSettings, work: BakeWork, seconds: dict[str, float]
+) -> tuple[TetMesh, Fit]:
+    """Fill the surface and see whether the tetrahedra fit it."""
+    with _timed(seconds, "tetrahedralize"):
+        work.unknown("tetrahedralize")
+        welded = source.welded()
+        shell = decimate(welded, settings.decimate_above)
+        mesh = tetrahedralize(shell, settings.edge_length, settings.epsilon)
+    work.expect(
+        {"check": check_seconds(welded, mesh), **rest_seconds(MeshSize.of(mesh), settings)},
+        spent=seconds["tetrahedralize"],
+    )
+    with _timed(seconds, "check"):
+        work.begin("check")
+        return mesh, check_fit(mesh, welded, shell)
+
+
+def _compliance(
+    plan: EliminationPlan, form: str, mesh: TetMesh, settings: BakeSettings, work: BakeWork
+) -> Compliance:
+    """The compliance by the plan, which is what most of a bake's time goes into."""
+    threads = settings.threads if plan.weight >= LEAST_WEIGHT_FOR_THREADS else 1
+    with blas_threads(threads) as threads:
+        if form == "dense":
+            work.forget("compress")
+            work.expect({"compliance": plan.weight / dgemm_rate(threads)})
+            return planned_compliance(plan, work.begin("compliance"))
+        plan = replace(plan, table_itemsize=0)
+        work.expect({"compliance": plan.weight / dgemm_rate(threads)})
+        source = planned_columns(plan, work.begin("compliance"))
+        positions = mesh.nodes[plan.free_surface]
+        return compress(source, positions, settings.tolerance, work.begin("compress"))
+
+
+def _young_scale(
+    stiffness: StiffRegion | TetScale | None, mesh: TetMesh, surface: Surface | None
+) -> NDArray[np.float64] | None:
+    """Factors on Young's modulus (M,), None where none differs from 1: the key is the same then."""
+    if stiffness is None:
+        return None
+    scale = young_scale(stiffness, mesh, surface)
+    return None if np.array_equal(scale, np.ones_like(scale)) else scale
+
+
+def _fit_warnings(fit: Fit, mesh: TetMesh) -> list[str]:
+    diagonal = float(np.linalg.norm(np.ptp(mesh.nodes, axis=0)))
+    found = []
+    if abs(fit.volume_ratio - 1) > NOTABLE_VOLUME_ERROR:
+        found.append(
+            f"the body has {100 * fit.volume_ratio:.0f} % of the volume that the mesh encloses; "
+            "a smaller edge length or epsilon follows it more closely"
+        )
+    if fit.input_to_body > NOTABLE_DISTANCE * diagonal:
+        found.append(
+            f"parts of the mesh lie up to {1000 * fit.input_to_body:.2g} mm from the body, being "
+            "open or too thin; they follow its nearest place"
+        )
+    return found
+
+
+@contextmanager
+def _timed(seconds: dict[str, float], step: str) -> Iterator[None]:
+    start = time.perf_counter()
+    yield
+    seconds[step] = time.perf_counter() - start

@@ -1,0 +1,1 @@
+"""The soft body, its key and its file."""

@@ -1,0 +1,241 @@
+"""The body file: one ``.npz`` that ``numpy.load(allow_pickle=False)`` reads.
+
+Keys
+----
+format : the word ``palpate-body``.
+version : int, of this layout.
+key : hex digest of all that the compliance depends on; see :func:`.body_key.body_key`.
+checksum : hex digest over all other arrays but ``compliance``, which has its own.
+nodes (N, 3) f64, tets (M, 4) i64, surface_triangles (S, 3) i64, fixed (p,) i64, poisson_ratio f64,
+formulation text, young_modulus f64 (what the maker chose; not part of the key),
+young_scale (M,) f64 where the body is not equally stiff everywhere.
+form : of the compliance, for a modulus of 1 Pa: ``dense`` or ``compressed``.
+free_surface (n,) i64.
+dense : compliance (n, 3, 3n) f32, compliance_diagonal (n, 3, 3) f32,
+compliance_checksums (n, 32) u8, one SHA-256 for the columns of each node.
+compressed : tolerance f64 and the arrays of :class:`.compression.CompressedCompliance`.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..compliance.compression.compressed_compliance import CompressedCompliance
+from ..compliance.dense import DenseCompliance
+from ..compliance.mapped import CHECKSUM_BYTES, MappedCompliance, node_checksums
+from ..compliance.protocol import Compliance
+from ..errors import BodyFileError, PalpateError
+from ..files.npz_archive import Archive, ArchiveError, opened, write_arrays
+from ..files.whole_file import whole_file
+from ..mesh.tet_mesh import TetMesh
+from ..stiffness.assembly import lame_parameters, young_scale_checked
+from ..stiffness.formulation import formulation_checked
+from .body_key import body_key
+from .soft_body import SoftBody
+
+__all__ = ["BodyFileError", "adopt", "body_key", "load", "save"]
+
+Arrays = dict[str, NDArray[Any]]
+
+FORMAT = "palpate-body"
+VERSION = 2
+HEAD = ("format", "version", "checksum")
+TABLE = "compliance"
+NEEDED = (
+    "key",
+    "nodes",
+    "tets",
+    "surface_triangles",
+    "fixed",
+    "poisson_ratio",
+    "formulation",
+    "young_modulus",
+    "form",
+    "free_surface",
+)
+NEEDED_BY_FORM = {
+    "dense": (TABLE, "compliance_diagonal", "compliance_checksums"),
+    "compressed": ("tolerance",),
+}
+
+# Tables of at least so many bytes stay in the file. Not on Windows: a file that is mapped there can
+# be neither replaced nor deleted, so a new bake would fail for as long as the old body is in use.
+MAPPED_FROM_BYTES = 64_000_000 if os.name == "posix" else None
+
+
+def save(body: SoftBody, path: str | os.PathLike[str]) -> None:
+    """Write a body file; an existing one is replaced in one step or stays as it was.
+
+    Raises
+    ------
+    UnwritableError
+        The place cannot be written.
+    """
+    arrays: Arrays = {
+        "key": np.array(body.key),
+        "nodes": body.mesh.nodes,
+        "tets": body.mesh.tets,
+        "surface_triangles": body.mesh.surface_triangles,
+        "fixed": body.fixed,
+        "poisson_ratio": np.array(body.poisson_ratio),
+        "formulation": np.array(body.formulation),
+        "young_modulus": np.array(body.young_modulus),
+        "form": np.array(body.compliance.form),
+        "free_surface": body.compliance.free_surface,
+    }
+    if body.young_scale is not None:
+        arrays["young_scale"] = body.young_scale
+    arrays |= _compliance_arrays(body.compliance)
+    head = {
+        "format": np.array(FORMAT),
+        "version": np.array(VERSION),
+        "checksum": np.array(_checksum(arrays)),
+    }
+    with whole_file(Path(path), make_folders=True) as file:
+        write_arrays(file, head | arrays)
+
+
+def load(
+    path: str | os.PathLike[str], mapped_from_bytes: int | None = MAPPED_FROM_BYTES
+) -> SoftBody:
+    """Read a body file and check it: format, version, checksum, key.
+
+    A large dense table stays in the file: its columns are read and checked when they are used
+    (:class:`.mapped_compliance.MappedCompliance`). The file may be replaced or deleted meanwhile.
+
+    Parameters
+    ----------
+    path : the file.
+    mapped_from_bytes : how large a table has to be for that; None never leaves one in the file.
+
+    Raises
+    ------
+    BodyFileError
+        Missing, truncated, damaged, foreign, or of another version. Names the file.
+    """
+    source = Path(path)
+    if not source.is_file():
+        raise BodyFileError(f"{source}: there is no such body file; bake the mesh first")
+    try:
+        with opened(source) as archive:
+            return _read(archive, source, mapped_from_bytes)
+    except ArchiveError as problem:
+        raise BodyFileError(f"{problem}; bake again") from problem
+
+
+def adopt(finished: Path, target: Path) -> None:
+    """Put the ``finished`` body file at ``target`` in one step, also across file systems.
+
+    Raises
+    ------
+    UnwritableError
+        The place cannot be written; nothing is left there.
+    """
+    with whole_file(target, make_folders=True) as file, finished.open("rb") as source:
+        shutil.copyfileobj(source, file)
+
+
+def _compliance_arrays(compliance: Compliance) -> Arrays:
+    match compliance:
+        case CompressedCompliance():
+            return {"tolerance": np.array(compliance.tolerance), **compliance.arrays()}
+        case DenseCompliance(table=given) | MappedCompliance(table=given):
+            table = given.astype(np.float32, copy=False)
+            stored = DenseCompliance(compliance.free_surface, table)
+            return {
+                TABLE: table,
+                "compliance_diagonal": stored.diagonal().astype(np.float32),
+                "compliance_checksums": node_checksums(table),
+            }
+    raise TypeError(f"no layout for a compliance of the form {compliance.form}")
+
+
+def _read(archive: Archive, source: Path, mapped_from_bytes: int | None) -> SoftBody:
+    names = archive.names
+    if "format" not in names or str(archive.read("format")) != FORMAT:
+        raise BodyFileError(f"{source}: not a Palpate body file; bake the mesh to make one")
+    version = str(archive.read("version")) if "version" in names else "0"
+    if version != str(VERSION):
+        raise BodyFileError(
+            f"{source}: written in version {version} of the body format, this Palpate reads "
+            f"version {VERSION}; bake again"
+        )
+    stored = {name: archive.read(name) for name in names if name != TABLE}
+    needed = (*NEEDED, "checksum", *NEEDED_BY_FORM.get(str(stored.get("form")), ()))
+    missing = [name for name in needed if name not in names]
+    if missing:
+        raise BodyFileError(f"{source}: damaged ({', '.join(missing)} missing); bake again")
+    if str(stored["checksum"]) != _checksum(stored):
+        raise BodyFileError(f"{source}: damaged (its checksum does not match); bake again")
+    try:
+        return _body(stored, _compliance(stored, archive, source, mapped_from_bytes))
+    except PalpateError as problem:
+        if isinstance(problem, (ArchiveError, BodyFileError)):
+            raise
+        raise BodyFileError(f"{source}: {problem}; bake again") from problem
+
+
+def _compliance(
+    stored: Arrays, archive: Archive, source: Path, mapped_from_bytes: int | None
+) -> Compliance:
+    """The compliance in the form that is stored; a dense table that is read is checked whole."""
+    free_surface = stored["free_surface"].astype(np.int64)
+    count = len(free_surface)
+    if str(stored["form"]) == "compressed":
+        return CompressedCompliance.from_arrays(free_surface, stored, float(stored["tolerance"]))
+    if str(stored["form"]) != "dense":
+        raise PalpateError(f"its compliance has the unknown form '{stored['form']}'")
+    checksums, diagonal = stored["compliance_checksums"], stored["compliance_diagonal"]
+    is_mapped = mapped_from_bytes is not None and archive.bytes_of(TABLE) >= mapped_from_bytes
+    mapped = archive.map(TABLE) if is_mapped else None
+    table = archive.read(TABLE) if mapped is None else mapped.array
+    if not (
+        table.shape == (count, 3, 3 * count)
+        and table.dtype == np.float32
+        and diagonal.shape == (count, 3, 3)
+        and checksums.shape == (count, CHECKSUM_BYTES)
+    ):
+        raise PalpateError("its compliance does not belong to its mesh, pins or material")
+    if mapped is not None:
+        return MappedCompliance(free_surface, mapped, diagonal, checksums, str(source))
+    if not np.array_equal(node_checksums(table), checksums):
+        raise BodyFileError(f"{source}: damaged (its checksum does not match); bake again")
+    return DenseCompliance(free_surface, table)
+
+
+def _body(stored: Arrays, compliance: Compliance) -> SoftBody:
+    """The body of arrays whose checksum is right; PalpateError where they contradict each other."""
+    mesh = TetMesh.checked(stored["nodes"], stored["tets"])
+    poisson_ratio, young_modulus = float(stored["poisson_ratio"]), float(stored["young_modulus"])
+    lame_parameters(young_modulus, poisson_ratio)
+    body = SoftBody(
+        mesh,
+        stored["fixed"].astype(np.int64),
+        poisson_ratio,
+        compliance,
+        young_modulus,
+        formulation_checked(str(stored["formulation"])),
+        young_scale_checked(stored["young_scale"], len(mesh.tets))
+        if "young_scale" in stored
+        else None,
+    )
+    free_surface = np.setdiff1d(mesh.surface_nodes, body.fixed)
+    if str(stored["key"]) != body.key or not np.array_equal(compliance.free_surface, free_surface):
+        raise PalpateError("its compliance does not belong to its mesh, pins or material")
+    return body
+
+
+def _checksum(arrays: Arrays) -> str:
+    digest = hashlib.sha256()
+    for name in sorted(arrays.keys() - {*HEAD, TABLE}):
+        array = np.ascontiguousarray(arrays[name])
+        digest.update(f"{name} {array.dtype.str} {array.shape} ".encode())
+        digest.update(array.data if array.ndim and array.dtype.kind != "U" else array.tobytes())
+    return digest.hexdigest()

@@ -1,0 +1,313 @@
+"""A body ready to be touched: rest shape, pins, compliance; from a finger to a deformed shape."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..compliance.protocol import Compliance
+from ..contact.consistent_contact import consistent_forces
+from ..contact.equations import CONTACT_MODES, ContactMode, Touch, triangle_forces
+from ..contact.several_contacts import coupled_compliance, solve_contacts
+from ..errors import PalpateError
+from ..mesh.closest_point import ClosestPoints
+from ..mesh.coordinates import LARGEST_COORDINATE
+from ..mesh.tet_mesh import TetMesh
+from .body_key import body_key
+
+
+@dataclass(frozen=True, eq=False)
+class SoftBody:
+    """Everything a touch needs.
+
+    Attributes
+    ----------
+    mesh : the tetrahedra at rest.
+    fixed : int64, numbers of the pinned nodes, ascending.
+    poisson_ratio : the one the compliance was computed with.
+    compliance : of the free surface nodes, at unit modulus.
+    young_modulus : pascal; what a touch uses unless told otherwise. Not baked in.
+    formulation : of the stiffness the compliance comes from; see :mod:`.formulation`.
+    young_scale : float64 (M,), factor of Young's modulus per tetrahedron; None where all are 1.
+    """
+
+    mesh: TetMesh
+    fixed: NDArray[np.int64]
+    poisson_ratio: float
+    compliance: Compliance
+    young_modulus: float
+    formulation: str = "linear"
+    young_scale: NDArray[np.float64] | None = None
+
+    @cached_property
+    def key(self) -> str:
+        """Digest of all that the compliance depends on; see :func:`.body_key.body_key`."""
+        return body_key(
+            self.mesh, self.fixed, self.poisson_ratio, self.formulation, self.young_scale
+        )
+
+    @cached_property
+    def contact_blocks(self) -> NDArray[np.float64]:
+        """L_aa^-1 at unit modulus for every node of ``mesh.surface_nodes``, (s, 3, 3).
+
+        A pinned node has no L_aa; the paper leaves it open. Here it answers as firmly as the
+        firmest free node of the body, alike in all directions, so that a pinned place feels firm
+        and the force stays finite and continuous.
+        """
+        blocks = np.tile(
+            1.0 / self.pinned_compliance * np.eye(3), (len(self.mesh.surface_nodes), 1, 1)
+        )
+        free = np.searchsorted(self.mesh.surface_nodes, self.compliance.free_surface)
+        inverse = np.linalg.inv(self.compliance.diagonal())
+        blocks[free] = 0.5 * (inverse + inverse.transpose(0, 2, 1))
+        return blocks
+
+    @cached_property
+    def pinned_compliance(self) -> float:
+        """Compliance of a pinned place at unit modulus, alike in all directions.
+
+        That of the firmest free node in its firmest direction; see :attr:`contact_blocks`.
+        """
+        return float(np.linalg.eigvalsh(self.compliance.diagonal())[:, 0].min())
+
+    def surface_blocks(self, a: ArrayLike, b: ArrayLike) -> NDArray[np.float64]:
+        """L_pq at unit modulus for every p of ``a`` and q of ``b``, (len a, len b, 3, 3).
+
+        Nodes are counted as in ``mesh.surface_nodes``; any of them may occur more than once. A
+        pinned node answers to forces on itself by :attr:`pinned_compliance`, to no other, and
+        moves no other, so that L stays symmetric and positive definite with pins among the nodes.
+        """
+        seen, loaded = (np.asarray(nodes, dtype=np.int64).reshape(-1) for nodes in (a, b))
+        rows = self.free_index(self.mesh.surface_nodes[seen])
+        columns = self.free_index(self.mesh.surface_nodes[loaded])
+        is_row_free, is_column_free = rows >= 0, columns >= 0
+        if is_row_free.all() and is_column_free.all():
+            return self.compliance.blocks(rows, columns)
+        blocks = np.zeros((len(seen), len(loaded), 3, 3))
+        blocks[np.ix_(is_row_free, is_column_free)] = self.compliance.blocks(
+            rows[is_row_free], columns[is_column_free]
+        )
+        blocks[(seen[:, None] == loaded) & ~is_row_free[:, None]] = self.pinned_compliance * np.eye(
+            3
+        )
+        return blocks
+
+    @cached_property
+    def closest_points(self) -> ClosestPoints:
+        """The search for places on the rest surface; triangles count as in the mesh's surface."""
+        return ClosestPoints(self.mesh.nodes, self.mesh.surface_triangles)
+
+    def touch_nearest(
+        self,
+        at: ArrayLike,
+        by: ArrayLike,
+        young_modulus: float | None = None,
+        mode: ContactMode = "consistent",
+    ) -> Touch:
+        """Touch at the surface point nearest to ``at`` (3,), displaced by ``by`` (3,), metres.
+
+        Raises
+        ------
+        PalpateError
+            Coordinates that are not three finite numbers, or an unknown mode.
+        """
+        place = self.closest_points.query(_point_checked("at", at))
+        by = _point_checked("by", by)
+        return self.touch(int(place.triangle[0]), place.alpha[0], by, young_modulus, mode)
+
+    def modulus(self, young_modulus: float | None) -> float:
+        """Young's modulus in pascal: the one that is given, or the body's own.
+
+        Raises
+        ------
+        PalpateError
+            It is not a positive number.
+        """
+        modulus = self.young_modulus if young_modulus is None else young_modulus
+        if not (math.isfinite(modulus) and modulus > 0.0):
+            raise PalpateError(f"Young's modulus is {modulus} Pa; give a positive number")
+        return modulus
+
+    def touch(
+        self,
+        triangle: int,
+        alpha: ArrayLike,
+        displacement: ArrayLike,
+        young_modulus: float | None = None,
+        mode: ContactMode = "consistent",
+    ) -> Touch:
+        """Touch surface triangle number ``triangle`` at area coordinates ``alpha``.
+
+        In mode ``consistent`` the contact point moves by exactly the displacement (but for pinned
+        nodes, which do not move); in mode ``paper`` the forces are those of (11)-(14).
+
+        Raises
+        ------
+        PalpateError
+            An unknown mode.
+        """
+        weights = np.asarray(alpha, dtype=np.float64)
+        u = np.asarray(displacement, dtype=np.float64)
+        local = self.mesh.surface_local_triangles[triangle]
+        modulus = self.modulus(young_modulus)
+        if _mode_checked(mode) == "paper":
+            forces = triangle_forces(modulus * self.contact_blocks[local], weights, u)
+        else:
+            forces = modulus * consistent_forces(self.surface_blocks(local, local), weights, u)
+        return self._touch(triangle, weights, u, forces)
+
+    def touch_several(
+        self,
+        at: ArrayLike,
+        by: ArrayLike,
+        young_modulus: float | None = None,
+        mode: ContactMode = "consistent",
+    ) -> tuple[Touch, ...]:
+        """Touch with several fingers at once, each at the surface point nearest to its ``at``.
+
+        ``at`` and ``by`` are (m, 3), metres. In mode ``consistent`` the fingers feel each other
+        through the body (:mod:`.several_contacts`) and may only push; a finger that does not travel
+        stays where it is and pushes back along the inward normal. The paper has several contacts on
+        nodes alone (10), which is what ``consistent`` gives there; in mode ``paper`` every finger
+        is answered by (11)-(14) as if it were alone.
+
+        Raises
+        ------
+        PalpateError
+            Coordinates that are not rows of three finite numbers, as many of one as of the other,
+            or an unknown mode.
+        """
+        starts, travels = _pairs_checked(at, by)
+        places = self.closest_points.query(starts)
+        triangles = [int(number) for number in places.triangle]
+        if _mode_checked(mode) == "paper":
+            return tuple(
+                self.touch(triangle, alpha, u, young_modulus, mode)
+                for triangle, alpha, u in zip(triangles, places.alpha, travels, strict=True)
+            )
+        resting = ~travels.any(axis=1)
+        pushes = travels.copy()
+        pushes[resting] = -self._outward(np.array(triangles)[resting])
+        modulus = self.modulus(young_modulus)
+        compliance = self.contact_compliance(places.triangle, places.alpha)
+        forces = modulus * solve_contacts(compliance, travels, pushes)
+        return tuple(
+            self._touch(triangle, alpha, u, alpha[:, None] * force)
+            for triangle, alpha, u, force in zip(
+                triangles, places.alpha, travels, forces, strict=True
+            )
+        )
+
+    def contact_compliance(self, triangles: ArrayLike, alphas: ArrayLike) -> NDArray[np.float64]:
+        """C_pq at unit modulus, (m, m, 3, 3), between places on triangles (m,) with alphas (m, 3).
+
+        C_pq is how far place p moves per newton on place q; see
+        :func:`.several_contacts.coupled_compliance`.
+        """
+        local = self.mesh.surface_local_triangles[np.asarray(triangles, dtype=np.int64)]
+        count = len(local)
+        blocks = self.surface_blocks(local, local).reshape(count, 3, count, 3, 3, 3)
+        return coupled_compliance(blocks, alphas)
+
+    def _touch(
+        self,
+        triangle: int,
+        alpha: NDArray[np.float64],
+        displacement: NDArray[np.float64],
+        nodal_forces: NDArray[np.float64],
+    ) -> Touch:
+        corners = self.mesh.surface_triangles[triangle]
+        point = alpha @ self.mesh.nodes[corners]
+        return Touch(corners, alpha, point, displacement, nodal_forces)
+
+    def _outward(self, triangles: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Unit normals of surface triangles (k,), (k, 3)."""
+        i, j, k = self.mesh.nodes[self.mesh.surface_triangles[triangles]].transpose(1, 0, 2)
+        normals = np.cross(j - i, k - i)
+        unit: NDArray[np.float64] = normals / np.linalg.norm(normals, axis=1, keepdims=True)
+        return unit
+
+    def deform(
+        self,
+        nodes: NDArray[np.int64],
+        nodal_forces: NDArray[np.float64],
+        young_modulus: float | None = None,
+    ) -> NDArray[np.float64]:
+        """Displacements (n, 3) of the free surface nodes under forces on some nodes (15).
+
+        ``nodes`` (k,) are node numbers of the mesh, ``nodal_forces`` (k, 3) newton. Forces on a
+        node that occurs more than once are summed; forces on pinned nodes move nothing.
+        """
+        modulus = self.modulus(young_modulus)
+        free, forces = self._on_free_nodes(
+            np.asarray(nodes).reshape(-1), np.asarray(nodal_forces).reshape(-1, 3)
+        )
+        return self.compliance.apply(forces / modulus, free)
+
+    def contact_displacement(
+        self, touch: Touch, displacements: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """How far the touched point itself moves, (3,), given the displacements (n, 3)."""
+        free, corner = self.free_index(touch.triangle), np.arange(3)
+        held = free >= 0
+        moved: NDArray[np.float64] = touch.alpha[corner[held]] @ displacements[free[held]]
+        return moved
+
+    def _on_free_nodes(
+        self, nodes: NDArray[np.int64], forces: NDArray[np.float64]
+    ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        free = self.free_index(nodes)
+        # Of three numbers a list is looked through several times faster than an array.
+        numbers = free.tolist()
+        if min(numbers, default=0) < 0:
+            free, forces = free[free >= 0], forces[free >= 0]
+        if len(set(numbers)) == len(numbers):
+            return free, forces
+        once, which = np.unique(free, return_inverse=True)
+        sums = np.zeros((len(once), 3))
+        np.add.at(sums, which, forces)
+        return once, sums
+
+    def free_index(self, nodes: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Positions of nodes in ``free_surface``, -1 for pinned ones."""
+        return self._free_places[nodes]
+
+    @cached_property
+    def _free_places(self) -> NDArray[np.int64]:
+        """The position in ``free_surface`` of every node of the mesh, -1 for others, (N,)."""
+        places = np.full(len(self.mesh.nodes), -1, dtype=np.int64)
+        places[self.compliance.free_surface] = np.arange(self.compliance.node_count)
+        return places
+
+
+def _point_checked(name: str, value: ArrayLike) -> NDArray[np.float64]:
+    point = np.asarray(value, dtype=np.float64)
+    if point.shape != (3,) or not (np.abs(point) <= LARGEST_COORDINATE).all():
+        raise PalpateError(
+            f"--{name}: {np.asarray(value).tolist()} is not a point; give three finite numbers "
+            f"in metres, none beyond {LARGEST_COORDINATE:g}"
+        )
+    return point
+
+
+def _pairs_checked(at: ArrayLike, by: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    starts, travels = (
+        np.array([_point_checked(name, row) for row in np.asarray(value)]).reshape(-1, 3)
+        for name, value in (("at", at), ("by", by))
+    )
+    if len(starts) != len(travels) or not len(starts):
+        raise PalpateError(
+            f"--at is given {len(starts)} times and --by {len(travels)} times; give one --by for "
+            "every --at, in the same order"
+        )
+    return starts, travels
+
+
+def _mode_checked(mode: str) -> str:
+    if mode not in CONTACT_MODES:
+        raise PalpateError(f"contact mode {mode!r} is unknown; give {' or '.join(CONTACT_MODES)}")
+    return mode

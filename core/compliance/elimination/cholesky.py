@@ -1,0 +1,182 @@
+"""Cholesky factors that are kept for solves, of many matrices with one pattern.
+
+The order of elimination and every index are found once; each further matrix costs arithmetic only.
+The fronts are those of :mod:`.numeric`, without loads carried along.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg.blas import dtrsm, dtrsv
+from scipy.linalg.lapack import dpotrf
+
+from ...machine.blas_threads import threads_by_work
+from ...stiffness.freedoms import freedoms
+from ..ordering.dissection import dissect
+from ..ordering.symbolic import Front, SymbolicFactor, analyse
+from .block_matrix import BlockMatrix
+from .extend_add import Run, extend_add, runs_between
+from .numeric import EntriesByFront, targets_of_child
+from .upper_tiles import UpperTiles, tile_edges
+from .work import FrontWork
+
+
+class NotPositiveDefiniteError(Exception):
+    """A matrix has no Cholesky factor. Whoever asked for one says what that means for the body."""
+
+
+@dataclass(frozen=True, eq=False)
+class CholeskyFactor:
+    """R with ``R^T R`` the factored matrix, by fronts.
+
+    Attributes
+    ----------
+    order : int64 (3n,), the freedoms in order of elimination.
+    fronts : what belongs to each front, in order.
+    """
+
+    order: NDArray[np.int64]
+    fronts: tuple[_FrontFactor, ...]
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of the factor."""
+        return sum(front.pivots.nbytes + front.coupling.nbytes for front in self.fronts)
+
+    def solve(self, right: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The solution for right sides (3n,) or (3n, k), of the same shape.
+
+        May be called from several threads at once: the factor is only read.
+        """
+        if right.size == len(self.order):
+            return self._solve_one(right.ravel()).reshape(right.shape)
+        columns = right.reshape(len(self.order), -1)
+        held = np.asfortranarray(columns[self.order], dtype=np.float64)
+        for front in self.fronts:
+            own = dtrsm(1.0, front.pivots, held[front.span], trans_a=True, overwrite_b=True)
+            held[front.span] = own
+            if front.boundary.size:
+                held[front.boundary] -= front.coupling.T @ own
+        for front in reversed(self.fronts):
+            own = held[front.span]
+            if front.boundary.size:
+                own = own - front.coupling @ held[front.boundary]
+            held[front.span] = dtrsm(1.0, front.pivots, own)
+        solution = np.empty_like(held)
+        solution[self.order] = held
+        return solution.reshape(right.shape)
+
+    def _solve_one(self, right: NDArray[np.float64]) -> NDArray[np.float64]:
+        """For a single right side, of which the triangular solves for many make copies."""
+        held: NDArray[np.float64] = right[self.order].astype(np.float64, copy=False)
+        for front in self.fronts:
+            own = dtrsv(front.pivots, held[front.span], trans=1)
+            held[front.span] = own
+            if front.boundary.size:
+                held[front.boundary] -= own @ front.coupling
+        for front in reversed(self.fronts):
+            own = held[front.span]
+            if front.boundary.size:
+                own = own - front.coupling @ held[front.boundary]
+            held[front.span] = dtrsv(front.pivots, own)
+        solution = np.empty_like(held)
+        solution[self.order] = held
+        return solution
+
+
+@dataclass(frozen=True, eq=False)
+class _FrontFactor:
+    """Rows of R: upper (p, p) of the pivots, (p, b) of the boundary, and where they stand."""
+
+    span: slice
+    boundary: NDArray[np.int64]
+    pivots: NDArray[np.float64]
+    coupling: NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class RepeatedElimination:
+    """How to factor symmetric matrices of one pattern of 3x3 blocks.
+
+    Attributes
+    ----------
+    symbolic : order of elimination and fronts.
+    entries : where each block goes.
+    runs : for every front and each of its children, where the child's remainder is added.
+    """
+
+    symbolic: SymbolicFactor
+    entries: EntriesByFront
+    runs: tuple[tuple[list[Run], ...], ...]
+
+    @classmethod
+    def of(
+        cls,
+        rows: NDArray[np.int64],
+        columns: NDArray[np.int64],
+        positions: NDArray[np.float64],
+    ) -> RepeatedElimination:
+        """For blocks at ``rows``, ``columns`` (m,), in both halves of the matrix.
+
+        ``positions`` (n, 3) of the nodes make the order good; see :func:`.dissection.dissect`.
+        """
+        count = len(positions)
+        unloaded = np.zeros(count, dtype=bool)
+        pattern = BlockMatrix(count, rows, columns, np.empty((0, 3, 3)))
+        edges = pattern.edges
+        symbolic = analyse(dissect(edges, positions, unloaded), edges, unloaded)
+        runs = tuple(
+            tuple(_runs(symbolic.fronts[child], front) for child in front.children)
+            for front in symbolic.fronts
+        )
+        return cls(symbolic, EntriesByFront(rows, columns, symbolic), runs)
+
+    def factor(self, blocks: NDArray[np.float64]) -> CholeskyFactor:
+        """Factor the matrix with these ``blocks`` (m, 3, 3), in the order of the pattern.
+
+        Raises
+        ------
+        NotPositiveDefiniteError
+            The matrix has a negative or vanishing eigenvalue.
+        """
+        remainders: dict[int, UpperTiles] = {}
+        factors = []
+        ordered = self.entries.in_order(blocks)
+        with threads_by_work() as suit:
+            for index, front in enumerate(self.symbolic.fronts):
+                work = FrontWork.of(front)
+                suit(work.flops)
+                own, remainders[index] = self._eliminated(index, ordered, remainders)
+                factors.append(own)
+        return CholeskyFactor(freedoms(self.symbolic.order), tuple(factors))
+
+    def _eliminated(
+        self, index: int, blocks: NDArray[np.float64], remainders: dict[int, UpperTiles]
+    ) -> tuple[_FrontFactor, UpperTiles]:
+        front = self.symbolic.fronts[index]
+        size, boundary = 3 * front.pivot_count, freedoms(front.boundary)
+        pivots = np.zeros((size, size), order="F")
+        coupling = np.zeros((size, len(boundary)), order="F")
+        schur = UpperTiles.zeros(len(boundary))
+        self.entries.add_to(index, front, blocks, pivots, coupling)
+        for child, runs in zip(front.children, self.runs[index], strict=True):
+            extend_add(remainders.pop(child), runs, pivots, coupling, schur)
+        factor, breakdown = dpotrf(pivots, lower=False, clean=False, overwrite_a=True)
+        if breakdown:
+            raise NotPositiveDefiniteError
+        dtrsm(1.0, factor, coupling, trans_a=True, overwrite_b=True)
+        schur.subtract_gram(coupling, _unmetered)
+        own = _FrontFactor(slice(3 * front.start, 3 * front.stop), boundary, factor, coupling)
+        return own, schur
+
+
+def _runs(child: Front, front: Front) -> list[Run]:
+    own, parent = (tile_edges(3 * len(each.boundary)) for each in (child, front))
+    return runs_between(targets_of_child(child, front), 3 * front.pivot_count, own, parent)
+
+
+def _unmetered(_: float) -> None:
+    """Progress is not told: a factor of a body that can be drawn takes seconds at most."""

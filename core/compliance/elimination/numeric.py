@@ -1,0 +1,225 @@
+"""The numeric step: Cholesky of every front, with the unit loads of the surface carried along.
+
+For a front with pivots p, boundary b and loads E, in Fortran order and upper halves throughout:
+
+    [ A_pp  A_pb  E_p ]      R_pp = chol(A_pp)                           gone with the front
+    [       A_bb  E_b ]  ->  R_pb = R_pp^-T A_pb                         gone with the front
+                             W_p  = R_pp^-T E_p                          the result
+                             A_bb - R_pb^T R_pb,  E_b - R_pb^T W_p       added to the parent
+
+Loads come to a front from below or begin on its own pivots; W has no entries for loads elsewhere.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg.blas import dgemm, dtrsm
+from scipy.linalg.lapack import dpotrf
+
+from ...machine.blas_threads import threads_by_work
+from ..ordering.symbolic import Front, SymbolicFactor
+from .block_matrix import BlockMatrix
+from .extend_add import extend_add, runs_between
+from .loose_body import refuse_loose
+from .upper_tiles import UpperTiles
+from .work import CHOLESKY_WEIGHT, FRONT_WEIGHT, MOVE_WEIGHT, SOLVE_WEIGHT, FrontWork, Meter
+
+# Floating point operations that one call of BLAS may take: some hundredths of a second.
+FLOPS_PER_CALL = 2e9
+
+AXES = np.arange(3)
+
+
+@dataclass(frozen=True, eq=False)
+class LoadRows:
+    """One front's rows of W = C^-1 E.
+
+    Attributes
+    ----------
+    start, stop : the freedoms of loads that the columns are, in order of elimination.
+    rows : float64 (r, stop - start), Fortran order.
+    """
+
+    start: int
+    stop: int
+    rows: NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class _Remainder:
+    """What a front leaves on its boundary: Schur complement (b, b) and loads (b, c)."""
+
+    schur: UpperTiles
+    loads: NDArray[np.float64]
+
+
+def inverse_factor(matrix: BlockMatrix, symbolic: SymbolicFactor, meter: Meter) -> list[LoadRows]:
+    """W of ``matrix`` for unit loads on the loaded nodes: W^T W is the inverse at those nodes.
+
+    Raises
+    ------
+    PalpateError
+        A matrix that is not positive definite: the body is not held.
+    """
+    entries = EntriesByFront(matrix.rows, matrix.columns, symbolic)
+    blocks = entries.in_order(matrix.blocks)
+    works = [FrontWork.of(front) for front in symbolic.fronts]
+    # In one piece: between them, what fronts hold for a while would leave holes when it goes.
+    room = np.zeros(sum(work.loaded_rows * work.loads for work in works))
+    remainders: dict[int, _Remainder] = {}
+    result, used = [], 0
+    with threads_by_work() as suit:
+        for index, (front, work) in enumerate(zip(symbolic.fronts, works, strict=True)):
+            suit(work.flops)
+            shape = work.loaded_rows, work.loads
+            own = room[used : used + shape[0] * shape[1]].reshape(shape, order="F")
+            used += own.size
+            remainders[index] = _eliminated(
+                index, entries, blocks, symbolic, remainders, own, meter
+            )
+            if own.size:
+                result.append(LoadRows(3 * front.load_start, 3 * front.load_stop, own))
+    return result
+
+
+def _eliminated(
+    index: int,
+    entries: EntriesByFront,
+    blocks: NDArray[np.float64],
+    symbolic: SymbolicFactor,
+    remainders: dict[int, _Remainder],
+    own: NDArray[np.float64],
+    meter: Meter,
+) -> _Remainder:
+    """Eliminate a front; its rows of W are written to ``own``, zeros before."""
+    front = symbolic.fronts[index]
+    work = FrontWork.of(front)
+    pivots = np.zeros((work.pivots, work.pivots), order="F")
+    coupling = np.zeros((work.pivots, work.boundary), order="F")
+    schur = UpperTiles.zeros(work.boundary)
+    skipped = work.pivots - work.loaded_rows
+    passed = np.zeros((work.boundary, work.loads), order="F")
+
+    entries.add_to(index, front, blocks, pivots, coupling)
+    stiffness = pivots.diagonal().copy()
+    loaded = (3 * front.loaded_pivots[:, None] + AXES).ravel()
+    own[loaded - skipped, np.arange(work.loads - len(loaded), work.loads)] = 1.0
+    for child in front.children:
+        below, remainder = symbolic.fronts[child], remainders.pop(child)
+        runs = runs_between(
+            targets_of_child(below, front), work.pivots, remainder.schur.edges, schur.edges
+        )
+        extend_add(remainder.schur, runs, pivots, coupling, schur)
+        meter.add(MOVE_WEIGHT * remainder.schur.size)
+        if not below.load_count:
+            # Where no load comes from below, W may leave out the pivots before the first loaded.
+            continue
+        first = 3 * (below.load_start - front.load_start)
+        columns = slice(first, first + remainder.loads.shape[1])
+        for run in runs:
+            target = own if run.parent_tile < 0 else passed
+            part = remainder.loads[run.below]
+            target[run.onward, columns] = part
+            meter.add(MOVE_WEIGHT * part.size)
+    meter.add(FRONT_WEIGHT)
+
+    factor, breakdown = dpotrf(pivots, lower=False, clean=False, overwrite_a=True)
+    refuse_loose(breakdown, factor.diagonal() ** 2, stiffness)
+    meter.add(CHOLESKY_WEIGHT * work.cholesky_flops)
+    _solve_transposed(factor, coupling, meter)
+    schur.subtract_gram(coupling, meter.add)
+    if skipped:
+        factor = np.asfortranarray(factor[skipped:, skipped:])
+        coupling = np.asfortranarray(coupling[skipped:])
+    _solve_transposed(factor, own, meter)
+    _subtract_product(coupling, own, passed, meter)
+    return _Remainder(schur, passed)
+
+
+def targets_of_child(child: Front, parent: Front) -> NDArray[np.int64]:
+    """Which freedom of the parent, pivots first, each freedom of the child's boundary is."""
+    nodes = np.where(
+        child.boundary < parent.stop,
+        child.boundary - parent.start,
+        parent.pivot_count + np.searchsorted(parent.boundary, child.boundary),
+    )
+    return (3 * nodes[:, None] + AXES).ravel()
+
+
+def _solve_transposed(
+    factor: NDArray[np.float64], right: NDArray[np.float64], meter: Meter
+) -> None:
+    """Replace ``right`` (p, m) by R^-T right, R the upper half of ``factor`` (p, p)."""
+    size = len(factor)
+    for columns in _short_calls(right.shape[1], size**2):
+        part = right[:, columns]
+        dtrsm(1.0, factor, part, trans_a=True, overwrite_b=True)
+        meter.add(SOLVE_WEIGHT * size**2 * part.shape[1])
+
+
+def _subtract_product(
+    coupling: NDArray[np.float64],
+    own: NDArray[np.float64],
+    passed: NDArray[np.float64],
+    meter: Meter,
+) -> None:
+    """Subtract ``coupling.T @ own`` from ``passed`` (b, c)."""
+    if not coupling.size:
+        return
+    for columns in _short_calls(own.shape[1], 2 * coupling.size):
+        dgemm(
+            -1.0, coupling, own[:, columns], 1.0, passed[:, columns], trans_a=True, overwrite_c=True
+        )
+        meter.add(2.0 * coupling.size * own[:, columns].shape[1])
+
+
+def _short_calls(columns: int, flops_per_column: int) -> list[slice]:
+    """Cut columns into parts that take one short call each."""
+    if not flops_per_column:
+        return []
+    step = max(int(FLOPS_PER_CALL / flops_per_column), 16)
+    return [slice(start, min(start + step, columns)) for start in range(0, columns, step)]
+
+
+class EntriesByFront:
+    """Where the upper half of a block matrix goes in order of elimination, cut into fronts.
+
+    ``rows`` and ``columns`` (m,) are those of its blocks, both halves of the matrix.
+    """
+
+    def __init__(
+        self, rows: NDArray[np.int64], columns: NDArray[np.int64], symbolic: SymbolicFactor
+    ) -> None:
+        rows, columns = symbolic.place[rows], symbolic.place[columns]
+        upper = np.flatnonzero(rows <= columns)
+        self._upper = upper[np.argsort(rows[upper], kind="stable")]
+        self._rows, self._columns = rows[self._upper], columns[self._upper]
+        stops = [0] + [front.stop for front in symbolic.fronts]
+        self._bounds = np.searchsorted(self._rows, stops)
+
+    def in_order(self, blocks: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The blocks of the upper half, sorted for :meth:`add_to`."""
+        return blocks[self._upper]
+
+    def add_to(
+        self,
+        index: int,
+        front: Front,
+        blocks: NDArray[np.float64],
+        pivots: NDArray[np.float64],
+        coupling: NDArray[np.float64],
+    ) -> None:
+        """Write the entries of front number ``index``, of sorted ``blocks``, into empty arrays."""
+        span = slice(*self._bounds[index : index + 2])
+        rows, columns, blocks = self._rows[span], self._columns[span], blocks[span]
+        inside = columns < front.stop
+        for chosen, target, places in (
+            (inside, pivots, columns - front.start),
+            (~inside, coupling, np.searchsorted(front.boundary, columns)),
+        ):
+            row = 3 * (rows[chosen] - front.start)[:, None, None] + AXES[:, None]
+            column = 3 * places[chosen][:, None, None] + AXES
+            target[row, column] = blocks[chosen]

@@ -1,0 +1,124 @@
+"""What an elimination will cost, exactly, before it starts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+
+from ...mesh.tet_mesh import TetMesh
+from ...progress import Progress, unwatched
+from ...stiffness.held_pins import pins_checked
+from ..ordering.dissection import dissect
+from ..ordering.symbolic import SymbolicFactor, analyse
+from .block_matrix import BlockMatrix, free_blocks
+from .inverse import inverse_bytes, inverse_weight
+from .work import FrontWork, elimination_peak_bytes
+
+
+@dataclass(frozen=True, eq=False)
+class EliminationPlan:
+    """The symbolic step of a body, and what follows from it.
+
+    Attributes
+    ----------
+    free_surface : int64 (n,), the nodes whose compliance is wanted, ascending.
+    matrix : the stiffness between free nodes.
+    symbolic : fronts and order; nodes are counted among the free ones.
+    ranks : int64 (n,), for each loaded node in order of elimination, its place in free_surface.
+    table_itemsize : bytes of a number of the table that is to be made; 0 for none.
+    """
+
+    free_surface: NDArray[np.int64]
+    matrix: BlockMatrix
+    symbolic: SymbolicFactor
+    ranks: NDArray[np.int64]
+    table_itemsize: int
+
+    @cached_property
+    def works(self) -> list[FrontWork]:
+        """The work of each front."""
+        return [FrontWork.of(front) for front in self.symbolic.fronts]
+
+    @cached_property
+    def flops(self) -> float:
+        """Floating point operations, exactly those that BLAS and LAPACK will be asked for."""
+        eliminated = sum(work.flops for work in self.works)
+        if not self.table_itemsize:
+            return eliminated
+        return eliminated + sum(work.gram_flops for work in self.works)
+
+    @cached_property
+    def weight(self) -> float:
+        """Time needed, in floating point operations of a large matrix product."""
+        eliminated = sum(work.weight for work in self.works)
+        if not self.table_itemsize:
+            return eliminated
+        return eliminated + inverse_weight(self.works, len(self.ranks))
+
+    @cached_property
+    def peak_bytes(self) -> int:
+        """The most bytes that the numeric steps ask for at once, the plan's matrix included.
+
+        A process grows by up to a third more, measured: freed memory is not all given back at once.
+        """
+        peak, factor = elimination_peak_bytes(self.symbolic.fronts)
+        table = inverse_bytes(len(self.ranks), self.table_itemsize)
+        # The elimination sorts the upper half of the matrix for itself.
+        sorted_half = self.matrix.nbytes // 2
+        return self.matrix.nbytes + max(sorted_half + peak, factor + table)
+
+
+def plan_surface_inverse(
+    mesh: TetMesh,
+    stiffness: csr_array,
+    fixed: NDArray[np.int64],
+    dtype: type[np.floating] = np.float32,
+    progress: Progress = unwatched,
+) -> EliminationPlan:
+    """Plan the whole compliance of the free surface, stored as ``dtype``.
+
+    ``progress`` is called with about the share of the planning done; it may raise to cancel.
+
+    Raises
+    ------
+    PalpateError
+        Pins that do not hold the body, or leave nothing to touch.
+    """
+    return _planned(mesh, stiffness, fixed, np.dtype(dtype).itemsize, progress)
+
+
+def plan_factor(
+    mesh: TetMesh,
+    stiffness: csr_array,
+    fixed: NDArray[np.int64],
+    progress: Progress = unwatched,
+) -> EliminationPlan:
+    """Plan the factor alone, from which single columns follow; the rest as for the whole."""
+    return _planned(mesh, stiffness, fixed, 0, progress)
+
+
+def _planned(
+    mesh: TetMesh,
+    stiffness: csr_array,
+    fixed: NDArray[np.int64],
+    itemsize: int,
+    progress: Progress,
+) -> EliminationPlan:
+    pins = pins_checked(mesh, fixed)
+    free = np.setdiff1d(np.arange(len(mesh.nodes)), pins)
+    free_surface = np.setdiff1d(mesh.surface_nodes, pins)
+    loaded = np.zeros(len(free), dtype=bool)
+    loaded[np.searchsorted(free, free_surface)] = True
+    progress(0.0)
+    matrix = free_blocks(stiffness, free)
+    progress(0.0)
+    edges = matrix.edges
+    dissection = dissect(edges, mesh.nodes[free], loaded, progress=progress)
+    symbolic = analyse(dissection, edges, loaded)
+    progress(1.0)
+    ranks = np.searchsorted(free_surface, free[symbolic.loaded])
+    return EliminationPlan(free_surface, matrix, symbolic, ranks, itemsize)

@@ -1,0 +1,214 @@
+"""Nested dissection: the order of elimination, as a tree of small groups of nodes.
+
+A region is cut across one of its main directions. The nodes that meet every coupling across the cut
+are its separator; they are eliminated after everything on either side, so that the sides never come
+to couple. The sides are cut again, until they are small.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from ...progress import Progress, unwatched
+from .vertex_cover import minimum_vertex_cover
+
+# Regions of so few nodes are eliminated as one dense front: cutting them on would cost more in
+# calls than it saves in arithmetic.
+LEAF_NODES = 64
+
+# Larger regions are cut across each of their three main directions at several heights, given as the
+# share of nodes below, and the best cut is taken. They are few, and their separators cost most.
+# Smaller ones are halved across their longest direction.
+TRY_SEVERAL_CUTS_ABOVE = 1000
+HEIGHTS_TRIED = (0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65)
+
+# How many nodes fewer, as a share, a separator must have to outweigh a cut one off the middle.
+IMBALANCE_PENALTY = 0.3
+
+# Cells of the space-filling curve along each axis of the bounding box: 2 to this power.
+Z_CURVE_BITS = 12
+
+
+@dataclass(frozen=True, eq=False)
+class Dissection:
+    """Groups of nodes in order of elimination; each group is the pivots of one front.
+
+    Attributes
+    ----------
+    order : int64 (n,), the nodes in order of elimination.
+    starts : int64 (f + 1,), front i eliminates ``order[starts[i]:starts[i + 1]]``.
+    parents : int64 (f,), the front that a front's remainder is added to; -1 for roots. Fronts are
+        in postorder: all that end up in a front stand directly before it.
+    """
+
+    order: NDArray[np.int64]
+    starts: NDArray[np.int64]
+    parents: NDArray[np.int64]
+
+
+def dissect(
+    edges: NDArray[np.int64],
+    positions: NDArray[np.float64],
+    last: NDArray[np.bool_],
+    leaf_nodes: int = LEAF_NODES,
+    progress: Progress = unwatched,
+) -> Dissection:
+    """An order of elimination that keeps fronts small.
+
+    Parameters
+    ----------
+    edges : (e, 2), pairs of coupled nodes, each pair once.
+    positions : (n, 3), where the nodes are; the cuts' quality depends on it, their validity not.
+    last : (n,), nodes that come last within their leaf, because loads will act on them alone.
+    leaf_nodes : regions of at most so many nodes are not cut.
+    progress : called before every cut that is tried, with about the share of the work done; may
+        raise to cancel.
+    """
+    expected = len(edges) * max(_cuts_expected(len(positions), leaf_nodes), 1.0)
+    sorted_edges = 0
+
+    def tried(count: int) -> None:
+        nonlocal sorted_edges
+        sorted_edges += count
+        progress(min(sorted_edges / max(expected, 1.0), 1.0))
+
+    # Numbered along a curve that fills space, nodes of one separator stand beside their neighbours.
+    # A front's boundary then meets the fronts above it in few unbroken runs.
+    curve = _along_z_curve(positions)
+    along = np.empty_like(curve)
+    along[curve] = np.arange(len(curve))
+    positions, last, edges = positions[curve], last[curve], along[edges]
+    pivots: list[NDArray[np.int64]] = []
+    parents: list[int] = []
+
+    def add_front(nodes: NDArray[np.int64], below: list[int]) -> list[int]:
+        for front in below:
+            parents[front] = len(pivots)
+        pivots.append(nodes)
+        parents.append(-1)
+        return [len(pivots) - 1]
+
+    def add_region(nodes: NDArray[np.int64], inside: NDArray[np.int64]) -> list[int]:
+        """Add the fronts of a region (k,) with edges (e, 2) within it; return those on top."""
+        if len(nodes) > leaf_nodes:
+            pieces = _pieces(len(nodes), inside, leaf_nodes)
+            if len(pieces) > 1:
+                return [top for piece in pieces for top in add_region(*_part(nodes, inside, piece))]
+            cut = _best_cut(positions[nodes], inside, tried)
+            if len(cut.first) and len(cut.second):
+                below = add_region(*_part(nodes, inside, cut.first))
+                below += add_region(*_part(nodes, inside, cut.second))
+                return add_front(nodes[cut.separator], below)
+        return add_front(nodes[np.argsort(last[nodes], kind="stable")], [])
+
+    add_region(np.arange(len(positions)), edges)
+    sizes = [len(front) for front in pivots]
+    return Dissection(
+        curve[np.concatenate(pivots)], np.concatenate([[0], np.cumsum(sizes)]), np.array(parents)
+    )
+
+
+def _along_z_curve(positions: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Nodes ordered by interleaving the bits of their coordinates (Morton's order), (n,)."""
+    extent = np.ptp(positions, axis=0).max()
+    steps = (1 << Z_CURVE_BITS) - 1
+    cells = ((positions - positions.min(axis=0)) * (steps / (extent or 1.0))).astype(np.int64)
+    code = np.zeros(len(positions), dtype=np.int64)
+    for bit in range(Z_CURVE_BITS):
+        for axis in range(3):
+            code |= ((cells[:, axis] >> bit) & 1) << (3 * bit + axis)
+    return np.argsort(code, kind="stable")
+
+
+def _part(
+    nodes: NDArray[np.int64], edges: NDArray[np.int64], part: NDArray[np.int64]
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """The nodes of a part of a region, and the edges within it, in the part's own numbering."""
+    number = np.full(len(nodes), -1, dtype=np.int64)
+    number[part] = np.arange(len(part))
+    ends = number[edges]
+    return nodes[part], ends[(ends >= 0).all(axis=1)]
+
+
+def _pieces(count: int, edges: NDArray[np.int64], enough: int) -> list[NDArray[np.int64]]:
+    """The connected pieces of a region; small ones in bundles of at most ``enough`` nodes."""
+    links = coo_array(
+        (np.ones(len(edges), dtype=np.int8), (edges[:, 0], edges[:, 1])), (count,) * 2
+    )
+    pieces, label = connected_components(links, directed=False)
+    if pieces == 1:
+        return [np.arange(count)]
+    sizes = np.bincount(label)
+    # A bundle takes pieces until it is half full, and none that would more than fill the rest.
+    half = max(enough // 2, 1)
+    small = sizes <= half
+    before = np.cumsum(np.where(small, sizes, 0)) - sizes
+    bundle = np.where(small, before // half, pieces + np.arange(pieces))[label]
+    return [np.flatnonzero(bundle == which) for which in np.unique(bundle)]
+
+
+@dataclass(frozen=True, eq=False)
+class _Cut:
+    """Both sides of a region and what separates them, and how costly it is to eliminate so."""
+
+    first: NDArray[np.int64]
+    second: NDArray[np.int64]
+    separator: NDArray[np.int64]
+    cost: float
+
+
+def _cuts_expected(nodes: int, leaf_nodes: int) -> float:
+    """How many cuts each edge is sorted for, if every cut halves its region."""
+    several = max(0.0, np.log2(nodes / TRY_SEVERAL_CUTS_ABOVE))
+    single = max(0.0, np.log2(min(nodes, TRY_SEVERAL_CUTS_ABOVE) / leaf_nodes))
+    return float(3 * len(HEIGHTS_TRIED) * np.ceil(several) + np.ceil(single))
+
+
+def _best_cut(
+    positions: NDArray[np.float64], edges: NDArray[np.int64], tried: Callable[[int], None]
+) -> _Cut:
+    """The cheapest of the cuts tried; each is announced by the number of edges it sorted."""
+    centred = positions - positions.mean(axis=0)
+    directions = np.linalg.eigh(centred.T @ centred)[1].T[::-1]
+    if len(positions) <= TRY_SEVERAL_CUTS_ABOVE:
+        tried(len(edges))
+        return _cut(_ranks(centred @ directions[0]), edges, 0.5)
+
+    def cuts() -> Iterator[_Cut]:
+        for ranks in (_ranks(centred @ direction) for direction in directions):
+            for height in HEIGHTS_TRIED:
+                tried(len(edges))
+                yield _cut(ranks, edges, height)
+
+    return min(cuts(), key=lambda cut: cut.cost)
+
+
+def _ranks(heights: NDArray[np.float64]) -> NDArray[np.int64]:
+    """For each node how many lie lower, (k,); every number occurs once."""
+    ranks = np.empty(len(heights), dtype=np.int64)
+    ranks[np.argsort(heights, kind="stable")] = np.arange(len(heights))
+    return ranks
+
+
+def _cut(ranks: NDArray[np.int64], edges: NDArray[np.int64], height: float) -> _Cut:
+    upper = ranks >= int(height * len(ranks))
+    upper_ends = upper[edges]
+    crossing = upper_ends[:, 0] != upper_ends[:, 1]
+    across, reverse = edges[crossing], upper_ends[crossing, 0]
+    left = np.where(reverse, across[:, 1], across[:, 0])
+    right = np.where(reverse, across[:, 0], across[:, 1])
+    separator = np.sort(minimum_vertex_cover(left, right))
+    outside = np.ones(len(ranks), dtype=bool)
+    outside[separator] = False
+    return _Cut(
+        np.flatnonzero(~upper & outside),
+        np.flatnonzero(upper & outside),
+        separator,
+        len(separator) * (1 + IMBALANCE_PENALTY * abs(height - 0.5)),
+    )

@@ -1,0 +1,1 @@
+"""What a touch is: equations (9) to (14)."""

@@ -1,0 +1,1 @@
+"""How a place gives way, closer than the mesh can tell."""

@@ -1,0 +1,335 @@
+"""What a force at one place of a surface moves another place by, below the fineness of the mesh.
+
+Finite elements cannot resolve what is smaller than they are: how far a node gives way under its own
+force depends on the mesh (about as one over its edges), and between nodes all is as smooth as the
+elements. But close to a force every smooth surface gives way as a half-space does, H, and what the
+body adds to that is smooth. So
+
+    C(x, y) = H(x - y) + sum_ab alpha_a(x) alpha_b(y) (L_ab - H_ab)
+
+where L_ab - H_ab is taken as it is for nodes far enough apart, and for a node itself and its next
+neighbours from :mod:`.regular_field`. The part of a force's own cell in H is that of
+:mod:`.half_space`. See docs/near-field.md for evidence and limits.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+
+from ...body.pair_blocks import pair_blocks
+from ...body.soft_body import SoftBody
+from ...stiffness.formulation import LINEAR, SMOOTHED
+from .contact_points import ContactPoints
+from .half_space import own_displacement
+from .regular_field import (
+    BELIEVED,
+    SHORT_NOWHERE,
+    SHORT_WITHIN,
+    RegularField,
+    facing,
+    half_space_between,
+)
+from .solid_angle import FLAT, solid_angles
+
+# Points whose normals have a smaller product than the first are not of one surface, from the second
+# on they are wholly: H may reach around an edge, but not through a thin part.
+SAME_SURFACE = (-0.5, 0.0)
+
+# A pinned point gives way by this share of what the body's firmest node does under its own force,
+# besides what its nodes do: between three pinned nodes no point is the sum of others.
+OWN_PINNED = 0.1
+
+# A point with more than the second of these shares of a half-space around it is on a round surface,
+# with less than the first on an edge.
+ROUND = (0.55, 0.75)
+
+# The exponent that lets a cube's edge and tip give way as in finite elements.
+SHARPENING = 1.3
+
+# No point gives way to its own force by less than this share of what it does in a half-space: what
+# is left where pins are nearer than the points are apart.
+LEAST_OWN = 0.25
+
+# How far a point gives way to its own force, as a share of what is right under a smooth pressure
+# (OWN_CELL). At the border of a contact the pressure ends like a root, somewhere between points,
+# and a few points carry less than the pressure that they stand for: by Hertz, on a half-space, 1.5
+# and 0.6 % with points 0.8 and 0.55 of the contact's radius apart (a sphere's own at 0.05 and 0.1
+# of its radius deep), and as much again where they lie unevenly, as on bodies. This makes up for
+# it in the mean; evenly placed, 0.4 % too much at most, less the larger the contact.
+IN_CONTACT = 0.974
+
+# By how much more a point gives way to its own force along the surface than in a half-space. What
+# smoothed elements have between neighbours swings, and would else leave blocks of several points
+# not positive definite (by up to a third where meshes are coarse and bodies thin).
+ACROSS = {LINEAR: 0.0, SMOOTHED: 0.35}
+
+# Pairs of triangles worked on together; bounds memory to some 100 MB.
+PAIRS_TOGETHER = 50_000
+
+
+@dataclass(frozen=True, eq=False)
+class NearCorrection:
+    """What is to be added to plain finite elements between contact points of a body.
+
+    Nothing is kept pair by pair: a tool touches a few dozen points, bodies have pairs by the
+    million.
+
+    Attributes
+    ----------
+    field : what is known at the surface's nodes.
+    points : the P contact points.
+    shares : float64 (P,), 0 where plain finite elements stay, else up to 1.
+    softness : float64 (P,), 1 over the factor of Young's modulus around each point.
+    own : float64 (P, 3, 3), for each point and its own force, m / N at 1 Pa, symmetric.
+    """
+
+    field: RegularField
+    points: ContactPoints
+    shares: NDArray[np.float64]
+    softness: NDArray[np.float64]
+    own: NDArray[np.float64]
+    _last: _Known = dataclasses.field(default_factory=lambda: _Known(), repr=False)  # noqa: PLW0108  defined below
+
+    def between(self, i: NDArray[np.int64], j: NDArray[np.int64]) -> NDArray[np.float64]:
+        """The part for points ``i`` (k,) seen and ``j`` (l,) loaded, (k, l, 3, 3).
+
+        The block of (j, i) is the transpose of (i, j)'s. Of all pairs of the same points the last
+        are kept: along a path most are those of the step before.
+        """
+        if not np.array_equal(i, j):
+            return self._pairs(np.repeat(i, len(j)), np.tile(j, len(i))).reshape(
+                len(i), len(j), 3, 3
+            )
+        known, blocks = self._last.points, np.empty((len(i), len(i), 3, 3))
+        place = np.searchsorted(known, i)
+        place[place == len(known)] = 0
+        old = known[place] == i if len(known) else np.zeros(len(i), dtype=np.bool_)
+        kept, new = np.flatnonzero(old), np.flatnonzero(~old)
+        blocks[kept[:, None], kept] = self._last.blocks[place[kept][:, None], place[kept]]
+        rows = self._pairs(np.repeat(i[new], len(i)), np.tile(i, len(new)))
+        rows = rows.reshape(len(new), len(i), 3, 3)
+        blocks[new], blocks[:, new] = rows, rows.transpose(1, 0, 3, 2)
+        if np.all(np.diff(i) > 0):
+            self._last.points, self._last.blocks = i.copy(), blocks
+        return blocks.copy()
+
+    def arrays(self) -> dict[str, object]:
+        """All of it as the native thread takes it; the thread reckons the pairs by itself."""
+        field = self.field
+        never, wholly, _, outer = BELIEVED[field.body.formulation]
+        return {
+            "normals": field.normals,
+            "edges": field.edges,
+            "softness": field.softness,
+            "excess": field.excess,
+            "regular": field.regular,
+            "slopes": field.slope.reshape(-1, 3, 3),
+            "far_nodes": field.far.nodes,
+            "far_weights": field.far.weights,
+            "shares": self.shares,
+            "softness_of_points": self.softness,
+            "own": self.own,
+            "believed": (never, wholly),
+            "short": (SHORT_WITHIN * outer, SHORT_NOWHERE * outer),
+            "poisson_ratio": field.body.poisson_ratio,
+        }
+
+    def _pairs(self, i: NDArray[np.int64], j: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Blocks (k, 3, 3) for pairs of points ``i`` (k,) and ``j`` (k,)."""
+        blocks = np.empty((len(i), 3, 3))
+        own = i == j
+        blocks[own] = self.own[i[own]]
+        apart = np.flatnonzero(~own)
+        first, second = np.minimum(i[apart], j[apart]), np.maximum(i[apart], j[apart])
+        found = _corrections(self, first, second)
+        turned = i[apart] > j[apart]
+        found[turned] = found[turned].transpose(0, 2, 1)
+        blocks[apart] = found
+        return blocks
+
+
+@dataclass(eq=False)
+class _Known:
+    """Blocks (k, k, 3, 3) between ``points`` (k,), ascending, that were asked for last."""
+
+    points: NDArray[np.int64] = dataclasses.field(default_factory=lambda: np.empty(0, np.int64))
+    blocks: NDArray[np.float64] = dataclasses.field(default_factory=lambda: np.empty((0, 0, 3, 3)))
+
+
+def near_correction(
+    body: SoftBody, points: ContactPoints, field: RegularField | None = None
+) -> NearCorrection:
+    """The correction for the contact points of a body; what is between them is reckoned when it is
+    asked for. The body's ``field``, where it is at hand, is not looked for again.
+    """
+    field = RegularField.of(body) if field is None else field
+    triangles = body.mesh.surface_local_triangles[points.triangles]
+    shares = np.einsum("pc,pc->p", points.alphas, field.trusted[triangles])
+    softness = np.einsum("pc,pc->p", points.alphas, field.softness[triangles])
+    everyone = np.arange(len(points))
+    own = _own(field, points, softness) + _replaced(field, points, everyone, everyone)
+    own = 0.5 * (own + own.transpose(0, 2, 1)) * (shares**2)[:, None, None]
+    own += _lifted(field, points, softness, own, 1 - shares**2)
+    return NearCorrection(field, points, shares, softness, own)
+
+
+def _corrections(
+    near: NearCorrection, i: NDArray[np.int64], j: NDArray[np.int64]
+) -> NDArray[np.float64]:
+    """Blocks (k, 3, 3) for pairs of points, none with itself."""
+    points, field = near.points, near.field
+    share = near.shares[i] * near.shares[j]
+    share *= facing(points.normals[i], points.normals[j], SAME_SURFACE)
+    counts = np.flatnonzero(share > 0.0)
+    blocks = np.zeros((len(i), 3, 3))
+    for first in range(0, len(counts), PAIRS_TOGETHER):
+        few = counts[first : first + PAIRS_TOGETHER]
+        a, b = i[few], j[few]
+        found = _replaced(field, points, a, b)
+        found += half_space_between(
+            field.body, points.positions, points.normals, near.softness, a, b
+        )
+        blocks[few] = share[few][:, None, None] * found
+    return blocks
+
+
+def _replaced(
+    field: RegularField, points: ContactPoints, i: NDArray[np.int64], j: NDArray[np.int64]
+) -> NDArray[np.float64]:
+    """What finite elements have in place of the half-space, taken off, (k, 3, 3)."""
+    table, place = _table_of(field, points.triangles[i], points.triangles[j])
+    weights = points.alphas[i][:, :, None] * points.alphas[j][:, None, :]
+    taken = np.zeros((len(i), 9))
+    flat = table.reshape(-1, 9)
+    for a in range(3):
+        for b in range(3):
+            taken -= weights[:, a, b, None] * flat[place[:, a, b]]
+    return taken.reshape(-1, 3, 3)
+
+
+def _own(
+    field: RegularField, points: ContactPoints, softness: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """The half-space's part of how each point gives way to its own force, (P, 3, 3)."""
+    nu = field.body.poisson_ratio
+    alone = IN_CONTACT * softness * _sharpness(field.body, points)
+    moved = alone[:, None, None] * own_displacement(points.areas, points.normals, nu)
+    across = np.eye(3) - np.einsum("px,py->pxy", points.normals, points.normals)
+    lifted: NDArray[np.float64] = moved + ACROSS[field.body.formulation] * across @ moved @ across
+    return lifted
+
+
+def _lifted(
+    field: RegularField,
+    points: ContactPoints,
+    softness: NDArray[np.float64],
+    own: NDArray[np.float64],
+    pinned: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """What is to be added to ``own`` (P, 3, 3) so that no point is held by more than all of it."""
+    body, count = field.body, len(points)
+    # Far fewer triangles than points lie on them.
+    used, place = np.unique(points.triangles, return_inverse=True)
+    corners = body.mesh.surface_local_triangles[used]
+    seen, loaded = np.repeat(corners, 3, axis=1), np.tile(corners, (1, 3))
+    resolved = pair_blocks(body, seen.reshape(-1), loaded.reshape(-1)).reshape(len(used), 9, 9)
+    weights = (points.alphas[:, :, None] * points.alphas[:, None, :]).reshape(count, 9)
+    whole = own.copy()
+    for pair in range(9):
+        whole += (weights[:, pair, None] * resolved[place, pair]).reshape(count, 3, 3)
+    firmest = OWN_PINNED / np.linalg.eigvalsh(body.contact_blocks).max()
+    whole += firmest * pinned[:, None, None] * np.eye(3)
+    alone = own_displacement(points.areas, points.normals, body.poisson_ratio)
+    least = LEAST_OWN * softness * np.linalg.eigvalsh(alone)[:, 0] * (1 - pinned)
+    missing = np.maximum(least - np.linalg.eigvalsh(whole)[:, 0], 0.0)
+    lift: NDArray[np.float64] = (firmest * pinned + missing)[:, None, None] * np.eye(3)
+    return lift
+
+
+def _sharpness(body: SoftBody, points: ContactPoints) -> NDArray[np.float64]:
+    """How much more than a half-space a point gives way on an edge or a tip, (P,), 1 and more.
+
+    The power of what there is around it to hold it that a cube's edge and tip come out as finite
+    elements have them, 2.5 and 6. A surface that is only made of flat triangles is not sharp.
+    """
+    around = solid_angles(body.mesh, points.triangles, points.alphas) / FLAT
+    low, high = ROUND
+    sharp = np.clip((high - around) / (high - low), 0.0, 1.0)
+    sharpness: NDArray[np.float64] = 1.0 + sharp * np.maximum(around**-SHARPENING - 1.0, 0.0)
+    return sharpness
+
+
+def _table_of(
+    field: RegularField, first: NDArray[np.int64], second: NDArray[np.int64]
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """A table of blocks (q, 3, 3), and where those between the corners of triangles ``first`` (k,)
+    and ``second`` (k,) stand in it, (k, 3, 3).
+    """
+    triangles, nodes = field.body.mesh.surface_local_triangles, len(field.normals)
+    # Far fewer than the pairs of points: these first, then the nodes of each of these.
+    codes, pair = np.unique(first * len(triangles) + second, return_inverse=True)
+    here, there = (triangles[side] for side in np.divmod(codes, len(triangles)))
+    both, place = np.unique(here[:, :, None] * nodes + there[:, None, :], return_inverse=True)
+    return _node_table(field, *np.divmod(both, nodes)), place.reshape(-1, 3, 3)[pair.reshape(-1)]
+
+
+def _node_table(
+    field: RegularField, a: NDArray[np.int64], b: NDArray[np.int64]
+) -> NDArray[np.float64]:
+    """What stands in L for the half-space, for pairs of nodes, (k, 3, 3)."""
+    places = field.places
+    apart = np.linalg.norm(places[a] - places[b], axis=1) / (
+        0.5 * (field.edges[a] + field.edges[b])
+    )
+    never, wholly, _, _ = BELIEVED[field.body.formulation]
+    doubt = np.clip((wholly - apart) / (wholly - never), 0.0, 1.0)
+    blocks = np.zeros((len(a), 3, 3))
+    far = np.flatnonzero(doubt < 1)
+    resembled = field.short(a[far], b[far]) + half_space_between(
+        field.body, places, field.normals, field.softness, a[far], b[far]
+    )
+    blocks[far] = (1 - doubt[far])[:, None, None] * resembled
+    near = np.flatnonzero(doubt > 0)
+    resolved = pair_blocks(field.body, a[near], b[near])
+    regular = field.between(a[near], b[near])
+    blocks[near] += doubt[near][:, None, None] * (resolved - regular)
+    return blocks
+
+
+def point_compliance(
+    body: SoftBody,
+    points: ContactPoints,
+    i: NDArray[np.int64],
+    j: NDArray[np.int64],
+    correction: NearCorrection | None = None,
+) -> NDArray[np.float64]:
+    """Displacement of points ``i`` (k,) per force on ``j`` (l,), at unit modulus: (k, l, 3, 3).
+
+    Without a correction, C(x, y) = sum_ab alpha_a(x) alpha_b(y) L_ab.
+    """
+    rows, weigh_rows = _weights(body, points, i)
+    columns, weigh_columns = _weights(body, points, j)
+    blocks = body.surface_blocks(rows, columns)
+    left = (weigh_rows @ blocks.reshape(len(rows), -1)).reshape(len(i), len(columns), 9)
+    turned = left.transpose(1, 0, 2).reshape(len(columns), -1)
+    both = (weigh_columns @ turned).reshape(len(j), len(i), 3, 3)
+    compliance: NDArray[np.float64] = both.transpose(1, 0, 2, 3)
+    return compliance if correction is None else compliance + correction.between(i, j)
+
+
+def _weights(
+    body: SoftBody, points: ContactPoints, chosen: NDArray[np.int64]
+) -> tuple[NDArray[np.int64], csr_array]:
+    """The surface-local nodes (m,) that carry the chosen points (k,), and their weights (k, m)."""
+    corners = body.mesh.surface_local_triangles[points.triangles[chosen]]
+    nodes, place = np.unique(corners, return_inverse=True)
+    rows = np.repeat(np.arange(len(chosen)), 3)
+    weights = csr_array(
+        (points.alphas[chosen].ravel(), (rows, place.reshape(-1))), shape=(len(chosen), len(nodes))
+    )
+    return nodes, weights

@@ -1,0 +1,383 @@
+"""Places fixed on a body's surface where a rigid tool may touch it.
+
+A tool meets the body in these points only. They stay where they are on the body whatever the tool
+does, so the force is the slope of an elastic energy and does not jump. They are spread evenly: on a
+coarse mesh also between its nodes, on a fine one on some of its nodes, so that what a tool feels
+does not follow the fineness of the mesh.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.spatial import cKDTree
+
+from ...body.soft_body import SoftBody
+from ...errors import PalpateError
+from ...mesh.tet_mesh import TetMesh
+
+# Faces that meet at a larger angle make a crease: the normals of one do not turn towards the other.
+CREASE_ANGLE = np.radians(40.0)
+
+# Shares of the spacing. Nodes that all triangles meet in are thinned out to the first; points of
+# the lattices, which are 0.6 to 1.4 apart where triangles are not slender, to the second.
+CLOSEST_NODES = 0.75
+CLOSEST_OTHERS = 0.55
+
+# How finely the surface is sampled to share it out among the points, in shares of the spacing.
+SAMPLE_SPACING = 0.4
+
+# How many points there are on the square of the spacing.
+POINTS_PER_SPACING_SQUARED = 1.3
+
+# Points that a body may carry: what belongs to them takes half a kilobyte each, and a second for
+# every 50,000.
+MOST_ON_BODY = 100_000
+
+# How much wider than a tool asks for points may lie where they would be too many.
+WIDEST = 2.5
+
+# Points are no farther apart than this share of the root of the whole surface, however large the
+# tool: some 500 on any body.
+LARGEST_SHARE = 0.05
+
+# A patch of the surface goes to the nearest of so many points whose normal does not look away.
+NEAREST_ASKED = 6
+
+
+@dataclass(frozen=True, eq=False)
+class ContactPoints:
+    """P places on the rest surface.
+
+    Attributes
+    ----------
+    positions : float64 (P, 3), metres.
+    normals : float64 (P, 3), outward unit normals of the surface.
+    triangles : int64 (P,), number of the surface triangle that a point lies in.
+    alphas : float64 (P, 3), its area coordinates there, sum 1.
+    areas : float64 (P,), its share of the surface, square metres; all together the whole surface.
+    """
+
+    positions: NDArray[np.float64]
+    normals: NDArray[np.float64]
+    triangles: NDArray[np.int64]
+    alphas: NDArray[np.float64]
+    areas: NDArray[np.float64]
+
+    def __len__(self) -> int:
+        return len(self.positions)
+
+    def taken(self, chosen: NDArray[np.int64] | NDArray[np.bool_]) -> ContactPoints:
+        """Only the ``chosen`` points, by number or mask (P,); areas stay what they were."""
+        return ContactPoints(
+            self.positions[chosen],
+            self.normals[chosen],
+            self.triangles[chosen],
+            self.alphas[chosen],
+            self.areas[chosen],
+        )
+
+
+def contact_points(body: SoftBody, spacing: float) -> ContactPoints:
+    """Points on the surface about ``spacing`` metres apart.
+
+    Triangles with longer edges carry a regular lattice, edges as many points as their own length
+    asks for, whatever triangle they are seen from. Where nodes lie closer than the spacing, a
+    well-spread part of them is left.
+
+    Raises
+    ------
+    PalpateError
+        A spacing that is not positive and finite, or asks for more points than
+        :data:`MOST_ON_BODY`.
+    """
+    if not (np.isfinite(spacing) and spacing > 0):
+        raise PalpateError(
+            f"contact points: a spacing of {spacing} m leaves nothing to choose; give a positive "
+            "length, for a fingertip about a third of its radius"
+        )
+    mesh = body.mesh
+    expected = int(POINTS_PER_SPACING_SQUARED * surface_area(mesh) / spacing**2)
+    if expected > MOST_ON_BODY:
+        raise PalpateError(
+            f"contact points: {1000 * spacing:.3g} mm apart the body would have about {expected} "
+            f"of them, more than {MOST_ON_BODY}; take a larger tool"
+        )
+    corner_normals = smooth_corner_normals(mesh)
+    everything = _join(_nodes(mesh), _on_edges(mesh, spacing), _inside(mesh, spacing))
+    normals = _normals(mesh, corner_normals, everything)
+    corners = mesh.nodes[mesh.surface_triangles[everything.triangles]]
+    positions = np.einsum("pc,pcx->px", everything.alphas, corners)
+    kept = _spread(positions, normals, everything.is_node, spacing)
+    areas = _shares(mesh, corner_normals, positions[kept], normals[kept], spacing)
+    # A point none of the surface is nearest to is no place of its own.
+    kept, areas = kept[areas > 0], areas[areas > 0]
+    return ContactPoints(
+        positions[kept],
+        normals[kept],
+        everything.triangles[kept],
+        everything.alphas[kept],
+        areas,
+    )
+
+
+def spacing_on(body: SoftBody, spacing: float) -> float:
+    """The spacing asked for, as far as the body allows it, metres.
+
+    No closer than :data:`MOST_ON_BODY` points lie: so a tool may be small for its body, down to
+    where it would fall between the points. No wider than :data:`LARGEST_SHARE` says: so it may be
+    much larger than its body.
+    """
+    root = float(np.sqrt(surface_area(body.mesh)))
+    allowed = root * float(np.sqrt(POINTS_PER_SPACING_SQUARED / MOST_ON_BODY))
+    asked = min(spacing, LARGEST_SHARE * root)
+    return min(max(asked, 1.01 * allowed), WIDEST * asked)
+
+
+def smooth_corner_normals(mesh: TetMesh) -> NDArray[np.float64]:
+    """Outward unit normals at the corners of all surface triangles, (S, 3, 3).
+
+    At each corner the mean of the faces around that node, weighted by their angles there (Thürmer
+    and Wüthrich 1998), without those beyond a crease.
+    """
+    triangles, faces = mesh.surface_local_triangles, _face_normals(mesh)
+    angles = _corner_angles(mesh).reshape(-1)
+    count = triangles.size
+    at_node = coo_array(
+        (np.ones(count), (np.arange(count), triangles.reshape(-1))),
+        shape=(count, len(mesh.surface_nodes)),
+    ).tocsr()
+    meeting = (at_node @ at_node.T).tocoo()
+    own, other = meeting.row, meeting.col
+    smooth = np.einsum("mx,mx->m", faces[own // 3], faces[other // 3]) > np.cos(CREASE_ANGLE)
+    own, other = own[smooth], other[smooth]
+    mean = coo_array((angles[other], (own, other // 3)), shape=(count, len(triangles))).tocsr()
+    return unit((mean @ faces).reshape(-1, 3, 3))
+
+
+@dataclass(frozen=True, eq=False)
+class _Places:
+    """Where points lie: ``triangles`` (p,), ``alphas`` (p, 3), ``others`` (p,) the triangle on the
+    far side of an edge (elsewhere the same), ``is_node`` (p,).
+    """
+
+    triangles: NDArray[np.int64]
+    alphas: NDArray[np.float64]
+    others: NDArray[np.int64]
+    is_node: NDArray[np.bool_]
+
+
+def _join(*parts: _Places) -> _Places:
+    return _Places(
+        np.concatenate([part.triangles for part in parts]),
+        np.concatenate([part.alphas for part in parts]),
+        np.concatenate([part.others for part in parts]),
+        np.concatenate([part.is_node for part in parts]),
+    )
+
+
+def _nodes(mesh: TetMesh) -> _Places:
+    """Every surface node, in one of its triangles."""
+    _, first = np.unique(mesh.surface_local_triangles, return_index=True)
+    triangle, corner = np.divmod(first, 3)
+    return _Places(triangle, np.eye(3)[corner], triangle, np.ones(len(first), dtype=np.bool_))
+
+
+def _on_edges(mesh: TetMesh, spacing: float) -> _Places:
+    """Points that divide each edge into equal parts, without its ends."""
+    triangles = mesh.surface_local_triangles
+    # Edge number 3 t + c runs from corner c of triangle t to the next one.
+    ends = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2).reshape(-1, 2)
+    _, first, edge = np.unique(
+        np.sort(ends, axis=1), axis=0, return_index=True, return_inverse=True
+    )
+    edge = edge.reshape(-1)
+    far_side = np.zeros(len(first), dtype=np.int64)
+    far_side[edge] = np.arange(len(ends)) // 3
+    later = np.arange(len(ends)) != first[edge]
+    far_side[edge[later]] = np.flatnonzero(later) // 3
+    parts = _parts(_edge_lengths(mesh).reshape(-1)[first], spacing)
+    which = np.repeat(np.arange(len(first)), parts - 1)
+    step = 1 + np.arange(len(which)) - np.repeat(np.cumsum(parts - 1) - (parts - 1), parts - 1)
+    share = step / parts[which]
+    triangle, corner = np.divmod(first[which], 3)
+    rows = np.arange(len(which))
+    alphas = np.zeros((len(which), 3))
+    alphas[rows, corner] = 1.0 - share
+    alphas[rows, (corner + 1) % 3] = share
+    return _Places(triangle, alphas, far_side[which], np.zeros(len(which), dtype=np.bool_))
+
+
+def _inside(mesh: TetMesh, spacing: float) -> _Places:
+    """A regular lattice within each triangle, without its edges."""
+    mean_square = (_edge_lengths(mesh) ** 2).mean(axis=1)
+    parts = _parts(np.sqrt(mean_square), spacing)
+    triangles, alphas = [np.empty(0, dtype=np.int64)], [np.empty((0, 3))]
+    for count in np.unique(parts[parts > 2]).tolist():
+        lattice = _inner_lattice(count)
+        members = np.flatnonzero(parts == count)
+        triangles.append(np.repeat(members, len(lattice)))
+        alphas.append(np.tile(lattice, (len(members), 1)))
+    triangle = np.concatenate(triangles)
+    return _Places(
+        triangle, np.concatenate(alphas), triangle, np.zeros(len(triangle), dtype=np.bool_)
+    )
+
+
+def _inner_lattice(parts: int) -> NDArray[np.float64]:
+    """Area coordinates (l, 3) of the lattice points strictly inside a triangle."""
+    i, j = np.indices((parts, parts))
+    inner = (i > 0) & (j > 0) & (i + j < parts)
+    return np.column_stack([parts - i[inner] - j[inner], i[inner], j[inner]]) / parts
+
+
+def _parts(lengths: NDArray[np.float64], spacing: float) -> NDArray[np.int64]:
+    """Into how many parts a length is cut so that they come nearest to the spacing, as a ratio."""
+    exact = 0.5 * (np.sqrt(1.0 + 4.0 * (lengths / spacing) ** 2) - 1.0)
+    return np.maximum(np.ceil(exact - 1e-9), 1).astype(np.int64)
+
+
+def _spread(
+    positions: NDArray[np.float64],
+    normals: NDArray[np.float64],
+    is_node: NDArray[np.bool_],
+    spacing: float,
+) -> NDArray[np.int64]:
+    """Which points to keep so that none on the same side of the body are too close, ascending.
+
+    Each point in turn is kept unless one before it is close: nodes first.
+    """
+    reach = np.where(is_node, CLOSEST_NODES, CLOSEST_OTHERS) * spacing
+    pairs = cKDTree(positions).query_pairs(CLOSEST_NODES * spacing, output_type="ndarray")
+    first, second = pairs.min(axis=1), pairs.max(axis=1)
+    apart = np.linalg.norm(positions[first] - positions[second], axis=1)
+    facing = np.einsum("px,px->p", normals[first], normals[second]) > 0
+    close = facing & (apart < reach[second] * (1 - 1e-9))
+    first, second = first[close], second[close]
+    order = np.argsort(second, kind="stable")
+    first, second = first[order], second[order]
+    starts = np.searchsorted(second, np.arange(len(positions) + 1))
+    kept = np.ones(len(positions), dtype=np.bool_)
+    for point in np.unique(second).tolist():
+        kept[point] = not kept[first[starts[point] : starts[point + 1]]].any()
+    return np.flatnonzero(kept)
+
+
+def _shares(
+    mesh: TetMesh,
+    corner_normals: NDArray[np.float64],
+    positions: NDArray[np.float64],
+    normals: NDArray[np.float64],
+    spacing: float,
+) -> NDArray[np.float64]:
+    """The part of the surface that is nearer to each point than to the others, (P,), by sampling.
+
+    Points that look the other way, as those beyond a thin wall, take nothing from this side.
+    """
+    longest = _edge_lengths(mesh).max(axis=1)
+    cuts = np.maximum(np.ceil(longest / (SAMPLE_SPACING * spacing)), 2).astype(np.int64)
+    areas = _face_areas(mesh)
+    tree, shares = cKDTree(positions), np.zeros(len(positions))
+    corners = mesh.nodes[mesh.surface_triangles]
+    asked = min(NEAREST_ASKED, len(positions))
+    for count in np.unique(cuts).tolist():
+        centres = _sub_centres(count)
+        members = np.flatnonzero(cuts == count)
+        places = (centres @ corners[members]).reshape(-1, 3)
+        outward = (centres @ corner_normals[members]).reshape(-1, 3)
+        chosen = np.asarray(tree.query(places, workers=-1)[1], dtype=np.int64)
+        away = np.einsum("qx,qx->q", normals[chosen], outward) <= 0
+        if away.any():
+            _, nearest = tree.query(places[away], asked)
+            nearest = nearest.reshape(-1, asked)
+            facing = np.einsum("qkx,qx->qk", normals[nearest], outward[away]) > 0
+            chosen[away] = nearest[np.arange(len(nearest)), np.argmax(facing, axis=1)]
+        area = np.repeat(areas[members] / len(centres), len(centres))
+        shares += np.bincount(chosen, area, len(positions))
+    return shares
+
+
+def _sub_centres(parts: int) -> NDArray[np.float64]:
+    """Area coordinates (parts^2, 3) of the centres of a triangle's equal parts."""
+    i, j = (index.ravel() for index in np.indices((parts, parts)))
+    upright = i + j < parts
+    # Below the diagonal stand those of the lattice's upright parts, beyond it the turned ones.
+    b = np.where(upright, i + 1 / 3, parts - i - 1 / 3)
+    c = np.where(upright, j + 1 / 3, parts - j - 1 / 3)
+    return np.column_stack([parts - b - c, b, c]) / parts
+
+
+def _normals(
+    mesh: TetMesh, corner_normals: NDArray[np.float64], places: _Places
+) -> NDArray[np.float64]:
+    """Unit normals (p, 3): across a crease, and at the tip where several meet, their mean."""
+    here = np.einsum("pc,pcx->px", places.alphas, corner_normals[places.triangles])
+    on_edge = places.others != places.triangles
+    others = places.others[on_edge]
+    shared = mesh.surface_triangles[places.triangles[on_edge]]
+    # The same place seen from the far side: its corners that are the same nodes weigh the same.
+    same = mesh.surface_triangles[others][:, :, None] == shared[:, None, :]
+    there = np.einsum("pcd,pd->pc", same, places.alphas[on_edge])
+    here[on_edge] += np.einsum("pc,pcx->px", there, corner_normals[others])
+    at_node = np.flatnonzero(places.is_node)
+    here[at_node] = node_normals(mesh)
+    return unit(here)
+
+
+def node_normals(mesh: TetMesh) -> NDArray[np.float64]:
+    """Angle-weighted mean normals of all faces around each surface node, (s, 3)."""
+    weighted = _corner_angles(mesh)[:, :, None] * _face_normals(mesh)[:, None, :]
+    mean = np.zeros((len(mesh.surface_nodes), 3))
+    np.add.at(mean, mesh.surface_local_triangles.reshape(-1), weighted.reshape(-1, 3))
+    return unit(mean)
+
+
+def face_vectors(mesh: TetMesh) -> NDArray[np.float64]:
+    """Outward normals of the surface's triangles (S, 3), twice their areas long."""
+    i, j, k = (mesh.nodes[mesh.surface_triangles[:, corner]] for corner in range(3))
+    vectors: NDArray[np.float64] = np.cross(j - i, k - i)
+    return vectors
+
+
+def _face_normals(mesh: TetMesh) -> NDArray[np.float64]:
+    return unit(face_vectors(mesh))
+
+
+def _face_areas(mesh: TetMesh) -> NDArray[np.float64]:
+    areas: NDArray[np.float64] = 0.5 * np.linalg.norm(face_vectors(mesh), axis=1)
+    return areas
+
+
+def surface_area(mesh: TetMesh) -> float:
+    """The whole surface of a body, square metres."""
+    return float(_face_areas(mesh).sum())
+
+
+def _edge_lengths(mesh: TetMesh) -> NDArray[np.float64]:
+    """Length (S, 3) of the edges from each corner to the next."""
+    corners = mesh.nodes[mesh.surface_triangles]
+    lengths: NDArray[np.float64] = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
+    return lengths
+
+
+def _corner_angles(mesh: TetMesh) -> NDArray[np.float64]:
+    """Angle (S, 3) of each triangle at each corner, radians."""
+    corners = mesh.nodes[mesh.surface_triangles]
+    ahead = unit(np.roll(corners, -1, axis=1) - corners)
+    back = unit(np.roll(corners, 1, axis=1) - corners)
+    angles: NDArray[np.float64] = np.arccos(
+        np.clip(np.einsum("tcx,tcx->tc", ahead, back), -1.0, 1.0)
+    )
+    return angles
+
+
+def unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Vectors (..., 3) of length 1; those of no length stay so."""
+    lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    shortened: NDArray[np.float64] = np.divide(
+        vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0
+    )
+    return shortened

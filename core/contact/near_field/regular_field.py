@@ -1,0 +1,311 @@
+"""How a body's surface gives way beyond what a half-space would, at each node and around it.
+
+Finite elements are not accurate for a node under its own force, nor for its next neighbours. But
+the difference between the body and a half-space is smooth there: so it is told from a ring of nodes
+around, where they are accurate, by a plane fitted to it.
+
+One thing they are slow to get right: how far a push along the normal draws the surface around it
+sideways, and a force aside lifts it. There they are short by about 1 / r^2, half of it at two
+edges. So that share is told from the ring too, and taken for what it is, an error.
+
+A thin part bends, on the scale of the ring: no plane. But how far the far side moves is nearly all
+bending, and the elements have it right. So that is taken off the ring's samples, and added where
+the fit is used: two forces that squeeze the part between them then meet no bending.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+from scipy.spatial import cKDTree
+
+from ...body.pair_blocks import pair_blocks
+from ...body.soft_body import SoftBody
+from ...stiffness.formulation import LINEAR, SMOOTHED
+from .contact_points import node_normals
+from .far_side import FarSide, far_side
+from .half_space import surface_displacement
+
+# Distances in mean edge lengths of two nodes: within the first finite elements are not believed at
+# all, from the second on wholly; the ring lies between the third and the fourth. Smoothed elements
+# spread a force over more of their neighbours.
+BELIEVED = {LINEAR: (0.6, 1.0, 0.9, 2.2), SMOOTHED: (1.2, 2.0, 1.6, 2.8)}
+
+# Nodes whose normals have a smaller product than the first are not of one side of an edge, from the
+# second on they are wholly.
+SAME_SIDE = (0.2, 0.7)
+
+# Thickness in mean edge lengths up to which what the far side does is taken off before the fit, and
+# from which on it is not.
+THIN = (4.0, 6.0)
+
+# How firmly slopes are held at zero, in mean squares of edge lengths.
+SLOPE_DAMPING = 0.1
+
+# Up to how many radii of the ring the elements are short of the coupling as within it.
+SHORT_WITHIN, SHORT_NOWHERE = 1.0, 2.0
+
+# Elements are short of the coupling by no more than this share of an edge's length (of twice what
+# they usually are); what a ring tells beyond that, or of too much, is an edge's or a thin part's.
+MOST_SHORT = 0.1
+
+# Below this share of what it could be at most, the determinant of a ring tells nothing.
+LEAST_SPREAD = 0.02
+
+# A ring of fewer neighbours than this says nothing.
+FEWEST_IN_RING = 2.0
+
+
+@dataclass(frozen=True, eq=False)
+class RegularField:
+    """What there is to know of a body at its surface nodes.
+
+    Attributes
+    ----------
+    body : which.
+    normals : float64 (s, 3), outward unit normals at the surface nodes.
+    edges : float64 (s,), mean length of the surface's edges at each node, metres.
+    regular : float64 (s, 3, 3), how far a node gives way beyond a half-space, m / N at 1 Pa.
+    slope : float64 (s, 3, 3, 3), how that changes per metre as the force moves away, by direction.
+    excess : float64 (s,), what finite elements add to the coupling of pushes with displacements
+        aside, times the distance squared, m^3 / N at 1 Pa; negative where they fall short.
+    softness : float64 (s,), 1 over the factor of Young's modulus around the node.
+    trusted : float64 (s,), 0 where nothing is known and plain finite elements stay, else 1.
+    far : what lies across the body, where it is thin. What a force moves there is no part of
+        ``regular`` and ``slope``.
+    """
+
+    body: SoftBody
+    normals: NDArray[np.float64]
+    edges: NDArray[np.float64]
+    regular: NDArray[np.float64]
+    slope: NDArray[np.float64]
+    excess: NDArray[np.float64]
+    softness: NDArray[np.float64]
+    trusted: NDArray[np.float64]
+    far: FarSide
+
+    @classmethod
+    def of(cls, body: SoftBody) -> RegularField:
+        """Look at the rings around all surface nodes."""
+        mesh = body.mesh
+        normals, edges, softness = node_normals(mesh), mean_edges(body), surface_softness(body)
+        places = mesh.nodes[mesh.surface_nodes]
+        _, _, inner, outer = BELIEVED[body.formulation]
+        a, b = _within(places, outer * edges)
+        apart = np.linalg.norm(places[a] - places[b], axis=1)
+        reach = 0.5 * (edges[a] + edges[b])
+        alike = facing(normals[a], normals[b], SAME_SIDE)
+        ring = np.flatnonzero((apart >= inner * reach) & (apart <= outer * reach) & (alike > 0))
+        a, b, weight = a[ring], b[ring], alike[ring]
+        beyond = pair_blocks(body, a, b) - half_space_between(body, places, normals, softness, a, b)
+        far = far_side(mesh, edges, THIN)
+        # Seen at a with the force at b, and the other way round.
+        node, other = np.concatenate([a, b]), np.concatenate([b, a])
+        offsets = places[other] - places[node]
+        beyond = np.concatenate([beyond, beyond.transpose(0, 2, 1)])
+        beyond -= _seen_across(body, far, node, other)
+        weight = np.concatenate([weight, weight])
+        coupling = _coupling(-offsets, normals[node] + normals[other])
+        excess = _excess(node, offsets, beyond, coupling, weight, edges)
+        excess = np.clip(excess, -MOST_SHORT * softness * edges, 0.0)
+        distance = np.linalg.norm(offsets, axis=1)
+        beyond -= (excess[node] / distance**2)[:, None, None] * coupling
+        regular, slope, known = _fitted(node, offsets, beyond, weight, edges)
+        trusted = (known & (body.free_index(mesh.surface_nodes) >= 0)).astype(np.float64)
+        return cls(body, normals, edges, regular, slope, excess, softness, trusted, far)
+
+    def between(self, a: NDArray[np.int64], b: NDArray[np.int64]) -> NDArray[np.float64]:
+        """The regular part for nodes near each other, (k, 3, 3): the mean of what both rings tell.
+
+        Displacement of surface-local nodes ``a`` (k,) per force on ``b`` (k,).
+        """
+        offset = self.places[b] - self.places[a]
+        from_a = self.regular[a] + np.einsum("kz,kzxy->kxy", offset, self.slope[a])
+        from_b = self.regular[b] - np.einsum("kz,kzxy->kxy", offset, self.slope[b])
+        from_a += _seen_across(self.body, self.far, a, b)
+        from_b += _seen_across(self.body, self.far, b, a)
+        mean: NDArray[np.float64] = 0.5 * (from_a + from_b.transpose(0, 2, 1))
+        return mean
+
+    def short(self, a: NDArray[np.int64], b: NDArray[np.int64]) -> NDArray[np.float64]:
+        """What finite elements add to the coupling between nodes that are not too near, (k, 3, 3).
+
+        Displacement of surface-local nodes ``a`` (k,) per force on ``b`` (k,).
+        """
+        offset = self.places[a] - self.places[b]
+        distance = np.linalg.norm(offset, axis=1)
+        reach = 0.5 * (self.edges[a] + self.edges[b]) * BELIEVED[self.body.formulation][3]
+        fading = (SHORT_NOWHERE - distance / reach) / (SHORT_NOWHERE - SHORT_WITHIN)
+        size = 0.5 * (self.excess[a] + self.excess[b]) * np.clip(fading, 0.0, 1.0) / distance**2
+        added: NDArray[np.float64] = size[:, None, None] * _coupling(
+            offset, self.normals[a] + self.normals[b]
+        )
+        return added
+
+    @property
+    def places(self) -> NDArray[np.float64]:
+        """Where the surface nodes lie, (s, 3), metres."""
+        places: NDArray[np.float64] = self.body.mesh.nodes[self.body.mesh.surface_nodes]
+        return places
+
+
+def _seen_across(
+    body: SoftBody, far: FarSide, a: NDArray[np.int64], b: NDArray[np.int64]
+) -> NDArray[np.float64]:
+    """How far the places across from nodes ``a`` (k,) move per force on nodes ``b`` (k,),
+    (k, 3, 3); nothing where the body is thick.
+    """
+    moved = np.zeros((len(a), 3, 3))
+    thin = np.flatnonzero(far.weights[a].any(axis=1))
+    for corner in range(3):
+        seen, weight = far.nodes[a[thin], corner], far.weights[a[thin], corner]
+        moved[thin] += weight[:, None, None] * pair_blocks(body, seen, b[thin])
+    return moved
+
+
+def _coupling(offsets: NDArray[np.float64], normals: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The tensor of the coupling, e n^T - n e^T, (k, 3, 3): at ``offsets`` (k, 3) from the force,
+    with ``normals`` (k, 3) of any length.
+    """
+    along = offsets / np.linalg.norm(offsets, axis=1, keepdims=True)
+    normal = _unit_normals(normals)
+    product = np.einsum("kx,ky->kxy", along, normal)
+    antisymmetric: NDArray[np.float64] = product - product.transpose(0, 2, 1)
+    return antisymmetric
+
+
+def _excess(
+    node: NDArray[np.int64],
+    offsets: NDArray[np.float64],
+    beyond: NDArray[np.float64],
+    coupling: NDArray[np.float64],
+    weight: NDArray[np.float64],
+    edges: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """What finite elements add to the coupling at each node, times the distance squared, (s,).
+
+    Least squares over the samples of its ring (as in :func:`_fitted`) with two terms: one that
+    grows with the distance, as a smooth field has it, and one that falls with its square.
+    """
+    apart = np.linalg.norm(offsets, axis=1) / edges[node]
+    size = np.einsum("kxy,kxy->k", coupling, coupling)
+    seen = 0.5 * np.einsum("kxy,kxy->k", beyond - beyond.transpose(0, 2, 1), coupling)
+    smooth, error = apart, apart**-2
+    sums = [
+        np.bincount(node, weight * value, len(edges))
+        for value in (
+            size * smooth**2,
+            size * smooth * error,
+            size * error**2,
+            seen * smooth,
+            seen * error,
+        )
+    ]
+    grows, mixed, falls, right_grows, right_falls = sums
+    determinant = grows * falls - mixed**2
+    # Where all neighbours are equally far the two cannot be told apart.
+    clear = determinant > LEAST_SPREAD * grows * falls
+    found = np.zeros(len(edges))
+    found[clear] = (grows * right_falls - mixed * right_grows)[clear] / determinant[clear]
+    return found * edges**2
+
+
+def _fitted(
+    node: NDArray[np.int64],
+    offsets: NDArray[np.float64],
+    beyond: NDArray[np.float64],
+    weight: NDArray[np.float64],
+    edges: NDArray[np.float64],
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]:
+    """Value (s, 3, 3) and slope (s, 3, 3, 3) at each node of what its ring tells, and where known.
+
+    Least squares over the samples ``beyond`` (k, 3, 3) of ``node`` (k,) at ``offsets`` (k, 3).
+    """
+    count = len(edges)
+    terms = np.column_stack([np.ones(len(node)), offsets / edges[node, None]])
+    ring = csr_array((weight, (node, np.arange(len(node)))), shape=(count, len(node)))
+    both = np.einsum("ki,kj->kij", terms, terms).reshape(-1, 16)
+    sides = np.einsum("ki,kx->kix", terms, beyond.reshape(-1, 9)).reshape(-1, 36)
+    normal, right = (ring @ both).reshape(-1, 4, 4), (ring @ sides).reshape(-1, 4, 9)
+    total = normal[:, 0, 0]
+    known = total >= FEWEST_IN_RING
+    # Across the surface, and where all of a ring lies to one side, a slope is not to be had.
+    damping = SLOPE_DAMPING * np.maximum(total, 1.0)[:, None, None] * np.diag([0.0, 1.0, 1.0, 1.0])
+    fit = np.zeros((count, 4, 9))
+    fit[known] = np.linalg.solve(normal[known] + damping[known], right[known])
+    regular = fit[:, 0].reshape(-1, 3, 3)
+    slope = (fit[:, 1:] / edges[:, None, None]).reshape(-1, 3, 3, 3)
+    return 0.5 * (regular + regular.transpose(0, 2, 1)), slope, known
+
+
+def _within(
+    places: NDArray[np.float64], reach: NDArray[np.float64]
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Pairs a < b of places (s, 3) no farther apart than the mean of their reaches (s,)."""
+    tree = cKDTree(places)
+    found = tree.query_ball_point(places, reach)
+    a = np.repeat(np.arange(len(places)), [len(one) for one in found])
+    b = np.concatenate([np.asarray(one, dtype=np.int64) for one in found])
+    a, b = np.minimum(a, b), np.maximum(a, b)
+    codes = np.unique(a[a != b] * len(places) + b[a != b])
+    a, b = np.divmod(codes, len(places))
+    near = np.linalg.norm(places[a] - places[b], axis=1) <= 0.5 * (reach[a] + reach[b])
+    return a[near], b[near]
+
+
+def mean_edges(body: SoftBody) -> NDArray[np.float64]:
+    """Mean length of the surface edges at each surface node, (s,), metres."""
+    mesh = body.mesh
+    triangles, places = mesh.surface_local_triangles, mesh.nodes[mesh.surface_nodes]
+    ahead = np.roll(triangles, -1, axis=1)
+    lengths = np.linalg.norm(places[triangles] - places[ahead], axis=2).ravel()
+    # Every edge of a closed surface is met twice, once from either side.
+    count = np.bincount(triangles.ravel(), minlength=len(places))
+    mean: NDArray[np.float64] = np.bincount(triangles.ravel(), lengths, len(places)) / count
+    return mean
+
+
+def surface_softness(body: SoftBody) -> NDArray[np.float64]:
+    """1 over the factor of Young's modulus at each surface node, (s,): mean of its tetrahedra."""
+    mesh = body.mesh
+    if body.young_scale is None:
+        return np.ones(len(mesh.surface_nodes))
+    weight = np.repeat(mesh.tet_volumes, 4)
+    stiff = np.bincount(mesh.tets.ravel(), weight * np.repeat(body.young_scale, 4))
+    volume = np.bincount(mesh.tets.ravel(), weight)
+    softness: NDArray[np.float64] = (volume / stiff)[mesh.surface_nodes]
+    return softness
+
+
+def facing(
+    first: NDArray[np.float64], second: NDArray[np.float64], limits: tuple[float, float]
+) -> NDArray[np.float64]:
+    """How far two normals (k, 3) are of one side or surface, (k,), 0 to 1."""
+    alike = np.einsum("kx,kx->k", first, second)
+    share: NDArray[np.float64] = np.clip((alike - limits[0]) / (limits[1] - limits[0]), 0.0, 1.0)
+    return share
+
+
+def half_space_between(
+    body: SoftBody,
+    places: NDArray[np.float64],
+    normals: NDArray[np.float64],
+    softness: NDArray[np.float64],
+    a: NDArray[np.int64],
+    b: NDArray[np.int64],
+) -> NDArray[np.float64]:
+    """H between places a (k,) and b (k,), (k, 3, 3)."""
+    normal = _unit_normals(normals[a] + normals[b])
+    blocks = surface_displacement(places[a] - places[b], normal, body.poisson_ratio)
+    blocks *= (0.5 * (softness[a] + softness[b]))[:, None, None]
+    return blocks
+
+
+def _unit_normals(sums: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Sums of two normals (k, 3) made unit vectors; shorter ones where they cancel."""
+    unit: NDArray[np.float64] = sums / np.maximum(np.linalg.norm(sums, axis=1, keepdims=True), 0.5)
+    return unit

@@ -1,0 +1,354 @@
+"""Rigid tools that touch a body: fingertip, rod, plate, any convex mesh.
+
+A tool is the convex hull of a few core points, grown by a ball (their Minkowski sum): one point is
+a sphere, two a rod with round ends (capsule), the corners of a box a plate with rounded edges. So
+one signed distance serves all of them, its gradient is the outward normal, and both are exact:
+outside the core by the closest point of the hull, inside it by the nearest face, as in C. Ericson,
+*Real-Time Collision Detection* (2005), 5.1.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
+
+from ...errors import PalpateError
+from ...mesh.closest_point import closest_area_coordinates
+from ...mesh.coordinates import refuse_unusable
+
+# Distances to a hull of more corners take too long in the servo's tick.
+MOST_CORE_POINTS = 64
+
+# Core points closer to one plane (line, point) than this share of their extent lie in it.
+FLATNESS = 1e-6
+
+# How far apart contact points are, as a share of a sphere's radius, that of a rod (more of which is
+# in contact), and a flat tool's width.
+SPACING_PER_RADIUS = 0.2
+SPACING_PER_ROD_RADIUS = 0.25
+SPACING_PER_WIDTH = 0.125
+
+# Share of its inner radius that a tool goes in one tick at most, so that it jumps over no wall.
+STRIDE_PER_INNER_RADIUS = 0.25
+
+# Rounding of the edges where none is asked for, as a share of the inner radius. A sharp edge has no
+# normal; what rests on it would be pushed now this way, now that.
+SHARPEST_ROUNDING = 0.1
+
+
+@dataclass(frozen=True, eq=False)
+class Pose:
+    """Where a tool is: ``position`` (3,) of its reference point in metres, body coordinates, and
+    ``rotation`` (3, 3), which takes directions of the tool to directions of the body.
+    """
+
+    position: NDArray[np.float64]
+    rotation: NDArray[np.float64]
+
+    @classmethod
+    def at(cls, position: ArrayLike, rotation: ArrayLike | None = None) -> Pose:
+        """A pose from numbers, checked; without ``rotation`` the tool's axes are the body's.
+
+        Raises
+        ------
+        PalpateError
+            A position that is not three finite numbers, a rotation that is none.
+        """
+        place = np.array(position, dtype=np.float64)
+        turn = np.eye(3) if rotation is None else np.array(rotation, dtype=np.float64)
+        if place.shape != (3,):
+            raise PalpateError(
+                f"tool's pose: position has shape {place.shape}, expected (3,); give x, y, z"
+            )
+        refuse_unusable("tool's pose", place[None])
+        if (
+            turn.shape != (3, 3)
+            or not np.allclose(turn @ turn.T, np.eye(3), atol=1e-6)
+            or np.linalg.det(turn) < 0
+        ):
+            raise PalpateError(
+                "tool's pose: rotation is not a rotation; give a (3, 3) matrix of orthogonal unit "
+                "columns, right-handed, without scale"
+            )
+        return cls(place, turn)
+
+    def to_tool(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Body coordinates (p, 3) as the tool's own."""
+        own: NDArray[np.float64] = (points - self.position) @ self.rotation
+        return own
+
+    def to_body(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The tool's own coordinates (p, 3) as the body's."""
+        moved: NDArray[np.float64] = points @ self.rotation.T + self.position
+        return moved
+
+
+@dataclass(frozen=True, eq=False)
+class Tool:
+    """The convex hull of ``core`` (k, 3), metres in the tool's frame, grown by a ``radius``.
+
+    Made by :func:`sphere`, :func:`rod`, :func:`plate` and :func:`convex`, or directly.
+
+    Raises
+    ------
+    PalpateError
+        Core points that are not (k, 3) finite numbers, none or more than 64 of them; a radius that
+        is not a positive number.
+    """
+
+    name: str
+    core: NDArray[np.float64]
+    radius: float
+
+    def __post_init__(self) -> None:
+        core = np.array(self.core, dtype=np.float64)
+        if core.ndim != 2 or core.shape[1] != 3 or not len(core):
+            raise PalpateError(
+                f"tool {self.name}: core points have shape {core.shape}, expected (k, 3) with "
+                "k > 0; give one row of x, y, z in metres per point"
+            )
+        refuse_unusable(f"tool {self.name}", core)
+        if len(core) > MOST_CORE_POINTS:
+            raise PalpateError(
+                f"tool {self.name}: {len(core)} core points are more than the {MOST_CORE_POINTS} "
+                "the servo can follow; give fewer, or use convex(), which simplifies"
+            )
+        _refuse_no_length(f"tool {self.name}", "radius", self.radius)
+        core.setflags(write=False)
+        object.__setattr__(self, "core", core)
+
+    @cached_property
+    def faces(self) -> NDArray[np.int64]:
+        """Triangles (f, 3) of the core's hull, numbers of core points.
+
+        A core without volume has triangles without sides: a polygon's fan (seen from both sides),
+        a segment [0, 1, 1], a point [0, 0, 0].
+        """
+        return self._hull[0]
+
+    @cached_property
+    def planes(self) -> NDArray[np.float64]:
+        """Outward unit normal and offset (f, 4) of each face; none where the core has no volume.
+
+        A point x is inside the hull where ``planes[:, :3] @ x + planes[:, 3] < 0`` for all.
+        """
+        return self._hull[1]
+
+    @cached_property
+    def _hull(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        dimension, axes = _span(self.core)
+        nothing = np.empty((0, 4))
+        if dimension == 3:
+            hull = ConvexHull(self.core)
+            return hull.simplices.astype(np.int64), hull.equations.astype(np.float64)
+        along = (self.core - self.core.mean(axis=0)) @ axes[:, :2]
+        if dimension == 2:
+            ring = ConvexHull(along).vertices.astype(np.int64)
+            fan = np.column_stack([np.full(len(ring) - 2, ring[0]), ring[1:-1], ring[2:]])
+            return fan, nothing
+        ends = np.argsort(along[:, 0], kind="stable")[[0, -1, -1]].astype(np.int64)
+        return ends[None] if dimension else np.zeros((1, 3), dtype=np.int64), nothing
+
+    @cached_property
+    def inner_radius(self) -> float:
+        """Metres from the middle of the core points to the tool's surface."""
+        if not len(self.planes):
+            return self.radius
+        middle = self.core.mean(axis=0)
+        depth = -(self.planes[:, :3] @ middle + self.planes[:, 3])
+        return self.radius + float(depth.min())
+
+    @cached_property
+    def extents(self) -> NDArray[np.float64]:
+        """Lengths (3,) of the tool along its own axes, metres, longest first."""
+        lengths: NDArray[np.float64] = np.sort(np.ptp(self.core, axis=0))[::-1]
+        return lengths + 2.0 * self.radius
+
+    @property
+    def size(self) -> float:
+        """The tool's width in metres: the middle one of its three extents."""
+        return float(self.extents[1])
+
+    @property
+    def spacing(self) -> float:
+        """How far apart the contact points on a body should be for this tool, metres."""
+        if len(self.planes) or _span(self.core)[0] == 2:
+            return SPACING_PER_WIDTH * self.size
+        round_share = SPACING_PER_RADIUS if len(self.core) == 1 else SPACING_PER_ROD_RADIUS
+        return round_share * self.radius
+
+    @property
+    def stride(self) -> float:
+        """How far the tool moves in one tick at most, metres."""
+        return STRIDE_PER_INNER_RADIUS * self.inner_radius
+
+    @cached_property
+    def reach(self) -> float:
+        """Metres from the reference point to the farthest point of the tool."""
+        return float(np.linalg.norm(self.core, axis=1).max()) + self.radius
+
+    def distance(
+        self, points: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Signed distances (p,), negative inside, and outward unit normals (p, 3) there.
+
+        ``points`` (p, 3) are in the tool's frame, as the normals. Where several places of the
+        surface are equally near (a sphere's centre), one of the normals.
+        """
+        points = np.asarray(points, dtype=np.float64).reshape(-1, 3)
+        away = points - self._closest_core_points(points)
+        distance = np.linalg.norm(away, axis=1)
+        # Closer than this the direction is rounding; the face's own normal is as good.
+        clear = distance > 1e-9 * self.radius
+        normals = np.tile(self._normal_of_flat_core, (len(points), 1))
+        normals[clear] = away[clear] / distance[clear, None]
+        if len(self.planes):
+            heights = points @ self.planes[:, :3].T + self.planes[:, 3]
+            nearest = heights.argmax(axis=1)
+            height = heights[np.arange(len(points)), nearest]
+            inside = (height <= 0.0) | ~clear
+            distance[inside] = np.minimum(height[inside], distance[inside])
+            normals[inside] = self.planes[nearest[inside], :3]
+        return distance - self.radius, normals
+
+    def _closest_core_points(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        corners = self.core[self.faces]
+        pairs = (len(points), len(corners), 3)
+        spread = np.broadcast_to(points[:, None], pairs).reshape(-1, 3)
+        faces = np.broadcast_to(corners, (len(points), *corners.shape)).reshape(-1, 3, 3)
+        alpha = closest_area_coordinates(spread, faces)
+        places = np.einsum("pc,pcx->px", alpha, faces).reshape(pairs)
+        nearest = np.linalg.norm(places - points[:, None], axis=2).argmin(axis=1)
+        closest: NDArray[np.float64] = places[np.arange(len(points)), nearest]
+        return closest
+
+    @cached_property
+    def _normal_of_flat_core(self) -> NDArray[np.float64]:
+        """What a point within a core without volume is pushed along: across it, towards -z."""
+        across = _span(self.core)[1][:, 2]
+        return across if across[2] < 0 else -across
+
+
+def sphere(radius: float, name: str = "sphere") -> Tool:
+    """A fingertip: a ball about its reference point."""
+    return Tool(name, np.zeros((1, 3)), radius)
+
+
+def rod(radius: float, length: float, name: str = "rod") -> Tool:
+    """A round-ended rod (capsule) along x, its axis ``length`` metres long without the ends."""
+    _refuse_no_length(f"tool {name}", "length", length)
+    return Tool(name, np.array([[-0.5, 0.0, 0.0], [0.5, 0.0, 0.0]]) * length, radius)
+
+
+def plate(
+    width: float,
+    depth: float,
+    rounding: float | None = None,
+    thickness: float | None = None,
+    name: str = "plate",
+) -> Tool:
+    """A plate of ``width`` along x and ``depth`` along y, over all, which works with its -z face.
+
+    The middle of that face is the reference point, the plate lies in z >= 0. ``rounding`` is the
+    radius of its edges (default: a twentieth of the smaller side); ``thickness`` defaults to half
+    the smaller side, so that nothing comes out at its back.
+
+    Raises
+    ------
+    PalpateError
+        Lengths that are not positive, or a rounding too large for them.
+    """
+    _refuse_no_length(f"tool {name}", "width", width)
+    _refuse_no_length(f"tool {name}", "depth", depth)
+    edge = min(width, depth) / 20 if rounding is None else rounding
+    high = min(width, depth) / 2 if thickness is None else thickness
+    _refuse_no_length(f"tool {name}", "rounding", edge)
+    _refuse_no_length(f"tool {name}", "thickness", high)
+    if 2 * edge >= min(width, depth, high):
+        raise PalpateError(
+            f"tool {name}: a rounding of {edge:g} m leaves nothing of a plate of {width:g} by "
+            f"{depth:g} by {high:g} m; give less than half the smallest"
+        )
+    x, y = width / 2 - edge, depth / 2 - edge
+    core = [(a, b, c) for a in (-x, x) for b in (-y, y) for c in (edge, high - edge)]
+    return Tool(name, np.array(core), edge)
+
+
+def convex(vertices: ArrayLike, rounding: float = 0.0, name: str = "convex mesh") -> Tool:
+    """The convex hull of ``vertices`` (v, 3), metres, about their own origin, its edges rounded.
+
+    Edges are rounded within the hull, by ``rounding`` or at least a tenth of the inner radius. More
+    corners than a tool may have are simplified to those that stand out in well-spread directions.
+
+    Raises
+    ------
+    PalpateError
+        Fewer than four vertices or all in one plane, numbers that are not finite, a rounding that
+        is negative or too large for the hull.
+    """
+    given = np.asarray(vertices, dtype=np.float64)
+    if given.ndim != 2 or given.shape[1] != 3 or len(given) < 4:
+        raise PalpateError(
+            f"tool {name}: vertices have shape {given.shape}, expected (v, 3) with v >= 4; choose "
+            "a mesh with volume"
+        )
+    refuse_unusable(f"tool {name}", given)
+    if _span(given)[0] < 3:
+        raise PalpateError(
+            f"tool {name}: its {len(given)} vertices lie in one plane, so it has no inside; give "
+            "it some thickness, or choose the plate"
+        )
+    if not rounding >= 0.0:
+        raise PalpateError(f"tool {name}: rounding is {rounding}; give zero or more metres")
+    outer = given[ConvexHull(given).vertices]
+    planes = ConvexHull(outer).equations
+    middle = outer.mean(axis=0)
+    room = -float((planes[:, :3] @ middle + planes[:, 3]).max())
+    edge = max(rounding, SHARPEST_ROUNDING * room)
+    if edge >= 0.9 * room:
+        raise PalpateError(
+            f"tool {name}: a rounding of {edge:g} m leaves nothing of a hull of which {room:g} m "
+            f"lie about its middle; give less than {0.9 * room:g} m"
+        )
+    within = planes + np.array([0.0, 0.0, 0.0, edge])
+    try:
+        inset = HalfspaceIntersection(within, middle).intersections
+    except QhullError as error:
+        raise PalpateError(
+            f"tool {name}: its hull cannot be rounded ({str(error).splitlines()[0]}); simplify "
+            "the mesh"
+        ) from error
+    corners = inset[ConvexHull(inset).vertices]
+    return Tool(name, _outstanding(corners, MOST_CORE_POINTS), edge)
+
+
+def _outstanding(corners: NDArray[np.float64], most: int) -> NDArray[np.float64]:
+    """Of ``corners`` (v, 3) at most ``most``: the farthest in directions spread over the sphere."""
+    if len(corners) <= most:
+        return corners
+    # Directions along a spiral of equal areas (Fibonacci lattice).
+    step = np.arange(most) + 0.5
+    z = 1.0 - 2.0 * step / most
+    turn = np.pi * (1.0 + np.sqrt(5.0)) * step
+    level = np.sqrt(1.0 - z * z)
+    directions = np.column_stack([level * np.cos(turn), level * np.sin(turn), z])
+    chosen = np.unique(((corners - corners.mean(axis=0)) @ directions.T).argmax(axis=0))
+    few: NDArray[np.float64] = corners[chosen]
+    return few
+
+
+def _span(points: NDArray[np.float64]) -> tuple[int, NDArray[np.float64]]:
+    """How many dimensions points (k, 3) span, and their principal axes as columns, widest first."""
+    _, _, axes = np.linalg.svd(points - points.mean(axis=0), full_matrices=True)
+    lengths = np.ptp(points @ axes.T, axis=0)
+    dimension = int((lengths > FLATNESS * max(float(lengths.max()), np.finfo(float).tiny)).sum())
+    return (dimension if lengths.max() > 0.0 else 0), axes.T
+
+
+def _refuse_no_length(what: str, which: str, value: float) -> None:
+    if not (np.isfinite(value) and value > 0.0):
+        raise PalpateError(f"{what}: {which} is {value}; give a positive number of metres")

@@ -1,1 +1,0 @@
-"""Haptic devices on a serial port: their link, the ports, and a simulated device."""

@@ -1,0 +1,168 @@
+"""``.npz`` archives: reading ones that may be anything, and writing ones that can be mapped.
+
+numpy writes the members of an archive uncompressed, but wherever they happen to fall. Here each
+array begins at a multiple of 64 bytes, so that a large one can be used where it lies in the file
+(``mmap``) instead of being read whole. ``numpy.load`` reads both kinds.
+"""
+
+from __future__ import annotations
+
+import mmap
+import struct
+import zipfile
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO, Any
+
+import numpy as np
+from numpy.lib import format as npy
+from numpy.typing import NDArray
+
+from ..errors import PalpateError
+
+# numpy pads the header of an array to this, so that its numbers are aligned where the member is.
+ALIGNMENT = 64
+# The extra field that is known to readers of archives as padding (as of Android's zipalign).
+PADDING_FIELD = 0xD935
+FIELD_HEADER = struct.Struct("<HH")
+# A member's own header: its name and its extra field stand between it and the member.
+LOCAL_HEADER = struct.Struct("<4s22xHH")
+ZIP64_FIELD_BYTES = 20
+LOCAL_MAGIC = b"PK\x03\x04"
+
+
+class ArchiveError(PalpateError):
+    """An archive that cannot be read. Its message names file and reason; the remedy is to add."""
+
+
+@dataclass(frozen=True, eq=False)
+class MappedArray:
+    """An array that lies in a file, of which the system reads what is looked at.
+
+    Attributes
+    ----------
+    array : read only.
+    """
+
+    array: NDArray[Any]
+    _mapping: mmap.mmap
+    _end: int
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether the file still reaches to the array's end.
+
+        To look at an array whose file was cut short since would kill the process.
+        """
+        return self._mapping.size() >= self._end
+
+
+class Archive:
+    """An open archive; made by :func:`opened`."""
+
+    def __init__(self, stream: IO[bytes], path: Path) -> None:
+        self._stream = stream
+        self._path = path
+        self._zip = zipfile.ZipFile(stream)
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the arrays."""
+        return [name[:-4] for name in self._zip.namelist() if name.endswith(".npy")]
+
+    def bytes_of(self, name: str) -> int:
+        """Size of an array in the file."""
+        return self._zip.getinfo(f"{name}.npy").file_size
+
+    def read(self, name: str) -> NDArray[Any]:
+        """The array, copied into memory; pickled objects are refused."""
+        with self._zip.open(f"{name}.npy") as member:
+            array: NDArray[Any] = npy.read_array(member, allow_pickle=False)
+        return array
+
+    def map(self, name: str) -> MappedArray:
+        """The array where it lies in the file; the file may be closed and replaced afterwards.
+
+        Raises
+        ------
+        ArchiveError
+            The member is compressed, or not as long as its array.
+        """
+        member = self._zip.getinfo(f"{name}.npy")
+        self._stream.seek(member.header_offset)
+        magic, name_bytes, extra_bytes = LOCAL_HEADER.unpack(self._stream.read(LOCAL_HEADER.size))
+        start = member.header_offset + LOCAL_HEADER.size + name_bytes + extra_bytes
+        self._stream.seek(start)
+        version = npy.read_magic(self._stream)
+        read_header = npy.read_array_header_1_0 if version == (1, 0) else npy.read_array_header_2_0
+        shape, is_fortran, dtype = read_header(self._stream)
+        first, end = self._stream.tell(), start + member.file_size
+        count = int(np.prod(shape, dtype=np.int64))
+        if (
+            magic != LOCAL_MAGIC
+            or member.compress_type != zipfile.ZIP_STORED
+            or is_fortran
+            or dtype.hasobject
+            or first + count * dtype.itemsize != end
+            or end > self._zip.start_dir
+        ):
+            raise ArchiveError(f"{self._path}: damaged ('{name}' does not lie where it should)")
+        mapping = mmap.mmap(self._stream.fileno(), 0, access=mmap.ACCESS_READ)
+        array = np.frombuffer(mapping, dtype, count, first).reshape(shape)
+        return MappedArray(array, mapping, end)
+
+
+@contextmanager
+def opened(path: Path) -> Iterator[Archive]:
+    """The archive at ``path``, as long as the block runs.
+
+    Raises
+    ------
+    ArchiveError
+        It cannot be opened, or whatever is done with it in the block finds it damaged, cut short
+        or no archive.
+    """
+    try:
+        stream = path.open("rb")
+    except OSError as problem:
+        raise ArchiveError(f"{path}: cannot be opened ({problem.strerror})") from problem
+    with stream:
+        try:
+            yield Archive(stream, path)
+        except PalpateError:
+            raise
+        except Exception as problem:  # zip, its packers and numpy's headers: each fails its own way
+            raise ArchiveError(
+                f"{path}: damaged, cut short or not an npz archive ({problem!r})"
+            ) from problem
+
+
+def read_arrays(path: Path) -> dict[str, NDArray[Any]]:
+    """All arrays of the archive at ``path`` by name; members that are no arrays are left out.
+
+    Raises
+    ------
+    ArchiveError
+        It cannot be opened, or is damaged, cut short or no archive.
+    """
+    with opened(path) as archive:
+        return {name: archive.read(name) for name in archive.names}
+
+
+def write_arrays(stream: IO[bytes], arrays: Mapping[str, NDArray[Any]]) -> None:
+    """Write an archive of ``arrays`` that :meth:`Archive.map` can use in place.
+
+    The same arrays always give the same bytes. ``stream`` must be new and able to seek.
+    """
+    with zipfile.ZipFile(stream, "w", zipfile.ZIP_STORED) as archive:
+        for name, array in arrays.items():
+            member = zipfile.ZipInfo(f"{name}.npy")
+            # Sizes in 64 bits throughout, so that the header's length is known beforehand.
+            header = LOCAL_HEADER.size + len(member.filename.encode()) + ZIP64_FIELD_BYTES
+            start = stream.tell() + header + FIELD_HEADER.size
+            padding = -start % ALIGNMENT
+            member.extra = FIELD_HEADER.pack(PADDING_FIELD, padding) + bytes(padding)
+            with archive.open(member, "w", force_zip64=True) as file:
+                npy.write_array(file, np.asanyarray(array), allow_pickle=False)

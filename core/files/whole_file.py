@@ -1,0 +1,90 @@
+"""Writing files whole or not at all."""
+
+from __future__ import annotations
+
+import os
+import secrets
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import IO
+
+from ..errors import PalpateError
+
+
+class UnwritableError(PalpateError):
+    """A place where a file cannot be put."""
+
+
+def refuse_unwritable(target: Path) -> None:
+    """Check that a file could be put at ``target``, before the work for it is spent.
+
+    Raises
+    ------
+    UnwritableError
+        The target is a folder or a device, or its folder cannot be made or written.
+    """
+    target = _followed(target)
+    folder = next(parent for parent in target.parents if parent.exists())
+    if target.is_dir():
+        reason = "it is a folder"
+    elif target.exists() and not target.is_file():
+        reason = "it is no ordinary file"
+    elif not folder.is_dir():
+        reason = f"{folder} is not a folder"
+    elif not os.access(folder, os.W_OK | os.X_OK):
+        reason = f"{folder} may not be written"
+    else:
+        return
+    raise UnwritableError(
+        f"{target}: cannot be written ({reason}); choose a folder you may write to"
+    )
+
+
+def refuse_missing_folder(target: Path) -> None:
+    """Check that the folder of ``target`` is there, where none is to be made.
+
+    Raises
+    ------
+    UnwritableError
+        It is not.
+    """
+    folder = target.absolute().parent
+    if not folder.exists():
+        raise UnwritableError(f"{target}: there is no folder {folder}; make it first")
+
+
+@contextmanager
+def whole_file(target: Path, *, make_folders: bool = False) -> Iterator[IO[bytes]]:
+    """A file that becomes ``target`` in one step when all went well, and vanishes otherwise.
+
+    Where ``target`` is a symbolic link, the file it leads to is replaced.
+
+    Raises
+    ------
+    UnwritableError
+        As for :func:`refuse_unwritable`, and when writing fails; an older file stays as it was.
+    """
+    refuse_unwritable(target)
+    target = _followed(target)
+    unfinished = target.with_name(f".{target.name}.{secrets.token_hex(4)}.tmp")
+    try:
+        if make_folders:
+            target.parent.mkdir(parents=True, exist_ok=True)
+        with unfinished.open("xb") as file:
+            yield file
+            file.flush()
+            os.fsync(file.fileno())
+        unfinished.replace(target)
+    except OSError as problem:
+        raise UnwritableError(
+            f"{target}: cannot be written ({problem.strerror or problem}); choose a folder you may "
+            "write to, with enough room"
+        ) from problem
+    finally:
+        unfinished.unlink(missing_ok=True)
+
+
+def _followed(target: Path) -> Path:
+    # Path.resolve raises on links in a circle, before Python 3.13.
+    return Path(os.path.realpath(target))

@@ -1,0 +1,1 @@
+"""From a surface to tetrahedra."""

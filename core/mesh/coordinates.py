@@ -1,0 +1,32 @@
+"""What coordinates can be worked with."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import PalpateError
+
+# Far beyond any prop; squares and products of more overflow sooner or later.
+LARGEST_COORDINATE = 1e9
+
+
+def refuse_unusable(what: str, points: NDArray[np.float64]) -> None:
+    """Check that ``points`` (p, 3), metres, of ``what`` are finite and of this world.
+
+    Raises
+    ------
+    PalpateError
+        Some are not; it names the first.
+    """
+    bad = ~np.isfinite(points).all(axis=1)
+    if bad.any():
+        raise PalpateError(
+            f"{what}: {int(bad.sum())} points have coordinates that are not finite numbers (first: "
+            f"number {int(np.flatnonzero(bad)[0])}); delete or repair them"
+        )
+    farthest = float(np.abs(points).max(initial=0.0))
+    if farthest > LARGEST_COORDINATE:
+        raise PalpateError(
+            f"{what}: its coordinates reach {farthest:.3g} m; check the unit and the scale"
+        )

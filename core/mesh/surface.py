@@ -1,0 +1,130 @@
+"""The surface a body is made from: triangles in metres, checked for what can become a solid."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from ..errors import PalpateError
+from .coordinates import refuse_unusable
+
+# Vertices closer than this share of the diagonal are one: seams that only look open are closed.
+WELD_TOLERANCE = 1e-6
+
+# A shape thinner than this share of its diagonal everywhere is a sheet, not a solid.
+FLATTEST = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """A triangle soup that may be open, overlapping or in several parts.
+
+    Attributes
+    ----------
+    vertices : float64 (V, 3), metres.
+    triangles : int64 (F, 3), vertex numbers.
+    """
+
+    vertices: NDArray[np.float64]
+    triangles: NDArray[np.int64]
+
+    @classmethod
+    def checked(cls, vertices: ArrayLike, triangles: ArrayLike) -> Surface:
+        """Make a surface from arrays (V, 3) and (F, 3).
+
+        Raises
+        ------
+        PalpateError
+            Nothing there, numbers that are not finite, vertex numbers out of range, a flat or
+            degenerate shape.
+        """
+        points = np.array(vertices, dtype=np.float64).reshape(-1, 3)
+        faces = np.array(triangles, dtype=np.int64).reshape(-1, 3)
+        if not len(points) or not len(faces):
+            raise PalpateError(
+                f"mesh: it has {len(points)} vertices and {len(faces)} faces, so there is nothing "
+                "to make soft; choose a mesh with faces"
+            )
+        refuse_unusable("mesh", points)
+        if faces.min() < 0 or faces.max() >= len(points):
+            wrong = int(faces.min()) if faces.min() < 0 else int(faces.max())
+            raise PalpateError(
+                f"mesh: a face names vertex {wrong}, but they are numbered 0 to {len(points) - 1}; "
+                "the file is damaged, export it again"
+            )
+        surface = cls(points, faces)
+        surface._refuse_sheet()
+        return surface
+
+    @cached_property
+    def diagonal(self) -> float:
+        """Diagonal of the bounding box, metres."""
+        used = self.vertices[np.unique(self.triangles)]
+        return float(np.linalg.norm(np.ptp(used, axis=0)))
+
+    @cached_property
+    def areas(self) -> NDArray[np.float64]:
+        """Area of each triangle, (F,), square metres."""
+        i, j, k = (self.vertices[self.triangles[:, corner]] for corner in range(3))
+        area: NDArray[np.float64] = 0.5 * np.linalg.norm(np.cross(j - i, k - i), axis=1)
+        return area
+
+    @property
+    def signed_volume(self) -> float:
+        """Enclosed volume by the divergence theorem, cubic metres; for closed surfaces only."""
+        i, j, k = (self.vertices[self.triangles[:, corner]] for corner in range(3))
+        return float(np.einsum("fx,fx->", i, np.cross(j, k)) / 6.0)
+
+    @cached_property
+    def is_closed(self) -> bool:
+        """Whether every edge is used once in each direction."""
+        edges = np.concatenate([self.triangles[:, [a, b]] for a, b in ((0, 1), (1, 2), (2, 0))])
+        forward = np.unique(edges, axis=0)
+        backward = np.unique(edges[:, ::-1], axis=0)
+        return len(forward) == len(edges) and np.array_equal(forward, backward)
+
+    @cached_property
+    def piece_count(self) -> int:
+        """Number of parts that share no vertex."""
+        used, corners = np.unique(self.triangles, return_inverse=True)
+        corners = corners.reshape(-1, 3)
+        links = coo_array(
+            (
+                np.ones(2 * len(corners), dtype=np.int8),
+                (np.repeat(corners[:, 0], 2), corners[:, 1:].ravel()),
+            ),
+            shape=(len(used), len(used)),
+        )
+        return int(connected_components(links, directed=False)[0])
+
+    def coinciding(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """One vertex of each place, (P,), and for every vertex the number of its place, (V,)."""
+        grid = np.round(self.vertices / (WELD_TOLERANCE * self.diagonal)).astype(np.int64)
+        _, first, place = np.unique(grid, axis=0, return_index=True, return_inverse=True)
+        return first, place.reshape(-1)
+
+    def welded(self) -> Surface:
+        """The same surface with coinciding vertices merged and collapsed triangles removed."""
+        first, place = self.coinciding()
+        faces = place[self.triangles]
+        proper = (faces != np.roll(faces, 1, axis=1)).all(axis=1)
+        return Surface(self.vertices[first], faces[proper])
+
+    def _refuse_sheet(self) -> None:
+        used = self.vertices[np.unique(self.triangles)]
+        if not self.areas.sum() > 0:
+            raise PalpateError(
+                "mesh: all its faces have zero area, so it encloses nothing; choose a mesh with "
+                "an inside"
+            )
+        extents = np.linalg.svd(used - used.mean(axis=0), compute_uv=False)
+        if extents[2] < FLATTEST * extents[0]:
+            raise PalpateError(
+                "mesh: it is flat, so it has no inside to be soft; give it thickness (for example "
+                "apply a Solidify modifier) or choose a closed mesh"
+            )

@@ -1,0 +1,176 @@
+"""A checked tetrahedral mesh and what follows from it: boundary, surface nodes, volume."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from ..errors import PalpateError
+from .coordinates import refuse_unusable
+
+# The four faces of a positively oriented tetrahedron, wound so that normals point outward.
+OUTWARD_FACES = np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])
+
+# A tetrahedron thinner than this share of its longest edge cubed has no usable stiffness.
+SMALLEST_RELATIVE_VOLUME = 1e-12
+
+
+@dataclass(frozen=True, eq=False)
+class TetMesh:
+    """Four-node tetrahedra. Build one with :meth:`checked`, which refuses what FEM cannot use.
+
+    Attributes
+    ----------
+    nodes : float64 (N, 3), metres.
+    tets : int64 (M, 4), node numbers, positively oriented.
+    """
+
+    nodes: NDArray[np.float64]
+    tets: NDArray[np.int64]
+
+    @classmethod
+    def checked(cls, nodes: ArrayLike, tets: ArrayLike) -> TetMesh:
+        """Make a mesh from arrays of shape (N, 3) and (M, 4), both copied.
+
+        Raises
+        ------
+        PalpateError
+            Wrong shapes, numbers that are not finite, node numbers out of range, inverted or
+            zero-volume tetrahedra, nodes that no tetrahedron uses.
+        """
+        node_array = _nodes_checked(nodes)
+        tet_array = _tets_checked(tets, len(node_array))
+        _refuse_flat_or_inverted(node_array, tet_array)
+        unused = np.setdiff1d(np.arange(len(node_array)), tet_array)
+        if unused.size:
+            raise PalpateError(
+                f"tetrahedral mesh: {unused.size} of {len(node_array)} nodes belong to no "
+                f"tetrahedron (first: node {unused[0]}); remove unused nodes and renumber"
+            )
+        node_array.setflags(write=False)
+        tet_array.setflags(write=False)
+        return cls(node_array, tet_array)
+
+    @cached_property
+    def tet_volumes(self) -> NDArray[np.float64]:
+        """Volume of each tetrahedron, (M,), cubic metres."""
+        return signed_volumes(self.nodes, self.tets)
+
+    @property
+    def volume(self) -> float:
+        """Volume of the body in cubic metres."""
+        return float(self.tet_volumes.sum())
+
+    @cached_property
+    def surface_triangles(self) -> NDArray[np.int64]:
+        """Boundary faces, (S, 3) node numbers, wound so that normals point outward."""
+        faces = self.tets[:, OUTWARD_FACES].reshape(-1, 3)
+        corners = np.sort(faces, axis=1)
+        order = np.lexsort(corners.T)
+        differs = (corners[order][1:] != corners[order][:-1]).any(axis=1)
+        starts = np.flatnonzero(np.concatenate([[True], differs]))
+        count = np.diff(starts, append=len(faces))
+        if count.max() > 2:
+            crowded = corners[order[starts[np.argmax(count)]]]
+            raise PalpateError(
+                f"tetrahedral mesh: the face {tuple(crowded.tolist())} belongs to {count.max()} "
+                "tetrahedra, so they overlap; bake the surface again"
+            )
+        boundary: NDArray[np.int64] = faces[np.sort(order[starts[count == 1]])]
+        return boundary
+
+    @cached_property
+    def surface_nodes(self) -> NDArray[np.int64]:
+        """Numbers of the nodes on the boundary, ascending."""
+        return np.unique(self.surface_triangles)
+
+    @cached_property
+    def surface_local_triangles(self) -> NDArray[np.int64]:
+        """Boundary faces, (S, 3), counted within :attr:`surface_nodes`."""
+        return np.searchsorted(self.surface_nodes, self.surface_triangles)
+
+    @cached_property
+    def node_components(self) -> NDArray[np.int64]:
+        """For each node the number of the connected piece it belongs to, (N,)."""
+        first = np.repeat(self.tets[:, 0], 3)
+        links = coo_array(
+            (np.ones(first.size, dtype=np.int8), (first, self.tets[:, 1:].ravel())),
+            shape=(len(self.nodes), len(self.nodes)),
+        )
+        return connected_components(links, directed=False)[1].astype(np.int64)
+
+    @property
+    def component_count(self) -> int:
+        """How many pieces the body consists of; pieces that share no node move freely."""
+        return int(self.node_components.max()) + 1
+
+
+def signed_volumes(nodes: NDArray[np.float64], tets: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Volumes of tetrahedra, (M,); negative where the winding is inverted."""
+    origin = nodes[tets[:, 0]]
+    a, b, c = (nodes[tets[:, corner]] - origin for corner in (1, 2, 3))
+    volumes: NDArray[np.float64] = np.einsum("ij,ij->i", np.cross(a, b), c) / 6.0
+    return volumes
+
+
+def _nodes_checked(nodes: ArrayLike) -> NDArray[np.float64]:
+    given = np.asarray(nodes)
+    if given.ndim != 2 or given.shape[1] != 3 or not len(given):
+        raise PalpateError(
+            f"tetrahedral mesh: nodes have shape {given.shape}, expected (N, 3) with N > 0; "
+            "give one row of x, y, z in metres per node"
+        )
+    if given.dtype.kind not in "fiu":
+        raise PalpateError(
+            f"tetrahedral mesh: nodes are {given.dtype}, expected real numbers; give metres"
+        )
+    array = given.astype(np.float64, order="C")
+    refuse_unusable("tetrahedral mesh", array)
+    return array
+
+
+def _tets_checked(tets: ArrayLike, node_count: int) -> NDArray[np.int64]:
+    given = np.asarray(tets)
+    if given.ndim != 2 or given.shape[1] != 4 or not len(given):
+        raise PalpateError(
+            f"tetrahedral mesh: tets have shape {given.shape}, expected (M, 4) with M > 0; "
+            "give one row of four node numbers per tetrahedron"
+        )
+    if not np.issubdtype(given.dtype, np.integer):
+        raise PalpateError(
+            f"tetrahedral mesh: tets are {given.dtype}, expected integers; give node numbers"
+        )
+    array = given.astype(np.int64)
+    if array.min() < 0 or array.max() >= node_count:
+        wrong = int(array.min()) if array.min() < 0 else int(array.max())
+        raise PalpateError(
+            f"tetrahedral mesh: a tetrahedron names node {wrong}, but nodes are numbered "
+            f"0 to {node_count - 1}; count from zero"
+        )
+    return array
+
+
+def _refuse_flat_or_inverted(nodes: NDArray[np.float64], tets: NDArray[np.int64]) -> None:
+    volumes = signed_volumes(nodes, tets)
+    corners = nodes[tets]
+    pairs = ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3))
+    longest = np.max(
+        [np.linalg.norm(corners[:, i] - corners[:, j], axis=1) for i, j in pairs], axis=0
+    )
+    flat = np.abs(volumes) <= SMALLEST_RELATIVE_VOLUME * longest**3
+    if flat.any():
+        raise PalpateError(
+            f"tetrahedral mesh: {int(flat.sum())} tetrahedra have no volume (first: tetrahedron "
+            f"{int(np.flatnonzero(flat)[0])}); remove them or bake the surface again"
+        )
+    inverted = volumes < 0
+    if inverted.any():
+        raise PalpateError(
+            f"tetrahedral mesh: {int(inverted.sum())} tetrahedra are inverted (first: tetrahedron "
+            f"{int(np.flatnonzero(inverted)[0])}); swap two of their nodes"
+        )

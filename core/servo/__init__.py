@@ -1,0 +1,1 @@
+"""The native thread, its devices and recordings."""

@@ -1,0 +1,115 @@
+"""The 2DIYs that can be simulated: lengths, what is on which port, and the rest pose."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from dataclasses import dataclass
+
+from ..errors import PalpateError
+from .haply_arm import FiveBar, Pair, Vector
+
+
+@dataclass(frozen=True)
+class HaplyModel:
+    """A device as built.
+
+    Ports count from 0; senses are those with which angles and torques come out right; resolutions
+    are the counts a turn that hosts tell the board.
+    """
+
+    arm: FiveBar
+    ports: tuple[int, int]
+    """Port of motor 1 (at the arm's origin) and of motor 2."""
+    motor_senses: tuple[int, int]
+    encoder_senses: tuple[int, int]
+    rest_degrees: Pair
+    resolutions: Pair
+    centre: complex
+    """Middle of the workspace in the arm's axes, m."""
+
+    def device_position(self, handle: complex) -> Vector:
+        """From the arm's axes (x to the left, y to the user) to the servo's (right, away, up)."""
+        offset = self.centre - handle
+        return (offset.real, offset.imag, 0.0)
+
+    def handle(self, position: Vector) -> complex:
+        """The other way round; the height is dropped."""
+        return self.centre - complex(position[0], position[1])
+
+    def device_force(self, force: complex) -> Vector:
+        """A force in the arm's axes as the servo counts it."""
+        return (-force.real, -force.imag, 0.0)
+
+    @property
+    def rest(self) -> Vector:
+        """The rest pose, m."""
+        handle = self.arm.handle((self._radians[0], self._radians[1]))
+        if handle is None:
+            raise PalpateError("simulated 2DIY: this model has no rest pose; mend its figures")
+        return self.device_position(handle)
+
+    @property
+    def _radians(self) -> Pair:
+        return (math.radians(self.rest_degrees[0]), math.radians(self.rest_degrees[1]))
+
+    def angles(self, position: Vector) -> Pair | None:
+        """Motor angles (degrees, counted through from the rest pose) at a position."""
+        found = self.arm.angles(self.handle(position))
+        if found is None:
+            return None
+        # The same angle, at most half a turn from the rest pose.
+        first, second = (
+            rest + math.degrees(cmath.phase(cmath.exp(1j * (angle - math.radians(rest)))))
+            for angle, rest in zip(found, self.rest_degrees, strict=True)
+        )
+        return first, second
+
+
+_V3 = FiveBar(0.07, 0.09, 0.038)
+
+HAPLY_MODELS = {
+    "2diy-3.1": HaplyModel(
+        _V3, (1, 0), (1, 1), (1, 1), (168.0, 12.0), (4880.0, 4880.0), 0.019 + 0.095j
+    ),
+    "2diy-3.0": HaplyModel(
+        _V3, (1, 0), (1, 1), (1, 1), (97.23, 82.77), (5299.7056, 5219.328), 0.019 + 0.095j
+    ),
+    "2diy-2": HaplyModel(
+        FiveBar(0.07, 0.09, 0.0),
+        (1, 0),
+        (1, 0),
+        (1, 0),
+        (241.0, -61.0),
+        (10752.0, 10752.0),
+        0.085j,
+    ),
+    "kit": HaplyModel(
+        FiveBar(0.05, 0.07, 0.02),
+        (0, 1),
+        (0, 0),
+        (0, 0),
+        (180.0, 0.0),
+        (13824.0, 13824.0),
+        0.01 + 0.07j,
+    ),
+}
+"""By the names that the servo knows them by."""
+DEFAULT_MODEL = "2diy-3.1"
+
+HAPI_USB_IDS = frozenset(
+    # Native ports of the Arduino Due, Zero, M0 and M0 Pro, as which hAPI boards show up.
+    f"{vendor}:{product}"
+    for vendor in ("2341", "2a03")
+    for product in ("003e", "804d", "804e", "804f")
+)
+"""VID:PID of what may be a hAPI board."""
+
+
+def haply_model(name: str) -> HaplyModel:
+    """Raises PalpateError for a name that is not known."""
+    try:
+        return HAPLY_MODELS[name]
+    except KeyError:
+        known = ", ".join(HAPLY_MODELS)
+        raise PalpateError(f"simulated 2DIY: no model {name!r}; take one of {known}") from None

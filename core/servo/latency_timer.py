@@ -1,0 +1,135 @@
+"""FTDI's latency timer: shortened where an ordinary user may, and recognised where it is not.
+
+FTDI's USB serial adapters keep received bytes until a timer ends, 16 ms as delivered. STATE made
+every millisecond then arrives in bursts, 62.5 a second, and the force answers to where the probe
+was (FTDI, application note AN232B-04, "Data Throughput, Latency and Handshaking").
+"""
+
+from __future__ import annotations
+
+import os
+import struct
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+# linux/serial.h: flags are the fifth number of struct serial_struct, which is shorter than this.
+_SERIAL_STRUCT = struct.Struct("32i")
+_FLAGS = 4
+_ASYNC_LOW_LATENCY = 1 << 13
+_DRIVER = Path("/sys/bus/usb-serial/devices")
+
+FEWEST_BURSTS = 10
+"""Fewer may be an accident."""
+BURST_SECONDS = 3.5e-3
+"""A shorter pause is ordinary jitter."""
+BURST_STATES = 3
+"""Fewer at once may come together by chance."""
+
+
+def ask_for_low_latency(descriptor: int) -> bool:
+    """Ask the driver of an open port to hand bytes over at once; whether it agreed.
+
+    Any user may ask on Linux, and FTDI's timer then goes to 1 ms until the adapter is unplugged.
+    Other systems have no such request, and ports without a timer refuse it: neither is a fault.
+    """
+    if sys.platform != "linux":
+        return False
+    import fcntl
+    import termios
+
+    try:
+        answer = fcntl.ioctl(descriptor, termios.TIOCGSERIAL, bytes(_SERIAL_STRUCT.size))
+        values = list(_SERIAL_STRUCT.unpack(answer))
+        values[_FLAGS] |= _ASYNC_LOW_LATENCY
+        fcntl.ioctl(descriptor, termios.TIOCSSERIAL, _SERIAL_STRUCT.pack(*values))
+    except OSError:
+        return False
+    return True
+
+
+def latency_timer_ms(path: str, driver: Path = _DRIVER) -> int | None:
+    """The timer of the adapter at ``path``; None where it has none or the system does not tell."""
+    try:
+        return int((driver / Path(os.path.realpath(path)).name / "latency_timer").read_text())
+    except (OSError, ValueError):
+        return None
+
+
+def explain(link: Mapping[str, Any], path: str = "") -> str | None:
+    """What to tell the user when the adapter holds STATE back, and what helps; else None.
+
+    Parameters
+    ----------
+    link : the counters of a servo's link, ``servo.counters()["link"]``.
+    path : of the port.
+    """
+    if link["bursts"] < FEWEST_BURSTS or 2 * link["burst_states"] < link["states"]:
+        return None
+    return _sentence(link["burst_ms"], link["state_interval_us"]["device"] * 1e-3, path)
+
+
+def explain_readings(readings: Sequence[tuple[float, Sequence[int]]], path: str = "") -> str | None:
+    """The same from what was read of a port, by the rules of `native/src/device/arrival.rs`.
+
+    Parameters
+    ----------
+    readings : time (s) of each reading and the device times (us) of the STATEs that it brought,
+        none where it was in vain.
+    """
+    pauses: list[float] = []
+    held = states = 0
+    device_seconds = in_vain = 0.0
+    last: tuple[float, int] | None = None
+    for now, stamps in readings:
+        if not stamps:
+            in_vain = now
+            continue
+        if last is not None:
+            then, stamp = last
+            pause, made = now - then, _since(stamps[0], stamps[-1])
+            states += len(stamps)
+            device_seconds += _since(stamp, stamps[-1])
+            was_looked_for = in_vain - then >= BURST_SECONDS
+            if was_looked_for and len(stamps) >= BURST_STATES and made >= 0.5 * pause:
+                pauses.append(pause)
+                held += len(stamps)
+        last = now, stamps[-1]
+    if len(pauses) < FEWEST_BURSTS or 2 * held < states:
+        return None
+    return _sentence(1e3 * sum(pauses) / len(pauses), 1e3 * device_seconds / states, path)
+
+
+def _since(first_us: int, last_us: int) -> float:
+    return (last_us - first_us) % 2**32 * 1e-6
+
+
+def remedy(path: str = "", system: str = sys.platform) -> str:
+    """How a user sets the timer to 1 ms."""
+    if system == "win32":
+        return (
+            "in the Device Manager open the port's properties, Port Settings, Advanced, and set "
+            "Latency Timer to 1 ms"
+        )
+    if system == "darwin":
+        return (
+            "install FTDI's own driver and set its LatencyTimer to 1 or 2 (FTDI's technical note "
+            "TN_105 tells how), or use a device with USB of its own"
+        )
+    name = Path(os.path.realpath(path)).name if path else "ttyUSB0"
+    return (
+        f"run 'echo 1 | sudo tee {_DRIVER / name}/latency_timer', or for good put ACTION==\"add\", "
+        'SUBSYSTEM=="usb-serial", DRIVER=="ftdi_sio", ATTR{latency_timer}="1" into a file in '
+        "/etc/udev/rules.d"
+    )
+
+
+def _sentence(burst_ms: float, device_ms: float, path: str) -> str:
+    timer = latency_timer_ms(path) if path else None
+    known = f" (its latency timer is at {timer} ms)" if timer is not None else ""
+    return (
+        f"{f'{path}: ' if path else ''}STATE arrives in bursts, one every {burst_ms:.3g} ms "
+        f"({1e3 / burst_ms:.3g} Hz), though the device makes one every {device_ms:.3g} ms: the USB "
+        f"serial adapter holds bytes back{known}, and the force comes late; {remedy(path)}"
+    )

@@ -1,0 +1,1 @@
+"""A force that gives way at large depth."""

@@ -1,0 +1,1 @@
+"""Large bends without a table."""

@@ -1,0 +1,175 @@
+"""The shape without a table: the linear displacement warped, then taken towards equilibrium.
+
+Small bodies are computed on their own nodes, larger ones by :mod:`.two_levels`.
+"""
+
+from __future__ import annotations
+
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...body.soft_body import SoftBody
+from ...errors import PalpateError
+from ..solid.free_solid import FreeSolid
+from .relaxation import Relaxation, by_component
+from .two_levels import TwoLevels
+
+
+@dataclass(frozen=True)
+class FramePlan:
+    """What is done in every frame.
+
+    Attributes
+    ----------
+    steps : towards equilibrium.
+    lattice_nodes : at most so many carry what is not linear; 0 where the body's own nodes do.
+    """
+
+    steps: int
+    lattice_nodes: int = 0
+
+
+# For bodies of at most so many free nodes, and for all others: what a frame of 60 Hz holds.
+PLANS = ((600, FramePlan(3)), (1200, FramePlan(2)), (3000, FramePlan(2, 600)))
+PLAN_OF_LARGE = FramePlan(2, 1000)
+
+
+def frame_plan(free_nodes: int) -> FramePlan:
+    """What a frame has time for, for this many free nodes."""
+    return next((plan for largest, plan in PLANS if free_nodes <= largest), PLAN_OF_LARGE)
+
+
+class RotationStrainShape:
+    """A :class:`.shapes.Shape`: warped, and relaxed by as many steps as a frame has time for.
+
+    It is prepared in the background; until that is done, :attr:`ready` is below 1 and the shape is
+    the linear one.
+
+    Parameters
+    ----------
+    body : what is drawn.
+    plan : of every frame; None chooses by the number of free nodes.
+    """
+
+    def __init__(self, body: SoftBody, plan: FramePlan | None = None) -> None:
+        self._body = body
+        free_nodes = len(body.mesh.nodes) - len(body.fixed)
+        self._plan = frame_plan(free_nodes) if plan is None else plan
+        self._share = 0.0
+        self._is_ended = False
+        worker = ThreadPoolExecutor(1, thread_name_prefix="palpate-rotation-strain")
+        self._made: Future[_Made | None] = worker.submit(self._make)
+        worker.shutdown(wait=False)
+
+    @property
+    def ready(self) -> float:
+        """Share of the preparation that is done; the same for every place."""
+        done = self._made.done() and self._made.exception() is None
+        return 1.0 if done and self._made.result() is not None else self._share
+
+    @property
+    def notice(self) -> str:
+        """Always empty: nothing is kept in files."""
+        return ""
+
+    def displacements(
+        self,
+        nodes: NDArray[np.int64],
+        nodal_forces: NDArray[np.float64],
+        young_modulus: float | None = None,
+    ) -> NDArray[np.float64]:
+        """Displacements (n, 3) of the free surface nodes, metres; see :class:`.shapes.Shape`.
+
+        Raises
+        ------
+        PalpateError
+            The preparation failed: the pins do not hold the body.
+        """
+        made = self._made.result() if self._made.done() else None
+        if made is None:
+            return self._body.deform(nodes, nodal_forces, young_modulus)
+        modulus = self._body.modulus(young_modulus)
+        forces = np.asarray(nodal_forces, dtype=np.float64).reshape(-1, 3) / modulus
+        return made.displacements(np.asarray(nodes).reshape(-1), forces)
+
+    def wait_for(self, nodes: NDArray[np.int64]) -> None:  # noqa: ARG002 - of no single place
+        """Return when the preparation is done; it is the same for all ``nodes``.
+
+        Raises
+        ------
+        PalpateError
+            It failed, because the pins do not hold the body, or the shape was closed before.
+        """
+        if self._made.result() is None:
+            raise PalpateError(
+                "rotation-strain: this shape was closed before it was prepared; make a new one"
+            )
+
+    def close(self) -> None:
+        """End the preparation at its next stage."""
+        self._is_ended = True
+
+    def _make(self) -> _Made | None:
+        """Stage by stage, between which :meth:`close` is heeded."""
+        if self._plan.lattice_nodes:
+            levels = TwoLevels.of(self._body, self._plan.lattice_nodes)
+            return None if self._is_ended else _OnLattice(self._body, levels, self._plan.steps)
+        solid = FreeSolid.of(self._body)
+        if self._goes_on(0.2):
+            _ = solid.factor
+        if self._goes_on(0.6):
+            made = _OnOwnNodes(solid, relaxation(solid), self._plan.steps)
+            if not self._is_ended:
+                return made
+        return None
+
+    def _goes_on(self, share: float) -> bool:
+        if not self._is_ended:
+            self._share = share
+        return not self._is_ended
+
+
+class _Made(Protocol):
+    def displacements(
+        self, nodes: NDArray[np.int64], forces: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Of the free surface, (n, 3), under forces (k, 3) on nodes (k,), at unit modulus."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class _OnOwnNodes:
+    solid: FreeSolid
+    relaxation: Relaxation
+    steps: int
+
+    def displacements(
+        self, nodes: NDArray[np.int64], forces: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        held = self.solid.on_free_nodes(nodes, forces)
+        moved = self.relaxation.relaxed(np.ascontiguousarray(held.T), self.steps)
+        return np.ascontiguousarray(moved[:, self.solid.surface].T)
+
+
+@dataclass(frozen=True, eq=False)
+class _OnLattice:
+    body: SoftBody
+    levels: TwoLevels
+    steps: int
+
+    def displacements(
+        self, nodes: NDArray[np.int64], forces: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        linear = self.body.deform(nodes, forces, 1.0)
+        places = self.body.free_index(nodes)
+        free = places >= 0
+        return self.levels.corrected(linear, places[free], forces[free], self.steps)
+
+
+def relaxation(solid: FreeSolid) -> Relaxation:
+    """What is needed to relax a body's shape, ready to be used."""
+    return Relaxation.of(solid.solid.terms, by_component(solid.factor))

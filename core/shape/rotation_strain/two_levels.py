@@ -1,0 +1,122 @@
+"""A large body's shape: linear as finely as it is, corrected as coarsely as the correction is.
+
+The linear displacement u of the surface is exact and cheap, from the compliance. What a large
+deformation adds to it varies smoothly, so it is found on a :class:`.coarse_solid.CoarseSolid`:
+
+- v, the lattice's displacement that comes nearest to u and is in equilibrium inside;
+- a load under which the lattice is at v where it stays linear: that of the body, in the share of
+  the two stiffnesses, and what is left, which turns along with the lattice (a lattice is too stiff
+  in one place and too soft in another, and forces that make up for it must not bend it);
+- w, the lattice's large deformation under this load (:mod:`.relaxation`);
+- u + P (w - v) is drawn, P the interpolation from the lattice.
+
+To first order in the forces w is v, and nothing is added. What is finer than the lattice stays
+linear.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+
+from ...body.soft_body import SoftBody
+from ...compliance.elimination.cholesky import CholeskyFactor, RepeatedElimination
+from ...stiffness.assembly import lame_parameters
+from ...stiffness.held_pins import pins_checked
+from ..solid.by_component import Array
+from .coarse_solid import CoarseSolid, by_axes, spring_of_each
+from .lattice import lattice_of
+from .relaxation import Load, Relaxation, Solve, by_component
+
+# How stiffly the lattice follows the surface, in shear moduli times edge for each part.
+FOLLOWING = 1.0
+# Bounds of the share in which a lattice is stiffer than its body, as far as it counts.
+STIFFER = (0.25, 4.0)
+
+
+@dataclass(frozen=True, eq=False)
+class TwoLevels:
+    """What corrects linear displacements of a body's free surface.
+
+    Attributes
+    ----------
+    surface : csr (n, c), P: displacements of the lattice's nodes taken to the free surface.
+    following : csr (c, n), its transpose times the springs by which the lattice follows.
+    follow : solves for the lattice's displacements (3, c) from forces on it.
+    relaxation : of the lattice.
+    """
+
+    surface: csr_array
+    following: csr_array
+    follow: Solve
+    relaxation: Relaxation
+
+    @classmethod
+    def of(cls, body: SoftBody, most_nodes: int) -> TwoLevels:
+        """For a body, with a lattice of at most so many nodes.
+
+        Raises
+        ------
+        PalpateError
+            The pins do not hold the body.
+        """
+        pins_checked(body.mesh, body.fixed)
+        mesh, seen = body.mesh, body.compliance.free_surface
+        lattice = lattice_of(mesh, most_nodes)
+        coarse = CoarseSolid.of(lattice, mesh, body.fixed, body.poisson_ratio, body.young_scale)
+        surface = lattice.interpolation(mesh.nodes[seen], lattice.node_parts[seen])
+        _, shear = lame_parameters(1.0, body.poisson_ratio)
+        stiffness = FOLLOWING * shear * lattice.edge * coarse.part_modulus
+        springs = spring_of_each(lattice, seen, stiffness)
+        following = csr_array(surface.T).multiply(springs).tocsr()
+        at_rest = coarse.stiffness
+        followed = _factor(at_rest + by_axes(csr_array(following @ surface)), lattice.positions)
+        solved = _factor(at_rest, lattice.positions)
+        relaxation = Relaxation.of(coarse.solid.terms, by_component(solved), coarse.springs)
+        return cls(surface, following, by_component(followed), relaxation)
+
+    def corrected(
+        self,
+        linear: NDArray[np.float64],
+        places: NDArray[np.int64],
+        forces: NDArray[np.float64],
+        steps: int,
+    ) -> NDArray[np.float64]:
+        """Displacements (n, 3) of the free surface from linear ones (n, 3).
+
+        Parameters
+        ----------
+        linear : what ``forces`` cause where the body stays linear.
+        places, forces : (k,), (k, 3), on which of the free surface nodes, at unit modulus.
+        steps : towards equilibrium.
+        """
+        load = _components(self.surface[places].T @ forces)
+        v = self.follow(load + _components(self.following @ linear))
+        held = load + _components(self.following @ (linear - self.surface @ v.T))
+        dead = _stiffer(held, load, v) * load
+        w = self.relaxation.relaxed_from(v, Load(dead, held - dead), steps)
+        moved: NDArray[np.float64] = linear + self.surface @ (w - v).T
+        return moved
+
+
+def _stiffer(held: Array, load: Array, moved: Array) -> float:
+    """By how much a lattice is stiffer than its body: the work of what holds it over the load's."""
+    least, most = STIFFER
+    own, all_work = (float(np.einsum("ic,ic->", forces, moved)) for forces in (load, held))
+    if all_work >= most * own:
+        return most
+    return max(all_work / own, least)
+
+
+def _components(rows: NDArray[np.float64]) -> Array:
+    return np.ascontiguousarray(rows.T)
+
+
+def _factor(matrix: csr_array, positions: NDArray[np.float64]) -> CholeskyFactor:
+    blocks = matrix.tobsr((3, 3))
+    rows = np.repeat(np.arange(len(positions)), np.diff(blocks.indptr))
+    elimination = RepeatedElimination.of(rows, blocks.indices.astype(np.int64), positions)
+    return elimination.factor(blocks.data)

@@ -1,0 +1,120 @@
+"""What a shape costs, predicted from a body's size, before anything is computed."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from .paper.series_shape import LARGEST_WHOLE_LOAD
+from .rotation_strain.rotation_strain_shape import frame_plan
+from .shapes import ShapeName
+
+# The coefficients below were measured on a body of so many nodes, and their exponents up to 20,000.
+MEASURED_NODES = 1700
+# By how much the table of the series is packed.
+PACKED = 15
+
+
+@dataclass(frozen=True)
+class BodySize:
+    """Counts of a body: its nodes, tetrahedra and free surface nodes."""
+
+    nodes: int
+    tets: int
+    free_surface_nodes: int
+
+
+@dataclass(frozen=True)
+class ShapeCost:
+    """About what a shape takes; right within a factor of two on machines of this decade.
+
+    Attributes
+    ----------
+    frame_seconds : for each frame that is drawn.
+    first_seconds : from the first touch until the shape is drawn as it should be.
+    table_seconds : for a table of the whole body; 0 without a table.
+    memory_bytes : beyond the body itself, a whole table included.
+    """
+
+    frame_seconds: float
+    first_seconds: float
+    table_seconds: float
+    memory_bytes: float
+
+
+def shape_cost(name: ShapeName, size: BodySize) -> ShapeCost:
+    """The cost of a shape for a body of this size."""
+    match name:
+        case "linear":
+            return ShapeCost(_linear_seconds(size), 0.0, 0.0, 0.0)
+        case "rotation-strain":
+            return _rotation_strain(size)
+        case "series":
+            return _series(size)
+        case "table":
+            return _table(size)
+
+
+def _rotation_strain(size: BodySize) -> ShapeCost:
+    plan = frame_plan(size.nodes)
+    if plan.lattice_nodes:
+        lattice = BodySize(plan.lattice_nodes, 0, 0)
+        # Each of a lattice's nodes, in every frame and in every step.
+        frame = _linear_seconds(size) + plan.lattice_nodes * (4e-6 + 3e-6 * plan.steps)
+        return ShapeCost(frame, 0.1 + 5e-5 * size.nodes, 0.0, 4 * _factor_bytes(lattice))
+    frame = (1 + plan.steps) * _solve_seconds(size) + plan.steps * 9e-7 * size.tets
+    # Beside the factor of the stiffness one of the Poisson equation that puts the tets together.
+    first = _factor_seconds(size) + 0.04 * _grown(size, 1.7)
+    return ShapeCost(frame, first, 0.0, 1.3 * _factor_bytes(size) + 200.0 * size.tets)
+
+
+def _series(size: BodySize) -> ShapeCost:
+    fields = 144.0 * size.tets
+    if size.nodes <= LARGEST_WHOLE_LOAD:
+        frame = 2 * _solve_seconds(size) + 1e-6 * size.tets
+        return ShapeCost(frame, _factor_seconds(size) + 0.1, 0.0, _factor_bytes(size) + fields)
+    entry = 0.010 * _grown(size, 1.5)
+    freedoms = 3 * size.free_surface_nodes
+    return ShapeCost(
+        _linear_seconds(size) + 3e-4,
+        _factor_seconds(size) + 9 * entry,
+        freedoms * entry,
+        _factor_bytes(size) + fields + 2 * _dense_bytes(size) / PACKED,
+    )
+
+
+def _table(size: BodySize) -> ShapeCost:
+    # On average: F0 is found by halving, and hard ones take four times as long as easy ones.
+    entry = 2.6 * _grown(size, 1.4)
+    return ShapeCost(
+        _linear_seconds(size) + 1e-3,
+        _factor_seconds(size) + 18 * entry,
+        6 * size.free_surface_nodes * entry,
+        _factor_bytes(size) + 2 * _dense_bytes(size),
+    )
+
+
+def _grown(size: BodySize, exponent: float) -> float:
+    """How many times as much as for the body that was measured."""
+    return math.pow(size.nodes / MEASURED_NODES, exponent)
+
+
+def _linear_seconds(size: BodySize) -> float:
+    return 1e-7 * size.free_surface_nodes
+
+
+def _solve_seconds(size: BodySize) -> float:
+    """One load, by the factor of the stiffness."""
+    return 1.5e-3 * _grown(size, 1.57)
+
+
+def _factor_seconds(size: BodySize) -> float:
+    return 0.05 * _grown(size, 1.66)
+
+
+def _factor_bytes(size: BodySize) -> float:
+    return 12e6 * _grown(size, 1.45)
+
+
+def _dense_bytes(size: BodySize) -> float:
+    return 36.0 * size.free_surface_nodes**2

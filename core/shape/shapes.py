@@ -1,0 +1,149 @@
+"""The shapes that can be drawn of a body under forces: one name, one sentence and one maker each.
+
+All of them agree for small forces. They differ in what is drawn, not in the force that is felt.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal, Protocol, TypeAlias, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..body.soft_body import SoftBody
+from ..errors import PalpateError
+from .paper.newton_shape import TableShape
+from .paper.series_shape import SeriesShape
+from .rotation_strain.rotation_strain_shape import RotationStrainShape
+
+ShapeName: TypeAlias = Literal["linear", "table", "series", "rotation-strain"]
+SHAPES: tuple[ShapeName, ...] = get_args(ShapeName)
+EXPLANATIONS: dict[ShapeName, str] = {
+    "linear": "As the force is computed; large bends look swollen",
+    "table": "The paper's (16): stored large deformations, solved exactly; takes long to compute",
+    "series": "Power series in the force: right for bends and moderate dents, in milliseconds",
+    "rotation-strain": "Bends and twists keep their size; nearest to the truth, without a table",
+}
+
+
+class Shape(Protocol):
+    """How a body looks under forces on its nodes."""
+
+    @property
+    def ready(self) -> float:
+        """Share (0 to 1) of what the place touched last needs that is there; 1 without a table.
+
+        What is missing yet is drawn as ``linear``.
+        """
+        ...
+
+    @property
+    def notice(self) -> str:
+        """Which file of a table could not be used or written, and why; empty otherwise."""
+        ...
+
+    def displacements(
+        self,
+        nodes: NDArray[np.int64],
+        nodal_forces: NDArray[np.float64],
+        young_modulus: float | None = None,
+    ) -> NDArray[np.float64]:
+        """Displacements (n, 3) of the free surface nodes, metres; at once, with what is there.
+
+        Arguments as for :meth:`SoftBody.deform`. What a place lacks is asked for: a later call is
+        better, until :attr:`ready` is 1.
+        """
+        ...
+
+    def wait_for(self, nodes: NDArray[np.int64]) -> None:
+        """Return when all is there that forces on these nodes (k,) of the mesh need.
+
+        Raises
+        ------
+        PalpateError
+            It cannot be computed, or the shape is closed.
+        """
+        ...
+
+    def close(self) -> None:
+        """End what works in the background, and keep what it made. Safe to call twice.
+
+        Where it cannot be kept, :attr:`notice` says why.
+        """
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class LinearShape:
+    """Equation (15)."""
+
+    body: SoftBody
+
+    @property
+    def ready(self) -> float:
+        """Always 1."""
+        return 1.0
+
+    @property
+    def notice(self) -> str:
+        """Always empty."""
+        return ""
+
+    def displacements(
+        self,
+        nodes: NDArray[np.int64],
+        nodal_forces: NDArray[np.float64],
+        young_modulus: float | None = None,
+    ) -> NDArray[np.float64]:
+        """As :meth:`SoftBody.deform`."""
+        return self.body.deform(nodes, nodal_forces, young_modulus)
+
+    def wait_for(self, nodes: NDArray[np.int64]) -> None:
+        """Nothing is missing."""
+
+    def close(self) -> None:
+        """Nothing works in the background."""
+
+
+# How each is made, of a body and the file it came from, beside which tables may be kept.
+MAKERS: dict[ShapeName, Callable[[SoftBody, Path | None], Shape]] = {
+    "linear": lambda body, _: LinearShape(body),
+    "rotation-strain": lambda body, _: RotationStrainShape(body),
+    "series": SeriesShape,
+    "table": TableShape,
+}
+
+
+def shape(body: SoftBody, choice: str, body_file: Path | None = None) -> Shape:
+    """The shape of this name for a body.
+
+    Parameters
+    ----------
+    choice : one of :data:`SHAPES`.
+    body_file : where the body came from; tables are kept beside it. Without it they are not kept.
+
+    Raises
+    ------
+    PalpateError
+        An unknown name, or a body for which there is no such shape.
+    """
+    return MAKERS[shape_name(choice)](body, body_file)
+
+
+def shape_name(choice: str) -> ShapeName:
+    """The name, checked.
+
+    Raises
+    ------
+    PalpateError
+        An unknown one.
+    """
+    for name in SHAPES:
+        if name == choice:
+            return name
+    raise PalpateError(
+        f"shape {choice!r} is unknown; give {', '.join(SHAPES[:-1])} or {SHAPES[-1]}"
+    )

@@ -1,0 +1,141 @@
+"""A body with its pins, ready for solves: what free nodes feel, and the factored stiffness."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+
+from ...body.soft_body import SoftBody
+from ...compliance.elimination.cholesky import (
+    CholeskyFactor,
+    NotPositiveDefiniteError,
+    RepeatedElimination,
+)
+from ...errors import PalpateError
+from ...stiffness.held_pins import pins_checked
+from .solid import Solid, StrainTerm, solid
+
+
+@dataclass(frozen=True, eq=False)
+class FreeSolid:
+    """The solid of a body whose pinned nodes stay, at unit modulus; arrays are of free nodes only.
+
+    For another Young's modulus E, divide forces by E; displacements are the same for the same F/E.
+
+    Attributes
+    ----------
+    solid : on the free nodes; numbered as in ``free``.
+    free : int64 (f,), node numbers of the mesh, ascending.
+    surface : int64 (n,), the places in ``free`` of ``body.compliance.free_surface``.
+    positions : (f, 3), at rest, metres.
+    """
+
+    solid: Solid
+    free: NDArray[np.int64]
+    surface: NDArray[np.int64]
+    positions: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, body: SoftBody) -> FreeSolid:
+        """The solid of a body, with the strains its compliance was made with.
+
+        Raises
+        ------
+        PalpateError
+            As :func:`.solid.solid`, and where the pins do not hold the body.
+        """
+        mesh = body.mesh
+        pins_checked(mesh, body.fixed)
+        whole = solid(mesh, body.poisson_ratio, body.formulation, body.young_scale)
+        free = np.setdiff1d(np.arange(len(mesh.nodes)), body.fixed)
+        terms = tuple(
+            StrainTerm(
+                _columns(term.gradients, free), term.volumes, term.first_lame, term.shear_modulus
+            )
+            for term in whole.terms
+        )
+        surface = np.searchsorted(free, body.compliance.free_surface)
+        return cls(Solid(terms, len(free)), free, surface, mesh.nodes[free])
+
+    @property
+    def node_count(self) -> int:
+        """Number of free nodes, f."""
+        return len(self.free)
+
+    def energy(self, displacements: NDArray[np.float64]) -> float:
+        """Strain energy at displacements (f, 3), joule."""
+        return self.solid.energy(displacements)
+
+    def forces(self, displacements: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Forces (f, 3) that hold the free nodes at displacements (f, 3), newton."""
+        return self.solid.forces(displacements)
+
+    def tangent(self, displacements: NDArray[np.float64]) -> csr_array:
+        """Tangent stiffness (3f, 3f) at displacements (f, 3), newton per metre."""
+        return self.solid.tangent(displacements)
+
+    def volume_ratios(self, displacements: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Det F of every domain; see :meth:`.solid.Solid.volume_ratios`."""
+        return self.solid.volume_ratios(displacements)
+
+    def linear(self, nodal_forces: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Displacements (f, 3) that linear elasticity gives for forces (f, 3), K^-1 F."""
+        return self.factor.solve(nodal_forces.ravel()).reshape(-1, 3)
+
+    @cached_property
+    def rest_blocks(self) -> NDArray[np.float64]:
+        """The blocks (m, 3, 3) of the stiffness at rest, where ``solid.pattern`` says."""
+        return self.solid.tangent_blocks(np.zeros((self.node_count, 3)))
+
+    @cached_property
+    def stiffness(self) -> csr_array:
+        """K, the stiffness at rest, (3f, 3f)."""
+        return self.tangent(np.zeros((self.node_count, 3)))
+
+    @cached_property
+    def elimination(self) -> RepeatedElimination:
+        """How tangents are factored; all have one pattern."""
+        pattern = self.solid.pattern
+        return RepeatedElimination.of(pattern.rows, pattern.columns, self.positions)
+
+    @cached_property
+    def factor(self) -> CholeskyFactor:
+        """The factor of K, for :meth:`~CholeskyFactor.solve` with (3f,) or (3f, k).
+
+        Solves only read it, so that several threads may share it.
+
+        Raises
+        ------
+        PalpateError
+            The pins do not hold the body.
+        """
+        try:
+            return self.elimination.factor(self.rest_blocks)
+        except NotPositiveDefiniteError:
+            raise PalpateError(
+                "stiffness: the body is not held by its pins, as far as its numbers tell; pin "
+                "every part at three nodes that are not on a line, and bake again"
+            ) from None
+
+    def on_free_nodes(
+        self, nodes: NDArray[np.int64], nodal_forces: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Forces (f, 3) from ``nodal_forces`` (k, 3) on ``nodes`` (k,) of the mesh.
+
+        Forces on a node that occurs more than once are added; those on pinned nodes are left out.
+        """
+        places = np.searchsorted(self.free, nodes)
+        held = places < self.node_count
+        held[held] = self.free[places[held]] == np.asarray(nodes)[held]
+        forces = np.zeros((self.node_count, 3))
+        np.add.at(forces, places[held], np.asarray(nodal_forces)[held])
+        return forces
+
+
+def _columns(gradients: csr_array, nodes: NDArray[np.int64]) -> csr_array:
+    chosen: csr_array = gradients[:, nodes]
+    return chosen

@@ -1,0 +1,1 @@
+"""Shore scales and materials."""

@@ -1,0 +1,198 @@
+"""Materials a prop maker knows, as Young's modulus and Poisson's ratio, each with its source.
+
+Real batches differ by a factor of two either way. ``basis`` says how a modulus came about:
+
+measured    by the paper that is named
+derived     from the Shore value on the data sheet by the usual relation of its scale, so that a
+            virtual durometer reads what is written on the tin; ``measured_modulus`` beside it is
+            what tensile tests say, where somebody published them
+estimate    from what is told, or an order of magnitude
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .shore import Shore, young_from_shore
+
+SMOOTH_ON = "Shore and density by Smooth-On's data sheet; modulus derived from the Shore value"
+TENSILE = (
+    "; measured: Marechal et al. 2021, Soft Robotics 8, 284, neo-Hookean fit of their tensile data "
+    "up to 30 % strain"
+)
+NGUYEN = "Nguyen et al. 2014, Ultrasound in Medicine and Biology 40, 168"
+
+
+@dataclass(frozen=True)
+class Material:
+    """A named isotropic material.
+
+    Attributes
+    ----------
+    name : as it is shown.
+    young_modulus : pascal.
+    poisson_ratio : without unit.
+    basis : "measured", "derived" or "estimate"; see above.
+    source : where the figures come from.
+    shore : by the data sheet, where it gives one.
+    density : kilograms per cubic metre, where it is known.
+    measured_modulus : pascal, by tensile tests at small strain, where ``basis`` is another.
+    """
+
+    name: str
+    young_modulus: float
+    poisson_ratio: float
+    basis: str = "estimate"
+    source: str = "order of magnitude"
+    shore: Shore | None = None
+    density: float | None = None
+    measured_modulus: float | None = None
+
+
+def _by_shore(
+    name: str,
+    shore: Shore,
+    source: str,
+    *,
+    poisson_ratio: float = 0.48,
+    density: float | None = None,
+    measured_modulus: float | None = None,
+) -> Material:
+    """A material whose modulus is that of its Shore value, to three digits."""
+    young = float(f"{young_from_shore(shore, poisson_ratio):.3g}")
+    return Material(name, young, poisson_ratio, "derived", source, shore, density, measured_modulus)
+
+
+# A .blend keeps the order of the first seven: add new ones at the end only.
+MATERIALS = {
+    "PLUSH": Material("Plush toy", 1_000.0, 0.30),
+    "JELLY": Material(
+        "Jelly",
+        5_000.0,
+        0.45,
+        source=f"a little softer than gelatine of 3 % ({NGUYEN}: 6.0 kPa)",
+    ),
+    "PAPER_CUBE": Material(
+        "Paper's soft cube",
+        10_000.0,
+        0.49,
+        source="Poisson's ratio of Hirota and Kaneko 1999; modulus an order of magnitude",
+    ),
+    "FOAM": Material("Upholstery foam", 30_000.0, 0.20),
+    "SILICONE_SOFT": _by_shore(
+        "Soft silicone (Shore 00-30)", Shore("00", 30.0), "any silicone of this Shore value"
+    ),
+    "SILICONE_FIRM": _by_shore(
+        "Firm silicone (Shore A 20)", Shore("A", 20.0), "any silicone of this Shore value"
+    ),
+    "RUBBER": Material(
+        "Rubber (Shore A 50)",
+        2_500_000.0,
+        0.49,
+        "derived",
+        "any rubber of this Shore value",
+        Shore("A", 50.0),
+    ),
+    "ECOFLEX_10": _by_shore(
+        "Ecoflex 00-10",
+        Shore("00", 10.0),
+        SMOOTH_ON + TENSILE,
+        density=1_040.0,
+        measured_modulus=29_000.0,
+    ),
+    "ECOFLEX_20": _by_shore("Ecoflex 00-20", Shore("00", 20.0), SMOOTH_ON, density=1_070.0),
+    "ECOFLEX_30": _by_shore(
+        "Ecoflex 00-30",
+        Shore("00", 30.0),
+        SMOOTH_ON + TENSILE,
+        density=1_070.0,
+        measured_modulus=51_000.0,
+    ),
+    "ECOFLEX_50": _by_shore(
+        "Ecoflex 00-50",
+        Shore("00", 50.0),
+        SMOOTH_ON + TENSILE,
+        density=1_070.0,
+        measured_modulus=74_000.0,
+    ),
+    "DRAGON_SKIN_10": _by_shore(
+        "Dragon Skin 10",
+        Shore("A", 10.0),
+        SMOOTH_ON + TENSILE,
+        density=1_070.0,
+        measured_modulus=147_000.0,
+    ),
+    "DRAGON_SKIN_20": _by_shore(
+        "Dragon Skin 20",
+        Shore("A", 20.0),
+        SMOOTH_ON + TENSILE,
+        density=1_080.0,
+        measured_modulus=394_000.0,
+    ),
+    "DRAGON_SKIN_30": _by_shore(
+        "Dragon Skin 30",
+        Shore("A", 30.0),
+        SMOOTH_ON + TENSILE,
+        density=1_080.0,
+        measured_modulus=587_000.0,
+    ),
+    "PU_FOAM_SOFT": Material(
+        "Soft polyurethane foam",
+        10_000.0,
+        0.20,
+        source="secant of an indentation load deflection of 18 lbf (80 N on 323 cm2 at 25 %)",
+        density=25.0,
+    ),
+    "LATEX_FOAM": Material(
+        "Latex foam",
+        15_000.0,
+        0.20,
+        source="secant of an indentation load deflection of 28 lbf (125 N on 323 cm2 at 25 %)",
+        density=75.0,
+    ),
+    "EVA_FOAM": _by_shore(
+        "EVA foam (Shore A 30)",
+        Shore("A", 30.0),
+        "EVA sheet sold by its Shore value; the relation is for rubber and stretched here to foam",
+        poisson_ratio=0.40,
+        density=200.0,
+    ),
+    "GELATINE_3": Material(
+        "Gelatine 3 %",
+        6_000.0,
+        0.49,
+        "measured",
+        f"{NGUYEN}: shear modulus 2.0 kPa, times 3",
+        density=1_000.0,
+    ),
+    "GELATINE_5": Material(
+        "Gelatine 5 %",
+        12_500.0,
+        0.49,
+        "measured",
+        f"{NGUYEN}: shear modulus 4.2 kPa, times 3",
+        density=1_010.0,
+    ),
+    "BALLISTIC_GEL": Material(
+        "Ballistic gel 10 %",
+        60_000.0,
+        0.49,
+        source=f"carried on from 3 to 7 % gelatine ({NGUYEN}) with their exponent of 1.9",
+        density=1_030.0,
+    ),
+    "STUFFING": Material(
+        "Firm toy stuffing",
+        3_000.0,
+        0.20,
+        source="order of magnitude; the plush toy above, filled tighter",
+        density=30.0,
+    ),
+    "FLESH": Material(
+        "Skin over flesh",
+        8_000.0,
+        0.48,
+        source="what an indenter feels on a forearm as a whole, about 5 to 10 kPa; order of "
+        "magnitude after Pailler-Mattei et al. 2008, Medical Engineering and Physics 30, 599",
+        density=1_050.0,
+    ),
+}

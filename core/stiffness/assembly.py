@@ -1,0 +1,149 @@
+"""Linear elasticity on four-node tetrahedra: the stiffness matrix K of the paper's equation (1)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.sparse import bsr_array, csr_array
+
+from ..errors import PalpateError
+from ..mesh.tet_mesh import TetMesh
+from .formulation import LINEAR, formulation_checked
+from .strain_smoothing import (
+    SmoothingDomains,
+    edge_domains,
+    gradient_products,
+    node_domains,
+    tet_domains,
+)
+
+# Young's modulus of one place may differ from the body's by this factor, up or down: enough for
+# steel in foam, and far from where rounding would hide the softer part.
+LARGEST_SCALE = 1e6
+
+
+def assemble(
+    mesh: TetMesh,
+    poisson_ratio: float,
+    young_modulus: float = 1.0,
+    *,
+    formulation: str = LINEAR,
+    young_scale: ArrayLike | None = None,
+) -> csr_array:
+    """Stiffness matrix of an isotropic body (paper, eq. 1).
+
+    Parameters
+    ----------
+    mesh : tetrahedra, metres.
+    poisson_ratio : between -1 and 0.5, both excluded.
+    young_modulus : pascal; the method works at 1 Pa and scales at run time.
+    formulation : ``"linear"``, the paper's, with the strain constant in each tetrahedron; or
+        ``"smoothed"``, which does not lock as Poisson's ratio approaches 0.5.
+    young_scale : (M,), a positive factor on Young's modulus for each tetrahedron.
+
+    Returns
+    -------
+    csr_array (3N, 3N), newton per metre. Degree of freedom ``3 * node + axis``.
+
+    Raises
+    ------
+    PalpateError
+        A material constant outside its range, or an unknown formulation.
+    """
+    first_lame, shear_modulus = lame_parameters(young_modulus, poisson_ratio)
+    scale = (
+        np.ones(len(mesh.tets))
+        if young_scale is None
+        else young_scale_checked(young_scale, len(mesh.tets))
+    )
+    if formulation_checked(formulation) == LINEAR:
+        products = _products(mesh, tet_domains(mesh.tet_volumes, scale))
+        stiffness = isotropic(products, first_lame, shear_modulus)
+    else:
+        stiffness = _smoothed(mesh, first_lame, shear_modulus, scale)
+    matrix = stiffness.tocsr()
+    matrix.sort_indices()
+    return matrix
+
+
+def _smoothed(
+    mesh: TetMesh, first_lame: float, shear_modulus: float, young_scale: NDArray[np.float64]
+) -> bsr_array:
+    """Shear averaged around edges, change of volume around nodes: selective ES/NS-FEM."""
+    by_edges = _products(mesh, edge_domains(mesh.tets, mesh.tet_volumes, young_scale))
+    if first_lame <= 0:
+        # Cork and auxetic foam have no volume to keep, and a negative term must not be averaged
+        # over other domains than the positive ones that outweigh it.
+        return isotropic(by_edges, first_lame, shear_modulus)
+    by_nodes = _products(mesh, node_domains(mesh.tets, mesh.tet_volumes, young_scale))
+    sum_of_both: bsr_array = isotropic(by_edges, 0.0, shear_modulus) + first_lame * by_nodes
+    return sum_of_both
+
+
+def _products(mesh: TetMesh, domains: SmoothingDomains) -> bsr_array:
+    return gradient_products(domains, mesh.tets, shape_gradients(mesh))
+
+
+def isotropic(products: bsr_array, first_lame: float, shear_modulus: float) -> bsr_array:
+    """Stiffness blocks lambda P_ab + mu P_ab^T + mu tr(P_ab) I from gradient products P_ab, N/m."""
+    trace = np.einsum("bii->b", products.data)
+    blocks = first_lame * products.data + shear_modulus * products.data.transpose(0, 2, 1)
+    for axis in range(3):
+        blocks[:, axis, axis] += shear_modulus * trace
+    return bsr_array((blocks, products.indices, products.indptr), shape=products.shape)
+
+
+def young_scale_checked(young_scale: ArrayLike, tet_count: int) -> NDArray[np.float64]:
+    """Factors on Young's modulus as float64 (M,), if they can be used.
+
+    Raises
+    ------
+    PalpateError
+        Not one number a tetrahedron, or one not between 1e-6 and 1e6.
+    """
+    given = np.asarray(young_scale)
+    if given.shape != (tet_count,) or given.dtype.kind not in "fiu":
+        raise PalpateError(
+            f"young_scale: an array of {given.dtype} and shape {given.shape} does not fit the "
+            f"body's tetrahedra; give one real number for each, shape ({tet_count},)"
+        )
+    scale = given.astype(np.float64)
+    usable = (scale >= 1 / LARGEST_SCALE) & (scale <= LARGEST_SCALE)
+    if not usable.all():
+        first = int(np.flatnonzero(~usable)[0])
+        raise PalpateError(
+            f"young_scale: {int((~usable).sum())} tetrahedra have a factor on Young's modulus that "
+            f"is not between {1 / LARGEST_SCALE:g} and {LARGEST_SCALE:g} (first: tetrahedron "
+            f"{first} with {scale[first]}); 1 leaves a place as it is"
+        )
+    return scale
+
+
+def lame_parameters(young_modulus: float, poisson_ratio: float) -> tuple[float, float]:
+    """Lame's first parameter and the shear modulus, both in pascal.
+
+    Raises
+    ------
+    PalpateError
+        Young's modulus not positive, or Poisson's ratio outside (-1, 0.5).
+    """
+    if not (np.isfinite(young_modulus) and young_modulus > 0):
+        raise PalpateError(
+            f"Young's modulus is {young_modulus} Pa, but must be a positive number; "
+            "soft props lie between 1e3 and 1e6 Pa"
+        )
+    if not -1 < poisson_ratio < 0.5:
+        raise PalpateError(
+            f"Poisson's ratio is {poisson_ratio}, but must lie between -1 and 0.5 (both excluded); "
+            "rubber is about 0.49, foam 0.1 to 0.3"
+        )
+    first_lame = young_modulus * poisson_ratio / ((1 + poisson_ratio) * (1 - 2 * poisson_ratio))
+    return first_lame, young_modulus / (2 * (1 + poisson_ratio))
+
+
+def shape_gradients(mesh: TetMesh) -> NDArray[np.float64]:
+    """Gradients of the four linear shape functions in each tetrahedron, (M, 4, 3), 1/metre."""
+    corners = mesh.nodes[mesh.tets]
+    edges = corners[:, 1:] - corners[:, :1]
+    inner = np.linalg.inv(edges).transpose(0, 2, 1)
+    return np.concatenate([-inner.sum(axis=1, keepdims=True), inner], axis=1)

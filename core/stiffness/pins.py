@@ -1,0 +1,111 @@
+"""What is pinned: rules that a person states, turned into node numbers of the body."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import PalpateError
+from ..mesh.closest_point import ClosestPoints, SurfacePoints
+from ..mesh.surface import Surface
+from ..mesh.tet_mesh import TetMesh
+
+
+@dataclass(frozen=True)
+class PinBelow:
+    """Pin the surface within the lowest ``fraction`` of the body's height along ``axis``."""
+
+    fraction: float
+    axis: int = 2
+
+
+@dataclass(frozen=True, eq=False)
+class PinWeights:
+    """Pin where weights (V,) painted on the input surface's vertices reach one half."""
+
+    weights: NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class PinNodes:
+    """Pin these nodes, int64 (p,), of a tetrahedral mesh that is given."""
+
+    nodes: NDArray[np.int64]
+
+
+Pins = PinBelow | PinWeights | PinNodes
+
+
+def pinned_nodes(
+    pins: Pins, mesh: TetMesh, surface: Surface | None, places: SurfacePoints | None = None
+) -> NDArray[np.int64]:
+    """Numbers of the pinned nodes, ascending.
+
+    Parameters
+    ----------
+    surface : the input surface that :class:`PinWeights` refer to, None for a body given as
+        tetrahedra.
+    places : what :func:`places_on` gives for this mesh and surface, if it is known already.
+
+    Raises
+    ------
+    PalpateError
+        A fraction outside 0 to 1, weights without a surface or not one per vertex, or a rule that
+        pins nothing.
+    """
+    if isinstance(pins, PinNodes):
+        return np.unique(pins.nodes)
+    if isinstance(pins, PinBelow):
+        return _below(pins, mesh)
+    return _weighted(pins, mesh, surface, places)
+
+
+def places_on(surface: Surface, mesh: TetMesh) -> SurfacePoints:
+    """Where the body's surface nodes lie on the surface it was made from: one place a node."""
+    return ClosestPoints(surface.vertices, surface.triangles).query(mesh.nodes[mesh.surface_nodes])
+
+
+def fraction_checked(fraction: float) -> float:
+    """``fraction`` of a :class:`PinBelow`, if it can be one.
+
+    Raises
+    ------
+    PalpateError
+        It does not lie between 0 and 1.
+    """
+    if not 0 <= fraction <= 1:
+        raise PalpateError(
+            f"pins: the fraction is {fraction}, but must lie between 0 (only the very bottom) "
+            "and 1 (everything)"
+        )
+    return fraction
+
+
+def _below(pins: PinBelow, mesh: TetMesh) -> NDArray[np.int64]:
+    fraction_checked(pins.fraction)
+    height = mesh.nodes[mesh.surface_nodes, pins.axis]
+    # The last term keeps exactly level bottoms whole despite rounding.
+    limit = height.min() + (pins.fraction + 1e-9) * np.ptp(height)
+    low: NDArray[np.int64] = mesh.surface_nodes[height <= limit]
+    return low
+
+
+def _weighted(
+    pins: PinWeights, mesh: TetMesh, surface: Surface | None, places: SurfacePoints | None
+) -> NDArray[np.int64]:
+    if surface is None or len(pins.weights) != len(surface.vertices):
+        raise PalpateError(
+            "pins: painted weights need the surface they were painted on, one weight per vertex"
+        )
+    known = places_on(surface, mesh) if places is None else places
+    corner_weights = pins.weights[surface.triangles[known.triangle]]
+    weight = np.einsum("pc,pc->p", known.alpha, corner_weights)
+    pinned: NDArray[np.int64] = mesh.surface_nodes[weight >= 0.5]
+    if not pinned.size:
+        raise PalpateError(
+            "pins: no node of the body lies where the pin group reaches a weight of 0.5; assign "
+            "more vertices to it, or use a smaller edge length"
+        )
+    return pinned

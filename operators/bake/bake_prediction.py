@@ -1,0 +1,106 @@
+"""What a bake of an object will cost, before it starts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import bpy
+import numpy as np
+
+from ...core.bake.bake_cost import (
+    BakeCost,
+    ShapeSize,
+    bending,
+    edge_length_that_fits,
+    estimate_cost,
+)
+from ...core.bake.settings import BakeSettings
+from ...core.errors import PalpateError
+from ...core.machine.available_memory import available_memory
+from ...core.stiffness.pins import PinBelow, Pins
+from ..pins import pin_group
+from ..scene.drawn_surface import DrawnSurface
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """What a bake takes, and how it could take less where that is too much.
+
+    Attributes
+    ----------
+    cost : of the bake as it is set.
+    available : bytes of memory that can be had.
+    compressed_fits : whether the compressed form would fit the memory.
+    edge_length : the smallest one that fits, None where none does; the one that is set where it
+        fits already.
+    """
+
+    cost: BakeCost
+    available: int
+    compressed_fits: bool
+    edge_length: float | None
+
+    @property
+    def fits(self) -> bool:
+        """Whether the memory suffices."""
+        return self.cost.peak_bytes <= self.available
+
+
+def shape_size(drawn: DrawnSurface) -> ShapeSize:
+    """Area, volume and fineness of a drawn surface; quick also where it has several parts.
+
+    Parts that overlap count twice in the volume. The bake measures that; a prediction need not.
+
+    Raises
+    ------
+    PalpateError
+        What cannot be baked at all.
+    """
+    surface = drawn.surface()
+    middle = surface.vertices.mean(axis=0)
+    i, j, k = (surface.vertices[surface.triangles[:, corner]] - middle for corner in range(3))
+    volume = abs(float(np.einsum("fx,fx->", i, np.cross(j, k)))) / 6.0
+    area, triangles = float(surface.areas.sum()), len(surface.triangles)
+    return ShapeSize(area, volume, surface.diagonal, triangles, bending(surface))
+
+
+def pins_of(thing: bpy.types.Object, drawn: DrawnSurface) -> Pins:
+    """What is held, as far as a cost depends on it; reads the vertex group if there is one."""
+    settings = thing.palpate
+    if settings.pin_mode == "BELOW":
+        return PinBelow(settings.pin_fraction)
+    try:
+        return pin_group.pins(thing, drawn)
+    except PalpateError:
+        # Said beside the pins; the cost is one for the whole surface then.
+        return PinBelow(0.0)
+
+
+def settings_of(thing: bpy.types.Object, pins: Pins) -> BakeSettings:
+    """What the panel asks of a bake, as far as its cost depends on it."""
+    chosen = thing.palpate
+    return BakeSettings(
+        poisson_ratio=round(chosen.poisson_ratio, 6),
+        pins=pins,
+        edge_length=chosen.edge_length,
+        epsilon=chosen.epsilon,
+        decimate_above=chosen.decimate_above,
+        formulation=chosen.formulation.lower(),
+        form=chosen.form.lower(),
+        tolerance=chosen.compression_tolerance / 100,
+    )
+
+
+def predict(size: ShapeSize, settings: BakeSettings) -> Prediction:
+    """What baking a surface of this size will take on this machine now."""
+    available = available_memory()
+    cost = estimate_cost(size, settings, available)
+    if cost.peak_bytes <= available:
+        return Prediction(cost, available, True, settings.edge_length)
+    compressed = estimate_cost(size, replace(settings, form="compressed"), available)
+    return Prediction(
+        cost,
+        available,
+        compressed.peak_bytes <= available,
+        edge_length_that_fits(size, settings, available),
+    )

@@ -1,0 +1,207 @@
+"""One bake of one object: started, polled, then given to the object or gone without a trace."""
+
+from __future__ import annotations
+
+import sys
+import time
+from dataclasses import dataclass, replace
+
+import bpy
+
+from ...core.bake.job import BakeJob, JobProgress
+from ...core.bake.steps import BakeReport, BakeSettings
+from ...core.body.soft_body import SoftBody
+from ...core.errors import CancelledError, PalpateError
+from ...core.mesh.surface import Surface
+from ...core.stiffness.pins import PinNodes
+from ..object import baked_record, body_store, soft_object
+from ..pins import pin_group, stiff_region
+from ..scene import drawn_surface
+from ..scene.drawn_surface import DrawnSurface
+from ..scene.fingerprint import Fingerprint, changed_body
+from ..scene.object_handle import ObjectHandle
+
+SECONDS_BETWEEN_POLLS = 0.05
+
+
+@dataclass(eq=False)
+class BakeSession:
+    """A running bake. Make one with :func:`start`; it is :func:`current` until it ends."""
+
+    handle: ObjectHandle
+    surface: DrawnSurface
+    fingerprint: Fingerprint
+    settings: BakeSettings
+    job: BakeJob
+    progress: JobProgress
+    rebuild: bool
+
+    def poll(self) -> bool:
+        """Look how far it is; True when there is a result to :meth:`commit`.
+
+        Raises
+        ------
+        PalpateError
+            Out of time, or cancelled by somebody else; the session has ended.
+        """
+        if current() is not self:
+            raise CancelledError(f"{self.handle.name}: the bake was cancelled; nothing was changed")
+        try:
+            self.progress = self.job.poll()
+        except PalpateError:
+            self.end()
+            raise
+        return self.job.finished
+
+    @property
+    def can_commit(self) -> bool:
+        """Whether the object can take the result now: not while it is being edited."""
+        thing = self.handle.find()
+        return thing is None or thing.mode == "OBJECT"
+
+    def commit(self, scene: bpy.types.Scene) -> tuple[SoftBody, BakeReport]:
+        """Give the object its body. Ends the session, whatever happens.
+
+        Raises
+        ------
+        PalpateError
+            What went wrong in the bake; the object is gone or was changed meanwhile. Nothing is
+            changed and no file is left then.
+        """
+        try:
+            thing = self._unchanged_object(scene)
+            folder = body_store.folder_for_new_files()
+            body, report = self.job.result(
+                lambda found: folder / body_store.file_name(thing, found.key)
+            )
+            name = body_store.file_name(thing, body.key)
+            baked_record.record(thing, body, name, self.surface, self.fingerprint)
+            if not self.rebuild:
+                thing.palpate.baked_edge_length = self.settings.edge_length
+                thing.palpate.baked_epsilon = self.settings.epsilon
+            thing.palpate.bake_seconds = sum(report.seconds.values())
+            thing.palpate.bake_warnings = "\n".join(report.warnings)
+        finally:
+            self.end()
+        return body, report
+
+    def end(self) -> None:
+        """Stop the child process and remove its folder. Safe to repeat."""
+        global _current  # noqa: PLW0603  one bake at a time is a fact of the module
+        self.job.close()
+        if _current is self:
+            _current = None
+
+    def _unchanged_object(self, scene: bpy.types.Scene) -> bpy.types.Object:
+        thing = self.handle.find()
+        if thing is None:
+            raise PalpateError(f"{self.handle.name}: it was deleted while it was being baked")
+        if soft_object.refusal(thing):
+            raise PalpateError(f"bake: {soft_object.refusal(thing)}; then bake again")
+        drawn = drawn_surface.read(thing, scene)
+        now = drawn.fingerprint(self.fingerprint.pins, self.fingerprint.stiffness)
+        change = changed_body(self.fingerprint, now)
+        if change:
+            raise PalpateError(
+                f"{thing.name}: it was edited while it was being baked; press Make Soft again"
+            )
+        return thing
+
+
+_current: BakeSession | None = None
+
+
+def current() -> BakeSession | None:
+    """The bake that is running, if one is."""
+    return _current
+
+
+def start(thing: bpy.types.Object, scene: bpy.types.Scene, *, rebuild: bool = False) -> BakeSession:
+    """Begin to bake an object in a child process.
+
+    Parameters
+    ----------
+    rebuild : make the compliance again from the tetrahedra in the .blend, with the pins and the
+        material that are set now.
+
+    Raises
+    ------
+    PalpateError
+        Another bake is running; the object cannot be baked, with the reason and the remedy.
+    """
+    global _current  # noqa: PLW0603  see end
+    if _current is not None:
+        raise PalpateError(f"{_current.handle.name} is being baked; wait for it or cancel it")
+    if soft_object.refusal(thing):
+        raise PalpateError(soft_object.refusal(thing))
+    drawn = drawn_surface.read(thing, scene)
+    surface = drawn.surface()
+    fingerprint = drawn.fingerprint(pin_group.pin_rule(thing), stiff_region.stiff_rule(thing))
+    settings = settings_of(thing, drawn)
+    python = (sys.executable, *bpy.app.python_args)
+    if rebuild:
+        job = _rebuild_job(thing, fingerprint, settings, surface, python)
+    else:
+        job = BakeJob(surface, settings, python=python)
+    _current = BakeSession(
+        ObjectHandle.of(thing), drawn, fingerprint, settings, job, job.poll(), rebuild
+    )
+    return _current
+
+
+def run(
+    thing: bpy.types.Object, scene: bpy.types.Scene, *, rebuild: bool = False
+) -> tuple[SoftBody, BakeReport]:
+    """Bake and wait; errors as for :func:`start` and :meth:`BakeSession.commit`."""
+    session = start(thing, scene, rebuild=rebuild)
+    try:
+        while not session.poll():
+            time.sleep(SECONDS_BETWEEN_POLLS)
+    except BaseException:
+        session.end()
+        raise
+    return session.commit(scene)
+
+
+def _rebuild_job(
+    thing: bpy.types.Object,
+    now: Fingerprint,
+    settings: BakeSettings,
+    surface: Surface,
+    python: tuple[str, ...],
+) -> BakeJob:
+    """Same tetrahedra; also the same nodes pinned and stiff where the rules are, for one key."""
+    within = body_store.embedded(thing)
+    old = Fingerprint.from_text(thing.palpate.fingerprint)
+    change = changed_body(old, now)
+    if change:
+        raise PalpateError(f"{thing.name}: {change}; press Make Soft to bake it anew")
+    if old.pins == now.pins:
+        settings = replace(settings, pins=PinNodes(within.fixed))
+    if old.stiffness == now.stiffness:
+        settings = replace(settings, stiffness=within.stiffness)
+    return BakeJob(within.mesh, settings, surface, python)
+
+
+def settings_of(thing: bpy.types.Object, drawn: DrawnSurface) -> BakeSettings:
+    """What the panel asks of a bake.
+
+    Raises
+    ------
+    PalpateError
+        A vertex group that is missing or empty.
+    """
+    chosen = thing.palpate
+    return BakeSettings(
+        poisson_ratio=round(chosen.poisson_ratio, 6),
+        young_modulus=chosen.young_modulus,
+        pins=pin_group.pins(thing, drawn),
+        edge_length=chosen.edge_length,
+        epsilon=chosen.epsilon,
+        decimate_above=chosen.decimate_above,
+        time_limit=chosen.time_limit,
+        formulation=chosen.formulation.lower(),
+        form=chosen.form.lower(),
+        tolerance=chosen.compression_tolerance / 100,
+        stiffness=stiff_region.stiff_region(thing),
+    )

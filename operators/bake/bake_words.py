@@ -1,0 +1,35 @@
+"""Where a bake stands, in words of the user's language."""
+
+from __future__ import annotations
+
+import re
+
+import bpy
+
+from ...core.bake.job import JobProgress
+from ..scene.quantities import duration
+
+WAITING = "The body is ready; leave Edit Mode to receive it"
+
+
+def how_far(progress: JobProgress) -> str:
+    """Share and remaining time: ``62 %, 12 s left``; the time so far while nobody knows."""
+    share = "" if progress.share is None else f"{100 * progress.share:.0f} %, "
+    if progress.remaining is None:
+        return f"{share}{duration(progress.seconds)}"
+    return share + _say("{time} left").format(time=duration(progress.remaining))
+
+
+def step(progress: JobProgress) -> str:
+    """What it is doing: ``Filling with tetrahedra: finishing``."""
+    # The parts are fixed, what stands between and behind them are figures.
+    return re.sub(r"[^:,]+", lambda part: _translated(part.group()), progress.text)
+
+
+def _translated(part: str) -> str:
+    words = part.strip()
+    return part.replace(words, _say(words)) if words else part
+
+
+def _say(text: str) -> str:
+    return str(bpy.app.translations.pgettext_iface(text))

@@ -1,0 +1,62 @@
+"""Fit Memory: settings with which a bake that is too large for this machine fits it."""
+
+from __future__ import annotations
+
+import bpy
+
+from ...core.errors import PalpateError
+from ..object import soft_object
+from ..scene import drawn_surface
+from .bake_prediction import Prediction, pins_of, predict, settings_of, shape_size
+
+
+class PALPATE_OT_fit_memory(bpy.types.Operator):
+    bl_idname = "palpate.fit_memory"
+    bl_label = "Fit Memory"
+    bl_description = "Change the bake's settings so that the memory of this machine suffices"
+    bl_options = {"REGISTER", "UNDO"}
+
+    by: bpy.props.EnumProperty(
+        name="By",
+        description="What is changed",
+        items=[
+            ("COMPRESSED", "Compressed", "Keep the computed response compressed"),
+            ("COARSER", "Coarser", "Take the smallest edge length that fits"),
+        ],
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        reason = soft_object.refusal(context.object)
+        if reason:
+            cls.poll_message_set(reason)
+        return not reason
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        thing = context.object
+        try:
+            drawn = drawn_surface.read(thing, context.scene)
+            settings = settings_of(thing, pins_of(thing, drawn))
+            self._change(thing, predict(shape_size(drawn), settings))
+        except PalpateError as problem:
+            self.report({"ERROR"}, str(problem))
+            return {"CANCELLED"}
+        return {"FINISHED"}
+
+    def _change(self, thing: bpy.types.Object, now: Prediction) -> None:
+        if self.by == "COMPRESSED":
+            if not now.compressed_fits:
+                raise PalpateError(
+                    f"{thing.name}: compressed, too, it takes more memory than there is; use a "
+                    "larger edge length"
+                )
+            thing.palpate.form = "COMPRESSED"
+            return
+        if now.edge_length is None:
+            raise PalpateError(
+                f"{thing.name}: no edge length fits the memory there is; close other programs"
+            )
+        thing.palpate.edge_length = now.edge_length
+
+
+classes = (PALPATE_OT_fit_memory,)

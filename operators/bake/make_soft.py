@@ -1,0 +1,140 @@
+"""Make Soft: bake the selected mesh into a body that can be pressed."""
+
+from collections.abc import Callable
+from typing import ClassVar
+
+import bpy
+
+from ...core.bake.steps import BakeReport
+from ...core.body.soft_body import SoftBody
+from ...core.errors import CancelledError, PalpateError
+from ..object import soft_object
+from ..scene.viewport import redraw_views
+from ..session import press_session
+from . import bake_session, bake_words
+from .bake_session import BakeSession
+
+POLLS_PER_SECOND = 10
+
+
+class BakingOperator:
+    """What Make Soft and Rebuild Body share: a bake beside Blender, or waited for."""
+
+    rebuild = False
+    # What every bpy.types.Operator has, which this is mixed into.
+    report: Callable[[set[str], str], None]
+    poll_message_set: ClassVar[Callable[[str], None]]
+    _session: BakeSession
+    _timer: bpy.types.Timer | None = None
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if bake_session.current() is not None:
+            cls.poll_message_set("A bake is running; wait for it or cancel it")
+            return False
+        if press_session.current() is not None:
+            cls.poll_message_set("Finish pressing first: Enter keeps the shape, Escape restores it")
+            return False
+        reason = soft_object.refusal(context.object)
+        if reason:
+            cls.poll_message_set(reason)
+        return not reason
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        try:
+            body, report = bake_session.run(context.object, context.scene, rebuild=self.rebuild)
+        except PalpateError as problem:
+            self.report({"ERROR"}, str(problem))
+            return {"CANCELLED"}
+        self._tell(context.object.name, body, report)
+        return {"FINISHED"}
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        if bpy.app.background:
+            return self.execute(context)
+        try:
+            self._session = bake_session.start(context.object, context.scene, rebuild=self.rebuild)
+        except PalpateError as problem:
+            self.report({"ERROR"}, str(problem))
+            return {"CANCELLED"}
+        manager = context.window_manager
+        self._timer = manager.event_timer_add(1 / POLLS_PER_SECOND, window=context.window)
+        manager.progress_begin(0, 100)
+        manager.modal_handler_add(self)
+        self._show(context)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        try:
+            return self._follow(context, event)
+        except PalpateError as problem:
+            self._leave(context)
+            level = "INFO" if isinstance(problem, CancelledError) else "ERROR"
+            self.report({level}, str(problem))
+            return {"CANCELLED"}
+        except BaseException:
+            # A fault of ours must not leave a child process, a timer and a status line behind.
+            self.cancel(context)
+            raise
+
+    def _follow(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        if event.type == "ESC" and event.value == "PRESS":
+            self._session.end()
+        if event.type not in {"TIMER", "ESC"}:
+            return {"PASS_THROUGH"}
+        finished = self._session.poll()
+        self._show(context, waiting=finished)
+        if not finished or not self._session.can_commit:
+            return {"PASS_THROUGH"}
+        body, report = self._session.commit(context.scene)
+        self._leave(context)
+        self._tell(self._session.handle.name, body, report)
+        return {"FINISHED"}
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        """Blender ends the operator: another file, or exit."""
+        self._session.end()
+        self._leave(context)
+
+    def _show(self, context: bpy.types.Context, *, waiting: bool = False) -> None:
+        progress = self._session.progress
+        say = bpy.app.translations.pgettext_iface
+        text = f"{bake_words.step(progress)}, {bake_words.how_far(progress)}"
+        if waiting:
+            text = say(bake_words.WAITING)
+        context.workspace.status_text_set(
+            f"Palpate: {self._session.handle.name}: {text}     [Esc] {say('Cancel')}"
+        )
+        context.window_manager.progress_update(100 * (progress.share or 0.0))
+        redraw_views()
+
+    def _leave(self, context: bpy.types.Context) -> None:
+        if self._timer is not None:
+            context.window_manager.event_timer_remove(self._timer)
+            self._timer = None
+        context.window_manager.progress_end()
+        # There is none while Blender replaces its windows for another file.
+        if context.workspace is not None:
+            context.workspace.status_text_set(None)
+        redraw_views()
+
+    def _tell(self, name: str, body: SoftBody, report: BakeReport) -> None:
+        for warning in report.warnings:
+            self.report({"WARNING"}, warning)
+        self.report(
+            {"INFO"},
+            f"{name} is soft: {len(body.mesh.nodes)} nodes, {sum(report.seconds.values()):.1f} s",
+        )
+
+
+class PALPATE_OT_make_soft(BakingOperator, bpy.types.Operator):
+    bl_idname = "palpate.make_soft"
+    bl_label = "Make Soft"
+    bl_description = (
+        "Fill the mesh with tetrahedra and compute how it gives way; "
+        "the mesh itself stays as it is. Escape cancels"
+    )
+    bl_options = {"UNDO"}
+
+
+classes = (PALPATE_OT_make_soft,)

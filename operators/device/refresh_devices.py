@@ -1,0 +1,32 @@
+"""Refresh Devices: look for serial ports again."""
+
+import bpy
+
+from ...core.errors import PalpateError
+from ...core.servo.ports import list_ports
+
+_ports: list[tuple[str, str]] = []
+
+
+def known_ports() -> list[tuple[str, str]]:
+    """Ports found last, as (path, description)."""
+    return list(_ports)
+
+
+class PALPATE_OT_refresh_devices(bpy.types.Operator):
+    bl_idname = "palpate.refresh_devices"
+    bl_label = "Refresh Devices"
+    bl_description = "Look for serial ports again"
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        try:
+            found = list_ports()
+        except PalpateError as problem:
+            self.report({"ERROR"}, str(problem))
+            return {"CANCELLED"}
+        _ports[:] = [(port.path, port.description) for port in found]
+        self.report({"INFO"}, f"{len(_ports)} serial ports found")
+        return {"FINISHED"}
+
+
+classes = (PALPATE_OT_refresh_devices,)

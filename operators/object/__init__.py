@@ -1,0 +1,1 @@
+"""What an object keeps of its softness."""

@@ -1,0 +1,39 @@
+"""What an object knows of its body without opening the body's file."""
+
+from __future__ import annotations
+
+import bpy
+
+from ...core.body.soft_body import SoftBody
+from ...core.compliance.compression.compressed_compliance import CompressedCompliance
+from ..pins import pin_group
+from ..scene.drawn_surface import DrawnSurface
+from ..scene.fingerprint import Fingerprint
+from . import body_store
+
+
+def record(
+    thing: bpy.types.Object,
+    body: SoftBody,
+    file_name: str,
+    surface: DrawnSurface,
+    fingerprint: Fingerprint,
+) -> None:
+    """Make ``body``, stored under ``file_name``, the object's: tetrahedra, key and figures."""
+    baked, compliance = thing.palpate, body.compliance
+    body_store.embed(thing, body)
+    baked.body_key = body.key
+    baked.body_file = file_name
+    baked.fingerprint = fingerprint.to_text()
+    baked.baked_poisson_ratio = body.poisson_ratio
+    baked.baked_formulation = body.formulation
+    baked.baked_form = compliance.form
+    if isinstance(compliance, CompressedCompliance):
+        baked.baked_tolerance = 100 * compliance.tolerance
+        baked.column_error = 100 * float(compliance.column_error)
+    baked.node_count = len(body.mesh.nodes)
+    baked.tet_count = len(body.mesh.tets)
+    baked.free_surface_count = compliance.node_count
+    baked.compliance_megabytes = compliance.nbytes / 1e6
+    if baked.pin_mode == "BELOW":
+        pin_group.mark_below(thing, surface, baked.pin_fraction)

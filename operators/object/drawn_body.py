@@ -1,0 +1,151 @@
+"""A body and the mesh that hangs on it: from a contact to coordinates that can be drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.body.drawn_map import DrawnMap
+from ...core.body.soft_body import SoftBody
+from ...core.contact.tool.tool_dent import PressingTool, kept_out
+from ...core.errors import PalpateError
+from ..scene import drawn_surface, ray
+from ..scene.body_frame import BodyFrame
+from ..scene.drawn_surface import DrawnSurface
+from . import body_store, kept_body, pin_change, soft_object
+from .soft_object import BodyStatus, Fit
+
+Array = NDArray[np.float64]
+
+# Two stretches that differ by less than this, relatively, are one: float32 matrices are not exact.
+SAME_STRETCH = 1e-5
+
+# A missing body of this many free surface nodes takes a few seconds; a larger one wants progress.
+MOST_NODES_AT_ONCE = 1500
+
+
+@dataclass(frozen=True, eq=False)
+class DrawnBody:
+    """Attributes
+    ----------
+    body : the body, metres.
+    hung : the map W to the drawn vertices.
+    rest : flat float32 (3 p,), the drawn vertices at rest, local units.
+    frame : between local units, metres and the world.
+    file : where the body came from, beside which its tables are kept; None if that is nowhere.
+    """
+
+    body: SoftBody
+    hung: DrawnMap
+    rest: NDArray[np.float32]
+    frame: BodyFrame
+    file: Path | None = None
+
+    @property
+    def size(self) -> float:
+        """Diagonal of the body's bounding box, metres."""
+        return float(np.linalg.norm(np.ptp(self.body.mesh.nodes, axis=0)))
+
+    @property
+    def surface_nodes(self) -> Array:
+        """The surface nodes at rest, (s, 3), metres."""
+        mesh = self.body.mesh
+        nodes: Array = mesh.nodes[mesh.surface_nodes]
+        return nodes
+
+    @cached_property
+    def node_normals(self) -> Array:
+        """Outward unit normals (N, 3) of all nodes at rest; zero inside."""
+        mesh = self.body.mesh
+        return ray.node_normals(mesh.nodes, mesh.surface_triangles)
+
+    def nearest(self, place: Array) -> tuple[Array, Array]:
+        """The point of the rest surface nearest to ``place`` (3,), and the outward unit normal
+        there, (3,) each.
+        """
+        mesh, found = self.body.mesh, self.body.closest_points.query(place)
+        corners, alpha = mesh.surface_triangles[found.triangle[0]], found.alpha[0]
+        normal = alpha @ self.node_normals[corners]
+        return alpha @ mesh.nodes[corners], normal / np.linalg.norm(normal)
+
+    @cached_property
+    def rest_places(self) -> Array:
+        """The drawn vertices at rest, (p, 3), metres, body coordinates."""
+        return self.frame.body_from_local(self.rest.reshape(-1, 3).astype(np.float64))
+
+    def local_coordinates(
+        self, displacements: Array, tools: Sequence[PressingTool] = ()
+    ) -> NDArray[np.float32]:
+        """Flat coordinates (3 p,) of the drawn vertices, from the free surface nodes' (n, 3), none
+        of them within the tools.
+        """
+        shift = self.hung.displacements(displacements)
+        if tools:
+            places = self.rest_places + shift
+            for pressing in tools:
+                places = kept_out(places, self.hung.normals, pressing)
+            shift = places - self.rest_places
+        moved = self.frame.local_from_body(shift)
+        coordinates: NDArray[np.float32] = (self.rest + moved.ravel()).astype(np.float32)
+        return coordinates
+
+    def node_displacements(self, displacements: Array) -> Array:
+        """Displacements of all nodes (N, 3), zero where pinned or inside."""
+        everywhere = np.zeros_like(self.body.mesh.nodes)
+        everywhere[self.body.compliance.free_surface] = displacements
+        return everywhere
+
+    def moved_to(self, frame: BodyFrame) -> DrawnBody | None:
+        """The same body where its object is now; None if the object was scaled or sheared."""
+        old, new = self.frame.metric, frame.metric
+        if np.abs(new - old).max() > SAME_STRETCH * np.abs(old).max():
+            return None
+        # The stretch stays the one that was baked, so that nothing creeps while the object moves.
+        return replace(self, frame=replace(frame, stretch=self.frame.stretch))
+
+
+def restores_quickly(thing: bpy.types.Object) -> bool:
+    """Whether somebody who wants to press can wait for the body, without progress or Escape."""
+    return bool(bpy.app.background or thing.palpate.free_surface_count <= MOST_NODES_AT_ONCE)
+
+
+def open_body(thing: bpy.types.Object, scene: bpy.types.Scene) -> DrawnBody:
+    """Load an object's body, if it fits; a missing one of usual size is computed again at once,
+    and more pins are taken over where that takes no bake.
+
+    Raises
+    ------
+    PalpateError
+        The object cannot be pressed, was never baked, or has changed since, with the remedy.
+    """
+    refusal = soft_object.refusal(thing)
+    if refusal:
+        raise PalpateError(refusal)
+    surface = drawn_surface.read(thing, scene)
+    status = soft_object.with_file(thing, soft_object.mesh_status(thing, surface))
+    soft_object.refuse_changed(thing, status)
+    body = _body(thing, surface, status)
+    return DrawnBody(
+        body=body,
+        hung=DrawnMap.hang(surface.body, body),
+        rest=drawn_surface.rest_coordinates(thing.data),
+        frame=surface.frame,
+        file=body_store.locate(thing),
+    )
+
+
+def _body(thing: bpy.types.Object, surface: DrawnSurface, status: BodyStatus) -> SoftBody:
+    """The object's body, held where its pins are now if that needs no bake."""
+    if status.fit is Fit.FILE_MISSING and restores_quickly(thing):
+        body_store.restore(thing)
+        status = replace(status, fit=Fit.READY, pins=pin_change.look(thing, surface))
+    # Other settings wait for Rebuild Body, and the pins with them.
+    if status.fit is Fit.READY and status.pins.quick and not status.changed:
+        return pin_change.take_over(thing, surface)
+    return kept_body.load(thing)

@@ -1,0 +1,166 @@
+"""What other pins ask for: nothing, a body that is there already, a second's work, or a bake."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from functools import lru_cache
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.bake.bake_cost import MeshSize
+from ...core.bake.repin import pin_more, pin_more_seconds, pins_change
+from ...core.bake.settings import BakeSettings
+from ...core.body import body_file
+from ...core.body.body_key import body_key
+from ...core.body.soft_body import SoftBody
+from ...core.errors import PalpateError
+from ...core.mesh.closest_point import SurfacePoints
+from ...core.mesh.surface import Surface
+from ...core.mesh.tet_mesh import TetMesh
+from ...core.stiffness.pins import pinned_nodes, places_on
+from ..pins import pin_group
+from ..scene.drawn_surface import DrawnSurface
+from ..scene.fingerprint import Fingerprint
+from ..scene.object_handle import ObjectHandle
+from . import baked_record, body_store
+from .body_store import EmbeddedBody
+
+# A downdate that takes longer is left to Rebuild Body, which has progress and Escape.
+LONGEST_SECONDS = 5.0
+# A body file is read, written and read again at about this many bytes a second.
+BYTES_PER_SECOND = 2e8
+
+
+class PinFit(Enum):
+    """How the pins that are set now stand to those of the body."""
+
+    SAME = "same"
+    KNOWN = "known"  # the body with these pins lies in its file
+    MORE = "more"  # computed from the body in seconds
+    LESS = "less"  # some were let go: needs a bake
+    OTHER = "other"  # elsewhere, or too many more for a quick answer: needs a bake
+    UNUSABLE = "unusable"  # they pin nothing, or everything
+
+
+@dataclass(frozen=True, eq=False)
+class PinChange:
+    """A look at the pins: ``seconds`` is what taking them over takes, ``reason`` why it cannot."""
+
+    fit: PinFit
+    seconds: float = 0.0
+    reason: str = ""
+
+    @property
+    def quick(self) -> bool:
+        """Whether they can be taken over now, without a bake."""
+        return self.fit in {PinFit.KNOWN, PinFit.MORE}
+
+
+SAME = PinChange(PinFit.SAME)
+
+
+def look(thing: bpy.types.Object, drawn: DrawnSurface) -> PinChange:
+    """Compare the pins that are set with those of the body. Reads tetrahedra, not the body file.
+
+    Only meant for an object whose mesh still fits its body.
+    """
+    if Fingerprint.from_text(thing.palpate.fingerprint).pins == pin_group.pin_rule(thing):
+        return SAME
+    try:
+        within = _placed(drawn, ObjectHandle.of(thing), thing.palpate.body_key)
+        new = _nodes(thing, drawn, within)
+    except PalpateError as problem:
+        return PinChange(PinFit.UNUSABLE, reason=str(problem))
+    old, surface = within.body.fixed, within.body.mesh.surface_nodes
+    change = pins_change(within.body.mesh, old, new)
+    if change == "same":
+        return SAME
+    if np.isin(surface, new).all():
+        return PinChange(
+            PinFit.UNUSABLE, reason="These pins would hold the whole surface; pin less"
+        )
+    if body_store.locate_key(_key(thing, within.body, new)) is not None:
+        return PinChange(PinFit.KNOWN)
+    if change == "bake":
+        only_less = not np.setdiff1d(new, old).size
+        return PinChange(PinFit.LESS if only_less else PinFit.OTHER)
+    seconds = _seconds(thing, within.body.mesh, len(new) - len(old))
+    quick = seconds <= LONGEST_SECONDS and body_store.locate(thing) is not None
+    return PinChange(PinFit.MORE if quick else PinFit.OTHER, seconds)
+
+
+def take_over(thing: bpy.types.Object, drawn: DrawnSurface) -> SoftBody:
+    """Hold the body where the pins are now: from its file, or computed and stored beside it.
+
+    Raises
+    ------
+    PalpateError
+        The pins need a bake, cannot be used, or are those of the body already; the body's file is
+        missing or damaged. Nothing is changed then.
+    """
+    change = look(thing, drawn)
+    if change.fit is PinFit.SAME:
+        raise PalpateError(f"{thing.name}: it is pinned like this already; press Press")
+    if change.fit is PinFit.UNUSABLE:
+        raise PalpateError(change.reason)
+    if change.fit in {PinFit.LESS, PinFit.OTHER}:
+        raise PalpateError(f"{thing.name}: these pins need a bake; press Rebuild Body")
+    within = _placed(drawn, ObjectHandle.of(thing), thing.palpate.body_key)
+    new = _nodes(thing, drawn, within)
+    path = body_store.locate_key(_key(thing, within.body, new))
+    if path is not None:
+        body = body_store.load_file(path, _key(thing, within.body, new))
+    else:
+        body = pin_more(body_store.load(thing), np.setdiff1d(new, within.body.fixed))
+        path = body_store.folder_for_new_files() / body_store.file_name(thing, body.key)
+        body_file.save(body, path)
+    # What is stiff is not taken over here, so the record of it stays.
+    old = Fingerprint.from_text(thing.palpate.fingerprint)
+    fingerprint = drawn.fingerprint(pin_group.pin_rule(thing), old.stiffness)
+    baked_record.record(thing, body, path.name, drawn, fingerprint)
+    return body
+
+
+@dataclass(frozen=True, eq=False)
+class _PlacedBody:
+    """An embedded body, and where its surface nodes lie on the drawn surface."""
+
+    body: EmbeddedBody
+    surface: Surface
+    places: SurfacePoints
+
+
+# A slider asks many times for one object; the search takes up to a second for large meshes.
+@lru_cache(maxsize=1)
+def _placed(drawn: DrawnSurface, handle: ObjectHandle, key: str) -> _PlacedBody:
+    thing = handle.find()
+    body, surface = body_store.embedded(thing), drawn.surface()
+    return _PlacedBody(body, surface, places_on(surface, body.mesh))
+
+
+def _nodes(thing: bpy.types.Object, drawn: DrawnSurface, within: _PlacedBody) -> NDArray[np.int64]:
+    return pinned_nodes(
+        pin_group.pins(thing, drawn), within.body.mesh, within.surface, within.places
+    )
+
+
+def _key(thing: bpy.types.Object, body: EmbeddedBody, fixed: NDArray[np.int64]) -> str:
+    baked = thing.palpate
+    ratio = round(baked.baked_poisson_ratio, 6)
+    return body_key(body.mesh, fixed, ratio, baked.baked_formulation, body.young_scale)
+
+
+def _seconds(thing: bpy.types.Object, mesh: TetMesh, added: int) -> float:
+    """About how long :func:`take_over` computes and stores."""
+    baked = thing.palpate
+    settings = BakeSettings(
+        poisson_ratio=round(baked.baked_poisson_ratio, 6),
+        formulation=baked.baked_formulation,
+        form=baked.baked_form,
+        tolerance=baked.baked_tolerance / 100,
+    )
+    computing = pin_more_seconds(MeshSize.of(mesh), settings, baked.free_surface_count, added)
+    return computing + 1e6 * baked.compliance_megabytes / BYTES_PER_SECOND

@@ -1,0 +1,154 @@
+"""What an object allows now, in words: may it be made soft, does its body still fit it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from enum import Enum
+
+import bpy
+
+from ...core.errors import PalpateError
+from ...core.stiffness.formulation import formulation_for
+from ..pins import pin_group, stiff_region
+from ..scene import drawn_surface, fingerprint
+from ..scene.drawn_surface import DrawnSurface
+from ..scene.fingerprint import Fingerprint
+from . import body_store, pin_change
+from .pin_change import PinChange
+
+
+class Fit(Enum):
+    """How an object stands to its body."""
+
+    NEVER_BAKED = "never baked"
+    READY = "ready"
+    CHANGED = "changed"  # another bake is needed
+    FILE_MISSING = "file missing"  # can be rebuilt
+    FILE_DAMAGED = "file damaged"  # found so when it was to be pressed; can be rebuilt
+
+
+@dataclass(frozen=True)
+class BodyStatus:
+    """``text`` says why; ``changed`` names settings that are not in the body yet, other than pins,
+    which may not need a bake: ``pins``; ``meshing`` names those that ask for other tetrahedra.
+    """
+
+    fit: Fit
+    text: str = ""
+    changed: tuple[str, ...] = ()
+    pins: PinChange = pin_change.SAME
+    meshing: tuple[str, ...] = ()
+
+
+def refusal(thing: bpy.types.Object | None) -> str:
+    """Why this object cannot be made soft or pressed at all; empty if it can."""
+    if thing is None:
+        return "Select a mesh object"
+    if thing.type != "MESH":
+        return f"{thing.name} is not a mesh; select a mesh object"
+    if thing.library or thing.override_library or thing.data.library or thing.data.override_library:
+        return f"{thing.name} is linked from another file; make it local (Object > Relations)"
+    others = thing.data.users - thing.data.use_fake_user - 1
+    if others > 0:
+        return (
+            f"{thing.name} shares its mesh with {others} more; "
+            "Object > Relations > Make Single User"
+        )
+    if thing.mode != "OBJECT":
+        return f"Leave {thing.mode.replace('_', ' ').title()} Mode first"
+    keys = thing.data.shape_keys
+    if keys and not keys.use_relative:
+        return f"{thing.name} has absolute shape keys; tick Relative in its shape keys"
+    return ""
+
+
+def body_status(thing: bpy.types.Object, scene: bpy.types.Scene) -> BodyStatus:
+    """Whether the object's body is there and still fits it. Reads the mesh, not the body file.
+
+    Raises
+    ------
+    PalpateError
+        A transform that flattens the object.
+    """
+    return with_file(thing, mesh_status(thing, drawn_surface.read(thing, scene)))
+
+
+def with_file(thing: bpy.types.Object, status: BodyStatus) -> BodyStatus:
+    """A :func:`mesh_status` together with what is known of the body file; quick."""
+    if status.fit is not Fit.READY:
+        return status
+    status = replace(status, meshing=_other_meshing(thing.palpate))
+    path = body_store.locate(thing)
+    if path is None:
+        return replace(status, fit=Fit.FILE_MISSING, text="the body file is missing")
+    if body_store.is_known_damaged(path):
+        return replace(status, fit=Fit.FILE_DAMAGED, text="the body file is damaged")
+    return status
+
+
+def mesh_status(thing: bpy.types.Object, drawn: DrawnSurface) -> BodyStatus:
+    """Whether the object was baked and its mesh, as read now, is still the same; takes its time."""
+    baked = thing.palpate
+    if not baked.body_key:
+        return BodyStatus(Fit.NEVER_BAKED)
+    old = Fingerprint.from_text(baked.fingerprint)
+    new = drawn.fingerprint(pin_group.pin_rule(thing), stiff_region.stiff_rule(thing))
+    change = fingerprint.changed_body(old, new)
+    if change:
+        return BodyStatus(Fit.CHANGED, change)
+    return BodyStatus(
+        Fit.READY, changed=_unbaked_settings(thing, old, new), pins=pin_change.look(thing, drawn)
+    )
+
+
+def refuse_changed(thing: bpy.types.Object, status: BodyStatus) -> None:
+    """Refuse an object that is not what was baked any more.
+
+    Raises
+    ------
+    PalpateError
+        What changed, with the remedy.
+    """
+    if status.fit is Fit.CHANGED:
+        raise PalpateError(f"{thing.name}: {status.text}; press Make Soft to bake it again")
+
+
+def formulation_now(thing: bpy.types.Object) -> str:
+    """The formulation that a bake would take, with Automatic resolved."""
+    settings = thing.palpate
+    return formulation_for(settings.formulation.lower(), round(settings.poisson_ratio, 6))
+
+
+def _unbaked_settings(
+    thing: bpy.types.Object, old: Fingerprint, new: Fingerprint
+) -> tuple[str, ...]:
+    settings = thing.palpate
+    ratio = settings.poisson_ratio - settings.baked_poisson_ratio
+    changes = (
+        ("Poisson's Ratio", abs(ratio) > 1e-6),
+        ("Formulation", formulation_now(thing) != settings.baked_formulation),
+        ("Stiff Region", old.stiffness != new.stiffness),
+        ("Compliance", _other_form(settings)),
+    )
+    return tuple(name for name, changed in changes if changed)
+
+
+def _other_meshing(settings: bpy.types.PropertyGroup) -> tuple[str, ...]:
+    baked = (
+        ("Edge Length", settings.edge_length, settings.baked_edge_length),
+        ("Tolerance", settings.epsilon, settings.baked_epsilon),
+    )
+    return tuple(
+        name for name, now, then in baked if then and not math.isclose(now, then, rel_tol=1e-5)
+    )
+
+
+def _other_form(settings: bpy.types.PropertyGroup) -> bool:
+    """Whether a form is asked for that the body does not have. Automatic leaves it as it is."""
+    if settings.form == "AUTO":
+        return False
+    if settings.form.lower() != settings.baked_form:
+        return True
+    finer = settings.compression_tolerance < settings.baked_tolerance * (1 - 1e-5)
+    return settings.form == "COMPRESSED" and finer

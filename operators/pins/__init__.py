@@ -1,0 +1,1 @@
+"""Pins and stiff regions as vertex groups."""

@@ -1,0 +1,56 @@
+"""Pin Below Height: put all vertices below a height into the group "Pinned"."""
+
+import bpy
+
+from ...core.errors import PalpateError
+from ..object import soft_object
+from ..scene import drawn_surface
+from . import pin_group
+
+
+class PALPATE_OT_pin_below(bpy.types.Operator):
+    bl_idname = "palpate.pin_below"
+    bl_label = "Make Pin Group"
+    bl_description = (
+        "Put all vertices below this share of the object's height, as it stands now, "
+        "into the vertex group Pinned"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+
+    fraction: bpy.props.FloatProperty(
+        name="Height",
+        description="Share of the object's height in world Z below which vertices are pinned",
+        default=0.1,
+        min=0.0,
+        max=1.0,
+        subtype="FACTOR",
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        reason = soft_object.refusal(context.object)
+        if not reason and not context.object.data.polygons:
+            reason = f"{context.object.name} has no faces"
+        if reason:
+            cls.poll_message_set(reason)
+        return not reason
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        self.fraction = context.object.palpate.pin_fraction
+        return self.execute(context)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        thing = context.object
+        try:
+            count = pin_group.mark_below(
+                thing, drawn_surface.read(thing, context.scene), self.fraction
+            )
+        except PalpateError as problem:
+            self.report({"ERROR"}, str(problem))
+            return {"CANCELLED"}
+        thing.palpate.pin_group = pin_group.GROUP_NAME
+        self.report({"INFO"}, f"{count} vertices pinned")
+        return {"FINISHED"}
+
+
+classes = (PALPATE_OT_pin_below,)

@@ -1,0 +1,78 @@
+"""What is pinned: a vertex group that the user painted, or all below a height, which makes one."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.errors import PalpateError
+from ...core.stiffness.pins import PinWeights
+from ..scene.drawn_surface import DrawnSurface
+from .group_weights import group_digest, group_weights
+
+GROUP_NAME = "Pinned"
+# Keeps a level bottom whole in spite of rounding, as a share of the height.
+LEVEL = 1e-5
+
+
+def pin_rule(thing: bpy.types.Object) -> str:
+    """What the object's pins are now, as text that changes when they do."""
+    settings = thing.palpate
+    if settings.pin_mode == "BELOW":
+        return f"below {settings.pin_fraction:.4f}"
+    group = thing.vertex_groups.get(settings.pin_group)
+    if group is None:
+        return "no group"
+    return f"group {group_digest(thing, group)}"
+
+
+def pins(thing: bpy.types.Object, surface: DrawnSurface) -> PinWeights:
+    """The object's pins for a bake, one weight per vertex; pinned where it reaches one half.
+
+    A height is handed over as weights that fall linearly with it: they are then exact anywhere
+    between the vertices, however coarse the mesh.
+
+    Raises
+    ------
+    PalpateError
+        The vertex group is missing or empty.
+    """
+    settings = thing.palpate
+    if settings.pin_mode == "BELOW":
+        height = _relative_height(surface)
+        return PinWeights(0.5 + settings.pin_fraction + LEVEL - height)
+    group = thing.vertex_groups.get(settings.pin_group)
+    if group is None:
+        raise PalpateError(
+            f"{thing.name}: it has no vertex group '{settings.pin_group}' to pin; choose one under "
+            "Pins, or pin below a height"
+        )
+    weights = group_weights(thing, group)
+    if not (weights >= 0.5).any():
+        raise PalpateError(
+            f"{thing.name}: no vertex has a weight of 0.5 or more in the group '{group.name}'; "
+            "assign the vertices that shall not move"
+        )
+    return PinWeights(weights)
+
+
+def mark_below(thing: bpy.types.Object, surface: DrawnSurface, fraction: float) -> int:
+    """Make or renew the group of all vertices below ``fraction`` of the height; returns how many.
+
+    Up is the world's Z axis, as the object stands now.
+    """
+    group = thing.vertex_groups.get(GROUP_NAME) or thing.vertex_groups.new(name=GROUP_NAME)
+    pinned = np.flatnonzero(_relative_height(surface) <= fraction + LEVEL)
+    group.remove(range(len(surface.local)))
+    group.add(pinned.tolist(), 1.0, "REPLACE")
+    return len(pinned)
+
+
+def _relative_height(surface: DrawnSurface) -> NDArray[np.float64]:
+    up = surface.frame.turn_to_body(np.array([0.0, 0.0, 1.0]))
+    height = surface.body @ up
+    used = height[surface.triangles.ravel()] if surface.triangles.size else height
+    low, span = used.min(), np.ptp(used)
+    relative: NDArray[np.float64] = (height - low) / (span or 1.0)
+    return relative

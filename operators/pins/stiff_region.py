@@ -1,0 +1,46 @@
+"""Where the object is stiffer or softer than its material: a vertex group and a factor."""
+
+from __future__ import annotations
+
+import bpy
+
+from ...core.errors import PalpateError
+from ...core.stiffness.regions import StiffRegion
+from .group_weights import group_digest, group_weights
+
+
+def stiff_rule(thing: bpy.types.Object) -> str:
+    """What the object's stiff region is now, as text that changes when it does; empty for none."""
+    settings = thing.palpate
+    if not settings.stiff_group:
+        return ""
+    group = thing.vertex_groups.get(settings.stiff_group)
+    if group is None:
+        return "no group"
+    return f"{settings.stiff_factor:.6g} times in {group_digest(thing, group)}"
+
+
+def stiff_region(thing: bpy.types.Object) -> StiffRegion | None:
+    """The object's stiff region for a bake, one weight per vertex; None where none is chosen.
+
+    Raises
+    ------
+    PalpateError
+        The vertex group is missing, or nothing is in it.
+    """
+    settings = thing.palpate
+    if not settings.stiff_group:
+        return None
+    group = thing.vertex_groups.get(settings.stiff_group)
+    if group is None:
+        raise PalpateError(
+            f"{thing.name}: it has no vertex group '{settings.stiff_group}' to make stiff; choose "
+            "one under Stiff Region, or clear the field"
+        )
+    weights = group_weights(thing, group)
+    if not weights.any():
+        raise PalpateError(
+            f"{thing.name}: no vertex has a weight in the group '{group.name}', so nothing would "
+            "be stiff; assign the vertices of the stiff part, or clear the field"
+        )
+    return StiffRegion(weights, settings.stiff_factor)

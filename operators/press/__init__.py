@@ -1,0 +1,1 @@
+"""The press and its operators."""

@@ -1,0 +1,213 @@
+"""What Press and Pinch share while they run: events of the window in, a press that goes on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import bpy
+
+from ...core.errors import PalpateError
+from ..object import soft_object
+from ..scene import viewport
+from ..scene.viewport import Viewport, redraw_views
+from ..session import press_session
+from ..session.pointer_hand import PointerHand
+from ..session.press_session import PressSession
+from ..session.press_state import Cancel, Keep, Phase, Source
+
+FRAMES_PER_SECOND = 60
+
+NAVIGATION = {
+    "MIDDLEMOUSE",
+    "WHEELUPMOUSE",
+    "WHEELDOWNMOUSE",
+    "WHEELINMOUSE",
+    "WHEELOUTMOUSE",
+    "TRACKPADPAN",
+    "TRACKPADZOOM",
+    "MOUSEROTATE",
+    "MOUSESMARTZOOM",
+    "HOME",
+    "ACCENT_GRAVE",
+    "N",
+    *(f"NUMPAD_{key}" for key in (*range(10), "PERIOD", "PLUS", "MINUS", "SLASH")),
+}
+FILE_KEYS = {"S", "O", "Q"}
+STATUS = {
+    Phase.READY: "Drag on the surface: Press     [Enter] Keep     [Esc] Restore",
+    Phase.DRAGGING: "Drag: In and along     [Wheel] Deeper",
+    Phase.HOLDING: "Drag on the surface: Press again     [Enter] Keep     [Esc] Restore",
+    Phase.FEELING: "The device presses     [Space] Force Off/On     [Enter] Keep     [Esc] Restore",
+    Phase.LOST: "The device is away     [Space] Force Off/On     [Esc] Restore",
+}
+PINCH_STATUS = {
+    Phase.READY: "Drag a handle: Pinch     [Enter] Keep     [Esc] Restore",
+    Phase.HOLDING: "Drag a handle: Pinch     [Enter] Keep     [Esc] Restore",
+}
+EMPTY_STATUS = {
+    Phase.FEELING: "Move the Empty or play the animation     [Enter] Keep     [Esc] Restore",
+}
+
+
+class ModalPress:
+    """The running side of an operator that presses; mixed into Press and Pinch."""
+
+    _session: PressSession
+    _hand: PointerHand
+    _timer: bpy.types.Timer | None = None
+    _status = ""
+    if TYPE_CHECKING:
+        # Blender's own operators have it.
+        report: Callable[[set[str], str], None]
+
+    def start(self, context: bpy.types.Context, source: Source, *, pinch: bool) -> set[str]:
+        """Begin to press the active object and have Blender send events."""
+        thing = context.object
+        if not thing.visible_get():
+            self.report(
+                {"ERROR"}, f"{thing.name} is hidden; show it (Object > Show/Hide) to press it"
+            )
+            return {"CANCELLED"}
+        # A missing body file is computed again first, which may take a few seconds.
+        context.window.cursor_modal_set("WAIT")
+        try:
+            self._session = press_session.begin(thing, context.scene, source, pinch=pinch)
+            self._hand = PointerHand(self._session, (0, 1) if pinch else (0,))
+            self._session.hand = self._hand
+            if pinch:
+                self._hand.place_on_both_sides(context.space_data.region_3d)
+        except PalpateError as problem:
+            press_session.give_way("")
+            self.report({"ERROR"}, str(problem))
+            redraw_views()
+            return {"CANCELLED"}
+        finally:
+            context.window.cursor_modal_restore()
+        manager = context.window_manager
+        self._timer = manager.event_timer_add(1 / FRAMES_PER_SECOND, window=context.window)
+        manager.modal_handler_add(self)
+        self._show(context)
+        redraw_views()
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        try:
+            passed = self._handle(context, event)
+        except PalpateError as problem:
+            press_session.give_way("")
+            self._leave(context)
+            self.report({"ERROR"}, str(problem))
+            return {"CANCELLED"}
+        except BaseException:
+            # A fault of ours must not leave a servo running and a live key in the mesh.
+            press_session.give_way("Pressing has ended because of an error")
+            self._leave(context)
+            raise
+        for said in self._session.said:
+            self.report({"WARNING" if said.warning else "INFO"}, said.text)
+        self._session.said.clear()
+        if self._session.state.phase is not Phase.ENDED:
+            self._show(context)
+            return {"PASS_THROUGH"} if passed else {"RUNNING_MODAL"}
+        self._leave(context)
+        if not self._session.kept_name:
+            return {"CANCELLED"}
+        self.report({"INFO"}, f"Kept as shape key '{self._session.kept_name}'")
+        return {"FINISHED"}
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        """Blender ends the operator: another file, unregister, or exit."""
+        press_session.give_way("")
+        self._leave(context)
+
+    def _handle(self, context: bpy.types.Context, event: bpy.types.Event) -> bool:
+        """Act on an event; True if Blender shall have it too."""
+        session = self._session
+        if event.type == "TIMER":
+            if session.tick():
+                redraw_views()
+            return True
+        # First of all, wherever the pointer is.
+        if _strikes_force_key(event) and session.has_device:
+            session.switch_force()
+            return False
+        if _is_blenders(event) or viewport.over_file_browser(context.window, event):
+            return True
+        here = viewport.under_pointer(context.window, event.mouse_x, event.mouse_y)
+        empties = session.state.source is Source.EMPTY
+        dented = session.displacements is not None
+        # Its right button opens menus as always while an Empty is moved by hand.
+        last = _ending(event, over_view=here is not None and not empties, dented=dented)
+        if last is not None:
+            session.post(last)
+        elif session.state.phase is Phase.DRAGGING:
+            self._hand.follow(event)
+        elif here is None or empties or self._is_navigation(event, here):
+            return True
+        elif _strikes_button(event) and session.state.source is Source.POINTER:
+            self._hand.press(here, event)
+        return False
+
+    def _is_navigation(self, event: bpy.types.Event, here: Viewport) -> bool:
+        if event.type in NAVIGATION or event.type.startswith("NDOF"):
+            return True
+        if event.type != "LEFTMOUSE":
+            return event.type in {"MOUSEMOVE", "INBETWEEN_MOUSEMOVE"}
+        return event.alt or here.over_gizmos()
+
+    def _show(self, context: bpy.types.Context) -> None:
+        state = self._session.state
+        words = STATUS
+        if self._session.pinches:
+            words = STATUS | PINCH_STATUS
+        elif state.source is Source.EMPTY:
+            words = STATUS | EMPTY_STATUS
+        status = f"Palpate: {words.get(state.phase, '')}"
+        if status != self._status:
+            self._status = status
+            context.workspace.status_text_set(status)
+
+    def _leave(self, context: bpy.types.Context) -> None:
+        if self._timer is not None:
+            context.window_manager.event_timer_remove(self._timer)
+            self._timer = None
+        if context.workspace is not None:
+            context.workspace.status_text_set(None)
+        redraw_views()
+
+
+def refusal(context: bpy.types.Context) -> str:
+    """Why nothing can be pressed now; empty if it can."""
+    thing = context.object
+    reason = soft_object.refusal(thing)
+    if not reason and press_session.current() is not None:
+        reason = "A press is going on; Enter keeps the shape, Escape restores it"
+    if not reason and not thing.palpate.body_key:
+        reason = f"{thing.name} is not soft yet; press Make Soft first"
+    return reason
+
+
+def _is_blenders(event: bpy.types.Event) -> bool:
+    """What Blender tells itself (smooth view, playback, banners), and saving, opening, quitting."""
+    internal = event.type.startswith("TIMER") or event.type in {"NONE", "WINDOW_DEACTIVATE"}
+    return internal or (event.type in FILE_KEYS and (event.ctrl or event.oskey))
+
+
+def _strikes_force_key(event: bpy.types.Event) -> bool:
+    """A first strike; a key that is held goes on striking."""
+    return event.type == "SPACE" and event.value == "PRESS" and not event.is_repeat
+
+
+def _strikes_button(event: bpy.types.Event) -> bool:
+    return event.type == "LEFTMOUSE" and event.value == "PRESS"
+
+
+def _ending(event: bpy.types.Event, *, over_view: bool, dented: bool) -> Cancel | Keep | None:
+    """How an event ends the press, if it does."""
+    if event.value != "PRESS":
+        return None
+    undoes = event.type == "Z" and (event.ctrl or event.oskey)
+    if event.type == "ESC" or undoes or (event.type == "RIGHTMOUSE" and over_view):
+        return Cancel()
+    return Keep(dented) if event.type in {"RET", "NUMPAD_ENTER"} else None

@@ -1,0 +1,79 @@
+"""Pinch: two fingers on one soft object, each a handle that the pointer drags."""
+
+import bpy
+
+from ...core.errors import PalpateError
+from ..session.press_state import Source
+from . import modal_press
+from .modal_press import ModalPress
+from .press import report
+from .press_once import press_several
+
+
+def _place(name: str, description: str) -> object:
+    return bpy.props.FloatVectorProperty(
+        name=name, description=description, subtype="TRANSLATION", options={"SKIP_SAVE"}
+    )
+
+
+class PALPATE_OT_pinch(ModalPress, bpy.types.Operator):
+    bl_idname = "palpate.pinch"
+    bl_label = "Pinch"
+    # In Blender's own dictionary a pinch is what a sculpting brush does, and that one goes first.
+    bl_translation_context = "Palpate"
+    bl_description = (
+        "Squeeze the soft object between two fingers: drag each handle, the other stays where it "
+        "is. Enter keeps the shape, Escape restores it. From scripts: EXEC_DEFAULT with at_1, "
+        "by_1, at_2 and by_2"
+    )
+    bl_options = {"UNDO"}
+
+    at_1: _place("At", "The surface point nearest to this is touched, world coordinates")
+    by_1: _place("By", "How far it is moved, world axes")
+    at_2: _place("At 2", "Where the second finger touches, world coordinates")
+    by_2: _place("By 2", "How far the second finger moves, world axes")
+    keep: bpy.props.BoolProperty(
+        name="Keep",
+        description="Keep the shape as a shape key",
+        default=True,
+        options={"SKIP_SAVE"},
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        reason = modal_press.refusal(context)
+        if reason:
+            cls.poll_message_set(reason)
+        return not reason
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        for name in ("by_1", "by_2"):
+            if not any(getattr(self, name)):
+                self.report(
+                    {"ERROR"}, f"pinch: '{name}' is zero; say how far to press, in world units"
+                )
+                return {"CANCELLED"}
+        try:
+            pressed = press_several(
+                context.object,
+                context.scene,
+                [self.at_1, self.at_2],
+                [self.by_1, self.by_2],
+                keep=self.keep,
+            )
+        except PalpateError as problem:
+            self.report({"ERROR"}, str(problem))
+            return {"CANCELLED"}
+        report(self, pressed)
+        return {"FINISHED"}
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        if bpy.app.background:
+            return self.execute(context)
+        if context.area is None or context.area.type != "VIEW_3D":
+            self.report({"ERROR"}, "pinch: start it in a 3D view, where its handles are drawn")
+            return {"CANCELLED"}
+        return self.start(context, Source.POINTER, pinch=True)
+
+
+classes = (PALPATE_OT_pinch,)

@@ -1,0 +1,79 @@
+"""Press: touch a soft object with pointer, pen or device, then keep the shape or restore it."""
+
+import bpy
+
+from ...core.errors import PalpateError
+from ..session.press_state import Source
+from . import modal_press
+from .modal_press import ModalPress
+from .press_once import Pressed, press_once
+
+SOURCES = {"POINTER": Source.POINTER, "EMPTY": Source.EMPTY}
+
+
+class PALPATE_OT_press(ModalPress, bpy.types.Operator):
+    bl_idname = "palpate.press"
+    bl_label = "Press"
+    bl_description = (
+        "Press the soft object with the pointer or a device. Enter keeps the shape, Escape "
+        "restores it. From scripts: EXEC_DEFAULT with at and by"
+    )
+    bl_options = {"UNDO"}
+
+    at: bpy.props.FloatVectorProperty(
+        name="At",
+        description="The surface point nearest to this is touched, world coordinates",
+        subtype="TRANSLATION",
+        options={"SKIP_SAVE"},
+    )
+    by: bpy.props.FloatVectorProperty(
+        name="By",
+        description="How far it is moved, world axes",
+        subtype="TRANSLATION",
+        options={"SKIP_SAVE"},
+    )
+    keep: bpy.props.BoolProperty(
+        name="Keep",
+        description="Keep the shape as a shape key",
+        default=True,
+        options={"SKIP_SAVE"},
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        reason = modal_press.refusal(context)
+        if reason:
+            cls.poll_message_set(reason)
+        return not reason
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        if not any(self.by):
+            self.report({"ERROR"}, "press: 'by' is zero; say how far to press, in world units")
+            return {"CANCELLED"}
+        try:
+            pressed = press_once(context.object, context.scene, self.at, self.by, keep=self.keep)
+        except PalpateError as problem:
+            self.report({"ERROR"}, str(problem))
+            return {"CANCELLED"}
+        report(self, pressed)
+        return {"FINISHED"}
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        if bpy.app.background:
+            return self.execute(context)
+        source = SOURCES.get(context.scene.palpate.source, Source.DEVICE)
+        return self.start(context, source, pinch=False)
+
+
+def report(operator: bpy.types.Operator, pressed: Pressed) -> None:
+    """Say what a press without a window measured."""
+    for remark in pressed.remarks:
+        operator.report({"WARNING"}, remark)
+    figures = [
+        f"{sum(part**2 for part in finger.force) ** 0.5:.3g} N at {1000 * finger.depth:.3g} mm"
+        for finger in pressed.fingers
+    ]
+    operator.report({"INFO"}, ", ".join(figures))
+
+
+classes = (PALPATE_OT_press,)

@@ -1,0 +1,182 @@
+"""One press without pointer, device or clock: for scripts, command line and background Blender."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...core.contact.equations import Touch
+from ...core.contact.tool.tool_dent import PressingTool
+from ...core.contact.tool.tool_surface import surface_for
+from ...core.contact.tool.tools import Pose, Tool
+from ...core.errors import PalpateError
+from ..object.drawn_body import DrawnBody, open_body
+from ..scene import live_shape
+from ..session.live_settings import contact_mode
+from ..shape.drawn_shape import complete_shape
+from ..shape.felt_table import felt_forces
+from ..tool import tool_turn
+from ..tool.finger_tip import chosen_tip
+from ..tool.tool_pose import resting_on
+from . import several_fingers
+from .several_fingers import FingerForce, ToolPress, pressing_tools
+
+Array = NDArray[np.float64]
+Vector = tuple[float, float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class PressedFinger:
+    """What one finger did; ``force`` (N, felt) in world axes, ``depth`` in metres."""
+
+    made: FingerForce
+    force: Vector
+    depth: float
+
+
+@dataclass(frozen=True, eq=False)
+class Pressed:
+    """What one press did; vectors in world axes, SI units. ``remarks`` tell of a changed tool and
+    of files that could not be used or written.
+    """
+
+    fingers: tuple[PressedFinger, ...]
+    largest_displacement: float
+    shape_key: str
+    remarks: tuple[str, ...] = ()
+
+    @property
+    def touch(self) -> Touch | None:
+        """The first finger's contact if it is a point."""
+        return self.fingers[0].made.touch
+
+    @property
+    def force(self) -> Vector:
+        """The first finger's, N."""
+        return self.fingers[0].force
+
+    @property
+    def depth(self) -> float:
+        """The first finger's, m."""
+        return self.fingers[0].depth
+
+
+def press_once(
+    thing: bpy.types.Object,
+    scene: bpy.types.Scene,
+    at: ArrayLike,
+    by: ArrayLike,
+    *,
+    keep: bool = True,
+) -> Pressed:
+    """Press the surface point nearest to ``at`` by ``by`` (3,), world units; keep a shape key.
+
+    Raises
+    ------
+    PalpateError
+        The object cannot be pressed, or a coordinate is not finite.
+    """
+    return press_several(thing, scene, [at], [by], keep=keep)
+
+
+def press_several(
+    thing: bpy.types.Object,
+    scene: bpy.types.Scene,
+    ats: Sequence[ArrayLike],
+    bys: Sequence[ArrayLike],
+    *,
+    keep: bool = True,
+) -> Pressed:
+    """Press with several fingers at once, each from the surface point nearest to its ``at`` by its
+    ``by``; with the contact mode and the tip that the scene says.
+
+    Raises
+    ------
+    PalpateError
+        The object cannot be pressed, a coordinate is not finite, or the tool cannot be used.
+    """
+    drawn = open_body(thing, scene)
+    frame, young_modulus = drawn.frame, thing.palpate.young_modulus
+    tip = chosen_tip(scene, thing)
+    places = np.array([_point(frame.body_from_world(_point(at, "at")), "at") for at in ats])
+    inward = np.array([frame.turn_to_body(_point(by, "by")) * frame.metres_per_unit for by in bys])
+    if tip.tool is None:
+        mode = contact_mode(scene)
+        touches = drawn.body.touch_several(places, inward, young_modulus, mode=mode)
+        felt = felt_forces(thing, drawn, touches, young_modulus, mode)
+        made = tuple(
+            several_fingers.of_point(touch, force)
+            for touch, force in zip(touches, felt, strict=True)
+        )
+    else:
+        made = _press_tools(drawn, thing, scene, tip.tool, places, inward)
+    with complete_shape(thing, drawn) as shape:
+        displacements = shape.under(several_fingers.loads_of(made), young_modulus).displacements
+    return Pressed(
+        fingers=tuple(
+            PressedFinger(one, world_vector(drawn, one.force), float(np.linalg.norm(way)))
+            for one, way in zip(made, inward, strict=True)
+        ),
+        largest_displacement=float(np.linalg.norm(displacements, axis=1).max()),
+        shape_key=keep_shape(thing, drawn, displacements, pressing_tools(made)) if keep else "",
+        remarks=tuple(filter(None, (tip.remark, shape.notice))),
+    )
+
+
+def keep_shape(
+    thing: bpy.types.Object,
+    drawn: DrawnBody,
+    displacements: Array,
+    tools: Sequence[PressingTool] = (),
+) -> str:
+    """Keep displacements (n, 3) of the free surface nodes as the next "Press <n>", out of tools."""
+    live_shape.hang(thing)
+    live_shape.write(thing.data, drawn.local_coordinates(displacements, tools))
+    name = live_shape.keep(thing)
+    thing.data.update()
+    return name
+
+
+def world_vector(drawn: DrawnBody, vector: Array) -> Vector:
+    """A force or direction of the body in world axes."""
+    x, y, z = drawn.frame.turn_to_world(vector).tolist()
+    return (x, y, z)
+
+
+def _press_tools(
+    drawn: DrawnBody,
+    thing: bpy.types.Object,
+    scene: bpy.types.Scene,
+    tool: Tool,
+    places: Array,
+    inward: Array,
+) -> tuple[FingerForce, ...]:
+    """Each tool set down at its place from outside, and led in."""
+    starts, surface = [], surface_for(drawn.body, tool).positions
+    for place in places:
+        point, normal = drawn.nearest(place)
+        rotation = tool_turn.rotation(scene, drawn.frame, normal)
+        starts.append(resting_on(tool, rotation, point, normal, surface))
+    ends = [
+        Pose(start.position + way, start.rotation)
+        for start, way in zip(starts, inward, strict=True)
+    ]
+    press = ToolPress(
+        drawn.body,
+        tool,
+        thing.palpate.young_modulus,
+        thing.palpate.static_friction,
+        (None,) * len(starts),
+    )
+    return press.to(starts).to(ends).fingers
+
+
+def _point(value: ArrayLike, name: str) -> Array:
+    point = np.asarray(value, dtype=np.float64)
+    if point.shape != (3,) or not np.isfinite(point).all():
+        raise PalpateError(f"{name}: {point.tolist()} is not a point; give three finite numbers")
+    return point

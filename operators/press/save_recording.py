@@ -1,0 +1,94 @@
+"""Save Recording: what was recorded, to CSV or npz; also while the press goes on."""
+
+from pathlib import Path
+
+import bpy
+
+from ...core.errors import PalpateError
+from ...core.servo.recording import SUFFIXES
+from ..record import recording, recording_writer
+from ..record.recording import Kept, Recorder
+from ..session import press_session
+
+FORMAT_ITEMS = [
+    (".csv", "CSV", "A table for spreadsheets and most other programs"),
+    (".npz", "npz", "Arrays for numpy; smaller, and written at once"),
+]
+DEFAULT_NAME = "recording"
+
+
+def _recorder() -> Recorder | None:
+    """That of the press that is going on, if it records or has recorded."""
+    session = press_session.current()
+    loop = session.loop if session is not None else None
+    return loop.recorder if loop is not None and loop.recorder.wanted else None
+
+
+def recorded() -> Kept | None:
+    """What can be saved now."""
+    recorder = _recorder()
+    return recording.last() if recorder is None else recorder.kept()
+
+
+class PALPATE_OT_save_recording(bpy.types.Operator):
+    bl_idname = "palpate.save_recording"
+    bl_label = "Save Recording..."
+    bl_description = "Write the recorded ticks to a file, also while pressing goes on"
+
+    filepath: bpy.props.StringProperty(subtype="FILE_PATH", options={"HIDDEN", "SKIP_SAVE"})
+    filter_glob: bpy.props.StringProperty(default="*.csv;*.npz", options={"HIDDEN"})
+    check_existing: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
+    suffix: bpy.props.EnumProperty(
+        name="Format", description="How the file is written", items=FORMAT_ITEMS, default=".csv"
+    )
+
+    # Chosen in the file browser, so there is a window that must not stand still.
+    _in_window = False
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        reason = ""
+        if _recorder() is None and recording.last() is None:
+            reason = "Nothing is recorded yet; press Record while you press"
+        elif recording_writer.going_on():
+            reason = "A recording is being written; wait until it is done"
+        if reason:
+            cls.poll_message_set(reason)
+        return not reason
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        beside = Path(bpy.data.filepath).parent if bpy.data.filepath else Path.home()
+        self.filepath = str(beside / f"{DEFAULT_NAME}{self.suffix}")
+        self._in_window = not bpy.app.background
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def check(self, context: bpy.types.Context) -> bool:
+        """Let the name in the file browser follow the format."""
+        path = Path(self.filepath)
+        if path.suffix.lower() == self.suffix or not path.name:
+            return False
+        stem = path.stem if path.suffix.lower() in SUFFIXES else path.name
+        self.filepath = str(path.with_name(stem + self.suffix))
+        return True
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        kept = recorded()
+        if kept is None:
+            self.report({"ERROR"}, "Nothing is recorded yet; press Record while you press")
+            return {"CANCELLED"}
+        try:
+            path = Path(bpy.path.abspath(self.filepath))
+            if self._in_window:
+                recording_writer.begin(path, kept)
+                return {"FINISHED"}
+            recording.write(path, kept)
+        except PalpateError as problem:
+            self.report({"ERROR"}, str(problem))
+            return {"CANCELLED"}
+        seconds = len(kept.samples) / kept.rate_hz
+        self.report({"INFO"}, f"{len(kept.samples):,} ticks ({seconds:.1f} s) saved to {path}")
+        return {"FINISHED"}
+
+
+classes = (PALPATE_OT_save_recording,)

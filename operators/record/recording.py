@@ -1,0 +1,112 @@
+"""The recording of a press: every tick of the force loop, kept in memory until the next one.
+
+The servo's own thread collects the ticks, so that none is missing however busy Blender is. What was
+recorded stays here when the press has ended.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.errors import PalpateError
+from ...core.servo.recording import DTYPE, write_recording
+from ...core.servo.session import STATES, Servo
+
+BYTES_A_TICK = DTYPE.itemsize
+
+
+@dataclass(frozen=True, eq=False)
+class Kept:
+    """Ticks of a press that has ended, structured array (n,) of ``core.servo.recording.DTYPE``."""
+
+    samples: NDArray[np.void]
+    rate_hz: int
+    lost: int = 0
+
+
+@dataclass(eq=False)
+class Recorder:
+    """What a press records, once somebody has wanted it.
+
+    ``seconds`` is how much there is; ``full`` once the longest time is over.
+    """
+
+    servo: Servo
+    rate_hz: int
+    wanted: bool = False
+    full: bool = False
+    seconds: float = 0.0
+    lost: int = 0
+    _longest: float = 0.0
+    _begun_at: float = 0.0
+    _stopped: bool = False
+
+    def start(self, longest: float, now: float) -> None:
+        """Record from here on, instead of what there was; ``now`` is the servo's time, s.
+
+        Raises
+        ------
+        PalpateError
+            The servo refuses.
+        """
+        try:
+            self.servo.start_recording(longest)
+        except (ValueError, RuntimeError, MemoryError) as problem:
+            raise PalpateError(
+                f"recording: {problem}; set a shorter Longest Recording, or stop the one going on"
+            ) from problem
+        self.wanted, self.full, self.seconds, self.lost = True, False, 0.0, 0
+        self._longest, self._begun_at, self._stopped = longest, now, False
+
+    def stop(self) -> None:
+        """Record no more; what there is stays."""
+        self.servo.stop_recording()
+        self._stopped = True
+
+    def follow(self, now: float) -> None:
+        """Note how long the recording is by now."""
+        if not self.wanted or self.full or self._stopped:
+            return
+        self.lost = self.servo.recording_lost
+        self.seconds = min(now - self._begun_at, self._longest)
+        # Nobody stopped it: its time is over.
+        self.full = not self.servo.is_recording
+
+    @property
+    def going_on(self) -> bool:
+        """Whether ticks are being recorded."""
+        return self.wanted and self.servo.is_recording
+
+    def kept(self) -> Kept:
+        """All ticks so far, a copy."""
+        return Kept(self.servo.recording(), self.rate_hz, self.servo.recording_lost)
+
+
+_last: Kept | None = None
+
+
+def last() -> Kept | None:
+    """What the last press with a recording left."""
+    return _last
+
+
+def keep(recorder: Recorder | None) -> None:
+    """Keep what a press has recorded, if it has: it is about to end."""
+    global _last  # noqa: PLW0603  one recording is kept, as there is one press at a time
+    if recorder is not None and recorder.wanted:
+        _last = recorder.kept()
+
+
+def write(path: Path, kept: Kept) -> None:
+    """Write a recording as CSV or npz, by the suffix.
+
+    Raises
+    ------
+    PalpateError
+        The path cannot be written, or has another suffix.
+    """
+    write_recording(path, kept.samples, STATES, kept.rate_hz)

@@ -1,0 +1,1 @@
+"""What is asked of Blender's scene."""

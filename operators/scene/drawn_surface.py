@@ -1,0 +1,115 @@
+"""The mesh as drawn at rest, read from Blender into arrays: what a body is made from and hangs on.
+
+It is the base mesh (the Basis of its shape keys), not the evaluated one: modifiers stay on top.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.mesh.surface import Surface
+from . import fingerprint
+from .body_frame import BodyFrame
+from .fingerprint import Fingerprint
+
+
+@dataclass(frozen=True, eq=False)
+class DrawnSurface:
+    """Arrays of a mesh at rest.
+
+    Attributes
+    ----------
+    local : float64 (p, 3), vertex coordinates in local units.
+    triangles : int64 (m, 3), n-gons cut by Blender.
+    corners, face_starts : int64, polygons as loops of vertex numbers.
+    frame : how local units become metres.
+    """
+
+    local: NDArray[np.float64]
+    triangles: NDArray[np.int64]
+    corners: NDArray[np.int64]
+    face_starts: NDArray[np.int64]
+    frame: BodyFrame
+
+    @property
+    def body(self) -> NDArray[np.float64]:
+        """Vertices (p, 3) in metres, body coordinates."""
+        return self.frame.body_from_local(self.local)
+
+    def surface(self) -> Surface:
+        """The surface to bake, in metres, wound outward as drawn.
+
+        Raises
+        ------
+        PalpateError
+            Nothing there, not finite, or flat.
+        """
+        return Surface.checked(self.body, self.frame.wind(self.triangles))
+
+    @cached_property
+    def _shape(self) -> Fingerprint:
+        return fingerprint.take(self.local, self.body, self.corners, self.face_starts)
+
+    def fingerprint(self, pins: str, stiffness: str) -> Fingerprint:
+        """What a body baked from this surface, with these rules, remembers of it."""
+        return replace(self._shape, pins=pins, stiffness=stiffness)
+
+
+def read(thing: bpy.types.Object, scene: bpy.types.Scene) -> DrawnSurface:
+    """Read a mesh object.
+
+    Raises
+    ------
+    PalpateError
+        An object whose transform flattens it.
+    """
+    mesh = thing.data
+    mesh.calc_loop_triangles()
+    triangles = np.empty(3 * len(mesh.loop_triangles), dtype=np.int32)
+    mesh.loop_triangles.foreach_get("vertices", triangles)
+    corners = np.empty(len(mesh.loops), dtype=np.int32)
+    mesh.loops.foreach_get("vertex_index", corners)
+    starts = np.empty(len(mesh.polygons), dtype=np.int32)
+    mesh.polygons.foreach_get("loop_start", starts)
+    return DrawnSurface(
+        local=rest_coordinates(mesh).astype(np.float64).reshape(-1, 3),
+        triangles=triangles.astype(np.int64).reshape(-1, 3),
+        corners=corners.astype(np.int64),
+        face_starts=starts.astype(np.int64),
+        frame=frame_of(thing, scene),
+    )
+
+
+def rest_coordinates(mesh: bpy.types.Mesh) -> NDArray[np.float32]:
+    """Coordinates of the Basis, or of the mesh where it has no shape keys, flat float32 (3 p,)."""
+    coordinates = np.empty(3 * len(mesh.vertices), dtype=np.float32)
+    if not len(coordinates):
+        # An empty mesh has no attribute "position".
+        return coordinates
+    if mesh.shape_keys:
+        mesh.shape_keys.reference_key.points.foreach_get("co", coordinates)
+    else:
+        mesh.attributes["position"].data.foreach_get("vector", coordinates)
+    return coordinates
+
+
+def frame_of(thing: bpy.types.Object, scene: bpy.types.Scene) -> BodyFrame:
+    """The object's border between local units and metres.
+
+    Raises
+    ------
+    PalpateError
+        A transform that is not finite or flattens the object.
+    """
+    return BodyFrame.of_matrix(np.array(thing.matrix_world), metres_per_unit(scene))
+
+
+def metres_per_unit(scene: bpy.types.Scene) -> float:
+    """What one Blender unit is in metres; without a unit system it is one."""
+    units = scene.unit_settings
+    return 1.0 if units.system == "NONE" else float(units.scale_length)

@@ -1,0 +1,112 @@
+"""What a body was baked from, in a few numbers, and what has changed since.
+
+Coordinates are not hashed: turning an object changes the last bits of its matrix, and a hash would
+call that another body. They are projected on a few fixed pseudo-random directions instead, and the
+projections compared with a tolerance: one vertex moved by a ten-thousandth of the body shows.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import asdict, dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.sentence import Sentence
+
+PROJECTIONS = 8
+# Rounding of a float32 matrix is about 1e-7 of the size; a real edit moves far more than this.
+TOLERANCE = 2e-6
+SEED = 19980331
+
+
+@dataclass(frozen=True)
+class Fingerprint:
+    """A drawn surface as a body sees it: topology, shape and size; and the rules painted on it.
+
+    ``pins`` and ``stiffness`` are texts that change when what is pinned or stiff does.
+    """
+
+    vertices: int
+    faces: int
+    topology: str
+    local: tuple[float, ...]
+    body: tuple[float, ...]
+    size: float
+    local_size: float
+    pins: str = ""
+    stiffness: str = ""
+
+    def to_text(self) -> str:
+        """As stored on the object."""
+        return json.dumps(asdict(self))
+
+    @classmethod
+    def from_text(cls, text: str) -> Fingerprint:
+        """Read what :meth:`to_text` wrote."""
+        fields = json.loads(text)
+        fields["local"], fields["body"] = tuple(fields["local"]), tuple(fields["body"])
+        return cls(**fields)
+
+
+def take(
+    local: NDArray[np.float64],
+    body: NDArray[np.float64],
+    corners: NDArray[np.int64],
+    face_starts: NDArray[np.int64],
+) -> Fingerprint:
+    """Fingerprint a surface without rules: vertices (p, 3) in local units and metres, polygons."""
+    return Fingerprint(
+        vertices=len(local),
+        faces=len(face_starts),
+        topology=digest(corners, face_starts),
+        local=_project(local),
+        body=_project(body),
+        size=_size(body),
+        local_size=_size(local),
+    )
+
+
+def digest(*arrays: NDArray[np.int64]) -> str:
+    """A short hex digest of integer arrays."""
+    sha = hashlib.sha256()
+    for array in arrays:
+        sha.update(np.ascontiguousarray(array, dtype=np.int64).tobytes())
+        sha.update(b"|")
+    return sha.hexdigest()[:16]
+
+
+def changed_body(old: Fingerprint, new: Fingerprint) -> str:
+    """What makes the baked body unusable now, in words for the panel; empty if nothing does."""
+    if (old.vertices, old.faces) != (new.vertices, new.faces):
+        return Sentence(
+            "the mesh has {vertices} vertices and {faces} faces now, {old_vertices} and "
+            "{old_faces} when it was baked",
+            vertices=new.vertices,
+            faces=new.faces,
+            old_vertices=old.vertices,
+            old_faces=old.faces,
+        )
+    if old.topology != new.topology:
+        return Sentence("the faces are connected differently than when it was baked")
+    if _same(old.body, new.body, old.size, old.vertices):
+        return ""
+    if _same(old.local, new.local, old.local_size, old.vertices):
+        return Sentence("the object's scale or the scene's unit scale changed since the bake")
+    return Sentence("the shape was edited since the bake")
+
+
+def _project(points: NDArray[np.float64]) -> tuple[float, ...]:
+    directions = np.random.default_rng(SEED).standard_normal((PROJECTIONS, points.size))
+    return tuple((directions @ points.ravel()).tolist())
+
+
+def _same(old: tuple[float, ...], new: tuple[float, ...], size: float, count: int) -> bool:
+    allowed = TOLERANCE * size * np.sqrt(count)
+    return bool(np.all(np.abs(np.subtract(old, new)) <= allowed))
+
+
+def _size(points: NDArray[np.float64]) -> float:
+    return float(np.linalg.norm(np.ptp(points, axis=0))) if len(points) else 0.0

@@ -1,0 +1,233 @@
+"""The servo of one press: started, led, told of changes, watched, recorded and stopped."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+
+import bpy
+import numpy as np
+
+from ...core.errors import PalpateError
+from ...core.servo.session import (
+    Body,
+    HaplyDevice,
+    LinkDevice,
+    Pointer,
+    Servo,
+    Snapshot,
+    native_body,
+    native_tool,
+    servo_on,
+    touched_nodes,
+)
+from ...simulated.simulated_process import SimulatedDevice
+from ..device import device_source
+from ..device.loop_figures import LoopFigures
+from ..object.drawn_body import DrawnBody
+from ..record import recording
+from ..record.recording import Recorder
+from ..scene.package_preferences import preferences
+from ..shape.felt_table import FeltTable
+from ..tool.finger_tip import FingerTip
+from .finger_leads import second_port
+from .live_settings import LiveSettings
+from .press_state import MoveProbe, PlaceProbe, Point, SwitchForce, Turn
+
+
+@dataclass(eq=False)
+class ForceLoop:
+    """A servo, and with it the simulated devices that lead it: the first finger's and the second's,
+    if they do. ``port`` is the first device's, empty for the pointer.
+    """
+
+    servo: Servo
+    settings: LiveSettings
+    recorder: Recorder
+    drawn: DrawnBody
+    touched: Body
+    tip: FingerTip
+    felt: FeltTable
+    simulated: SimulatedDevice | None = None
+    second_simulated: SimulatedDevice | None = None
+    port: str = ""
+    figures: LoopFigures = field(default_factory=LoopFigures)
+    _led: dict[int, tuple[Point | None, Turn | None]] = field(default_factory=dict)
+
+    @classmethod
+    def prepare(
+        cls, drawn: DrawnBody, settings: LiveSettings, rate_hz: int, tip: FingerTip, fingers: int
+    ) -> ForceLoop:
+        """A loop that does not run yet, for so many fingers, with the settings of now.
+
+        Raises
+        ------
+        PalpateError
+            A body that cannot be touched, or a setting that the servo refuses.
+        """
+        touched = native_body(drawn.body, whole=fingers > 1 or tip.tool is not None)
+        servo = servo_on(
+            touched,
+            young_modulus=settings.young_modulus,
+            rate_hz=rate_hz,
+            max_force=preferences().max_force,
+        )
+        with servo_errors():
+            settings.hand_over(servo)
+        felt = FeltTable(drawn.body, touched, drawn.file)
+        return cls(servo, settings, Recorder(servo, rate_hz), drawn, touched, tip, felt)
+
+    def give_tools(self, fingers: int) -> None:
+        """Give each of so many fingers the tool that was chosen; points stay as they are."""
+        if self.tip.tool is None:
+            return
+        tool = native_tool(self.drawn.body, self.touched, self.tip.tool)
+        with servo_errors():
+            for finger in range(fingers):
+                self.servo.set_tool(tool, finger=finger)
+
+    def add_pointer(self, position: Point) -> None:
+        """Another finger, led by :meth:`lead` or the pointer, from ``position`` in body
+        coordinates; before the start.
+        """
+        with servo_errors():
+            self.servo.add(Pointer(position))
+
+    def add_device(self, thing: bpy.types.Object, scene: bpy.types.Scene) -> None:
+        """Another finger, led by the device that the scene names as the second; before the start.
+
+        Raises
+        ------
+        PalpateError
+            There is no such device, or it cannot be used.
+        """
+        chosen = scene.palpate
+        frame = device_source.second_frame(thing, scene, self.drawn.frame)
+        if chosen.second == "SIMULATED":
+            self.second_simulated = device_source.start_simulated(
+                self.drawn, frame, towards=device_source.FROM_THE_SIDE
+            )
+            port = self.second_simulated.port
+        else:
+            port = second_port(scene)
+        haply = chosen.second_haply_model if chosen.second == "HAPLY" else None
+        with servo_errors():
+            self.servo.add(_device_at(port, frame, haply, chosen.second_haply_at_rest))
+
+    def lead(self, finger: int, place: Point | None, turn: Turn | None) -> None:
+        """Where a finger shall be and how its tool is turned, if that is told and new."""
+        before = self._led.get(finger, (None, None))
+        with servo_errors():
+            if turn is not None and turn != before[1]:
+                self.servo.set_orientation(np.array(turn), finger=finger)
+            if place is not None and place != before[0]:
+                self.servo.set_target(place, finger=finger)
+        self._led[finger] = (place, turn)
+
+    def start_pointer(self, position: Point) -> None:
+        """Let the pointer lead, from ``position`` in body coordinates."""
+        with servo_errors():
+            self.servo.start(Pointer(position))
+
+    def start_device(self, scene: bpy.types.Scene, drawn: DrawnBody) -> None:
+        """Let the chosen device lead, where the settings have it.
+
+        Raises
+        ------
+        PalpateError
+            There is no such device, or it cannot be used.
+        """
+        chosen, frame = scene.palpate, self.settings.device
+        if frame is None:
+            raise PalpateError("device: nothing says where it is; press again")
+        haply = chosen.haply_model if device_source.is_planar(scene) else None
+        if chosen.source == "SIMULATED":
+            self.simulated = device_source.start_simulated(drawn, frame, haply)
+            self.port = self.simulated.port
+        else:
+            self.port = device_source.port_of(scene)
+        # A simulated one always begins at rest.
+        at_rest = chosen.haply_at_rest or self.simulated is not None
+        with servo_errors():
+            self.servo.start(_device_at(self.port, frame, haply, at_rest))
+
+    def follow(self, settings: LiveSettings) -> None:
+        """Take over what has been changed.
+
+        Raises
+        ------
+        PalpateError
+            The servo refuses a setting.
+        """
+        with servo_errors():
+            settings.hand_over(self.servo, self.settings)
+        self.settings = settings
+
+    def carry_out(self, effect: PlaceProbe | MoveProbe | SwitchForce) -> None:
+        """Do what the press wants of the servo."""
+        match effect:
+            case PlaceProbe(point, finger, turn):
+                if turn is not None:
+                    self.servo.set_orientation(np.array(turn), finger=finger)
+                self.servo.set_target(point, restart=True, finger=finger)
+            case MoveProbe(point, finger):
+                self.servo.set_target(point, finger=finger)
+            case SwitchForce(on):
+                self.servo.set_enabled(on)
+
+    def snapshot(self) -> Snapshot:
+        """The newest tick; counters and recording are looked at, too."""
+        snapshot = self.servo.snapshot()
+        self.figures.look(self.servo, time.monotonic())
+        self.recorder.follow(snapshot.time)
+        # Tools feel the linear relation.
+        felt = self.settings.felt if self.tip.tool is None else "linear"
+        self.felt.follow(felt, touched_nodes(self.drawn.body, snapshot))
+        return snapshot
+
+    def stop(self) -> None:
+        """Zero force, thread and simulated device ended; what was recorded is kept."""
+        try:
+            self.servo.stop()
+            recording.keep(self.recorder)
+        finally:
+            self.felt.close()
+            for simulated in (self.simulated, self.second_simulated):
+                if simulated is not None:
+                    simulated.stop()
+
+
+def _device_at(
+    port: str, frame: device_source.DeviceFrame, haply_model: str | None, at_rest: bool
+) -> LinkDevice | HaplyDevice:
+    """What is at a port: a 2DIY of a model, ``at_rest`` if its handle rests now, or a device that
+    speaks the link.
+    """
+    if haply_model is None:
+        return LinkDevice(
+            port, rotation=frame.rotation, translation=frame.translation, scale=frame.scale
+        )
+    return HaplyDevice(
+        port,
+        model=haply_model,
+        recalibrate=at_rest,
+        rotation=frame.rotation,
+        translation=frame.translation,
+        scale=frame.scale,
+    )
+
+
+@contextmanager
+def servo_errors() -> Iterator[None]:
+    """What the servo refuses, as a sentence with a remedy."""
+    try:
+        yield
+    except OSError as problem:
+        # It names its remedy itself.
+        raise PalpateError(f"device: {problem}") from problem
+    except (ValueError, OverflowError) as problem:
+        raise PalpateError(f"servo: {problem}; set it back and press again") from problem
+    except RuntimeError as problem:
+        raise PalpateError(f"servo: {problem}; leave with Escape and press again") from problem

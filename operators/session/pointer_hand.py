@@ -1,0 +1,176 @@
+"""What the pointer holds: the fingers it has set down, and which of them it leads now."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import bpy
+import numpy as np
+from bpy_extras import view3d_utils
+from mathutils import Vector
+from numpy.typing import NDArray
+
+from ..scene import ray
+from ..scene.package_preferences import preferences
+from ..scene.probe_drag import ProbeDrag
+from ..scene.viewport import Viewport
+from ..tool import tool_turn
+from ..tool.tool_pose import resting_on
+from .press_session import PressSession
+from .press_state import Grab, Move, Point, Release, SetDown, Turn
+
+Array = NDArray[np.float64]
+
+# The probe is set down this far above the surface, as a share of the body's size: from outside.
+SET_DOWN_HEIGHT = 1e-4
+# A handle is taken hold of within so many unscaled pixels.
+GRAB_PIXELS = 24.0
+
+
+@dataclass(frozen=True, eq=False)
+class Held:
+    """A finger that was set down: where the pointer wants it, and the outward normal there."""
+
+    target: Array
+    normal: Array
+
+
+@dataclass(eq=False)
+class PointerHand:
+    """The pointer's fingers by number: one for a press, two for a pinch."""
+
+    session: PressSession
+    fingers: tuple[int, ...] = (0,)
+    held: dict[int, Held] = field(default_factory=dict)
+    _drag: ProbeDrag | None = None
+    _finger: int = 0
+
+    @property
+    def leads(self) -> int | None:
+        """The finger that follows the pointer now, if one does."""
+        return None if self._drag is None else self._finger
+
+    def press(self, here: Viewport, event: bpy.types.Event) -> None:
+        """The button went down: on a handle, on the surface, or beside both."""
+        grabbed = self._handle_near(here)
+        if grabbed is not None:
+            held = self.held[grabbed]
+            if self._begin(here, event, grabbed, held.target, held.normal):
+                self.session.post(Grab())
+            return
+        drawn = self.session.drawn
+        triangles = drawn.body.mesh.surface_triangles
+        hit = ray.first_hit(*here.ray(drawn.frame), self.session.surface_now(), triangles)
+        if hit is None:
+            return
+        corners = triangles[hit.triangle]
+        normal = hit.alpha @ drawn.node_normals[corners]
+        normal /= np.linalg.norm(normal)
+        point = hit.alpha @ drawn.body.mesh.nodes[corners]
+        view_axes = np.array(here.region_3d.view_matrix)[:3, :3]
+        start, turn = self._at_rest(point, normal, view_axes)
+        finger = self._free_finger(here)
+        if self._begin(here, event, finger, start, normal):
+            self.held[finger] = Held(start, normal)
+            self._set_down(finger, turn)
+
+    def follow(self, event: bpy.types.Event) -> None:
+        """The pointer moved, the wheel turned, or the button came up."""
+        if event.type == "LEFTMOUSE" and event.value == "RELEASE":
+            self._drag = None
+            self.session.post(Release())
+            return
+        if self._drag is None:
+            return
+        if event.type == "WHEELUPMOUSE":
+            self._drag = self._drag.wheeled(1)
+        elif event.type == "WHEELDOWNMOUSE":
+            self._drag = self._drag.wheeled(-1)
+        elif event.type in {"MOUSEMOVE", "INBETWEEN_MOUSEMOVE"}:
+            self._drag = self._drag.dragged((event.mouse_x, event.mouse_y), _pressure(event))
+        else:
+            return
+        target = self._drag.target
+        self.held[self._finger] = Held(target, self._drag.normal)
+        self.session.post(Move(_point(target), self._finger))
+
+    def place_on_both_sides(self, region_3d: bpy.types.RegionView3D) -> None:
+        """Set two fingers down at the left and right of the body, as the view shows it."""
+        drawn, axes = self.session.drawn, np.array(region_3d.view_matrix)[:3, :3]
+        right = drawn.frame.turn_to_body(axes[0])
+        nodes, triangles = drawn.body.mesh.nodes, drawn.body.mesh.surface_triangles
+        surface = drawn.surface_nodes
+        middle = 0.5 * (surface.min(axis=0) + surface.max(axis=0))
+        for finger, side in zip(self.fingers, (-right, right), strict=False):
+            hit = ray.first_hit(middle + 2.0 * drawn.size * side, -side, nodes, triangles)
+            if hit is None:
+                # Nothing there, as in a ring: a click on the surface sets it down.
+                continue
+            corners = triangles[hit.triangle]
+            normal = hit.alpha @ drawn.node_normals[corners]
+            normal /= np.linalg.norm(normal)
+            start, turn = self._at_rest(hit.alpha @ nodes[corners], normal, axes)
+            self.held[finger] = Held(start, normal)
+            self._set_down(finger, turn)
+            self.session.post(Release())
+
+    def _at_rest(self, point: Array, normal: Array, view_axes: Array) -> tuple[Array, Turn | None]:
+        """Where a finger that just does not touch is, and how its tool is turned."""
+        session = self.session
+        tool = session.tip.tool
+        if tool is None:
+            return point + SET_DOWN_HEIGHT * session.drawn.size * normal, None
+        rotation = tool_turn.rotation(session.scene, session.drawn.frame, normal, view_axes)
+        pose = resting_on(tool, rotation, point, normal, session.surface_samples)
+        return pose.position, tool_turn.as_rows(rotation)
+
+    def _begin(
+        self, here: Viewport, event: bpy.types.Event, finger: int, start: Array, normal: Array
+    ) -> bool:
+        """Take hold of a finger; False where the view shows no scale, behind the viewer."""
+        view = here.view_at(start, self.session.drawn.frame)
+        if view is None:
+            return False
+        cursor = (event.mouse_x, event.mouse_y)
+        drag = ProbeDrag(
+            point=start,
+            normal=normal,
+            view=view,
+            size=self.session.drawn.size,
+            start=cursor,
+            sensitivity=preferences().sensitivity,
+        )
+        self._drag, self._finger = drag.dragged(cursor, _pressure(event)), finger
+        return True
+
+    def _set_down(self, finger: int, turn: Turn | None) -> None:
+        self.session.post(SetDown(_point(self.held[finger].target), finger, turn))
+
+    def _free_finger(self, here: Viewport) -> int:
+        """The finger not set down yet, else the one that is nearest on the screen."""
+        for finger in self.fingers:
+            if finger not in self.held:
+                return finger
+        return min(self.fingers, key=lambda finger: self._pixels_away(here, finger))
+
+    def _handle_near(self, here: Viewport) -> int | None:
+        """Of a pinch the handle under the pointer. A press begins anew wherever it is set down."""
+        if len(self.fingers) == 1 or not self.held:
+            return None
+        nearest = min(self.held, key=lambda finger: self._pixels_away(here, finger))
+        scale = bpy.context.preferences.system.ui_scale
+        return nearest if self._pixels_away(here, nearest) <= GRAB_PIXELS * scale else None
+
+    def _pixels_away(self, here: Viewport, finger: int) -> float:
+        place = self.session.drawn.frame.world_from_body(self.held[finger].target)
+        seen = view3d_utils.location_3d_to_region_2d(here.region, here.region_3d, Vector(place))
+        return np.inf if seen is None else float(np.hypot(*np.subtract(seen, here.cursor)))
+
+
+def _pressure(event: bpy.types.Event) -> float:
+    return event.pressure if event.is_tablet else 0.0
+
+
+def _point(vector: Array) -> Point:
+    x, y, z = vector.tolist()
+    return (x, y, z)

@@ -1,0 +1,1 @@
+"""The drawn shape and the felt force."""

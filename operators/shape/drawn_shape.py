@@ -1,0 +1,192 @@
+"""The shape that a press draws: as chosen, made in the background, changed while somebody presses.
+
+Until it is made, and where it cannot be, the linear one is drawn.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import bpy
+
+from ...core.body.soft_body import SoftBody
+from ...core.errors import PalpateError
+from ...core.servo.session import Snapshot
+from ...core.shape.meeting import FingerLoad, Meeting, Met, settled
+from ...core.shape.shapes import LinearShape, Shape, ShapeName, shape, shape_name
+from ..object.drawn_body import DrawnBody
+
+# So long a shape that is kept waits for what it needs, s.
+PATIENCE = 3.0
+
+
+def chosen_shape(thing: bpy.types.Object) -> ShapeName:
+    """What the object's panel says."""
+    return shape_name(thing.palpate.shape.lower().replace("_", "-"))
+
+
+@dataclass(eq=False)
+class DrawnShape:
+    """Draws a body under its fingers.
+
+    Attributes
+    ----------
+    name : of the shape that is asked for.
+    problem : why the linear one is drawn instead, empty otherwise.
+    """
+
+    body: SoftBody
+    body_file: Path | None
+    name: ShapeName = "linear"
+    problem: str = ""
+    _shape: Shape = field(init=False)
+    _meeting: Meeting = field(init=False)
+    _making: Future[Shape] | None = None
+    _behind: ThreadPoolExecutor | None = None
+
+    def __post_init__(self) -> None:
+        self._take(LinearShape(self.body))
+
+    @property
+    def ready(self) -> float:
+        """Share (0 to 1) of what the touched place needs that is there."""
+        return 0.0 if self._making is not None else self._shape.ready
+
+    @property
+    def notice(self) -> str:
+        """Which file of a table could not be used, and why; empty otherwise."""
+        return self._shape.notice
+
+    def follow(self, name: ShapeName) -> None:
+        """Draw this one from now on, as soon as it can be. Waits for nothing."""
+        if name != self.name:
+            self._end()
+            self.name, self.problem = name, ""
+            self._take(LinearShape(self.body))
+            if name != "linear":
+                if self._behind is None:
+                    self._behind = ThreadPoolExecutor(1, "palpate-shape")
+                self._making = self._behind.submit(shape, self.body, name, self.body_file)
+        if self._making is not None and self._making.done():
+            self._take_made()
+
+    def draw(self, fingers: Sequence[FingerLoad], young_modulus: float) -> Met:
+        """The body under these fingers; the linear shape until all is there that they need."""
+        try:
+            met = self._meeting.step(fingers, young_modulus)
+        except PalpateError as problem:
+            self.problem = str(problem)
+            self._end()
+            self._take(LinearShape(self.body))
+            return self._meeting.step(fingers, young_modulus)
+        if self._shape.ready < 1.0:
+            self._take(self._shape)
+            return Met(met.linear, met.linear, 0.0)
+        return met
+
+    def finish(self, fingers: Sequence[FingerLoad], young_modulus: float) -> Met:
+        """The body under these fingers, with what it needs as far as that is there in time."""
+        end = time.monotonic() + PATIENCE
+        self._take_made()
+        met = self.draw(fingers, young_modulus)
+        while self.ready < 1.0 and not self.problem and time.monotonic() < end:
+            time.sleep(0.01)
+            met = self.draw(fingers, young_modulus)
+        return met if met.settled else self._meeting.settle(fingers, young_modulus)
+
+    def close(self) -> None:
+        """End what works in the background; what it made is kept. Waits for nothing."""
+        self._end()
+        self._take(LinearShape(self.body))
+        if self._behind is not None:
+            self._behind.shutdown(wait=False)
+            self._behind = None
+
+    def _take_made(self) -> None:
+        """Take what is made in the background, waiting for it if need be."""
+        making, self._making = self._making, None
+        if making is None:
+            return
+        try:
+            self._take(making.result())
+        except PalpateError as problem:
+            self.problem = str(problem)
+
+    def _take(self, made: Shape) -> None:
+        self._shape, self._meeting = made, Meeting(self.body, made)
+
+    def _end(self) -> None:
+        """Close what there is, where that is waited for by nobody: files may be written."""
+        if self._behind is None:
+            return
+        making, self._making = self._making, None
+        if making is not None:
+            self._behind.submit(_close_made, making)
+        else:
+            self._behind.submit(_close, self._shape)
+
+
+@dataclass(frozen=True, eq=False)
+class CompleteShape:
+    """A shape that waits until all is there that the fingers' loads need."""
+
+    body: SoftBody
+    shape: Shape
+
+    def under(self, fingers: Sequence[FingerLoad], young_modulus: float) -> Met:
+        """The body under these fingers.
+
+        Raises
+        ------
+        PalpateError
+            It cannot be computed.
+        """
+        return settled(self.body, self.shape, fingers, young_modulus)
+
+    @property
+    def notice(self) -> str:
+        """Which file of a table could not be used or, once closed, written; empty otherwise."""
+        return self.shape.notice
+
+
+@contextmanager
+def complete_shape(thing: bpy.types.Object, drawn: DrawnBody) -> Iterator[CompleteShape]:
+    """What the object's panel asks for; closed in the end.
+
+    Raises
+    ------
+    PalpateError
+        It cannot be computed.
+    """
+    made = shape(drawn.body, chosen_shape(thing), drawn.file)
+    try:
+        yield CompleteShape(drawn.body, made)
+    finally:
+        made.close()
+
+
+def loads_of(body: SoftBody, snapshot: Snapshot) -> list[FingerLoad]:
+    """The loads of all fingers that touch."""
+    return [
+        FingerLoad(body.mesh.surface_nodes[finger.nodes], finger.nodal_forces)
+        for finger in snapshot.fingers
+        if len(finger.nodes)
+    ]
+
+
+def _close(made: Shape) -> None:
+    told = made.notice
+    made.close()
+    if made.notice != told:
+        # Nobody presses any more who could be told; the table is computed again next time.
+        print(f"palpate: {made.notice}")  # noqa: T201
+
+
+def _close_made(making: Future[Shape]) -> None:
+    if making.exception() is None:
+        _close(making.result())

@@ -1,0 +1,96 @@
+"""Map Softness: stiffness over the surface as a colour attribute, and its removal."""
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.softness.force_depth import MILLIMETRES
+from ...core.softness.ramp import ramp
+from ...core.softness.softness_map import SoftnessMap, softness_map
+from ..object import soft_object
+from ..object.drawn_body import DrawnBody
+from .softness_operator import Place, SoftnessOperator
+
+ATTRIBUTE = "Palpate Softness"
+
+
+class PALPATE_OT_map_softness(SoftnessOperator, bpy.types.Operator):
+    bl_idname = "palpate.map_softness"
+    bl_label = "Map Softness"
+    bl_description = (
+        "Colour the object by how hard a fingertip must push for each millimetre: dark is soft, "
+        "yellow is firm. Writes the colour attribute Palpate Softness and shows it in the view"
+    )
+    asks = Place.EVERYWHERE
+
+    def measure(self, context: bpy.types.Context, drawn: DrawnBody) -> None:
+        thing = context.object
+        softness = thing.palpate_softness
+        found = softness_map(
+            drawn.body,
+            pad_radius=drawn.frame.metres_per_unit * softness.finger_radius,
+            young_modulus=thing.palpate.young_modulus,
+        )
+        shown = thing.data.color_attributes.active_color_name
+        if shown != ATTRIBUTE:
+            softness.shown_before = shown
+        _write(thing.data, ramp(_at_vertices(drawn, found)))
+        softness.map_low, softness.map_high = (end / MILLIMETRES for end in found.span)
+        self.report({"INFO"}, "Viewport Shading > Color > Attribute shows it")
+
+
+class PALPATE_OT_remove_softness_map(bpy.types.Operator):
+    bl_idname = "palpate.remove_softness_map"
+    bl_label = "Remove Softness Map"
+    bl_description = "Delete the colour attribute Palpate Softness"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        reason = soft_object.refusal(context.object)
+        if not reason and ATTRIBUTE not in context.object.data.color_attributes:
+            reason = f"{context.object.name} has no softness map"
+        if reason:
+            cls.poll_message_set(reason)
+        return not reason
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        mesh = context.object.data
+        softness = context.object.palpate_softness
+        mesh.color_attributes.remove(mesh.color_attributes[ATTRIBUTE])
+        if softness.shown_before in mesh.color_attributes:
+            mesh.color_attributes.active_color_name = softness.shown_before
+        for name in ("map_low", "map_high", "shown_before"):
+            softness.property_unset(name)
+        return {"FINISHED"}
+
+
+def _at_vertices(drawn: DrawnBody, found: SoftnessMap) -> NDArray[np.float64]:
+    """Where the drawn vertices (p,) lie on the scale of colours, from the nodes around each."""
+    local = drawn.rest.reshape(-1, 3)
+    places = drawn.body.closest_points.query(drawn.frame.body_from_local(local))
+    corners = drawn.body.mesh.surface_local_triangles[places.triangle]
+    shares: NDArray[np.float64] = np.einsum("pc,pc->p", places.alpha, found.shares()[corners])
+    return shares
+
+
+def _write(mesh: bpy.types.Mesh, colours: NDArray[np.float64]) -> None:
+    """Colours (p, 3), sRGB, onto the vertices; shown in the view, while renders keep theirs."""
+    attributes = mesh.color_attributes
+    rendered = attributes.default_color_name
+    old = attributes.get(ATTRIBUTE)
+    if old is not None:
+        attributes.remove(old)
+    attribute = attributes.new(ATTRIBUTE, "FLOAT_COLOR", "POINT")
+    flat = np.ones((len(colours), 4), dtype=np.float32)
+    # Attributes of floats hold scene linear colours.
+    dark = colours <= 0.04045
+    flat[:, :3] = np.where(dark, colours / 12.92, ((colours + 0.055) / 1.055) ** 2.4)
+    attribute.data.foreach_set("color", flat.ravel())
+    attributes.active_color_name = ATTRIBUTE
+    if rendered:
+        attributes.default_color_name = rendered
+    mesh.update()
+
+
+classes = (PALPATE_OT_map_softness, PALPATE_OT_remove_softness_map)

@@ -1,0 +1,104 @@
+"""What the operators that measure softness have in common: when they may run, and where."""
+
+from __future__ import annotations
+
+from enum import Enum
+from typing import TYPE_CHECKING
+
+import bpy
+
+from ...core.errors import PalpateError
+from ..object.drawn_body import DrawnBody, open_body
+from ..scene import ray, viewport
+from .softness_place import refusal
+
+if TYPE_CHECKING:
+
+    class _Operator(bpy.types.Operator):
+        pass
+else:
+
+    class _Operator:
+        """Nothing: Blender registers what is of its class, each operator, not what they share."""
+
+
+class Place(Enum):
+    """Whether an operator asks at one place, which a click may tell, or all over."""
+
+    ONE = "one"
+    EVERYWHERE = "everywhere"
+
+
+class SoftnessOperator(_Operator):
+    """An operator on the body of the active object. What it does is :meth:`measure`; what that
+    raises as :class:`PalpateError` is reported. One that asks at one place has ``at`` and ``pick``.
+    """
+
+    bl_options = {"REGISTER", "UNDO"}
+    asks = Place.ONE
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        reason = refusal(context)
+        if reason:
+            cls.poll_message_set(reason)
+        return not reason
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        if self.asks is Place.EVERYWHERE or not self.properties.pick:
+            return self.execute(context)
+        try:
+            self._drawn = open_body(context.object, context.scene)
+        except PalpateError as problem:
+            self.report({"ERROR"}, str(problem))
+            return {"CANCELLED"}
+        context.window.cursor_modal_set("EYEDROPPER")
+        context.workspace.status_text_set("Click the place on the object; right click to leave")
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        if event.type in {"RIGHTMOUSE", "ESC"}:
+            self._leave(context)
+            return {"CANCELLED"}
+        if event.type != "LEFTMOUSE" or event.value != "PRESS":
+            return {"PASS_THROUGH"} if event.type.startswith(("WHEEL", "MIDDLE")) else MODAL
+        self._leave(context)
+        here = viewport.under_pointer(context.window, event.mouse_x, event.mouse_y)
+        place = None if here is None else _met(self._drawn, here)
+        if place is None:
+            self.report({"WARNING"}, f"{context.object.name} is not there; nothing was measured")
+            return {"CANCELLED"}
+        self.properties.at = place
+        return self.execute(context)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        try:
+            self.measure(context, open_body(context.object, context.scene))
+        except PalpateError as problem:
+            self.report({"ERROR"}, str(problem))
+            return {"CANCELLED"}
+        return {"FINISHED"}
+
+    def measure(self, context: bpy.types.Context, drawn: DrawnBody) -> None:
+        """Find it, write it down, report it."""
+        raise NotImplementedError
+
+    def _leave(self, context: bpy.types.Context) -> None:
+        context.window.cursor_modal_restore()
+        context.workspace.status_text_set(None)
+
+
+MODAL = {"RUNNING_MODAL"}
+
+
+def _met(drawn: DrawnBody, here: viewport.Viewport) -> tuple[float, float, float] | None:
+    """Where the line of sight through the pointer meets the body, world units."""
+    mesh = drawn.body.mesh
+    origin, direction = here.ray(drawn.frame)
+    hit = ray.first_hit(origin, direction, mesh.nodes, mesh.surface_triangles)
+    if hit is None:
+        return None
+    point = hit.alpha @ mesh.nodes[mesh.surface_triangles[hit.triangle]]
+    x, y, z = drawn.frame.world_from_body(point).tolist()
+    return (x, y, z)

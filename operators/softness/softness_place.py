@@ -1,0 +1,79 @@
+"""Where softness is asked for: the object's body, ready, and the place: the 3D cursor, the
+selected vertices, or where a script or a click says.
+"""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.errors import PalpateError
+from ..bake import bake_session
+from ..object import soft_object
+from ..object.drawn_body import DrawnBody
+from ..session import press_session
+
+
+def refusal(context: bpy.types.Context) -> str:
+    """Why the active object cannot be asked now; empty if it can."""
+    reason = soft_object.refusal(context.object)
+    if not reason and not context.object.palpate.body_key:
+        reason = f"{context.object.name} is not soft yet; press Make Soft first"
+    if not reason and (bake_session.current() or press_session.current()):
+        reason = "Finish baking or pressing first"
+    return reason
+
+
+def place_in_body(
+    drawn: DrawnBody, context: bpy.types.Context, operator: bpy.types.Operator
+) -> NDArray[np.float64]:
+    """The operator's ``at`` if it was set, else what the object's softness is measured at: the 3D
+    cursor, or the middle of the selected vertices. Metres in the body, (3,).
+
+    Raises
+    ------
+    PalpateError
+        No vertex is selected.
+    """
+    softness = context.object.palpate_softness
+    if not operator.properties.is_property_set("at") and softness.place == "VERTICES":
+        return _middle_of_selected(drawn, context.object)
+    given = operator.properties.is_property_set("at")
+    world = operator.at if given else context.scene.cursor.location
+    place: NDArray[np.float64] = drawn.frame.body_from_world(np.array(world, dtype=np.float64))
+    return place
+
+
+def _middle_of_selected(drawn: DrawnBody, thing: bpy.types.Object) -> NDArray[np.float64]:
+    selected = np.zeros(len(thing.data.vertices), dtype=np.bool_)
+    thing.data.vertices.foreach_get("select", selected)
+    if not selected.any():
+        raise PalpateError(
+            f"{thing.name} has no selected vertices; select some in Edit Mode and leave it, or "
+            "measure at the 3D cursor"
+        )
+    middle: NDArray[np.float64] = drawn.rest_places[selected].mean(axis=0)
+    return middle
+
+
+def at_property() -> bpy.props.FloatVectorProperty:
+    """The place for scripts, world units."""
+    return bpy.props.FloatVectorProperty(
+        name="Place",
+        description="The surface point nearest to this is asked, world coordinates. "
+        "Without one, the panel's Measured At says where",
+        size=3,
+        subtype="TRANSLATION",
+        options={"SKIP_SAVE"},
+    )
+
+
+def pick_property() -> bpy.props.BoolProperty:
+    """Whether a click tells the place."""
+    return bpy.props.BoolProperty(
+        name="Pick",
+        description="Click the place in the view",
+        default=False,
+        options={"SKIP_SAVE", "HIDDEN"},
+    )

@@ -1,0 +1,65 @@
+"""The chosen finger tip, from scene units to metres: the one border of tools."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import bpy
+
+from ...core.contact.tool import tools
+from ...core.contact.tool.tool_dent import PressingTool
+from ...core.contact.tool.tools import Pose, Tool
+from ...core.errors import PalpateError
+from ...core.servo.session import Snapshot
+from ..scene.drawn_surface import metres_per_unit
+from . import hull
+
+
+@dataclass(frozen=True, eq=False)
+class FingerTip:
+    """``tool`` in metres, None for a point; ``remark`` tells what was done to a mesh, if much."""
+
+    tool: Tool | None = None
+    remark: str = ""
+
+    def pressing(self, snapshot: Snapshot) -> tuple[PressingTool, ...]:
+        """The tools that press in a snapshot, for drawing."""
+        if self.tool is None:
+            return ()
+        return tuple(
+            PressingTool(self.tool, Pose(finger.proxy, finger.orientation), finger.contact_force)
+            for finger in snapshot.fingers
+            if finger.touching
+        )
+
+
+def chosen_tip(scene: bpy.types.Scene, pressed: bpy.types.Object) -> FingerTip:
+    """What the scene says touches the surface of ``pressed``.
+
+    Raises
+    ------
+    PalpateError
+        No tool object is chosen, or it cannot press, or it is what is pressed.
+    """
+    chosen, metres = scene.palpate, metres_per_unit(scene)
+    match chosen.tip:
+        case "SPHERE":
+            return FingerTip(tools.sphere(metres * chosen.tip_radius))
+        case "PLATE":
+            return FingerTip(tools.plate(metres * chosen.plate_width, metres * chosen.plate_depth))
+        case "ROD":
+            return FingerTip(tools.rod(metres * chosen.tip_radius, metres * chosen.rod_length))
+        case "MESH":
+            if chosen.tip_object == pressed:
+                raise PalpateError(
+                    f"tool: {pressed.name} cannot press itself; choose another mesh as the tool"
+                )
+            return _of_object(chosen.tip_object, scene)
+    return FingerTip()
+
+
+def _of_object(thing: bpy.types.Object | None, scene: bpy.types.Scene) -> FingerTip:
+    if thing is None or thing.name not in scene.objects:
+        raise PalpateError("tool: no mesh object is chosen; pick one under Finger")
+    shape = hull.hull_of(thing, scene)
+    return FingerTip(tools.convex(shape.corners), shape.remark)

@@ -1,0 +1,125 @@
+"""A mesh object of the scene as a convex tool: Blender's convex hull, with few corners.
+
+The object itself, its mesh and its modifiers stay as they are.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import bmesh
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.errors import PalpateError
+from ..scene.drawn_surface import frame_of
+
+Array = NDArray[np.float64]
+
+# As many as the tick's distance to a hull takes.
+MOST_CORNERS = 64
+# A hull that is this much larger than the mesh, as a share, tells of a hollow.
+HOLLOW = 0.01
+# Thinner than this share of its size, it is flat.
+FLAT = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class Hull:
+    """Corners (k, 3), metres, about the object's own origin and along its axes, and in words what
+    was done to the mesh; empty where it was convex and simple.
+    """
+
+    corners: Array
+    remark: str
+
+
+def hull_of(thing: bpy.types.Object, scene: bpy.types.Scene) -> Hull:
+    """The convex hull of an object as it is seen, modifiers and scale included.
+
+    Raises
+    ------
+    PalpateError
+        An object that is not a mesh, has no volume, or is flattened by its transform.
+    """
+    if thing.type != "MESH":
+        raise PalpateError(f"tool: {thing.name} is not a mesh; choose a mesh object as the tool")
+    try:
+        frame = frame_of(thing, scene)
+    except PalpateError as problem:
+        raise PalpateError(f"tool {thing.name}: {problem}") from problem
+    local, hollow = _blenders_hull(thing)
+    corners = frame.body_from_local(local)
+    if len(corners) < 4 or _thickness(corners) <= FLAT * float(np.ptp(corners, axis=0).max()):
+        raise PalpateError(
+            f"tool: {thing.name} has no volume; give it at least four vertices that are not in a "
+            "plane, or choose Plate"
+        )
+    few = _most_spread(corners)
+    said = []
+    if hollow:
+        said.append("it is not convex, so its convex hull presses")
+    if len(few) < len(corners):
+        said.append(f"its hull was simplified from {len(corners)} to {len(few)} corners")
+    return Hull(few, f"{thing.name}: {'; '.join(said)}" if said else "")
+
+
+def _blenders_hull(thing: bpy.types.Object) -> tuple[Array, bool]:
+    """Corners (k, 3) of the hull, local units, and whether the mesh was smaller than it."""
+    evaluated = thing.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    mesh, shape = evaluated.to_mesh(), bmesh.new()
+    try:
+        shape.from_mesh(mesh)
+        before = abs(shape.calc_volume())
+        if len(shape.verts) < 4:
+            return np.zeros((0, 3)), False
+        made = bmesh.ops.convex_hull(shape, input=shape.verts, use_existing_faces=False)
+        inside = {
+            vertex for vertex in made["geom_interior"] if isinstance(vertex, bmesh.types.BMVert)
+        }
+        on_hull = {
+            vertex
+            for face in made["geom"]
+            if isinstance(face, bmesh.types.BMFace)
+            for vertex in face.verts
+        }
+        corners = np.array([vertex.co for vertex in on_hull - inside], dtype=np.float64)
+    finally:
+        shape.free()
+        evaluated.to_mesh_clear()
+    corners = corners.reshape(-1, 3)
+    return corners, _volume(corners) > (1.0 + HOLLOW) * before
+
+
+def _volume(corners: Array) -> float:
+    """Volume of the convex hull of some points, by Blender; 0 for less than four."""
+    shape = bmesh.new()
+    try:
+        for corner in corners.tolist():
+            shape.verts.new(corner)
+        if len(corners) < 4:
+            return 0.0
+        bmesh.ops.convex_hull(shape, input=shape.verts)
+        bmesh.ops.recalc_face_normals(shape, faces=shape.faces)
+        return abs(float(shape.calc_volume()))
+    finally:
+        shape.free()
+
+
+def _thickness(points: Array) -> float:
+    """The smallest extent of the points along their principal axes."""
+    axes = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)[2]
+    return float(np.ptp(points @ axes.T, axis=0).min())
+
+
+def _most_spread(corners: Array) -> Array:
+    """All corners if they are few; else those that lie furthest from the ones taken before."""
+    if len(corners) <= MOST_CORNERS:
+        return corners
+    taken = [int(np.argmax(np.linalg.norm(corners - corners.mean(axis=0), axis=1)))]
+    gap = np.linalg.norm(corners - corners[taken[0]], axis=1)
+    while len(taken) < MOST_CORNERS:
+        taken.append(int(np.argmax(gap)))
+        gap = np.minimum(gap, np.linalg.norm(corners - corners[taken[-1]], axis=1))
+    return corners[np.sort(taken)]

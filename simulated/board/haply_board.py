@@ -1,0 +1,184 @@
+"""The simulated 2DIY: a five-bar arm in somebody's hand, a hAPI board and its port.
+
+The handle is a mass in the plane (`plant.py`); motors act on it and encoders see it through the
+arm's geometry. The board talks as `haply_firmware.py` does.
+"""
+
+from __future__ import annotations
+
+import math
+import random
+from collections import deque
+from dataclasses import replace
+from pathlib import Path
+
+from ...core.errors import PalpateError
+from ...core.servo.haply_models import DEFAULT_MODEL, haply_model
+from ..hand.hand_schedule import HandSchedule
+from ..hand.plant import Plant, Vector
+from ..hand.quaternion import Quaternion
+from ..options import SimulatedOptions
+from ..wire.pseudo_terminal import PseudoTerminal
+from .haply_firmware import PORTS, HaplyCounters, HaplyFirmware
+
+RELEASE_AFTER_SECONDS = 0.25
+
+
+class ByteFaults:
+    """One direction of a line without frames: bytes vanish, bits flip, all come late."""
+
+    def __init__(self, options: SimulatedOptions, seed: int) -> None:
+        self.lost = 0
+        self.flipped = 0
+        self._options = options
+        self._dice = random.Random(seed)  # noqa: S311 - dice for a simulation, not secrets
+        self._on_the_way: deque[tuple[float, bytes]] = deque()
+
+    def put(self, data: bytes, now: float) -> None:
+        """Send bytes at `now`."""
+        if data:
+            self._on_the_way.append((now + self._options.delay, self._through(data)))
+
+    def take(self, now: float) -> bytes:
+        """What has arrived until `now`."""
+        arrived = b""
+        while self._on_the_way and self._on_the_way[0][0] <= now:
+            arrived += self._on_the_way.popleft()[1]
+        return arrived
+
+    def _through(self, data: bytes) -> bytes:
+        loss, noise = self._options.loss, 1.0 - (1.0 - self._options.noise) ** 8
+        if not (loss or noise):
+            return data
+        passed = bytearray()
+        for byte in data:
+            if self._dice.random() < loss:
+                self.lost += 1
+            elif self._dice.random() < noise:
+                self.flipped += 1
+                passed.append(byte ^ 1 << self._dice.randrange(8))
+            else:
+                passed.append(byte)
+        return bytes(passed)
+
+
+class HaplyBoard:
+    """The whole device, in steps; what `SimulatedBoard` is for devices that speak the link.
+
+    The hand waits in the rest pose, unless `options.rest` is another place than the default, until
+    the first host sets the board up. Of the options those have a meaning that are about the hand,
+    the moving mass and its friction, the plug, and loss (of bytes here), noise and delay; encoders
+    and motors are those of the model. Heights are 0.
+
+    Raises PalpateError for a model that is not known and for options that make no sense.
+    """
+
+    def __init__(self, options: SimulatedOptions, model: str = DEFAULT_MODEL) -> None:
+        self.model = haply_model(model)
+        if options.rest == SimulatedOptions().rest:
+            options = replace(options, rest=self.model.rest)
+        self._options = options
+        self._schedule = HandSchedule(options)
+        if self._schedule.turned(0.0) is not None:
+            raise PalpateError("simulated 2DIY: it cannot tell how it is turned; omit --turning")
+        self._unplugged = 0
+        start = self._schedule.hand(0.0)
+        self.plant = Plant(options.impedance, 1.0 / options.rate_hz, start)
+        self._degrees = self.model.angles(start) or self.model.rest_degrees
+        self._force: Vector = (0.0, 0.0, 0.0)
+        self._largest_force = 0.0
+        self._to_device = ByteFaults(options, 2 * options.seed)
+        self._to_host = ByteFaults(options, 2 * options.seed + 1)
+        self.firmware = HaplyFirmware(self._counts)
+        self.terminal = PseudoTerminal(
+            Path(options.link) if options.link else None, RELEASE_AFTER_SECONDS
+        )
+
+    def tick(self, now: float, steps: int) -> None:
+        """Read the host, move by `steps` periods, answer."""
+        self._schedule.keep_plug(now, self.unplug, self.plug_in)
+        self._to_device.put(self.terminal.read(now), now)
+        self.firmware.receive(self._to_device.take(now))
+        self._to_host.put(self.firmware.run(now), now)
+        if self.firmware.counters.setups:
+            self._schedule.host_came(now)
+        self._move(now, steps)
+        self.terminal.write(self._to_host.take(now))
+
+    def move_hand(self, now: float, position: Vector, seconds: float) -> None:
+        """Leave the script: go from where the hand is to `position` and stay."""
+        self._schedule.move_hand(now, position, seconds)
+
+    def turn_hand(self, now: float, rotation: Quaternion, seconds: float) -> None:
+        """It has no sense of that."""
+
+    def press_buttons(self, mask: int) -> None:
+        """There are none."""
+
+    def unplug(self) -> None:
+        """Pull the plug, if it is in: the motors lose their current too."""
+        if self.terminal.plugged:
+            self._unplugged += 1
+            self.terminal.unplug()
+            self.firmware = HaplyFirmware(self._counts, self.firmware.counters)
+
+    def plug_in(self) -> None:
+        """Put the plug back, if it is out: the board starts afresh and knows nothing."""
+        if not self.terminal.plugged:
+            self.terminal.plug_in()
+
+    def report(self) -> dict[str, object]:
+        """Counters and where everything is now; SI units, angles in degrees."""
+        seen: HaplyCounters = self.firmware.counters
+        plant = self.plant
+        return {
+            "resets": seen.resets,
+            "setups": seen.setups,
+            "answers": seen.answers,
+            "bytes_skipped": seen.skipped,
+            "read_timeouts": seen.timeouts,
+            "plugged": self.terminal.plugged,
+            "unplugged": self._unplugged,
+            "torques": [self.firmware.torque(port) for port in range(PORTS)],
+            "angles": self._degrees,
+            "largest_force": self._largest_force,
+            "felt_force": self._force,
+            "hand_force": plant.hand_force,
+            "position": plant.position,
+            "velocity": plant.velocity,
+            "target": plant.target,
+            "work_of_felt_force": plant.work,
+            "bytes_lost_on_purpose": self._to_device.lost + self._to_host.lost,
+            "bits_flipped_on_purpose": self._to_device.flipped + self._to_host.flipped,
+        }
+
+    def _move(self, now: float, steps: int) -> None:
+        period = self.plant.step_seconds
+        for remaining in range(steps - 1, -1, -1):
+            self._force = self._motor_force()
+            self._largest_force = max(self._largest_force, math.hypot(*self._force))
+            x, y, _ = self._schedule.hand(now, remaining * period)
+            self.plant.step(self._force, (x, y, 0.0))
+            # Beyond the arms' reach the elbows stay where they were.
+            self._degrees = self.model.angles(self.plant.position) or self._degrees
+
+    def _motor_force(self) -> Vector:
+        first, second = (
+            self.firmware.torque(port) * (1.0 if sense == 0 else -1.0)
+            for port, sense in zip(self.model.ports, self.model.motor_senses, strict=True)
+        )
+        radians = (math.radians(self._degrees[0]), math.radians(self._degrees[1]))
+        return self.model.device_force(self.model.arm.handle_force(radians, (first, second)))
+
+    def _counts(self) -> list[int]:
+        counts = [0] * PORTS
+        for port, sense, degrees, resolution in zip(
+            self.model.ports,
+            self.model.encoder_senses,
+            self._degrees,
+            self.model.resolutions,
+            strict=True,
+        ):
+            count = math.floor(degrees * resolution / 2.0 / 360.0)
+            counts[port] = count if sense == 0 else -count
+        return counts

@@ -1,0 +1,167 @@
+"""What the program on a device's board does with the link: answer, stream, obey, let go.
+
+No clock and no port of its own: times and bytes are handed in, so that every rule can be tested.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from ...core.servo import link
+from ..hand.plant import ZERO, Vector
+from ..hand.quaternion import Quaternion
+
+WATCHDOG_SECONDS = 0.020
+
+FAULT_LIMP = 1
+FAULT_PROTOCOL = 2
+
+
+@dataclass
+class FirmwareCounters:
+    """What the device has seen; forces in N."""
+
+    states: int = 0
+    hellos: int = 0
+    forces: int = 0
+    """Valid FORCE, whether enabled or not."""
+    lost: int = 0
+    """Gaps in the sequence of FORCE."""
+    duplicates: int = 0
+    out_of_order: int = 0
+    unexpected: int = 0
+    """Right frames that a host has no business to send, or FORCE before any HELLO."""
+    clamped: int = 0
+    limp: int = 0
+    """How often the watchdog ran out after the host had been driving."""
+    limp_after: float = 0.0
+    """From the last valid FORCE to letting go, the last time, s."""
+    limp_look: float = 0.0
+    """How long the board had not looked before that, s: as much over 20 ms `limp_after` may be."""
+    largest_force: float = 0.0
+
+
+class Firmware:
+    """The device's side of the link."""
+
+    def __init__(self, hello: link.DeviceHello) -> None:
+        self.hello = hello
+        self.counters = FirmwareCounters()
+        self.decoder = link.Decoder()
+        self.streaming = False
+        self._sequence = 0
+        self._force = ZERO
+        self._braked = False
+        self._looked_at = -math.inf
+        self._heard_at: float | None = None
+        """When the last valid FORCE came; None while limp."""
+        self._heard_sequence = 0
+
+    @property
+    def limp(self) -> bool:
+        """True while nobody drives the device."""
+        return self._heard_at is None
+
+    def plug_in(self) -> None:
+        """Start afresh, as a board does that gets its power from the plug; counters stay."""
+        self.streaming = False
+        self._heard_at = None
+        errors, self.decoder = self.decoder.errors, link.Decoder()
+        self.decoder.errors = errors
+
+    def receive(self, data: bytes, now: float) -> bytes:
+        """Read what the host has sent; returns the frames to answer with."""
+        return b"".join(self._obey(message, now) for message in self.decoder.feed(data))
+
+    def watch(self, now: float, look_seconds: float = 0.0) -> bytes:
+        """Go limp when the host has been silent for too long; returns the FAULT that tells it.
+
+        A board that looks again only in `look_seconds` lets go when that would be too late.
+        """
+        looked_at, self._looked_at = self._looked_at, now
+        if self._heard_at is None or now - self._heard_at + look_seconds <= WATCHDOG_SECONDS:
+            return b""
+        self.counters.limp_after = now - self._heard_at
+        self.counters.limp_look = now - max(looked_at, self._heard_at)
+        self._heard_at = None
+        self.counters.limp += 1
+        return link.encode(link.Fault(FAULT_LIMP, self.counters.limp % (1 << 16)))
+
+    @property
+    def force(self) -> Vector:
+        """What the motors make now, N."""
+        return ZERO if self.limp else self._force
+
+    @property
+    def braked(self) -> bool:
+        """True while the host asks for damping."""
+        return self._braked and not self.limp
+
+    def state(self, now: float, position_um: tuple[int, int, int], buttons: int) -> bytes:
+        """The next STATE, or nothing as long as no host has said HELLO."""
+        if not self.streaming:
+            return b""
+        time_us = round(now * 1e6) % (1 << 32)
+        message = link.State(self._sequence, time_us, position_um, buttons, link.StateFlag.READY)
+        self._sequence = (self._sequence + 1) % link.SEQUENCES
+        self.counters.states += 1
+        return link.encode(message)
+
+    def orientation(self, rotation: Quaternion) -> bytes:
+        """How the stylus is turned in the next STATE, to be sent before it; nothing as long as no
+        host has said HELLO.
+        """
+        if not self.streaming:
+            return b""
+        return link.encode(link.orientation(self._sequence, rotation))
+
+    def _obey(self, message: link.Message, now: float) -> bytes:
+        match message:
+            case link.HostHello():
+                self.counters.hellos += 1
+                self.streaming = True
+                # A new session: whatever was asked for before is void.
+                self._heard_at = None
+                return link.encode(self.hello)
+            case link.OtherHello():
+                self.counters.hellos += 1
+                # That host could not read what is streamed, and what it sends may mean anything.
+                self.streaming = False
+                self._heard_at = None
+                fault = link.Fault(FAULT_PROTOCOL, message.protocol)
+                return link.encode(self.hello) + link.encode(fault)
+            case link.Force() if self.streaming:
+                self._take(message, now)
+            case _:
+                self.counters.unexpected += 1
+        return b""
+
+    def _take(self, message: link.Force, now: float) -> None:
+        counters = self.counters
+        if not self.limp:
+            ahead = (message.sequence - self._heard_sequence) % link.SEQUENCES
+            if ahead == 0:
+                counters.duplicates += 1
+                return
+            if ahead >= link.SEQUENCES // 2:
+                counters.out_of_order += 1
+                return
+            counters.lost += ahead - 1
+        counters.forces += 1
+        self._heard_at, self._heard_sequence = now, message.sequence
+        self._braked = bool(message.flags & link.ForceFlag.DAMP)
+        self._force = ZERO
+        if message.flags & link.ForceFlag.ENABLE:
+            self._force = self._within_limit(message.force_mn)
+            counters.largest_force = max(counters.largest_force, math.hypot(*self._force))
+
+    def _within_limit(self, force_mn: tuple[int, int, int]) -> Vector:
+        x, y, z = (component * 1e-3 for component in force_mn)
+        size, limit = math.hypot(x, y, z), self.hello.largest_force
+        # Rounding to mN may carry a force at the limit just past it.
+        if size <= limit + 1e-3:
+            return (x, y, z)
+        self.counters.clamped += 1
+        scale = limit / size
+        return (x * scale, y * scale, z * scale)

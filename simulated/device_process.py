@@ -1,0 +1,209 @@
+"""The simulated device: a process of its own on a pseudo-terminal that speaks the link.
+
+Started as `palpate devices simulate`, or by `SimulatedDevice`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import json
+import os
+import sys
+import time
+
+from ..core.errors import PalpateError
+from ..core.machine.stop_signals import stopped_by_signals
+from ..core.servo.haply_models import DEFAULT_MODEL, HAPLY_MODELS
+from .board.haply_board import HaplyBoard
+from .board.simulated_board import SimulatedBoard
+from .hand.quaternion import unit
+from .options import SimulatedOptions, add_simulated_options, simulated_options
+
+LATE_SECONDS = 200e-6
+PRIORITY = 1
+MOST_STEPS_AT_ONCE = 50
+"""After a longer hole the device's world has stood still for the rest, rather than jump."""
+
+Board = SimulatedBoard | HaplyBoard
+
+
+class Clock:
+    """Ticks at absolute deadlines, and what became of them."""
+
+    def __init__(self, rate_hz: int) -> None:
+        self._period = 1.0 / rate_hz
+        self._start = time.perf_counter()
+        self._deadline = self._start
+        self.ticks = 0
+        self.late = 0
+        self.skipped = 0
+        self.longest_lateness = 0.0
+
+    def now(self) -> float:
+        """Seconds since the clock was made."""
+        return time.perf_counter() - self._start
+
+    def wait(self) -> int:
+        """Sleep until the next deadline; returns how many periods have passed, at least 1."""
+        self._deadline += self._period
+        while (pause := self._deadline - time.perf_counter()) > 0.0:
+            time.sleep(pause)
+        lateness = time.perf_counter() - self._deadline
+        missed = int(lateness / self._period)
+        self._deadline += missed * self._period
+        self.ticks += 1
+        self.late += lateness > LATE_SECONDS
+        self.longest_lateness = max(self.longest_lateness, lateness)
+        self.skipped += max(0, missed + 1 - MOST_STEPS_AT_ONCE)
+        return min(missed + 1, MOST_STEPS_AT_ONCE)
+
+    def report(self) -> dict[str, object]:
+        """The rate that was reached, and what kept it from the one asked for."""
+        seconds = self.now()
+        return {
+            "seconds": seconds,
+            "rate_hz": self.ticks / seconds,
+            "late_ticks": self.late,
+            "longest_lateness_us": self.longest_lateness * 1e6,
+            "skipped_steps": self.skipped,
+        }
+
+
+def run(
+    options: SimulatedOptions,
+    *,
+    haply: str | None = None,
+    commands: bool = False,
+    json_lines: bool = True,
+) -> None:
+    """Be the device until SIGTERM, SIGINT or, with `commands`, the end of standard input.
+
+    `haply` names the model of a Haply 2DIY to be; without it the device speaks the link.
+
+    Prints where the port is at the start and what was counted at the end, a JSON line each.
+    `commands` reads lines from standard input: `unplug`, `plug`, `buttons MASK`,
+    `move X Y Z SECONDS`, `turn W X Y Z SECONDS`, `report` (prints a JSON line).
+    Raises PalpateError when there can be no such port.
+    """
+    board = SimulatedBoard(options) if haply is None else HaplyBoard(options, haply)
+    try:
+        with stopped_by_signals() as stopped:
+            _say_where(board, options, json_lines)
+            realtime = _ask_for_real_time()
+            clock = Clock(options.rate_hz)
+            inbox = _Commands() if commands else None
+            while not stopped:
+                steps = clock.wait()
+                board.tick(clock.now(), steps)
+                if inbox and not inbox.obey(board, clock):
+                    break
+            # Whoever started this may be gone, and the report with them.
+            with contextlib.suppress(BrokenPipeError):
+                report = {"end": True, "realtime": realtime, **clock.report(), **board.report()}
+                _print_json(report, json_lines)
+    finally:
+        board.terminal.unplug()
+
+
+class _Commands:
+    """Lines on standard input, read without ever waiting for them."""
+
+    def __init__(self) -> None:
+        os.set_blocking(0, False)
+        self._parent = os.getppid()
+        self._begun = b""
+
+    def obey(self, board: Board, clock: Clock) -> bool:
+        """False when standard input has ended or the parent process has."""
+        try:
+            data = os.read(0, 4096)
+        except BlockingIOError:
+            return os.getppid() == self._parent
+        *lines, self._begun = (self._begun + data).split(b"\n")
+        for line in lines:
+            self._do(line.decode().split(), board, clock)
+        return bool(data)
+
+    @staticmethod
+    def _do(words: list[str], board: Board, clock: Clock) -> None:
+        match words:
+            case ["unplug"]:
+                board.unplug()
+            case ["plug"]:
+                board.plug_in()
+            case ["buttons", mask]:
+                board.press_buttons(int(mask))
+            case ["move", x, y, z, seconds]:
+                board.move_hand(clock.now(), (float(x), float(y), float(z)), float(seconds))
+            case ["turn", w, x, y, z, seconds]:
+                rotation = (float(w), float(x), float(y), float(z))
+                board.turn_hand(clock.now(), unit(rotation), float(seconds))
+            case ["report"]:
+                _print_json({**clock.report(), **board.report()}, True)
+            case _:
+                raise PalpateError(f"simulated device: no such command: {' '.join(words)}")
+
+
+def _ask_for_real_time() -> bool:
+    """A board has nobody beside it; come as near to that as this user may, below any servo."""
+    if sys.platform != "linux":
+        return False
+    try:
+        os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(PRIORITY))
+    except PermissionError:
+        return False
+    return True
+
+
+def _say_where(board: Board, options: SimulatedOptions, json_lines: bool) -> None:
+    if json_lines:
+        path = board.terminal.path
+        _print_json({"port": path, "link": options.link or None, "pid": os.getpid()}, True)
+    else:
+        _print(f"simulated device on {board.terminal.path} (stop with Ctrl-C)")
+
+
+def _print_json(content: dict[str, object], json_lines: bool) -> None:
+    if json_lines:
+        _print(json.dumps(content))
+        return
+    width = max(map(len, content))
+    for name, value in content.items():
+        _print(f"{name:{width}}  {value}")
+
+
+def _print(line: str) -> None:
+    sys.stdout.write(line + "\n")
+    sys.stdout.flush()
+
+
+def add_haply_option(parser: argparse.ArgumentParser) -> None:
+    """Give `parser` the option to be a Haply 2DIY."""
+    parser.add_argument(
+        "--haply",
+        nargs="?",
+        const=DEFAULT_MODEL,
+        metavar="MODEL",
+        help="be a Haply 2DIY on a hAPI board instead of a device that speaks the link: "
+        f"{', '.join(HAPLY_MODELS)} (default: {DEFAULT_MODEL})",
+    )
+
+
+def main() -> int:
+    """The command line of this file."""
+    parser = argparse.ArgumentParser(description="A simulated haptic device on a pseudo-terminal.")
+    add_simulated_options(parser)
+    add_haply_option(parser)
+    parser.add_argument(
+        "--commands",
+        action="store_true",
+        help="read commands from standard input, and stop when it ends",
+    )
+    arguments = parser.parse_args()
+    try:
+        run(simulated_options(arguments), haply=arguments.haply, commands=arguments.commands)
+    except PalpateError as error:
+        sys.stderr.write(f"palpate: {error}\n")
+        return 2
+    return 0

@@ -1,0 +1,1 @@
+"""The hand and the handle it moves."""

@@ -1,0 +1,223 @@
+"""Everything that can be chosen about the simulated device, once for command line and code."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import Any
+
+from ..core.errors import PalpateError
+from ..core.servo.link import DeviceHello
+from .hand.hand_script import HandScript, TurnScript, press_script, read_script, tilt_script
+from .hand.plant import Impedance, Vector
+
+
+def _about(unit: str, text: str) -> dict[str, str]:
+    return {"unit": unit, "help": text}
+
+
+@dataclass(frozen=True)
+class SimulatedOptions:
+    """The device, the hand that holds it, and what goes wrong. SI units.
+
+    Times count from the first HELLO, before which the hand waits at `rest`.
+    """
+
+    name: str = field(
+        default="Simulated", metadata=_about("TEXT", "name told in HELLO, at most 16 bytes")
+    )
+    rate_hz: int = field(
+        default=1000, metadata=_about("HZ", "rate of the device's own loop and of STATE")
+    )
+    largest_force: float = field(default=3.0, metadata=_about("N", "largest force of the motors"))
+    workspace: Vector = field(
+        default=(0.1, 0.1, 0.1),
+        metadata=_about("XYZ", "half extents of the workspace told in HELLO"),
+    )
+    resolution_um: int = field(
+        default=1, metadata=_about("UM", "step of the encoders in micrometres")
+    )
+    mass: float = field(default=0.1, metadata=_about("KG", "moving mass"))
+    damping: float = field(default=0.5, metadata=_about("NS/M", "viscous friction"))
+    coulomb: float = field(
+        default=0.0, metadata=_about("N", "Coulomb friction of each axis; below it the axis sticks")
+    )
+    force_step: float = field(
+        default=0.0,
+        metadata=_about("N", "step of the motors' force, as of their current (0: none)"),
+    )
+    brake: float = field(
+        default=20.0, metadata=_about("NS/M", "damping added while the host asks for it")
+    )
+    hand_stiffness: float = field(
+        default=500.0, metadata=_about("N/M", "spring between the hand and the device")
+    )
+    hand_damping: float = field(
+        default=10.0, metadata=_about("NS/M", "damper between the hand and the device")
+    )
+    rest: Vector = field(
+        default=(0.0, 0.0, 0.03), metadata=_about("XYZ", "where the hand waits for the host")
+    )
+    at: Vector | None = field(
+        default=None, metadata=_about("XYZ", "where a press begins (default: where the hand rests)")
+    )
+    by: Vector = field(
+        default=(0.0, 0.0, 0.0), metadata=_about("XYZ", "how far a press goes from there")
+    )
+    approach: float = field(
+        default=1.0, metadata=_about("S", "time from rest to the beginning of the first press")
+    )
+    period: float = field(default=2.0, metadata=_about("S", "time of one press, in and out"))
+    hold: float = field(
+        default=0.0,
+        metadata=_about("S", "of which the hand stays at the deepest point; inf: for good"),
+    )
+    script: str = field(
+        default="",
+        metadata=_about("FILE", "keyframes of the hand instead, CSV t,x,y,z[,qw,qx,qy,qz] or JSON"),
+    )
+    turning: float | None = field(
+        default=None,
+        metadata=_about(
+            "DEG", "tell an orientation; the hand tilts the stylus by so much and back (0: upright)"
+        ),
+    )
+    turning_axis: Vector = field(
+        default=(1.0, 0.0, 0.0), metadata=_about("XYZ", "axis of this, in the device's axes")
+    )
+    turning_period: float = field(
+        default=4.0, metadata=_about("S", "time of one tilt, there and back")
+    )
+    loss: float = field(
+        default=0.0, metadata=_about("FRACTION", "of the frames vanishes, both ways")
+    )
+    noise: float = field(default=0.0, metadata=_about("FRACTION", "of the bits flips, both ways"))
+    delay: float = field(default=0.0, metadata=_about("S", "on the way, each way"))
+    latency_timer: float = field(
+        default=0.0,
+        metadata=_about("S", "bytes to the host are held back so long, as FTDI's adapters do"),
+    )
+    jitter: float = field(
+        default=0.0, metadata=_about("S", "at most, by chance on top of the delay, each way")
+    )
+    seed: int = field(default=1, metadata=_about("N", "of loss, noise and jitter"))
+    unplug_at: float | None = field(
+        default=None, metadata=_about("S", "when the plug is pulled (needs a link to return)")
+    )
+    unplug_for: float = field(
+        default=math.inf, metadata=_about("S", "until it is plugged in again")
+    )
+    button_at: float | None = field(
+        default=None, metadata=_about("S", "when the button is pressed")
+    )
+    button_for: float = field(default=0.2, metadata=_about("S", "until it is released"))
+    link: str = field(
+        default="", metadata=_about("PATH", "symbolic link that always leads to the port")
+    )
+
+    def __post_init__(self) -> None:
+        positive = ("rate_hz", "largest_force", "resolution_um", "mass")
+        not_negative = (
+            "damping",
+            "coulomb",
+            "force_step",
+            "brake",
+            "hand_stiffness",
+            "hand_damping",
+            "delay",
+            "jitter",
+            "latency_timer",
+            "unplug_for",
+        )
+        for name in positive:
+            if not (0 < getattr(self, name) < math.inf):
+                raise PalpateError(f"simulated device: {_flag(name)} must be more than 0")
+        for name in not_negative:
+            if not getattr(self, name) >= 0.0:
+                raise PalpateError(f"simulated device: {_flag(name)} must be at least 0")
+        for name in ("loss", "noise"):
+            if not 0.0 <= getattr(self, name) <= 1.0:
+                raise PalpateError(f"simulated device: {_flag(name)} is a fraction from 0 to 1")
+        if self.rate_hz > 0xFFFF:
+            raise PalpateError("simulated device: --rate-hz must be at most 65535")
+        if self.unplug_at is not None and math.isfinite(self.unplug_for) and not self.link:
+            raise PalpateError("simulated device: to come back to its path it needs --link PATH")
+
+    @property
+    def hello(self) -> DeviceHello:
+        """What the device says of itself."""
+        return DeviceHello(self.name, 3, self.largest_force, self.workspace, self.rate_hz)
+
+    @property
+    def impedance(self) -> Impedance:
+        """What moves, and who holds it."""
+        return Impedance(
+            self.mass, self.damping, self.hand_stiffness, self.hand_damping, self.coulomb
+        )
+
+    def hand_script(self) -> HandScript:
+        """Raises PalpateError when the script's file is unreadable or its times make no sense."""
+        if self.script:
+            return read_script(Path(self.script))
+        at = self.rest if self.at is None else self.at
+        timing = {"approach": self.approach, "period": self.period, "hold": self.hold}
+        return press_script(self.rest, at, self.by, **timing)
+
+    def turn_script(self, hand: HandScript) -> TurnScript | None:
+        """How the hand holds the stylus; None for a device that tells no orientation.
+
+        Raises PalpateError when there are two answers, or one that makes no sense.
+        """
+        if self.turning is None:
+            return hand.turns
+        if hand.turns is not None:
+            raise PalpateError("simulated device: the script turns the stylus; omit --turning")
+        return tilt_script(self.turning_axis, self.turning, self.turning_period)
+
+    def arguments(self) -> list[str]:
+        """The command line that says the same."""
+        line: list[str] = []
+        for option in fields(self):
+            value = getattr(self, option.name)
+            if value != option.default:
+                values = value if isinstance(value, tuple) else (value,)
+                if len(values) == 1:
+                    line.append(f"{_flag(option.name)}={values[0]}")
+                else:
+                    # argparse takes -5e-05 for an option, unless there is a blank in front.
+                    line += [_flag(option.name), *(f" {value!r}" for value in values)]
+        return line
+
+
+def add_simulated_options(parser: argparse.ArgumentParser) -> None:
+    """Give `parser` one option for each field of `SimulatedOptions`."""
+    for option in fields(SimulatedOptions):
+        unit = option.metadata["unit"]
+        vector = unit == "XYZ"
+        kind = float if vector or option.default is None else type(option.default)
+        default = "" if option.default in (None, "") else " (default: %(default)s)"
+        parser.add_argument(
+            _flag(option.name),
+            dest=option.name,
+            type=kind,
+            nargs=3 if vector else None,
+            metavar=("X", "Y", "Z") if vector else unit,
+            default=option.default,
+            help=option.metadata["help"] + default,
+        )
+
+
+def simulated_options(arguments: argparse.Namespace) -> SimulatedOptions:
+    """The options that a parser with `add_simulated_options` has read; raises PalpateError."""
+    values: dict[str, Any] = {
+        option.name: getattr(arguments, option.name) for option in fields(SimulatedOptions)
+    }
+    for name, value in values.items():
+        values[name] = tuple(value) if isinstance(value, list) else value
+    return SimulatedOptions(**values)
+
+
+def _flag(name: str) -> str:
+    return "--" + name.replace("_", "-")

@@ -1,0 +1,194 @@
+"""Starting and stopping the simulated device from tests, command line and Blender."""
+
+from __future__ import annotations
+
+import json
+import os
+import selectors
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from types import TracebackType
+from typing import IO, Any, Self
+
+from ..core.errors import PalpateError
+from ..core.machine import run_module
+from .hand.plant import Vector
+from .hand.quaternion import Quaternion
+from .options import SimulatedOptions
+from .wire.pseudo_terminal import require_pseudo_terminals
+
+START_SECONDS = 20.0
+ANSWER_SECONDS = 10.0
+
+
+class SimulatedDevice:
+    """The simulated device as a child process. It ends with `stop`, with the `with` block, and by
+    itself when this process dies.
+
+    `haply` names the model of a Haply 2DIY to be; without it the device speaks the link.
+
+    `python` and `python_args` say how to start Python; inside Blender these are `sys.executable`
+    and `bpy.app.python_args`. Raises PalpateError where there are no pseudo-terminals and when the
+    device does not start.
+    """
+
+    def __init__(
+        self,
+        options: SimulatedOptions | None = None,
+        *,
+        haply: str | None = None,
+        python: str = sys.executable,
+        python_args: Sequence[str] = (),
+    ) -> None:
+        require_pseudo_terminals()
+        options = options or SimulatedOptions()
+        self._folder: tempfile.TemporaryDirectory[str] | None = None
+        if not options.link:
+            # So that it can be unplugged and come back at the same path.
+            self._folder = tempfile.TemporaryDirectory(prefix="palpate-device-")
+            options = replace(options, link=str(Path(self._folder.name) / "port"))
+        self.options = options
+        model = [] if haply is None else [f"--haply={haply}"]
+        self._unread = b""
+        self._last_report: dict[str, Any] | None = None
+        try:
+            self._process = subprocess.Popen(  # noqa: S603 - our own script, no shell
+                [
+                    python,
+                    *python_args,
+                    *run_module.command("simulated.device_process"),
+                    "--commands",
+                    *model,
+                    *options.arguments(),
+                ],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                # Ctrl-C is for the host: the device must still be there while the host lets go.
+                start_new_session=True,
+            )
+        except OSError as error:
+            self._remove_folder()
+            raise PalpateError(
+                f"the simulated device cannot be started: {python}: {error.strerror}; "
+                "check this installation of Python"
+            ) from error
+        try:
+            self.port: str = self._read_json(START_SECONDS)["port"]
+        except BaseException:
+            self.stop()
+            raise
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.stop()
+
+    @property
+    def running(self) -> bool:
+        """Whether the process lives."""
+        return self._process.poll() is None
+
+    @property
+    def pid(self) -> int:
+        """Its process number."""
+        return self._process.pid
+
+    def unplug(self) -> None:
+        """Make the port vanish; `plug_in` brings it back at the same path."""
+        self._command("unplug")
+
+    def plug_in(self) -> None:
+        """Bring the port back."""
+        self._command("plug")
+
+    def press_buttons(self, mask: int) -> None:
+        """Hold exactly the buttons of `mask` (0: none)."""
+        self._command(f"buttons {mask}")
+
+    def move_hand(self, position: Vector, seconds: float) -> None:
+        """Leave the script and bring the hand to `position` (m) in `seconds`."""
+        x, y, z = map(float, position)
+        self._command(f"move {x!r} {y!r} {z!r} {float(seconds)!r}")
+
+    def turn_hand(self, rotation: Quaternion, seconds: float) -> None:
+        """Leave the script and turn the stylus to a unit quaternion (w, x, y, z) in `seconds`; from
+        then on the device tells how it is turned.
+        """
+        w, x, y, z = map(float, rotation)
+        self._command(f"turn {w!r} {x!r} {y!r} {z!r} {float(seconds)!r}")
+
+    def report(self) -> dict[str, Any]:
+        """What the device has counted, and where it is now (see `SimulatedBoard.report`)."""
+        self._command("report")
+        return self._read_json(ANSWER_SECONDS)
+
+    def stop(self) -> dict[str, Any]:
+        """End the process and return its last report; idempotent. Empty if it ended without one."""
+        if self._last_report is None:
+            self._last_report = self._end()
+            self._remove_folder()
+        return self._last_report
+
+    def _remove_folder(self) -> None:
+        if self._folder:
+            self._folder.cleanup()
+
+    def _end(self) -> dict[str, Any]:
+        try:
+            # This closes its standard input, which tells it to stop.
+            rest, _ = self._process.communicate(timeout=ANSWER_SECONDS)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            rest, _ = self._process.communicate()
+        lines = (self._unread + rest).splitlines()
+        last = json.loads(lines[-1]) if lines else {}
+        return last if last.get("end") else {}
+
+    def _command(self, line: str) -> None:
+        pipe = _pipe(self._process.stdin)
+        try:
+            pipe.write(line.encode() + b"\n")
+            pipe.flush()
+        except (BrokenPipeError, ValueError) as error:
+            raise PalpateError("the simulated device has ended; start it again") from error
+
+    def _read_json(self, seconds: float) -> dict[str, Any]:
+        deadline = time.monotonic() + seconds
+        descriptor = _pipe(self._process.stdout).fileno()
+        with selectors.DefaultSelector() as selector:
+            selector.register(descriptor, selectors.EVENT_READ)
+            while b"\n" not in self._unread:
+                if not selector.select(max(0.0, deadline - time.monotonic())):
+                    raise PalpateError(
+                        f"the simulated device has not answered for {seconds:g} s; start it again"
+                    )
+                piece = os.read(descriptor, 4096)
+                if not piece:
+                    raise PalpateError(self._reason_for_end())
+                self._unread += piece
+        line, self._unread = self._unread.split(b"\n", 1)
+        content: dict[str, Any] = json.loads(line)
+        return content
+
+    def _reason_for_end(self) -> str:
+        lines = _pipe(self._process.stderr).read().decode(errors="replace").strip().splitlines()
+        reason = lines[-1].removeprefix("palpate: ") if lines else "no reason given"
+        return f"the simulated device has ended: {reason}"
+
+
+def _pipe(stream: IO[bytes] | None) -> IO[bytes]:
+    if stream is None:
+        raise RuntimeError("the process was started without this pipe")
+    return stream

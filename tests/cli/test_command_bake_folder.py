@@ -1,0 +1,240 @@
+"""``palpate bake --output-folder``, on this computer and on a cluster of two worker processes."""
+
+import contextlib
+import gc
+import importlib.metadata
+import json
+import logging
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+
+from palpate.cli.bake import scheduler
+from palpate.cli.main import main
+from palpate.core.body import body_file
+from palpate.core.machine.available_cores import available_cores
+
+
+def palpate(capsys, *words):
+    status = main([str(word) for word in words])
+    printed = capsys.readouterr()
+    return status, printed.out, printed.err
+
+
+@pytest.fixture
+def meshes(tmp_path, monkeypatch, cube_mesh):
+    """Two that become bodies, and one that does not."""
+    monkeypatch.chdir(tmp_path)
+    mesh, fixed = cube_mesh
+    np.savez("cube.npz", X=mesh.nodes, T=mesh.tets, fixed=fixed)
+    np.savez("large.npz", X=2 * mesh.nodes, T=mesh.tets, fixed=fixed)
+    Path("broken.obj").write_text("# nothing\n")
+    return ["cube.npz", "broken.obj", "large.npz"]
+
+
+@pytest.fixture
+def long_meshes(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    trimesh.creation.icosphere(subdivisions=4).export("ball.stl")
+    Path("second.stl").write_bytes(Path("ball.stl").read_bytes())
+    return ["ball.stl", "second.stl"]
+
+
+@pytest.fixture(scope="module")
+def start_cluster():
+    pytest.importorskip("distributed", reason="distributed is not installed (extra 'scheduler')")
+    from distributed import LocalCluster
+
+    with contextlib.ExitStack() as clusters:
+
+        def start(**options):
+            return clusters.enter_context(
+                LocalCluster(
+                    threads_per_worker=1,
+                    host="127.0.0.1",
+                    dashboard_address="127.0.0.1:0",
+                    silence_logs=logging.CRITICAL,
+                    **options,
+                )
+            )
+
+        yield start
+
+
+@pytest.fixture(scope="module")
+def workers_scratch(tmp_path_factory):
+    """Where the two workers put what they need for a while."""
+    return tmp_path_factory.mktemp("workers")
+
+
+@pytest.fixture(scope="module")
+def two_workers(start_cluster, workers_scratch):
+    environment = {"TMPDIR": str(workers_scratch)}
+    return start_cluster(n_workers=2, processes=True, env=environment).scheduler_address
+
+
+def names_in(folder):
+    return sorted(path.name for path in Path(folder).iterdir())
+
+
+def assert_two_of_three_became_bodies(status, printed, said):
+    assert status == 2
+    assert len(said.splitlines()) == 1
+    assert said.startswith("palpate: broken.obj: mesh: it has 0 vertices and 0 faces")
+    told = {entry["mesh"]: entry for entry in json.loads(printed)["bodies"]}
+    assert set(told) == {"cube.npz", "broken.obj", "large.npz"}
+    assert told["cube.npz"]["free_surface_nodes"] == 73
+    assert told["broken.obj"] == {
+        "mesh": "broken.obj",
+        "error": said.strip().removeprefix("palpate: broken.obj: "),
+    }
+    assert names_in("bodies") == ["cube.npz", "large.npz"]
+    assert body_file.load("bodies/large.npz").mesh.volume == pytest.approx(0.1**3)
+
+
+def test_many_meshes_become_bodies_in_a_folder(meshes, capsys):
+    assert_two_of_three_became_bodies(
+        *palpate(capsys, "bake", *meshes, "--output-folder", "bodies", "--jobs", 2, "--json")
+    )
+
+
+def test_lines_say_what_became_of_each(meshes, capsys):
+    status, printed, _ = palpate(capsys, "bake", "cube.npz", "--output-folder", "bodies")
+    assert status == 0
+    assert printed.startswith("cube.npz -> bodies/cube.npz  125 nodes, 73 free on the surface, ")
+
+
+def test_a_cluster_bakes_as_this_computer_does(meshes, capsys, two_workers):
+    words = ["--output-folder", "bodies", "--scheduler", two_workers, "--json"]
+    assert_two_of_three_became_bodies(*palpate(capsys, "bake", *meshes, *words))
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals are of Unix")
+@pytest.mark.parametrize("workers", ["threads", "cluster"])
+def test_an_interrupt_ends_all_bakes(long_meshes, workers, request, tmp_path):
+    where = ["--jobs", "2"]
+    scratch = tmp_path / "scratch"
+    if workers == "cluster":
+        where = ["--scheduler", request.getfixturevalue("two_workers")]
+        scratch = request.getfixturevalue("workers_scratch")
+    scratch.mkdir(exist_ok=True)
+    words = ["bake", *long_meshes, "--output-folder", "bodies", "--edge-length", "0.01", *where]
+    with subprocess.Popen(
+        [sys.executable, "-m", "palpate.cli.main", *words],
+        env=os.environ | {"TMPDIR": str(scratch)},
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as program:
+        while len(list(scratch.glob("palpate-bake-*/progress.jsonl"))) < 2:
+            assert program.poll() is None
+            time.sleep(0.05)
+        program.send_signal(signal.SIGINT)
+        _, said = program.communicate(timeout=30)
+    assert (program.returncode, said) == (130, "palpate: stopped\n")
+    assert names_in("bodies") == []
+    deadline = time.monotonic() + 20
+    while list(scratch.glob("palpate-*")):
+        assert time.monotonic() < deadline, "the workers go on"
+        time.sleep(0.05)
+
+
+def test_a_cluster_that_cannot_be_used_gets_one_line(meshes, capsys, start_cluster, monkeypatch):
+    monkeypatch.setattr(scheduler, "CONNECT_SECONDS", 1)
+
+    def refusal(address):
+        words = ["cube.npz", "--output-folder", "bodies", "--scheduler", address]
+        status, printed, said = palpate(capsys, "bake", *words)
+        assert (status, printed, len(said.splitlines())) == (2, "", 1)
+        # Dask's client that came to nothing is closed where it is collected: in the starting thread
+        # of the next one, the two would wait for each other.
+        gc.collect()
+        return said
+
+    assert "nothing answers at tcp://127.0.0.1:9" in refusal("tcp://127.0.0.1:9")
+    assert "nothing answers at nonsense://x" in refusal("nonsense://x")
+    assert "has no workers" in refusal(start_cluster(n_workers=0).scheduler_address)
+    bare = start_cluster(n_workers=1, preload="import sys; sys.modules['palpate'] = None")
+    assert "cannot load Palpate" in refusal(bare.scheduler_address)
+
+
+def test_a_cluster_with_another_palpate_is_refused(meshes, capsys, two_workers, monkeypatch):
+    here = importlib.metadata.version
+    monkeypatch.setattr(importlib.metadata, "version", lambda name: f"{here(name)}.1")
+    words = ["cube.npz", "--output-folder", "bodies", "--scheduler", two_workers]
+    status, _, said = palpate(capsys, "bake", *words)
+    assert status == 2
+    assert f"has palpate {here('palpate')}, and this is {here('palpate')}.1; install" in said
+
+
+def test_a_cluster_learns_that_nobody_waits_any_more(two_workers):
+    found = []
+
+    def interrupted():
+        with scheduler.cluster(two_workers) as workers:
+            found.append(workers)
+            assert workers.slots == 2
+            assert workers.executor.submit(workers.wanted).result() is True
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        interrupted()
+    with scheduler.cluster(two_workers) as later:
+        assert later.executor.submit(later.wanted).result() is True
+        assert later.executor.submit(found[0].wanted).result() is False
+
+
+def test_without_dask_one_line_says_what_to_install(meshes, capsys, monkeypatch):
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    words = ["cube.npz", "--output-folder", "bodies", "--scheduler", "tcp://farm:8786"]
+    status, _, said = palpate(capsys, "bake", *words)
+    assert status == 2
+    assert "pip install palpate[scheduler]" in said
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["cube.npz", "large.npz", "-o", "out.npz"], "--output-folder"),
+        (["cube.npz", "-o", "out.npz", "--jobs", "2"], "--jobs: is for baking many meshes"),
+        (["cube.npz", "--predict", "--jobs", "2"], "--jobs: is for baking many meshes"),
+        (["cube.npz", "cube.stl", "--output-folder", "bodies"], "rename one"),
+        (["cube.npz", "--output-folder", "."], "take its place"),
+        (["cube.npz", "--output-folder", "broken.obj"], "broken.obj is a file; name a folder"),
+        (["cube.npz", "--output-folder", "bodies", "--jobs", "0"], "--jobs"),
+    ],
+)
+def test_what_cannot_be_is_refused_before_any_work(meshes, capsys, words, said):
+    status, printed, refused = palpate(capsys, "bake", *words)
+    assert (status, printed, len(refused.splitlines())) == (2, "", 1)
+    assert said in refused
+    assert names_in(".") == ["broken.obj", "cube.npz", "large.npz"]
+
+
+def test_cores_are_those_this_process_may_use():
+    assert 1 <= available_cores() <= (os.cpu_count() or 1)
+
+
+@pytest.mark.parametrize("contents", ["no json", "[1]", "{}", '"text"'])
+def test_a_file_that_is_no_schedulers_is_refused_in_one_line(meshes, capsys, contents):
+    pytest.importorskip("distributed", reason="distributed is not installed (extra 'scheduler')")
+    Path("scheduler.json").write_text(contents, encoding="utf-8")
+    words = ["cube.npz", "--output-folder", "bodies", "--scheduler", "scheduler.json"]
+    status, printed, said = palpate(capsys, "bake", *words)
+    assert (status, printed, len(said.splitlines())) == (2, "", 1)
+    assert "scheduler.json is no scheduler file" in said
+
+
+@pytest.mark.parametrize("fraction", ["nan", "-0.1", "1.5"])
+def test_pins_that_no_bake_would_take_are_not_predicted(meshes, capsys, fraction):
+    status, printed, said = palpate(
+        capsys, "bake", "cube.npz", "--predict", "--pin-below", fraction
+    )
+    assert (status, printed) == (2, "")
+    assert "must lie between 0" in said

@@ -1,0 +1,135 @@
+"""Progress that is true: it never falls, ends at one, and leads to a fair time that remains."""
+
+import io
+import json
+
+import numpy as np
+import pytest
+
+from palpate.core.bake.child import ProgressLines
+from palpate.core.bake.settings import BakeSettings
+from palpate.core.bake.steps import bake
+from palpate.core.bake.work import BakeWork
+from palpate.core.machine.remaining_time import RemainingTime
+from palpate.core.stiffness.pins import PinNodes
+
+
+class Heard(list):
+    def tell(self, step, share):
+        self.append((step, share))
+
+    @property
+    def shares(self):
+        return [share for _, share in self if share is not None]
+
+
+def test_steps_count_by_the_time_they_take():
+    heard = Heard()
+    work = BakeWork(heard.tell)
+    work.unknown("tetrahedralize")
+    work.expect({"check": 1.0, "compliance": 6.0}, spent=3.0)
+    work.begin("check")
+    within = work.begin("compliance")
+    within(0.5)
+    within(1.0)
+    assert heard == [
+        ("tetrahedralize", None),
+        ("check", 0.3),
+        ("compliance", 0.4),
+        ("compliance", 0.7),
+        ("compliance", 1.0),
+    ]
+
+
+def test_a_step_that_turns_out_longer_holds_the_share_and_never_turns_it_back():
+    heard = Heard()
+    work = BakeWork(heard.tell)
+    work.expect({"plan": 5.0, "compliance": 5.0})
+    work.begin("plan")
+    work.within(1.0)
+    work.expect({"compliance": 45.0})
+    within = work.begin("compliance")
+    for share in np.linspace(0, 1, 11):
+        within(share)
+    assert heard.shares == sorted(heard.shares)
+    assert heard.shares[2] == 0.5
+    assert heard.shares[-1] == 1.0
+
+
+def test_a_step_that_is_not_needed_leaves_no_gap():
+    heard = Heard()
+    work = BakeWork(heard.tell)
+    work.expect({"compliance": 5.0, "compress": 5.0})
+    work.forget("compress")
+    work.begin("compliance")(1.0)
+    assert heard.shares == [0.0, 1.0]
+
+
+@pytest.mark.parametrize("form", ["dense", "compressed"])
+def test_a_bake_from_tetrahedra_knows_its_share_from_the_start(mouse, form):
+    heard = Heard()
+    settings = BakeSettings(pins=PinNodes(mouse.fixed), form=form)
+    bake(mouse.mesh, settings, heard.tell)
+    assert len(heard.shares) == len(heard) > 20
+    assert heard.shares == sorted(heard.shares)
+    assert heard.shares[-1] == 1.0
+    steps = list(dict.fromkeys(step for step, _ in heard))
+    assert steps == ["stiffness", "plan", "compliance", *(["compress"] * (form == "compressed"))]
+
+
+@pytest.mark.parametrize("form", ["dense", "compressed"])
+@pytest.mark.parametrize("share", [0.0, 0.3, 0.9])
+def test_whoever_listens_can_cancel_at_any_share(mouse, form, share):
+    def stop(_, done):
+        if done >= share:
+            raise KeyboardInterrupt
+
+    settings = BakeSettings(pins=PinNodes(mouse.fixed), form=form)
+    with pytest.raises(KeyboardInterrupt):
+        bake(mouse.mesh, settings, stop)
+
+
+def test_remaining_time_waits_for_something_to_go_by():
+    remaining = RemainingTime()
+    assert remaining.update(1.0, None) is None
+    assert remaining.update(2.0, 0.1) is None
+    assert remaining.update(2.2, 0.2) is None
+    assert remaining.update(3.0, 0.3) == pytest.approx(3.5)
+
+
+def test_remaining_time_of_even_work_is_right_throughout():
+    remaining = RemainingTime()
+    for seconds in np.arange(0, 20, 0.25):
+        told = remaining.update(seconds, seconds / 20)
+        assert told is None if seconds < 0.5 else told == pytest.approx(20 - seconds)
+
+
+def test_remaining_time_counts_down_while_the_share_stands_still():
+    remaining = RemainingTime()
+    remaining.update(0.0, 0.0)
+    first = remaining.update(2.0, 0.5)
+    assert remaining.update(3.0, 0.5) == pytest.approx(first - 1.0)
+    assert remaining.update(60.0, 0.5) == 0.0
+
+
+def test_remaining_time_does_not_jump_when_work_gets_slower():
+    remaining = RemainingTime()
+    remaining.update(0.0, 0.0)
+    told = [remaining.update(s, 0.1 * s if s < 5 else 0.5 + 0.02 * (s - 5)) for s in range(1, 29)]
+    figures = np.array(told[2:])
+    assert np.abs(np.diff(figures)).max() < 10.0
+    assert figures[-1] == pytest.approx(3.0, abs=2.5)
+
+
+def test_progress_lines_are_few(monkeypatch):
+    clock = iter(np.arange(0, 100, 0.001).tolist())
+    monkeypatch.setattr("palpate.core.bake.child.time.monotonic", lambda: next(clock))
+    lines = io.StringIO()
+    tell = ProgressLines(lines).tell
+    for share in np.linspace(0, 1, 1000):
+        tell("compliance", float(share))
+    tell("store", 1.0)
+    written = [json.loads(line) for line in lines.getvalue().splitlines()]
+    assert len(written) < 30
+    assert written[0] == ["compliance", 0.0]
+    assert written[-1] == ["store", 1.0]

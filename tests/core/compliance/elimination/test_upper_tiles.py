@@ -1,0 +1,47 @@
+import numpy as np
+import pytest
+
+from palpate.core.compliance.elimination.extend_add import extend_add, runs_between
+from palpate.core.compliance.elimination.upper_tiles import UpperTiles
+
+
+@pytest.mark.parametrize("size", [0, 1, 7, 8, 30])
+def test_a_gram_matrix_is_subtracted(rng, size):
+    panel = np.asfortranarray(rng.normal(size=(5, size)))
+    tiles, flops = UpperTiles.zeros(size, tile=8), []
+    tiles.subtract_gram(panel, flops.append)
+    np.testing.assert_allclose(tiles.dense(), -panel.T @ panel, atol=1e-14)
+    assert sum(flops) == 5 * size**2
+
+
+@pytest.mark.parametrize("tile", [4, 9, 64])
+def test_extend_add_is_addition_by_node_numbers(rng, tile):
+    """Against one dense matrix with rows and columns picked entry by entry."""
+    pivot_count, boundary, size = 9, 27, 21
+    targets = np.sort(rng.choice(pivot_count + boundary, size, replace=False))
+    child = UpperTiles.zeros(size, tile)
+    child.subtract_gram(np.asfortranarray(rng.normal(size=(size, size))), lambda _: None)
+    pivots = np.zeros((pivot_count, pivot_count), order="F")
+    coupling = np.zeros((pivot_count, boundary), order="F")
+    schur = UpperTiles.zeros(boundary, tile)
+    runs = runs_between(targets, pivot_count, child.edges, schur.edges)
+    extend_add(child, runs, pivots, coupling, schur)
+
+    expected = np.zeros((pivot_count + boundary,) * 2)
+    expected[np.ix_(targets, targets)] = child.dense()
+    np.testing.assert_array_equal(np.triu(pivots), np.triu(expected[:pivot_count, :pivot_count]))
+    np.testing.assert_array_equal(coupling, expected[:pivot_count, pivot_count:])
+    np.testing.assert_array_equal(schur.dense(), expected[pivot_count:, pivot_count:])
+
+
+def test_runs_are_as_long_as_they_can_be():
+    targets = np.array([2, 3, 4, 7, 8, 9, 10])
+    runs = runs_between(targets, 4, (0, 7), (0, 10))
+    assert [run.below for run in runs] == [slice(0, 2), slice(2, 3), slice(3, 7)]
+    assert [run.parent_tile for run in runs] == [-1, 0, 0]
+    assert [run.onward for run in runs] == [slice(2, 4), slice(0, 1), slice(3, 7)]
+
+
+def test_a_front_without_boundary_has_no_runs():
+    nothing = np.zeros(0, dtype=np.int64)
+    assert runs_between(nothing, 5, (0,), (0, 3)) == []

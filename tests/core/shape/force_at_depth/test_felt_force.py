@@ -1,0 +1,217 @@
+"""The corrected relation: convex, the linear one at first, and nearer to the solid when deep."""
+
+import numpy as np
+import pytest
+from scipy.sparse.linalg import splu
+
+from palpate.core.body.soft_body import SoftBody
+from palpate.core.compliance.surface_compliance import surface_compliance
+from palpate.core.contact.near_field.contact_points import node_normals
+from palpate.core.errors import PalpateError
+from palpate.core.mesh.paper_cube import paper_cube
+from palpate.core.shape.force_at_depth.felt_force import (
+    LEAST_SHARE,
+    Relation,
+    contact_relation,
+    corrected_touch,
+    felt_name,
+)
+from palpate.core.shape.force_at_depth.softening import node_softening
+from palpate.core.shape.solid.free_solid import FreeSolid
+from palpate.core.stiffness.assembly import assemble
+
+EDGE = 0.05
+
+
+def cube(formulation="linear"):
+    mesh, fixed = paper_cube(EDGE)
+    stiffness = assemble(mesh, 0.3, formulation=formulation)
+    compliance = surface_compliance(mesh, stiffness, fixed, dtype=np.float64)
+    return SoftBody(mesh, fixed, 0.3, compliance, 1e4, formulation)
+
+
+def softenings_of(body, solid):
+    found = np.zeros((len(body.mesh.surface_nodes), 4))
+    free = np.searchsorted(body.mesh.surface_nodes, body.compliance.free_surface)
+    found[free] = node_softening(solid, solid.surface, -node_normals(body.mesh)[free])
+    return found
+
+
+@pytest.fixture(scope="module")
+def body():
+    return cube()
+
+
+@pytest.fixture(scope="module")
+def solid(body):
+    return FreeSolid.of(body)
+
+
+@pytest.fixture(scope="module")
+def softenings(body, solid):
+    return softenings_of(body, solid)
+
+
+def newton_forces(solid, nodes, alpha, displacements):
+    """Forces (k, 3) at unit modulus that move a contact point by displacements (k, 3) in turn.
+
+    The contact point is the mean of ``nodes``, weighted by ``alpha``; the forces are the
+    multipliers of its constraint.
+    """
+    size = 3 * solid.node_count
+    places = np.searchsorted(solid.free, nodes)
+    seen = np.zeros((size, 3))
+    for place, weight in zip(places, alpha, strict=True):
+        seen[3 * place : 3 * place + 3] += weight * np.eye(3)
+    u, force, found = np.zeros((solid.node_count, 3)), np.zeros(3), []
+    for wanted in displacements:
+        for _ in range(30):
+            tangent = splu(solid.tangent(u).tocsc())
+            held = tangent.solve(seen)
+            free = tangent.solve(seen @ force - solid.forces(u).ravel())
+            more = np.linalg.solve(seen.T @ held, wanted - seen.T @ (u.ravel() + free))
+            step = free + held @ more
+            u, force = u + step.reshape(-1, 3), force + more
+            if np.abs(step).max() < 1e-12 * np.abs(u).max():
+                break
+        else:
+            raise AssertionError(f"Newton does not reach {wanted}")
+        found.append(force.copy())
+    return np.array(found)
+
+
+def relations(count=200):
+    """Relations of all kinds with displacements from shallow to absurd, on both sides of t = 0."""
+    chance = np.random.default_rng(3)
+    for number in range(count):
+        root = chance.standard_normal((3, 3))
+        stiffness = 100.0 * (root @ root.T + 0.1 * np.eye(3))
+        softening = 50.0 * chance.standard_normal(3)
+        saturation = 10.0 ** chance.uniform(1, 4)
+        u = chance.standard_normal(3) * 10.0 ** chance.uniform(-4, -0.5)
+        yield Relation(stiffness, softening, saturation if number % 4 else 1e4), u
+
+
+def test_the_force_is_the_gradient_of_the_energy():
+    for relation, u in relations():
+        step = 1e-6 * np.linalg.norm(u)
+        slopes = [
+            (relation.energy(u + step * axis) - relation.energy(u - step * axis)) / (2 * step)
+            for axis in np.eye(3)
+        ]
+        force = relation.force(u)
+        assert np.allclose(slopes, force, rtol=0, atol=1e-7 * np.abs(relation.stiffness @ u).max())
+
+
+def test_the_tangent_is_the_derivative_of_the_force():
+    for relation, u in relations():
+        step = 1e-5 * np.linalg.norm(u)
+        columns = [
+            (relation.force(u + step * axis) - relation.force(u - step * axis)) / (2 * step)
+            for axis in np.eye(3)
+        ]
+        tangent = relation.tangent(u)
+        assert np.allclose(np.array(columns).T, tangent, rtol=0, atol=1e-6 * np.abs(tangent).max())
+        assert np.allclose(tangent, tangent.T, rtol=0, atol=1e-13 * np.abs(tangent).max())
+
+
+def test_the_energy_is_convex_wherever_it_is_looked_at():
+    for relation, u in relations():
+        rest = relation.tangent(u) - LEAST_SHARE * relation.stiffness
+        assert np.linalg.eigvalsh(rest)[0] > -1e-12 * np.abs(relation.stiffness).max()
+
+
+def test_round_a_closed_path_no_work_is_done():
+    nodes, weights = np.polynomial.legendre.leggauss(12)
+    chance = np.random.default_rng(5)
+    for relation, _ in relations(20):
+        corners = 0.02 * chance.standard_normal((5, 3))
+        work = size = 0.0
+        for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+            for first in np.linspace(0, 1, 20, endpoint=False):
+                for place, weight in zip(nodes, weights, strict=True):
+                    at = start + (first + 0.025 * (place + 1)) * (end - start)
+                    part = 0.025 * weight * relation.force(at) @ (end - start)
+                    work, size = work + part, size + abs(part)
+        assert abs(work) < 1e-9 * size
+
+
+def test_a_shallow_press_feels_the_linear_force(body, softenings):
+    for depth in (1e-6, 1e-7):
+        touch = (120, [0.2, 0.3, 0.5], [0.0, 0.3 * depth, -depth])
+        linear, found = body.touch(*touch), corrected_touch(body, softenings, *touch)
+        gone = np.linalg.norm(found.force - linear.force) / np.linalg.norm(linear.force)
+        assert 0 < gone < 100 * depth
+
+
+@pytest.mark.parametrize("mode", ["consistent", "paper"])
+def test_the_force_is_the_same_from_both_sides_of_an_edge(body, softenings, mode):
+    triangles = body.mesh.surface_triangles
+    first = next(t for t, corners in enumerate(triangles) if not np.isin(corners, body.fixed).any())
+    shared = triangles[first][:2]
+    other = next(
+        t for t, corners in enumerate(triangles) if t != first and np.isin(shared, corners).all()
+    )
+    u = np.array([0.002, -0.003, -0.006])
+    forces = []
+    for triangle in (first, other):
+        alpha = np.where(triangles[triangle] == shared[0], 0.3, 0.0)
+        alpha[triangles[triangle] == shared[1]] = 0.7
+        forces.append(corrected_touch(body, softenings, triangle, alpha, u, mode=mode).force)
+    assert np.allclose(*forces, rtol=1e-12)
+    linear = body.touch(first, [0.3, 0.7, 0.0], u, mode=mode).force
+    assert np.linalg.norm(forces[0] - linear) > 0.05 * np.linalg.norm(linear)
+
+
+@pytest.mark.parametrize("formulation", ["linear", "smoothed"])
+def test_at_a_node_it_follows_the_solid_to_its_order(formulation):
+    body = cube(formulation)
+    solid = FreeSolid.of(body)
+    softenings = softenings_of(body, solid)
+    # Beside the middle of the cube's top: the force turns as the depth grows.
+    node = int(np.argmin(np.linalg.norm(body.mesh.nodes - [0.0125, 0.025, EDGE], axis=1)))
+    triangle, corner = np.argwhere(body.mesh.surface_triangles == node)[0]
+    alpha = np.eye(3)[corner]
+    inward = -node_normals(body.mesh)[np.searchsorted(body.mesh.surface_nodes, node)]
+    depths = np.array([0.00025, 0.0005])
+    true = newton_forces(solid, [node], [1.0], depths[:, None] * inward)
+    relation = contact_relation(body, softenings, int(triangle), alpha)
+    missed = np.array([relation.force(d * inward) for d in depths]) - true
+    along = np.abs(missed @ inward) / (true @ inward)
+    across = np.linalg.norm(missed, axis=1) / np.linalg.norm(true, axis=1)
+    assert along[1] < 5e-4
+    assert along[1] / along[0] == pytest.approx(8.0, rel=0.15)
+    assert across[1] / across[0] > 3.5
+
+
+def test_deep_presses_are_nearer_to_the_solid_than_the_linear_force(body, solid, softenings):
+    middle = int(np.argmin(np.linalg.norm(body.mesh.nodes - [0.025, 0.025, EDGE], axis=1)))
+    edge = int(np.argmin(np.linalg.norm(body.mesh.nodes - [0.025, 0.0, EDGE], axis=1)))
+    top = [
+        t
+        for t, corners in enumerate(body.mesh.surface_triangles)
+        if middle in corners and (body.mesh.nodes[corners][:, 2] == EDGE).all()
+    ]
+    down = np.array([0.0, 0.0, -1.0])
+    presses = [
+        (top[0], np.where(body.mesh.surface_triangles[top[0]] == middle, 1.0, 0.0), down),
+        (top[0], np.array([1, 1, 1]) / 3, down),
+        (top[1], np.array([0.6, 0.3, 0.1]), np.array([0.5, 0.0, -(0.75**0.5)])),
+    ]
+    on_edge, corner = np.argwhere(body.mesh.surface_triangles == edge)[0]
+    presses.append((int(on_edge), np.eye(3)[corner], np.array([0.0, 1.0, -1.0]) / 2**0.5))
+    depths = EDGE * np.array([0.02, 0.06, 0.1, 0.14])
+    for triangle, alpha, direction in presses:
+        asked = depths[:, None] * direction
+        true = newton_forces(solid, body.mesh.surface_triangles[triangle], alpha, asked)
+        relation = contact_relation(body, softenings, triangle, alpha)
+        wrong = np.array([relation.force(u) for u in asked]) - true
+        linear = asked @ relation.stiffness - true
+        share = np.linalg.norm(wrong, axis=1) / np.linalg.norm(linear, axis=1)
+        assert share.max() < 0.5
+
+
+def test_an_unknown_name_is_refused():
+    assert felt_name("corrected") == "corrected"
+    with pytest.raises(PalpateError, match="'true' is unknown; give linear or corrected"):
+        felt_name("true")

@@ -1,0 +1,64 @@
+"""Files of tables: whole, of one body, or refused."""
+
+import numpy as np
+import pytest
+
+from palpate.core.shape.paper.table_file import TableFileError, read_table, table_path, write_table
+
+ARRAYS = {"numbers": np.arange(5.0), "bytes": np.arange(40, dtype=np.uint8)}
+
+
+@pytest.fixture
+def path(tmp_path):
+    path = table_path(tmp_path / "mouse-abc.npz", "series")
+    write_table(path, "series", "a key", ARRAYS)
+    return path
+
+
+def test_it_lies_beside_the_body_file_under_its_name(path):
+    assert path.name == "mouse-abc.series.npz"
+
+
+def test_what_was_written_is_read(path):
+    found = read_table(path, "series", "a key")
+    assert found.keys() == ARRAYS.keys()
+    for name, array in ARRAYS.items():
+        np.testing.assert_array_equal(found[name], array)
+
+
+@pytest.mark.parametrize(
+    ("kind", "key", "reason"),
+    [("other", "a key", "holds series in version 1, not other"), ("series", "b", "another body")],
+)
+def test_another_table_or_body_is_refused(path, kind, key, reason):
+    with pytest.raises(TableFileError, match=reason):
+        read_table(path, kind, key)
+
+
+def test_no_damage_goes_unseen(path):
+    whole = path.read_bytes()
+    for place in range(0, len(whole), 97):
+        path.write_bytes(whole[:place] + bytes([whole[place] ^ 0x55]) + whole[place + 1 :])
+        try:
+            found = read_table(path, "series", "a key")
+        except TableFileError:
+            continue
+        for name, array in ARRAYS.items():
+            np.testing.assert_array_equal(found[name], array)
+    path.write_bytes(whole[: len(whole) // 2])
+    with pytest.raises(TableFileError, match="computed anew"):
+        read_table(path, "series", "a key")
+
+
+def test_numbers_that_were_changed_are_refused(path):
+    arrays = dict(np.load(path))
+    arrays["numbers"][2] += 1e-12
+    np.savez(path, **arrays)
+    with pytest.raises(TableFileError, match="checksum does not match"):
+        read_table(path, "series", "a key")
+
+
+def test_another_archive_is_refused(path):
+    np.savez(path, numbers=np.arange(3))
+    with pytest.raises(TableFileError, match="no table of Palpate's"):
+        read_table(path, "series", "a key")

@@ -1,0 +1,193 @@
+"""Steps towards equilibrium: against Newton's answer, and as a function of the forces."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from palpate.core.body.soft_body import SoftBody
+from palpate.core.compliance.dense import DenseCompliance
+from palpate.core.mesh.paper_cube import paper_cube
+from palpate.core.mesh.tet_mesh import TetMesh
+from palpate.core.shape.rotation_strain.relaxation import step_length
+from palpate.core.shape.rotation_strain.rotation_strain_shape import frame_plan, relaxation
+from palpate.core.shape.solid.free_solid import FreeSolid
+from palpate.core.shape.solid.newton import NoEquilibrium, equilibrium
+from palpate.core.shape.solid.strain_energy import RESISTS_BELOW
+
+LENGTH = 5.0
+
+
+def beam(poisson_ratio=0.3, formulation="linear", young_scale=None):
+    """The paper's cube drawn out to a beam of 5 x 1 x 1 m, clamped at x = 0."""
+    mesh, _ = paper_cube(1.0, 4)
+    stretched = TetMesh.checked(mesh.nodes * [LENGTH, 1.0, 1.0], mesh.tets)
+    fixed = np.flatnonzero(stretched.nodes[:, 0] == 0.0)
+    nodes = np.setdiff1d(stretched.surface_nodes, fixed)
+    none = DenseCompliance(nodes, np.empty((len(nodes), 3, 0)))
+    return FreeSolid.of(
+        SoftBody(stretched, fixed, poisson_ratio, none, 1.0, formulation, young_scale)
+    )
+
+
+def end_load(solid, share, direction=(0.0, 0.0, 1.0)):
+    """Forces (f, 3) on the free end, under which the linear beam moves by a share of its length."""
+    forces = np.where(solid.positions[:, :1] == LENGTH, direction, 0.0)
+    return forces * share * LENGTH / np.abs(solid.linear(forces)).max()
+
+
+def relaxed(solid, forces, steps):
+    return relaxation(solid).relaxed(np.ascontiguousarray(forces.T), steps).T
+
+
+def distance(a, b):
+    return np.linalg.norm(a - b) / np.linalg.norm(b)
+
+
+@pytest.mark.parametrize(
+    ("poisson_ratio", "formulation"), [(0.3, "linear"), (0.49, "linear"), (0.45, "smoothed")]
+)
+def test_bends_come_nearer_to_the_true_one_with_every_step(poisson_ratio, formulation):
+    solid = beam(poisson_ratio, formulation)
+    forces = end_load(solid, 0.3)
+    truth = equilibrium(solid, forces).displacements
+    linear = distance(solid.linear(forces), truth)
+    errors = [distance(relaxed(solid, forces, steps), truth) for steps in range(4)]
+    assert linear > 0.1
+    assert errors[0] < 0.5 * linear
+    assert errors[1] < 0.2 * linear
+    assert errors[2] < 0.02 * linear
+    assert errors[3] < 0.002 * linear
+
+
+def test_a_bent_beam_with_a_stiff_half_comes_near():
+    mesh, _ = paper_cube(1.0, 4)
+    is_outer = mesh.nodes[mesh.tets].mean(axis=1)[:, 0] > 0.5
+    solid = beam(young_scale=np.where(is_outer, 10.0, 1.0))
+    forces = end_load(solid, 0.25)
+    truth = equilibrium(solid, forces).displacements
+    linear = distance(solid.linear(forces), truth)
+    assert distance(relaxed(solid, forces, 0), truth) < 0.5 * linear
+    assert distance(relaxed(solid, forces, 2), truth) < 0.03
+
+
+def test_many_steps_arrive_at_equilibrium():
+    solid = beam()
+    forces = end_load(solid, 0.3)
+    found = relaxed(solid, forces, 14)
+    assert distance(found, equilibrium(solid, forces).displacements) < 1e-8
+
+
+@pytest.mark.parametrize("steps", [0, 1, 2])
+def test_small_forces_give_the_linear_displacement_to_second_order(steps):
+    solid = beam()
+    errors = []
+    for share in (1e-4, 2e-4):
+        forces = end_load(solid, share)
+        errors.append(np.linalg.norm(relaxed(solid, forces, steps) - solid.linear(forces)))
+    assert errors[1] / errors[0] == pytest.approx(4.0, rel=0.05)
+
+
+@pytest.mark.parametrize("steps", [1, 3])
+def test_it_depends_continuously_on_the_forces(steps):
+    """From rest through loads that shorten steps, up to where the beam stands upright."""
+    solid = beam()
+    relaxing = relaxation(solid)
+    load, crush = end_load(solid, 1.0), end_load(solid, 1.0, (-1.0, 0.0, 0.0))
+    around = np.cross([1.0, 0.0, 0.0], solid.positions - [0.0, 0.5, 0.5])
+    twist = np.where(load.any(axis=1)[:, None], around, 0.0) * np.abs(load).max() * LENGTH
+    for forces in (load, crush, twist):
+
+        def shape(share, forces=forces):
+            return relaxing.relaxed(np.ascontiguousarray((share * forces).T), steps)
+
+        def largest_jump(shares, shape=shape):
+            shapes = [shape(share) for share in shares]
+            jumps = [np.abs(b - a).max() for a, b in pairwise(shapes)]
+            worst = int(np.argmax(jumps))
+            return jumps[worst], shares[worst : worst + 2]
+
+        jump, ends = largest_jump(np.linspace(0.0, 1.5, 61))
+        # However near one looks where it changes most, what is left of the change becomes small.
+        near = jump
+        for _ in range(4):
+            near, ends = largest_jump(np.linspace(*ends, 13))
+        assert near < 0.02 * jump
+
+
+def test_no_force_leaves_the_body_at_rest():
+    solid = beam()
+    for steps in (0, 2):
+        assert not relaxed(solid, np.zeros((solid.node_count, 3)), steps).any()
+
+
+@pytest.mark.parametrize("direction", [(0.0, 0.0, 1.0), (-1.0, 0.0, 0.0)])
+def test_absurd_forces_give_numbers(direction):
+    solid = beam()
+    for times in (1e3, 1e6):
+        for steps in range(4):
+            with np.errstate(all="raise", under="ignore"):
+                found = relaxed(solid, end_load(solid, times, direction), steps)
+            assert np.isfinite(found).all()
+            assert times > 1e3 or np.abs(found).max() < 1e3 * times
+
+
+@pytest.mark.parametrize(
+    ("start", "slope", "end", "share"),
+    [
+        (0.0, -2.0, -1.0, 1.0),  # its lowest point is the end
+        (0.0, -2.0, -2.0, 1.0),  # no bend: falls on
+        (0.0, -2.0, -3.0, 1.0),  # bent the other way
+        (0.0, -2.0, 0.0, 0.625),  # lowest half way
+        (0.0, -2.0, 1e9, 0.05),
+        (3.0, 0.0, 3.0, 1.0),  # has arrived
+    ],
+)
+def test_steps_end_where_the_parabola_is_lowest_and_a_little_beyond(start, slope, end, share):
+    assert step_length(start, slope, end) == pytest.approx(share)
+
+
+@pytest.mark.parametrize("formulation", ["linear", "smoothed"])
+def test_energy_and_forces_are_those_of_the_solid(formulation, rng):
+    solid = beam(0.45, formulation)
+    moved = 0.02 * rng.normal(size=(solid.node_count, 3))
+    assert min(solid.volume_ratios(moved)) > RESISTS_BELOW
+    energy = relaxation(solid).energy
+    there = energy.stressed(np.ascontiguousarray(moved.T))
+    assert there.energy == pytest.approx(solid.energy(moved), rel=1e-12)
+    expected = solid.forces(moved)
+    np.testing.assert_allclose(
+        energy.forces(there).T, expected, atol=1e-12 * np.abs(expected).max()
+    )
+
+
+def test_forces_are_the_slope_of_the_energy_where_domains_collapse(rng):
+    solid = beam()
+    energy = relaxation(solid).energy
+    moved, way = 0.1 * rng.normal(size=(2, 3, solid.node_count))
+    ratios = solid.volume_ratios(moved.T)
+    assert min(ratios) < 0.0 < RESISTS_BELOW < max(ratios)
+    ends = [energy.stressed(moved + sign * 1e-6 * way).energy for sign in (1, -1)]
+    slope = (energy.forces(energy.stressed(moved)) * way).sum()
+    assert slope == pytest.approx((ends[0] - ends[1]) / 2e-6, rel=1e-6)
+
+
+def test_a_press_on_one_node_does_not_turn_the_body_inside_out():
+    solid = beam()
+    edge = np.linalg.norm(solid.positions - [LENGTH / 4, 0.0, 1.0], axis=1).argmin()
+    forces = np.zeros((solid.node_count, 3))
+    forces[edge] = [0.0, 1.0, -1.0]
+    forces *= 0.6 / np.abs(solid.linear(forces)).max()
+    with pytest.raises(NoEquilibrium):
+        equilibrium(solid, forces)
+    for steps in range(1, 4):
+        found = relaxed(solid, forces, steps)
+        assert min(solid.volume_ratios(found)) > 0.4
+        assert np.abs(found).max() < 0.9
+
+
+def test_small_bodies_get_more_steps_and_large_ones_a_lattice():
+    plans = [frame_plan(count) for count in (100, 1000, 1700, 20_000)]
+    assert [plan.steps for plan in plans[:2]] == [3, 2]
+    assert [plan.lattice_nodes > 0 for plan in plans] == [False, False, True, True]
+    assert all(plan.steps >= 1 for plan in plans)

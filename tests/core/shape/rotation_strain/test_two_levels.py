@@ -1,0 +1,181 @@
+"""Large bodies corrected on a lattice: against Newton's answer, and as a function of the forces."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from palpate.core.body.soft_body import SoftBody
+from palpate.core.compliance.dense import DenseCompliance
+from palpate.core.errors import PalpateError
+from palpate.core.mesh.paper_cube import paper_cube
+from palpate.core.mesh.tet_mesh import TetMesh
+from palpate.core.shape.rotation_strain.lattice import lattice_of
+from palpate.core.shape.rotation_strain.two_levels import TwoLevels
+from palpate.core.shape.solid.free_solid import FreeSolid
+from palpate.core.shape.solid.newton import equilibrium
+
+LENGTH = 5.0
+
+
+def body_of(mesh, fixed, poisson_ratio=0.3, formulation="linear", young_scale=None):
+    nodes = np.setdiff1d(mesh.surface_nodes, fixed)
+    none = DenseCompliance(nodes, np.empty((len(nodes), 3, 0)))
+    return SoftBody(mesh, fixed, poisson_ratio, none, 1.0, formulation, young_scale)
+
+
+def beam_body(cells=8, **material):
+    """A beam of 5 x 1 x 1 m, clamped at x = 0, its tetrahedra finer than the lattices below."""
+    mesh, _ = paper_cube(1.0, cells)
+    stretched = TetMesh.checked(mesh.nodes * [LENGTH, 1.0, 1.0], mesh.tets)
+    fixed = np.flatnonzero(stretched.nodes[:, 0] == 0.0)
+    return body_of(stretched, fixed, **material)
+
+
+class Case:
+    """A body, its solid and its correction on a lattice."""
+
+    def __init__(self, body, lattice_nodes):
+        self.body = body
+        self.solid = FreeSolid.of(body)
+        self.levels = TwoLevels.of(body, lattice_nodes)
+
+    def loaded(self, chosen, direction, by):
+        """Equal forces (n, 3) on chosen nodes of the free surface: linearly it moves so far."""
+        forces = np.where(chosen[:, None], np.asarray(direction, dtype=float), 0.0)
+        return forces * by / np.abs(self.linear(forces)).max()
+
+    @property
+    def positions(self):
+        return self.solid.positions[self.solid.surface]
+
+    def whole(self, forces):
+        held = np.zeros((self.solid.node_count, 3))
+        held[self.solid.surface] = forces
+        return held
+
+    def linear(self, forces):
+        return self.solid.linear(self.whole(forces))[self.solid.surface]
+
+    def truth(self, forces):
+        return equilibrium(self.solid, self.whole(forces)).displacements[self.solid.surface]
+
+    def corrected(self, forces, steps=1):
+        places = np.flatnonzero(forces.any(axis=1))
+        return self.levels.corrected(self.linear(forces), places, forces[places], steps)
+
+
+def distance(a, b):
+    return np.linalg.norm(a - b) / np.linalg.norm(b)
+
+
+@pytest.fixture(scope="module")
+def beam():
+    return Case(beam_body(), 150)
+
+
+@pytest.fixture(scope="module")
+def end_load(beam):
+    return beam.loaded(beam.positions[:, 0] == LENGTH, [0.0, 0.0, 1.0], 0.3 * LENGTH)
+
+
+def test_bends_come_near_the_true_one(beam, end_load):
+    truth = beam.truth(end_load)
+    linear = distance(beam.linear(end_load), truth)
+    assert linear > 0.1
+    assert distance(beam.corrected(end_load, 1), truth) < 0.2 * linear
+    assert distance(beam.corrected(end_load, 2), truth) < 0.1 * linear
+
+
+@pytest.mark.parametrize(
+    ("poisson_ratio", "formulation", "share"), [(0.3, "linear", 0.5), (0.49, "smoothed", 0.5)]
+)
+def test_presses_come_near_the_true_one(poisson_ratio, formulation, share):
+    mesh, fixed = paper_cube(1.0, 6)
+    cube = Case(body_of(mesh, fixed, poisson_ratio, formulation), 120)
+    middle = np.linalg.norm(cube.positions - [0.5, 0.5, 1.0], axis=1) < 0.4
+    forces = cube.loaded(middle, [0.0, 0.0, -1.0], 0.05)
+    truth = cube.truth(forces)
+    linear = distance(cube.linear(forces), truth)
+    assert linear > 0.05
+    assert distance(cube.corrected(forces), truth) < share * linear
+
+
+def test_a_beam_with_a_stiff_half_comes_near():
+    mesh = beam_body(6).mesh
+    is_outer = mesh.nodes[mesh.tets].mean(axis=1)[:, 0] > 0.5 * LENGTH
+    case = Case(beam_body(6, young_scale=np.where(is_outer, 10.0, 1.0)), 100)
+    forces = case.loaded(case.positions[:, 0] == LENGTH, [0.0, 0.0, 1.0], 0.25 * LENGTH)
+    truth = case.truth(forces)
+    linear = distance(case.linear(forces), truth)
+    assert distance(case.corrected(forces), truth) < 0.3 * linear
+
+
+@pytest.mark.parametrize("steps", [1, 2])
+def test_small_forces_give_the_linear_displacement_to_second_order(beam, end_load, steps):
+    errors = []
+    for share in (1e-4, 2e-4):
+        forces = share * end_load
+        errors.append(np.linalg.norm(beam.corrected(forces, steps) - beam.linear(forces)))
+    assert errors[1] / errors[0] == pytest.approx(4.0, rel=0.05)
+    assert errors[1] < 1e-3 * np.linalg.norm(beam.linear(2e-4 * end_load))
+
+
+def test_no_force_leaves_the_body_at_rest(beam):
+    assert not beam.corrected(np.zeros_like(beam.positions)).any()
+
+
+def test_pinned_places_stay(beam, end_load):
+    """What the lattice adds there, where it is held by springs."""
+    mesh, fixed = beam.body.mesh, beam.body.fixed
+    lattice = lattice_of(mesh, 150)
+    load = np.ascontiguousarray((beam.levels.surface.T @ end_load).T)
+    found = beam.levels.relaxation.relaxed(load, 1).T
+    at_pins = lattice.interpolation(mesh.nodes[fixed], lattice.node_parts[fixed]) @ found
+    assert np.abs(at_pins).max() < 0.005 * np.abs(found).max()
+
+
+def test_forces_are_the_slope_of_the_energy_of_strains_and_springs(beam, rng):
+    energy = beam.levels.relaxation.energy
+    moved, way = 0.01 * rng.normal(size=(2, 3, beam.levels.surface.shape[1]))
+    ends = [energy.stressed(moved + sign * 1e-6 * way).energy for sign in (1, -1)]
+    slope = (energy.forces(energy.stressed(moved)) * way).sum()
+    assert slope == pytest.approx((ends[0] - ends[1]) / 2e-6, rel=1e-6)
+
+
+def test_it_depends_continuously_on_the_forces(beam, end_load):
+    """From rest through loads that shorten steps, and from one load to another."""
+    crush = beam.loaded(beam.positions[:, 0] == LENGTH, [-1.0, 0.0, 0.0], LENGTH / 2)
+    ways = (
+        lambda share: 3.0 * share * end_load,
+        lambda share: 1.5 * share * crush,
+        lambda share: np.cos(np.pi * share) * end_load + np.sin(np.pi * share) * crush,
+    )
+    for way in ways:
+
+        def largest_jump(shares, way=way):
+            shapes = [beam.corrected(way(share)) for share in shares]
+            jumps = [np.abs(b - a).max() for a, b in pairwise(shapes)]
+            worst = int(np.argmax(jumps))
+            return jumps[worst], shares[worst : worst + 2]
+
+        jump, ends = largest_jump(np.linspace(0.0, 1.0, 31))
+        # However near one looks where it changes most, what is left of the change becomes small.
+        near = jump
+        for _ in range(3):
+            near, ends = largest_jump(np.linspace(*ends, 13))
+        assert near < 0.02 * jump
+
+
+@pytest.mark.parametrize("direction", [(0.0, 0.0, 1.0), (-1.0, 0.0, 0.0)])
+def test_absurd_forces_give_numbers(beam, direction):
+    forces = beam.loaded(beam.positions[:, 0] == LENGTH, direction, 1e3 * LENGTH)
+    with np.errstate(all="raise", under="ignore"):
+        found = beam.corrected(forces)
+    assert np.isfinite(found).all()
+
+
+def test_a_body_that_its_pins_do_not_hold_is_refused():
+    mesh, _ = paper_cube(1.0, 4)
+    with pytest.raises(PalpateError, match="pin"):
+        TwoLevels.of(body_of(mesh, np.array([0, 1])), 50)

@@ -1,0 +1,92 @@
+"""The native contact against the numpy reference of core, on real bodies."""
+
+import time
+
+import numpy as np
+import pytest
+from palpate_servo import Pointer, Proxy
+
+from palpate.core.errors import PalpateError
+from palpate.core.servo.session import displacements_of, native_body, servo_for
+
+PRESSES = 10_000
+
+
+def random_alpha(rng):
+    """Inside, on an edge, or on a node, one as often as the other."""
+    alpha = rng.dirichlet([1, 1, 1])
+    alpha[rng.permutation(3)[: rng.integers(0, 3)]] = 0
+    return alpha / alpha.sum()
+
+
+@pytest.mark.parametrize("mode", ["paper", "consistent"])
+def test_native_force_equals_the_reference_at_random_presses(body, mode):
+    rng = np.random.default_rng(1999)
+    native = native_body(body)
+    for _ in range(PRESSES):
+        triangle = int(rng.integers(len(body.mesh.surface_triangles)))
+        alpha, u = random_alpha(rng), rng.normal(size=3) * 0.005
+        expected = body.touch(triangle, alpha, u, mode=mode).nodal_forces
+        nodal_forces, force = native.contact(triangle, alpha, u, body.young_modulus, mode)
+        scale = np.abs(expected).max()
+        assert np.abs(nodal_forces - expected).max() <= 1e-9 * scale
+        assert np.abs(force + expected.sum(axis=0)).max() <= 1e-9 * scale
+
+
+def test_a_probe_pushed_in_feels_what_the_reference_says_there(body):
+    rng = np.random.default_rng(2)
+    native = native_body(body)
+    free = ~np.isin(body.mesh.surface_triangles, body.fixed).any(axis=1)
+    for triangle in rng.choice(np.flatnonzero(free), 50):
+        corners = body.mesh.nodes[body.mesh.surface_triangles[triangle]]
+        normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])
+        normal /= np.linalg.norm(normal)
+        centre = corners.mean(axis=0)
+        proxy = Proxy(native)
+        proxy.restart(centre + 1e-4 * normal)
+        finger = centre - 1e-5 * normal
+        touching, position, touched, alpha = proxy.move(finger)
+        assert touching
+        assert touched == triangle
+        np.testing.assert_allclose(position, centre, atol=1e-12)
+        _, force = native.contact(touched, alpha, finger - position, body.young_modulus)
+        expected = body.touch_nearest(centre, -1e-5 * normal).force
+        np.testing.assert_allclose(force, expected, rtol=1e-6)
+
+
+@pytest.mark.parametrize("mode", ["paper", "consistent"])
+def test_the_running_servo_publishes_what_the_reference_computes(body, mode):
+    low, high = body.mesh.nodes.min(axis=0), body.mesh.nodes.max(axis=0)
+    above = np.array([*(0.5 * (low + high))[:2], high[2] + 0.01])
+    with servo_for(body, mode=mode) as servo:
+        servo.start(Pointer(above))
+        servo.set_target(above - [0, 0, 0.02])
+        snapshot = servo.snapshot()
+        deadline = time.monotonic() + 20
+        while not (snapshot.touching and np.allclose(snapshot.probe, above - [0, 0, 0.02])):
+            assert time.monotonic() < deadline, snapshot
+            time.sleep(0.01)
+            snapshot = servo.snapshot()
+    forces = body.touch(
+        snapshot.triangle_index, snapshot.alpha, snapshot.probe - snapshot.proxy, mode=mode
+    ).nodal_forces
+    np.testing.assert_allclose(snapshot.contact_force, -forces.sum(axis=0), rtol=1e-9)
+    np.testing.assert_allclose(snapshot.nodal_forces, forces, rtol=1e-9, atol=1e-15)
+    triangle = body.mesh.surface_triangles[snapshot.triangle_index]
+    moved = displacements_of(body, snapshot)
+    np.testing.assert_allclose(
+        moved, body.deform(triangle, forces), atol=1e-9 * np.abs(moved).max()
+    )
+
+
+@pytest.mark.parametrize(
+    ("setting", "told"),
+    [
+        ({"rate_hz": 10}, "servo: .*rate"),
+        ({"max_force": -1.0}, "servo: .*force"),
+        ({"young_modulus": 0.0}, "Young's modulus"),
+    ],
+)
+def test_settings_out_of_range_are_refused(body, setting, told):
+    with pytest.raises(PalpateError, match=told):
+        servo_for(body, **setting)

@@ -1,0 +1,232 @@
+"""Several fingers on one body: against the reference of core, and as real devices and pointers."""
+
+import numpy as np
+import palpate_servo
+import pytest
+from palpate_servo import MAX_FINGERS, STATES, Body, LinkDevice, Pointer, Servo
+
+from palpate.core.bake.steps import BakeSettings, bake
+from palpate.core.contact import several_contacts
+from palpate.core.contact.tool.tools import sphere
+from palpate.core.mesh.paper_cube import paper_cube
+from palpate.core.servo.session import displacements_of, native_body, native_tool
+from palpate.core.stiffness.pins import PinNodes
+from palpate.simulated.options import SimulatedOptions
+from palpate.simulated.simulated_process import SimulatedDevice
+
+MODULUS = 10_000.0
+EDGE = 0.05
+LEFT, RIGHT = np.array([-0.003, 0.025, 0.025]), np.array([EDGE + 0.003, 0.025, 0.025])
+
+
+@pytest.fixture(scope="module")
+def body():
+    mesh, fixed = paper_cube()
+    return bake(mesh, BakeSettings(0.49, MODULUS, PinNodes(fixed)))[0]
+
+
+@pytest.fixture(scope="module")
+def whole(body):
+    return native_body(body, whole=True)
+
+
+def pinch(servo, depth):
+    way = np.array([0.003 + depth, 0, 0])
+    servo.set_target(LEFT + way)
+    servo.set_target(RIGHT - way, finger=1)
+
+
+def rests_at(servo, depth):
+    def rests():
+        left, right = servo.snapshot().fingers
+        return (
+            np.isclose(left.probe[0], depth)
+            and np.isclose(right.probe[0], EDGE - depth)
+            and left.state == right.state == "touching"
+        )
+
+    return rests
+
+
+@pytest.fixture
+def pinched(whole, eventually):
+    with Servo(whole, young_modulus=MODULUS) as servo:
+        assert servo.add(Pointer(RIGHT)) == 1
+        servo.start(Pointer(LEFT))
+        pinch(servo, 0.004)
+        eventually(rests_at(servo, 0.004))
+        yield servo
+
+
+def test_two_pointers_press_as_the_reference_says(body, pinched):
+    fingers = pinched.snapshot().fingers
+    touches = body.touch_several(
+        [finger.proxy for finger in fingers], [finger.probe - finger.proxy for finger in fingers]
+    )
+    for finger, touch in zip(fingers, touches, strict=True):
+        scale = np.abs(touch.force).max()
+        np.testing.assert_allclose(finger.contact_force, touch.force, atol=1e-6 * scale)
+        np.testing.assert_allclose(finger.surface_point, finger.probe, atol=1e-9)
+    assert fingers[0].contact_force[0] < -0.01
+    assert fingers[1].contact_force[0] > 0.01
+
+
+def test_displacements_are_those_of_all_fingers(body, pinched):
+    snapshot = pinched.snapshot()
+    moved = displacements_of(body, snapshot)
+    for finger in snapshot.fingers:
+        free = body.free_index(body.mesh.surface_nodes[finger.triangle])
+        np.testing.assert_allclose(
+            finger.alpha @ moved[free], finger.probe - finger.proxy, atol=2e-6
+        )
+
+
+def test_the_recording_tells_fingers_apart(pinched, eventually):
+    pinched.samples()
+    tick = pinched.snapshot().tick
+    eventually(lambda: pinched.snapshot().tick > tick + 20)
+    pinched.stop()
+    samples = pinched.samples()
+    samples = samples[: len(samples) // 2 * 2]
+    np.testing.assert_array_equal(samples["finger"][::2], 1 - samples["finger"][1::2])
+    np.testing.assert_array_equal(samples["tick"][::2], samples["tick"][1::2])
+
+
+def test_switching_off_silences_every_finger(pinched, eventually):
+    pinched.set_enabled(False)
+    eventually(lambda: all(f.state == "disabled" for f in pinched.snapshot().fingers))
+    assert not any(finger.output_force.any() for finger in pinched.snapshot().fingers)
+
+
+def test_native_contacts_are_those_of_core_also_on_their_cones():
+    rng = np.random.default_rng(10)
+    limited = 0
+    for _ in range(300):
+        count = int(rng.integers(1, MAX_FINGERS + 1))
+        factors = rng.normal(size=(3 * count, 3 * count))
+        matrix = factors @ factors.T + 0.2 * np.eye(3 * count)
+        compliance = matrix.reshape(count, 3, count, 3).transpose(0, 2, 1, 3)
+        asked, pushes = rng.normal(size=(2, count, 3))
+        expected = several_contacts.solve_contacts(compliance, asked, pushes)
+        found = np.zeros((count, 3))
+        for _ in range(40):  # Ticks at rest: each goes on from the one before.
+            found = palpate_servo.solve_contacts(compliance, asked, pushes, found)
+        scale = np.abs(expected).max()
+        np.testing.assert_allclose(found, expected, atol=1e-7 * max(scale, 1e-3))
+        limited += not np.allclose(
+            np.linalg.solve(matrix, asked.ravel()), expected.ravel(), atol=1e-6 * scale
+        )
+    assert limited > 100
+    with pytest.raises(ValueError, match="not positive definite"):
+        palpate_servo.solve_contacts(-compliance, asked, pushes)
+
+
+def test_another_body_must_be_a_whole_one(body, whole, pinched):
+    with pytest.raises(ValueError, match="whole=True"):
+        pinched.set_body(native_body(body), MODULUS)
+    pinched.set_body(whole, MODULUS)
+
+
+def test_fingers_are_refused_with_the_reason(body, whole, cube):
+    assert isinstance(cube.native, Body)
+    with pytest.raises(ValueError, match="whole=True"):
+        Servo(cube.native, young_modulus=MODULUS).add(Pointer(LEFT))
+    servo = Servo(whole, young_modulus=MODULUS)
+    for number in range(1, MAX_FINGERS):
+        assert servo.add(Pointer(RIGHT)) == number
+    with pytest.raises(ValueError, match=f"at most {MAX_FINGERS} fingers"):
+        servo.add(Pointer(RIGHT))
+    with pytest.raises(OSError, match="cannot be opened"):
+        Servo(whole, young_modulus=MODULUS).add(LinkDevice("/dev/nobody"))
+    with pytest.raises(RuntimeError, match="finger 3 is none"):
+        Servo(whole, young_modulus=MODULUS).set_target(LEFT, finger=3)
+    with pytest.raises(ValueError, match="no rotation"):
+        servo.set_orientation(2 * np.eye(3))
+    with pytest.raises(ValueError, match="fingers 0 to"):
+        servo.set_orientation(np.eye(3), finger=MAX_FINGERS)
+    with servo:
+        servo.start(Pointer(LEFT))
+        assert servo.finger_count == MAX_FINGERS
+        with pytest.raises(RuntimeError, match="runs already"):
+            servo.add(Pointer(RIGHT))
+    assert servo.finger_count == 1
+
+
+def test_modes_are_refused_by_name(whole):
+    with pytest.raises(ValueError, match="paper"):
+        Servo(whole, young_modulus=MODULUS, mode="exact")
+    servo = Servo(whole, young_modulus=MODULUS)
+    servo.set_mode("paper")
+    with pytest.raises(ValueError, match="consistent"):
+        servo.set_mode("")
+
+
+@pytest.mark.skipif(not hasattr(palpate_servo, "Tool"), reason="no tools yet")
+def test_a_tool_is_felt_and_shown_and_taken_off_again(body, whole, eventually):
+    tool = native_tool(body, whole, sphere(0.008))
+    above = np.array([0.025, 0.025, EDGE + 0.01])
+    with Servo(whole, young_modulus=MODULUS) as servo:
+        servo.set_tool(tool)
+        servo.start(Pointer(above))
+        servo.set_target(above - [0, 0, 0.005])
+        eventually(lambda: np.isclose(servo.snapshot().probe[2], above[2] - 0.005))
+        eventually(lambda: servo.snapshot().fingers[0].state == "touching")
+        finger = servo.snapshot().fingers[0]
+        assert len(finger.points) == len(finger.point_forces) == len(finger.pressures) > 0
+        assert (finger.pressures > 0).all()
+        for forces in (finger.point_forces, finger.nodal_forces):
+            np.testing.assert_allclose(-forces.sum(axis=0), finger.contact_force, atol=1e-9)
+        distance = np.linalg.norm(finger.points - finger.proxy, axis=1)
+        np.testing.assert_allclose(distance, 0.008, atol=1e-6)
+        moved = displacements_of(body, servo.snapshot())
+        assert moved is not None
+        assert moved[:, 2].min() < -0.001
+        servo.set_tool(None)
+        servo.set_target(above, restart=True)
+        eventually(lambda: not servo.snapshot().touching)
+        servo.set_target([0.025, 0.025, EDGE - 0.002])
+        eventually(lambda: servo.snapshot().triangle_index >= 0)
+    with pytest.raises(ValueError, match="another body"):
+        Servo(native_body(body, whole=True), young_modulus=MODULUS).set_tool(tool)
+
+
+def hand(way, side):
+    """Presses 4 mm in from a side at x = ``side``, along ``way``."""
+    return SimulatedOptions(
+        rest=(side - 0.01 * way, 0.025, 0.025),
+        at=(side, 0.025, 0.025),
+        by=(0.004 * way, 0.0, 0.0),
+        approach=0.5,
+        period=2.0,
+    )
+
+
+def test_two_devices_on_pseudo_terminals_press_one_body_and_feel_each_other(
+    body, whole, eventually
+):
+    left, right = hand(1.0, 0.0), hand(-1.0, EDGE)
+    with (
+        SimulatedDevice(left) as one,
+        SimulatedDevice(right) as two,
+        Servo(whole, young_modulus=MODULUS) as servo,
+    ):
+        assert servo.add(LinkDevice(two.port)) == 1
+        servo.start(LinkDevice(one.port))
+        eventually(lambda: all(f.touching for f in servo.snapshot().fingers))
+        eventually(lambda: all(f["link"]["forces"] > 100 for f in servo.counters()["fingers"]))
+        eventually(lambda: any_both_press(servo.samples()))
+        counters = servo.counters()["fingers"]
+        assert [f["link"]["device"] is not None for f in counters] == [True, True]
+        two.stop()
+        eventually(lambda: servo.snapshot().fingers[1].state == "fault")
+        eventually(lambda: servo.snapshot().fingers[0].touching)
+        first, second = servo.snapshot().fingers
+        assert first.fault == ""
+        assert not second.output_force.any()
+
+
+def any_both_press(samples):
+    touching = samples["state"] == STATES.index("touching")
+    pushed = np.linalg.norm(samples["output"], axis=1) > 0.01
+    ticks = [set(samples["tick"][touching & pushed & (samples["finger"] == n)]) for n in (0, 1)]
+    return bool(ticks[0] & ticks[1])

@@ -1,0 +1,262 @@
+"""The god object from Python: on the stored mouse, against brute force."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from palpate_servo import Body, Proxy
+from scipy.spatial import ConvexHull
+
+MOUSE = Path(__file__).resolve().parents[2] / "meshes" / "mouse-1.7k.npz"
+FACES_OF_A_TET = np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])
+
+
+@pytest.fixture(scope="module")
+def mouse():
+    """The boundary of the stored tets, oriented outwards."""
+    with np.load(MOUSE) as file:
+        nodes, tets = file["X"], file["T"].astype(np.int64)
+    a, b, c, d = (nodes[tets[:, k]] for k in range(4))
+    left_handed = np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a) < 0
+    tets[left_handed] = tets[left_handed][:, [0, 2, 1, 3]]
+    faces = tets[:, FACES_OF_A_TET].reshape(-1, 3)
+    _, first, count = np.unique(np.sort(faces), axis=0, return_index=True, return_counts=True)
+    boundary = faces[first[count == 1]]
+    used, triangles = np.unique(boundary, return_inverse=True)
+    triangles = triangles.reshape(-1, 3)
+    body = Body(nodes[used], triangles, np.tile(np.eye(3), (len(used), 1, 1)))
+    return nodes[used], triangles, body
+
+
+def nearest_on_triangles(p, corners):
+    """Distances from p to triangles (m, 3, 3), by planes and edges."""
+    a, b, c = corners.swapaxes(0, 1)
+    normal = np.cross(b - a, c - a)
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    height = np.einsum("ij,ij->i", p - a, normal)
+    foot = p - height[:, None] * normal
+    inside = np.ones(len(corners), bool)
+    best = np.full(len(corners), np.inf)
+    for start, end in ((a, b), (b, c), (c, a)):
+        along = end - start
+        inside &= np.einsum("ij,ij->i", np.cross(along, foot - start), normal) >= 0
+        part = np.einsum("ij,ij->i", p - start, along) / np.einsum("ij,ij->i", along, along)
+        on_edge = start + np.clip(part, 0, 1)[:, None] * along
+        best = np.minimum(best, np.linalg.norm(p - on_edge, axis=1))
+    return np.where(inside, np.abs(height), best)
+
+
+def winding_number(p, corners):
+    """1 inside, 0 outside (van Oosterom and Strackee 1983)."""
+    r = corners - p
+    length = np.linalg.norm(r, axis=2)
+    a, b, c = r.swapaxes(0, 1)
+    below = length.prod(axis=1) + sum(
+        np.einsum("ij,ij->i", r[:, i], r[:, j]) * length[:, k]
+        for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1))
+    )
+    above = np.einsum("ij,ij->i", a, np.cross(b, c))
+    return np.arctan2(above, below).sum() / (2 * np.pi)
+
+
+def pushes(nodes, triangles, count, rng):
+    """Ways in and out along the normals, through triangles, edges and nodes."""
+    for number in range(count):
+        corners = nodes[triangles[rng.integers(len(triangles))]]
+        alpha = rng.dirichlet([1, 1, 1])
+        alpha[rng.permutation(3)[: number % 3]] = 0
+        normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])
+        normal /= np.linalg.norm(normal)
+        goal = alpha / alpha.sum() @ corners
+        quantum = (1e-6, 1e-5, 2e-5, 5e-5, 6e-5)[number % 5]
+        depth = np.linspace(-0.001, 0.003, int(rng.integers(20, 200)))
+        way = np.concatenate([depth, depth[::-1]])
+        yield quantum * np.round((goal - way[:, None] * normal) / quantum)
+
+
+def test_pushes_into_the_mouse_never_fall_through(mouse):
+    nodes, triangles, body = mouse
+    corners = nodes[triangles]
+    rng = np.random.default_rng(2346)
+    pushed = 0
+    for path in pushes(nodes, triangles, 500, rng):
+        if body.closest_point(path[0])[3] <= 0:
+            continue
+        proxy = Proxy(body)
+        positions, touched = proxy.follow_path(path)
+        free = touched < 0
+        np.testing.assert_array_equal(positions[free], path[free])
+        deepest = len(path) // 2
+        for device in path[free][:: max(1, int(free.sum()) // 4)]:
+            if nearest_on_triangles(device, corners).min() > 1e-12:
+                assert winding_number(device, corners) < 0.5
+        if not free[deepest]:
+            pushed += 1
+    assert pushed > 330
+
+
+def test_the_held_proxy_is_locally_nearest(mouse):
+    nodes, triangles, body = mouse
+    rng = np.random.default_rng(7)
+    held = 0
+    for path in pushes(nodes, triangles, 300, rng):
+        if body.closest_point(path[0])[3] <= 0:
+            continue
+        proxy = Proxy(body)
+        positions, touched = proxy.follow_path(path)
+        deepest = len(path) // 2
+        if touched[deepest] < 0:
+            continue
+        held += 1
+        position, device = positions[deepest], path[deepest]
+        here = nearest_on_triangles(position, nodes[triangles]) < 1e-12
+        around = nearest_on_triangles(device, nodes[triangles[here]])
+        assert np.linalg.norm(device - position) ** 2 - around.min() ** 2 <= 1e-14
+    assert held > 100
+
+
+def test_force_is_nothing_at_touch_and_at_release(cube):
+    proxy = Proxy(cube.native)
+    proxy.restart([0.02, 0.03, 0.06])
+    for height in [1e-3, 1e-9, 0.0]:
+        _, position, _, _ = proxy.move([0.02, 0.03, 0.05 + height])
+        np.testing.assert_allclose(position, [0.02, 0.03, 0.05 + height], atol=1e-17)
+    for depth in [1e-9, 1e-6, 1e-3, 1e-6, 1e-9]:
+        touching, position, _, _ = proxy.move([0.02, 0.03, 0.05 - depth])
+        assert touching
+        np.testing.assert_allclose(position, [0.02, 0.03, 0.05], atol=1e-16)
+    touching, position, triangle, alpha = proxy.move([0.02, 0.03, 0.05 + 1e-9])
+    assert (touching, triangle) == (False, -1)
+    assert not alpha.any()
+
+
+def test_on_a_node_the_area_coordinates_are_exact(cube):
+    proxy = Proxy(cube.native)
+    proxy.restart([0.025, 0.025, 0.06])
+    _, position, triangle, alpha = proxy.move([0.025, 0.025, 0.045])
+    np.testing.assert_array_equal(position, [0.025, 0.025, 0.05])
+    assert sorted(alpha) == [0.0, 0.0, 1.0]
+    node = cube.triangles[triangle][int(np.argmax(alpha))]
+    np.testing.assert_array_equal(cube.nodes[node], position)
+
+
+def test_a_position_that_is_not_finite_is_refused(cube):
+    proxy = Proxy(cube.native)
+    with pytest.raises(ValueError, match="not finite"):
+        proxy.move([0.0, np.nan, 0.0])
+
+
+def golden_sphere(count, radius):
+    """Nodes by the golden angle and their hull, outwards: 2 (count - 2) triangles."""
+    place = np.arange(count) + 0.5
+    height = 1 - 2 * place / count
+    azimuth = np.pi * (1 + 5**0.5) * place
+    across = np.sqrt(1 - height**2)
+    nodes = radius * np.stack([across * np.cos(azimuth), across * np.sin(azimuth), height], axis=1)
+    triangles = ConvexHull(nodes).simplices.astype(np.int64)
+    a, b, c = nodes[triangles].swapaxes(0, 1)
+    inwards = np.einsum("ij,ij->i", np.cross(b - a, c - a), a + b + c) < 0
+    triangles[inwards] = triangles[inwards][:, [0, 2, 1]]
+    return nodes, triangles
+
+
+def great_circles(count, step):
+    """Directions (count, 3) along tilted circles, ``step`` rad apart."""
+    angle = step * np.arange(count)
+    tilt = 0.5 * np.sin(0.137 * angle)
+    return np.stack(
+        [np.cos(angle) * np.cos(tilt), np.sin(angle) * np.cos(tilt), np.sin(tilt)], axis=1
+    )
+
+
+# The ideal sphere's own force turns by 0.0125 N a tick; a plain god object's jumps by 0.17 N more.
+@pytest.mark.parametrize(("shading", "most"), [(False, 0.05), (True, 0.01)])
+def test_sliding_deep_under_a_faceted_sphere_the_force_is_smooth(shading, most):
+    radius, depth, stiffness = 0.025, 0.005, 500.0
+    nodes, triangles = golden_sphere(1175, radius)
+    assert len(triangles) == 2346
+    body = Body(nodes, triangles, np.tile(np.eye(3), (len(nodes), 1, 1)))
+    # 100 mm/s at 1 kHz.
+    out = great_circles(10_000, 1e-4 / (radius - depth))
+    path = (radius - depth) * out
+    proxy = Proxy(body, shading=shading)
+    way_in = np.linspace(1.5, 1.0, 100)[:, None] * path[0]
+    proxy.restart(way_in[0])
+    proxy.follow_path(way_in)
+    points, touched = proxy.follow_path(path)
+    assert (touched >= 0).all()
+    jumps = np.linalg.norm(np.diff(stiffness * (points - path), axis=0), axis=1)
+    ideal = np.linalg.norm(np.diff(stiffness * depth * out, axis=0), axis=1)
+    assert np.percentile(jumps - ideal, 99) < most
+    # And it is the sphere's: about as strong, and towards it.
+    np.testing.assert_allclose(np.linalg.norm(points - path, axis=1), depth, atol=3e-4)
+
+
+def finger_force(body, blocks, device, touched):
+    """(14) for displacements of contact points, at 1 Pa: force (3,) and the contact's normal."""
+    nodes, triangles = body
+    triangle, alpha, point = touched
+    force = np.zeros(3)
+    for node, share in zip(triangles[triangle], alpha, strict=True):
+        force -= share * blocks[node] @ (device - point)
+    a, b, c = nodes[triangles[triangle]]
+    normal = np.cross(b - a, c - a)
+    return force, normal / np.linalg.norm(normal)
+
+
+def test_slipping_over_the_mouse_its_force_lies_on_the_cone(mouse):
+    nodes, triangles, _ = mouse
+    rng = np.random.default_rng(5)
+    factors = rng.normal(size=(len(nodes), 3, 3))
+    # Up to some tens of per cent stiffer one way than another, and different from node to node.
+    blocks = np.eye(3) + 0.05 * (factors @ factors.swapaxes(1, 2))
+    body = Body(nodes, triangles, blocks)
+    slipped, on_cone = 0, 0
+    for triangle in rng.choice(len(triangles), 60, replace=False):
+        corners = nodes[triangles[triangle]]
+        normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])
+        normal /= np.linalg.norm(normal)
+        middle = corners.mean(axis=0)
+        if body.closest_point(middle + 1e-3 * normal)[3] < 5e-4:
+            continue
+        along = np.cross(normal, rng.normal(size=3))
+        along *= 5e-6 / np.linalg.norm(along)
+        proxy = Proxy(body, static_friction=0.5, dynamic_friction=0.3)
+        for depth in np.linspace(-1e-3, 1e-3, 50):
+            proxy.move(middle - depth * normal)
+        for step in range(150):
+            device = middle - 1e-3 * normal + step * along
+            touching, point, number, alpha = proxy.move(device)
+            if not touching:
+                break
+            if proxy.sticking or not alpha.all():
+                continue
+            force, out = finger_force((nodes, triangles), blocks, device, (number, alpha, point))
+            pressing = force @ out
+            slipped += 1
+            on_cone += abs(np.linalg.norm(force - pressing * out) / pressing / 0.3 - 1) < 0.01
+            assert force @ along <= 0 or number != triangle
+    assert slipped > 1000
+    # The rest has just passed the border of a facet.
+    assert on_cone > 0.9 * slipped
+
+
+def test_a_contact_point_that_sticks_stays_until_the_static_cone(cube):
+    identical = Body(cube.nodes, cube.triangles, np.tile(np.eye(3), (len(cube.nodes), 1, 1)))
+    proxy = Proxy(identical, static_friction=0.5, dynamic_friction=0.3)
+    for depth in np.linspace(-1e-3, 2e-3, 60):
+        proxy.move([0.02, 0.022, 0.05 - depth])
+    for aside in np.linspace(0, 0.99e-3, 100):
+        _, position, _, _ = proxy.move([0.02 + aside, 0.022, 0.048])
+        assert proxy.sticking
+        np.testing.assert_allclose(position, [0.02, 0.022, 0.05], atol=1e-15)
+    _, position, _, _ = proxy.move([0.02 + 1.01e-3, 0.022, 0.048])
+    assert not proxy.sticking
+    # 0.3 of 2 mm behind the finger.
+    np.testing.assert_allclose(position, [0.02 + 0.41e-3, 0.022, 0.05], atol=1e-6)
+
+
+@pytest.mark.parametrize(("still", "moving"), [(0.2, 0.3), (-0.1, -0.1), (np.nan, 0.0)])
+def test_coefficients_that_make_no_sense_are_refused(cube, still, moving):
+    with pytest.raises(ValueError, match="friction"):
+        Proxy(cube.native, static_friction=still, dynamic_friction=moving)

@@ -1,0 +1,264 @@
+"""Tools in native code against the numpy reference of core, on real bodies."""
+
+import numpy as np
+import pytest
+from measuring.inner_corner import inner_corner
+from measuring.soft_block import soft_block
+from palpate_servo import SteppedFingers, ToolContact, ToolSurface, tick_costs
+from palpate_servo import Tool as NativeTool
+from scipy.spatial.transform import Rotation
+
+from palpate.core.contact.tool.several_tools import press_tools
+from palpate.core.contact.tool.tool_contact import follow_tool, press_tool, set_down
+from palpate.core.contact.tool.tool_surface import correction_for, surface_for
+from palpate.core.contact.tool.tool_touch import Load
+from palpate.core.contact.tool.tools import Pose, convex, plate, rod, sphere
+from palpate.core.errors import PalpateError
+from palpate.core.servo.session import native_body, native_tool
+
+BOX = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * 0.008
+TOOLS = {
+    "sphere": sphere(0.018),
+    "rod": rod(0.014, 0.015),
+    "plate": plate(0.016, 0.016),
+    "hull": convex(BOX, 0.003),
+}
+# What a tick leaves to the next ones is found by then.
+TICKS_TO_SETTLE = 200
+
+
+def place_on(body):
+    """The highest node about over the body's middle."""
+    nodes = body.mesh.nodes[body.mesh.surface_nodes]
+    aside = np.linalg.norm((nodes - nodes.mean(axis=0))[:, :2], axis=1)
+    return nodes[np.where(aside < aside.min() + 0.01, nodes[:, 2], -np.inf).argmax()]
+
+
+def path_over(body, tool, ticks=7):
+    """Poses down onto the body, 3 mm deep, and along it, turning."""
+    middle = place_on(body)
+    above = -float(tool.core[:, 2].min() - tool.radius)
+    for tick in range(ticks):
+        along = np.array([0.004 * np.sin(tick / 3), 0.004 * np.cos(tick / 4) - 0.002, 0.0])
+        turn = Rotation.from_rotvec([0.1 * np.sin(tick / 3), 0.08 * np.sin(tick / 2), 0.05 * tick])
+        height = above + 0.001 - min(0.001 * tick, 0.004)
+        yield Pose(middle + along + [0.0, 0.0, height], turn.as_matrix())
+
+
+def settled(contact, pose, young_modulus, outside=None):
+    """Ticks at one pose until nothing changes any more."""
+    for _ in range(TICKS_TO_SETTLE):
+        contact.follow(pose.position, pose.rotation, young_modulus, outside)
+
+
+@pytest.mark.parametrize("name", list(TOOLS))
+def test_forces_are_those_of_the_reference(body, surface, name):
+    tool = TOOLS[name]
+    contact = native_tool(body, surface, tool)
+    poses = list(path_over(body, tool))
+    touch = set_down(body, tool, poses[0])
+    contact.restart(poses[0].position, poses[0].rotation)
+    pressed = 0
+    for pose in poses:
+        touch = follow_tool(touch, pose)
+        settled(contact, touch.pose, body.young_modulus)
+        assert contact.touching == touch.touching
+        scale = max(float(np.linalg.norm(touch.force)), 1e-9)
+        np.testing.assert_allclose(contact.force, touch.force, atol=1e-6 * scale)
+        np.testing.assert_allclose(contact.torque, touch.torque, atol=1e-6 * scale * tool.reach)
+        stiffness = np.abs(touch.stiffness).max(initial=1e-9)
+        np.testing.assert_allclose(contact.stiffness, touch.stiffness, atol=1e-5 * stiffness)
+        order = np.argsort(contact.points)
+        np.testing.assert_array_equal(contact.points[order], touch.points)
+        np.testing.assert_allclose(contact.forces[order], touch.forces, atol=2e-6 * scale)
+        pressures = np.abs(touch.pressures).max(initial=1e-9)
+        np.testing.assert_allclose(contact.pressures[order], touch.pressures, atol=1e-5 * pressures)
+        found = np.zeros((len(body.mesh.nodes), 3))
+        found[body.mesh.surface_nodes[contact.nodes]] = contact.nodal_forces
+        expected = np.zeros_like(found)
+        expected[touch.nodes] = touch.nodal_forces
+        np.testing.assert_allclose(found, expected, atol=2e-6 * scale)
+        pressed = max(pressed, len(touch.points))
+    assert pressed >= 3
+
+
+def test_other_fingers_are_felt_as_in_the_reference(body, surface):
+    tool = TOOLS["sphere"]
+    contact = native_tool(body, surface, tool)
+    poses = list(path_over(body, tool))
+    touch = set_down(body, tool, poses[0])
+    contact.restart(poses[0].position, poses[0].rotation)
+    free = body.compliance.free_surface
+    near = free[np.linalg.norm(body.mesh.nodes[free] - poses[-1].position, axis=1).argsort()[:4]]
+    load = Load(near, np.linspace(-1e-3, -4e-3, 4)[:, None] * np.array([0.3, 0.1, 1.0]))
+    outside = (np.searchsorted(body.mesh.surface_nodes, near), load.forces)
+    for pose in poses:
+        touch = follow_tool(touch, pose, outside=load)
+        settled(contact, touch.pose, body.young_modulus, outside)
+    alone = follow_tool(touch, poses[-1])
+    scale = np.linalg.norm(touch.force)
+    np.testing.assert_allclose(contact.force, touch.force, atol=1e-6 * scale)
+    assert np.linalg.norm(alone.force - touch.force) > 1e-3 * scale
+
+
+@pytest.mark.parametrize("name", list(TOOLS))
+def test_distances_are_those_of_the_reference(name):
+    tool = TOOLS[name]
+    points = np.random.default_rng(1).uniform(-1.5, 1.5, (500, 3)) * tool.reach
+    expected, normals = tool.distance(points)
+    native = NativeTool(tool.core, tool.radius)
+    distances, found = native.distance(points)
+    np.testing.assert_allclose(distances, expected, atol=1e-12)
+    # Where two faces are equally near, either normal is one.
+    alike = np.einsum("px,px->p", found, normals) > 1 - 1e-9
+    assert alike.mean() > 0.99
+    assert native.stride == pytest.approx(tool.stride)
+    assert native.reach == pytest.approx(tool.reach)
+
+
+def test_a_body_that_is_not_whole_is_refused(body):
+    with pytest.raises(PalpateError, match=r"sphere.*whole=True"):
+        native_tool(body, native_body(body), TOOLS["sphere"])
+
+
+def test_wrong_arrays_are_refused(body, surface):
+    points = surface_for(body, TOOLS["sphere"])
+    arrays = [points.positions, points.normals, points.triangles, points.alphas, points.areas]
+    ToolSurface(surface, *arrays)
+    with pytest.raises(ValueError, match="a row for each"):
+        ToolSurface(surface, *arrays[:-1], points.areas[1:])
+    near = correction_for(body, TOOLS["sphere"]).arrays()
+    for name, remark in {"own": "a row for each", "normals": "a row for each"}.items():
+        with pytest.raises(ValueError, match=remark):
+            ToolSurface(surface, *arrays, near | {name: near[name][1:]})
+    with pytest.raises(ValueError, match="cannot be reckoned with"):
+        ToolSurface(surface, *arrays, near | {"edges": 0 * near["edges"]})
+    with pytest.raises(ValueError, match="near has later, which this palpate_servo does not know"):
+        ToolSurface(surface, *arrays, near | {"later": near["own"]})
+    with pytest.raises(ValueError, match="near has no shares"):
+        ToolSurface(surface, *arrays, {k: near[k] for k in near if k != "shares"})
+    contact = ToolContact(ToolSurface(surface, *arrays), NativeTool([[0, 0, 0]], 0.01))
+    with pytest.raises(ValueError, match="no rotation"):
+        contact.follow([0, 0, 0.2], 2 * np.eye(3), 1e4)
+    with pytest.raises(ValueError, match="young_modulus"):
+        contact.follow([0, 0, 0.2], np.eye(3), 0.0)
+    with pytest.raises(ValueError, match="65 core points"):
+        NativeTool(np.zeros((65, 3)), 0.01)
+
+
+def test_costs_are_told_for_every_tick(body, surface):
+    path = np.tile(body.mesh.nodes.max(axis=0) + 0.01, (2, 5, 1))
+    costs = tick_costs(surface, path, young_modulus=1e4)
+    assert costs.shape == (5,)
+    assert (costs >= 0).all()
+    with pytest.raises(ValueError, match="6 fingers"):
+        tick_costs(surface, np.zeros((6, 5, 3)), young_modulus=1e4)
+    contact = native_tool(body, surface, TOOLS["sphere"])
+    told = contact.time_path(path[0], np.tile(np.eye(3), (5, 1, 1)), 1e4)
+    assert told["taken"].shape == told["pressed"].shape == (5,)
+
+
+def test_a_tick_that_is_replayed_comes_out_the_same_and_no_longer(body, surface):
+    tool = TOOLS["sphere"]
+    contact, other = (native_tool(body, surface, tool, friction=0.3) for _ in range(2))
+    places = place_on(body) + [0.0, 0.0, 1.0] * np.linspace(0.02, 0.014, 450)[:, None]
+    turns = np.tile(np.eye(3), (450, 1, 1))
+    once = contact.time_path(places, turns, 1e4)
+    # Every tick is longer than nothing: all are replayed. One that differed would be an error.
+    again = other.time_path(places, turns, 1e4, replay_over=0.0, control=1e-6)
+    np.testing.assert_array_equal(once["multiplications"], again["multiplications"])
+    np.testing.assert_array_equal(contact.force, other.force)
+    assert again["pressed"].max() > 0
+    assert (again["computing"] <= again["taken"]).all()
+    np.testing.assert_array_equal(once["computing"], once["taken"])
+    np.testing.assert_array_equal(np.flatnonzero(again["copied"]), [0, 180, 380])
+    assert not once["copied"].any()
+    assert again["control"].shape == (113,)
+    assert once["control"].shape == (0,)
+
+
+def test_a_thin_part_on_a_firm_base_is_not_passed_through():
+    slab, tool = soft_block((0.04, 0.04, 0.006), (6, 6, 2)), sphere(0.008)
+    contact = native_tool(slab, native_body(slab, whole=True), tool)
+    touch, forces = None, []
+    # To twice the thickness: the sphere reaches the pinned far side.
+    for depth in np.arange(-0.001, 0.012, 0.001):
+        pose = Pose.at([0.021, 0.019, 0.006 + tool.radius - depth])
+        touch = set_down(slab, tool, pose) if touch is None else follow_tool(touch, pose)
+        for _ in range(10):
+            contact.follow(pose.position, pose.rotation, slab.young_modulus)
+        forces.append((touch.force[2], contact.force[2]))
+    assert (np.diff(forces[2:], axis=0) > 0).all()
+
+
+@pytest.mark.parametrize("tool", [sphere(0.007), rod(0.006, 0.01)], ids=["sphere", "rod"])
+def test_in_an_inner_corner_it_comes_to_rest_where_the_reference_does(tool):
+    """Beside a floor 3 mm deep a wall is approached, touched, and left again."""
+    corner = inner_corner()
+    contact = native_tool(corner, native_body(corner, whole=True), tool)
+    low, left = tool.core.min(axis=0)[[2, 0]] - tool.radius
+    poses = [Pose.at([0.025 - left - into, 0.025, 0.022 - low]) for into in (-5e-4, 6e-4, -1e-4)]
+    touch = set_down(corner, tool, Pose.at(poses[0].position + np.array([0.0, 0.0, 0.004])))
+    contact.restart(touch.pose.position, touch.pose.rotation)
+    aside = []
+    for goal in poses:
+        touch = press_tool(corner, tool, goal, start=touch)
+        settled(contact, goal, corner.young_modulus)
+        assert touch.exact
+        scale = float(np.linalg.norm(touch.force))
+        np.testing.assert_allclose(contact.force, touch.force, atol=1e-5 * scale)
+        aside.append(touch.force[0] / scale)
+    assert abs(aside[0]) < 0.05
+    assert aside[1] > aside[0] + 0.05
+
+
+def test_two_fingers_that_squeeze_a_thin_strip_feel_what_the_reference_feels():
+    """12 mm thick, of two elements, by 2 mm from either side."""
+    strip, tool = soft_block((0.06, 0.012, 0.04), (8, 2, 5)), sphere(0.008)
+    native = native_body(strip, whole=True)
+
+    def places(depth):
+        sides = (depth - tool.radius, 0.012 + tool.radius - depth)
+        return np.array([[0.029, y, 0.02] for y in sides])
+
+    fingers = SteppedFingers(native, places(-0.001), young_modulus=strip.young_modulus)
+    for finger in (0, 1):
+        fingers.set_tool(native_tool(strip, native, tool), np.eye(3), finger)
+    pressing = np.array([places(depth) for depth in np.linspace(-0.001, 0.002, 150)])
+    fingers.follow(pressing)
+    forces, _ = fingers.follow(np.repeat(pressing[-1:], 200, axis=0))
+    touches = None
+    for depth in (-0.001, 0.002):
+        tools = [(tool, Pose.at(place)) for place in places(depth)]
+        touches = press_tools(strip, tools, start=touches)
+    assert all(touch.exact for touch in touches)
+    expected = np.array([touch.force for touch in touches])
+    np.testing.assert_allclose(forces[-1], expected, atol=1e-4 * np.abs(expected).max())
+    np.testing.assert_allclose(forces[-50:], forces[-50:-49].repeat(50, 0), atol=1e-4)
+    for finger, force in zip(fingers.snapshot().fingers, forces[-1], strict=True):
+        np.testing.assert_allclose(finger.point_forces.sum(axis=0), -force, atol=1e-9)
+
+
+def test_a_surface_that_another_finger_has_bulged_is_met_where_it_has_gone():
+    """One pushes a strip 3 mm aside, the other comes from beyond: no step, and the reference's."""
+    strip, tool = soft_block((0.06, 0.008, 0.04), (8, 2, 6)), sphere(0.012)
+    native = native_body(strip, whole=True)
+
+    def places(depth, gap):
+        return np.array([[0.029, y, 0.03] for y in (depth - tool.radius, 0.02 + gap)])
+
+    fingers = SteppedFingers(native, places(-0.001, 0.006), young_modulus=strip.young_modulus)
+    for finger in (0, 1):
+        fingers.set_tool(native_tool(strip, native, tool), np.eye(3), finger)
+    fingers.follow(np.array([places(depth, 0.006) for depth in np.linspace(-0.001, 0.003, 150)]))
+    coming = np.array([places(0.003, gap) for gap in np.linspace(0.006, 0.0023, 400)])
+    forces, _ = fingers.follow(coming)
+    meeting = forces[:, 1, 1]
+    touches = None
+    for gap in (0.006, 0.0023):
+        tools = [(tool, Pose.at(place)) for place in places(0.003, gap)]
+        touches = press_tools(strip, tools, start=touches)
+    expected = touches[1].force[1]
+    forces, _ = fingers.follow(np.repeat(coming[-1:], 200, axis=0))
+    assert forces[-1, 1, 1] == pytest.approx(expected, rel=1e-3)
+    assert np.abs(np.diff(meeting)).max() < 0.03 * expected

@@ -1,0 +1,150 @@
+"""How a device's stylus is turned, from the hand that turns it to the servo's thread."""
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import palpate_servo
+import pytest
+from measuring.servo_host import ABOVE, YOUNG_MODULUS, cube
+
+from palpate.core.servo import link
+from palpate.simulated.hand.quaternion import about
+from palpate.simulated.options import SimulatedOptions
+from palpate.simulated.simulated_process import SimulatedDevice
+
+VECTORS = json.loads(
+    (Path(__file__).resolve().parents[2] / "vectors" / "link.json").read_text(encoding="utf-8")
+)
+TOLD = [vector for vector in VECTORS["messages"] if vector["type"] == "orientation"]
+HELLO = link.DeviceHello("Turning", 3, 3.0, (0.1, 0.1, 0.1), 1000)
+
+
+def state(sequence):
+    x, y, z = (round(metres * 1e6) for metres in ABOVE)
+    return link.encode(link.State(sequence, 1000 * sequence, (x, y, z)))
+
+
+@pytest.fixture
+def servo():
+    servo = palpate_servo.SteppedServo(cube(), young_modulus=YOUNG_MODULUS)
+    servo.tick()
+    servo.tick(link.encode(HELLO))
+    return servo
+
+
+def rotation(quaternion):
+    """Matrix of a quaternion, column by column: where q e q* is."""
+    w, x, y, z = np.array(quaternion) / np.linalg.norm(quaternion)
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return np.eye(3) + 2.0 * w * cross + 2.0 * cross @ cross
+
+
+QUARTER = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+"""x to y, y to -x."""
+
+
+def orientations(servo):
+    """Paired, unpaired, refused, lost, and what was no message."""
+    counters = servo.counters()["link"]
+    names = ("orientations", *(f"orientations_{name}" for name in ("unpaired", "refused", "lost")))
+    return [counters[name] for name in (*names, "unknown")]
+
+
+@pytest.mark.parametrize("vector", TOLD, ids=lambda vector: vector["name"])
+def test_the_orientations_of_the_vectors_are_taken_with_their_state(servo, vector):
+    np.testing.assert_array_equal(servo.snapshot().orientation, np.eye(3))
+    servo.tick(bytes.fromhex(vector["frame"]) + state(vector["fields"]["sequence"]))
+    assert orientations(servo) == [1, 0, 0, 0, 0]
+    expected = rotation(vector["fields"]["quaternion"])
+    np.testing.assert_allclose(servo.snapshot().orientation, expected, atol=1e-12)
+
+
+@pytest.mark.parametrize("vector", VECTORS["refused"], ids=lambda vector: vector["name"])
+def test_what_is_none_by_the_vectors_is_refused_by_the_servo_too(servo, vector):
+    payload = bytes.fromhex(vector["payload"])
+    servo.tick(link.frame(payload) + state(258))
+    is_message = len(payload) == 11
+    assert orientations(servo) == [0, 0, int(is_message), 0, int(not is_message)]
+    assert servo.snapshot().state == "ramping"
+    np.testing.assert_array_equal(servo.snapshot().orientation, np.eye(3))
+
+
+def test_the_frame_turns_the_stylus_from_the_left(servo):
+    servo.set_device_frame(QUARTER, (0.1, 0.0, 0.0), 2.0)
+    tilted = about((1.0, 0.0, 0.0), 0.5)
+    servo.tick(link.encode(link.orientation(0, tilted)) + state(0))
+    seen = servo.snapshot().orientation
+    np.testing.assert_allclose(seen, QUARTER @ rotation(tilted), atol=1e-4)
+    assert not np.allclose(seen, rotation(tilted) @ QUARTER, atol=0.1)
+
+
+@pytest.fixture
+def turning(eventually):
+    """A device whose hand turns the stylus, and a servo that has found it."""
+    started = []
+
+    def start(**options):
+        device = SimulatedDevice(SimulatedOptions(rest=ABOVE, **options))
+        started.append(device)
+        servo = palpate_servo.Servo(cube(), young_modulus=YOUNG_MODULUS)
+        started.append(servo)
+        servo.start(palpate_servo.LinkDevice(device.port))
+        eventually(lambda: servo.snapshot().state == "free")
+        return device, servo
+
+    yield start
+    for one in reversed(started):
+        one.stop()
+
+
+def test_each_state_of_a_turning_device_has_its_orientation(turning, eventually):
+    _, servo = turning(turning=30.0, turning_axis=(0.0, 1.0, 0.0), turning_period=1.0)
+    degrees = []
+
+    def seen():
+        x = servo.snapshot().orientation[:, 0]
+        degrees.append(math.degrees(math.atan2(-x[2], x[0])))
+        return servo.counters()["link"]["orientations"] > 1500
+
+    eventually(seen)
+    servo.stop()
+    assert max(degrees) == pytest.approx(30.0, abs=0.5)
+    assert min(degrees) == pytest.approx(0.0, abs=0.5)
+    assert orientations(servo)[1:] == [0, 0, 0, 0]
+    assert servo.counters()["link"]["orientations"] == servo.counters()["link"]["states"]
+
+
+def test_lost_orientations_are_counted_and_do_no_harm(turning, eventually):
+    """A frame in ten is lost, so that 20 ms without any have a chance of 1 in 10^20 a tick."""
+    _, servo = turning(turning=0.0, loss=0.1)
+    eventually(lambda: orientations(servo)[3] > 30 and orientations(servo)[1] > 30)
+    servo.stop()
+    counters = servo.counters()["link"]
+    assert counters["orientations"] + counters["orientations_lost"] <= counters["states"]
+
+
+def test_how_the_hand_holds_the_stylus_arrives_in_the_body(turning, eventually):
+    """The frame turns it as it turns the place, and the tool may be fixed to it at a turn."""
+    device, servo = turning(turning=0.0)
+    np.testing.assert_array_equal(servo.snapshot().orientation, np.eye(3))
+    held, fixed = about((1.0, 2.0, -1.0), 1.2), rotation(about((0.0, 0.0, 1.0), 0.4))
+    servo.set_device_frame(QUARTER, (0.0, 0.0, 0.0), 1.0)
+    servo.set_orientation(fixed)
+    device.turn_hand(held, 0.3)
+    expected = QUARTER @ rotation(held) @ fixed
+    eventually(lambda: np.allclose(servo.snapshot().orientation, expected, atol=1e-4))
+    (finger,) = servo.snapshot().fingers
+    np.testing.assert_allclose(finger.orientation, expected, atol=1e-4)
+    np.testing.assert_allclose(finger.probe, QUARTER @ np.array(ABOVE), atol=2e-5)
+
+
+def test_a_stylus_that_is_turned_for_the_first_time_is_set_down_anew(turning, eventually):
+    device, servo = turning()
+    assert orientations(servo) == [0] * 5
+    device.turn_hand(about((0.0, 0.0, 1.0), math.pi / 2), 0.3)
+    eventually(lambda: servo.snapshot().state == "ramping" or orientations(servo)[0] > 100)
+    eventually(lambda: servo.snapshot().state == "free" and orientations(servo)[0] > 100)
+    assert servo.counters()["faults"]["too fast"] == 0
+    assert orientations(servo)[1:] == [0, 0, 0, 0]
