@@ -82,7 +82,8 @@ class Halfway:
 def test_each_shape_is_explained_and_its_cost_told_before_the_press(panel, name):
     thing = soft_cube()
     thing.palpate.shape = name
-    shapes, felt = (part(f"core.large_deformation.{one}") for one in ("shapes", "felt_force"))
+    shapes = part("core.shape.shapes")
+    felt = part("core.shape.force_at_depth.felt_force")
     said = drawn(panel, thing)
     assert said.properties == ["shape", "felt"]
     assert shapes.EXPLANATIONS[SHAPES[name]] in said.text

@@ -34,10 +34,10 @@ BLENDERS_OWN = {
 
 def shown_by_blender():
     """Names and tooltips of all properties and operators."""
-    properties = part("addon.properties")
-    types = [properties.PalpateObject, part("addon.scene_properties").PalpateScene]
+    properties = part("addon.properties.soft_object")
+    types = [properties.PalpateObject, part("addon.properties.scene").PalpateScene]
     types.append(part("addon.preferences").PalpatePreferences)
-    types.append(part("addon.softness_properties").PalpateSoftness)
+    types.append(part("addon.properties.softness").PalpateSoftness)
     structs = [cls.bl_rna for cls in types]
     structs += [getattr(bpy.ops.palpate, name).get_rna_type() for name in dir(bpy.ops.palpate)]
     for struct in structs:
@@ -62,7 +62,7 @@ def test_no_name_or_tooltip_is_missing(palpate):
 def test_every_state_fault_reason_and_limit_of_the_servo_has_its_words(palpate):
     import palpate_servo
 
-    words = part("operators.servo_words")
+    words = part("operators.device.servo_words")
     assert set(words.STATES) == set(palpate_servo.STATES)
     assert set(words.FAULTS) == set(words.FAULT_NAMES) == set(palpate_servo.FAULTS)
     told = {reason for reason in palpate_servo.REASONS if not reason.startswith("after ")}
@@ -71,7 +71,7 @@ def test_every_state_fault_reason_and_limit_of_the_servo_has_its_words(palpate):
 
 
 def test_sentences_fill_lines_also_where_there_are_no_spaces(palpate):
-    wrapped = part("addon.sentence").wrapped
+    wrapped = part("addon.panels.sentence").wrapped
     assert wrapped("Less is pinned than before", 12) == ["Less is", "pinned than", "before"]
     text = part("addon.translations").words()["ja"]["*"]["Less is pinned than before: needs a bake"]
     lines = wrapped(text, 12)

@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 from stage import Pixel, Stage, Wait
 
-from bl_ext.user_default.palpate.operators import press_session
+from bl_ext.user_default.palpate.operators.session import press_session
 from bl_ext.user_default.palpate.operators.session.press_state import Phase
 
 SCENE, NAME = "sample_scenes/mouse.blend", "Mouse"

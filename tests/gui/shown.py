@@ -7,13 +7,13 @@ from contextlib import contextmanager
 
 import bpy
 
-from bl_ext.user_default.palpate.addon import panels
+from bl_ext.user_default.palpate.addon.panels import sidebar
 
 
 @contextmanager
 def all_panels_open() -> Iterator[None]:
     """Have panels open that are closed at first; to be entered before they are first drawn."""
-    closed = [cls for cls in panels.classes if "DEFAULT_CLOSED" in getattr(cls, "bl_options", ())]
+    closed = [cls for cls in sidebar.classes if "DEFAULT_CLOSED" in getattr(cls, "bl_options", ())]
     _register_anew(closed, set())
     try:
         yield
@@ -22,11 +22,11 @@ def all_panels_open() -> Iterator[None]:
 
 
 def _register_anew(changed: list[type], options: set[str]) -> None:
-    for cls in reversed(panels.classes):
+    for cls in reversed(sidebar.classes):
         bpy.utils.unregister_class(cls)
     for cls in changed:
         cls.bl_options = options
-    for cls in panels.classes:
+    for cls in sidebar.classes:
         bpy.utils.register_class(cls)
 
 

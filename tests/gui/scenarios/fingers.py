@@ -8,7 +8,7 @@ from mouse_scene import over_the_view, own_copy, type_key
 from stage import Pixel, Stage, Wait
 
 from bl_ext.user_default.palpate.addon.overlay.reading import Reading, readings
-from bl_ext.user_default.palpate.operators import press_session
+from bl_ext.user_default.palpate.operators.session import press_session
 from bl_ext.user_default.palpate.operators.session.press_state import Phase
 
 PINCH, FINGERTIP = "sample_scenes/pinch.blend", "sample_scenes/fingertip.blend"

@@ -9,7 +9,7 @@ from shown import all_panels_open
 from stage import Stage, Wait
 
 from bl_ext.user_default.palpate.core.servo.recording import read_recording
-from bl_ext.user_default.palpate.operators import press_session
+from bl_ext.user_default.palpate.operators.session import press_session
 from bl_ext.user_default.palpate.operators.session.press_state import CALM_SECONDS
 
 

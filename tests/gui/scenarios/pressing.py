@@ -21,8 +21,10 @@ from mouse_scene import (
 from shown import replaced
 from stage import MODULE, Stage, Wait
 
-from bl_ext.user_default.palpate.addon import pixels
-from bl_ext.user_default.palpate.operators import bake_session, body_store, press_session
+from bl_ext.user_default.palpate.addon.overlay import pixels
+from bl_ext.user_default.palpate.operators.bake import bake_session
+from bl_ext.user_default.palpate.operators.object import body_store
+from bl_ext.user_default.palpate.operators.session import press_session
 from bl_ext.user_default.palpate.operators.session.press_state import Phase
 
 
