@@ -78,3 +78,17 @@ def palpate(installed: str) -> Iterator[ModuleType]:
     if installed not in bpy.context.preferences.addons:
         # A test that disables the extension hands it back enabled.
         bpy.ops.preferences.addon_enable(module=installed)
+
+
+@pytest.fixture
+def states(palpate: ModuleType) -> ModuleType:
+    """Return the events and states of a press."""
+    return importlib.import_module(f"{MODULE}.operators.session.press_state")
+
+
+@pytest.fixture
+def sessions(palpate: ModuleType) -> Iterator[ModuleType]:
+    """Return running presses; what a test leaves running is ended."""
+    module = importlib.import_module(f"{MODULE}.operators.session.press_session")
+    yield module
+    module.give_way("")

@@ -5,6 +5,8 @@ from __future__ import annotations
 import importlib
 import os
 import shutil
+import time
+from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -16,6 +18,8 @@ from numpy.typing import NDArray
 MODULE = "bl_ext.user_default.palpate"
 # Few tetrahedra: a bake takes about a second, most of it the child process.
 COARSE = 0.2
+# The middle of a soft cube's top, and a place 5 mm inside.
+TOP, DEEP = (0.0, 0.0, 0.02501), (0.0, 0.0, 0.02)
 
 
 def part(name: str) -> ModuleType:
@@ -79,6 +83,36 @@ def press_down(thing: bpy.types.Object, top: float = 0.025, depth: float = 0.005
     """Press the middle of the top of a cube at the origin and keep the shape."""
     select(thing)
     assert bpy.ops.palpate.press(at=(0.0, 0.0, top), by=(0.0, 0.0, -depth)) == {"FINISHED"}
+
+
+def begin(
+    sessions: ModuleType,
+    states: ModuleType,
+    thing: bpy.types.Object,
+    source: str = "POINTER",
+    *,
+    pinch: bool = False,
+) -> Any:
+    """A running press, without the operator that listens to events."""
+    return sessions.begin(thing, bpy.context.scene, states.Source[source], pinch=pinch)
+
+
+def press_in(session: Any, states: ModuleType) -> None:
+    """Touch the middle of the cube's top and go in, until the thread has answered."""
+    session.post(states.SetDown(TOP))
+    session.post(states.Move(DEEP))
+    wait(session, lambda: session.snapshot.touching and session.snapshot.probe[2] < DEEP[2] + 1e-9)
+
+
+def wait(session: Any, condition: Callable[[], bool], seconds: float = 20.0) -> None:
+    """Tick a running press, as Blender's timer does, until a condition holds."""
+    end = time.monotonic() + seconds
+    while True:
+        session.tick()
+        if condition():
+            return
+        assert time.monotonic() < end, "waited in vain"
+        time.sleep(0.005)
 
 
 def error_of(operator: Any, **arguments: Any) -> str:

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import threading
-import time
 from itertools import pairwise
 
 import bpy
 import pytest
 from recorded_layout import NARROW_WIDTH, USUAL_WIDTH, drawn
-from soft_scene import cube, part, soft_cube
+from soft_scene import cube, part, soft_cube, wait
 
 TOP = (0.002, 0.001, 0.02501)
 SHAPES = {
@@ -44,16 +43,6 @@ def press(palpate):
 
     yield begin
     sessions.give_way("")
-
-
-def wait(session, condition, seconds=20.0):
-    end = time.monotonic() + seconds
-    while True:
-        session.tick()
-        if condition():
-            return
-        assert time.monotonic() < end, "waited in vain"
-        time.sleep(0.005)
 
 
 def as_large(thing):

@@ -8,7 +8,7 @@ import time
 import bpy
 import numpy as np
 import pytest
-from soft_scene import key_coordinates, key_names, mesh_state, part, press_down, soft_cube
+from soft_scene import key_coordinates, key_names, mesh_state, part, press_down, soft_cube, wait
 
 TOP, DEPTH = (0.002, 0.001, 0.02501), 0.004
 NAMES = {
@@ -17,18 +17,6 @@ NAMES = {
     "SERIES": "series",
     "ROTATION_STRAIN": "rotation-strain",
 }
-
-
-@pytest.fixture
-def states(palpate):
-    return part("operators.session.press_state")
-
-
-@pytest.fixture
-def sessions(palpate):
-    module = part("operators.session.press_session")
-    yield module
-    module.give_way("")
 
 
 @pytest.fixture
@@ -63,16 +51,6 @@ def begin_pressed(sessions, states, thing):
     session.post(states.Release())
     wait(session, lambda: session.displacements is not None and depth(session) > 0.99 * DEPTH)
     return session
-
-
-def wait(session, condition, seconds=20.0):
-    end = time.monotonic() + seconds
-    while True:
-        session.tick()
-        if condition():
-            return
-        assert time.monotonic() < end, "waited in vain"
-        time.sleep(0.005)
 
 
 def depth(session):

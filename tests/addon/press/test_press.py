@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import os
-import time
 
 import bpy
 import numpy as np
 import pytest
 from soft_scene import (
+    TOP,
+    begin,
     cube,
     error_of,
     key_coordinates,
@@ -16,45 +17,11 @@ from soft_scene import (
     mesh_state,
     part,
     press_down,
+    press_in,
     select,
     soft_cube,
+    wait,
 )
-
-TOP = (0.0, 0.0, 0.02501)
-DEEP = (0.0, 0.0, 0.02)
-
-
-@pytest.fixture
-def states(palpate):
-    return part("operators.session.press_state")
-
-
-@pytest.fixture
-def sessions(palpate):
-    module = part("operators.session.press_session")
-    yield module
-    module.give_way("")
-
-
-def begin(sessions, states, thing, source="POINTER"):
-    return sessions.begin(thing, bpy.context.scene, states.Source[source])
-
-
-def press_in(session, states):
-    """Touch the middle of the top and go in, until the thread has answered."""
-    session.post(states.SetDown(TOP))
-    session.post(states.Move(DEEP))
-    wait(session, lambda: session.snapshot.touching and session.snapshot.probe[2] < 0.02 + 1e-9)
-
-
-def wait(session, condition, seconds=10.0):
-    end = time.monotonic() + seconds
-    while True:
-        session.tick()
-        if condition():
-            return
-        assert time.monotonic() < end, "waited in vain"
-        time.sleep(0.005)
 
 
 def test_a_script_presses_and_keeps_a_shape(palpate):

@@ -10,10 +10,19 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 import pytest
-from soft_scene import cube, error_of, key_names, mesh_state, part, select, soft_cube
-from test_press import DEEP, begin, press_in, sessions, states, wait
-
-__all__ = ["sessions", "states"]
+from soft_scene import (
+    DEEP,
+    begin,
+    cube,
+    error_of,
+    key_names,
+    mesh_state,
+    part,
+    press_in,
+    select,
+    soft_cube,
+    wait,
+)
 
 
 def said(session):

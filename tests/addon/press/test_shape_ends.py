@@ -3,28 +3,15 @@
 from __future__ import annotations
 
 import shutil
-import time
 from pathlib import Path
 
 import bpy
 import numpy as np
 import pytest
-from soft_scene import key_coordinates, key_names, mesh_state, part, press_down, soft_cube
+from soft_scene import key_coordinates, key_names, mesh_state, part, press_down, soft_cube, wait
 
 TOP, DEPTH = (0.002, 0.001, 0.02501), 0.004
 SHAPES = ("LINEAR", "TABLE", "SERIES", "ROTATION_STRAIN")
-
-
-@pytest.fixture
-def states(palpate):
-    return part("operators.session.press_state")
-
-
-@pytest.fixture
-def sessions(palpate):
-    module = part("operators.session.press_session")
-    yield module
-    module.give_way("")
 
 
 @pytest.fixture
@@ -42,16 +29,6 @@ def begin_pressed(sessions, states, thing):
     session.post(states.Release())
     wait(session, lambda: session.displacements is not None)
     return session
-
-
-def wait(session, condition, seconds=20.0):
-    end = time.monotonic() + seconds
-    while True:
-        session.tick()
-        if condition():
-            return
-        assert time.monotonic() < end, "waited in vain"
-        time.sleep(0.005)
 
 
 def table_file(thing, kind):

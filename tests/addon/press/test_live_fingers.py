@@ -2,37 +2,13 @@
 
 from __future__ import annotations
 
-import time
-
 import bpy
 import numpy as np
 import pytest
-from soft_scene import key_names, mesh_state, part, soft_cube
+from soft_scene import begin, key_names, mesh_state, part, soft_cube, wait
 
 LEFT, RIGHT = (-0.02501, 0.0, 0.01), (0.02501, 0.0, 0.01)
 LEFT_IN, RIGHT_IN = (-0.022, 0.0, 0.01), (0.022, 0.0, 0.01)
-
-
-@pytest.fixture
-def states(palpate):
-    return part("operators.session.press_state")
-
-
-@pytest.fixture
-def sessions(palpate):
-    module = part("operators.session.press_session")
-    yield module
-    module.give_way("")
-
-
-def wait(session, condition, seconds=10.0):
-    end = time.monotonic() + seconds
-    while True:
-        session.tick()
-        if condition():
-            return
-        assert time.monotonic() < end, "waited in vain"
-        time.sleep(0.005)
 
 
 def arrived(session, *places):
@@ -41,10 +17,6 @@ def arrived(session, *places):
         finger.touching and np.allclose(finger.probe, place)
         for finger, place in zip(fingers, places, strict=True)
     )
-
-
-def begin(sessions, states, thing, source="POINTER", *, pinch=False):
-    return sessions.begin(thing, bpy.context.scene, states.Source[source], pinch=pinch)
 
 
 def empty(name, at):
