@@ -183,7 +183,7 @@ translations: $(VENV)/.installed ## new texts into addon/translations/*.po, and 
 .PHONY: bench
 bench: $(VENV)/.servo-installed | build/reports ## how long things take on this machine, beside others; see build/reports/bench.txt
 	$(BIN)/pip install --quiet --editable '.[dev,bench]'
-	for script in benchmarks/*.py; do $(BIN)/python "$$script"; done $(REPORT)
+	for script in $(filter-out benchmarks/measuring/%,$(wildcard benchmarks/*/*.py)); do $(BIN)/python "$$script"; done $(REPORT)
 
 # ------------------------------------------------------------------------------------------ rest
 

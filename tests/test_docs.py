@@ -151,7 +151,7 @@ def test_every_command_and_option_exists(page):
 @pytest.mark.parametrize("page", PAGES, ids=name_of)
 def test_every_option_of_a_benchmark_exists(page):
     text = page.read_text(encoding="utf-8")
-    for program, rest in re.findall(r"python ((?:benchmarks|demo)/\w+\.py)([^`|\n]*)", text):
+    for program, rest in re.findall(r"python ((?:benchmarks|demo)/[\w/]+\.py)([^`|\n]*)", text):
         source = (REPOSITORY / program).read_text(encoding="utf-8")
         # An option as it is written where it is declared.
         assert not [o for o in OPTION.findall(rest) if f'"{o}"' not in source], program

@@ -8,7 +8,7 @@ import random
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from passivity.contact_loop import DevicePlant
+from .contact_loop import DevicePlant
 
 Interval = tuple[float, float]
 

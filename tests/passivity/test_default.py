@@ -32,7 +32,7 @@ def test_the_range_is_what_the_document_says():
 
 @pytest.mark.parametrize("plant", CORNERS[5::16], ids=range(8))
 def test_corners_of_the_range_are_passive(plant):
-    """A few; benchmarks/passivity_map.py takes all of them."""
+    """A few; benchmarks/servo/passivity_map.py takes all of them."""
     assert judge(plant, HARD, CouplingSettings.for_devices(plant.rate_hz)).passive
 
 

@@ -6,7 +6,7 @@ import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from passivity.contact_loop import CouplingSettings, DevicePlant, PassiveHand, Press, press
+from .contact_loop import CouplingSettings, DevicePlant, PassiveHand, Press, press
 
 MOST_EXTRACTED = 1e-6
 """Energy (J) that the motor may give beyond what friction takes: a hundredth of a key press's."""

@@ -9,9 +9,9 @@ import faults
 import numpy as np
 import palpate_servo
 import pytest
-from measuring.fault_causes import CAUSES, Outcome
-from measuring.servo_host import ABOVE, DEEP, cube
-from measuring.virtual_press import VirtualPress
+from fault_injection.causes import CAUSES, Outcome
+from fault_injection.servo_host import ABOVE, DEEP, cube
+from fault_injection.virtual_press import VirtualPress
 from palpate_servo import STATES, Pointer, Servo
 
 DOCUMENT = Path(__file__).resolve().parents[2] / "docs" / "safety.md"

@@ -3,7 +3,7 @@
 import os
 
 import pytest
-from measuring import fault_processes
+from fault_injection import processes as fault_processes
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "openpty"), reason="needs pseudo-terminals")
 

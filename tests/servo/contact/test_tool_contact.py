@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from measuring.inner_corner import inner_corner
-from measuring.soft_block import soft_block
+from bodies.inner_corner import inner_corner
+from bodies.soft_block import soft_block
 from palpate_servo import SteppedFingers, ToolContact, ToolSurface, tick_costs
 from palpate_servo import Tool as NativeTool
 from scipy.spatial.transform import Rotation

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import palpate_servo
 import pytest
-from measuring.servo_host import ABOVE, YOUNG_MODULUS, cube
+from fault_injection.servo_host import ABOVE, YOUNG_MODULUS, cube
 
 from palpate.core.servo import link
 from palpate.simulated.hand.quaternion import about

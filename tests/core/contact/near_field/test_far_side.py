@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from measuring.soft_block import soft_block
+from bodies.soft_block import soft_block
 
 from palpate.core.contact.near_field.far_side import far_side
 from palpate.core.contact.near_field.regular_field import mean_edges

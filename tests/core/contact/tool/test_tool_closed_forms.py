@@ -1,10 +1,10 @@
-"""Tools on a graded block beside closed forms, as in benchmarks/contact_closed_forms.py."""
+"""Tools on a graded block beside closed forms, as in benchmarks/contact/contact_closed_forms.py."""
 
 import contact_referee
 import numpy as np
 import pytest
+from bodies.graded_block import YOUNG_MODULUS, graded_block, lift, nodes_as_points
 from contact_closed_forms import hertz, punch, small_contacts
-from measuring.graded_block import YOUNG_MODULUS, graded_block, lift, nodes_as_points
 
 from palpate.core.contact.near_field.compliance_beneath import near_correction
 from palpate.core.contact.near_field.regular_field import RegularField
@@ -75,7 +75,7 @@ def test_small_contacts_are_resisted_as_hertz_says(block, points):
 
 
 def test_a_fingertip_on_a_cube_is_resisted_as_by_another_finite_element_method():
-    """At 0.05, 0.1 and 0.14 of the radius, as benchmarks/contact_referee.py has it on fine meshes.
+    """At 0.05, 0.1, 0.14 of the radius; benchmarks/contact/contact_referee.py has finer meshes.
 
     That is scikit-fem with quadratic elements and a contact of its own.
     """

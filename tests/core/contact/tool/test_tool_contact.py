@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
-from measuring.inner_corner import inner_corner
-from measuring.soft_block import soft_block
+from bodies.inner_corner import inner_corner
+from bodies.soft_block import soft_block
 from scipy.spatial.transform import Rotation
 
 from palpate.core.contact.near_field.compliance_beneath import point_compliance

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from measuring.soft_block import soft_block
+from bodies.soft_block import soft_block
 
 from palpate.core.body.soft_body import SoftBody
 from palpate.core.compliance.surface_compliance import surface_compliance

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from measuring.nonlinear_reference import NonlinearReference
+from referees.nonlinear_reference import NonlinearReference
 
 from palpate.core.body.soft_body import SoftBody
 from palpate.core.compliance.dense import DenseCompliance

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from measuring.large_loads import carried, large_loads
-from measuring.nonlinear_reference import NonlinearReference
+from bodies.large_loads import carried, large_loads
+from referees.nonlinear_reference import NonlinearReference
 
 from palpate.core.body.soft_body import SoftBody
 from palpate.core.compliance.dense import DenseCompliance

@@ -1,0 +1,226 @@
+"""How well the servo keeps its deadlines, beside a bare native thread in the same run.
+
+    python benchmarks/servo/servo_timing.py [--seconds S] [--rate HZ] [--load ROW]
+
+Both threads run at once, half a period apart, so that whatever else the machine does hits both and
+neither waits for the other. The bare thread only sleeps, by ``clock_nanosleep`` to the deadline, at
+the same priority. The servo is led over a body the size of the paper's mouse while Python is idle,
+deforms at 60 Hz, keeps the interpreter, or other processes keep every core.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from contextlib import ExitStack
+from typing import Any
+
+import numpy as np
+from palpate_servo import BareTimer, Body, Pointer, Servo
+from scipy.stats import binom
+
+RADIUS = 0.025
+MOST = 1.2
+"""How many times the bare thread's late ticks and p99.9 lateness the servo's may be."""
+
+
+def ball(halvings: int = 3) -> Body:
+    """An octahedron halved into 8 * 4^halvings triangles, blown up to a ball."""
+    corners = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]]
+    nodes = [np.array(corner, float) for corner in corners]
+    triangles = [
+        [0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5],
+    ]  # fmt: skip
+    for _ in range(halvings):
+        middles: dict[tuple[int, int], int] = {}
+        finer = []
+        for triangle in triangles:
+            between = []
+            for i, j in zip(triangle, triangle[1:] + triangle[:1], strict=True):
+                pair = (min(i, j), max(i, j))
+                if pair not in middles:
+                    middles[pair] = len(nodes)
+                    nodes.append(nodes[i] + nodes[j])
+                between.append(middles[pair])
+            (a, b, c), (ab, bc, ca) = triangle, between
+            finer += [[a, ab, ca], [b, bc, ab], [c, ca, bc], [ab, bc, ca]]
+        triangles = finer
+        nodes = [node / np.linalg.norm(node) for node in nodes]
+    return Body(np.array(nodes) * RADIUS, triangles, np.tile(np.eye(3) * 0.1, (len(nodes), 1, 1)))
+
+
+def lead(servo: Servo, seconds: float) -> None:
+    """A target that circles 3 mm deep."""
+    angle = 4.0 * seconds
+    direction = np.array([0.5 * np.cos(angle), 0.5 * np.sin(angle), 1.0])
+    servo.set_target(direction / np.linalg.norm(direction) * (RADIUS - 0.003))
+
+
+def at_60_hz(servo: Servo, work: Callable[[], object], seconds: float) -> None:
+    """Lead and work at 60 Hz, as a user interface does."""
+    start = time.perf_counter()
+    while (now := time.perf_counter() - start) < seconds:
+        lead(servo, now)
+        work()
+        time.sleep(max(0.0, 1 / 60 - (time.perf_counter() - start - now)))
+
+
+def deforming() -> Callable[[], object]:
+    """Nine columns of the mouse's compliance, and the map to 20,000 drawn vertices."""
+    rng = np.random.default_rng(1)
+    columns = rng.normal(size=(1036 * 3, 1036 * 3)).astype(np.float32)
+    nearest = rng.integers(0, 1036, (20_000, 3))
+
+    def frame() -> object:
+        touched = 3 * int(rng.integers(0, 1000))
+        moved = columns[:, touched : touched + 9] @ np.ones(9, np.float32)
+        return moved.reshape(-1, 3)[nearest].mean(axis=1)
+
+    return frame
+
+
+def hog(servo: Servo, seconds: float) -> None:
+    """Products of large integers, with no turn for anybody who waits for the interpreter."""
+    number = 3**200_000
+    interval = sys.getswitchinterval()
+    sys.setswitchinterval(10.0)
+    try:
+        start = time.perf_counter()
+        while (now := time.perf_counter() - start) < seconds:
+            lead(servo, now)
+            _ = number * number
+    finally:
+        sys.setswitchinterval(interval)
+
+
+def beside_busy_processes(servo: Servo, seconds: float) -> None:
+    """Lead at 60 Hz while a process for each core counts for nothing."""
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
+    with ExitStack() as stack:
+        for _ in range(cores or 1):
+            busy = stack.enter_context(subprocess.Popen([sys.executable, "-c", "while True: pass"]))
+            stack.callback(busy.kill)
+        at_60_hz(servo, lambda: None, seconds)
+
+
+def measure(
+    body: Body, rate_hz: int, run: Callable[[Servo], None]
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Counters of the servo and of the bare thread while `run` goes on."""
+    with Servo(body, young_modulus=1000.0, rate_hz=rate_hz, record_seconds=1.0) as servo:
+        servo.start(Pointer([0.0, 0.0, 0.03]))
+        bare = BareTimer(rate_hz)
+        run(servo)
+        bare_counters = bare.stop()
+        servo.stop()
+        return dict(servo.counters()), dict(bare_counters)
+
+
+def ratio(one: float, other: float) -> float:
+    """How many times as much; none of each is as much."""
+    if one == other:
+        return 1.0
+    return one / other if other else np.inf
+
+
+def is_chance(one: int, other: int, most: float) -> bool:
+    """Whether counts that differ like that are no proof of more than `most` times as many.
+
+    An exact binomial test of one against the sum of both, at 5 %. Late ticks come in bursts, so it
+    is too strict rather than too lenient.
+    """
+    return float(binom.sf(one - 1, one + other, most / (1.0 + most))) > 0.05
+
+
+def in_words(factor: float, enough: bool, chance: bool) -> str:
+    """A factor, and whether it is within `MOST`, where the ticks suffice to tell."""
+    if not enough:
+        return f"{factor:.2f}"
+    verdict = "ok" if factor <= MOST else "chance" if chance else "MORE"
+    return f"{factor:.2f} {verdict}"
+
+
+def beyond(counters: dict[str, Any], us: float) -> int:
+    """Ticks later than this."""
+    return int(sum(count for limit, count in counters["histogram"] if limit > us))
+
+
+def line(load: str, thread: str, cells: list[str]) -> str:
+    """One line of the table."""
+    return f"{load:<20}{thread:<8}" + "".join(f"{cell:>10}" for cell in cells)
+
+
+def cells_of(counters: dict[str, Any]) -> list[str]:
+    """A thread's figures."""
+    lateness, ticks = counters["lateness_us"], max(counters["ticks"], 1)
+    processor = 100.0 * (counters["busy_us"]["mean"] + counters["spun_us"]["mean"])
+    processor *= ticks / (ticks + counters["missed"]) * counters["rate_hz"] * 1e-6
+    return [
+        *(str(counters[key]) for key in ("ticks", "missed", "late_ticks")),
+        *(f"{lateness[key]:.1f}" for key in ("p50", "p99", "p99_9", "max")),
+        f"{counters['busy_us']['mean']:.1f}",
+        f"{processor:.1f}",
+    ]
+
+
+COLUMNS = ["ticks", "missed", "late", "p50 us", "p99 us", "p99.9 us", "max us", "work us", "cpu %"]
+
+
+def stages(counters: dict[str, Any]) -> str:
+    """Where the servo's ticks spent their time."""
+    return "; ".join(
+        f"{stage} {times['mean']:.2f} mean, {times['p99']:.2f} p99, {times['max']:.0f} max"
+        for stage, times in counters["stages_us"].items()
+    )
+
+
+def main() -> None:
+    """Print one table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--seconds", type=float, default=32.0, help="for each row")
+    parser.add_argument("--rate", type=int, default=1000, help="Hz")
+    parser.add_argument("--load", help="part of a row's name; all rows unless given")
+    arguments = parser.parse_args()
+    seconds = arguments.seconds
+    body = ball()
+    frame = deforming()
+    loads: dict[str, Callable[[Servo], None]] = {
+        "idle": lambda servo: at_60_hz(servo, lambda: None, seconds),
+        "60 Hz deformation": lambda servo: at_60_hz(servo, frame, seconds),
+        "Python hogging": lambda servo: hog(servo, seconds),
+        "all cores loaded": lambda servo: beside_busy_processes(servo, seconds),
+    }
+    loads = {name: run for name, run in loads.items() if (arguments.load or "") in name}
+    if not loads:
+        parser.error(f"no row is called {arguments.load}")
+    print(line("load", "thread", COLUMNS))
+    measured: dict[str, dict[str, Any]] = {}
+    for name, run in loads.items():
+        servo, bare = measure(body, arguments.rate, run)
+        measured[name] = servo
+        enough = min(servo["ticks"], bare["ticks"]) >= 30_000
+        late = ratio(servo["late_ticks"], bare["late_ticks"])
+        tail = ratio(servo["lateness_us"]["p99_9"], bare["lateness_us"]["p99_9"])
+        print(line(name, "servo", cells_of(servo)))
+        print(line("", "bare", cells_of({"rate_hz": arguments.rate, **bare})))
+        few_late = is_chance(servo["late_ticks"], bare["late_ticks"], MOST)
+        far = MOST * bare["lateness_us"]["p99_9"]
+        few_far = is_chance(beyond(servo, far), beyond(bare, far / MOST), 1.0)
+        verdicts = [in_words(late, enough, few_late), "", "", in_words(tail, enough, few_far)]
+        print(line("", "ratio", ["", "", *verdicts]), flush=True)
+    print("\nstages of the tick, us")
+    for name, servo in measured.items():
+        print(f"{name:<20}{stages(servo)}")
+    print(
+        f"\nreal-time priority: {servo['realtime']}; late: over 200 us after the deadline; wanted:"
+    )
+    print(f"at most {MOST} times the bare thread's late ticks and p99.9, of 30,000 ticks or more.")
+    print("cpu: work, and for the servo also the time it is awake before its deadline.")
+
+
+if __name__ == "__main__":
+    main()

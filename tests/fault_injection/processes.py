@@ -1,0 +1,320 @@
+"""Faults of the system: processes stopped and killed, plugs pulled, readers that stall."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import math
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+from palpate_servo import Pointer, Servo
+
+from palpate.simulated.options import SimulatedOptions
+from palpate.simulated.simulated_process import SimulatedDevice
+
+from .rows import Row
+from .servo_host import ABOVE, DEEP, RAMP_SECONDS, YOUNG_MODULUS, cube
+
+HOST = Path(__file__).with_name("servo_host.py")
+PATIENCE_SECONDS = 20.0
+STOPPED_SECONDS = 1.0
+STEADY_TICKS = 20
+BURST_SECONDS = 0.050
+RELEASE_SECONDS = 0.6
+PERIOD = 1e-3
+RING_TICKS = 100
+WATCHDOG_SECONDS = 0.020
+ROUNDING = 1e-9
+DAMPING = 5e-3
+"""What the coupling of devices with motors adds to the body's own force while nobody moves, N."""
+
+
+class Host:
+    """`servo_host.py` as a process of its own."""
+
+    def __init__(self, port: str) -> None:
+        self.process = subprocess.Popen(
+            [sys.executable, str(HOST), port],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.process.kill()
+        self.process.communicate()
+
+    def ask(self, line: str) -> Any:
+        """The answer to a line."""
+        if self.process.stdin is None or self.process.stdout is None:
+            raise RuntimeError("the host was started without pipes")
+        self.process.stdin.write(line + "\n")
+        self.process.stdin.flush()
+        return json.loads(self.process.stdout.readline())
+
+    def report(self) -> dict[str, Any]:
+        """Where the servo stands now."""
+        answer: dict[str, Any] = self.ask("report")
+        return answer
+
+    def samples(self) -> list[dict[str, Any]]:
+        """All ticks since the last time."""
+        answer: list[dict[str, Any]] = self.ask("samples")
+        return answer
+
+    def signal(self, number: int) -> None:
+        """Send the process a signal."""
+        os.kill(self.process.pid, number)
+
+
+def eventually(condition: Callable[[], bool], what: str) -> None:
+    """Wait for something; RuntimeError when it does not come."""
+    deadline = time.monotonic() + PATIENCE_SECONDS
+    while not condition():
+        if time.monotonic() > deadline:
+            raise RuntimeError(f"{what}: did not happen within {PATIENCE_SECONDS:g} s")
+        time.sleep(0.005)
+
+
+def device() -> SimulatedDevice:
+    """A simulated device with a hand above the cube."""
+    return SimulatedDevice(SimulatedOptions(rest=ABOVE, hand_stiffness=800.0))
+
+
+def press(host: Host, hand: SimulatedDevice) -> None:
+    """Bring the hand into the cube, out of it first."""
+    hand.move_hand(ABOVE, 0.05)
+    eventually(lambda: host.report()["state"] == "free", "nothing is touched")
+    hand.move_hand(DEEP, 0.1)
+
+    def is_felt() -> bool:
+        report = host.report()
+        return bool(report["state"] == "touching" and not report["limited"])
+
+    eventually(is_felt, "the cube is felt")
+    eventually(lambda: _strength(hand.report()) > 0.3, "the device pushes")
+
+
+def _strength(report: dict[str, Any]) -> float:
+    return math.hypot(*report["felt_force"])
+
+
+@dataclass(frozen=True)
+class Suspension:
+    """A host that was stopped by a signal in the middle of a press, and went on."""
+
+    before: list[dict[str, Any]]
+    """Its ticks before it was stopped (see `servo_host.samples`)."""
+    after: list[dict[str, Any]]
+    """Those after it was."""
+    counted: int
+    """Faults called "suspended"."""
+    device: dict[str, Any]
+    """What the device said meanwhile."""
+
+    @property
+    def gap(self) -> float:
+        """Time without a tick, s."""
+        return float(self.after[0]["time"] - self.before[-1]["time"])
+
+    @property
+    def ramp(self) -> list[dict[str, Any]]:
+        """From the first tick in which force is allowed again until it is whole."""
+        begin = next(i for i, tick in enumerate(self.after) if tick["state"] == "ramping")
+        end = next(
+            (i for i, t in enumerate(self.after) if i > begin and t["state"] != "ramping"),
+            len(self.after),
+        )
+        return self.after[begin:end]
+
+    def problems(self) -> list[str]:
+        """The rules of docs/safety.md that were broken."""
+        found = []
+        if not self.before[-1]["output"] > 0.0:
+            found.append("it did not push")
+        if self.after[0]["output"] != 0.0 or self.after[0]["state"] != "fault":
+            found.append("force in the first tick")
+        begin = self.after[0]["time"]
+        if any(tick["output"] > 0.0 for tick in self.after[:STEADY_TICKS]):
+            found.append("force before the ticks were steady")
+        for number, tick in enumerate(self.ramp, start=1):
+            if (
+                tick["output"]
+                > number * PERIOD / RAMP_SECONDS * (tick["wanted"] + DAMPING) + ROUNDING
+            ):
+                found.append("no ramp")
+                break
+        at_once = [tick for tick in self.after if tick["time"] - begin < BURST_SECONDS]
+        if len(at_once) > BURST_SECONDS / PERIOD + 2:
+            found.append("a burst of ticks")
+        if self.counted < 1:
+            found.append("not counted")
+        return found + device_problems(self.device)
+
+
+def device_problems(report: dict[str, Any]) -> list[str]:
+    """Whether the device went limp as soon as it could see that nothing came."""
+    found = []
+    if not report["limp"] or _strength(report) > 0.0:
+        found.append("the device goes on")
+    if report["limp_after"] > WATCHDOG_SECONDS + report["limp_look"] + ROUNDING:
+        found.append("the watchdog is late")
+    return found
+
+
+def suspend(host: Host, hand: SimulatedDevice, seconds: float = STOPPED_SECONDS) -> Suspension:
+    """Stop a host in the middle of a press by a signal, and let it go on."""
+    press(host, hand)
+    host.samples()
+    count = host.report()["faults"]["suspended"]
+    host.signal(signal.SIGSTOP)
+    time.sleep(seconds)
+    meanwhile = hand.report()
+    host.signal(signal.SIGCONT)
+    eventually(lambda: host.report()["faults"]["suspended"] > count, "the host notices")
+    eventually(lambda: host.report()["state"] == "touching", "the force is back")
+    ticks = host.samples()
+    gaps = [now["time"] - last["time"] for last, now in itertools.pairwise(ticks)]
+    cut = gaps.index(max(gaps)) + 1
+    counted = host.report()["faults"]["suspended"] - count
+    return Suspension(ticks[:cut], ticks[cut:], counted, meanwhile)
+
+
+def kill(port: str, hand: SimulatedDevice) -> dict[str, Any]:
+    """Kill a host in the middle of a press; what the device then says."""
+    with Host(port) as host:
+        press(host, hand)
+        host.signal(signal.SIGKILL)
+        host.process.wait()
+    eventually(lambda: bool(hand.report()["limp"]), "the device goes limp")
+    return hand.report()
+
+
+def unplug(host: Host, hand: SimulatedDevice) -> tuple[list[dict[str, Any]], dict[str, Any]]:
+    """Pull the plug in the middle of a press, and put it back; the host's ticks, and the device."""
+    press(host, hand)
+    host.samples()
+    hand.unplug()
+    eventually(lambda: bool(host.report()["fault"] == "unplugged"), "the host notices")
+    eventually(lambda: bool(hand.report()["limp"]), "the device goes limp")
+    meanwhile = hand.report()
+    hand.plug_in()
+    press(host, hand)
+    return host.samples(), meanwhile
+
+
+def _limp(reports: list[dict[str, Any]]) -> str:
+    slowest = max(reports, key=lambda report: report["limp_after"])
+    return (
+        f"limp after {slowest['limp_after'] * 1e3:.1f} ms, "
+        f"looked {slowest['limp_look'] * 1e3:.1f} ms before"
+    )
+
+
+def suspended_row(times: int) -> Row:
+    """SIGSTOP for a second, SIGCONT."""
+    with device() as hand, Host(hand.port) as host:
+        all_of_them = [suspend(host, hand) for _ in range(times)]
+    broken = Counter(problem for one in all_of_them for problem in one.problems())
+    return Row(
+        injected=f"SIGSTOP for {STOPPED_SECONDS:g} s, SIGCONT",
+        times=times,
+        seen="suspended",
+        at_cause=max(one.after[0]["output"] for one in all_of_them),
+        after=max(t["output"] for one in all_of_them for t in one.after if t["state"] == "fault"),
+        ticks_to_zero=0,
+        back_ms=max(one.ramp[-1]["time"] - one.after[0]["time"] for one in all_of_them) * 1e3,
+        device=_limp([one.device for one in all_of_them]),
+        broken=tuple(f"{rule} ({count})" for rule, count in broken.items()),
+    )
+
+
+def killed_row(times: int) -> Row:
+    """SIGKILL: nobody says a last word."""
+    reports = []
+    with device() as hand:
+        for _ in range(times):
+            reports.append(kill(hand.port, hand))
+            # The simulated port lets the next host in when the last one has been silent for long.
+            time.sleep(RELEASE_SECONDS)
+    broken = Counter(problem for report in reports for problem in device_problems(report))
+    return Row(
+        injected="SIGKILL",
+        times=times,
+        seen="(no host)",
+        device=_limp(reports),
+        broken=tuple(f"{rule} ({count})" for rule, count in broken.items()),
+    )
+
+
+def unplugged_row(times: int) -> Row:
+    """The plug pulled, and put back."""
+    reports, broken, most = [], Counter[str](), 0.0
+    with device() as hand, Host(hand.port) as host:
+        for _ in range(times):
+            ticks, meanwhile = unplug(host, hand)
+            reports.append(meanwhile)
+            broken.update(device_problems(meanwhile))
+            faulty = [tick["output"] for tick in ticks if tick["state"] == "fault"]
+            most = max(most, *faulty)
+            broken.update(["force without a device"] if any(faulty) else [])
+        broken.update([] if host.report()["faults"]["unplugged"] == times else ["not counted"])
+    return Row(
+        injected="the plug pulled, and put back",
+        times=times,
+        seen="unplugged",
+        after=most,
+        device=_limp(reports),
+        broken=tuple(f"{rule} ({count})" for rule, count in broken.items()),
+    )
+
+
+def stalled_reader_row(seconds: float = STOPPED_SECONDS) -> Row:
+    """Nobody takes snapshots or samples, and the ring is full; then the reader is there again."""
+    with Servo(cube(), young_modulus=YOUNG_MODULUS, record_seconds=0.1) as servo:
+        servo.start(Pointer(ABOVE))
+        eventually(lambda: servo.snapshot().tick > 0, "the servo runs")
+        first = servo.counters()
+        time.sleep(seconds)
+        last, shot = servo.counters(), servo.snapshot()
+        newest_is_seen = shot.tick >= last["ticks"] - 1
+    # Once the thread stands: while it runs, a tick has begun that has not been counted as lost.
+    end = servo.counters()
+    gone = last["ticks"] + last["missed"] - first["ticks"] - first["missed"]
+    broken = []
+    if gone < 0.9 * seconds / PERIOD:
+        broken.append("ticks were held up")
+    if not newest_is_seen:
+        broken.append("an old snapshot")
+    if end["samples_lost"] != end["ticks"] - RING_TICKS:
+        broken.append("samples not counted")
+    return Row(
+        injected=f"no reader for {seconds:g} s, ring full",
+        times=1,
+        seen=shot.state,
+        device=f"{gone} periods, longest tick {last['busy_us']['max']:.0f} us",
+        broken=tuple(broken),
+    )
+
+
+def process_rows() -> list[Row]:
+    """All rows; about a quarter of a minute."""
+    return [suspended_row(4), killed_row(4), unplugged_row(4), stalled_reader_row()]
