@@ -5,11 +5,12 @@ from dataclasses import replace
 from pathlib import Path
 from random import Random
 
-import faults
 import numpy as np
 import palpate_servo
 import pytest
+from fault_injection import episodes
 from fault_injection.causes import CAUSES, Outcome
+from fault_injection.rows import print_rows
 from fault_injection.servo_host import ABOVE, DEEP, cube
 from fault_injection.virtual_press import VirtualPress
 from palpate_servo import STATES, Pointer, Servo
@@ -27,11 +28,11 @@ def seeded(seed):
 def test_each_cause_gives_what_the_rules_say(cause):
     press, dice = VirtualPress(cube()), seeded(cause.name)
     for _ in range(2):
-        assert faults.problems(cause, faults.episode(press, cause, dice)) == []
+        assert episodes.problems(cause, episodes.episode(press, cause, dice)) == []
 
 
 def test_a_device_that_hears_nothing_more_is_limp_within_20_ms():
-    row = faults.killed_row(10, seeded("killed"))
+    row = episodes.killed_row(10, seeded("killed"))
     assert row.broken == ()
     assert row.device in ("limp 19.0 ms after it", "limp 20.0 ms after it")
 
@@ -47,26 +48,24 @@ def test_a_device_that_hears_nothing_more_is_limp_within_20_ms():
 )
 def test_the_table_finds_a_broken_rule(spoil, problem):
     press, dice = VirtualPress(cube()), seeded("broken")
-    episode = faults.episode(press, SILENT, dice)
+    episode = episodes.episode(press, SILENT, dice)
     while len(episode.during) < 3:
-        episode = faults.episode(press, SILENT, dice)
-    assert any(problem in found for found in faults.problems(SILENT, spoil(episode)))
+        episode = episodes.episode(press, SILENT, dice)
+    assert any(problem in found for found in episodes.problems(SILENT, spoil(episode)))
 
 
 def test_the_table_finds_a_fault_without_need_and_a_force_that_changed():
-    episode = faults.episode(VirtualPress(cube()), HARMLESS, seeded("harmless"))
+    episode = episodes.episode(VirtualPress(cube()), HARMLESS, seeded("harmless"))
     other = [replace(episode.during[0], output=episode.before.output + 1e-3)]
-    found = faults.problems(HARMLESS, replace(episode, during=other, counted=0, faults=1))
+    found = episodes.problems(HARMLESS, replace(episode, during=other, counted=0, faults=1))
     assert len(found) == 3
 
 
-def test_a_broken_rule_is_printed_and_is_the_exit_code(monkeypatch, capsys):
-    monkeypatch.setattr("sys.argv", ["faults.py", "--virtual", "--times", "1"])
-    monkeypatch.setattr(faults, "CAUSES", (SILENT,))
-    assert faults.main() == 0
+def test_a_broken_rule_is_printed(capsys):
+    print_rows("kept", [episodes.virtual_row(SILENT, 1, seeded("printed"))])
     assert "FAILED" not in capsys.readouterr().out
-    monkeypatch.setattr(faults, "CAUSES", (replace(SILENT, named="another name"),))
-    assert faults.main() == 1
+    broken = episodes.virtual_row(replace(SILENT, named="another name"), 1, seeded("printed"))
+    print_rows("broken", [broken])
     assert "FAILED: never called 'another name' (1)" in capsys.readouterr().out
 
 

@@ -1,10 +1,10 @@
 """Tools on a graded block beside closed forms, as in benchmarks/contact/contact_closed_forms.py."""
 
-import contact_referee
 import numpy as np
 import pytest
+from bodies.fingertip_on_cube import MOVED, pressed
 from bodies.graded_block import YOUNG_MODULUS, graded_block, lift, nodes_as_points
-from contact_closed_forms import hertz, punch, small_contacts
+from referees.closed_forms import hertz, punch, small_contacts
 
 from palpate.core.contact.near_field.compliance_beneath import near_correction
 from palpate.core.contact.near_field.regular_field import RegularField
@@ -79,13 +79,13 @@ def test_a_fingertip_on_a_cube_is_resisted_as_by_another_finite_element_method()
 
     That is scikit-fem with quadratic elements and a contact of its own.
     """
-    forces = contact_referee.pressed(8, fine=True) / np.array(REFEREE)
+    forces = pressed(8, fine=True) / np.array(REFEREE)
     np.testing.assert_allclose(forces, 1.0, atol=0.015)
 
 
 def test_so_it_is_in_the_fingertips_own_points_wherever_they_lie():
-    moved = [contact_referee.MOVED[place] for place in (0, 3, 4, 5)]
-    forces = np.array([contact_referee.pressed(8, fine=False, moved=one) for one in moved])
+    moved = [MOVED[place] for place in (0, 3, 4, 5)]
+    forces = np.array([pressed(8, fine=False, moved=one) for one in moved])
     ratios = forces[:, 1:] / REFEREE[1:]
     np.testing.assert_allclose(ratios, 1.0, atol=0.03)
     np.testing.assert_allclose(ratios.mean(axis=0), 1.0, atol=0.015)
