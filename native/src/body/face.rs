@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::body::surface::BodyError;
+use crate::body::error::BodyError;
 
 /// Edge `k` of a triangle runs from its corner `k` to its corner `(k + 1) % 3`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -141,4 +141,42 @@ pub(crate) fn measure_faces(
             })
         })
         .collect()
+}
+
+/// Nearest point of a triangle by Voronoi regions (Ericson 2005, section 5.1.5).
+pub(crate) fn closest_on_face(face: &Face, p: DVec3) -> ([f64; 3], DVec3) {
+    let [a, b, c] = face.corners;
+    let (ab, ac, ap) = (b - a, c - a, p - a);
+    let (d1, d2) = (ab.dot(ap), ac.dot(ap));
+    if d1 <= 0.0 && d2 <= 0.0 {
+        return ([1.0, 0.0, 0.0], a);
+    }
+    let bp = p - b;
+    let (d3, d4) = (ab.dot(bp), ac.dot(bp));
+    if d3 >= 0.0 && d4 <= d3 {
+        return ([0.0, 1.0, 0.0], b);
+    }
+    let vc = d1 * d4 - d3 * d2;
+    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+        let s = d1 / (d1 - d3);
+        return ([1.0 - s, s, 0.0], a + ab * s);
+    }
+    let cp = p - c;
+    let (d5, d6) = (ab.dot(cp), ac.dot(cp));
+    if d6 >= 0.0 && d5 <= d6 {
+        return ([0.0, 0.0, 1.0], c);
+    }
+    let vb = d5 * d2 - d1 * d6;
+    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
+        let s = d2 / (d2 - d6);
+        return ([1.0 - s, 0.0, s], a + ac * s);
+    }
+    let va = d3 * d6 - d5 * d4;
+    if va <= 0.0 && (d4 - d3) >= 0.0 && (d5 - d6) >= 0.0 {
+        let s = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+        return ([0.0, 1.0 - s, s], b + (c - b) * s);
+    }
+    // Inside by the tests above; rounding may still say a hair less than zero.
+    let alpha = face.area_coordinates(p).map(|a| a.max(0.0));
+    (alpha, face.at(alpha))
 }

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
+use crate::body::error::BodyError;
 use crate::body::face::{Corner, Face, Fan, HalfEdge};
-use crate::body::surface::BodyError;
 
 /// All half-edges with the numbers of their nodes, the lower one first; those of one edge together.
 pub(crate) fn edges_by_nodes(triangles: &[[u32; 3]]) -> Vec<((u32, u32), HalfEdge)> {

@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use glam::DMat3;
 
 use crate::body::compliance::Compliance;
+use crate::body::error::BodyError;
 use crate::body::joining::edge_nodes;
-use crate::body::surface::{Body, BodyError};
 
 /// The place of a node that is pinned: it never moves.
 const PINNED: u32 = u32::MAX;
@@ -29,15 +29,21 @@ pub struct Response {
 
 impl Response {
     /// Reads the blocks of all nodes and edges.
-    pub fn gather(body: &Body, compliance: &Compliance, places: Vec<u32>) -> Self {
+    pub fn gather(
+        triangles: &[[u32; 3]],
+        contact_blocks: &[DMat3],
+        compliance: &Compliance,
+        places: Vec<u32>,
+    ) -> Self {
         let block = |a: u32, b: u32| match (places[a as usize], places[b as usize]) {
-            (PINNED, _) | (_, PINNED) if a == b => body.contact_blocks[a as usize].inverse(),
+            (PINNED, _) | (_, PINNED) if a == b => contact_blocks[a as usize].inverse(),
             (PINNED, _) | (_, PINNED) => DMat3::ZERO,
             (a, b) => compliance.block(a as usize, b as usize),
         };
         let mut between = Vec::new();
         let mut numbers = HashMap::new();
-        let edges = (body.triangles.iter())
+        let edges = triangles
+            .iter()
             .map(|triangle| {
                 [0, 1, 2].map(|k| {
                     let (a, b) = edge_nodes(triangle, k);

@@ -185,8 +185,7 @@ struct Entry {
     known: AtomicBool,
 }
 
-/// Softenings by node. Told from outside, by one thread at a
-/// time, while the tick reads them: neither waits for the other.
+/// Softenings by node, told by one thread at a time while the tick reads: neither waits.
 #[derive(Debug)]
 pub struct Softenings(Vec<Entry>);
 

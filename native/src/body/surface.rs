@@ -2,31 +2,19 @@
 //!
 //! All of it is immutable after [`Body::new`], so the servo thread and tests share one `Arc`.
 
-use std::fmt;
 use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
 
+use crate::body::between_nodes::BetweenNodes;
 use crate::body::compliance::Compliance;
-use crate::body::compliance::between_nodes::Whole;
+pub use crate::body::error::BodyError;
 use crate::body::face::{Corner, Face, Fan, HalfEdge, measure_faces};
 use crate::body::joining::{edges_by_nodes, gather_fans, join_edges};
 use crate::body::normals::{is_soft, set_fan_normals};
 use crate::body::response::{Response, places_of};
 use crate::body::softening::Softenings;
 use crate::body::tree::Tree;
-
-/// Why a surface cannot be touched.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct BodyError(pub String);
-
-impl fmt::Display for BodyError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0)
-    }
-}
-
-impl std::error::Error for BodyError {}
 
 /// A soft body as the servo sees it: rest surface and contact stiffness per node.
 #[derive(Debug)]
@@ -46,7 +34,7 @@ pub struct Body {
     tree: Tree,
     size: f64,
     response: Option<Response>,
-    whole: Option<Whole>,
+    between_nodes: Option<BetweenNodes>,
     /// How nodes soften under a press, as far as that was told.
     pub softenings: Softenings,
 }
@@ -92,7 +80,7 @@ impl Body {
             tree,
             size,
             response: None,
-            whole: None,
+            between_nodes: None,
             softenings,
         })
     }
@@ -118,7 +106,12 @@ impl Body {
             )));
         }
         let places = places_of(free_nodes, self.nodes.len())?;
-        self.response = Some(Response::gather(&self, compliance, places));
+        self.response = Some(Response::gather(
+            &self.triangles,
+            &self.contact_blocks,
+            compliance,
+            places,
+        ));
         Ok(self)
     }
 
@@ -134,14 +127,14 @@ impl Body {
         free_nodes: &[u32],
     ) -> Result<Self, BodyError> {
         let mut body = self.with_compliance(&compliance, free_nodes)?;
-        body.whole = Some(Whole::new(compliance, free_nodes, body.nodes.len()));
+        body.between_nodes = Some(BetweenNodes::new(compliance, free_nodes, body.nodes.len()));
         Ok(body)
     }
 
     /// Whether any two nodes have a block.
     #[inline]
     pub fn is_whole(&self) -> bool {
-        self.whole.is_some()
+        self.between_nodes.is_some()
     }
 
     /// L_ab at unit modulus for two nodes of the surface; `None` for a body that does not keep its
@@ -150,8 +143,8 @@ impl Body {
     /// A pinned node gives way to its own force as its contact block says, and to no other.
     #[inline]
     pub fn block(&self, a: u32, b: u32) -> Option<DMat3> {
-        let whole = self.whole.as_ref()?;
-        Some(whole.block(a, b).unwrap_or_else(|| {
+        let kept = self.between_nodes.as_ref()?;
+        Some(kept.block(a, b).unwrap_or_else(|| {
             if a == b {
                 self.contact_blocks[a as usize].inverse()
             } else {

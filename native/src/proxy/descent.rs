@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use super::Hold;
+use crate::body::face::closest_on_face;
 use crate::body::surface::Body;
-use crate::body::tree::closest_on_face;
 
 /// Triangles entered at most; a descent that ends here is where it came to.
 const MAX_TRIANGLES: u32 = 64;

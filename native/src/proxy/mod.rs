@@ -22,7 +22,7 @@ use glam::DVec3;
 use crate::body::closest::{closest_point, coincident_face};
 use crate::body::face::HalfEdge;
 use crate::body::surface::Body;
-use crate::body::tree::{Feature, Sweep};
+use crate::body::sweep::{Feature, Sweep};
 use contact_point::{ContactPoint, Judged};
 pub use feel::Feel;
 use walk::Walk;

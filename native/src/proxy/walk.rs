@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::{BORDER, Hold, Place, Proxy, snap};
 use crate::body::face::HalfEdge;
 use crate::body::surface::Body;
-use crate::body::tree::Feature;
+use crate::body::sweep::Feature;
 
 /// Features visited in one tick at most; a tick that ends here goes on in the next one.
 const MAX_STEPS: u32 = 512;

@@ -2,7 +2,8 @@
 
 use glam::{DMat3, DVec3};
 
-use super::{ComplianceError, Either, refuse};
+use crate::body::compliance::either::Either;
+use crate::body::compliance::error::{ComplianceError, refuse};
 
 /// Every number of L: column j, axis c holds the displacements of all nodes.
 #[derive(Debug)]

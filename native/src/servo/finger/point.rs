@@ -3,9 +3,9 @@
 use glam::{DMat3, DVec3};
 
 use super::{Finger, FingerSettings};
+use crate::body::face::closest_on_face;
 use crate::body::softening::Softening;
 use crate::body::surface::Body;
-use crate::body::tree::closest_on_face;
 use crate::contact::touch::{contact_relation, softened_touch, surface_displacement, touch};
 use crate::control::coupling::{Contact, Coupled, series_compliance};
 use crate::device::Fault;

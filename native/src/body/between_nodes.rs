@@ -11,12 +11,12 @@ const PINNED: u32 = u32::MAX;
 
 /// The compliance and where each node of the surface stands in it.
 #[derive(Debug)]
-pub(crate) struct Whole {
+pub(crate) struct BetweenNodes {
     compliance: Arc<Compliance>,
     places: Vec<u32>,
 }
 
-impl Whole {
+impl BetweenNodes {
     /// `free_nodes` were checked: they lie within `nodes`, as many as the compliance counts.
     pub(crate) fn new(compliance: Arc<Compliance>, free_nodes: &[u32], nodes: usize) -> Self {
         let mut places = vec![PINNED; nodes];
