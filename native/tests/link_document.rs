@@ -1,9 +1,10 @@
 //! `docs/link.md` by the word: each worked example, field by field and byte by byte.
 
 use glam::DVec3;
-use palpate_servo::device::link::codec::{
-    Decoder, DeviceOrientation, DeviceState, Greeting, MAX_FRAME, Message, PROTOCOL, checksum,
-    encode, force_payload, hello_payload, parse,
+use palpate_servo::device::Greeting;
+use palpate_servo::device::link::codec::{Decoder, MAX_FRAME, checksum, encode};
+use palpate_servo::device::link::messages::{
+    DeviceOrientation, DeviceState, Message, PROTOCOL, force_payload, hello_payload, parse,
 };
 
 const PAGE: &str = include_str!("../../docs/link.md");

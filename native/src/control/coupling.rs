@@ -1,12 +1,12 @@
 //! What keeps a stiff body, a delay and a motor from making energy together.
 //!
 //! Between the body's force (14) and the safety limits lies a spring with a damper (a virtual
-//! coupling: Colgate, Stanley and Brown 1995) and an observer of energy ([`crate::control::passivity`]). Both
+//! coupling: Colgate, Stanley and Brown 1995) and an observer of energy ([`Passivity`]). Both
 //! are for devices with motors; a pointer feels the body itself.
 
 use glam::{DMat3, DVec3};
 
-use crate::control::passivity::Passivity;
+use crate::control::passivity::{LAG_SECONDS, Passivity};
 
 /// How the body is coupled to a device with motors.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -69,9 +69,7 @@ impl Coupling {
     }
 }
 
-/// The delay that [`Coupling::for_devices`] is made for, besides the holding of a tick, s.
-pub const LAG_SECONDS: f64 = 2.0e-3;
-/// Its stiffness, N/m.
+/// Stiffness of [`Coupling::for_devices`], N/m.
 const MOST_STIFFNESS: f64 = 800.0;
 /// Its damping over its stiffness, s.
 const LEAD_SECONDS: f64 = 5.0e-3;

@@ -7,8 +7,8 @@
 
 use glam::DVec3;
 
-use crate::control::coupling::LAG_SECONDS;
-
+/// The longest delay of a device that energy is watched for, besides the holding of a tick, s.
+pub const LAG_SECONDS: f64 = 2.0e-3;
 /// Ticks of the longest delay at the highest rate, 2 ms at 8 kHz, and those now and before.
 const MEMORY: usize = 32;
 /// Friction that every device of the documented range has, N: what it takes need not be braked.

@@ -1,4 +1,5 @@
-//! When STATE arrives, beside when the device made it: tells a wire that holds bytes back.
+//! Arrivals of STATE beside the times at which the device made them: a wire that holds bytes back
+//! is told by them.
 //!
 //! FTDI's USB serial adapters keep what they receive until a timer ends, 16 ms as delivered: STATE
 //! made every millisecond then arrives in bursts, 62.5 a second (FTDI, application note AN232B-04,
@@ -13,7 +14,7 @@ const SILENCE: f64 = 0.5;
 
 /// What was seen so far.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Rhythm {
+pub struct ArrivalReport {
     /// Pauses from one tick with new STATEs to the next.
     pub pauses: u64,
     /// Their sum, s.
@@ -49,7 +50,7 @@ pub struct Arrivals {
     /// The last tick that looked in vain, s.
     in_vain: f64,
     /// What was seen so far.
-    pub rhythm: Rhythm,
+    pub report: ArrivalReport,
 }
 
 fn device_seconds(from_us: u32, to_us: u32) -> f64 {
@@ -83,23 +84,23 @@ impl Arrivals {
                 let silence = self.in_vain - then;
                 let made = device_seconds(batch.first_us, batch.last_us);
                 if silence >= BURST_PAUSE && batch.count >= BURST_STATES && made >= 0.5 * pause {
-                    self.rhythm.bursts += 1;
-                    self.rhythm.burst_seconds += pause;
-                    self.rhythm.burst_states += u64::from(batch.count);
+                    self.report.bursts += 1;
+                    self.report.burst_seconds += pause;
+                    self.report.burst_states += u64::from(batch.count);
                 }
             }
         }
     }
 
     fn count(&mut self, batch: &Batch, pause: f64, made_in: f64) {
-        let rhythm = &mut self.rhythm;
-        rhythm.pauses += 1;
-        rhythm.pause_seconds += pause;
-        rhythm.longest_pause = rhythm.longest_pause.max(pause);
+        let report = &mut self.report;
+        report.pauses += 1;
+        report.pause_seconds += pause;
+        report.longest_pause = report.longest_pause.max(pause);
         // A device that was reset begins its clock anew.
         if made_in <= 2.0 * SILENCE {
-            rhythm.states += u64::from(batch.count);
-            rhythm.device_seconds += made_in;
+            report.states += u64::from(batch.count);
+            report.device_seconds += made_in;
         }
     }
 

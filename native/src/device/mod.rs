@@ -1,16 +1,17 @@
-//! What the servo asks of whatever moves the probe and takes the force.
+//! The device: what moves the probe and takes the force.
 
 pub mod arrival;
 pub mod haply;
 pub mod link;
 pub mod pointer;
 pub mod reason;
+pub mod report;
 pub mod serial;
 mod speedometer;
 
 use glam::{DMat3, DVec3};
 
-use crate::device::arrival::Rhythm;
+pub use crate::device::report::{Greeting, LinkReport};
 
 /// How device coordinates lie in the body: `p_body = scale * rotation * p_device + translation`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -149,51 +150,6 @@ impl Reading {
             Self::Waiting(_) | Self::Fault(_) => None,
         }
     }
-}
-
-/// What happened on a link so far; all zero for a pointer.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct LinkReport {
-    /// Valid STATE messages.
-    pub states: u64,
-    /// FORCE messages sent.
-    pub forces: u64,
-    /// STATE messages missing by their sequence numbers.
-    pub lost: u64,
-    /// STATE messages with the sequence number of the one before.
-    pub duplicates: u64,
-    /// STATE messages older than the one before; not used.
-    pub out_of_order: u64,
-    /// Frames with a wrong checksum.
-    pub crc_errors: u64,
-    /// Frames that are not COBS.
-    pub cobs_errors: u64,
-    /// Frames that are too long.
-    pub oversize: u64,
-    /// Sound frames of unknown type or length.
-    pub unknown: u64,
-    /// ORIENTATION messages that came with their STATE.
-    pub orientations: u64,
-    /// ORIENTATION messages whose STATE did not come, or was not used.
-    pub orientations_unpaired: u64,
-    /// ORIENTATION messages that hold no unit quaternion.
-    pub orientations_refused: u64,
-    /// STATE messages without ORIENTATION of a device that has told one.
-    pub orientations_lost: u64,
-    /// HELLO messages sent.
-    pub hellos: u64,
-    /// FAULT messages of the device.
-    pub device_faults: u64,
-    /// FORCE messages not sent because the port took no more.
-    pub unsent: u64,
-    /// Times the port was opened again.
-    pub reopened: u64,
-    /// Code and detail of the device's last FAULT.
-    pub last_fault: Option<(u8, u16)>,
-    /// When STATE messages arrived.
-    pub rhythm: Rhythm,
-    /// The device's greeting.
-    pub greeting: Option<crate::device::link::codec::Greeting>,
 }
 
 /// A source of positions and sink of forces. Called from the servo thread only.

@@ -12,11 +12,12 @@
 
 use glam::DVec3;
 
-use super::descent::descend;
-use super::friction::Friction;
-use super::shading::shaded;
-use super::{Feel, Hold};
 use crate::body::surface::Body;
+use crate::proxy::descent::descend;
+use crate::proxy::feel::Feel;
+use crate::proxy::friction::Friction;
+use crate::proxy::place::Hold;
+use crate::proxy::shading::shaded;
 
 /// How much of the device's own way the contact point may gain on the device in a tick.
 const GAIN: f64 = 0.7;

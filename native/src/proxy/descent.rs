@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use super::Hold;
 use crate::body::face::closest_on_face;
 use crate::body::surface::Body;
+use crate::proxy::place::Hold;
 
 /// Triangles entered at most; a descent that ends here is where it came to.
 const MAX_TRIANGLES: u32 = 64;

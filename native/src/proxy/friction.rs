@@ -8,12 +8,13 @@
 
 use glam::{DMat3, DVec3};
 
-use super::descent::descend;
-use super::shading::normal_at;
-use super::{Feel, Hold};
 use crate::body::face::HalfEdge;
 use crate::body::surface::Body;
 use crate::contact::touch::contact_stiffness;
+use crate::proxy::descent::descend;
+use crate::proxy::feel::Feel;
+use crate::proxy::place::Hold;
+use crate::proxy::shading::normal_at;
 
 /// Rounds of slipping in one tick.
 const MAX_ROUNDS: u32 = 8;

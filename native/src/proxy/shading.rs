@@ -8,9 +8,9 @@
 
 use glam::DVec3;
 
-use super::Hold;
 use crate::body::face::HalfEdge;
 use crate::body::surface::Body;
+use crate::proxy::place::Hold;
 
 /// Triangles tried at most.
 const MAX_TRIANGLES: u32 = 48;

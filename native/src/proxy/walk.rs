@@ -2,10 +2,11 @@
 
 use glam::DVec3;
 
-use super::{BORDER, Hold, Place, Proxy, snap};
 use crate::body::face::HalfEdge;
 use crate::body::surface::Body;
 use crate::body::sweep::Feature;
+use crate::proxy::god_object::Proxy;
+use crate::proxy::place::{BORDER, Hold, Place, snap};
 
 /// Features visited in one tick at most; a tick that ends here goes on in the next one.
 const MAX_STEPS: u32 = 512;

@@ -1,8 +1,8 @@
-//! How the stylus of a device on the link is turned: ORIENTATION messages, each with its STATE.
+//! Orientation of the stylus of a device on the link: ORIENTATION messages, each with its STATE.
 
 use glam::{DMat3, DVec3};
 
-use crate::device::link::codec::DeviceOrientation;
+use crate::device::link::messages::DeviceOrientation;
 use crate::device::speedometer::Speedometer;
 
 /// An orientation whose next one is lost holds for this long, s: as long as a position.
@@ -20,7 +20,7 @@ struct Turned {
 
 /// What became of the ORIENTATION messages.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct TurningReport {
+pub struct OrientationReport {
     /// Came with their STATE.
     pub paired: u64,
     /// Their STATE did not come, or was not used.
@@ -33,16 +33,16 @@ pub struct TurningReport {
 
 /// The orientation of one session.
 #[derive(Debug, Default)]
-pub struct Turning {
+pub struct Orientations {
     /// Told, and waiting for its STATE.
     told: Option<(u16, DMat3)>,
     newest: Option<Turned>,
     levers: [Speedometer; 2],
     /// Counts of all sessions.
-    pub report: TurningReport,
+    pub report: OrientationReport,
 }
 
-impl Turning {
+impl Orientations {
     /// An ORIENTATION came.
     pub fn tell(&mut self, orientation: DeviceOrientation) {
         self.dismiss();
@@ -117,84 +117,84 @@ mod tests {
     /// A quarter turn about z.
     const QUARTER: [i16; 4] = [23_170, 0, 0, 23_170];
 
-    fn told(turning: &mut Turning, sequence: u16, quaternion: [i16; 4]) {
-        turning.tell(DeviceOrientation {
+    fn told(orientations: &mut Orientations, sequence: u16, quaternion: [i16; 4]) {
+        orientations.tell(DeviceOrientation {
             sequence,
             quaternion,
         });
     }
 
-    fn counts(turning: &Turning) -> [u64; 4] {
-        let TurningReport {
+    fn counts(orientations: &Orientations) -> [u64; 4] {
+        let OrientationReport {
             paired,
             unpaired,
             refused,
             lost,
-        } = turning.report;
+        } = orientations.report;
         [paired, unpaired, refused, lost]
     }
 
     #[test]
     fn only_the_state_of_the_same_number_turns_the_stylus() {
-        let mut turning = Turning::default();
-        told(&mut turning, 7, QUARTER);
-        assert!(!turning.is_known(), "its STATE is to come");
-        turning.pair(8, 0, 0.0);
-        assert_eq!(turning.rotation(), DMat3::IDENTITY);
-        turning.pair(7, 0, 0.0);
-        assert!(!turning.is_known(), "it was of the STATE before");
-        told(&mut turning, 8, UPRIGHT);
-        told(&mut turning, 9, QUARTER);
-        turning.pair(9, 0, 0.0);
-        assert!((turning.rotation() * DVec3::X).distance(DVec3::Y) < 1e-12);
-        told(&mut turning, 10, [0; 4]);
-        turning.pair(10, 1000, 0.001);
-        assert!((turning.rotation() * DVec3::X).distance(DVec3::Y) < 1e-12);
-        assert_eq!(counts(&turning), [1, 2, 1, 1]);
+        let mut orientations = Orientations::default();
+        told(&mut orientations, 7, QUARTER);
+        assert!(!orientations.is_known(), "its STATE is to come");
+        orientations.pair(8, 0, 0.0);
+        assert_eq!(orientations.rotation(), DMat3::IDENTITY);
+        orientations.pair(7, 0, 0.0);
+        assert!(!orientations.is_known(), "it was of the STATE before");
+        told(&mut orientations, 8, UPRIGHT);
+        told(&mut orientations, 9, QUARTER);
+        orientations.pair(9, 0, 0.0);
+        assert!((orientations.rotation() * DVec3::X).distance(DVec3::Y) < 1e-12);
+        told(&mut orientations, 10, [0; 4]);
+        orientations.pair(10, 1000, 0.001);
+        assert!((orientations.rotation() * DVec3::X).distance(DVec3::Y) < 1e-12);
+        assert_eq!(counts(&orientations), [1, 2, 1, 1]);
     }
 
     #[test]
     fn the_last_one_holds_for_twenty_milliseconds() {
-        let mut turning = Turning::default();
-        assert!(!turning.is_stale(1e9), "a device that tells none");
-        told(&mut turning, 0, QUARTER);
-        turning.pair(0, 0, 5.0);
-        turning.pair(1, 1000, 5.01);
-        assert!(!turning.is_stale(5.0199) && turning.is_stale(5.0201));
-        turning.forget();
-        assert!(!turning.is_stale(6.0) && !turning.is_known());
+        let mut orientations = Orientations::default();
+        assert!(!orientations.is_stale(1e9), "a device that tells none");
+        told(&mut orientations, 0, QUARTER);
+        orientations.pair(0, 0, 5.0);
+        orientations.pair(1, 1000, 5.01);
+        assert!(!orientations.is_stale(5.0199) && orientations.is_stale(5.0201));
+        orientations.forget();
+        assert!(!orientations.is_stale(6.0) && !orientations.is_known());
     }
 
     #[test]
     fn a_turn_is_measured_50_mm_from_the_tip() {
         // 10 rad/s about each axis; one STATE in three is without.
         for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
-            let mut turning = Turning::default();
+            let mut orientations = Orientations::default();
             for ms in 0..200_u16 {
                 let q = glam::DQuat::from_axis_angle(axis, 0.01 * f64::from(ms));
                 if ms % 3 > 0 {
                     let steps = [q.w, q.x, q.y, q.z].map(|c| (c * 32_767.0).round() as i16);
-                    told(&mut turning, ms, steps);
+                    told(&mut orientations, ms, steps);
                 }
-                let speed = turning.pair(ms, 1000 * u32::from(ms), 1e-3 * f64::from(ms));
+                let speed = orientations.pair(ms, 1000 * u32::from(ms), 1e-3 * f64::from(ms));
                 let expected = if ms % 3 > 0 && ms > 1 { 0.5 } else { 0.0 };
                 assert!((speed - expected).abs() < 0.01, "{ms} {speed}");
             }
-            assert_eq!(counts(&turning), [133, 0, 0, 66]);
+            assert_eq!(counts(&orientations), [133, 0, 0, 66]);
         }
     }
 
     #[test]
     fn after_silence_nothing_told_before_is_used() {
-        let mut turning = Turning::default();
-        told(&mut turning, 0, UPRIGHT);
-        turning.pair(0, 0, 0.0);
-        told(&mut turning, 1, UPRIGHT);
-        turning.interrupt();
-        turning.pair(1, 1_000_000, 1.0);
-        assert!(turning.is_known() && turning.is_stale(1.0));
-        told(&mut turning, 2, QUARTER);
-        assert_eq!(turning.pair(2, 1_001_000, 1.001), 0.0, "no way across");
-        assert_eq!(counts(&turning), [2, 1, 0, 1]);
+        let mut orientations = Orientations::default();
+        told(&mut orientations, 0, UPRIGHT);
+        orientations.pair(0, 0, 0.0);
+        told(&mut orientations, 1, UPRIGHT);
+        orientations.interrupt();
+        orientations.pair(1, 1_000_000, 1.0);
+        assert!(orientations.is_known() && orientations.is_stale(1.0));
+        told(&mut orientations, 2, QUARTER);
+        assert_eq!(orientations.pair(2, 1_001_000, 1.001), 0.0, "no way across");
+        assert_eq!(counts(&orientations), [2, 1, 0, 1]);
     }
 }

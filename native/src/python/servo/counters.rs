@@ -95,16 +95,22 @@ pub fn link_counters<'py>(py: Python<'py>, link: &LinkReport) -> PyResult<Bound<
         counters.set_item(name, count)?;
     }
     counters.set_item("last_fault", link.last_fault)?;
-    let rhythm = &link.rhythm;
+    let arrivals = &link.arrivals;
     let mean = |sum: f64, count: u64, unit: f64| sum * unit / count.max(1) as f64;
     let interval = PyDict::new(py);
-    interval.set_item("mean", mean(rhythm.pause_seconds, rhythm.pauses, 1e6))?;
-    interval.set_item("max", rhythm.longest_pause * 1e6)?;
-    interval.set_item("device", mean(rhythm.device_seconds, rhythm.states, 1e6))?;
+    interval.set_item("mean", mean(arrivals.pause_seconds, arrivals.pauses, 1e6))?;
+    interval.set_item("max", arrivals.longest_pause * 1e6)?;
+    interval.set_item(
+        "device",
+        mean(arrivals.device_seconds, arrivals.states, 1e6),
+    )?;
     counters.set_item("state_interval_us", interval)?;
-    counters.set_item("bursts", rhythm.bursts)?;
-    counters.set_item("burst_ms", mean(rhythm.burst_seconds, rhythm.bursts, 1e3))?;
-    counters.set_item("burst_states", rhythm.burst_states)?;
+    counters.set_item("bursts", arrivals.bursts)?;
+    counters.set_item(
+        "burst_ms",
+        mean(arrivals.burst_seconds, arrivals.bursts, 1e3),
+    )?;
+    counters.set_item("burst_states", arrivals.burst_states)?;
     let device = link.greeting.map(|g| -> PyResult<_> {
         let device = PyDict::new(py);
         let name = String::from_utf8_lossy(&g.name);

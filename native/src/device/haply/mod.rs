@@ -4,6 +4,7 @@
 //! the makers sold ([`model`]), the bytes ([`message`]) and the device that the servo asks
 //! ([`device`]).
 
+mod answers;
 pub mod device;
 pub mod flight;
 pub mod inbox;

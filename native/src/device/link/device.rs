@@ -1,20 +1,16 @@
 //! The serial device: link of version 1 as the host speaks it, with all that goes wrong on a wire.
 
-pub mod codec;
-mod orientation;
-
 use glam::DVec3;
 
 use crate::device::arrival::Arrivals;
-use crate::device::link::codec::{
-    Decoder, DeviceState, Greeting, MAX_FRAME, Message, PROTOCOL, force_payload, hello_payload,
-};
-use crate::device::link::orientation::Turning;
+use crate::device::link::codec::{Decoder, MAX_FRAME, encode};
+use crate::device::link::messages::{DeviceState, PROTOCOL, force_payload, hello_payload};
+use crate::device::link::orientation::Orientations;
 use crate::device::reason;
 use crate::device::serial::line::Line;
 use crate::device::serial::port::Opener;
-use crate::device::speedometer::{Speedometer, has_begun_anew};
-use crate::device::{Device, DeviceFrame, Fault, LinkReport, Probe, Reading};
+use crate::device::speedometer::Speedometer;
+use crate::device::{Device, DeviceFrame, Fault, Greeting, LinkReport, Probe, Reading};
 
 /// HELLO is repeated this often until it is answered, s.
 const HELLO_SECONDS: f64 = 0.05;
@@ -27,32 +23,32 @@ const READS_PER_TICK: usize = 16;
 
 /// The newest STATE and when it came.
 #[derive(Debug, Clone, Copy)]
-struct Newest {
-    state: DeviceState,
-    speed: f64,
+pub(super) struct Newest {
+    pub(super) state: DeviceState,
+    pub(super) speed: f64,
 }
 
 /// A device on a line that speaks the link.
 pub struct LinkDevice<O: Opener> {
-    line: Line<O>,
-    next_hello: f64,
-    decoder: Decoder,
-    greeting: Option<Greeting>,
-    newest: Option<Newest>,
+    pub(super) line: Line<O>,
+    pub(super) next_hello: f64,
+    pub(super) decoder: Decoder,
+    pub(super) greeting: Option<Greeting>,
+    pub(super) newest: Option<Newest>,
     /// Last sound STATE, or the greeting, s.
-    heard: f64,
+    pub(super) heard: f64,
     /// Out of sight for too long: any sequence number is taken next.
-    stale: bool,
+    pub(super) stale: bool,
     /// The probe was not seen since the session began: wherever it is then, it was set down there.
-    unseen: bool,
+    pub(super) unseen: bool,
     /// The session before ended in this tick, so there is no force in it, whatever came since.
-    begun_anew: bool,
-    device_fault: bool,
-    speedometer: Speedometer,
-    turning: Turning,
-    arrivals: Arrivals,
-    sequence: u16,
-    report: LinkReport,
+    pub(super) begun_anew: bool,
+    pub(super) device_fault: bool,
+    pub(super) speedometer: Speedometer,
+    pub(super) orientations: Orientations,
+    pub(super) arrivals: Arrivals,
+    pub(super) sequence: u16,
+    pub(super) report: LinkReport,
 }
 
 impl<O: Opener> LinkDevice<O> {
@@ -73,14 +69,14 @@ impl<O: Opener> LinkDevice<O> {
             begun_anew: false,
             device_fault: false,
             speedometer: Speedometer::default(),
-            turning: Turning::default(),
+            orientations: Orientations::default(),
             arrivals: Arrivals::default(),
             sequence: 0,
             report: LinkReport::default(),
         })
     }
 
-    fn is_greeted(&self) -> bool {
+    pub(super) fn is_greeted(&self) -> bool {
         self.greeting.is_some_and(|g| g.protocol == PROTOCOL)
     }
 
@@ -93,8 +89,8 @@ impl<O: Opener> LinkDevice<O> {
         self.unseen = true;
         self.decoder.resynchronise();
         self.speedometer.reset();
-        self.turning.dismiss();
-        self.turning.forget();
+        self.orientations.dismiss();
+        self.orientations.forget();
         self.arrivals.forget();
     }
 
@@ -122,92 +118,10 @@ impl<O: Opener> LinkDevice<O> {
         }
     }
 
-    fn take(&mut self, byte: u8, now: f64) {
-        let Some(payload) = self.decoder.push(byte) else {
-            return;
-        };
-        match codec::parse(payload) {
-            Some(Message::Hello(greeting)) if !greeting.is_sound() => {
-                self.greeting = None;
-                self.report.unknown += 1;
-            }
-            Some(Message::Hello(greeting)) => {
-                // One that says the same was only asked twice; another figure is another device.
-                if self.greeting != Some(greeting) {
-                    self.turning.dismiss();
-                    self.begin_session(now);
-                }
-                self.greeting = Some(greeting);
-                self.report.greeting = Some(greeting);
-            }
-            // A device that streams before it was greeted may speak another version.
-            Some(Message::State(state)) if self.is_greeted() => self.take_state(state, now),
-            Some(Message::Orientation(orientation)) if self.is_greeted() => {
-                self.turning.tell(orientation);
-            }
-            Some(Message::State(_) | Message::Orientation(_)) => {}
-            Some(Message::Fault { code, detail }) => {
-                self.device_fault = true;
-                self.report.device_faults += 1;
-                self.report.last_fault = Some((code, detail));
-            }
-            None => self.report.unknown += 1,
-        }
-    }
-
-    /// Forgets where the device was before, and its sequence.
-    fn begin_session(&mut self, now: f64) {
-        self.heard = now;
-        self.begun_anew |= self.newest.take().is_some();
-        self.stale = false;
-        self.unseen = true;
-        self.device_fault = false;
-        self.speedometer.reset();
-        self.turning.forget();
-    }
-
-    fn take_state(&mut self, state: DeviceState, now: f64) {
-        if let Some(last) = &self.newest
-            && self.stale
-            && has_begun_anew(last.state.time_us, state.time_us, now - self.heard)
-        {
-            self.begin_session(now);
-        }
-        if let Some(last) = &self.newest
-            && !self.stale
-        {
-            match state.sequence.wrapping_sub(last.state.sequence) {
-                0 => {
-                    self.report.duplicates += 1;
-                    return self.turning.dismiss();
-                }
-                ahead @ 1..=0x7FFF => self.report.lost += u64::from(ahead) - 1,
-                _ => {
-                    self.report.out_of_order += 1;
-                    return self.turning.dismiss();
-                }
-            }
-        }
-        self.report.states += 1;
-        self.arrivals.take(state.time_us);
-        let speed = self.speedometer.speed(state.position(), state.time_us, now);
-        let was_turned = self.turning.is_known();
-        let swing = self.turning.pair(state.sequence, state.time_us, now);
-        if !was_turned && self.turning.is_known() {
-            // Until now it was taken for upright: no sweep leads from there to how it is turned.
-            self.begun_anew |= self.newest.is_some();
-            self.unseen = true;
-        }
-        let speed = speed.max(swing);
-        self.newest = Some(Newest { state, speed });
-        self.heard = now;
-        self.stale = false;
-    }
-
     /// Puts a frame on the line; false when it does not fit or the line is gone.
     fn send(&mut self, payload: &[u8]) -> bool {
         let mut frame = [0; MAX_FRAME];
-        codec::encode(payload, &mut frame).is_some_and(|length| self.line.send(&frame[..length]))
+        encode(payload, &mut frame).is_some_and(|length| self.line.send(&frame[..length]))
     }
 
     fn greet(&mut self, now: f64) {
@@ -246,7 +160,7 @@ impl<O: Opener> Device for LinkDevice<O> {
         if now - self.heard > STALE_SECONDS {
             self.stale = true;
             self.speedometer.reset();
-            self.turning.interrupt();
+            self.orientations.interrupt();
             // A device that was reset waits for HELLO.
             self.greet(now);
             return Reading::Fault(Fault::Stale);
@@ -257,12 +171,12 @@ impl<O: Opener> Device for LinkDevice<O> {
         if state.fault {
             return Reading::Fault(Fault::Device);
         }
-        if self.turning.is_stale(now) {
+        if self.orientations.is_stale(now) {
             return Reading::Fault(Fault::Stale);
         }
         let probe = Probe {
             position: frame.to_body(state.position()),
-            orientation: frame.turn_to_body(self.turning.rotation()),
+            orientation: frame.turn_to_body(self.orientations.rotation()),
             speed,
             restart: std::mem::take(&mut self.unseen),
             buttons: state.buttons,
@@ -303,11 +217,11 @@ impl<O: Opener> Device for LinkDevice<O> {
             crc_errors: self.decoder.errors.crc,
             cobs_errors: self.decoder.errors.cobs,
             oversize: self.decoder.errors.oversize,
-            orientations: self.turning.report.paired,
-            orientations_unpaired: self.turning.report.unpaired,
-            orientations_refused: self.turning.report.refused,
-            orientations_lost: self.turning.report.lost,
-            rhythm: self.arrivals.rhythm,
+            orientations: self.orientations.report.paired,
+            orientations_unpaired: self.orientations.report.unpaired,
+            orientations_refused: self.orientations.report.refused,
+            orientations_lost: self.orientations.report.lost,
+            arrivals: self.arrivals.report,
             ..self.report
         }
     }

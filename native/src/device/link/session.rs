@@ -1,0 +1,90 @@
+//! Messages taken one by one: where a session of the device begins, and which STATE counts.
+
+use crate::device::link::device::{LinkDevice, Newest};
+use crate::device::link::messages::{DeviceState, Message, parse};
+use crate::device::serial::port::Opener;
+use crate::device::speedometer::has_begun_anew;
+
+impl<O: Opener> LinkDevice<O> {
+    pub(super) fn take(&mut self, byte: u8, now: f64) {
+        let Some(payload) = self.decoder.push(byte) else {
+            return;
+        };
+        match parse(payload) {
+            Some(Message::Hello(greeting)) if !greeting.is_sound() => {
+                self.greeting = None;
+                self.report.unknown += 1;
+            }
+            Some(Message::Hello(greeting)) => {
+                // One that says the same was only asked twice; another figure is another device.
+                if self.greeting != Some(greeting) {
+                    self.orientations.dismiss();
+                    self.begin_session(now);
+                }
+                self.greeting = Some(greeting);
+                self.report.greeting = Some(greeting);
+            }
+            // A device that streams before it was greeted may speak another version.
+            Some(Message::State(state)) if self.is_greeted() => self.take_state(state, now),
+            Some(Message::Orientation(orientation)) if self.is_greeted() => {
+                self.orientations.tell(orientation);
+            }
+            Some(Message::State(_) | Message::Orientation(_)) => {}
+            Some(Message::Fault { code, detail }) => {
+                self.device_fault = true;
+                self.report.device_faults += 1;
+                self.report.last_fault = Some((code, detail));
+            }
+            None => self.report.unknown += 1,
+        }
+    }
+
+    /// Forgets where the device was before, and its sequence.
+    fn begin_session(&mut self, now: f64) {
+        self.heard = now;
+        self.begun_anew |= self.newest.take().is_some();
+        self.stale = false;
+        self.unseen = true;
+        self.device_fault = false;
+        self.speedometer.reset();
+        self.orientations.forget();
+    }
+
+    fn take_state(&mut self, state: DeviceState, now: f64) {
+        if let Some(last) = &self.newest
+            && self.stale
+            && has_begun_anew(last.state.time_us, state.time_us, now - self.heard)
+        {
+            self.begin_session(now);
+        }
+        if let Some(last) = &self.newest
+            && !self.stale
+        {
+            match state.sequence.wrapping_sub(last.state.sequence) {
+                0 => {
+                    self.report.duplicates += 1;
+                    return self.orientations.dismiss();
+                }
+                ahead @ 1..=0x7FFF => self.report.lost += u64::from(ahead) - 1,
+                _ => {
+                    self.report.out_of_order += 1;
+                    return self.orientations.dismiss();
+                }
+            }
+        }
+        self.report.states += 1;
+        self.arrivals.take(state.time_us);
+        let speed = self.speedometer.speed(state.position(), state.time_us, now);
+        let was_turned = self.orientations.is_known();
+        let swing = self.orientations.pair(state.sequence, state.time_us, now);
+        if !was_turned && self.orientations.is_known() {
+            // Until now it was taken for upright: no sweep leads from there to how it is turned.
+            self.begun_anew |= self.newest.is_some();
+            self.unseen = true;
+        }
+        let speed = speed.max(swing);
+        self.newest = Some(Newest { state, speed });
+        self.heard = now;
+        self.stale = false;
+    }
+}
