@@ -543,16 +543,9 @@ class ToolContact:
     def restart(self, position: _Vector, rotation: _Matrix) -> None:
         """Set the tool down; inside the body it feels nothing until it was outside."""
 
-    def follow(
-        self,
-        position: _Vector,
-        rotation: _Matrix,
-        young_modulus: float,
-        outside: tuple[ArrayLike, ArrayLike] | None = None,
-    ) -> None:
+    def follow(self, position: _Vector, rotation: _Matrix, young_modulus: float) -> None:
         """One tick: go towards a pose by at most one stride, and feel the body (Pa) there.
 
-        outside: nodes (k,) and the forces (k, 3) of other fingers on them, N.
         ValueError for a pose that is none, or where the forces came out as no numbers.
         """
 

@@ -13,7 +13,7 @@ use palpate_servo::device::reason;
 use palpate_servo::device::{Fault, Reading};
 use palpate_servo::servo::snapshot::{Snapshot, State};
 use palpate_servo::servo::tip::{Tip, exchange_tips};
-use palpate_servo::tool::contact::ToolContact;
+use palpate_servo::tool::collider::Collider;
 use palpate_servo::tool::points::{Point, ToolSurface};
 use palpate_servo::tool::shape::Tool;
 use scripted::{DT, OPTIONS, Table, probe};
@@ -41,7 +41,7 @@ fn surface(body: &Arc<Body>) -> Arc<ToolSurface> {
 
 fn ball(surface: &Arc<ToolSurface>) -> Tip {
     let ball = Tool::new(&[DVec3::ZERO], RADIUS).expect("sound");
-    Tip::Tool(Box::new(ToolContact::new(surface.clone(), ball)))
+    Tip::Tool(Box::new(Collider::new(surface.clone(), ball)))
 }
 
 /// Fingers on an elastic cube, some of them with a ball.

@@ -11,7 +11,7 @@ use palpate_servo::contact::touch::{ContactMode, touch};
 use palpate_servo::control::coupling::Coupling;
 use palpate_servo::device::reason;
 use palpate_servo::device::{Fault, Probe, Reading};
-use palpate_servo::fingers::several::{Press, Several};
+use palpate_servo::fingers::several::{Press, Reaction, Several};
 use palpate_servo::proxy::Hold;
 use palpate_servo::servo::finger::FingerSettings;
 use palpate_servo::servo::snapshot::{Published, Snapshot, State};
@@ -63,7 +63,7 @@ fn two_fingers_on_nodes_press_as_equation_10_says() {
     let mut presses = [None; MAX_FINGERS];
     (presses[0], presses[1]) = (press(holds[0], u[0]), press(holds[1], u[1]));
     let answers = Several::default()
-        .solve(&body, 0, &presses, 1e-3)
+        .solve(&body, 0, &presses, &Reaction::default(), 1e-3)
         .expect("sound");
     let node = |k: usize| body.triangles[holds[k].triangle as usize][0];
     assert_ne!(node(0), node(1));
@@ -176,7 +176,6 @@ fn press(hold: Hold, displacement: DVec3) -> Option<Press> {
         hold,
         touches: true,
         displacement,
-        moved_by_tools: DVec3::ZERO,
         push: displacement,
         most_stiffness: f64::INFINITY,
         presence: 1.0,
@@ -201,7 +200,7 @@ fn what_one_does_to_the_other_the_other_does_to_the_one() {
                 let by = if k == change { by } else { DVec3::ZERO };
                 presses[k] = press(holds[k], push[k] + by);
             }
-            let answers = Several::default().solve(&body, 0, &presses, 1e-3);
+            let answers = Several::default().solve(&body, 0, &presses, &Reaction::default(), 1e-3);
             answers.expect("a whole body").map(|answer| answer.force)
         };
         let still = forces(3, DVec3::ZERO);
@@ -231,7 +230,7 @@ fn fingers_on_one_place_share_what_one_would_feel() {
         };
         presses[0] = press(hold, body.face(100).normal * -1e-3);
         Several::default()
-            .solve(&body, 0, &presses, 1e-3)
+            .solve(&body, 0, &presses, &Reaction::default(), 1e-3)
             .expect("sound")[0]
             .force
     };
@@ -253,7 +252,7 @@ fn fingers_on_one_place_share_what_one_would_feel() {
                 );
             }
             let answers = Several::default()
-                .solve(&body, 0, &presses, 1e-3)
+                .solve(&body, 0, &presses, &Reaction::default(), 1e-3)
                 .expect("sound");
             let sum: DVec3 = answers.iter().map(|answer| answer.force).sum();
             assert!(

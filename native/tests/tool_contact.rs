@@ -9,10 +9,10 @@ use std::sync::Arc;
 use bodies::Dice;
 use counting::counted;
 use glam::{DMat3, DVec3};
-use palpate_servo::algebra::MOST_POINTS;
 use palpate_servo::body::compliance::{Compliance, Dense, Either};
 use palpate_servo::body::surface::Body;
-use palpate_servo::tool::contact::{NotANumber, ToolContact};
+use palpate_servo::engine::lone::LoneTool;
+use palpate_servo::tool::collider::{MOST_NEAR, NotANumber};
 use palpate_servo::tool::friction::Friction;
 use palpate_servo::tool::near_field::{NearField, NodeField, PointField};
 use palpate_servo::tool::points::{Point, ToolSurface};
@@ -126,17 +126,17 @@ fn plate(half: f64, rounding: f64) -> Tool {
     Tool::new(&[0, 1, 2, 3, 4, 5, 6, 7].map(corner), rounding).expect("sound")
 }
 
-fn on_cube(tool: Tool, parts: u32) -> ToolContact {
-    ToolContact::new(surface(&rubber_cube(), parts), tool)
+fn on_cube(tool: Tool, parts: u32) -> LoneTool {
+    LoneTool::new(surface(&rubber_cube(), parts), tool)
 }
 
-fn force(contact: &mut ToolContact, pose: &Pose) -> DVec3 {
-    let felt = contact.follow(pose, MODULUS, &[]).expect("numbers");
+fn force(contact: &mut LoneTool, pose: &Pose) -> DVec3 {
+    let felt = contact.follow(pose, MODULUS).expect("numbers");
     felt.force
 }
 
 /// The largest jump of the force from tick to tick along a path of so many ticks.
-fn largest_jump(contact: &mut ToolContact, path: impl Fn(f64) -> Pose, ticks: usize) -> (f64, f64) {
+fn largest_jump(contact: &mut LoneTool, path: impl Fn(f64) -> Pose, ticks: usize) -> (f64, f64) {
     contact.restart(&path(0.0));
     let mut last = DVec3::ZERO;
     let (mut jump, mut largest) = (0.0_f64, 0.0_f64);
@@ -185,7 +185,7 @@ fn every_point_is_pushed_out_and_none_pulled() {
         for tick in 0..=3000 {
             let pose = path(f64::from(tick) / 3000.0);
             force(&mut contact, &pose);
-            for slot in contact.slots() {
+            for slot in contact.pressed() {
                 assert!(slot.force.dot(slot.normal) >= 0.0, "{tick}");
             }
             let sum: DVec3 = contact
@@ -269,7 +269,7 @@ fn a_jump_of_the_pose_leads_through_no_wall() {
     let mut most = 0.0_f64;
     for _ in 0..40 {
         let felt = contact
-            .follow(&at(0.025, 0.025, -0.02), MODULUS, &[])
+            .follow(&at(0.025, 0.025, -0.02), MODULUS)
             .expect("numbers");
         most = most.max(felt.force.z);
         assert!(felt.force.z >= -1e-9, "{felt:?}");
@@ -286,42 +286,15 @@ fn what_is_no_number_makes_no_force() {
     }
     assert!(contact.felt().pressed > 0);
     let nan = at(f64::NAN, 0.0, 0.0);
-    assert_eq!(contact.follow(&nan, MODULUS, &[]), Err(NotANumber));
+    assert_eq!(contact.follow(&nan, MODULUS), Err(NotANumber));
     assert_eq!(contact.felt().force, DVec3::ZERO);
     assert!(contact.nodal_forces().is_empty());
     for _ in 0..30 {
         force(&mut contact, &at(0.025, 0.025, TOP + 0.012));
     }
-    let outside = [(3, DVec3::splat(f64::INFINITY))];
     let down = at(0.025, 0.025, TOP + 0.008);
-    let results = [0; 5].map(|_| contact.follow(&down, MODULUS, &outside).map(|_| ()));
-    assert!(results.contains(&Err(NotANumber)), "{results:?}");
-    assert_eq!(contact.felt().force, DVec3::ZERO);
     for modulus in [0.0, -1.0, f64::NAN] {
-        assert_eq!(contact.follow(&down, modulus, &[]), Err(NotANumber));
-    }
-}
-
-#[test]
-fn other_fingers_move_the_surface_away_from_a_tool() {
-    let body = rubber_cube();
-    let mut contact = ToolContact::new(surface(&body, 3), sphere(0.01));
-    let pose = at(0.025, 0.025, TOP + 0.008);
-    contact.restart(&at(0.025, 0.025, TOP + 0.012));
-    for _ in 0..20 {
-        force(&mut contact, &pose);
-    }
-    let alone = contact.felt().force.z;
-    let top = (body.nodes.iter())
-        .position(|p| p.distance(DVec3::new(0.025, 0.025, TOP)) < 1e-9)
-        .expect("a node in the middle") as u32;
-    for push in [0.02, 0.05] {
-        let outside = [(top, DVec3::NEG_Z * push)];
-        for _ in 0..20 {
-            contact.follow(&pose, MODULUS, &outside).expect("numbers");
-        }
-        let felt = contact.felt().force.z;
-        assert!(felt >= 0.0 && felt < alone, "{push}: {felt} {alone}");
+        assert_eq!(contact.follow(&down, modulus), Err(NotANumber));
     }
 }
 
@@ -345,8 +318,8 @@ fn rubbing(sticking: f64, slipping: f64) -> Friction {
 }
 
 /// Force aside over push, of the point where that is most.
-fn steepest(contact: &ToolContact) -> f64 {
-    let pressed = contact.slots().iter().filter(|slot| slot.push > 0.0);
+fn steepest(contact: &LoneTool) -> f64 {
+    let pressed = contact.pressed().iter().filter(|slot| slot.push > 0.0);
     pressed.fold(0.0, |most, slot| {
         let push = slot.force.dot(slot.normal);
         let aside = (slot.force - slot.normal * push).length();
@@ -377,7 +350,9 @@ fn friction_holds_up_to_its_limit_and_less_once_it_slips() {
         drags[20] > 5.0 * drags[1].abs() && drags[399] < 0.8 * most,
         "{drags:?}"
     );
-    assert!(steepest(&contact) <= 0.3 * (1.0 + 1e-12) || contact.slots().iter().any(|s| !s.slips));
+    assert!(
+        steepest(&contact) <= 0.3 * (1.0 + 1e-12) || contact.pressed().iter().any(|s| !s.slips)
+    );
     // Without friction nothing of it is left.
     contact.set_friction(Friction::default());
     for _ in 0..20 {
@@ -392,7 +367,7 @@ fn friction_that_is_none_makes_no_force() {
     for (sticking, slipping) in [(f64::NAN, 0.1), (0.2, f64::NAN), (0.1, 0.2), (0.3, -0.1)] {
         contact.set_friction(rubbing(sticking, slipping));
         let pose = at(0.025, 0.025, TOP + 0.012);
-        assert_eq!(contact.follow(&pose, MODULUS, &[]), Err(NotANumber));
+        assert_eq!(contact.follow(&pose, MODULUS), Err(NotANumber));
     }
 }
 
@@ -440,9 +415,9 @@ fn takes_no_memory(friction: Friction) {
                 ..at(0.025 + dice.within(0.0, 1e-3), 0.025, z)
             };
             force(&mut contact, &pose);
-            most = most.max(contact.slots().len());
+            most = most.max(contact.pressed().len());
         }
-        assert!(most > MOST_POINTS / 2, "{most}");
+        assert!(most > MOST_NEAR / 2, "{most}");
     });
     assert_eq!(taken, 0);
 }

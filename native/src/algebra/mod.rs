@@ -4,8 +4,8 @@ pub mod cholesky;
 pub mod small_matrix;
 pub(crate) mod wide;
 
-/// Contact points that can be under a tool at once.
-pub const MOST_POINTS: usize = 160;
+/// Contact points that all tools on one body can have at once.
+pub const MOST_POINTS: usize = 320;
 
 /// From one row of a matrix between them to the next: an odd number of lines of a processor's cache, so that a
 /// column lies in all of its sets.

@@ -1,4 +1,64 @@
 //! All that touches one body at once, as one problem of contact: for the tick, and for whoever has no
 //! clock.
+//!
+//! Tools are [`Led`](joint::Led) to where they are to go, points say where they press; what presses is
+//! found for all together, with what was found in the tick before to begin with.
 
+mod choose;
+mod equilibrium;
+mod feel;
+mod influence;
+pub mod joint;
+pub mod lone;
 pub mod settling;
+
+use crate::fingers::several::{Answers, Presses, Reaction, Several};
+use joint::{AllLed, Beside, Ground, Joint};
+
+/// Contact points that all tools may have in a tick of 1 kHz: the exact solve of more takes too long.
+pub const TICK_POINTS: usize = 208;
+
+/// The contact of all fingers on a body, from tick to tick.
+#[derive(Debug, Clone)]
+pub struct Engine {
+    several: Several,
+    joint: Joint,
+}
+
+impl Engine {
+    /// Nothing touches yet. Tools may have so many contact points.
+    pub fn new(most_points: usize) -> Self {
+        Self {
+            several: Several::default(),
+            joint: Joint::new(most_points),
+        }
+    }
+
+    /// One tick: what becomes of the points, and each tool keeps what it felt. `None` where there are no
+    /// points, on a body that does not keep its whole compliance, or where rounding has made nonsense
+    /// of it.
+    pub fn tick(
+        &mut self,
+        ground: &Ground<'_>,
+        presses: &Presses,
+        led: &mut AllLed<'_>,
+    ) -> Option<Answers> {
+        let has_points = presses.iter().any(Option::is_some);
+        if !has_points {
+            self.several.release();
+        }
+        if led.iter().all(Option::is_none) && self.joint.is_idle() {
+            let none = Reaction::default();
+            return has_points.then(|| {
+                (self.several).solve(ground.body, ground.number, presses, &none, ground.dt)
+            })?;
+        }
+        let mut beside = Beside {
+            several: &mut self.several,
+            presses,
+            answers: None,
+        };
+        self.joint.tick(ground, led, &mut beside);
+        beside.answers
+    }
+}

@@ -4,13 +4,16 @@ use std::sync::Arc;
 
 use glam::{DMat3, DQuat, DVec3};
 
+use super::Engine;
+use super::joint::{AllLed, Ground, Led};
+use crate::algebra::MOST_POINTS;
 use crate::body::softening::{Felt, Softening};
 use crate::body::surface::Body;
 use crate::contact::cones::MAX_FINGERS;
 use crate::contact::touch::{ContactMode, softened_touch, touch};
-use crate::fingers::several::{Press, Several};
+use crate::fingers::several::{Answers, Press, Presses};
 use crate::proxy::Hold;
-use crate::tool::contact::ToolContact;
+use crate::tool::collider::Collider;
 use crate::tool::shape::Pose;
 
 /// Forces have settled when they change by less than this share of the largest one in a tick.
@@ -37,7 +40,7 @@ pub enum Toucher {
     /// A point.
     Point(PointTouch),
     /// A tool.
-    Tool(Box<ToolContact>),
+    Tool(Box<Collider>),
 }
 
 /// A point and what it last felt.
@@ -76,7 +79,7 @@ pub struct Settling {
     felt: Felt,
     /// All of the way matters, not its end alone.
     rubs: bool,
-    several: Several,
+    engine: Engine,
     /// By number.
     pub touchers: Vec<Toucher>,
 }
@@ -96,14 +99,14 @@ impl Settling {
             mode,
             felt,
             rubs,
-            several: Several::default(),
+            engine: Engine::new(MOST_POINTS),
             touchers,
         }
     }
 
     /// Forgets all contact: the next goals are come to from outside.
     pub fn lift(&mut self) {
-        self.several = Several::default();
+        self.engine = Engine::new(MOST_POINTS);
         for toucher in &mut self.touchers {
             match toucher {
                 Toucher::Point(point) => *point = PointTouch::default(),
@@ -191,15 +194,26 @@ impl Settling {
     /// One tick: whose force changed most, and by which share of the largest.
     fn tick(&mut self, goals: &[Goal]) -> Result<(usize, f64), Unsettled> {
         let before: Vec<DVec3> = (0..goals.len()).map(|number| self.force(number)).collect();
-        self.press_points(goals)?;
-        for (number, goal) in goals.iter().enumerate() {
-            let outside = self.loads(|other, _| other != number);
-            let (Toucher::Tool(tool), Goal::Tool(pose)) = (&mut self.touchers[number], goal) else {
-                continue;
-            };
-            tool.follow(pose, self.young_modulus, &outside)
-                .map_err(|_| Unsettled::NotANumber(number))?;
+        let presses = self.presses(goals);
+        let mut led: AllLed<'_> = [const { None }; MAX_FINGERS];
+        for (led, (toucher, goal)) in led.iter_mut().zip(self.touchers.iter_mut().zip(goals)) {
+            if let (Toucher::Tool(collider), Goal::Tool(pose)) = (toucher, goal) {
+                *led = Some(Led {
+                    collider,
+                    goal: *pose,
+                    presence: 1.0,
+                });
+            }
         }
+        let ground = Ground {
+            body: &self.body,
+            number: 0,
+            young_modulus: self.young_modulus,
+            // Nothing fades in or out here: whatever was asked for is there at once.
+            dt: f64::INFINITY,
+        };
+        let answers = self.engine.tick(&ground, &presses, &mut led);
+        self.take(goals, answers.as_ref());
         let largest = (before.iter().enumerate())
             .map(|(number, before)| self.force(number).length().max(before.length()))
             .fold(0.0, f64::max);
@@ -220,76 +234,46 @@ impl Settling {
     fn force(&self, number: usize) -> DVec3 {
         match &self.touchers[number] {
             Toucher::Point(point) => point.force,
-            Toucher::Tool(tool) => tool.felt().force,
+            Toucher::Tool(tool) => tool.felt().map_or(DVec3::NAN, |felt| felt.force),
         }
     }
 
-    /// Forces on nodes of some fingers, N.
-    fn loads(&self, counts: impl Fn(usize, &Toucher) -> bool) -> Vec<(u32, DVec3)> {
-        let mut loads = Vec::new();
-        for (number, toucher) in self.touchers.iter().enumerate() {
-            if !counts(number, toucher) {
-                continue;
-            }
-            match toucher {
-                Toucher::Point(PointTouch {
-                    at: Some((hold, _)),
-                    nodal_forces,
-                    ..
-                }) => {
-                    let nodes = self.body.triangles[hold.triangle as usize];
-                    loads.extend(nodes.into_iter().zip(*nodal_forces));
-                }
-                Toucher::Point(_) => (),
-                Toucher::Tool(tool) => {
-                    let forces = tool.nodal_forces().iter();
-                    loads.extend(forces.map(|&(node, force)| (node, force * self.young_modulus)));
-                }
-            }
-        }
-        loads
-    }
-
-    fn press_points(&mut self, goals: &[Goal]) -> Result<(), Unsettled> {
+    /// The points as they see each other; none where each is answered as if it were alone.
+    fn presses(&self, goals: &[Goal]) -> Presses {
         let mut presses = [None; MAX_FINGERS];
-        let loads = self.loads(|_, toucher| matches!(toucher, Toucher::Tool(_)));
-        for (press, goal) in presses.iter_mut().zip(goals) {
-            if let Goal::Point(hold, displacement) = goal {
-                *press = Some(self.press(*hold, *displacement, &loads));
+        if goals.len() > 1 && self.mode == ContactMode::Consistent {
+            for (press, goal) in presses.iter_mut().zip(goals) {
+                if let Goal::Point(hold, displacement) = goal {
+                    *press = Some(self.press(*hold, *displacement));
+                }
             }
         }
-        let are_coupled = goals.len() > 1 && self.mode == ContactMode::Consistent;
-        // Nothing fades in or out here: whatever was asked for is there at once.
-        let answers = if are_coupled {
-            (self.several).solve(&self.body, 0, &presses, f64::INFINITY)
-        } else {
-            None
-        };
+        presses
+    }
+
+    /// What the points feel.
+    fn take(&mut self, goals: &[Goal], answers: Option<&Answers>) {
         for (number, goal) in goals.iter().enumerate() {
             let Goal::Point(hold, displacement) = goal else {
                 continue;
             };
-            let (force, nodal_forces) = match &answers {
+            let (force, nodal_forces) = match answers {
                 Some(answers) => {
                     let answer = &answers[number];
                     let share = |alpha| answer.drawn.0 * (alpha * self.young_modulus);
-                    (
-                        answer.contact_force * -self.young_modulus,
-                        hold.alpha.map(share),
-                    )
+                    let force = answer.contact_force * -self.young_modulus;
+                    (force, hold.alpha.map(share))
                 }
                 None => self.alone(hold, *displacement),
             };
-            let Toucher::Point(point) = &mut self.touchers[number] else {
-                return Err(Unsettled::OtherTip(number));
-            };
-            *point = PointTouch {
-                at: Some((*hold, *displacement)),
-                force,
-                nodal_forces,
-            };
+            if let Toucher::Point(point) = &mut self.touchers[number] {
+                *point = PointTouch {
+                    at: Some((*hold, *displacement)),
+                    force,
+                    nodal_forces,
+                };
+            }
         }
-        Ok(())
     }
 
     /// The force felt by a point that is alone, and those on the nodes by the linear relation, N.
@@ -321,15 +305,7 @@ impl Settling {
     }
 
     /// A point as the others see it. One that does not travel rests, and pushes back inwards.
-    fn press(&self, hold: Hold, displacement: DVec3, loads: &[(u32, DVec3)]) -> Press {
-        let nodes = self.body.triangles[hold.triangle as usize];
-        let mut moved = DVec3::ZERO;
-        for (node, weight) in nodes.into_iter().zip(hold.alpha) {
-            let by = |&(loaded, force): &(u32, DVec3)| {
-                (self.body.block(node, loaded)).map(|block| block * force)
-            };
-            moved += loads.iter().filter_map(by).sum::<DVec3>() * weight;
-        }
+    fn press(&self, hold: Hold, displacement: DVec3) -> Press {
         let push = if displacement == DVec3::ZERO {
             -self.body.face(hold.triangle).normal
         } else {
@@ -339,7 +315,6 @@ impl Settling {
             hold,
             touches: true,
             displacement,
-            moved_by_tools: moved / self.young_modulus,
             push,
             most_stiffness: f64::INFINITY,
             presence: 1.0,

@@ -10,7 +10,7 @@ use glam::{DMat3, DVec3};
 
 use crate::body::softening::Softening;
 use crate::body::surface::Body;
-use crate::contact::cones::{Blocks, Cone, MAX_FINGERS, Members, mean, solve_distinct};
+use crate::contact::cones::{Blocks, Cone, MAX_FINGERS, Members, Vectors, mean, solve_distinct};
 use crate::contact::touch::{contact_compliance, inverse_of_definite};
 use crate::control::coupling::series_compliance;
 use crate::fingers::softened::{Pressing, Softened};
@@ -33,8 +33,6 @@ pub struct Press {
     pub touches: bool,
     /// How far it asks the contact point to move from rest, m.
     pub displacement: DVec3,
-    /// How far tools move it already, m.
-    pub moved_by_tools: DVec3,
     /// The part of that which it adds to what the others do, m.
     pub push: DVec3,
     /// Of all that its device may see, over Young's modulus; infinite for no such limit.
@@ -44,6 +42,53 @@ pub struct Press {
     /// How the place departs from the linear relation.
     pub softening: Softening,
 }
+
+/// Those that are there, by number.
+pub type Presses = [Option<Press>; MAX_FINGERS];
+
+/// How tools answer to the points' forces: they move each by some way and, per force on each, by more.
+#[derive(Debug, Clone, Copy)]
+pub struct Reaction {
+    /// Without the points' forces, m.
+    pub moved: Vectors,
+    /// m/N at unit modulus; symmetric, never positive: tools that hold the body make it firmer.
+    pub by: Blocks,
+}
+
+impl Default for Reaction {
+    fn default() -> Self {
+        Self {
+            moved: [DVec3::ZERO; MAX_FINGERS],
+            by: [[DMat3::ZERO; MAX_FINGERS]; MAX_FINGERS],
+        }
+    }
+}
+
+impl Reaction {
+    /// Where what a point and the tools do to each other is reduced to such shares.
+    pub fn reduce(&mut self, shares: &[f64; MAX_FINGERS]) {
+        for (p, &share) in shares.iter().enumerate() {
+            self.moved[p] *= share;
+            for (q, &other) in shares.iter().enumerate() {
+                self.by[p][q] *= share * other;
+            }
+        }
+    }
+
+    /// The compliance of points between tools that answer so.
+    fn on(&self, alone: &Blocks) -> Blocks {
+        let mut blocks = *alone;
+        for (row, by) in blocks.iter_mut().zip(&self.by) {
+            for (block, by) in row.iter_mut().zip(by) {
+                *block += *by;
+            }
+        }
+        blocks
+    }
+}
+
+/// What becomes of all presses.
+pub type Answers = [Answer; MAX_FINGERS];
 
 /// What becomes of a press; times Young's modulus for N and N/m.
 #[derive(Debug, Clone, Copy, Default)]
@@ -80,7 +125,7 @@ struct Cross {
 #[derive(Debug, Clone)]
 pub struct Several {
     cross: [[Cross; MAX_FINGERS]; MAX_FINGERS],
-    forces: [DVec3; MAX_FINGERS],
+    forces: Vectors,
     softened: Softened,
 }
 
@@ -100,7 +145,13 @@ impl Default for Several {
 }
 
 impl Several {
-    /// Forces of all fingers that touch, and how far they move the surface at all that are there.
+    /// The last forces, at unit modulus.
+    pub fn forces(&self) -> &Vectors {
+        &self.forces
+    }
+
+    /// Forces of all fingers that touch, and how far they move the surface at all that are there,
+    /// between tools that answer as told.
     ///
     /// `number` counts the bodies that were exchanged, `dt` is the tick's length in s. `None` for a
     /// body that does not keep its whole compliance, or one of which rounding has made nonsense.
@@ -108,11 +159,13 @@ impl Several {
         &mut self,
         body: &Body,
         number: u32,
-        presses: &[Option<Press>; MAX_FINGERS],
+        presses: &Presses,
+        tools: &Reaction,
         dt: f64,
-    ) -> Option<[Answer; MAX_FINGERS]> {
-        let mut compliance = self.coupled_compliance(body, number, presses)?;
-        tell_apart(&mut compliance, &Members::of(presses))?;
+    ) -> Option<Answers> {
+        let mut alone = self.coupled_compliance(body, number, presses)?;
+        tell_apart(&mut alone, &Members::of(presses))?;
+        let compliance = tools.on(&alone);
         let touching = presses.map(|press| press.filter(|p| p.touches));
         let members = Members::of(&touching);
         let held = members.held(&compliance)?;
@@ -124,27 +177,28 @@ impl Several {
         let mut cones = [Cone::default(); MAX_FINGERS];
         for (p, press) in numbered(&touching) {
             let spring = series_compliance(&held[p], press.most_stiffness);
-            let fading = mean(&compliance[p][p]) * (1.0 / press.presence.max(LEAST_PRESENCE) - 1.0);
+            let fading = mean(&alone[p][p]) * (1.0 / press.presence.max(LEAST_PRESENCE) - 1.0);
             between[p] = spring + fading;
             series[p][p] += DMat3::IDENTITY * between[p];
             let share = (DMat3::IDENTITY + held[p] * spring).inverse();
             answers[p].seen_stiffness = share * held[p];
             answers[p].spring = spring;
             answers[p].felt_share = 1.0;
-            asked[p] = press.displacement - press.moved_by_tools;
-            cones[p] = Cone::about(press.push, &series[p][p])?;
+            asked[p] = press.displacement - tools.moved[p];
+            let own = alone[p][p] + DMat3::IDENTITY * between[p];
+            cones[p] = Cone::about(press.push, &own)?;
         }
         self.forces = solve_distinct(&series, &asked, &cones, &members, &self.forces)?;
         for (p, press) in numbered(presses) {
-            let others = members.numbers().filter(|&q| q != p);
-            let by_points: DVec3 = others.map(|q| compliance[p][q] * self.forces[q]).sum();
-            answers[p].by_others = by_points + press.moved_by_tools;
+            let by_all = members.numbers().map(|q| compliance[p][q] * self.forces[q]);
+            let by_all = by_all.sum::<DVec3>() + tools.moved[p];
+            let force = self.forces[p];
+            answers[p].by_others = by_all - alone[p][p] * force;
             if press.touches {
-                let force = self.forces[p];
-                let own = inverse_of_definite(&compliance[p][p])?;
+                let own = inverse_of_definite(&alone[p][p])?;
                 answers[p].force = force;
                 answers[p].contact_force = force + own * force * between[p];
-                let moved = series[p][p] * force + answers[p].by_others;
+                let moved = by_all + force * between[p];
                 answers[p].slip = moved - press.displacement;
             }
             answers[p].drawn = (answers[p].force, answers[p].by_others);
@@ -152,6 +206,7 @@ impl Several {
         if numbered(&touching).any(|(_, press)| !press.softening.is_none()) {
             let pressing = Pressing {
                 compliance,
+                own: std::array::from_fn(|p| alone[p][p]),
                 between,
                 asked,
                 cones,
@@ -159,7 +214,7 @@ impl Several {
             };
             // Where rounding has made nonsense of it, the linear answers stay.
             if (self.softened)
-                .solve(&pressing, presses, &mut answers, dt)
+                .solve(&pressing, presses, tools, &mut answers, dt)
                 .is_none()
             {
                 self.softened = Softened::default();
@@ -181,7 +236,7 @@ impl Several {
         &mut self,
         body: &Body,
         number: u32,
-        presses: &[Option<Press>; MAX_FINGERS],
+        presses: &Presses,
     ) -> Option<Blocks> {
         let mut compliance = [[DMat3::ZERO; MAX_FINGERS]; MAX_FINGERS];
         for (p, press) in numbered(presses) {

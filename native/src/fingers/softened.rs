@@ -15,7 +15,7 @@ use crate::body::softening::{BLEND_SECONDS, Relation};
 use crate::contact::cones::{Blocks, Cone, MAX_FINGERS, Members, Vectors, solve_distinct};
 use crate::contact::touch::inverse_of_definite;
 use crate::fingers::felt_coupling::{Held, couplings};
-use crate::fingers::several::{Answer, Press, numbered};
+use crate::fingers::several::{Answers, Presses, Reaction, numbered};
 
 /// Rounds in one tick; two or three are enough from the tick before.
 const MOST_ROUNDS: usize = 8;
@@ -28,8 +28,10 @@ type Relations = [Option<Relation>; MAX_FINGERS];
 
 /// The problem of linear relations.
 pub(crate) struct Pressing {
-    /// C_pq, made distinct.
+    /// C_pq, made distinct, between tools that answer.
     pub compliance: Blocks,
+    /// C_pp without tools.
+    pub own: [DMat3; MAX_FINGERS],
     /// c_p: what lies between a finger and the body.
     pub between: [f64; MAX_FINGERS],
     /// u, m.
@@ -66,8 +68,9 @@ impl Softened {
     pub fn solve(
         &mut self,
         pressing: &Pressing,
-        presses: &[Option<Press>; MAX_FINGERS],
-        answers: &mut [Answer; MAX_FINGERS],
+        presses: &Presses,
+        tools: &Reaction,
+        answers: &mut Answers,
         dt: f64,
     ) -> Option<()> {
         let step = dt / BLEND_SECONDS;
@@ -75,14 +78,14 @@ impl Softened {
         let mut relations = [None; MAX_FINGERS];
         for p in members.numbers() {
             relations[p] = Some(Relation {
-                stiffness: inverse_of_definite(&pressing.compliance[p][p])?,
+                stiffness: inverse_of_definite(&pressing.own[p])?,
                 softening: presses[p]?.softening,
             });
         }
         let couplings = couplings(&pressing.compliance, members, &relations);
         let held = couplings.map(Held::at);
         for p in members.numbers() {
-            relations[p] = Some(held[p].relation(&relations[p]?, &pressing.compliance[p][p]));
+            relations[p] = Some(held[p].relation(&relations[p]?, &pressing.own[p]));
         }
         let same_fingers =
             (0..MAX_FINGERS).all(|p| self.shares[p].is_some() == relations[p].is_some());
@@ -124,12 +127,11 @@ impl Softened {
         }
         let seen = members.held(&tangents.unwrap_or(pressing.compliance))?;
         for (p, press) in numbered(presses) {
-            let others = members.numbers().filter(|&q| q != p);
-            let by_points: DVec3 = others
+            let by_all: DVec3 = (members.numbers())
                 .map(|q| pressing.compliance[p][q] * self.forces[q])
                 .sum();
             let answer = &mut answers[p];
-            answer.by_others = by_points + press.moved_by_tools;
+            answer.by_others = by_all + tools.moved[p] - pressing.own[p] * self.forces[p];
             let Some(relation) = &relations[p] else {
                 self.shares[p] = None;
                 continue;
@@ -163,18 +165,22 @@ impl Softened {
         for _ in 0..MOST_ROUNDS {
             let mut series = pressing.compliance;
             let mut asked = pressing.asked;
+            let mut owns = [DMat3::ZERO; MAX_FINGERS];
             for (p, relation) in numbered(relations) {
                 let v = self.own[p];
-                tangents[p][p] = inverse_of_definite(&relation.tangent(v))?;
+                let own = inverse_of_definite(&relation.tangent(v))?;
+                // What is not its own stays as it is.
+                tangents[p][p] = own + (pressing.compliance[p][p] - pressing.own[p]);
                 series[p][p] = tangents[p][p] + DMat3::IDENTITY * pressing.between[p];
-                asked[p] += tangents[p][p] * relation.force(v) - v;
+                asked[p] += own * relation.force(v) - v;
+                owns[p] = own;
             }
             let Pressing { cones, members, .. } = pressing;
             forces = solve_distinct(&series, &asked, cones, members, &forces)?;
             (change, largest) = (0.0, 0.0);
             for (p, relation) in numbered(relations) {
                 let v = self.own[p];
-                let step = tangents[p][p] * (forces[p] - relation.force(v));
+                let step = owns[p] * (forces[p] - relation.force(v));
                 self.own[p] = v + step;
                 change = change.max(step.abs().max_element());
                 largest = largest.max(self.own[p].abs().max_element());
@@ -202,13 +208,13 @@ impl Softened {
         let mut asked = pressing.asked;
         for p in pressing.members.numbers() {
             series[p][p] += DMat3::IDENTITY * pressing.between[p];
-            asked[p] += compliance[p][p] * self.departures[p];
+            asked[p] += pressing.own[p] * self.departures[p];
         }
         let Pressing { cones, members, .. } = pressing;
         self.forces = solve_distinct(&series, &asked, cones, members, &self.forces)?;
         let mut own = [DVec3::ZERO; MAX_FINGERS];
         for p in members.numbers() {
-            own[p] = compliance[p][p] * (self.forces[p] - self.departures[p]);
+            own[p] = pressing.own[p] * (self.forces[p] - self.departures[p]);
         }
         Some(own)
     }

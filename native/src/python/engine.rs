@@ -16,7 +16,7 @@ use crate::python::body::surface::Body;
 use crate::python::servo::settings::{contact_mode, felt_choice};
 use crate::python::tool::{Tool, ToolSurface, pose};
 use crate::python::vectors::{array, finite, positive, rows, square, table};
-use crate::tool::contact::ToolContact;
+use crate::tool::collider::Collider;
 use crate::tool::friction::Friction;
 use crate::tool::patch::Slot;
 
@@ -67,7 +67,7 @@ impl ContactEngine {
                     )));
                 }
                 Some((surface, tool)) => {
-                    let mut tool = ToolContact::new(surface.inner.clone(), tool.inner.clone());
+                    let mut tool = Collider::new(surface.inner.clone(), tool.inner.clone());
                     tool.set_friction(friction);
                     Toucher::Tool(Box::new(tool))
                 }
@@ -162,13 +162,13 @@ impl ContactEngine {
         Ok(told)
     }
 
-    fn tool<'py>(&self, py: Python<'py>, tool: &ToolContact) -> PyResult<Bound<'py, PyDict>> {
-        let (felt, modulus) = (tool.felt(), self.inner.young_modulus);
-        let points = tool.surface().points();
-        let pressed = || (tool.slots().iter()).filter(|slot| slot.force != DVec3::ZERO);
+    fn tool<'py>(&self, py: Python<'py>, tool: &Collider) -> PyResult<Bound<'py, PyDict>> {
+        let felt = tool.felt().copied().unwrap_or_default();
+        let modulus = self.inner.young_modulus;
+        let pressed = || tool.pressed().iter();
         let numbers = |of: &dyn Fn(&Slot) -> f64| PyArray1::from_iter(py, pressed().map(of));
         let vectors = |of: &dyn Fn(&Slot) -> DVec3| table(py, pressed().map(of));
-        let area = |slot: &Slot| points[slot.point as usize].area;
+        let area = |slot: &Slot| slot.at.area;
         let told = PyDict::new(py);
         told.set_item("force", array(py, felt.force))?;
         told.set_item("torque", array(py, felt.torque))?;
@@ -186,10 +186,7 @@ impl ContactEngine {
             "pressures",
             numbers(&|slot| slot.push * modulus / area(slot)),
         )?;
-        told.set_item(
-            "places",
-            vectors(&|slot| points[slot.point as usize].position)?,
-        )?;
+        told.set_item("places", vectors(&|slot| slot.at.position)?)?;
         told.set_item("point_forces", vectors(&|slot| slot.force * modulus)?)?;
         told.set_item("normals", vectors(&|slot| slot.normal)?)?;
         told.set_item("displacements", vectors(&|slot| slot.moved)?)?;

@@ -12,10 +12,11 @@ use super::vectors::{
     Matrix, Rows, Triple, Vector, array, finite, positive, rotation, square, table,
 };
 use crate::body::surface;
+use crate::engine::lone::LoneTool;
 use crate::python::body::surface::Body;
 use crate::python::harness::tool_cost::Timing;
 use crate::servo::tip::Tip;
-use crate::tool::contact::{self, MOST_NODES};
+use crate::tool::collider::Collider;
 use crate::tool::friction::Friction;
 use crate::tool::near_field::{NearField, NodeField, PointField};
 use crate::tool::points::{self, Point};
@@ -229,7 +230,7 @@ fn near_field(arrays: &Bound<'_, PyDict>) -> PyResult<NearField> {
 
 #[pyclass(module = "palpate_servo")]
 pub struct ToolContact {
-    pub inner: contact::ToolContact,
+    pub inner: LoneTool,
     young_modulus: f64,
 }
 
@@ -249,7 +250,7 @@ impl MadeTool {
 /// A tip with all its memory; a point for no tool.
 pub fn tip(made: Option<MadeTool>) -> Tip {
     made.map_or(Tip::Point, |made| {
-        Tip::Tool(Box::new(contact::ToolContact::new(made.surface, made.tool)))
+        Tip::Tool(Box::new(Collider::new(made.surface, made.tool)))
     })
 }
 
@@ -262,7 +263,7 @@ impl ToolContact {
     }
 
     fn pressed(&self) -> impl Iterator<Item = &crate::tool::patch::Slot> {
-        (self.inner.slots().iter()).filter(|slot| slot.force != DVec3::ZERO)
+        self.inner.pressed().iter()
     }
 }
 
@@ -278,7 +279,7 @@ impl ToolContact {
                 friction.sticking
             )));
         }
-        let mut inner = contact::ToolContact::new(surface.inner.clone(), tool.inner.clone());
+        let mut inner = LoneTool::new(surface.inner.clone(), tool.inner.clone());
         inner.set_friction(friction);
         Ok(Self {
             inner,
@@ -292,34 +293,10 @@ impl ToolContact {
         Ok(())
     }
 
-    #[pyo3(signature = (position, rotation, young_modulus, outside=None))]
-    fn follow(
-        &mut self,
-        position: Triple,
-        rotation: Rows,
-        young_modulus: f64,
-        outside: Option<(
-            PyArrayLike1<'_, i64, AllowTypeChange>,
-            PyArrayLike2<'_, f64, AllowTypeChange>,
-        )>,
-    ) -> PyResult<()> {
+    fn follow(&mut self, position: Triple, rotation: Rows, young_modulus: f64) -> PyResult<()> {
         let goal = pose(position, rotation)?;
         self.young_modulus = positive("young_modulus", young_modulus)?;
-        let outside = match outside {
-            Some((nodes, forces)) => {
-                let nodes = indices("outside", &nodes)?;
-                let forces = vectors("outside", &forces)?;
-                let count = self.inner.surface().body().nodes.len();
-                if nodes.len() != forces.len() || nodes.iter().any(|&n| n as usize >= count) {
-                    return Err(PyValueError::new_err(format!(
-                        "outside must have a force for each node, none beyond the {count}"
-                    )));
-                }
-                nodes.into_iter().zip(forces).collect()
-            }
-            None => Vec::new(),
-        };
-        (self.inner.follow(&goal, young_modulus, &outside))
+        (self.inner.follow(&goal, young_modulus))
             .map(|_| ())
             .map_err(|_| PyValueError::new_err("the contact came out as no number"))
     }
@@ -392,7 +369,7 @@ impl ToolContact {
 
     #[getter]
     fn near_count(&self) -> usize {
-        self.inner.slots().len()
+        self.inner.felt().effort.near
     }
 
     #[getter]
@@ -430,10 +407,8 @@ impl ToolContact {
 
     #[getter]
     fn pressures<'py>(&self, py: Python<'py>) -> Vector<'py> {
-        let points = self.inner.surface().points();
-        let pressure = |slot: &crate::tool::patch::Slot| {
-            slot.push * self.young_modulus / points[slot.point as usize].area
-        };
+        let pressure =
+            |slot: &crate::tool::patch::Slot| slot.push * self.young_modulus / slot.at.area;
         PyArray1::from_iter(py, self.pressed().map(pressure))
     }
 
@@ -445,7 +420,6 @@ impl ToolContact {
 
     #[getter]
     fn nodal_forces<'py>(&self, py: Python<'py>) -> PyResult<Matrix<'py>> {
-        debug_assert!(self.inner.nodal_forces().len() <= MOST_NODES);
         let forces = self.inner.nodal_forces().iter();
         table(py, forces.map(|&(_, force)| force * self.young_modulus))
     }
@@ -481,11 +455,4 @@ fn matrices(name: &str, array: &PyArrayLike3<'_, f64, AllowTypeChange>) -> PyRes
         DMat3::from_cols_array_2d(&[0, 1, 2].map(|c| [0, 1, 2].map(|r| b[[r, c]])))
     };
     Ok(array.outer_iter().map(block).collect())
-}
-
-fn indices(name: &str, array: &PyArrayLike1<'_, i64, AllowTypeChange>) -> PyResult<Vec<u32>> {
-    let number = |&n: &i64| {
-        u32::try_from(n).map_err(|_| PyValueError::new_err(format!("{name} has the number {n}")))
-    };
-    array.as_array().iter().map(number).collect()
 }

@@ -274,7 +274,7 @@ impl Finger {
         let is_sound = !self.found.blind && self.found.fault != Some(Fault::Nan);
         is_sound
             && match self.tool() {
-                Some(tool) => self.tip_fits && tool.felt().pressed > 0,
+                Some(tool) => self.tip_fits && tool.felt().is_ok_and(|felt| felt.pressed > 0),
                 None => self.proxy.as_ref().is_some_and(|p| p.hold().is_some()),
             }
     }

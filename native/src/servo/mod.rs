@@ -23,14 +23,14 @@ use crate::contact::cones::{MAX_FINGERS, Vectors};
 use crate::contact::touch::ContactMode;
 use crate::control::safety::Limits;
 use crate::device::{Device, Fault};
-use crate::fingers::several::Several;
-use crate::proxy::{Feel, Hold};
+use crate::engine::joint::Ground;
+use crate::engine::{Engine, TICK_POINTS};
+use crate::proxy::Feel;
 use crate::servo::exchange::{Holder, exchange};
 use crate::servo::finger::{Finger, FingerSettings, Moment};
 use crate::servo::recorder::Tape;
 use crate::servo::snapshot::{Published, Sample};
 use crate::servo::stages::{Stage, Stages};
-use crate::tool::contact::MOST_NODES;
 
 /// What may change while the servo runs.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -83,9 +83,7 @@ pub struct Servo {
     samples: Producer<Sample>,
     /// Where ticks go while they are recorded.
     pub tape: Option<Tape>,
-    several: Several,
-    /// Forces of others on nodes, N.
-    loads: Vec<(u32, DVec3)>,
+    engine: Engine,
     tick: u64,
     /// Time of the last tick, s.
     ticked_at: Option<f64>,
@@ -114,8 +112,7 @@ impl Servo {
             snapshots,
             samples,
             tape: None,
-            several: Several::default(),
-            loads: Vec::with_capacity(MAX_FINGERS * MOST_NODES),
+            engine: Engine::new(TICK_POINTS),
             tick: 0,
             ticked_at: None,
             samples_lost: 0,
@@ -168,62 +165,40 @@ impl Servo {
 
     /// What the body makes each finger feel; what is to go to the motors, N.
     fn feel(&mut self, body: &Body, moment: &Moment, settings: &Settings) -> Vectors {
-        let mut wanted = self.feel_points(body, moment, settings);
-        // Tools in turn, each with what all others do by now: block Gauss-Seidel over the ticks.
-        for (p, wanted) in wanted.iter_mut().enumerate().take(self.fingers.len()) {
-            if self.fingers[p].has_tool() {
-                self.gather_loads(settings.young_modulus, |q, _| q != p);
-                let (finger, own) = (&mut self.fingers[p], &settings.fingers[p]);
-                let (modulus, feel) = (settings.young_modulus, &settings.feel);
-                *wanted = finger.feel_tool(modulus, feel, own, &self.loads, moment.dt);
-            }
-        }
-        wanted
-    }
-
-    /// What all fingers feel whose tips are points.
-    fn feel_points(&mut self, body: &Body, moment: &Moment, settings: &Settings) -> Vectors {
-        let mut wanted = [DVec3::ZERO; MAX_FINGERS];
-        let (own, young_modulus) = (&settings.fingers, settings.young_modulus);
+        let own = &settings.fingers;
         // The paper couples fingers on nodes alone (10); in its mode each feels as if it were alone.
-        let are_coupled = self.fingers.len() > 1 && settings.feel.mode == ContactMode::Consistent;
+        let are_several = self.fingers.len() > 1;
+        let are_coupled = are_several && settings.feel.mode == ContactMode::Consistent;
         let reckons = |finger: &Finger| finger.acts() || finger.is_moved();
+        let mut presses = [None; MAX_FINGERS];
         if are_coupled && self.fingers.iter().any(reckons) {
-            self.gather_loads(young_modulus, |_, finger| finger.has_tool());
-            let mut presses = [None; MAX_FINGERS];
             for ((press, finger), own) in presses.iter_mut().zip(&mut self.fingers).zip(own) {
                 *press = finger.press(body, settings, own, moment.dt);
-                if let Some(press) = press {
-                    press.moved_by_tools = moved_by(body, &press.hold, &self.loads, young_modulus);
-                }
-            }
-            if let Some(answers) = (self.several).solve(body, moment.body, &presses, moment.dt) {
-                for (p, finger) in self.fingers.iter_mut().enumerate() {
-                    if !finger.has_tool() {
-                        wanted[p] = finger.feel(body, settings, &own[p], &answers[p], moment.dt);
-                    }
-                }
-                return wanted;
             }
         }
-        self.several.release();
+        let mut led = [const { None }; MAX_FINGERS];
+        for (led, finger) in led.iter_mut().zip(&mut self.fingers) {
+            *led = finger.lead(&settings.feel, are_several);
+        }
+        let ground = Ground {
+            body,
+            number: moment.body,
+            young_modulus: settings.young_modulus,
+            dt: moment.dt,
+        };
+        let answers = self.engine.tick(&ground, &presses, &mut led);
+        let mut wanted = [DVec3::ZERO; MAX_FINGERS];
         for (p, finger) in self.fingers.iter_mut().enumerate() {
-            finger.forget_others();
-            if !finger.has_tool() {
-                wanted[p] = finger.feel_alone(body, settings, &own[p], moment.dt);
-            }
+            wanted[p] = if finger.has_tool() {
+                finger.feel_tool(&own[p], moment.dt)
+            } else if let Some(answers) = &answers {
+                finger.feel(body, settings, &own[p], &answers[p], moment.dt)
+            } else {
+                finger.forget_others();
+                finger.feel_alone(body, settings, &own[p], moment.dt)
+            };
         }
         wanted
-    }
-
-    /// Puts the forces on nodes of some fingers into `loads`, N.
-    fn gather_loads(&mut self, young_modulus: f64, counts: impl Fn(usize, &Finger) -> bool) {
-        self.loads.clear();
-        for (number, finger) in self.fingers.iter().enumerate() {
-            if counts(number, finger) {
-                finger.add_loads(young_modulus, &mut self.loads);
-            }
-        }
     }
 
     fn publish(&mut self, young_modulus: f64) {
@@ -253,19 +228,4 @@ impl Servo {
         }
         self.snapshots.publish();
     }
-}
-
-/// How far forces on nodes (N) move a place on the surface, m.
-fn moved_by(body: &Body, hold: &Hold, loads: &[(u32, DVec3)], young_modulus: f64) -> DVec3 {
-    let mut moved = DVec3::ZERO;
-    for (node, weight) in body.triangles[hold.triangle as usize]
-        .into_iter()
-        .zip(hold.alpha)
-    {
-        if weight != 0.0 {
-            let by = |&(loaded, force): &(u32, DVec3)| body.block(node, loaded).map(|l| l * force);
-            moved += loads.iter().filter_map(by).sum::<DVec3>() * weight;
-        }
-    }
-    moved / young_modulus
 }

@@ -3,8 +3,7 @@
 
 use glam::DVec3;
 
-use crate::algebra::MOST_POINTS;
-use crate::tool::contact::{MOST_NODES, ToolContact};
+use crate::tool::collider::{Collider, MOST_NEAR, MOST_NODES};
 
 /// A point of the surface that a tool presses.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -23,7 +22,7 @@ pub struct PressedPatch {
     /// The tick; 0 before the first.
     pub tick: u64,
     point_count: usize,
-    points: [PressedPoint; MOST_POINTS],
+    points: [PressedPoint; MOST_NEAR],
     node_count: usize,
     nodes: [(u32, DVec3); MOST_NODES],
 }
@@ -33,7 +32,7 @@ impl Default for PressedPatch {
         Self {
             tick: 0,
             point_count: 0,
-            points: [PressedPoint::default(); MOST_POINTS],
+            points: [PressedPoint::default(); MOST_NEAR],
             node_count: 0,
             nodes: [(0, DVec3::ZERO); MOST_NODES],
         }
@@ -52,13 +51,11 @@ impl PressedPatch {
     }
 
     /// Becomes what a tool presses in a tick, or nothing.
-    pub fn show(&mut self, tick: u64, tool: Option<&ToolContact>, young_modulus: f64) {
+    pub fn show(&mut self, tick: u64, tool: Option<&Collider>, young_modulus: f64) {
         (self.tick, self.point_count, self.node_count) = (tick, 0, 0);
         let Some(tool) = tool else { return };
-        let places = tool.surface().points();
-        let pressed = tool.slots().iter().filter(|slot| slot.force != DVec3::ZERO);
-        for (point, slot) in self.points.iter_mut().zip(pressed) {
-            let place = &places[slot.point as usize];
+        for (point, slot) in self.points.iter_mut().zip(tool.pressed()) {
+            let place = &slot.at;
             let force = slot.force * young_modulus;
             *point = PressedPoint {
                 position: place.position + slot.moved,

@@ -6,7 +6,7 @@
 use rtrb::{Consumer, Producer, RingBuffer};
 
 use crate::body::surface::Body;
-use crate::tool::contact::ToolContact;
+use crate::tool::collider::Collider;
 
 /// What touches the body.
 #[derive(Debug, Default)]
@@ -15,7 +15,7 @@ pub enum Tip {
     #[default]
     Point,
     /// A fingertip, rod, plate or hull.
-    Tool(Box<ToolContact>),
+    Tool(Box<Collider>),
 }
 
 impl Tip {

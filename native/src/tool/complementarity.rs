@@ -17,9 +17,10 @@ const MOST_ROUNDS: usize = 12;
 const MOST_HALVINGS: usize = 4;
 /// Of what rounding leaves in the sum A f + g, this many units count as zero.
 const ROUNDING_UNITS: f64 = 64.0;
-/// More points than the mesh has freedom beneath them make A singular: its diagonal grows by this
-/// share then, which shares the force out evenly.
-const SHIFT: f64 = 1e-9;
+/// More points than the mesh has freedom beneath them make A singular: its diagonal grows by the first
+/// share then, which shares the force out evenly. Two near fields that are too firm together, by the
+/// rims of thin parts, make it indefinite: it grows until it is not.
+const SHIFTS: [f64; 5] = [1e-9, 1e-5, 1e-3, 1e-2, 1e-1];
 
 /// How a solve ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -49,9 +50,11 @@ pub struct Complementarity {
     tried: Vec<f64>,
     work: usize,
     decompositions: usize,
+    /// How often the face has changed.
+    faces: usize,
     most_work: usize,
-    /// A was found singular in this solve.
-    is_shifted: bool,
+    /// By this share the diagonal has grown, since A was found singular.
+    shift: f64,
     /// The factor is that of A on the face.
     is_decomposed: bool,
     /// Square roots of the diagonal.
@@ -73,8 +76,9 @@ impl Default for Complementarity {
             tried: vec![0.0; MOST_POINTS],
             work: 0,
             decompositions: 0,
+            faces: 0,
             most_work: 0,
-            is_shifted: false,
+            shift: 0.0,
             is_decomposed: false,
             scale: vec![0.0; MOST_POINTS],
         }
@@ -86,7 +90,7 @@ impl Complementarity {
     pub fn begin(&mut self, count: usize) {
         debug_assert!(count <= MOST_POINTS, "{count}");
         self.count = count;
-        self.is_decomposed = false;
+        (self.is_decomposed, self.shift) = (false, 0.0);
     }
 
     /// Row `i` of A, of which the first numbers count.
@@ -107,15 +111,14 @@ impl Complementarity {
         &self.matrix[i * ROW..][..self.count]
     }
 
-    /// Solves from the forces that are there; what is negative or no number counts as zero.
+    /// Solves from the forces that are there; what is negative or no number counts as zero. Solved
+    /// again for other gaps, it goes on with the factor that it has.
     ///
     /// Of multiplications it takes about as many as told at most, or one exact solve and one sweep.
     pub fn solve(&mut self, most_work: usize) -> Solved {
         let count = self.count;
         (self.work, self.most_work) = (0, most_work);
         self.decompositions = 0;
-        self.is_shifted = false;
-        self.is_decomposed = false;
         for i in 0..count {
             self.scale[i] = self.row(i)[i].sqrt();
         }
@@ -154,6 +157,24 @@ impl Complementarity {
         self.work
     }
 
+    /// A_ii.
+    #[inline]
+    pub fn own(&self, i: usize) -> f64 {
+        self.row(i)[i]
+    }
+
+    /// How far an unknown gives way beyond its row of A, by the growth of the diagonal, per force.
+    #[inline]
+    pub fn growth(&self, i: usize) -> f64 {
+        self.shift * self.row(i)[i]
+    }
+
+    /// How often other unknowns came to carry force so far.
+    #[inline]
+    pub fn faces(&self) -> usize {
+        self.faces
+    }
+
     /// Decompositions that the last solve took.
     #[inline]
     pub fn decompositions(&self) -> usize {
@@ -174,11 +195,7 @@ impl Complementarity {
     }
 
     fn is_solved(&self) -> bool {
-        let share = if self.is_shifted {
-            4.0 * SHIFT
-        } else {
-            ROUNDING_UNITS * f64::EPSILON
-        };
+        let share = (4.0 * self.shift).max(ROUNDING_UNITS * f64::EPSILON);
         // |a_ij| <= sqrt(a_ii a_jj): what rounding the sums can have had.
         let total = dot(&self.scale[..self.count], &self.forces[..self.count]);
         (0..self.count).all(|i| {
@@ -270,10 +287,9 @@ impl Complementarity {
         energy(&self.matrix, &self.gaps, &self.face, forces)
     }
 
-    /// The unknowns that carry force, and a factor of A on them; after a solve. `None` where A is
-    /// not even semidefinite on them.
-    pub fn factor_on_face(&mut self) -> Option<(&[usize], &Factor)> {
-        self.take_face().then_some((&self.face, &self.factor))
+    /// The unknowns that carry force, and the factor of A on them; after [`Self::take_face`].
+    pub fn on_face(&self) -> (&[usize], &Factor) {
+        (&self.face, &self.factor)
     }
 
     /// Multiplications that a factor takes on the `size` unknowns that carry force: from the one that
@@ -299,7 +315,7 @@ impl Complementarity {
 
     /// Brings face and factor to the unknowns that carry force; false where A is not even
     /// semidefinite on them.
-    fn take_face(&mut self) -> bool {
+    pub fn take_face(&mut self) -> bool {
         if self.is_decomposed {
             let size = self.forces[..self.count]
                 .iter()
@@ -320,6 +336,7 @@ impl Complementarity {
             if self.forces[self.face[k]] <= 0.0 {
                 self.factor.remove(k);
                 self.is_on_face[self.face.remove(k)] = false;
+                self.faces += 1;
             }
         }
         for i in 0..self.count {
@@ -330,6 +347,7 @@ impl Complementarity {
                 }
                 self.face.push(i);
                 self.is_on_face[i] = true;
+                self.faces += 1;
             }
         }
         true
@@ -339,13 +357,14 @@ impl Complementarity {
     /// where that does not help.
     fn decompose_face(&mut self) -> bool {
         self.face.clear();
+        self.faces += 1;
         for i in 0..self.count {
             self.is_on_face[i] = self.forces[i] > 0.0;
             if self.is_on_face[i] {
                 self.face.push(i);
             }
         }
-        for _ in 0..2 {
+        loop {
             for place in 0..self.face.len() {
                 self.put_row(place, self.face[place]);
             }
@@ -353,17 +372,16 @@ impl Complementarity {
             if self.factor.decompose(self.face.len()) {
                 return true;
             }
-            if self.is_shifted {
+            let Some(&more) = SHIFTS.iter().find(|&&shift| shift > self.shift) else {
                 return false;
-            }
-            self.is_shifted = true;
+            };
+            self.shift = more;
         }
-        false
     }
 
     /// An unknown's row of A on the face before it, for the factor.
     fn put_row(&mut self, place: usize, i: usize) {
-        let growth = if self.is_shifted { 1.0 + SHIFT } else { 1.0 };
+        let growth = 1.0 + self.shift;
         let from = &self.matrix[i * ROW..];
         let to = self.factor.row_mut(place);
         for (entry, &j) in to.iter_mut().zip(&self.face[..place]) {

@@ -1,4 +1,4 @@
-//! Coulomb friction between a tool and the contact points.
+//! Coulomb friction between tools and the contact points.
 //!
 //! Each point carries a force aside of at most the coefficient times its push. Where it is less, the
 //! point sticks: it stays with its anchor, the place on the tool where it was; where it is that much
@@ -11,11 +11,11 @@
 use glam::{DVec2, DVec3};
 
 use super::patch::{Patch, Slot};
-use super::points::ToolSurface;
 use super::shape::Pose;
 use crate::algebra::cholesky::dot;
 use crate::algebra::wide::widely;
 use crate::algebra::{MOST_POINTS, room};
+use crate::contact::cones::MAX_FINGERS;
 
 /// Sweeps in one linearisation. From the tick before a few are enough.
 const MOST_SWEEPS: usize = 16;
@@ -73,9 +73,20 @@ impl Friction {
     }
 }
 
+/// A tool in one tick, as friction has to know it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Posed {
+    pub pose: Pose,
+    pub friction: Friction,
+    pub reach: f64,
+}
+
+/// All tools in one tick, by number.
+pub(crate) type AllPosed = [Option<Posed>; MAX_FINGERS];
+
 /// The forces aside of one linearisation and the memory to find them in.
 #[derive(Debug, Clone)]
-pub(super) struct Rubbing {
+pub(crate) struct Rubbing {
     /// Slots that bear a force aside, two directions across the normal of each, the most it bears.
     rubbed: Vec<(usize, [DVec3; 2], f64)>,
     /// How far points move along these directions under a force along another, row by row.
@@ -89,7 +100,7 @@ pub(super) struct Rubbing {
 }
 
 impl Rubbing {
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self {
             rubbed: Vec::with_capacity(MOST_POINTS),
             matrix: room(MOST_UNKNOWNS * ROW),
@@ -102,25 +113,19 @@ impl Rubbing {
 
     /// Multiplications that the last turn took, about.
     #[inline]
-    pub(super) fn work(&self) -> usize {
+    pub(crate) fn work(&self) -> usize {
         self.work
     }
 
     /// Finds the forces aside for the pushes of all slots, and moves the slots; false where the bound
     /// on the sweeps ended it.
-    pub(super) fn rub(
-        &mut self,
-        patch: &mut Patch,
-        surface: &ToolSurface,
-        pose: &Pose,
-        friction: &Friction,
-        reach: f64,
-    ) -> bool {
+    pub(crate) fn rub(&mut self, patch: &mut Patch, tools: &AllPosed) -> bool {
         let near = patch.slots().len();
         self.rubbed.clear();
         let mut pressed = 0;
         for (number, slot) in patch.slots_mut().iter_mut().enumerate() {
-            let limit = friction.limit(slot);
+            let tool = tools[usize::from(slot.tool)];
+            let limit = tool.map_or(0.0, |tool| tool.friction.limit(slot));
             if limit > 0.0 {
                 slot.aside = shortened(across(slot.aside, slot.normal), limit);
                 let (first, second) = slot.normal.any_orthonormal_pair();
@@ -131,14 +136,16 @@ impl Rubbing {
             slot.force = slot.normal * slot.push + slot.aside;
             pressed += usize::from(slot.push > 0.0);
         }
-        self.set_up(patch, surface, pose);
+        self.set_up(patch, tools);
         let rubbed = self.rubbed.len();
         self.work = 9 * pressed * near;
         if rubbed == 0 {
             return true;
         }
         let sweep = 4 * rubbed * rubbed;
-        let sweeps = (MOST_WORK / sweep).clamp(1, MOST_SWEEPS);
+        let sweeps = (MOST_WORK * tools.iter().flatten().count() / sweep).clamp(1, MOST_SWEEPS);
+        let present = || tools.iter().flatten();
+        let reach = present().fold(f64::INFINITY, |least, tool| least.min(tool.reach));
         let (rubbing, least) = (&mut *self, CONVERGED * reach);
         let (made, found) = sweep_through(rubbing, sweeps, least);
         for (&(number, [first, second], limit), force) in
@@ -154,7 +161,7 @@ impl Rubbing {
     }
 
     /// Moves the slots as their forces ask for, and sets up Tresca's problem about these.
-    fn set_up(&mut self, patch: &mut Patch, surface: &ToolSurface, pose: &Pose) {
+    fn set_up(&mut self, patch: &mut Patch, tools: &AllPosed) {
         patch.begin_displacing();
         let mut first = 0;
         for number in 0..patch.slots().len() {
@@ -167,8 +174,9 @@ impl Rubbing {
         patch.end_displacing();
         for (k, &(number, directions, _)) in self.rubbed.iter().enumerate() {
             let slot = patch.slots()[number];
-            let place = patch.point(surface, number).position + slot.moved;
-            let anchor = slot.anchor.map_or(place, |anchor| pose.to_body(anchor));
+            let place = slot.at.position + slot.moved;
+            let stuck = slot.anchor.zip(tools[usize::from(slot.tool)]);
+            let anchor = stuck.map_or(place, |(anchor, tool)| tool.pose.to_body(anchor));
             for (a, direction) in directions.into_iter().enumerate() {
                 self.away[2 * k + a] = direction.dot(place - anchor);
                 self.forces[2 * k + a] = direction.dot(slot.aside);
@@ -253,7 +261,7 @@ fn nearer(last: DVec2, slip: DVec2, own: [f64; 3], limit: f64) -> DVec2 {
 
 /// The part of a force across a normal.
 #[inline]
-pub(super) fn across(force: DVec3, normal: DVec3) -> DVec3 {
+pub(crate) fn across(force: DVec3, normal: DVec3) -> DVec3 {
     force - normal * normal.dot(force)
 }
 
@@ -268,18 +276,16 @@ fn shortened(force: DVec3, limit: f64) -> DVec3 {
     }
 }
 
-/// After a tick: anchors of points that stuck stay, others are where the points are. How much of all
-/// pushes is on points that stick, 0 to 1.
-pub(super) fn take_anchors(
-    patch: &mut Patch,
-    surface: &ToolSurface,
-    pose: &Pose,
-    friction: &Friction,
-) -> f64 {
+/// After a tick: anchors of a tool's points that stuck stay, others are where the points are. How much
+/// of all pushes is on points that stick, 0 to 1.
+pub(crate) fn take_anchors(patch: &mut Patch, number: u8, tool: &Posed) -> f64 {
     let (mut stuck, mut all) = (0.0, 0.0);
-    for number in 0..patch.slots().len() {
-        let rest = patch.point(surface, number).position;
-        let slot = &mut patch.slots_mut()[number];
+    let Posed { pose, friction, .. } = tool;
+    for slot in patch
+        .slots_mut()
+        .iter_mut()
+        .filter(|slot| slot.tool == number)
+    {
         if slot.push <= 0.0 || friction.is_none() {
             (slot.aside, slot.anchor, slot.slips) = (DVec3::ZERO, None, false);
             continue;
@@ -291,7 +297,7 @@ pub(super) fn take_anchors(
             stuck += slot.push;
         } else {
             slot.slips = is_held;
-            slot.anchor = Some(pose.to_tool(rest + slot.moved));
+            slot.anchor = Some(pose.to_tool(slot.at.position + slot.moved));
         }
     }
     if all > 0.0 { stuck / all } else { 0.0 }

@@ -1,27 +1,31 @@
-//! The contact points near a tool, and how each gives way to a force on each other.
+//! The contact points near all tools on a body, and how each gives way to a force on each other.
 
 use std::ops::Range;
 
 use glam::{DMat3, DVec3};
 
-use super::blocks::Blocks;
+use super::blocks::{Blocks, Recent};
 use super::near_field::NearField;
 use super::points::{Point, ToolSurface};
+use super::slot_numbers::SlotNumbers;
 use crate::algebra::wide::widely;
 use crate::algebra::{MOST_POINTS, room};
 use crate::body::surface::Body;
+use crate::contact::cones::MAX_FINGERS;
 
 /// Numbers of a column: how all slots give way to a force on one, an entry of the blocks after the
 /// other, row by row, each for all slots.
 const COLUMN: usize = 9 * MOST_POINTS;
-/// The slot of a point that has none.
-const NONE: u16 = u16::MAX;
 
-/// A point near the tool.
-#[derive(Debug, Clone, Copy, Default)]
+/// A contact point near a tool; where two tools share one, each has a slot for it.
+#[derive(Debug, Clone, Copy)]
 pub struct Slot {
+    /// Number of the tool.
+    pub tool: u8,
     /// Number of the contact point.
     pub point: u32,
+    /// What is fixed there.
+    pub at: Point,
     /// Force on the body, N at unit modulus.
     pub force: DVec3,
     /// The part of it along the normal, N at unit modulus.
@@ -34,35 +38,56 @@ pub struct Slot {
     pub slips: bool,
     /// Displacement, m.
     pub moved: DVec3,
-    /// The part of it that other fingers cause, m.
+    /// The part of it that points cause, m.
     pub offset: DVec3,
+    /// The same before the points' forces were found anew, m.
+    pub(crate) before: DVec3,
+    /// Compliance between it and the tool along the normal, m/N at unit modulus.
+    pub spring: f64,
     /// Outward from the tool where the point has gone to.
     pub normal: DVec3,
     /// Signed distance from the tool there, m.
     pub distance: f64,
     /// Distance and normal where the point is now, of the tool as it is, in the tool's frame.
-    pub(super) free: (f64, DVec3),
+    pub(crate) free: (f64, DVec3),
     /// The same as pushes are held, in the body's frame: what the next linearisation begins with.
-    pub(super) seen: (f64, DVec3),
+    pub(crate) seen: (f64, DVec3),
     /// Of the distances now and, where it was asked for, at rest the lesser, m.
-    pub(super) nearest: f64,
+    pub(crate) nearest: f64,
     /// How far the point moves along an axis under a force along it, at most, m/N at unit modulus.
-    pub(super) gives: f64,
+    pub(crate) gives: f64,
 }
 
-/// Displacement of the point that enters per force on a node, and for which entry that was found:
-/// contact points share nodes.
-#[derive(Debug, Clone, Copy, Default)]
-struct OfNode {
-    resolved: (u64, DMat3),
-    beyond: (u64, DMat3),
+impl Slot {
+    fn new(tool: u8, point: u32, at: &Point) -> Self {
+        Self {
+            tool,
+            point,
+            at: *at,
+            force: DVec3::ZERO,
+            push: 0.0,
+            aside: DVec3::ZERO,
+            anchor: None,
+            slips: false,
+            moved: DVec3::ZERO,
+            offset: DVec3::ZERO,
+            before: DVec3::ZERO,
+            spring: 0.0,
+            normal: DVec3::ZERO,
+            distance: 0.0,
+            free: (0.0, DVec3::ZERO),
+            seen: (0.0, DVec3::ZERO),
+            nearest: 0.0,
+            gives: 0.0,
+        }
+    }
 }
 
 /// Slots in use and the compliance between them.
 #[derive(Debug, Clone)]
 pub struct Patch {
     slots: Vec<Slot>,
-    slot_of: Vec<u16>,
+    numbers: SlotNumbers,
     /// C_ij at unit modulus, a column for each loaded slot j.
     compliance: Vec<f64>,
     /// Displacements under all forces, an axis after the other, and under one.
@@ -71,24 +96,28 @@ pub struct Patch {
     blocks: Blocks,
     /// The same beyond a half-space.
     beyond: Blocks,
-    of_nodes: Vec<OfNode>,
-    /// Points that entered so far.
-    entries: u64,
+    /// Displacement of the point that enters per force on a node, by either.
+    of_nodes: [Recent; 2],
 }
 
 impl Patch {
-    pub(super) fn new(points: usize, nodes: usize) -> Self {
+    pub(crate) fn new() -> Self {
         Self {
             slots: Vec::with_capacity(MOST_POINTS),
-            slot_of: vec![NONE; points],
+            numbers: SlotNumbers::new(),
             compliance: room(COLUMN * MOST_POINTS),
             moved: [[0.0; MOST_POINTS]; 3],
             by_one: [[0.0; MOST_POINTS]; 3],
             blocks: Blocks::new(),
             beyond: Blocks::new(),
-            of_nodes: vec![OfNode::default(); nodes],
-            entries: 0,
+            of_nodes: [Recent::new(), Recent::new()],
         }
+    }
+
+    /// From now on points are on the body with this number. There must be no slots in use.
+    pub(crate) fn turn_to(&mut self, body: u32) {
+        self.blocks.turn_to(body);
+        self.beyond.turn_to(body);
     }
 
     /// All slots in use.
@@ -98,24 +127,21 @@ impl Patch {
     }
 
     #[inline]
-    pub(super) fn slots_mut(&mut self) -> &mut [Slot] {
+    pub(crate) fn slots_mut(&mut self) -> &mut [Slot] {
         &mut self.slots
     }
 
-    /// The slot of a point that has one.
+    /// The slot of a tool's point that has one.
     #[inline]
-    pub(super) fn slot(&self, point: u32) -> Option<&Slot> {
-        self.slots.get(usize::from(self.slot_of[point as usize]))
+    pub(crate) fn slot(&self, tool: u8, point: u32) -> Option<&Slot> {
+        self.numbers
+            .of(tool, point)
+            .map(|number| &self.slots[number])
     }
 
     #[inline]
-    pub(super) fn has(&self, point: u32) -> bool {
-        self.slot_of[point as usize] != NONE
-    }
-
-    #[inline]
-    pub(super) fn is_full(&self) -> bool {
-        self.slots.len() == MOST_POINTS
+    pub(crate) fn has(&self, tool: u8, point: u32) -> bool {
+        self.numbers.of(tool, point).is_some()
     }
 
     /// How a slot gives way to a force on another, m/N at unit modulus.
@@ -129,7 +155,7 @@ impl Patch {
     /// How far slots move under a force on one of them, m at unit modulus, an axis after the other:
     /// that one and those behind it, by symmetry enough for a matrix.
     #[inline]
-    pub(super) fn moved_by(&mut self, slot: usize, force: DVec3) -> &[[f64; MOST_POINTS]; 3] {
+    pub(crate) fn moved_by(&mut self, slot: usize, force: DVec3) -> &[[f64; MOST_POINTS]; 3] {
         let range = slot..self.slots.len();
         for axis in &mut self.by_one {
             axis[range.clone()].fill(0.0);
@@ -141,14 +167,14 @@ impl Patch {
     }
 
     /// Begins to sum up how far all slots move, from zero.
-    pub(super) fn begin_sum(&mut self) {
+    pub(crate) fn begin_sum(&mut self) {
         for axis in &mut self.moved {
             axis[..self.slots.len()].fill(0.0);
         }
     }
 
-    /// The same from what other fingers do.
-    pub(super) fn begin_displacing(&mut self) {
+    /// The same from what points do.
+    pub(crate) fn begin_displacing(&mut self) {
         for (i, slot) in self.slots.iter().enumerate() {
             for (axis, offset) in self.moved.iter_mut().zip(slot.offset.to_array()) {
                 axis[i] = offset;
@@ -160,7 +186,7 @@ impl Patch {
     /// than a processor keeps at hand, so each is read once for all that it is needed for: this, and
     /// [`Self::moved_by`].
     #[inline]
-    pub(super) fn add(&mut self, slot: usize, force: DVec3) {
+    pub(crate) fn add(&mut self, slot: usize, force: DVec3) {
         if force != DVec3::ZERO {
             let column = &self.compliance[slot * COLUMN..][..COLUMN];
             add_moved(column, force, &mut self.moved, &(0..self.slots.len()));
@@ -169,41 +195,47 @@ impl Patch {
 
     /// The sum, m at unit modulus, an axis after the other.
     #[inline]
-    pub(super) fn sum(&self) -> &[[f64; MOST_POINTS]; 3] {
+    pub(crate) fn sum(&self) -> &[[f64; MOST_POINTS]; 3] {
         &self.moved
     }
 
     /// Displaces the slots by the sum.
-    pub(super) fn end_displacing(&mut self) {
+    pub(crate) fn end_displacing(&mut self) {
         for (i, slot) in self.slots.iter_mut().enumerate() {
             slot.moved = DVec3::from_array([0, 1, 2].map(|axis| self.moved[axis][i]));
         }
     }
 
     #[inline]
-    pub(super) fn blocks_mut(&mut self) -> &mut Blocks {
+    pub(crate) fn blocks_mut(&mut self) -> &mut Blocks {
         &mut self.blocks
     }
 
     /// How many blocks were not at hand so far.
     #[inline]
-    pub(super) fn fetched(&self) -> usize {
+    pub(crate) fn fetched(&self) -> usize {
         self.blocks.fetched() + self.beyond.fetched()
     }
 
-    /// Takes a point in; there must be room.
-    pub(super) fn enter(&mut self, surface: &ToolSurface, point: u32) {
+    /// Takes a tool's point in; there must be room. `kin` tells of tools which have the same points.
+    pub(crate) fn enter(
+        &mut self,
+        surface: &ToolSurface,
+        tool: u8,
+        point: u32,
+        kin: &[bool; MAX_FINGERS],
+    ) {
         let new = self.slots.len();
-        debug_assert!(new < MOST_POINTS && !self.has(point));
-        self.slots.push(Slot {
-            point,
-            ..Slot::default()
-        });
-        self.slot_of[point as usize] = new as u16;
-        self.entries += 1;
+        debug_assert!(new < MOST_POINTS && !self.has(tool, point));
+        let at = &surface.points()[point as usize];
+        self.slots.push(Slot::new(tool, point, at));
+        self.numbers.set(tool, point, new);
+        self.of_nodes.iter_mut().for_each(Recent::begin);
         for slot in 0..=new {
-            let other = self.slots[slot].point;
-            let block = self.response(surface, point, other);
+            let other = &self.slots[slot];
+            let near = surface.near().filter(|_| kin[usize::from(other.tool)]);
+            let pair = [(point, at), (other.point, &{ other.at })];
+            let block = self.response(surface.body(), near, pair);
             self.put(new, slot, block);
         }
         let own = self.compliance(new, new);
@@ -211,46 +243,44 @@ impl Patch {
         self.slots[new].gives = gives.into_iter().fold(0.0, f64::max);
     }
 
-    /// Displacement of the point that enters per force on another.
-    fn response(&mut self, surface: &ToolSurface, point: u32, other: u32) -> DMat3 {
-        let [p, q] = [point, other].map(|k| &surface.points()[k as usize]);
-        let Some(near) = surface.near() else {
-            return self.resolved(surface.body(), p, q);
+    /// Displacement of the point that enters, the first, per force on another.
+    fn response(
+        &mut self,
+        body: &Body,
+        near: Option<&NearField>,
+        [(point, p), (other, q)]: [(u32, &Point); 2],
+    ) -> DMat3 {
+        let Some(near) = near else {
+            return self.resolved(body, p, q);
         };
         if point == other {
-            let whole = self.resolved(surface.body(), p, q) + near.points[point as usize].own;
+            let whole = self.resolved(body, p, q) + near.points[point as usize].own;
             return (whole + whole.transpose()) * 0.5;
         }
         let normals = [p.normal, q.normal];
         let share = near.share(point, other, normals);
         let mut sum = DMat3::ZERO;
         if share < 1.0 {
-            sum += self.resolved(surface.body(), p, q) * (1.0 - share);
+            sum += self.resolved(body, p, q) * (1.0 - share);
         }
         if share > 0.0 {
             let offset = p.position - q.position;
             let half_space = near.between_points(point, other, offset, normals);
-            sum += (self.beyond(surface.body(), near, p, q) + half_space) * share;
+            sum += (self.beyond(body, near, p, q) + half_space) * share;
         }
         sum
     }
 
     /// What the finite elements have between the point that enters and another.
     fn resolved(&mut self, body: &Body, entered: &Point, other: &Point) -> DMat3 {
-        let (blocks, kept, entry) = (&mut self.blocks, &mut self.of_nodes, self.entries);
-        let mut found = |node: u32| {
-            let kept = &mut kept[node as usize].resolved;
-            if kept.0 != entry {
-                *kept = (entry, over(entered, |a| blocks.get(body, a, node)));
-            }
-            kept.1
-        };
-        over(other, &mut found)
+        let (blocks, kept) = (&mut self.blocks, &mut self.of_nodes[0]);
+        let mut found = |node: u32| kept.of(node, || entered.mean(|a| blocks.get(body, a, node)));
+        other.mean(&mut found)
     }
 
     /// What the body does beyond a half-space between the point that enters and another.
     fn beyond(&mut self, body: &Body, near: &NearField, entered: &Point, other: &Point) -> DMat3 {
-        let (blocks, kept, entry) = (&mut self.beyond, &mut self.of_nodes, self.entries);
+        let (blocks, kept) = (&mut self.beyond, &mut self.of_nodes[1]);
         let resolved = |a: u32, b: u32| body.block(a, b).unwrap_or(DMat3::ZERO);
         let mut block = |a: u32, b: u32| {
             blocks.kept(a, b, |a, b| {
@@ -258,30 +288,24 @@ impl Patch {
                 near.beyond(a, b, offset, resolved)
             })
         };
-        let mut found = |node: u32| {
-            let kept = &mut kept[node as usize].beyond;
-            if kept.0 != entry {
-                *kept = (entry, over(entered, |a| block(a, node)));
-            }
-            kept.1
-        };
-        over(other, &mut found)
+        let mut found = |node: u32| kept.of(node, || entered.mean(|a| block(a, node)));
+        other.mean(&mut found)
     }
 
-    /// Displaces one slot as the forces and its offset ask for.
-    pub(super) fn displace_one(&mut self, slot: usize) {
+    /// How far the forces on some slots move one, m.
+    pub(crate) fn moved_of(&self, slot: usize, counts: impl Fn(&Slot) -> bool) -> DVec3 {
         // By symmetry its own column tells how it moves under forces on the others.
         let column = &self.compliance[slot * COLUMN..][..COLUMN];
-        let mut moved = self.slots[slot].offset;
+        let mut moved = DVec3::ZERO;
         for (j, other) in self.slots.iter().enumerate() {
-            if other.force != DVec3::ZERO {
+            if other.force != DVec3::ZERO && counts(other) {
                 let entry = |r: usize, c: usize| column[(3 * r + c) * MOST_POINTS + j];
                 let along = |c: usize| DVec3::new(entry(0, c), entry(1, c), entry(2, c));
                 let along = [0, 1, 2].map(|c| along(c).dot(other.force));
                 moved += DVec3::from_array(along);
             }
         }
-        self.slots[slot].moved = moved;
+        moved
     }
 
     #[inline]
@@ -296,9 +320,10 @@ impl Patch {
     }
 
     /// Drops a slot; the last one takes its place.
-    pub(super) fn leave(&mut self, slot: usize) {
+    pub(crate) fn leave(&mut self, slot: usize) {
         let last = self.slots.len() - 1;
-        self.slot_of[self.slots[slot].point as usize] = NONE;
+        let gone = self.slots[slot];
+        self.numbers.remove(gone.tool, gone.point);
         if slot != last {
             let own = self.compliance(last, last);
             for other in 0..last {
@@ -306,45 +331,29 @@ impl Patch {
                 self.put(slot, other, block);
             }
             self.put(slot, slot, own);
-            self.slot_of[self.slots[last].point as usize] = slot as u16;
+            let moved = self.slots[last];
+            self.numbers.set(moved.tool, moved.point, slot);
         }
         self.slots.swap_remove(slot);
     }
 
-    /// Drops all.
-    pub(super) fn clear(&mut self) {
-        for slot in &self.slots {
-            self.slot_of[slot.point as usize] = NONE;
+    /// Drops all of a tool.
+    pub(crate) fn let_go(&mut self, tool: u8) {
+        for slot in (0..self.slots.len()).rev() {
+            if self.slots[slot].tool == tool {
+                self.leave(slot);
+            }
         }
-        self.slots.clear();
     }
 
     /// Moves every slot as its forces and the offset ask for.
-    pub(super) fn displace(&mut self) {
+    pub(crate) fn displace(&mut self) {
         self.begin_displacing();
         for number in 0..self.slots.len() {
             self.add(number, self.slots[number].force);
         }
         self.end_displacing();
     }
-
-    /// The contact point of a slot.
-    #[inline]
-    pub(super) fn point<'a>(&self, surface: &'a ToolSurface, slot: usize) -> &'a Point {
-        &surface.points()[self.slots[slot].point as usize]
-    }
-}
-
-/// The mean over the corners of a point's triangle, weighted with its area coordinates.
-#[inline]
-fn over(point: &Point, mut block: impl FnMut(u32) -> DMat3) -> DMat3 {
-    let mut sum = DMat3::ZERO;
-    for (&node, &weight) in point.nodes.iter().zip(&point.alpha) {
-        if weight != 0.0 {
-            sum += block(node) * weight;
-        }
-    }
-    sum
 }
 
 widely! {

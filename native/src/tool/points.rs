@@ -2,11 +2,12 @@
 //!
 //! Readable reference: `core/contact/near_field/contact_points.py`.
 
-pub(in crate::tool) mod tree;
+pub(crate) mod tree;
 
+use std::hash::{DefaultHasher, Hasher};
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use crate::body::surface::{Body, BodyError};
 use crate::tool::near_field::NearField;
@@ -32,6 +33,20 @@ pub struct Point {
     pub area: f64,
 }
 
+impl Point {
+    /// The mean of something of the corners of its triangle, weighted with its area coordinates.
+    #[inline]
+    pub(crate) fn mean(&self, mut of_node: impl FnMut(u32) -> DMat3) -> DMat3 {
+        let mut sum = DMat3::ZERO;
+        for (&node, &weight) in self.nodes.iter().zip(&self.alpha) {
+            if weight != 0.0 {
+                sum += of_node(node) * weight;
+            }
+        }
+        sum
+    }
+}
+
 /// The contact points of a body.
 #[derive(Debug)]
 pub struct ToolSurface {
@@ -40,6 +55,7 @@ pub struct ToolSurface {
     near: Option<NearField>,
     tree: PointTree,
     spacing: f64,
+    fingerprint: u64,
     first_neighbour: Vec<u32>,
     neighbours: Vec<u32>,
 }
@@ -59,12 +75,14 @@ impl ToolSurface {
         let positions: Vec<DVec3> = points.iter().map(|p| p.position).collect();
         let tree = PointTree::new(&positions);
         let spacing = median_distance(&tree, &points, body.size());
+        let fingerprint = fingerprint(&points, near.as_ref());
         let mut surface = Self {
             body,
             points,
             near,
             tree,
             spacing,
+            fingerprint,
             first_neighbour: vec![0],
             neighbours: Vec::new(),
         };
@@ -84,6 +102,13 @@ impl ToolSurface {
         &self.points
     }
 
+    /// Whether another one has the same points, with the same near field, on the same body.
+    #[inline]
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.body, &other.body)
+            && (self.points.len(), self.fingerprint) == (other.points.len(), other.fingerprint)
+    }
+
     /// How far points usually are apart, m.
     #[inline]
     pub fn spacing(&self) -> f64 {
@@ -91,20 +116,20 @@ impl ToolSurface {
     }
 
     #[inline]
-    pub(super) fn tree(&self) -> &PointTree {
+    pub(crate) fn tree(&self) -> &PointTree {
         &self.tree
     }
 
     /// Points around a point.
     #[inline]
-    pub(super) fn neighbours(&self, point: u32) -> &[u32] {
+    pub(crate) fn neighbours(&self, point: u32) -> &[u32] {
         let [first, end] = [0, 1].map(|k| self.first_neighbour[point as usize + k] as usize);
         &self.neighbours[first..end]
     }
 
     /// What the mesh is too coarse for, if that is known.
     #[inline]
-    pub(super) fn near(&self) -> Option<&NearField> {
+    pub(crate) fn near(&self) -> Option<&NearField> {
         self.near.as_ref()
     }
 
@@ -169,6 +194,20 @@ fn check(body: &Body, points: &[Point], near: Option<&NearField>) -> Result<(), 
         return refuse("the near field has numbers that cannot be reckoned with".into());
     }
     Ok(())
+}
+
+/// A number that nearly always differs where points or what is known about them differ.
+fn fingerprint(points: &[Point], near: Option<&NearField>) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    for point in points {
+        for number in point.position.to_array().into_iter().chain(point.alpha) {
+            hasher.write_u64(number.to_bits());
+        }
+    }
+    for field in near.iter().flat_map(|near| &near.points) {
+        hasher.write_u64(field.own.x_axis.x.to_bits());
+    }
+    hasher.finish()
 }
 
 /// The median distance of points to their nearest on the same side.

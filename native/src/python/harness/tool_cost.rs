@@ -14,7 +14,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::clock::cpu_time::thread_seconds;
-use crate::tool::contact::{Felt, ToolContact};
+use crate::engine::lone::LoneTool;
+use crate::tool::collider::Felt;
 use crate::tool::shape::Pose;
 
 /// Ticks between two states that are kept.
@@ -55,7 +56,7 @@ impl Timing {
     ///
     /// # Errors
     /// Forces that are no numbers, or a replay that came out different.
-    pub fn of_path(&self, tool: &mut ToolContact, poses: &[Pose]) -> Result<Costs, String> {
+    pub fn of_path(&self, tool: &mut LoneTool, poses: &[Pose]) -> Result<Costs, String> {
         let control = Control::lasting(self.control);
         let mut costs = Costs::default();
         let replays = self.replay_over.is_finite();
@@ -82,7 +83,7 @@ impl Timing {
     /// Goes on along poses, with rounds of the control between ticks.
     fn lead(
         &self,
-        tool: &mut ToolContact,
+        tool: &mut LoneTool,
         poses: &[Pose],
         control: &Control,
         costs: &mut Costs,
@@ -101,7 +102,7 @@ impl Timing {
     /// before them until none of `taken`, the times of those at their end, is long.
     fn replay(
         &self,
-        kept: &ToolContact,
+        kept: &LoneTool,
         poses: &[Pose],
         start: usize,
         taken: &mut [f64],
@@ -127,7 +128,7 @@ impl Timing {
 
     fn timed(
         &self,
-        tool: &mut ToolContact,
+        tool: &mut LoneTool,
         poses: &[Pose],
         mut between: impl FnMut(usize),
     ) -> Result<(Vec<f64>, Vec<Felt>), String> {
@@ -135,7 +136,7 @@ impl Timing {
         let mut all_felt = Vec::with_capacity(poses.len());
         for (tick, goal) in poses.iter().enumerate() {
             let before = thread_seconds();
-            let felt = tool.follow(black_box(goal), self.young_modulus, &[]);
+            let felt = tool.follow(black_box(goal), self.young_modulus);
             let after = thread_seconds();
             let felt =
                 *black_box(felt).map_err(|_| format!("tick {tick} came out as no number"))?;

@@ -5,9 +5,10 @@ use glam::{DMat3, DVec3};
 use super::{Finger, FingerSettings};
 use crate::control::coupling::{Contact, series_compliance};
 use crate::device::Fault;
+use crate::engine::joint::Led;
 use crate::proxy::Feel;
 use crate::servo::tip::Tip;
-use crate::tool::contact::ToolContact;
+use crate::tool::collider::Collider;
 use crate::tool::friction::Friction;
 use crate::tool::shape::Pose;
 
@@ -26,7 +27,7 @@ pub(super) struct ToolTouch {
 
 impl Finger {
     /// The tool, if it has one.
-    pub fn tool(&self) -> Option<&ToolContact> {
+    pub fn tool(&self) -> Option<&Collider> {
         match &self.tips.tip {
             Tip::Tool(tool) => Some(tool),
             Tip::Point => None,
@@ -53,47 +54,39 @@ impl Finger {
         }
     }
 
-    /// Adds the forces on nodes by which it acts on the others, N.
-    pub fn add_loads(&self, young_modulus: f64, loads: &mut Vec<(u32, DVec3)>) {
-        if !self.acts() {
-            return;
-        }
-        match &self.tips.tip {
-            Tip::Point => {
-                let forces = self.shot.triangle.iter().zip(self.shot.nodal_forces);
-                loads.extend(forces.map(|(&node, force)| (node, force)));
-            }
-            Tip::Tool(tool) => {
-                let scale = young_modulus * self.presence;
-                let forces = tool.nodal_forces().iter();
-                loads.extend(forces.map(|&(node, force)| (node, force * scale)));
-            }
-        }
-    }
-
-    /// The contact of a tool, with the forces of the others on nodes; what goes to the motors, N.
-    pub fn feel_tool(
-        &mut self,
-        young_modulus: f64,
-        feel: &Feel,
-        own: &FingerSettings,
-        others: &[(u32, DVec3)],
-        dt: f64,
-    ) -> DVec3 {
-        let pose = self.pose();
+    /// The tool and where it is to go, if the finger has one and knows where it is. Among several it
+    /// presses as far as it is present.
+    pub fn lead(&mut self, feel: &Feel, are_several: bool) -> Option<Led<'_>> {
+        let goal = self.pose();
         let is_sound = !self.found.blind && self.found.fault != Some(Fault::Nan) && self.tip_fits;
         let Tip::Tool(tool) = &mut self.tips.tip else {
+            return None;
+        };
+        if !is_sound {
+            return None;
+        }
+        tool.set_friction(Friction {
+            sticking: feel.static_friction,
+            slipping: feel.dynamic_friction,
+        });
+        Some(Led {
+            collider: tool,
+            goal,
+            presence: if are_several { self.presence } else { 1.0 },
+        })
+    }
+
+    /// What a tool feels that was led; what goes to the motors, N.
+    pub fn feel_tool(&mut self, own: &FingerSettings, dt: f64) -> DVec3 {
+        let is_sound = !self.found.blind && self.found.fault != Some(Fault::Nan) && self.tip_fits;
+        let Tip::Tool(tool) = &self.tips.tip else {
             return DVec3::ZERO;
         };
         if !is_sound {
             self.let_go();
             return DVec3::ZERO;
         }
-        tool.set_friction(Friction {
-            sticking: feel.static_friction,
-            slipping: feel.dynamic_friction,
-        });
-        let felt = match tool.follow(&pose, young_modulus, others) {
+        let felt = match tool.felt() {
             Ok(felt) => *felt,
             Err(_) => {
                 self.found.fault = self.found.fault.or(Some(Fault::Nan));

@@ -18,13 +18,13 @@ struct Ball {
 
 /// A binary tree over points that never move.
 #[derive(Debug)]
-pub(in crate::tool) struct PointTree {
+pub(crate) struct PointTree {
     balls: Vec<Ball>,
     order: Vec<u32>,
 }
 
 impl PointTree {
-    pub(in crate::tool) fn new(points: &[DVec3]) -> Self {
+    pub(crate) fn new(points: &[DVec3]) -> Self {
         let mut order: Vec<u32> = (0..points.len() as u32).collect();
         let mut balls = Vec::new();
         build(points, &mut order, 0, &mut balls);
@@ -34,11 +34,7 @@ impl PointTree {
     /// Visits every point in a ball whose middle is at most its radius farther than wanted; `is_near`
     /// tells that of a middle and radius.
     #[inline]
-    pub(in crate::tool) fn visit(
-        &self,
-        is_near: impl Fn(DVec3, f64) -> bool,
-        mut each: impl FnMut(u32),
-    ) {
+    pub(crate) fn visit(&self, is_near: impl Fn(DVec3, f64) -> bool, mut each: impl FnMut(u32)) {
         let mut stack = [0_u32; STACK];
         let mut depth = 1;
         while depth > 0 {

@@ -1,36 +1,27 @@
-//! A tool that follows a pose from tick to tick, and the forces of the body on it.
-//!
-//! Each contact point's force pushes along the tool's normal where the point has gone to:
-//! F_i = f_i n_i, n_i = grad phi(x_i + u_i), f_i >= 0, phi >= 0, one of both zero. The distance is
-//! linearised about the displacements of the last tick, a few times at most; what that leaves to be
-//! found the next ticks find. Readable reference: `core/contact/tool/tool_contact.py` and `core/contact/tool/tool_law.py`.
-
-mod choose;
-mod feel;
-mod offset;
-mod settle;
+//! A rigid tool on a body: where it is, and what it felt in the last tick.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use glam::{DMat3, DQuat, DVec3};
 
-use super::complementarity::Complementarity;
 use super::effort::Effort;
-use super::friction::{Friction, Rubbing, take_anchors};
-use super::patch::{Patch, Slot};
+use super::friction::{Friction, Posed};
+use super::patch::Slot;
 use super::points::ToolSurface;
 use super::shape::{Pose, Tool};
-use crate::algebra::MOST_POINTS;
 use crate::body::closest::closest_point;
 
+/// Contact points that a tool can have near it at once.
+pub const MOST_NEAR: usize = 160;
+/// Nodes that can carry its force.
+pub const MOST_NODES: usize = 3 * MOST_NEAR;
 /// A point counts as in the tool below this share of its reach: one that is just touched is not.
 const IN_TOOL: f64 = 1e-9;
-/// Points that may enter in one tick.
-const MOST_ENTERING: usize = 24;
 /// Strides within which any tool is outside of any body.
 const MOST_STRIDES_OUT: u32 = 2000;
-/// Nodes that can carry force.
-pub const MOST_NODES: usize = 3 * MOST_POINTS;
+/// The place of a node that carries nothing.
+const NOWHERE: u16 = u16::MAX;
 
 /// What the tool feels, and how it was found.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -39,7 +30,7 @@ pub struct Felt {
     pub force: DVec3,
     /// Torque on the tool about its reference point, N m.
     pub torque: DVec3,
-    /// How the force resists a small move of the tool, N/m.
+    /// How the force resists a small move of the tool while other tools stay, N/m.
     pub stiffness: DMat3,
     /// Points that are pressed.
     pub pressed: usize,
@@ -47,7 +38,7 @@ pub struct Felt {
     pub linearisations: usize,
     /// All points near were looked at, and displacements stopped changing within the bound.
     pub exact: bool,
-    /// What it took.
+    /// What the tick took, of all tools.
     pub effort: Effort,
 }
 
@@ -55,59 +46,49 @@ pub struct Felt {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NotANumber;
 
-/// A tool on a body and all that is kept from tick to tick.
+/// A tool on a body and what is kept of it from tick to tick.
 #[derive(Debug, Clone)]
-pub struct ToolContact {
+pub struct Collider {
     surface: Arc<ToolSurface>,
     tool: Tool,
+    friction: Friction,
     pose: Option<Pose>,
     /// The tool was outside since it was set down; until then it feels nothing.
     is_free: bool,
-    patch: Patch,
-    problem: Complementarity,
-    friction: Friction,
-    rubbing: Rubbing,
-    /// Which slot each unknown belongs to.
-    chosen: Vec<usize>,
-    /// What points enter, nearest first.
-    entering: Vec<(f64, u32)>,
-    felt: Felt,
-    effort: Effort,
+    /// How far others moved the surface nearest to the tool in the last tick, m.
+    pub(crate) carried: DVec3,
+    felt: Result<Felt, NotANumber>,
+    pressed: Vec<Slot>,
     /// Nodes that carry force, and which place each node of the body has among them.
     nodes: Vec<(u32, DVec3)>,
     place_of: Vec<u16>,
-    /// Displacements of nodes by other fingers, in the tick that is told.
-    moved_nodes: Vec<(u64, DVec3)>,
-    /// How far they moved the surface nearest to the tool in the last tick, m.
-    carried: DVec3,
-    tick: u64,
+    /// Another one each time that it is lifted: what is remembered of it elsewhere is over.
+    era: u64,
 }
 
-/// The place of a node that carries nothing.
-const NOWHERE: u16 = u16::MAX;
+/// Eras of all tools, each its own.
+static ERAS: AtomicU64 = AtomicU64::new(0);
 
-impl ToolContact {
+fn next_era() -> u64 {
+    ERAS.fetch_add(1, Ordering::Relaxed)
+}
+
+impl Collider {
     /// A tool that was not yet set down. Allocates all it ever needs.
     pub fn new(surface: Arc<ToolSurface>, tool: Tool) -> Self {
         let nodes = surface.body().nodes.len();
         Self {
-            patch: Patch::new(surface.points().len(), nodes),
             surface,
             tool,
+            friction: Friction::default(),
             pose: None,
             is_free: false,
-            problem: Complementarity::default(),
-            friction: Friction::default(),
-            rubbing: Rubbing::new(),
-            chosen: Vec::with_capacity(MOST_POINTS),
-            entering: Vec::with_capacity(MOST_ENTERING + 1),
-            felt: Felt::default(),
-            effort: Effort::default(),
+            carried: DVec3::ZERO,
+            felt: Ok(Felt::default()),
+            pressed: Vec::with_capacity(MOST_NEAR),
             nodes: Vec::with_capacity(MOST_NODES),
             place_of: vec![NOWHERE; nodes],
-            moved_nodes: vec![(0, DVec3::NAN); nodes],
-            carried: DVec3::ZERO,
-            tick: 0,
+            era: next_era(),
         }
     }
 
@@ -137,13 +118,16 @@ impl ToolContact {
     }
 
     /// What the last tick found.
-    pub fn felt(&self) -> &Felt {
-        &self.felt
+    ///
+    /// # Errors
+    /// [`NotANumber`] if the goal was none or the forces were: the contact is let go.
+    pub fn felt(&self) -> Result<&Felt, NotANumber> {
+        self.felt.as_ref().map_err(|&error| error)
     }
 
-    /// Points near the tool, their forces at unit modulus.
-    pub fn slots(&self) -> &[Slot] {
-        self.patch.slots()
+    /// Points that are pressed, their forces at unit modulus.
+    pub fn pressed(&self) -> &[Slot] {
+        &self.pressed
     }
 
     /// Nodes of the body that carry force, and their forces at unit modulus.
@@ -151,16 +135,44 @@ impl ToolContact {
         &self.nodes
     }
 
+    pub(crate) fn era(&self) -> u64 {
+        self.era
+    }
+
+    /// The tool as friction has to know it, where it is.
+    pub(crate) fn posed(&self) -> Option<Posed> {
+        self.pose.map(|pose| Posed {
+            pose,
+            friction: self.friction,
+            reach: self.tool.reach(),
+        })
+    }
+
     /// Forgets all contact; the next pose is where the tool appears.
     pub fn lift(&mut self) {
         (self.pose, self.carried) = (None, DVec3::ZERO);
-        self.let_go();
+        self.era = next_era();
+        self.clear();
     }
 
-    fn let_go(&mut self) {
-        self.patch.clear();
-        self.felt = Felt::default();
-        self.clear_nodes();
+    /// Feels nothing.
+    pub(crate) fn clear(&mut self) {
+        self.felt = Ok(Felt::default());
+        self.begin_taking();
+    }
+
+    /// Forgets which points are pressed.
+    pub(crate) fn begin_taking(&mut self) {
+        self.pressed.clear();
+        for (node, _) in self.nodes.drain(..) {
+            self.place_of[node as usize] = NOWHERE;
+        }
+    }
+
+    /// Lets the body go, for what was asked or found is no number.
+    pub(crate) fn fail(&mut self) {
+        self.lift();
+        self.felt = Err(NotANumber);
     }
 
     /// Sets the tool down. Inside the body it feels nothing until it was outside.
@@ -170,61 +182,55 @@ impl ToolContact {
         self.is_free = self.is_outside(pose);
     }
 
-    /// One tick: the tool goes towards a pose by at most one stride, and feels the body there.
-    ///
-    /// `outside` are forces of other fingers on nodes, N.
-    ///
-    /// # Errors
-    /// [`NotANumber`] anywhere, or friction that is none: the contact is let go.
-    pub fn follow(
-        &mut self,
-        goal: &Pose,
-        young_modulus: f64,
-        outside: &[(u32, DVec3)],
-    ) -> Result<&Felt, NotANumber> {
-        let is_stiffness = young_modulus > 0.0 && young_modulus.is_finite();
-        if !(goal.is_finite() && is_stiffness && self.friction.is_sound()) {
-            self.lift();
-            return Err(NotANumber);
+    /// Goes towards a pose by at most one stride; whether it feels the body there.
+    pub(crate) fn go(&mut self, goal: &Pose) -> bool {
+        if !(goal.is_finite() && self.friction.is_sound()) {
+            self.fail();
+            return false;
         }
-        let Some(start) = self.pose else {
-            self.restart(goal);
-            return self.follow(goal, young_modulus, outside);
+        let start = match self.pose {
+            Some(pose) => pose,
+            None => {
+                self.restart(goal);
+                *goal
+            }
         };
         let pose = stride(&self.tool, &start, goal);
         self.pose = Some(pose);
-        self.tick += 1;
-        self.effort = Effort::default();
-        if !self.is_free {
-            self.is_free = self.is_outside(&pose);
-            if !self.is_free {
-                return Ok(&self.felt);
+        self.is_free = self.is_free || self.is_outside(&pose);
+        self.is_free
+    }
+
+    /// A point that is pressed, with what its nodes carry of that.
+    pub(crate) fn take(&mut self, slot: &Slot) {
+        self.pressed.push(*slot);
+        for (node, weight) in slot.at.nodes.into_iter().zip(slot.at.alpha) {
+            if weight == 0.0 {
+                continue;
+            }
+            let place = &mut self.place_of[node as usize];
+            if *place == NOWHERE {
+                *place = self.nodes.len() as u16;
+                self.nodes.push((node, slot.force * weight));
+            } else {
+                self.nodes[usize::from(*place)].1 += slot.force * weight;
             }
         }
-        let was_pressed = self.felt.pressed > 0;
-        self.offset(outside, young_modulus);
-        let all_in = self.choose(&pose, outside, young_modulus);
-        let (linearisations, exact) = self.settle(&pose);
-        let stuck = take_anchors(&mut self.patch, &self.surface, &pose, &self.friction);
-        self.feel(&pose, young_modulus, stuck);
-        self.felt.linearisations = linearisations;
-        self.felt.exact = exact && all_in;
-        self.felt.effort = self.effort;
-        let are_numbers = self.felt.force.is_finite()
-            && self.felt.torque.is_finite()
-            && self.patch.slots().iter().all(|slot| slot.moved.is_finite());
-        if !are_numbers {
-            self.lift();
-            return Err(NotANumber);
-        }
-        // A tool that lost the surface, as others have moved it, while in the body would come out at
-        // any side.
-        let back = pose.moved(-self.carried);
-        if was_pressed && self.felt.pressed == 0 && !self.is_outside(&back) {
+    }
+
+    /// What it feels. A tool that lost the surface, as others have moved it, while in the body would
+    /// come out at any side: it is let go, which is told.
+    pub(crate) fn feel(&mut self, felt: Felt) -> bool {
+        let was_pressed = self.felt.is_ok_and(|felt| felt.pressed > 0);
+        self.felt = Ok(felt);
+        let back = self.pose.map(|pose| pose.moved(-self.carried));
+        let is_lost =
+            was_pressed && felt.pressed == 0 && back.is_some_and(|back| !self.is_outside(&back));
+        if is_lost {
             self.is_free = false;
-            self.let_go();
+            self.clear();
         }
-        Ok(&self.felt)
+        is_lost
     }
 
     /// The nearest pose outside of the body at rest, on the way on which that would push the tool out.

@@ -1,0 +1,243 @@
+//! The equilibrium of the contact points with all tools, within bounds on the work.
+
+use glam::DVec3;
+
+use super::choose::MARGIN;
+use super::joint::{AllLed, Beside, Ground, Joint, Led};
+use crate::algebra::MOST_POINTS;
+use crate::contact::cones::MAX_FINGERS;
+use crate::tool::friction::{AllPosed, across};
+use crate::tool::shape::tilt::Hold;
+
+/// Linearisations in one tick.
+const MOST_LINEARISATIONS: usize = 6;
+/// Multiplications that a tick takes for each tool, about, before it leaves the rest to the next.
+const MOST_WORK: usize = 500_000;
+/// The same with friction.
+const MOST_WORK_RUBBING: usize = 700_000;
+/// Points farther from the tool than this share of the margin are only watched.
+const WATCHED: f64 = 0.3;
+/// Displacements that are wrong by less than this share of the tool's reach have been found.
+const CONVERGED: f64 = 3e-6;
+/// Where two tools press one point, each has a spring of this share of the point's own compliance: else
+/// nothing would say which of them carries what.
+const SHARING: f64 = 0.02;
+
+impl Joint {
+    /// Finds the equilibrium of the points with the tools, from the last tick's forces on: how many
+    /// linearisations it took, and whether it was found.
+    pub(super) fn settle(
+        &mut self,
+        ground: &Ground<'_>,
+        led: &AllLed<'_>,
+        posed: &AllPosed,
+        beside: &mut Beside<'_>,
+    ) -> (usize, bool) {
+        let tools = posed.iter().flatten().count().max(1);
+        let rubs = posed.iter().flatten().any(|tool| !tool.friction.is_none());
+        let most_work = tools * if rubs { MOST_WORK_RUBBING } else { MOST_WORK };
+        self.see(led);
+        for made in 1..=MOST_LINEARISATIONS {
+            self.linearise(led, rubs);
+            let before = self.effort.multiplications;
+            // Forces aside take their share: pushes get no more with friction than without.
+            let left = most_work.saturating_sub(before).min(tools * MOST_WORK);
+            self.problem.solve(left);
+            let solved = self.problem.work();
+            let meets = self.meet_points(ground, beside, left);
+            self.push();
+            let is_held = !rubs || self.rubbing.rub(&mut self.patch, posed);
+            if !rubs {
+                self.patch.displace();
+            }
+            self.look(led);
+            let error = self.see(led);
+            self.count(solved, rubs, led);
+            if error <= CONVERGED && is_held && meets {
+                return (made, true);
+            }
+            // Another one takes as much again.
+            let after = self.effort.multiplications;
+            if after + (after - before) > most_work {
+                return (made, false);
+            }
+        }
+        (MOST_LINEARISATIONS, false)
+    }
+
+    /// Adds what a linearisation took.
+    fn count(&mut self, solved: usize, rubs: bool, led: &AllLed<'_>) {
+        let (chosen, near) = (self.chosen.len(), self.patch.slots().len());
+        let effort = &mut self.effort;
+        (effort.near, effort.chosen) = (near, chosen);
+        effort.decompositions += self.problem.decompositions();
+        effort.multiplications += solved;
+        for slot in self.patch.slots() {
+            let tool = led[usize::from(slot.tool)].as_ref();
+            effort.multiplications += tool.map_or(0, |led| led.collider.tool().effort());
+        }
+        effort.multiplications += chosen * (2 * chosen + 5 * near);
+        effort.multiplications += if rubs {
+            self.rubbing.work() + 9 * chosen * near
+        } else {
+            9 * chosen * near
+        };
+    }
+
+    /// Distances and normals of the tools where their slots are now.
+    fn look(&mut self, led: &AllLed<'_>) {
+        for slot in self.patch.slots_mut() {
+            if let Some(Led { collider, .. }) = &led[usize::from(slot.tool)]
+                && let Some(pose) = collider.pose()
+            {
+                let place = pose.to_tool(slot.at.position + slot.moved);
+                slot.free = collider.tool().distance(place);
+            }
+        }
+    }
+
+    /// Holds distances and normals as the pushes now ask for; by which share of their tool's reach
+    /// displacements are wrong with these at most, about.
+    fn see(&mut self, led: &AllLed<'_>) -> f64 {
+        let mut error = 0.0_f64;
+        for number in 0..MAX_FINGERS {
+            if let Some(led) = &led[number] {
+                error = error.max(self.see_one(number as u8, led));
+            }
+        }
+        error
+    }
+
+    /// The same for one tool: what its gaps are from zero, and what its forces turned along the new
+    /// normals would move.
+    fn see_one(&mut self, number: u8, led: &Led<'_>) -> f64 {
+        let (collider, tool) = (&*led.collider, led.collider.tool());
+        let Some(pose) = collider.pose() else {
+            return 0.0;
+        };
+        let watched = WATCHED * MARGIN * collider.surface().spacing();
+        let own = |slot: &&crate::tool::patch::Slot| slot.tool == number;
+        let pushes = self.patch.slots().iter().filter(own);
+        let hold = Hold::of(pushes.map(|slot| (slot.push * slot.normal, slot.at.normal)));
+        let hold = hold.map(|hold| hold.seen_from(&pose.rotation));
+        let (mut gap, mut turned, mut gives) = (0.0_f64, 0.0, 0.0_f64);
+        for slot in self.patch.slots_mut().iter_mut() {
+            if slot.tool != number {
+                continue;
+            }
+            let (distance, normal) = hold.map_or(slot.free, |hold| {
+                let place = pose.to_tool(slot.at.position + slot.moved);
+                // Which way a point would be pushed that is only watched is not asked.
+                let is_watched = slot.push == 0.0 && slot.force == DVec3::ZERO;
+                if is_watched && hold.is_beyond(watched, slot.free, place, tool) {
+                    return slot.free;
+                }
+                let facing = pose.rotation.transpose() * slot.at.normal;
+                hold.hold(slot.free, place, facing, tool)
+            });
+            slot.seen = (distance, pose.rotation * normal);
+            if slot.push > 0.0 {
+                gap = gap.max((distance + slot.spring * slot.push).abs());
+                turned += slot.push * (slot.seen.1 - slot.normal).length();
+                gives = gives.max(slot.gives);
+            } else {
+                gap = gap.max(-distance);
+            }
+        }
+        (gap + turned * gives) / tool.reach()
+    }
+
+    /// Forces of the slots along their normals, as the problem's solution has them.
+    fn push(&mut self) {
+        for slot in self.patch.slots_mut() {
+            (slot.force, slot.push) = (DVec3::ZERO, 0.0);
+        }
+        for (place, &number) in self.chosen.iter().enumerate() {
+            let slot = &mut self.patch.slots_mut()[number];
+            slot.force = slot.normal * self.problem.forces[place];
+            slot.push = slot.force.length();
+            slot.spring += self.problem.growth(place);
+        }
+    }
+
+    /// The complementarity problem of the distances linearised about the displacements.
+    fn linearise(&mut self, led: &AllLed<'_>, rubs: bool) {
+        self.chosen.clear();
+        let mut normals = [DVec3::ZERO; MOST_POINTS];
+        for (number, slot) in self.patch.slots_mut().iter_mut().enumerate() {
+            (slot.distance, slot.normal) = slot.seen;
+            if slot.distance < watched(led, slot.tool) || slot.force != DVec3::ZERO {
+                let place = self.chosen.len();
+                self.problem.forces[place] = slot.push;
+                let given = slot.moved - slot.offset;
+                self.problem.gaps[place] = slot.distance - slot.normal.dot(given);
+                normals[place] = slot.normal;
+                self.chosen.push(number);
+            }
+        }
+        if rubs {
+            // What the forces aside move counts as given, like the points'.
+            for slot in self.patch.slots_mut() {
+                slot.aside = across(slot.aside, slot.normal);
+            }
+        }
+        self.problem.begin(self.chosen.len());
+        self.patch.begin_sum();
+        for (j, &loaded) in self.chosen.iter().enumerate() {
+            self.patch.add(loaded, self.patch.slots()[loaded].aside);
+            let [x, y, z] = self.patch.moved_by(loaded, normals[j]);
+            for (i, &seen) in self.chosen.iter().enumerate().skip(j) {
+                let moved = DVec3::new(x[seen], y[seen], z[seen]);
+                self.problem.set(i, j, normals[i].dot(moved));
+            }
+        }
+        self.add_springs(led);
+        if rubs {
+            let [x, y, z] = self.patch.sum();
+            for (place, &number) in self.chosen.iter().enumerate() {
+                let given = DVec3::new(x[number], y[number], z[number]);
+                self.problem.gaps[place] += normals[place].dot(given);
+            }
+        }
+    }
+
+    /// What lies between a point and a tool that comes back gradually, or that shares it with another.
+    fn add_springs(&mut self, led: &AllLed<'_>) {
+        for (unknown, &place) in self.chosen.iter().enumerate() {
+            let slot = self.patch.slots()[place];
+            let presence = led[usize::from(slot.tool)]
+                .as_ref()
+                .map_or(1.0, |led| led.presence);
+            let mut share = 1.0 / presence.max(LEAST_PRESENCE) - 1.0;
+            for (other, _) in self.kin[usize::from(slot.tool)]
+                .iter()
+                .enumerate()
+                .filter(|k| *k.1)
+            {
+                let other = other as u8;
+                if other != slot.tool
+                    && let Some(beside) = self.patch.slot(other, slot.point)
+                {
+                    // From nothing where the other tool is about to be looked at to all at its touch.
+                    let near = 1.0 - beside.seen.0 / watched(led, other);
+                    share += SHARING * near.clamp(0.0, 1.0);
+                }
+            }
+            let spring = share * self.problem.own(unknown);
+            self.patch.slots_mut()[place].spring = spring;
+            self.problem
+                .set(unknown, unknown, self.problem.own(unknown) + spring);
+        }
+    }
+}
+
+/// Present by less, a tool presses no more than that.
+const LEAST_PRESENCE: f64 = 1e-3;
+
+/// How far from a tool its points are only watched, m.
+fn watched(led: &AllLed<'_>, tool: u8) -> f64 {
+    let led = led[usize::from(tool)].as_ref();
+    led.map_or(0.0, |led| {
+        WATCHED * MARGIN * led.collider.surface().spacing()
+    })
+}

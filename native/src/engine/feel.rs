@@ -1,0 +1,75 @@
+//! What a tool and the body's nodes feel of the forces at the contact points.
+
+use glam::{DMat3, DVec3};
+
+use super::joint::Joint;
+use crate::algebra::MOST_POINTS;
+use crate::algebra::cholesky::dot;
+use crate::control::coupling::largest_eigenvalue;
+use crate::tool::collider::{Collider, Felt};
+
+impl Joint {
+    /// Sums the forces of a tool up; `stuck` of its pushes are on points that stick.
+    pub(super) fn feel(
+        &mut self,
+        number: u8,
+        collider: &mut Collider,
+        young_modulus: f64,
+        stuck: f64,
+    ) -> Felt {
+        let mut felt = Felt::default();
+        collider.begin_taking();
+        let position = collider.pose().map_or(DVec3::ZERO, |pose| pose.position);
+        for slot in self.patch.slots().iter().filter(|slot| slot.tool == number) {
+            if slot.force == DVec3::ZERO {
+                continue;
+            }
+            let arm = slot.at.position + slot.moved - position;
+            felt.force -= slot.force * young_modulus;
+            felt.torque -= arm.cross(slot.force * young_modulus);
+            felt.pressed += 1;
+            collider.take(slot);
+        }
+        felt.stiffness = with_stuck(self.stiffness(number), stuck) * young_modulus;
+        felt
+    }
+
+    /// sum_ij n_i [(N' C N)^-1]_ij n_j' over the pressed points of a tool, at unit modulus.
+    fn stiffness(&mut self, number: u8) -> DMat3 {
+        if !self.problem.take_face() {
+            return DMat3::ZERO;
+        }
+        let (face, factor) = self.problem.on_face();
+        let mut columns = [[0.0; MOST_POINTS]; 3];
+        for (place, &i) in face.iter().enumerate() {
+            let slot = &self.patch.slots()[self.chosen[i]];
+            if slot.tool == number {
+                for (column, n) in columns.iter_mut().zip(slot.normal.to_array()) {
+                    column[place] = n;
+                }
+            }
+        }
+        for column in &mut columns {
+            factor.solve_lower(&mut column[..face.len()]);
+        }
+        let product =
+            |a: usize, b: usize| dot(&columns[a][..face.len()], &columns[b][..face.len()]);
+        let [xy, yz, zx] = [product(0, 1), product(1, 2), product(2, 0)];
+        DMat3::from_cols(
+            DVec3::new(product(0, 0), xy, zx),
+            DVec3::new(xy, product(1, 1), yz),
+            DVec3::new(zx, yz, product(2, 2)),
+        )
+    }
+}
+
+/// The stiffness of a tool without friction, with what points that stick add aside: where all stick
+/// the tool counts as held on all sides as it is where that is stiffest. More than it is: a patch
+/// that sticks is at most nine tenths as stiff aside as into the body (R. D. Mindlin, 1949).
+fn with_stuck(stiffness: DMat3, stuck: f64) -> DMat3 {
+    if stuck == 0.0 {
+        return stiffness;
+    }
+    let all_round = DMat3::from_diagonal(DVec3::splat(largest_eigenvalue(&stiffness)));
+    stiffness + (all_round - stiffness) * stuck
+}
