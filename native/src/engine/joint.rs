@@ -100,9 +100,9 @@ impl Joint {
         self.begin(ground, led);
         self.offset(ground, beside);
         let mut all_in = [true; MAX_FINGERS];
-        for number in 0..MAX_FINGERS {
+        for (number, all_in) in all_in.iter_mut().enumerate() {
             if self.eras[number].is_some() {
-                all_in[number] = self.choose(number as u8, ground, led, beside);
+                *all_in = self.choose(number as u8, ground, led, beside);
             }
         }
         // Slots have gone and come.
@@ -152,8 +152,8 @@ impl Joint {
                 collider.clear();
             }
         }
-        for number in 0..MAX_FINGERS {
-            if self.eras[number].is_some() && self.eras[number] != eras[number] {
+        for (number, (before, now)) in self.eras.iter().zip(&eras).enumerate() {
+            if before.is_some() && before != now {
                 self.patch.let_go(number as u8);
             }
         }
