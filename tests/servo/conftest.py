@@ -64,12 +64,18 @@ def cube() -> SoftCube:
     return SoftCube(nodes, triangles, blocks, Body(nodes, triangles, blocks))
 
 
+@pytest.fixture(scope="session")
+def cube_body() -> SoftBody:
+    """The paper's cube, baked."""
+    mesh, fixed = paper_cube()
+    return bake(mesh, BakeSettings(0.49, 10_000.0, PinNodes(fixed)))[0]
+
+
 @pytest.fixture(scope="session", params=["cube", "mouse"])
-def body(request: pytest.FixtureRequest) -> SoftBody:
+def body(request: pytest.FixtureRequest, cube_body: SoftBody) -> SoftBody:
     """A baked body for tools; its contact points and near field are made once for all tests."""
     if request.param == "cube":
-        mesh, fixed = paper_cube()
-        return bake(mesh, BakeSettings(0.49, 10_000.0, PinNodes(fixed)))[0]
+        return cube_body
     with np.load(MOUSE) as file:
         mesh, fixed = TetMesh.checked(file["X"], file["T"]), file["fixed"]
     return bake(mesh, BakeSettings(0.3, 1_000.0, PinNodes(fixed)))[0]

@@ -122,7 +122,9 @@ impl Joint {
                 ..self.feel(number as u8, led.collider, ground.young_modulus, stuck)
             };
             are_numbers &= felt.force.is_finite() && felt.torque.is_finite();
-            if led.collider.feel(felt) {
+            let own = (self.patch.slots().iter()).filter(|slot| usize::from(slot.tool) == number);
+            let nearest = own.min_by(|a, b| a.seen.0.total_cmp(&b.seen.0));
+            if led.collider.feel(felt, nearest) {
                 self.patch.let_go(number as u8);
             }
         }

@@ -219,13 +219,19 @@ impl Collider {
     }
 
     /// What it feels. A tool that lost the surface, as others have moved it, while in the body would
-    /// come out at any side: it is let go, which is told.
-    pub(crate) fn feel(&mut self, felt: Felt) -> bool {
+    /// come out at any side: it is let go, which is told. One from which others have only moved the
+    /// surface away is before the point that is nearest.
+    pub(crate) fn feel(&mut self, felt: Felt, nearest: Option<&Slot>) -> bool {
         let was_pressed = self.felt.is_ok_and(|felt| felt.pressed > 0);
         self.felt = Ok(felt);
         let back = self.pose.map(|pose| pose.moved(-self.carried));
-        let is_lost =
-            was_pressed && felt.pressed == 0 && back.is_some_and(|back| !self.is_outside(&back));
+        let is_before = self.carried != DVec3::ZERO
+            && nearest
+                .is_some_and(|slot| slot.seen.0 > 0.0 && slot.seen.1.dot(slot.at.normal) < 0.0);
+        let is_lost = was_pressed
+            && felt.pressed == 0
+            && !is_before
+            && back.is_some_and(|back| !self.is_outside(&back));
         if is_lost {
             self.is_free = false;
             self.clear();

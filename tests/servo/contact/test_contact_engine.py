@@ -2,19 +2,11 @@
 
 import numpy as np
 import pytest
-from palpate_servo import ContactEngine, ToolSurface
-from palpate_servo import Tool as NativeTool
+from native_tip import native_tip
+from palpate_servo import ContactEngine
 
 from palpate.core.contact.tool.tool_contact import press_tool
-from palpate.core.contact.tool.tool_surface import correction_for, surface_for
 from palpate.core.contact.tool.tools import Pose, plate, rod, sphere
-
-
-def native_tip(body, native, tool):
-    points = surface_for(body, tool)
-    arrays = [points.positions, points.normals, points.triangles, points.alphas, points.areas]
-    surface = ToolSurface(native, *arrays, correction_for(body, tool).arrays())
-    return surface, NativeTool(tool.core, tool.radius)
 
 
 def places_on(body):
