@@ -141,7 +141,6 @@ KNOWN = (
     "tests/core/contact/tool/test_tool_contact.py imports measuring.soft_block",
     "tests/servo/contact/test_tool_contact.py imports measuring.inner_corner",
     "tests/servo/contact/test_tool_contact.py imports measuring.soft_block",
-    "tests/servo/engine/test_joint_contact.py imports measuring.soft_block",
     "tests/servo/device/test_orientation.py imports measuring.servo_host",
     "tests/servo/test_safety.py imports faults",
     "tests/servo/test_safety.py imports measuring.fault_causes",

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from bodies.soft_block import soft_block
 from least_energy import Held, least_energy
-from measuring.soft_block import soft_block
 from native_tip import native_tip
 from palpate_servo import ContactEngine, SteppedFingers
 
