@@ -6,12 +6,12 @@ from ..operators.bake import (
     cancel_bake,
     fit_memory,
     make_soft,
+    pin_below,
     rebuild_body,
     remove_softness,
     update_pins,
 )
 from ..operators.device import refresh_devices
-from ..operators.pins import pin_below
 from ..operators.press import pinch, press, press_frames, record, save_recording, switch_force
 from ..operators.record import recording_writer
 from ..operators.softness import force_curve, read_durometer, softness_colours

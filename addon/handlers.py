@@ -12,7 +12,7 @@ from ..operators.object import body_store, kept_body
 from ..operators.scene import live_shape
 from ..operators.scene.package_preferences import preferences
 from ..operators.session import press_session
-from ..operators.session.press_state import SaveBegins, SaveEnds
+from ..operators.session.press_events import SaveBegins, SaveEnds
 from . import known_status
 
 # Where body files were before a save that may change the .blend's folder.

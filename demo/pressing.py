@@ -90,7 +90,7 @@ def _draw_frames(session: Any) -> tuple[Array, NDArray[np.void]]:
     due = start
     while (begun := time.perf_counter()) - start < SECONDS:
         session.tick()
-        if session.displacements is not None:
+        if session.seen.displacements is not None:
             seconds.append(time.perf_counter() - begun)
         samples.append(session.loop.servo.samples())
         due = max(due + 1.0 / FRAME_RATE, time.perf_counter())
@@ -99,7 +99,7 @@ def _draw_frames(session: Any) -> tuple[Array, NDArray[np.void]]:
 
 
 def _figures(session: Any, thing: bpy.types.Object, frames: Array) -> dict[str, Any]:
-    snapshot, moved = session.snapshot, session.displacements
+    snapshot, moved = session.snapshot, session.seen.displacements
     if moved is None or not session.state.pressed:
         reason = session.state.message or "nothing is touched"
         raise RuntimeError(f"the hand holds, but there is no press to keep: {reason}")

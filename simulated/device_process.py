@@ -17,8 +17,8 @@ from ..core.machine.stop_signals import stopped_by_signals
 from ..core.servo.haply_models import DEFAULT_MODEL, HAPLY_MODELS
 from .board.haply_board import HaplyBoard
 from .board.simulated_board import SimulatedBoard
+from .hand.options import SimulatedOptions, add_simulated_options, simulated_options
 from .hand.quaternion import unit
-from .options import SimulatedOptions, add_simulated_options, simulated_options
 
 LATE_SECONDS = 200e-6
 PRIORITY = 1

@@ -17,9 +17,9 @@ from typing import IO, Any, Self
 
 from ..core.errors import PalpateError
 from ..core.machine import run_module
+from .hand.options import SimulatedOptions
 from .hand.plant import Vector
 from .hand.quaternion import Quaternion
-from .options import SimulatedOptions
 from .wire.pseudo_terminal import require_pseudo_terminals
 
 START_SECONDS = 20.0

@@ -7,8 +7,9 @@ import bpy
 
 from ...operators.device.servo_words import REASONS, Signal, standing
 from ...operators.scene.quantities import area, pressure
+from ...operators.session.press_events import Source
 from ...operators.session.press_session import PressSession
-from ...operators.session.press_state import Phase, Source
+from ...operators.session.press_state import Phase
 from . import pixels
 from .pixels import BACKGROUND, BLACK, WHITE, Color
 from .reading import Reading, readings
@@ -139,7 +140,7 @@ def _shape_lines(session: PressSession) -> list[Line]:
     say = bpy.app.translations.pgettext_iface
     return [
         Line(say(text).format(share=f"{100 * ready:.0f}"), NORMAL, GREY)
-        for text, ready in ((SHAPE, session.shape.ready), (FELT, felt))
+        for text, ready in ((SHAPE, session.seen.shape.ready), (FELT, felt))
         if ready < 1.0
     ]
 
@@ -155,7 +156,7 @@ def _buried_lines(session: PressSession) -> list[Line]:
 def _second_lines(session: PressSession) -> list[Line]:
     """A second finger's device that gives no force, and why."""
     snapshot, say = session.snapshot, bpy.app.translations.pgettext_iface
-    if snapshot is None or not session.has_device or len(session.leads) < 2:
+    if snapshot is None or not session.state.has_device or len(session.leads) < 2:
         return []
     now = standing(snapshot.fingers[1])
     if now.signal is not Signal.FAULT:

@@ -78,9 +78,9 @@ def _of_point(session: PressSession, finger: FingerSnapshot) -> Reading:
         place = frame.world_from_body(probe)
         return Reading(0.0, 0.0, False, place, place, np.zeros(3), turn)
     contact = proxy
-    if session.displacements is not None:
+    if session.seen.displacements is not None:
         corners = session.drawn.body.mesh.surface_nodes[np.asarray(finger.triangle)]
-        moved = session.drawn.node_displacements(session.displacements)[corners]
+        moved = session.drawn.node_displacements(session.seen.displacements)[corners]
         contact = proxy + np.asarray(finger.alpha) @ moved
     force = _force(finger)
     return Reading(
@@ -111,7 +111,7 @@ def _of_tool(session: PressSession, finger: FingerSnapshot, tool: Tool) -> Readi
     pose = Pose(np.asarray(finger.probe), rotation)
     return Reading(
         force=float(np.linalg.norm(force)),
-        depth=depth_of(tool, pose, session.surface_samples),
+        depth=depth_of(tool, pose, session.seen.surface_samples),
         touching=True,
         probe=probe,
         contact=sizes @ places / sizes.sum(),
@@ -125,12 +125,12 @@ def _of_tool(session: PressSession, finger: FingerSnapshot, tool: Tool) -> Readi
 
 def _as_drawn(session: PressSession, finger: FingerSnapshot, points: Array) -> Array:
     """Points (p, 3) of the surface by the linear shape, on the shape that is drawn."""
-    if session.displacements is None or session.linear is None or not len(finger.nodes):
+    if session.seen.displacements is None or session.seen.linear is None or not len(finger.nodes):
         return points
     mesh, drawn = session.drawn.body.mesh, session.drawn
     nodes = mesh.surface_nodes[np.asarray(finger.nodes)]
-    linear = drawn.node_displacements(session.linear)[nodes]
-    beyond = drawn.node_displacements(session.displacements)[nodes] - linear
+    linear = drawn.node_displacements(session.seen.linear)[nodes]
+    beyond = drawn.node_displacements(session.seen.displacements)[nodes] - linear
     if not beyond.any():
         return points
     # Weighted by nearness, so that neighbouring points go alike.

@@ -13,8 +13,8 @@ from ...operators.device import device_plane, device_source
 from ...operators.device.device_source import DeviceFrame
 from ...operators.scene import drawn_surface
 from ...operators.scene.body_frame import BodyFrame
+from ...operators.session.press_events import Source
 from ...operators.session.press_session import PressSession
-from ...operators.session.press_state import Source
 
 Array = NDArray[np.float64]
 

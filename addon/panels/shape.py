@@ -40,7 +40,7 @@ def draw_progress(
     layout: bpy.types.UILayout, context: bpy.types.Context, press: PressSession
 ) -> None:
     """How far the touched place's share of a table is, or why there is none."""
-    shape = press.shape
+    shape = press.seen.shape
     if shape.problem:
         say(layout, context, shape.problem, "ERROR")
         say(layout, context, "The linear shape is drawn", "BLANK1")

@@ -9,8 +9,9 @@ from ...operators.object.drawn_body import restores_quickly
 from ...operators.object.pin_change import PinFit
 from ...operators.object.soft_object import BodyStatus, Fit
 from ...operators.scene.quantities import duration
+from ...operators.session.press_events import Source
 from ...operators.session.press_session import PressSession
-from ...operators.session.press_state import Phase, Source
+from ...operators.session.press_state import Phase
 from .. import known_status
 from ..overlay.reading import readings
 from . import cost, force

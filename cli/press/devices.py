@@ -8,7 +8,7 @@ import json
 
 from ...core.servo.ports import Port, list_ports
 from ...simulated import device_process
-from ...simulated.options import add_simulated_options, simulated_options
+from ...simulated.hand.options import add_simulated_options, simulated_options
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

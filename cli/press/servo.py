@@ -25,7 +25,7 @@ from ...core.servo.ports import PortError, check_port
 from ...core.servo.recording import check_recording_path, check_room, write_recording
 from ...core.servo.session import STATES, LinkDevice, native_body, servo_on
 from ...core.stiffness.assembly import lame_parameters
-from ...simulated.options import SimulatedOptions
+from ...simulated.hand.options import SimulatedOptions
 from ...simulated.simulated_process import SimulatedDevice
 from ..body.body_argument import add_body
 from ..body.figure_lines import as_lines

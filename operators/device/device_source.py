@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.errors import PalpateError
+from ...simulated.hand.options import SimulatedOptions
 from ...simulated.hand.plant import Vector
-from ...simulated.options import SimulatedOptions
 from ...simulated.simulated_process import SimulatedDevice
 from ..object.drawn_body import DrawnBody
 from ..scene import ray

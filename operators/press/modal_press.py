@@ -13,8 +13,9 @@ from ..scene import viewport
 from ..scene.viewport import Viewport, redraw_views
 from ..session import press_session
 from ..session.pointer_hand import PointerHand
+from ..session.press_events import Cancel, Keep, Source
 from ..session.press_session import PressSession
-from ..session.press_state import Cancel, Keep, Phase, Source
+from ..session.press_state import Phase
 
 FRAMES_PER_SECOND = 60
 
@@ -74,7 +75,6 @@ class ModalPress:
         try:
             self._session = press_session.begin(thing, context.scene, source, pinch=pinch)
             self._hand = PointerHand(self._session, (0, 1) if pinch else (0,))
-            self._session.hand = self._hand
             if pinch:
                 self._hand.place_on_both_sides(context.space_data.region_3d)
         except PalpateError as problem:
@@ -129,14 +129,14 @@ class ModalPress:
                 redraw_views()
             return True
         # First of all, wherever the pointer is.
-        if _strikes_force_key(event) and session.has_device:
+        if _strikes_force_key(event) and session.state.has_device:
             session.switch_force()
             return False
         if _is_blenders(event) or viewport.over_file_browser(context.window, event):
             return True
         here = viewport.under_pointer(context.window, event.mouse_x, event.mouse_y)
         empties = session.state.source is Source.EMPTY
-        dented = session.displacements is not None
+        dented = session.seen.displacements is not None
         # Its right button opens menus as always while an Empty is moved by hand.
         last = _ending(event, over_view=here is not None and not empties, dented=dented)
         if last is not None:

@@ -3,7 +3,7 @@
 import bpy
 
 from ...core.errors import PalpateError
-from ..session.press_state import Source
+from ..session.press_events import Source
 from . import modal_press
 from .modal_press import ModalPress
 from .press import report

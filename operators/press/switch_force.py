@@ -4,7 +4,7 @@ import bpy
 
 from ..scene.viewport import redraw_views
 from ..session import press_session
-from ..session.press_state import Source
+from ..session.press_events import Source
 
 
 class PALPATE_OT_switch_force(bpy.types.Operator):

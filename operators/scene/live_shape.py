@@ -111,3 +111,11 @@ def _live(mesh: bpy.types.Mesh) -> bpy.types.ShapeKey | None:
 def _found(mesh: bpy.types.Mesh) -> FoundKeys:
     had_basis, active_index, showed_only_one = mesh.shape_keys.get(FOUND_MARK, (1, 0, 0))
     return FoundKeys(bool(had_basis), int(active_index), bool(showed_only_one))
+
+
+def leave_edit_mode(thing: bpy.types.Object) -> None:
+    """Shape keys can only be taken away while nobody edits them."""
+    if thing.mode == "OBJECT":
+        return
+    with bpy.context.temp_override(active_object=thing, object=thing):
+        bpy.ops.object.mode_set(mode="OBJECT")

@@ -10,7 +10,7 @@ import bpy
 from ...core.errors import PalpateError
 from ..device import device_source
 from ..scene.object_handle import ObjectHandle
-from .press_state import Source
+from .press_events import Source
 
 
 class Lead(Enum):

@@ -32,9 +32,10 @@ from ..record.recording import Recorder
 from ..scene.package_preferences import preferences
 from ..shape.felt_table import FeltTable
 from ..tool.finger_tip import FingerTip
+from ..tool.tool_pose import Point, Turn
 from .finger_leads import second_port
 from .live_settings import LiveSettings
-from .press_state import MoveProbe, PlaceProbe, Point, SwitchForce, Turn
+from .press_effects import MoveProbe, PlaceProbe, SwitchForce
 
 
 @dataclass(eq=False)

@@ -15,9 +15,9 @@ from ..scene.package_preferences import preferences
 from ..scene.probe_drag import ProbeDrag
 from ..scene.viewport import Viewport
 from ..tool import tool_turn
-from ..tool.tool_pose import resting_on
+from ..tool.tool_pose import Point, Turn, resting_on
+from .press_events import Grab, Move, Release, SetDown
 from .press_session import PressSession
-from .press_state import Grab, Move, Point, Release, SetDown, Turn
 
 Array = NDArray[np.float64]
 
@@ -60,7 +60,7 @@ class PointerHand:
             return
         drawn = self.session.drawn
         triangles = drawn.body.mesh.surface_triangles
-        hit = ray.first_hit(*here.ray(drawn.frame), self.session.surface_now(), triangles)
+        hit = ray.first_hit(*here.ray(drawn.frame), self.session.seen.nodes(), triangles)
         if hit is None:
             return
         corners = triangles[hit.triangle]
@@ -121,7 +121,7 @@ class PointerHand:
         if tool is None:
             return point + SET_DOWN_HEIGHT * session.drawn.size * normal, None
         rotation = tool_turn.rotation(session.scene, session.drawn.frame, normal, view_axes)
-        pose = resting_on(tool, rotation, point, normal, session.surface_samples)
+        pose = resting_on(tool, rotation, point, normal, session.seen.surface_samples)
         return pose.position, tool_turn.as_rows(rotation)
 
     def _begin(

@@ -10,20 +10,40 @@ import math
 from dataclasses import dataclass, replace
 from enum import Enum
 
-Point = tuple[float, float, float]
-# Rows of a rotation matrix.
-Turn = tuple[Point, Point, Point]
+from .press_effects import (
+    DrawRest,
+    Effect,
+    HangLiveShape,
+    KeepShape,
+    MoveProbe,
+    PlaceProbe,
+    RemoveLiveShape,
+    Say,
+    StartServo,
+    StopServo,
+    SwitchForce,
+)
+from .press_events import (
+    BringBack,
+    Cancel,
+    Event,
+    Fault,
+    GiveWay,
+    Grab,
+    Keep,
+    LetGo,
+    Move,
+    Recovered,
+    Release,
+    SaveBegins,
+    SaveEnds,
+    SetDown,
+    Source,
+    Start,
+)
 
 # Somebody who strikes the key twice in alarm wants the force off, not on again.
 CALM_SECONDS = 0.6
-
-
-class Source(Enum):
-    """Who moves the probe."""
-
-    POINTER = "pointer"
-    DEVICE = "device"
-    EMPTY = "empty"
 
 
 class Phase(Enum):
@@ -61,194 +81,6 @@ class PressState:
         """Whether there is a shape that could be kept."""
         return self.phase in (Phase.DRAGGING, Phase.HOLDING, Phase.FEELING)
 
-
-# Events
-
-
-@dataclass(frozen=True)
-class Start:
-    """``device`` if a device leads any of the fingers."""
-
-    source: Source
-    device: bool = False
-
-
-@dataclass(frozen=True)
-class SetDown:
-    """The pointer touches the surface here (body coordinates) with one of its fingers, whose tool
-    is turned so.
-    """
-
-    point: Point
-    finger: int = 0
-    turn: Turn | None = None
-
-
-@dataclass(frozen=True)
-class Grab:
-    """The pointer takes hold of a finger that was set down before; the finger stays where it is."""
-
-
-@dataclass(frozen=True)
-class Move:
-    """The pointer wants the finger here (body coordinates)."""
-
-    point: Point
-    finger: int = 0
-
-
-@dataclass(frozen=True)
-class Release:
-    """The pointer's button is up."""
-
-
-@dataclass(frozen=True)
-class Fault:
-    """The device is gone, stale or in fault; ``text`` says which and what to do."""
-
-    text: str
-
-
-@dataclass(frozen=True)
-class Recovered:
-    """The device answers again."""
-
-
-@dataclass(frozen=True)
-class LetGo:
-    """The user wants no force from the device, at once."""
-
-    at: float
-
-
-@dataclass(frozen=True)
-class BringBack:
-    """The user wants the device's force again."""
-
-    at: float
-
-
-@dataclass(frozen=True)
-class SaveBegins:
-    """Blender is about to write the file."""
-
-
-@dataclass(frozen=True)
-class SaveEnds:
-    """Blender has written the file, or failed to."""
-
-
-@dataclass(frozen=True)
-class Keep:
-    """The user wants the shape; ``dented`` if there is one, for the probe may be in the air."""
-
-    dented: bool = True
-
-
-@dataclass(frozen=True)
-class Cancel:
-    """The user wants back what was there."""
-
-
-@dataclass(frozen=True)
-class GiveWay:
-    """Something else needs the object: file load, undo, deletion, edit, unregister, exit."""
-
-    reason: str
-
-
-Event = (
-    Start
-    | SetDown
-    | Grab
-    | Move
-    | Release
-    | Fault
-    | Recovered
-    | LetGo
-    | BringBack
-    | SaveBegins
-    | SaveEnds
-    | Keep
-    | Cancel
-    | GiveWay
-)
-
-# Effects
-
-
-@dataclass(frozen=True)
-class StartServo:
-    source: Source
-
-
-@dataclass(frozen=True)
-class PlaceProbe:
-    """Lift the probe off and set it down there, without a sweep through the body."""
-
-    point: Point
-    finger: int = 0
-    turn: Turn | None = None
-
-
-@dataclass(frozen=True)
-class MoveProbe:
-    point: Point
-    finger: int = 0
-
-
-@dataclass(frozen=True)
-class SwitchForce:
-    """Off: zero from the next tick on. On: the servo lets it rise slowly."""
-
-    on: bool
-
-
-@dataclass(frozen=True)
-class StopServo:
-    """Zero force, thread joined."""
-
-
-@dataclass(frozen=True)
-class HangLiveShape:
-    """Add the live shape key."""
-
-
-@dataclass(frozen=True)
-class DrawRest:
-    """Write the rest shape into the live shape key."""
-
-
-@dataclass(frozen=True)
-class RemoveLiveShape:
-    """Leave the mesh as it was found, bit for bit."""
-
-
-@dataclass(frozen=True)
-class KeepShape:
-    """Turn the live shape key into a kept one."""
-
-
-@dataclass(frozen=True)
-class Say:
-    """Tell the user."""
-
-    text: str
-    warning: bool = False
-
-
-Effect = (
-    StartServo
-    | PlaceProbe
-    | MoveProbe
-    | SwitchForce
-    | StopServo
-    | HangLiveShape
-    | DrawRest
-    | RemoveLiveShape
-    | KeepShape
-    | Say
-)
 
 Step = tuple[PressState, tuple[Effect, ...]]
 

@@ -8,6 +8,9 @@ from numpy.typing import NDArray
 from ...core.contact.tool.tools import Pose, Tool
 
 Array = NDArray[np.float64]
+Point = tuple[float, float, float]
+# Rows of a rotation matrix.
+Turn = tuple[Point, Point, Point]
 
 # Lifting off a curved surface comes to its end in a few steps; grazing it may take more.
 MOST_LIFTS = 64

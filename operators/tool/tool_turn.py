@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 from ...core.errors import PalpateError
 from ..scene.body_frame import BodyFrame
 from ..scene.drawn_surface import metres_per_unit
-from ..session.press_state import Turn
-from .tool_pose import facing
+from .tool_pose import Turn, facing
 
 Array = NDArray[np.float64]
 

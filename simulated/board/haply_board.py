@@ -15,9 +15,9 @@ from pathlib import Path
 from ...core.errors import PalpateError
 from ...core.servo.haply_models import DEFAULT_MODEL, haply_model
 from ..hand.hand_schedule import HandSchedule
+from ..hand.options import SimulatedOptions
 from ..hand.plant import Plant, Vector
 from ..hand.quaternion import Quaternion
-from ..options import SimulatedOptions
 from ..wire.pseudo_terminal import PseudoTerminal
 from .haply_firmware import PORTS, HaplyCounters, HaplyFirmware
 

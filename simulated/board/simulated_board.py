@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from ..hand.hand_schedule import HandSchedule
+from ..hand.options import SimulatedOptions
 from ..hand.plant import Plant, Vector
 from ..hand.quaternion import Quaternion
-from ..options import SimulatedOptions
 from ..wire.pseudo_terminal import PseudoTerminal
 from ..wire.wire_faults import BadWire
 from .simulated_firmware import Firmware

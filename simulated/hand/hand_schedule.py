@@ -8,8 +8,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from ..options import SimulatedOptions
 from .hand_script import HandScript, TurnScript
+from .options import SimulatedOptions
 from .plant import Vector
 from .quaternion import UPRIGHT, Quaternion
 

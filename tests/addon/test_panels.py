@@ -38,7 +38,7 @@ def press(palpate):
         session.post(states.SetDown(TOP))
         session.post(states.Move((TOP[0], TOP[1], TOP[2] - 0.004)))
         session.post(states.Release())
-        wait(session, lambda: session.displacements is not None)
+        wait(session, lambda: session.seen.displacements is not None)
         return session
 
     yield begin
@@ -146,7 +146,7 @@ def test_progress_is_a_bar_while_the_touched_place_is_computed(panel, press, mon
     session = press(thing)
     assert drawn(panel, thing).bars == [(0.0, "Shape 0 %")]
     allowed.set()
-    wait(session, lambda: session.shape.ready == 0.5)
+    wait(session, lambda: session.seen.shape.ready == 0.5)
     assert drawn(panel, thing).bars == [(0.5, "Shape 50 %")]
     # It is of the pressed object only.
     assert not drawn(panel, cube()).bars
@@ -162,7 +162,7 @@ def test_why_the_linear_shape_is_drawn_stands_in_the_panel(panel, press, monkeyp
     thing = soft_cube()
     thing.palpate.shape = "TABLE"
     session = press(thing)
-    wait(session, lambda: session.shape.problem)
+    wait(session, lambda: session.seen.shape.problem)
     said = drawn(panel, thing)
     assert "Shape: no room; choose another" in said.text
     assert "The linear shape is drawn" in said.text

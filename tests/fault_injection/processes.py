@@ -19,7 +19,7 @@ from typing import Any, Self
 
 from palpate_servo import Pointer, Servo
 
-from palpate.simulated.options import SimulatedOptions
+from palpate.simulated.hand.options import SimulatedOptions
 from palpate.simulated.simulated_process import SimulatedDevice
 
 from .rows import Row

@@ -9,7 +9,7 @@ import pytest
 from palpate.core.errors import PalpateError
 from palpate.core.servo.haply_models import HAPLY_MODELS
 from palpate.simulated.board.haply_board import HaplyBoard
-from palpate.simulated.options import SimulatedOptions
+from palpate.simulated.hand.options import SimulatedOptions
 
 STEP = 1e-3
 ADDRESS = 5

@@ -9,7 +9,7 @@ import pytest
 from palpate.core.errors import PalpateError
 from palpate.core.servo import link
 from palpate.simulated.board.simulated_board import SimulatedBoard
-from palpate.simulated.options import SimulatedOptions
+from palpate.simulated.hand.options import SimulatedOptions
 from palpate.simulated.wire.pseudo_terminal import PseudoTerminal
 
 STEP = 1e-3

@@ -13,7 +13,7 @@ from palpate.core.errors import PalpateError
 from palpate.core.machine import run_module
 from palpate.core.servo.ports import say_hello
 from palpate.simulated import simulated_process
-from palpate.simulated.options import SimulatedOptions
+from palpate.simulated.hand.options import SimulatedOptions
 from palpate.simulated.simulated_process import SimulatedDevice
 
 PATIENCE = 20.0

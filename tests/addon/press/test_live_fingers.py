@@ -68,7 +68,7 @@ def test_empties_lead_both_fingers_and_one_may_be_deleted(sessions, states):
     session.tick()
     assert [said.text for said in session.said if "Left was deleted" in said.text]
     wait(session, lambda: arrived(session, LEFT_IN, RIGHT_IN))
-    session.post(states.Keep(session.displacements is not None))
+    session.post(states.Keep(session.seen.displacements is not None))
     assert key_names(thing) == ["Basis", "Press 1"]
 
 
@@ -76,7 +76,7 @@ def test_a_simulated_device_presses_beside_the_pointer(sessions, states):
     thing = soft_cube()
     bpy.context.scene.palpate.second = "SIMULATED"
     session = begin(sessions, states, thing)
-    assert session.has_device
+    assert session.state.has_device
     session.post(states.SetDown(LEFT, 0))
     session.post(states.Move(LEFT_IN, 0))
     wait(session, lambda: session.snapshot.fingers[0].touching, 20.0)
@@ -173,7 +173,7 @@ def test_a_tool_object_may_be_deleted_while_it_presses(sessions, states):
     for _ in range(3):
         session.tick()
     assert session.snapshot.fingers[0].touching
-    session.post(states.Keep(session.displacements is not None))
+    session.post(states.Keep(session.seen.displacements is not None))
     assert key_names(thing) == ["Basis", "Press 1"]
 
 

@@ -27,7 +27,7 @@ def begin_pressed(sessions, states, thing):
     session.post(states.SetDown(TOP))
     session.post(states.Move((TOP[0], TOP[1], TOP[2] - DEPTH)))
     session.post(states.Release())
-    wait(session, lambda: session.displacements is not None)
+    wait(session, lambda: session.seen.displacements is not None)
     return session
 
 
@@ -44,8 +44,8 @@ def test_every_shape_leaves_the_mesh_as_it_was(sessions, states, name, way):
     thing.palpate.shape = name
     session = begin_pressed(sessions, states, thing)
     # Newton's table is left while it is computed.
-    wait(session, lambda: name == "TABLE" or session.shape.ready == 1.0)
-    assert not session.shape.problem
+    wait(session, lambda: name == "TABLE" or session.seen.shape.ready == 1.0)
+    assert not session.seen.shape.problem
     assert mesh_state(thing) != before
     if way == "escape":
         session.post(states.Cancel())
@@ -62,7 +62,8 @@ def test_enter_keeps_what_every_shape_drew(sessions, states, name, monkeypatch):
     thing.palpate.shape = name
     session = begin_pressed(sessions, states, thing)
     wait(
-        session, lambda: name == "TABLE" or (session.shape.ready == 1.0 and session._drawn_contact)
+        session,
+        lambda: name == "TABLE" or (session.seen.shape.ready == 1.0 and session.seen.drawn_contact),
     )
     drawn = key_coordinates(thing, "Palpate live")
     session.post(states.Keep())
@@ -98,7 +99,7 @@ def test_a_table_file_that_is_no_good_is_told_once_and_made_anew(
             shutil.copyfile(part("operators.object.body_store").locate(thing), file)
     thing.shape_key_clear()
     session = begin_pressed(sessions, states, thing)
-    wait(session, lambda: session.shape.ready == 1.0)
+    wait(session, lambda: session.seen.shape.ready == 1.0)
     for _ in range(5):
         session.tick()
     told = [said.text for said in session.said if said.warning]
@@ -145,7 +146,7 @@ def test_two_troubles_are_told_once_each_not_in_turns(sessions, states, series_t
         table_file(thing, kind).write_bytes(b"nothing")
     thing.palpate.shape, thing.palpate.felt = "SERIES", "CORRECTED"
     session = begin_pressed(sessions, states, thing)
-    wait(session, lambda: session.shape.ready == session.loop.felt.ready == 1.0)
+    wait(session, lambda: session.seen.shape.ready == session.loop.felt.ready == 1.0)
     for _ in range(5):
         session.tick()
     assert len([said for said in session.said if said.warning]) == 2

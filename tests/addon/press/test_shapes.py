@@ -49,7 +49,7 @@ def begin_pressed(sessions, states, thing):
     session.post(states.SetDown(TOP))
     session.post(states.Move((TOP[0], TOP[1], TOP[2] - DEPTH)))
     session.post(states.Release())
-    wait(session, lambda: session.displacements is not None and depth(session) > 0.99 * DEPTH)
+    wait(session, lambda: session.seen.displacements is not None and depth(session) > 0.99 * DEPTH)
     return session
 
 
@@ -104,16 +104,19 @@ def test_a_shape_is_switched_while_pressing_and_nothing_is_lost(sessions, states
     thing = soft_cube()
     before = mesh_state(thing)
     session = begin_pressed(sessions, states, thing)
-    linear = session.displacements
+    linear = session.seen.displacements
     thing.palpate.shape = name
-    wait(session, lambda: session.shape.ready == 1.0 and session.displacements is not linear)
-    assert not session.shape.problem
+    wait(
+        session,
+        lambda: session.seen.shape.ready == 1.0 and session.seen.displacements is not linear,
+    )
+    assert not session.seen.shape.problem
     assert session.snapshot.touching
     assert depth(session) == pytest.approx(DEPTH, rel=0.01)
-    assert not np.array_equal(session.displacements, linear)
-    np.testing.assert_array_equal(session.linear, linear)
+    assert not np.array_equal(session.seen.displacements, linear)
+    np.testing.assert_array_equal(session.seen.linear, linear)
     thing.palpate.shape = "LINEAR"
-    wait(session, lambda: np.array_equal(session.displacements, linear))
+    wait(session, lambda: np.array_equal(session.seen.displacements, linear))
     session.post(states.Cancel())
     thing.palpate.shape = "LINEAR"
     assert mesh_state(thing) == before
@@ -134,15 +137,15 @@ def test_until_it_is_made_and_filled_the_linear_shape_is_drawn(
     thing.palpate.shape = "SERIES"
     session = begin_pressed(sessions, states, thing)
     linear = drawn_depth(thing)
-    assert session.shape.ready == 0.0
+    assert session.seen.shape.ready == 0.0
     allowed.set()
-    wait(session, lambda: session.shape.ready == 0.37)
+    wait(session, lambda: session.seen.shape.ready == 0.37)
     assert drawn_depth(thing) == pytest.approx(linear, abs=1e-6)
     said = [line.text for line in part("addon.overlay.hud")._shape_lines(session)]
     assert said == ["Shape 37 %"]
     assert made[0].file == part("operators.object.body_store").locate(thing)
     made[0].ready = 1.0
-    wait(session, lambda: session.displacements is not session.linear)
+    wait(session, lambda: session.seen.displacements is not session.seen.linear)
     assert not part("addon.overlay.hud")._shape_lines(session)
 
 
@@ -158,7 +161,7 @@ def test_what_is_kept_waits_a_little_and_says_what_it_lacks(sessions, states, sh
     monkeypatch.setattr(part("operators.shape.drawn_shape"), "PATIENCE", 0.2)
     thing.palpate.shape = "TABLE"
     session = begin_pressed(sessions, states, thing)
-    wait(session, lambda: session.shape.ready == 0.5)
+    wait(session, lambda: session.seen.shape.ready == 0.5)
     session.post(states.Keep())
     assert key_names(thing)[-1] == "Press 1"
     assert [said.text for said in session.said] == ["It is kept as far as it was computed, 50 %"]
@@ -175,12 +178,12 @@ def test_a_shape_that_cannot_be_made_is_told_once_and_the_press_goes_on(
     thing = soft_cube()
     thing.palpate.shape = "TABLE"
     session = begin_pressed(sessions, states, thing)
-    wait(session, lambda: bool(session.shape.problem))
+    wait(session, lambda: bool(session.seen.shape.problem))
     for _ in range(5):
         session.tick()
     assert [said.text for said in session.said] == ["shape: no room; choose another"]
     assert session.state.phase is states.Phase.HOLDING
-    np.testing.assert_array_equal(session.displacements, session.linear)
+    np.testing.assert_array_equal(session.seen.displacements, session.seen.linear)
     sessions.give_way("")
     # Without a clock there is nobody to look at the linear one instead.
     with pytest.raises(RuntimeError, match="no room; choose another"):
@@ -197,7 +200,7 @@ def test_the_end_of_a_press_ends_the_work_behind_it(sessions, states, shapes, mo
     )
     thing.palpate.shape = "SERIES"
     session = begin_pressed(sessions, states, thing)
-    wait(session, lambda: session.shape.ready == 1.0 and bool(made))
+    wait(session, lambda: session.seen.shape.ready == 1.0 and bool(made))
     if way == "cancel":
         session.post(states.Cancel())
     elif way == "deletion":
@@ -269,7 +272,7 @@ def test_the_corrected_force_is_felt_where_it_is_known_and_switched_live(session
     wait(session, lambda: session.loop.felt.ready == 1.0 and session.snapshot.felt_share > 0.999)
     assert read(session).force / firm == pytest.approx(softer, rel=0.02)
     assert not part("addon.overlay.hud")._shape_lines(session)
-    np.testing.assert_array_equal(session.displacements, session.linear)
+    np.testing.assert_array_equal(session.seen.displacements, session.seen.linear)
     thing.palpate.felt = "LINEAR"
     wait(session, lambda: read(session).force == pytest.approx(firm, rel=1e-6))
 

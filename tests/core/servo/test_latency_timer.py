@@ -21,7 +21,7 @@ from palpate.core.servo.latency_timer import (
     remedy,
 )
 from palpate.core.servo.ports import check_port, list_ports
-from palpate.simulated.options import SimulatedOptions
+from palpate.simulated.hand.options import SimulatedOptions
 from palpate.simulated.simulated_process import SimulatedDevice
 from palpate.simulated.wire.wire_faults import BadWire
 

@@ -13,7 +13,7 @@ import pytest
 from palpate.cli.main import main
 from palpate.core.servo import ports
 from palpate.core.servo.ports import PortError, check_port, list_ports, say_hello
-from palpate.simulated.options import SimulatedOptions
+from palpate.simulated.hand.options import SimulatedOptions
 from palpate.simulated.simulated_process import SimulatedDevice
 
 

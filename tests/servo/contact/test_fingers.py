@@ -11,7 +11,7 @@ from palpate.core.contact.tool.tools import sphere
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.servo.session import displacements_of, native_body, native_tool
 from palpate.core.stiffness.pins import PinNodes
-from palpate.simulated.options import SimulatedOptions
+from palpate.simulated.hand.options import SimulatedOptions
 from palpate.simulated.simulated_process import SimulatedDevice
 
 MODULUS = 10_000.0

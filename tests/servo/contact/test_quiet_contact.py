@@ -6,7 +6,7 @@ from itertools import pairwise
 import pytest
 from palpate_servo import LinkDevice, Servo
 
-from palpate.simulated.options import SimulatedOptions
+from palpate.simulated.hand.options import SimulatedOptions
 from palpate.simulated.simulated_process import SimulatedDevice
 
 # Over the middle of a triangle of the cube's top (50 mm).

@@ -22,7 +22,7 @@ from palpate.core.servo.haply_models import DEFAULT_MODEL, haply_model
 from palpate.core.servo.session import HaplyDevice, device_coupling, haply_encoder_step, servo_for
 from palpate.core.stiffness.pins import PinNodes
 from palpate.simulated.board.haply_firmware import PWM_STEPS, TORQUE_AT_FULL_DUTY
-from palpate.simulated.options import SimulatedOptions
+from palpate.simulated.hand.options import SimulatedOptions
 from palpate.simulated.simulated_process import SimulatedDevice
 
 MODEL = haply_model(DEFAULT_MODEL)

@@ -4,7 +4,7 @@ import pytest
 from palpate_servo import LinkDevice, Servo
 
 from palpate.core.servo.latency_timer import explain
-from palpate.simulated.options import SimulatedOptions
+from palpate.simulated.hand.options import SimulatedOptions
 from palpate.simulated.simulated_process import SimulatedDevice
 
 

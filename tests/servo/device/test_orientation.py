@@ -10,8 +10,8 @@ import pytest
 from fault_injection.servo_host import ABOVE, YOUNG_MODULUS, cube
 
 from palpate.core.servo import link
+from palpate.simulated.hand.options import SimulatedOptions
 from palpate.simulated.hand.quaternion import about
-from palpate.simulated.options import SimulatedOptions
 from palpate.simulated.simulated_process import SimulatedDevice
 
 VECTORS = json.loads(

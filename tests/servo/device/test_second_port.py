@@ -11,7 +11,7 @@ from palpate.core.body import body_file
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.servo.recording import FINGER_COLUMN, read_recording
 from palpate.core.stiffness.pins import PinNodes
-from palpate.simulated.options import SimulatedOptions
+from palpate.simulated.hand.options import SimulatedOptions
 from palpate.simulated.simulated_process import SimulatedDevice
 
 

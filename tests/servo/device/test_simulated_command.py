@@ -24,7 +24,7 @@ from palpate.core.servo import link, ports
 from palpate.core.servo.recording import read_recording
 from palpate.core.shape.paper.table_file import table_path
 from palpate.core.stiffness.pins import PinNodes
-from palpate.simulated.options import SimulatedOptions
+from palpate.simulated.hand.options import SimulatedOptions
 from palpate.simulated.simulated_process import SimulatedDevice
 
 ABOVE, DEEP = (0.026, 0.024, 0.06), (0.026, 0.024, 0.044)

@@ -13,7 +13,7 @@ from palpate.core.bake.steps import BakeSettings, bake
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.servo.session import displacements_of, servo_for
 from palpate.core.stiffness.pins import PinNodes
-from palpate.simulated.options import SimulatedOptions
+from palpate.simulated.hand.options import SimulatedOptions
 from palpate.simulated.simulated_process import SimulatedDevice
 
 # Over the middle of the cube's top (50 mm), a little off the mesh's symmetry.

@@ -8,10 +8,10 @@ from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
-from ..core.errors import PalpateError
-from ..core.servo.link import DeviceHello
-from .hand.hand_script import HandScript, TurnScript, press_script, read_script, tilt_script
-from .hand.plant import Impedance, Vector
+from ...core.errors import PalpateError
+from ...core.servo.link import DeviceHello
+from .hand_script import HandScript, TurnScript, press_script, read_script, tilt_script
+from .plant import Impedance, Vector
 
 
 def _about(unit: str, text: str) -> dict[str, str]:

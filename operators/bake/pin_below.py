@@ -4,8 +4,8 @@ import bpy
 
 from ...core.errors import PalpateError
 from ..object import soft_object
+from ..pins import pin_group
 from ..scene import drawn_surface
-from . import pin_group
 
 
 class PALPATE_OT_pin_below(bpy.types.Operator):

@@ -1,0 +1,116 @@
+"""The force loop with all its fingers, and those of them that Empties and objects lead."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import bpy
+import numpy as np
+
+from ...core.errors import PalpateError
+from ..object.drawn_body import DrawnBody
+from ..record import recording_writer
+from ..tool import tool_turn
+from ..tool.finger_tip import FingerTip
+from ..tool.tool_pose import Point, Turn
+from .finger_leads import FingerLead, Lead
+from .force_loop import ForceLoop
+from .live_settings import LiveSettings
+
+
+def start_loop(
+    thing: bpy.types.Object,
+    scene: bpy.types.Scene,
+    drawn: DrawnBody,
+    settings: LiveSettings,
+    leads: Sequence[FingerLead],
+    tip: FingerTip,
+) -> ForceLoop:
+    """A running loop for these fingers, recorded from its start if the scene says so.
+
+    Raises
+    ------
+    PalpateError
+        The body cannot be touched, a device is not there, or the servo refuses a setting.
+    """
+    loop = ForceLoop.prepare(drawn, settings, scene.palpate.rate, tip, len(leads))
+    try:
+        for lead in leads[1:]:
+            if lead.lead is Lead.DEVICE:
+                loop.add_device(thing, scene)
+            else:
+                loop.add_pointer(_start_of(lead, drawn))
+        loop.give_tools(len(leads))
+        if scene.palpate.record_from_start:
+            # All fingers are there: memory for each is asked for now.
+            record(loop, scene, 0.0)
+        if settings.device is not None:
+            loop.start_device(scene, drawn)
+        else:
+            loop.start_pointer(_start_of(leads[0], drawn))
+    except BaseException:
+        loop.stop()
+        raise
+    return loop
+
+
+def record(loop: ForceLoop, scene: bpy.types.Scene, now: float) -> None:
+    """Record from now (s, servo's time) on.
+
+    Raises
+    ------
+    PalpateError
+        A recording is going on, or the servo refuses.
+    """
+    loop.recorder.start(60.0 * scene.palpate.record_minutes, now)
+    recording_writer.forget()
+
+
+def lead_fingers(
+    loop: ForceLoop, leads: Sequence[FingerLead], scene: bpy.types.Scene, drawn: DrawnBody
+) -> list[str]:
+    """Move fingers to where their Empties are now, and turn tools that the pointer does not turn.
+
+    Returns what hinders, a sentence each.
+    """
+    troubles = []
+    for finger, lead in enumerate(leads):
+        empty = lead.empty.find() if lead.empty is not None else None
+        if lead.empty is not None and empty is None:
+            troubles.append(f"{lead.empty.name} was deleted; its finger stays where it was")
+        turn = None
+        try:
+            turn = _turn_of(lead, empty, loop, scene, drawn)
+        except PalpateError as problem:
+            troubles.append(str(problem))
+        loop.lead(finger, None if empty is None else _place_of(empty, drawn), turn)
+    return troubles
+
+
+def _start_of(lead: FingerLead, drawn: DrawnBody) -> Point:
+    """Where a finger begins: at its Empty, or outside the body, where the pointer's waits."""
+    empty = lead.empty.find() if lead.empty is not None else None
+    if empty is not None:
+        return _place_of(empty, drawn)
+    x, y, z = drawn.body.mesh.nodes.mean(axis=0).tolist()
+    return (x, y, z + drawn.size)
+
+
+def _place_of(empty: bpy.types.Object, drawn: DrawnBody) -> Point:
+    x, y, z = drawn.frame.body_from_world(np.array(empty.matrix_world)[:3, 3]).tolist()
+    return (x, y, z)
+
+
+def _turn_of(
+    lead: FingerLead,
+    empty: bpy.types.Object | None,
+    loop: ForceLoop,
+    scene: bpy.types.Scene,
+    drawn: DrawnBody,
+) -> Turn | None:
+    """As an object or as the Empty that leads; None as it was. A device turns its own."""
+    leader = tool_turn.guide_of(scene) if scene.palpate.tip_turn == "OBJECT" else None
+    leader = leader or empty
+    if loop.tip.tool is None or leader is None or lead.lead is Lead.DEVICE:
+        return None
+    return tool_turn.as_rows(tool_turn.as_object(leader, scene, drawn.frame))
