@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
+from types import SimpleNamespace
 
 import bpy
 import numpy as np
@@ -239,16 +240,16 @@ def test_pressure_is_drawn_on_the_shape_that_is_seen(palpate):
     drawn = part("operators.object.drawn_body").open_body(thing, bpy.context.scene)
     mesh = drawn.body.mesh
 
-    class Session:
+    class Seen:
         linear = np.zeros((drawn.body.compliance.node_count, 3))
         displacements = linear + np.array([0.0, 0.0, 0.002])
 
     class Finger:
         nodes = np.searchsorted(mesh.surface_nodes, drawn.body.compliance.free_surface[:6])
 
-    Session.drawn = drawn
+    session = SimpleNamespace(drawn=drawn, seen=Seen)
     points = mesh.nodes[drawn.body.compliance.free_surface[:3]]
-    moved = reading._as_drawn(Session, Finger, points)
+    moved = reading._as_drawn(session, Finger, points)
     np.testing.assert_allclose(moved, points + np.array([0.0, 0.0, 0.002]), atol=1e-12)
 
 
