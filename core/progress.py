@@ -1,4 +1,4 @@
-"""How long work tells its caller where it stands."""
+"""Progress callback of long work."""
 
 from __future__ import annotations
 
@@ -9,4 +9,4 @@ Progress = Callable[[float], None]
 
 
 def unwatched(*_: object) -> None:
-    """The progress callback of a caller who does not look."""
+    """Progress callback that does nothing."""

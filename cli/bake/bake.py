@@ -12,7 +12,7 @@ from ...core.bake.job import JobProgress, run_bake
 from ...core.bake.steps import BakeReport
 from ...core.body.soft_body import SoftBody
 from ...core.errors import PalpateError
-from ...core.files.whole_file import refuse_missing_folder
+from ...core.files.atomic_file import refuse_missing_folder
 from ...core.machine.stop_signals import stopped_by_signals
 from ..body.body_figures import body_figures
 from ..body.figure_lines import as_lines

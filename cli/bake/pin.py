@@ -14,7 +14,7 @@ from ...core.bake.repin import pin_more
 from ...core.body import body_file
 from ...core.body.soft_body import SoftBody
 from ...core.errors import PalpateError
-from ...core.files.whole_file import refuse_missing_folder
+from ...core.files.atomic_file import refuse_missing_folder
 from ...core.stiffness.pins import PinBelow, pinned_nodes
 from ..body.body_argument import add_body
 from ..body.body_figures import body_figures

@@ -14,7 +14,7 @@ from ...core.body import body_file
 from ...core.body.soft_body import SoftBody
 from ...core.contact.equations import CONTACT_MODES, ContactMode, Touch
 from ...core.errors import PalpateError
-from ...core.files.whole_file import whole_file
+from ...core.files.atomic_file import atomic_file
 from ...core.shape.meeting import FingerLoad, settled
 from ...core.shape.shapes import SHAPES, shape
 from ...core.stiffness.assembly import lame_parameters
@@ -168,7 +168,7 @@ def _deformed(
             f"--young: at {young_modulus} Pa this press is beyond what numbers can hold; give less"
         )
     if arguments.displacements is not None:
-        with whole_file(arguments.displacements) as file:
+        with atomic_file(arguments.displacements) as file:
             np.save(file, displacements)
     return displacements
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ...core.body import body_file
 from ...core.body.soft_body import SoftBody
-from ...core.files.whole_file import refuse_missing_folder, whole_file
+from ...core.files.atomic_file import atomic_file, refuse_missing_folder
 from ...core.softness.curve_picture import curve_svg
 from ...core.softness.force_depth import MILLIMETRES, ForceDepthCurve, force_depth_curve
 from ...core.softness.place import nearest_place
@@ -66,10 +66,10 @@ def run(arguments: argparse.Namespace) -> int:
     body = body_file.load(arguments.body)
     curve = _curve(arguments, body)
     if arguments.csv is not None:
-        with whole_file(arguments.csv) as file:
+        with atomic_file(arguments.csv) as file:
             file.write(curve.as_csv().encode())
     if arguments.picture is not None:
-        with whole_file(arguments.picture) as file:
+        with atomic_file(arguments.picture) as file:
             file.write(curve_svg(curve).encode())
     if arguments.json:
         figures = {

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ...core.body import body_file
-from ...core.files.whole_file import refuse_missing_folder, whole_file
+from ...core.files.atomic_file import atomic_file, refuse_missing_folder
 from ...core.softness.coloured_ply import write_ply
 from ...core.softness.force_depth import MILLIMETRES
 from ...core.softness.ramp import legend
@@ -58,7 +58,7 @@ def run(arguments: argparse.Namespace) -> int:
     found = softness_map(
         body, pad_radius=arguments.pad, young_modulus=young_modulus_of(arguments, body)
     )
-    with whole_file(arguments.output) as file:
+    with atomic_file(arguments.output) as file:
         if arguments.output.suffix.lower() == ".npy":
             np.save(file, found.stiffness)
         else:

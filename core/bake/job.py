@@ -18,7 +18,7 @@ from ..body import body_file
 from ..body.soft_body import SoftBody
 from ..compliance.mapped import MappedCompliance
 from ..errors import PalpateError
-from ..files.whole_file import refuse_unwritable
+from ..files.atomic_file import refuse_unwritable
 from ..machine import run_module
 from ..machine.remaining_time import RemainingTime
 from ..mesh.ftetwild_log import stage

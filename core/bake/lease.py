@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..files.whole_file import refuse_unwritable, whole_file
+from ..files.atomic_file import atomic_file, refuse_unwritable
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ def lease(folder: Path) -> Iterator[Lease]:
     word = secrets.token_hex(16)
     sign = Lease(folder / f".palpate-bake-{word[:8]}", word)
     refuse_unwritable(sign.path)
-    with whole_file(sign.path, make_folders=True) as file:
+    with atomic_file(sign.path, make_folders=True) as file:
         file.write(word.encode("ascii"))
     try:
         yield sign

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..errors import CancelledError, PalpateError
-from ..files.whole_file import UnwritableError, whole_file
+from ..files.atomic_file import UnwritableError, atomic_file
 from ..mesh.surface import Surface
 from ..mesh.tet_mesh import TetMesh
 from ..progress import unwatched
@@ -177,7 +177,7 @@ def _outcome(task: BakeTask, folder: Path, future: Future[_Answer]) -> BakeOutco
         return _failed(task, problem)
     if answer.contents is not None:
         try:
-            with whole_file(folder / task.file_name) as file:
+            with atomic_file(folder / task.file_name) as file:
                 file.write(answer.contents)
         except UnwritableError as refusal:
             return BakeOutcome(task.name, error=str(refusal))

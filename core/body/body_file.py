@@ -32,8 +32,8 @@ from ..compliance.dense import DenseCompliance
 from ..compliance.mapped import CHECKSUM_BYTES, MappedCompliance, node_checksums
 from ..compliance.protocol import Compliance
 from ..errors import BodyFileError, PalpateError
+from ..files.atomic_file import atomic_file
 from ..files.npz_archive import Archive, ArchiveError, opened, write_arrays
-from ..files.whole_file import whole_file
 from ..mesh.tet_mesh import TetMesh
 from ..stiffness.assembly import lame_parameters, young_scale_checked
 from ..stiffness.formulation import formulation_checked
@@ -98,7 +98,7 @@ def save(body: SoftBody, path: str | os.PathLike[str]) -> None:
         "version": np.array(VERSION),
         "checksum": np.array(_checksum(arrays)),
     }
-    with whole_file(Path(path), make_folders=True) as file:
+    with atomic_file(Path(path), make_folders=True) as file:
         write_arrays(file, head | arrays)
 
 
@@ -138,7 +138,7 @@ def adopt(finished: Path, target: Path) -> None:
     UnwritableError
         The place cannot be written; nothing is left there.
     """
-    with whole_file(target, make_folders=True) as file, finished.open("rb") as source:
+    with atomic_file(target, make_folders=True) as file, finished.open("rb") as source:
         shutil.copyfileobj(source, file)
 
 

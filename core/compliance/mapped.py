@@ -108,7 +108,7 @@ class MappedCompliance:
         BodyFileError
             It was cut short.
         """
-        if not self.mapped_table.is_whole:
+        if not self.mapped_table.is_complete:
             raise BodyFileError(f"{self.file}: it was cut short while in use; bake again")
 
     def _check(self, nodes: NDArray[np.int64]) -> None:

@@ -1,1 +1,1 @@
-"""Files that are written whole and read with care."""
+"""Files written atomically and read with care."""

@@ -1,8 +1,7 @@
-"""``.npz`` archives: reading ones that may be anything, and writing ones that can be mapped.
+"""``.npz`` archives: untrusted ones read safely, and ones written so that they can be mapped.
 
-numpy writes the members of an archive uncompressed, but wherever they happen to fall. Here each
-array begins at a multiple of 64 bytes, so that a large one can be used where it lies in the file
-(``mmap``) instead of being read whole. ``numpy.load`` reads both kinds.
+numpy writes members uncompressed but unaligned. Here each array begins at a multiple of 64 bytes,
+so that a large one can be memory-mapped instead of read. ``numpy.load`` reads both kinds.
 """
 
 from __future__ import annotations
@@ -22,24 +21,24 @@ from numpy.typing import NDArray
 
 from ..errors import PalpateError
 
-# numpy pads the header of an array to this, so that its numbers are aligned where the member is.
+# Alignment to which numpy pads the header of an array.
 ALIGNMENT = 64
-# The extra field that is known to readers of archives as padding (as of Android's zipalign).
+# Extra field that zip readers know as padding (from Android's zipalign).
 PADDING_FIELD = 0xD935
 FIELD_HEADER = struct.Struct("<HH")
-# A member's own header: its name and its extra field stand between it and the member.
+# Local file header; name and extra field follow it.
 LOCAL_HEADER = struct.Struct("<4s22xHH")
 ZIP64_FIELD_BYTES = 20
 LOCAL_MAGIC = b"PK\x03\x04"
 
 
 class ArchiveError(PalpateError):
-    """An archive that cannot be read. Its message names file and reason; the remedy is to add."""
+    """Unreadable archive. The message names file and reason; callers add the remedy."""
 
 
 @dataclass(frozen=True, eq=False)
 class MappedArray:
-    """An array that lies in a file, of which the system reads what is looked at.
+    """Memory-mapped array.
 
     Attributes
     ----------
@@ -51,16 +50,16 @@ class MappedArray:
     _end: int
 
     @property
-    def is_whole(self) -> bool:
+    def is_complete(self) -> bool:
         """Whether the file still reaches to the array's end.
 
-        To look at an array whose file was cut short since would kill the process.
+        Reading beyond the end of a truncated file would kill the process (SIGBUS).
         """
         return self._mapping.size() >= self._end
 
 
 class Archive:
-    """An open archive; made by :func:`opened`."""
+    """Open archive; made by :func:`opened`."""
 
     def __init__(self, stream: IO[bytes], path: Path) -> None:
         self._stream = stream
@@ -83,7 +82,7 @@ class Archive:
         return array
 
     def map(self, name: str) -> MappedArray:
-        """The array where it lies in the file; the file may be closed and replaced afterwards.
+        """The array, memory-mapped; the file may be closed and replaced afterwards.
 
         Raises
         ------
@@ -116,13 +115,12 @@ class Archive:
 
 @contextmanager
 def opened(path: Path) -> Iterator[Archive]:
-    """The archive at ``path``, as long as the block runs.
+    """The archive at ``path``, open while the block runs.
 
     Raises
     ------
     ArchiveError
-        It cannot be opened, or whatever is done with it in the block finds it damaged, cut short
-        or no archive.
+        It cannot be opened, or is found damaged, truncated or no archive within the block.
     """
     try:
         stream = path.open("rb")
@@ -145,7 +143,7 @@ def read_arrays(path: Path) -> dict[str, NDArray[Any]]:
     Raises
     ------
     ArchiveError
-        It cannot be opened, or is damaged, cut short or no archive.
+        It cannot be opened, or is damaged, truncated or no archive.
     """
     with opened(path) as archive:
         return {name: archive.read(name) for name in archive.names}
@@ -159,7 +157,7 @@ def write_arrays(stream: IO[bytes], arrays: Mapping[str, NDArray[Any]]) -> None:
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_STORED) as archive:
         for name, array in arrays.items():
             member = zipfile.ZipInfo(f"{name}.npy")
-            # Sizes in 64 bits throughout, so that the header's length is known beforehand.
+            # 64-bit sizes throughout, so that the header's length is known in advance.
             header = LOCAL_HEADER.size + len(member.filename.encode()) + ZIP64_FIELD_BYTES
             start = stream.tell() + header + FIELD_HEADER.size
             padding = -start % ALIGNMENT

@@ -1,4 +1,4 @@
-"""How many of the machine's cores this process may use, and how many of them are idle."""
+"""Cores that this process may use, and those of them that are idle."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import sys
 
 import psutil
 
-# How long to look: long enough for the system's clock ticks, which are hundredths of a second.
+# Time of observation: several of the system's clock ticks, which are hundredths of a second.
 LOOK_SECONDS = 0.1
 
 
@@ -23,10 +23,10 @@ def available_cores() -> int:
 
 
 def idle_cores() -> int:
-    """Cores this process may use that no other program works on just now, at least 1.
+    """Cores this process may use that are idle at the moment, at least 1.
 
-    Looks for a tenth of a second, in which this thread sleeps. The load average would count what
-    this process itself did in the minute before.
+    Measured over a tenth of a second, in which this thread sleeps. The load average would count
+    this process's own work of the last minute.
     """
     cores = available_cores()
     if cores == 1:

@@ -1,4 +1,4 @@
-"""How much memory this process could still get without driving the machine into swapping."""
+"""Memory that this process can still get without swapping."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ import psutil
 
 @dataclass(frozen=True)
 class ControlGroup:
-    """Where Linux tells a container its limit and its use of memory.
+    """Files in which Linux states a container's limit and use of memory.
 
-    ``reclaimable`` names the line of ``statistics`` that counts pages of files nobody has used
-    lately: they are part of the use, but are given back when memory is wanted.
+    ``reclaimable`` names the line of ``statistics`` with the inactive page cache: it counts as
+    used, but is freed under memory pressure.
     """
 
     limit: str
@@ -22,7 +22,7 @@ class ControlGroup:
     reclaimable: str
 
     def bytes_left(self, root: Path) -> int | None:
-        """What the limit leaves; None where there is no such group or no limit."""
+        """Bytes below the limit; None where there is no such group or no limit."""
         if not all((root / name).is_file() for name in (self.limit, self.use, self.statistics)):
             return None
         limit = (root / self.limit).read_text(encoding="ascii").strip()
@@ -46,7 +46,7 @@ CONTROL_GROUPS = (
 
 
 def available_memory(groups_root: Path = Path("/sys/fs/cgroup")) -> int:
-    """Bytes that can be had: what the system calls available, or less within a container."""
+    """Bytes available: as the system says, or fewer within a container."""
     left = (group.bytes_left(groups_root) for group in CONTROL_GROUPS)
     system = int(psutil.virtual_memory().available)
     return min([system, *(count for count in left if count is not None)])

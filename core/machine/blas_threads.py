@@ -1,4 +1,4 @@
-"""How many threads BLAS works with, set within the process for as long as a piece of work lasts."""
+"""Number of BLAS threads, set for the duration of a piece of work."""
 
 from __future__ import annotations
 
@@ -11,19 +11,18 @@ from threadpoolctl import ThreadpoolController
 
 from .available_cores import available_cores, idle_cores
 
-# Floating point operations from which on threads are worth waking: ten milliseconds of one. Below,
-# and most of all beside other busy programs, they spend more time on waiting for one another.
+# Floating point operations from which threads pay off: ten milliseconds of one. Below that, and
+# even more on a busy machine, they mostly wait for each other.
 LEAST_FLOPS_FOR_THREADS = 5e8
 
 
 @contextmanager
 def blas_threads(wanted: int | None = None) -> Iterator[int]:
-    """Let BLAS use ``wanted`` threads, or as many as there are idle cores for this process if None.
+    """Let BLAS use ``wanted`` threads; if None, one for each idle core.
 
-    Never more than those cores: threads that wait for one another's core make products slower than
-    one thread alone. Cores that other programs keep busy count as much: beside them two threads
-    were measured to take three times as long as one. Yields the number; what was set before holds
-    again afterwards. All of a process shares it.
+    Never more than there are idle cores: with oversubscribed cores, two threads were measured to
+    take three times as long as one. Yields the number; afterwards the earlier one is restored.
+    The setting is the process's.
     """
     count = idle_cores() if wanted is None else min(wanted, available_cores())
     with _controller().limit(limits=count, user_api="blas"):
@@ -32,9 +31,9 @@ def blas_threads(wanted: int | None = None) -> Iterator[int]:
 
 @contextmanager
 def threads_by_work() -> Iterator[Callable[[float], None]]:
-    """Let BLAS use its threads for large pieces of work only, and one for small ones.
+    """Let BLAS use all its threads for large pieces of work, and one thread for small ones.
 
-    Yields a function to be told the floating point operations that come next.
+    Yields a function that takes the number of floating point operations to come.
     """
     libraries = [
         (library, library.num_threads)
@@ -58,5 +57,5 @@ def threads_by_work() -> Iterator[Callable[[float], None]]:
 
 @cache
 def _controller() -> ThreadpoolController:
-    """Of the libraries loaded by now; finding them takes a millisecond."""
+    """Controller of the libraries loaded so far; finding them takes a millisecond."""
     return ThreadpoolController()

@@ -1,4 +1,4 @@
-"""How fast this machine multiplies matrices, which is what most of a bake's time goes into."""
+"""Speed of matrix products on this machine, which decides how long a bake takes."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from scipy.linalg.blas import dgemm
 
 from .blas_threads import blas_threads
 
-# Large enough to run at full speed, small enough to be measured in some hundredths of a second.
+# Large enough for full speed, small enough for some hundredths of a second.
 SIZE = 640
 RUNS = 3
 
@@ -24,7 +24,7 @@ def dgemm_rate(threads: int | None = None) -> float:
 
     Parameters
     ----------
-    threads : of BLAS; None for as many as there are idle cores for this process.
+    threads : of BLAS; None for one on each idle core.
     """
     with blas_threads(threads):
         factor = np.asfortranarray(np.random.default_rng(1999).random((SIZE, SIZE)))

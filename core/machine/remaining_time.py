@@ -1,26 +1,23 @@
-"""How long work will go on, from how it went so far."""
+"""Estimate of the time left, from the progress so far."""
 
 from __future__ import annotations
 
-# Before so much time and so much of the work have gone by, a rate would be a guess.
+# Least time (s) and share of the work before a rate is more than a guess.
 FIRST_SECONDS = 0.5
 FIRST_SHARE = 0.02
 
-# A new estimate replaces the old one over about so many seconds, so that the figure does not jump.
+# Time constant (s) of smoothing, so that the figure does not jump.
 SMOOTHING_SECONDS = 2.0
 
 
 class RemainingTime:
-    """Seconds to go, from shares that become known one after the other.
-
-    Between two of them the figure counts down with the clock.
-    """
+    """Seconds left, from a sequence of shares done; counts down between two of them."""
 
     def __init__(self) -> None:
         self._first: tuple[float, float] | None = None
         self._newest = (0.0, 0.0)
         self._remaining: float | None = None
-        self._told_at = 0.0
+        self._updated_at = 0.0
 
     def update(self, seconds: float, share: float | None) -> float | None:
         """Seconds that remain when ``share`` is done after ``seconds``; None if unknown yet."""
@@ -38,9 +35,9 @@ class RemainingTime:
         if self._remaining is None:
             self._remaining = estimate
         else:
-            passed = seconds - self._told_at
+            passed = seconds - self._updated_at
             counted_down = max(0.0, self._remaining - passed)
             weight = min(1.0, passed / SMOOTHING_SECONDS)
             self._remaining = counted_down + weight * (estimate - counted_down)
-        self._told_at = seconds
+        self._updated_at = seconds
         return self._remaining

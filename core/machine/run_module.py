@@ -1,6 +1,6 @@
-"""One module of the package as a program of its own: ``python run_module.py MODULE ARGUMENTS``.
+"""Run one module of the package as a program: ``python run_module.py MODULE ARGUMENTS``.
 
-Started by its path, because a child of Blender cannot import the extension by its name there.
+Started by its path, since a child of Blender cannot import the extension by name.
 """
 
 import importlib
@@ -13,7 +13,7 @@ NAME = "palpate"
 
 
 def command(module: str) -> list[str]:
-    """What follows the interpreter so that it runs ``main()`` of ``core.bake.child``, say."""
+    """Arguments for the interpreter to run ``main()`` of a module such as ``core.bake.child``."""
     return [str(Path(__file__).resolve()), module]
 
 
@@ -29,7 +29,7 @@ def _load_package() -> None:
 
 
 if __name__ == "__main__":
-    # Python puts this folder first, and would find its modules under their bare names.
+    # Python puts this folder first on the path: its modules would be found by their bare names.
     sys.path[:] = [folder for folder in sys.path if folder != str(Path(__file__).parent)]
     del sys.argv[0]
     _load_package()

@@ -1,4 +1,4 @@
-"""Being asked to stop: Ctrl-C and termination as something to look at, not an exception."""
+"""Stop requests, Ctrl-C and SIGTERM, as a value to poll instead of an exception."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ WANTED = [number for number in (signal.SIGTERM, signal.SIGINT, HANG_UP) if numbe
 
 @contextlib.contextmanager
 def stopped_by_signals() -> Iterator[list[int]]:
-    """A list that is empty until somebody asks this process to stop. For the main thread only."""
+    """List that stays empty until a stop signal arrives. For the main thread only."""
     received: list[int] = []
 
     def note(number: int, _frame: FrameType | None) -> None:
         received.append(number)
 
-    # Whoever is started by nohup shall outlive the terminal.
+    # Respect nohup.
     wanted = [number for number in WANTED if number != HANG_UP or not _is_ignored(number)]
     before = {number: signal.signal(number, note) for number in wanted}
     try:

@@ -1,1 +1,1 @@
-"""From a surface to tetrahedra."""
+"""Surfaces, and their tetrahedra."""

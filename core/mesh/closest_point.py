@@ -8,14 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-# Pairs of point and candidate triangle looked at together; bounds memory to some 100 MB.
+# Pairs of point and candidate triangle in one batch; bounds memory to some 100 MB.
 POINTS_PER_PASS = 4096
 
 
 @dataclass(frozen=True, eq=False)
 class SurfacePoints:
     """Places on a surface: ``triangle`` (p,), ``alpha`` (p, 3) area coordinates, ``distance`` (p,)
-    in metres from the points asked for, ``position`` (p, 3).
+    in metres from the query points, ``position`` (p, 3).
     """
 
     triangle: NDArray[np.int64]
@@ -26,7 +26,7 @@ class SurfacePoints:
 
 @dataclass(frozen=True, eq=False)
 class _SizeClass:
-    """Triangles of like size: any point of one lies within ``reach`` of its centroid."""
+    """Triangles of similar size: any point of one lies within ``reach`` of its centroid."""
 
     members: NDArray[np.int64]
     tree: cKDTree
@@ -93,7 +93,7 @@ class ClosestPoints:
 def closest_area_coordinates(
     points: NDArray[np.float64], corners: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Area coordinates (p, 3) of the point of each triangle closest to the point beside it.
+    """Area coordinates (p, 3) of the point of triangle i closest to point i.
 
     ``points`` (p, 3), ``corners`` (p, 3, 3). On an edge or a corner the others are exactly zero.
     """
@@ -119,7 +119,7 @@ def closest_area_coordinates(
 def _plane_area_coordinates(
     points: NDArray[np.float64], corners: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Area coordinates of the projections onto the planes; NaN-free, zero for flat triangles."""
+    """Area coordinates of the projections onto the planes; zero for degenerate triangles."""
     i, j, k = corners[:, 0], corners[:, 1], corners[:, 2]
     normal = np.cross(j - i, k - i)
     square = np.einsum("px,px->p", normal, normal)

@@ -1,4 +1,4 @@
-"""What coordinates can be worked with."""
+"""Range of usable coordinates."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from numpy.typing import NDArray
 
 from ..errors import PalpateError
 
-# Far beyond any prop; squares and products of more overflow sooner or later.
+# Far beyond any prop; products of larger numbers may overflow.
 LARGEST_COORDINATE = 1e9
 
 
 def refuse_unusable(what: str, points: NDArray[np.float64]) -> None:
-    """Check that ``points`` (p, 3), metres, of ``what`` are finite and of this world.
+    """Check that ``points`` (p, 3), metres, of ``what`` are finite and in range.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Fewer triangles before tetrahedralization, whose time grows with their number."""
+"""Decimation before tetrahedralization, whose time grows with the number of triangles."""
 
 from __future__ import annotations
 
@@ -7,16 +7,16 @@ import numpy as np
 
 from .surface import Surface
 
-# Diagonal that a surface is scaled to: the thresholds of fast_simplification are absolute, and at a
-# size of 1 or less even collapses that tear the surface out by its own radius pass them.
+# Diagonal that a surface is scaled to: fast_simplification's thresholds are absolute, and at a size
+# of 1 or less they admit collapses that displace the surface by its own radius.
 DIAGONAL = 1e4
 
 
 def decimate(surface: Surface, most_triangles: int) -> Surface:
     """Reduce a surface to about ``most_triangles`` by edge collapse with quadric errors.
 
-    Returns the surface itself where it is small enough already. Where only slivers are left, as at
-    the poles of a fine sphere, more triangles remain than were asked for.
+    Returns the surface itself where it is small enough. Where only slivers are left, as at the
+    poles of a fine sphere, more triangles remain.
     """
     if len(surface.triangles) <= most_triangles:
         return surface

@@ -1,10 +1,10 @@
-"""What fTetWild's log tells about how far it is."""
+"""Progress of fTetWild, read from its log."""
 
 from __future__ import annotations
 
 import re
 
-# Words of its log, in the order they come, and what they mean to a person.
+# Words of its log in order of appearance, and the stages they stand for.
 STAGES = {
     "Starting tetrahedralization": "reading the mesh",
     "collapsing": "simplifying the surface",

@@ -1,4 +1,4 @@
-"""The cube of the paper's Table 1: cells cut into five tetrahedra each, bottom fixed."""
+"""Cube of the paper's Table 1: cells of five tetrahedra each, bottom fixed."""
 
 from __future__ import annotations
 

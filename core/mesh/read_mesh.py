@@ -40,7 +40,7 @@ def read_surface(path: Path, metres_per_unit: float = 1.0) -> Surface:
 
 @dataclass(frozen=True, eq=False)
 class TetFile:
-    """What a file of tetrahedra holds.
+    """Contents of a file of tetrahedra.
 
     Attributes
     ----------
@@ -87,7 +87,7 @@ def read_tets(path: Path, metres_per_unit: float = 1.0) -> TetFile:
 
 
 def _metres(given: NDArray[Any], metres_per_unit: float) -> NDArray[Any]:
-    """Scaled in double precision; what is no number is left to those who check."""
+    """Coordinates in metres, double precision, not checked."""
     is_number = given.dtype.kind in "fiu"
     return given.astype(np.float64) * metres_per_unit if is_number else given
 
@@ -104,14 +104,14 @@ def _node_numbers(fixed: NDArray[Any], node_count: int) -> NDArray[np.int64]:
 
 
 def _read_obj(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    # Names of objects may be in any encoding, and do not matter.
+    # Object names may be in any encoding; they are not used.
     text = path.read_text(encoding="utf-8", errors="replace")
     return _by_trimesh(io.StringIO(text), "obj", skip_materials=True)
 
 
 def _read_stl(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     content = path.read_bytes()
-    # Binary ones may begin with "solid" too; only their length tells.
+    # Binary files may begin with "solid" too; only the length is decisive.
     if len(content) == 84 + 50 * int.from_bytes(content[80:84], "little"):
         return _by_trimesh(io.BytesIO(content), "stl")
     text = content.decode("utf-8", errors="replace")
@@ -130,7 +130,7 @@ def _by_trimesh(
 
 
 def _read_ply(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Read with plyfile, which takes files that mix triangles, quads and larger polygons."""
+    """Surface read by plyfile, which takes mixed triangles, quads and larger polygons."""
     from plyfile import PlyData, PlyListProperty
 
     data = PlyData.read(path)

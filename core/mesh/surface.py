@@ -1,4 +1,4 @@
-"""The surface a body is made from: triangles in metres, checked for what can become a solid."""
+"""The surface a body is made from: triangles in metres, checked to be fit for a solid."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ FLATTEST = 1e-3
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """A triangle soup that may be open, overlapping or in several parts.
+    """Triangle soup that may be open, overlapping or in several parts.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""The parts a surface consists of, and which of them lie inside others, as a bone does in flesh."""
+"""Connected parts of a surface, and which lie inside others, as a bone in flesh."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ from .decimate import decimate
 from .surface import Surface
 from .winding_volume import is_inside
 
-# Which side of a part a place is on does not need more of its triangles than this.
+# Triangles of a part at most for deciding inside or outside.
 TRIANGLES_FOR_SIDES = 400
 
-# So many places of a part, spread over it, say whether it lies inside another.
+# Sample points of a part that decide whether it lies inside another.
 PLACES_OF_A_PART = 64
 
 
 @dataclass(frozen=True, eq=False)
 class SurfacePart:
-    """Triangles that hang together.
+    """Connected triangles.
 
     Attributes
     ----------
     triangles : int64 (f, 3), vertex numbers of the surface.
-    outline : the part alone, with fewer triangles; enough to tell inside from outside.
+    outline : the part alone, decimated; for deciding inside or outside.
     """
 
     triangles: NDArray[np.int64]
@@ -47,7 +47,7 @@ class SurfacePart:
         return self.outline.vertices.min(axis=0), self.outline.vertices.max(axis=0)
 
     def encloses(self, points: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Which of ``points`` (p, 3) it encloses, (p,)."""
+        """Mask (p,) of the ``points`` (p, 3) that it encloses."""
         low, high = self.box
         near = np.flatnonzero(((points >= low) & (points <= high)).all(axis=1))
         enclosed = np.zeros(len(points), dtype=np.bool_)
@@ -66,7 +66,7 @@ class SurfacePart:
 
 @dataclass(frozen=True, eq=False)
 class NestedParts:
-    """A surface taken apart.
+    """Parts of a surface, by nesting.
 
     Attributes
     ----------
@@ -79,7 +79,7 @@ class NestedParts:
 
 
 def nested_parts(surface: Surface) -> NestedParts:
-    """Tell the inner parts of a surface from the outer ones."""
+    """Separate a surface's inner parts from its outer ones."""
     parts = surface_parts(surface)
     inner = [
         any(part.lies_in(larger) for larger in parts[index + 1 :])
@@ -94,7 +94,7 @@ def nested_parts(surface: Surface) -> NestedParts:
 
 
 def surface_parts(surface: Surface) -> list[SurfacePart]:
-    """All parts, the smallest first. Coinciding vertices hang together: a seam parts nothing."""
+    """All parts, the smallest first. Coinciding vertices are connected: seams do not separate."""
     corners = surface.coinciding()[1][surface.triangles]
     count = int(corners.max()) + 1
     links = coo_array(

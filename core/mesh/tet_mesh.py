@@ -1,4 +1,4 @@
-"""A checked tetrahedral mesh and what follows from it: boundary, surface nodes, volume."""
+"""Checked tetrahedral mesh: its boundary, surface nodes and volume."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ SMALLEST_RELATIVE_VOLUME = 1e-12
 
 @dataclass(frozen=True, eq=False)
 class TetMesh:
-    """Four-node tetrahedra. Build one with :meth:`checked`, which refuses what FEM cannot use.
+    """Four-node tetrahedra. Build with :meth:`checked`, which refuses what FEM cannot use.
 
     Attributes
     ----------
@@ -96,7 +96,7 @@ class TetMesh:
 
     @cached_property
     def node_components(self) -> NDArray[np.int64]:
-        """For each node the number of the connected piece it belongs to, (N,)."""
+        """Number of the connected piece of each node, (N,)."""
         first = np.repeat(self.tets[:, 0], 3)
         links = coo_array(
             (np.ones(first.size, dtype=np.int8), (first, self.tets[:, 1:].ravel())),
@@ -106,7 +106,7 @@ class TetMesh:
 
     @property
     def component_count(self) -> int:
-        """How many pieces the body consists of; pieces that share no node move freely."""
+        """Number of connected pieces; pieces that share no node move freely."""
         return int(self.node_components.max()) + 1
 
 

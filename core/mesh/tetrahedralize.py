@@ -1,4 +1,4 @@
-"""From a surface to tetrahedra by fTetWild, and a check that the answer fits the question.
+"""Tetrahedralization of a surface by fTetWild, and a check of the fit.
 
 fTetWild cannot be interrupted and writes files into the working directory, so these functions are
 meant to run in the child process of :mod:`.bake_job`, inside a temporary folder.
@@ -19,13 +19,13 @@ from .surface import Surface
 from .tet_mesh import OUTWARD_FACES, TetMesh, signed_volumes
 from .winding_volume import enclosed_volume, is_inside, sampled_volume
 
-# Face-connected crumbs below this share of the volume are debris of the envelope, not parts.
+# Face-connected pieces below this share of the volume are debris of the envelope, not parts.
 CRUMB_SHARE = 1e-3
 
-# Outside these bounds the tetrahedra fill something else than what the surface encloses.
+# Bounds of the volume ratio; outside, the tetrahedra fill something else.
 VOLUME_RATIO_BOUNDS = (0.5, 1.5)
 
-# A larger difference asks for a second opinion on what the surface encloses.
+# A larger difference is checked against the winding number.
 DOUBTFUL_VOLUME_ERROR = 0.1
 
 # Input vertices farther than this share of the diagonal may be walls between merged parts.
@@ -34,7 +34,7 @@ BURIED_DISTANCE = 0.01
 
 @dataclass(frozen=True)
 class Fit:
-    """How well tetrahedra fit the surface they were made from.
+    """Fit of tetrahedra to the surface they were made from.
 
     Attributes
     ----------
@@ -92,7 +92,7 @@ def check_fit(mesh: TetMesh, surface: Surface, shell: Surface) -> Fit:
     """
     volume = enclosed_volume(shell)
     if abs(mesh.volume - volume) > DOUBTFUL_VOLUME_ERROR * volume:
-        # Perhaps the surface passes through itself; this costs a second or two.
+        # The surface may intersect itself; this costs a second or two.
         volume = sampled_volume(shell)
     ratio = mesh.volume / volume if volume > 0 else float("inf")
     if not VOLUME_RATIO_BOUNDS[0] < ratio < VOLUME_RATIO_BOUNDS[1]:
@@ -109,7 +109,7 @@ def check_fit(mesh: TetMesh, surface: Surface, shell: Surface) -> Fit:
 
 
 def _farthest_outside(surface: Surface, body: Surface) -> float:
-    """Largest distance of the input's vertices from the body; those buried inside do not count."""
+    """Largest distance of the input's vertices from the body; those inside do not count."""
     used = surface.vertices[np.unique(surface.triangles)]
     distance = ClosestPoints(body.vertices, body.triangles).query(used).distance
     far = np.flatnonzero(distance > BURIED_DISTANCE * surface.diagonal)
@@ -118,7 +118,7 @@ def _farthest_outside(surface: Surface, body: Surface) -> float:
 
 
 def _cleaned(nodes: NDArray[np.float64], tets: NDArray[np.int64]) -> TetMesh:
-    """Right winding, no crumbs, no unused nodes."""
+    """Tetrahedra of positive orientation, without debris and unused nodes."""
     volumes = signed_volumes(nodes, tets)
     tets = np.where((volumes < 0)[:, None], tets[:, [0, 1, 3, 2]], tets)
     piece = _face_connected_pieces(tets)
@@ -129,7 +129,7 @@ def _cleaned(nodes: NDArray[np.float64], tets: NDArray[np.int64]) -> TetMesh:
 
 
 def _face_connected_pieces(tets: NDArray[np.int64]) -> NDArray[np.int64]:
-    """For each tetrahedron the number of the piece it is joined to through faces, (M,)."""
+    """Number of the face-connected piece of each tetrahedron, (M,)."""
     faces = np.sort(tets[:, OUTWARD_FACES].reshape(-1, 3), axis=1)
     owner = np.repeat(np.arange(len(tets)), 4)
     order = np.lexsort(faces.T)

@@ -1,4 +1,4 @@
-"""How much a surface encloses, also when it is open or overlaps itself."""
+"""Enclosed volume of a surface, also of an open or self-intersecting one."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ PAIRS_PER_PASS = 1_000_000
 def enclosed_volume(surface: Surface) -> float:
     """Volume in cubic metres that a welded surface encloses.
 
-    Exact (divergence theorem) for one closed piece that does not pass through itself: there, what
-    overlaps would count twice. Otherwise see :func:`sampled_volume`.
+    Exact (divergence theorem) for one closed piece without self-intersection, where overlaps
+    would count twice. Otherwise see :func:`sampled_volume`.
     """
     if surface.is_closed and surface.piece_count == 1:
         return abs(surface.signed_volume)
@@ -38,7 +38,7 @@ def sampled_volume(surface: Surface) -> float:
 
 
 def is_inside(points: NDArray[np.float64], surface: Surface) -> NDArray[np.bool_]:
-    """Which of ``points`` (p, 3) the surface encloses, (p,)."""
+    """Mask (p,) of the ``points`` (p, 3) that the surface encloses."""
     return np.abs(winding_numbers(points, surface)) > 0.5
 
 

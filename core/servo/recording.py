@@ -18,8 +18,8 @@ import palpate_servo
 from numpy.typing import NDArray
 
 from ..errors import PalpateError
+from ..files.atomic_file import atomic_file, refuse_missing_folder, refuse_unwritable
 from ..files.npz_archive import ArchiveError, read_arrays, write_arrays
-from ..files.whole_file import refuse_missing_folder, refuse_unwritable, whole_file
 
 FORMAT = "palpate recording 1"
 SUFFIXES = (".csv", ".npz")
@@ -140,7 +140,7 @@ def write_recording(
         raise ValueError(f"samples are of type {samples.dtype}, not {DTYPE}")
     if len(samples) and samples["state"].max() >= len(states):
         raise ValueError(f"state {samples['state'].max()} is none of {tuple(states)}")
-    with whole_file(path) as file:
+    with atomic_file(path) as file:
         if path.suffix.lower() == ".csv":
             _write_csv(file, samples, states)
         else:

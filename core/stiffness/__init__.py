@@ -1,1 +1,1 @@
-"""The stiffness matrix K, and what is held: equations (1) to (3)."""
+"""The stiffness matrix K and its pins: equations (1) to (3)."""

@@ -17,8 +17,8 @@ from .strain_smoothing import (
     tet_domains,
 )
 
-# Young's modulus of one place may differ from the body's by this factor, up or down: enough for
-# steel in foam, and far from where rounding would hide the softer part.
+# Largest factor, up or down, on the body's Young's modulus: enough for steel in foam, and far from
+# where rounding would hide the softer part.
 LARGEST_SCALE = 1e6
 
 
@@ -69,11 +69,11 @@ def assemble(
 def _smoothed(
     mesh: TetMesh, first_lame: float, shear_modulus: float, young_scale: NDArray[np.float64]
 ) -> bsr_array:
-    """Shear averaged around edges, change of volume around nodes: selective ES/NS-FEM."""
+    """Stiffness with shear averaged around edges, volume around nodes: selective ES/NS-FEM."""
     by_edges = _products(mesh, edge_domains(mesh.tets, mesh.tet_volumes, young_scale))
     if first_lame <= 0:
-        # Cork and auxetic foam have no volume to keep, and a negative term must not be averaged
-        # over other domains than the positive ones that outweigh it.
+        # Cork and auxetic foam: a negative volume term must be averaged over the same domains as
+        # the positive ones that outweigh it.
         return isotropic(by_edges, first_lame, shear_modulus)
     by_nodes = _products(mesh, node_domains(mesh.tets, mesh.tet_volumes, young_scale))
     sum_of_both: bsr_array = isotropic(by_edges, 0.0, shear_modulus) + first_lame * by_nodes

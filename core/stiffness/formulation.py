@@ -1,4 +1,4 @@
-"""Which finite element formulation makes the stiffness matrix, and which one suits a material."""
+"""Finite element formulations, and the one that suits a material."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ SMOOTHED: Final = "smoothed"
 FORMULATIONS: Final = (LINEAR, SMOOTHED)
 AUTOMATIC: Final = "auto"
 
-# From here on linear tetrahedra are far too stiff for what they stand for (docs/materials.md).
+# From here on linear tetrahedra lock (docs/materials.md).
 LOCKING_POISSON_RATIO: Final = 0.4
 
 
 def formulation_for(choice: str, poisson_ratio: float) -> str:
-    """The formulation, one of :data:`FORMULATIONS`, that ``choice`` means for a material.
+    """Formulation, one of :data:`FORMULATIONS`, for a material.
 
     ``"auto"`` takes linear tetrahedra below a Poisson's ratio of :data:`LOCKING_POISSON_RATIO` and
-    the smoothed ones from there on; any other choice stands for itself.
+    smoothed ones from there on; any other choice is itself.
 
     Raises
     ------
     PalpateError
-        A choice that does not exist; names those that do.
+        Unknown choice; names those that exist.
     """
     if choice == AUTOMATIC:
         return SMOOTHED if poisson_ratio >= LOCKING_POISSON_RATIO else LINEAR

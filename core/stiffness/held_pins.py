@@ -1,4 +1,4 @@
-"""Whether pins hold a body, so that its stiffness has an inverse."""
+"""Check that pins hold a body, so that its stiffness has an inverse."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ..mesh.tet_mesh import TetMesh
 
 
 def pins_checked(mesh: TetMesh, fixed: NDArray[np.int64]) -> NDArray[np.int64]:
-    """The pinned nodes sorted and unique, if they exist and hold every piece of the body.
+    """Pinned nodes, sorted and unique, checked to exist and to hold every piece of the body.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What is pinned: rules that a person states, turned into node numbers of the body."""
+"""Pins: rules stated by the user, and the node numbers that follow from them."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def pinned_nodes(
     ----------
     surface : the input surface that :class:`PinWeights` refer to, None for a body given as
         tetrahedra.
-    places : what :func:`places_on` gives for this mesh and surface, if it is known already.
+    places : :func:`places_on` of this mesh and surface, if already known.
 
     Raises
     ------
@@ -63,12 +63,12 @@ def pinned_nodes(
 
 
 def places_on(surface: Surface, mesh: TetMesh) -> SurfacePoints:
-    """Where the body's surface nodes lie on the surface it was made from: one place a node."""
+    """Places of the body's surface nodes on the surface it was made from, one a node."""
     return ClosestPoints(surface.vertices, surface.triangles).query(mesh.nodes[mesh.surface_nodes])
 
 
 def fraction_checked(fraction: float) -> float:
-    """``fraction`` of a :class:`PinBelow`, if it can be one.
+    """``fraction`` of a :class:`PinBelow`, checked.
 
     Raises
     ------
@@ -86,7 +86,7 @@ def fraction_checked(fraction: float) -> float:
 def _below(pins: PinBelow, mesh: TetMesh) -> NDArray[np.int64]:
     fraction_checked(pins.fraction)
     height = mesh.nodes[mesh.surface_nodes, pins.axis]
-    # The last term keeps exactly level bottoms whole despite rounding.
+    # The last term makes sure that all of a level bottom is pinned despite rounding.
     limit = height.min() + (pins.fraction + 1e-9) * np.ptp(height)
     low: NDArray[np.int64] = mesh.surface_nodes[height <= limit]
     return low

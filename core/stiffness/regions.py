@@ -1,4 +1,4 @@
-"""Places of a body that are stiffer or softer than the rest, as factors on Young's modulus."""
+"""Stiffer and softer regions of a body, as factors on Young's modulus."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .assembly import LARGEST_SCALE, young_scale_checked
 
 @dataclass(frozen=True, eq=False)
 class StiffRegion:
-    """A region painted on the input surface's vertices.
+    """Region painted on the input surface's vertices.
 
     Attributes
     ----------
@@ -32,7 +32,7 @@ class StiffRegion:
 
 @dataclass(frozen=True, eq=False)
 class TetScale:
-    """Factors on Young's modulus, float64 (M,), for a body that is given as tetrahedra."""
+    """Factors on Young's modulus, float64 (M,), for a body given as tetrahedra."""
 
     values: NDArray[np.float64]
 
@@ -42,15 +42,14 @@ def young_scale(
 ) -> NDArray[np.float64]:
     """Factor on Young's modulus for each tetrahedron, (M,).
 
-    Painted weights reach into the body like this: what an inner part of the surface encloses (a
-    bone inside flesh) takes the weight of the nearest place on that part; everything else takes the
-    weight of the nearest place on the outer surface, so that a bone leaves its flesh soft.
+    Inside an inner part of the surface (a bone in flesh) the weight is that of the nearest place
+    on this part; everywhere else of the nearest place on the outer surface.
 
     Parameters
     ----------
     stiffness : painted on a surface, or one factor for each tetrahedron.
     mesh : the body.
-    surface : the one that was painted; None for a body given as tetrahedra.
+    surface : the painted one; None for a body given as tetrahedra.
 
     Raises
     ------

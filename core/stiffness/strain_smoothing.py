@@ -1,9 +1,9 @@
 """Smoothed strains: averages of the gradients of tetrahedra over the domains around edges or nodes.
 
-Linear tetrahedra have one volume constraint each where a material hardly changes its volume, more
-than they have displacements to satisfy them with, so they lock. Averaged around nodes there is one
-constraint a node. Shear averaged around edges bends nearly as softly as quadratic elements do, and
-keeps the strain energy positive for every deformation, which averaging it around nodes does not.
+Nearly incompressible linear tetrahedra have one volume constraint each, more than there are
+displacements to satisfy them, so they lock. Averaged around nodes there is one constraint a node.
+Shear averaged around edges bends nearly as softly as quadratic elements, and keeps the strain
+energy positive for every deformation, which averaging around nodes does not.
 
 References
 ----------
@@ -23,20 +23,20 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import bsr_array, csr_array, diags_array
 
-# The corners that each of a tetrahedron's six edges joins.
+# Corners of a tetrahedron's six edges.
 TET_EDGES = np.array([[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]])
 
 # Tetrahedra around one edge or node whose moduli differ by more than this factor are not averaged
 # with each other: bone and the fat beside it strain differently.
 LARGEST_SPREAD = 4.0
 
-# Moduli that differ by rounding alone stay together, wherever a limit happens to fall.
+# Relative difference of moduli that is rounding.
 ROUNDING = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
 class SmoothingDomains:
-    """Parts of the body over which strain is averaged; together they fill it once.
+    """Domains over which strain is averaged; they partition the body.
 
     Attributes
     ----------
@@ -54,7 +54,7 @@ class SmoothingDomains:
 
 
 def tet_domains(volumes: NDArray[np.float64], young_scale: NDArray[np.float64]) -> SmoothingDomains:
-    """Each tetrahedron its own domain: no smoothing. ``volumes`` (M,), ``young_scale`` (M,)."""
+    """One domain a tetrahedron: no smoothing. ``volumes`` (M,), ``young_scale`` (M,)."""
     return SmoothingDomains(diags_array(volumes, format="csr"), young_scale)
 
 
@@ -107,7 +107,7 @@ def gradient_products(
 def _domains(
     groups: NDArray[np.int64], volumes: NDArray[np.float64], young_scale: NDArray[np.float64]
 ) -> SmoothingDomains:
-    """Domains of the tetrahedra that name the same group (M, c), apart where moduli are."""
+    """Domains of tetrahedra with the same group (M, c), split where moduli differ."""
     tet_count, per_tet = groups.shape
     members = np.repeat(np.arange(tet_count), per_tet)
     group = np.unique(groups, return_inverse=True)[1].ravel()
@@ -118,7 +118,7 @@ def _domains(
     domain = np.unique(group * (level.max() + 1) + level, return_inverse=True)[1]
     share = np.repeat(volumes / per_tet, per_tet)
     count = int(domain.max()) + 1
-    # Narrow indices: those of K, the longest there are, take their type from here.
+    # 32-bit indices: those of K, the largest arrays, inherit their type from here.
     places = domain.astype(np.int32), members.astype(np.int32)
     shares = csr_array((share, places), shape=(count, tet_count))
     total = np.bincount(domain, weights=share)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ...body.soft_body import SoftBody
 from ...errors import CancelledError
-from ...files.whole_file import UnwritableError
+from ...files.atomic_file import UnwritableError
 from ..solid.free_solid import FreeSolid
 from .newton_table import newton_column, usual_largest_force
 from .outward_filling import OutwardFilling

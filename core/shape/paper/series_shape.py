@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ...body.soft_body import SoftBody
 from ...errors import PalpateError
-from ...files.whole_file import UnwritableError
+from ...files.atomic_file import UnwritableError
 from ...stiffness.freedoms import freedoms
 from ..solid.free_solid import FreeSolid
 from .continued_powers import continued_powers

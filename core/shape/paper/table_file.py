@@ -18,8 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import PalpateError
+from ...files.atomic_file import atomic_file
 from ...files.npz_archive import ArchiveError, read_arrays, write_arrays
-from ...files.whole_file import whole_file
 
 FORMAT = "palpate-table"
 VERSION = 1
@@ -50,7 +50,7 @@ def write_table(path: Path, kind: str, key: str, arrays: Mapping[str, NDArray[An
         "key": np.array(key),
         "checksum": np.array(_checksum(kind, key, arrays)),
     }
-    with whole_file(path, make_folders=True) as file:
+    with atomic_file(path, make_folders=True) as file:
         write_arrays(file, head | dict(arrays))
 
 

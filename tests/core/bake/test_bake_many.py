@@ -14,7 +14,7 @@ from palpate.core.bake.lease import Lease, lease
 from palpate.core.bake.many import BakeTask, bake_many
 from palpate.core.bake.steps import BakeSettings, bake
 from palpate.core.body import body_file
-from palpate.core.files.whole_file import UnwritableError
+from palpate.core.files.atomic_file import UnwritableError
 from palpate.core.mesh.surface import Surface
 from palpate.core.stiffness.pins import PinNodes
 

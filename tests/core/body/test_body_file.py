@@ -9,7 +9,7 @@ import pytest
 
 from palpate.core.body import body_file
 from palpate.core.body.body_file import BodyFileError, body_key
-from palpate.core.files.whole_file import UnwritableError
+from palpate.core.files.atomic_file import UnwritableError
 
 
 @pytest.fixture

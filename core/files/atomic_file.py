@@ -1,4 +1,4 @@
-"""Writing files whole or not at all."""
+"""Atomic writing of files."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from ..errors import PalpateError
 
 
 class UnwritableError(PalpateError):
-    """A place where a file cannot be put."""
+    """A target that cannot be written."""
 
 
 def refuse_unwritable(target: Path) -> None:
-    """Check that a file could be put at ``target``, before the work for it is spent.
+    """Check that ``target`` could be written, before the work for it is spent.
 
     Raises
     ------
@@ -42,12 +42,12 @@ def refuse_unwritable(target: Path) -> None:
 
 
 def refuse_missing_folder(target: Path) -> None:
-    """Check that the folder of ``target`` is there, where none is to be made.
+    """Check that the folder of ``target`` exists, where none is to be made.
 
     Raises
     ------
     UnwritableError
-        It is not.
+        It does not.
     """
     folder = target.absolute().parent
     if not folder.exists():
@@ -55,10 +55,10 @@ def refuse_missing_folder(target: Path) -> None:
 
 
 @contextmanager
-def whole_file(target: Path, *, make_folders: bool = False) -> Iterator[IO[bytes]]:
-    """A file that becomes ``target`` in one step when all went well, and vanishes otherwise.
+def atomic_file(target: Path, *, make_folders: bool = False) -> Iterator[IO[bytes]]:
+    """New file that replaces ``target`` when the block succeeds, and is deleted otherwise.
 
-    Where ``target`` is a symbolic link, the file it leads to is replaced.
+    A symbolic link is followed.
 
     Raises
     ------
@@ -86,5 +86,5 @@ def whole_file(target: Path, *, make_folders: bool = False) -> Iterator[IO[bytes
 
 
 def _followed(target: Path) -> Path:
-    # Path.resolve raises on links in a circle, before Python 3.13.
+    # Before Python 3.13 Path.resolve raises on circular links.
     return Path(os.path.realpath(target))
