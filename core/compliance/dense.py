@@ -1,4 +1,4 @@
-"""The compliance as the paper has it: every number of L stored."""
+"""Dense compliance, as in the paper: every number of L stored."""
 
 from __future__ import annotations
 
@@ -8,17 +8,16 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg.blas import dgemv, sgemv
 
-# Bytes of a stored table are this times the square of the free surface nodes: nine float32 numbers
-# for each pair of them.
+# Bytes of a stored table for each pair of free surface nodes: nine float32 numbers.
 BYTES_PER_PAIR = 36
 
-# Nodes whose columns are added up in the table's precision, before rounding could add up too.
+# Nodes whose columns are summed in the table's precision before rounding errors matter.
 NODES_SUMMED = 32
 
 
 @dataclass(frozen=True, eq=False)
 class DenseCompliance:
-    """A :class:`palpate.core.compliance.protocol.Compliance` that holds the whole of L.
+    """Compliance that holds the full table L.
 
     Attributes
     ----------
@@ -68,9 +67,9 @@ class DenseCompliance:
     ) -> NDArray[np.float64]:
         """Displacements (n, 3) under ``nodal_forces`` (k, 3) on ``nodes`` (k,); equation (15).
 
-        Without ``nodes`` there is one force for every node, (n, 3). The table's own precision adds
-        up the columns of up to 32 nodes, float64 the sums of these: nine columns take little longer
-        than copying them, and float32 costs about 1e-7 of the largest displacement.
+        Without ``nodes`` there is one force for every node, (n, 3). Columns of up to 32 nodes are
+        summed in the table's precision, these sums in float64: about as fast as a copy of the
+        columns, with an error of 1e-7 of the largest displacement.
         """
         loaded = np.arange(self.node_count) if nodes is None else nodes
         forces = np.asarray(nodal_forces, dtype=self.table.dtype).reshape(-1, 3)
@@ -85,11 +84,11 @@ class DenseCompliance:
     def _moved_by_few(
         self, nodes: NDArray[np.int64], forces: NDArray[np.floating]
     ) -> NDArray[np.float64]:
-        """Displacements (3n,) under forces (k, 3), added up in the table's precision."""
+        """Displacements (3n,) under forces (k, 3), summed in the table's precision."""
         if not len(nodes):
             return np.zeros(3 * self.node_count)
         gemv = sgemv if self.table.dtype == np.float32 else dgemv
-        # A node's columns lie together, as BLAS wants them: (3n, 3) in Fortran order.
+        # A node's columns are contiguous, (3n, 3) in Fortran order, as BLAS needs them.
         moved = gemv(1.0, self.table[nodes[0]].T, forces[0])
         for node, force in zip(nodes[1:], forces[1:], strict=True):
             gemv(1.0, self.table[node].T, force, 1.0, moved, overwrite_y=True)

@@ -1,4 +1,4 @@
-"""A dense compliance that stays in its file, of which only the touched columns are read."""
+"""Dense compliance mapped from its file: only the columns in use are read."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ def node_checksums(table: NDArray[np.float32]) -> NDArray[np.uint8]:
 
 @dataclass(frozen=True, eq=False)
 class MappedCompliance:
-    """A :class:`palpate.core.compliance.protocol.Compliance` whose table lies in a body file.
+    """Compliance whose table is mapped from a body file.
 
-    Every method checks the columns it looks at when they are looked at for the first time, and that
-    the file has not been cut short since it was opened.
+    Every method checks columns before their first use, and that the file has not been truncated
+    since it was opened.
 
     Attributes
     ----------
@@ -58,7 +58,7 @@ class MappedCompliance:
 
     @property
     def table(self) -> NDArray[np.float32]:
-        """The whole table, read and checked if it was not yet."""
+        """The full table, checked."""
         self._check(np.arange(self.node_count))
         table: NDArray[np.float32] = self.mapped_table.array
         return table
@@ -101,12 +101,12 @@ class MappedCompliance:
         return np.zeros(self.node_count, dtype=bool)
 
     def check_length(self) -> None:
-        """Make sure that the file still has the whole table.
+        """Make sure that the file still has the full table.
 
         Raises
         ------
         BodyFileError
-            It was cut short.
+            It was truncated.
         """
         if not self.mapped_table.is_complete:
             raise BodyFileError(f"{self.file}: it was cut short while in use; bake again")
@@ -117,7 +117,7 @@ class MappedCompliance:
         Raises
         ------
         BodyFileError
-            They are not, or the file was cut short.
+            They are not, or the file was truncated.
         """
         self.check_length()
         if self._is_checked[nodes].all():

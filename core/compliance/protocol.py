@@ -1,7 +1,6 @@
-"""The inverse stiffness of the free surface nodes, L of the paper's equations (4) to (8).
+"""Interface of the compliance, L of the paper's equations (4) to (8), in all its forms.
 
-Several forms of it exist; what touches a body knows only this interface. A force of 1 N on a body
-of Young's modulus 1 Pa is the unit throughout: divide displacements by the real modulus.
+All values are for a Young's modulus of 1 Pa: divide displacements by the real modulus.
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ class Compliance(Protocol):
 
     @property
     def form(self) -> str:
-        """What kind this is, as files and panels name it: ``dense`` or ``compressed``."""
+        """Name of the form in files and panels: ``dense`` or ``compressed``."""
         ...
 
     @property
@@ -35,7 +34,7 @@ class Compliance(Protocol):
 
     @property
     def nbytes(self) -> int:
-        """Bytes that the numbers of this form take."""
+        """Bytes of the numbers of this form."""
         ...
 
     def block(self, i: int, j: int) -> NDArray[np.float64]:

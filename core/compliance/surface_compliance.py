@@ -1,4 +1,4 @@
-"""From the stiffness matrix to the compliance of the free surface (paper, eq. 4 to 8)."""
+"""Compliance of the free surface from the stiffness matrix (paper, eq. 4 to 8)."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def surface_compliance(
     stiffness : (3N, 3N) at E = 1 Pa, from :func:`palpate.core.stiffness.assembly.assemble`.
     fixed : numbers of the pinned nodes.
     progress : called with the share of the time done, 0 to 1; may raise to cancel.
-    dtype : how the result is stored; the computation is float64.
+    dtype : of the result; the computation is float64.
 
     Raises
     ------

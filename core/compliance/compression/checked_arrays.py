@@ -1,4 +1,4 @@
-"""Arrays of a body file, looked at before anything is read by them."""
+"""Validation of the compressed arrays of a body file."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ...errors import PalpateError
 
 PREFIX = "compressed_"
 
-# Kinds of numbers allowed for each array, and its number of axes.
+# Allowed kinds of numbers of each array, and its number of axes.
 LAYOUT: dict[str, tuple[tuple[type[np.generic], ...], int]] = {
     "column_error": ((np.float64,), 0),
     "places": ((np.int32,), 1),

@@ -1,7 +1,7 @@
-"""What becomes of the exact columns of one cluster: near blocks, a basis, the projected far part.
+"""Reduction of one cluster's exact columns: near blocks, a basis, the projected far part.
 
-All of it in scaled numbers, s_i being about the norm of column i, so that an error of one size is
-one relative error for every column, of a soft ear as of a stiff foot. Far parts are
+Everything is scaled, s_i being about the norm of column i, so that errors are relative to their
+column, of a soft ear as of a stiff foot. Far parts are
 L_ij / (s_i s_j); near blocks, where L_ii and L_jj set the size of L_ij, are L_ij / sqrt(s_i s_j).
 """
 
@@ -17,18 +17,18 @@ from ...errors import PalpateError
 from .clusters import Clusters
 from .column_source import ColumnSource
 
-# A basis is never cut to anything but whole tiles.
+# The rank of a basis is a multiple of this.
 TILE = 8
 
 LARGEST_16_BITS = 32_767
 
-# Clusters whose scale is estimated together: as many columns as the largest cluster has.
+# Clusters whose scale is estimated together: as many columns as a largest cluster has.
 SAMPLED_AT_ONCE = 32
 
 
 @dataclass(frozen=True, eq=False)
 class NearBlock:
-    """The block between two neighbours, whole: ``step * numbers`` (3a, 3b), scaled."""
+    """Full block between two neighbours: ``step * numbers`` (3a, 3b), scaled."""
 
     row: int
     numbers: NDArray[np.int16] | NDArray[np.float32]
@@ -37,12 +37,12 @@ class NearBlock:
 
 @dataclass(frozen=True, eq=False)
 class ClusterColumns:
-    """All that is kept of a cluster's columns.
+    """Reduced columns of a cluster.
 
     Attributes
     ----------
     diagonal : (a, 3, 3), the cluster's own blocks L_ii, exact, not scaled.
-    norms : (3a,), of the whole columns, exact.
+    norms : (3a,), of the full columns, exact.
     near : blocks with this cluster and with earlier neighbours; the 3 x 3 diagonal is zero in them.
     basis : (3a, k) orthonormal columns, the most important first, and zeros until k is a multiple
         of 8.
@@ -62,7 +62,7 @@ class ClusterColumns:
 
 @dataclass(frozen=True, eq=False)
 class ClusterTask:
-    """The work for one cluster, alike in this process or in any other.
+    """Reduction of a cluster, to be called with its number; picklable.
 
     Attributes
     ----------
@@ -144,7 +144,7 @@ class ClusterTask:
         return NearBlock(row, rounded.astype(np.int16), step)
 
     def _basis(self, cluster: int, scaled: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Eigenvectors of the far part's Gram matrix, as many as its columns need.
+        """Leading eigenvectors of the far part's Gram matrix, as many as its columns need.
 
         A block may err by a share of the softer cluster's scale: then it is right for both.
         """
@@ -189,10 +189,9 @@ def cluster_softness(clusters: Clusters, scale: NDArray[np.float64]) -> NDArray[
 def estimated_scale(source: ColumnSource, clusters: Clusters) -> NDArray[np.float64]:
     """About the norm of every column of L, (3n,), cluster after cluster, from one node a cluster.
 
-    L is symmetric, so a row over a sample of columns tells what a column has in far clusters. What
-    it has in near ones is a peak that such a row may miss or hit; so that part is the sampled
-    column's, as many times as L_ii is larger. Only the choice of bases and steps rests on it; what
-    is promised is measured on exact columns.
+    L is symmetric, so a row over a sample of columns estimates a column's part in far clusters. The
+    near part peaks where such a row may miss it, and is taken from the sampled column, scaled by
+    L_ii. Only the choice of bases and steps depends on it; errors are measured on exact columns.
     """
     sample = np.array([nodes[len(nodes) // 2] for nodes in clusters.members])
     sizes = np.diff(clusters.starts) // 3

@@ -1,4 +1,4 @@
-"""Nodes put into clusters of neighbours, and which clusters lie too near to be smooth."""
+"""Clusters of nodes, and the pairs too near for a smooth interaction."""
 
 from __future__ import annotations
 
@@ -10,22 +10,22 @@ from numpy.typing import NDArray
 
 from ...stiffness.freedoms import freedoms
 
-# Nodes in a cluster at most. Larger clusters make more of the body near, smaller ones repeat the
-# same patterns in more bases; 32 is the flat minimum on bodies of 1,000 to 6,000 surface nodes.
+# Nodes in a cluster at most: larger clusters mean more near blocks, smaller ones more bases; 32 is
+# the flat minimum of memory on bodies of 1,000 to 6,000 surface nodes.
 LARGEST_CLUSTER = 32
 
-# Clusters are near while the distance of their middles is below the sum of their radii times this.
+# Clusters are near if their centres are closer than this times the sum of their radii.
 REACH = 1.0
 
 
 @dataclass(frozen=True, eq=False)
 class Clusters:
-    """A partition of n nodes.
+    """Partition of n nodes.
 
     Attributes
     ----------
     members : for each cluster the nodes in it, (at most 32,) each.
-    near : bool (q, q), whether two of the q clusters are neighbours; symmetric, each with itself.
+    near : bool (q, q), whether two clusters are neighbours; symmetric, true on the diagonal.
     """
 
     members: tuple[NDArray[np.int64], ...]
@@ -38,17 +38,17 @@ class Clusters:
 
     @cached_property
     def freedoms(self) -> NDArray[np.int64]:
-        """Degrees of freedom (3n,) cluster after cluster."""
+        """Degrees of freedom, cluster after cluster, (3n,)."""
         return freedoms(np.concatenate(self.members))
 
     @cached_property
     def starts(self) -> NDArray[np.int64]:
-        """Where each cluster begins in ``freedoms``, and its length, (q + 1,)."""
+        """Start of each cluster in ``freedoms``, and its length, (q + 1,)."""
         sizes = [3 * len(nodes) for nodes in self.members]
         return np.concatenate([[0], np.cumsum(sizes)]).astype(np.int64)
 
     def span(self, cluster: int) -> slice:
-        """The part of ``freedoms`` that is this cluster's."""
+        """Slice of ``freedoms`` that belongs to a cluster."""
         return slice(int(self.starts[cluster]), int(self.starts[cluster + 1]))
 
     def all_near(self) -> Clusters:

@@ -1,9 +1,8 @@
-"""A large table's clusters compressed by the workers of any ``concurrent.futures`` executor.
+"""Compression of clusters by the workers of any ``concurrent.futures`` executor.
 
-The factor that columns come from is hundreds of megabytes at twenty thousand nodes, so it does not
-travel with every cluster. It is written to a folder once; workers map it into memory, and those of
-one machine share the pages. What travels are cluster numbers one way and a cluster's share of the
-result, about a megabyte, the other.
+The factor has hundreds of megabytes at twenty thousand nodes, so it is not sent with every cluster
+but written to a folder once; workers memory-map it, and those of one machine share the pages. Only
+cluster numbers and reduced columns, about a megabyte each, are sent.
 """
 
 from __future__ import annotations
@@ -31,11 +30,11 @@ INDEX_FILE = "index.npz"
 
 @dataclass(frozen=True)
 class StoredColumns:
-    """A :class:`SurfaceColumns` in a folder, as a source of columns that is quick to send.
+    """Column source in a folder, cheap to pickle.
 
     Attributes
     ----------
-    folder : where :func:`store` put it, reached under this name by whoever asks for columns.
+    folder : where :func:`store` put it; the same path for all workers.
     """
 
     folder: Path
@@ -77,12 +76,11 @@ def store(columns: SurfaceColumns, folder: Path) -> StoredColumns:
 def clusters_on(
     executor: Executor, columns: SurfaceColumns, folder: Path, threads: int = 1
 ) -> Iterator[MapClusters]:
-    """What :func:`palpate.core.compliance.compression.compress.compress` takes as ``map_clusters``.
+    """``map_clusters`` of :func:`palpate.core.compliance.compression.compress.compress`.
 
     Parameters
     ----------
-    executor : whose workers do the work. Only processes are of use: threads would wait for each
-        other, since scipy's BLAS holds the interpreter.
+    executor : of processes; threads would wait for each other, since scipy's BLAS holds the GIL.
     columns : the source that is compressed.
     folder : where workers reach it; it takes ``columns.nbytes`` while the work lasts.
     threads : of BLAS in each worker.
@@ -96,13 +94,13 @@ def clusters_on(
 
         yield map_clusters
     finally:
-        # Windows does not delete what a worker still maps; the folder's owner does in the end.
+        # Windows keeps what a worker still maps; the folder's owner deletes it in the end.
         shutil.rmtree(place, ignore_errors=True)
 
 
 @dataclass(frozen=True)
 class _OnWorker:
-    """A cluster's work, with as many threads of BLAS as one worker has cores."""
+    """Reduction of a cluster with the worker's number of BLAS threads."""
 
     task: ClusterTask
     threads: int
@@ -112,7 +110,7 @@ class _OnWorker:
             return self.task(cluster)
 
 
-# One body at a time: a worker that goes on to the next lets the last one go.
+# Only the latest body stays open in a worker.
 @lru_cache(maxsize=1)
 def _opened(folder: Path) -> SurfaceColumns:
     with np.load(folder / INDEX_FILE, allow_pickle=False) as index:

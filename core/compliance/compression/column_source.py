@@ -1,4 +1,4 @@
-"""Whoever can give exact columns of the compliance."""
+"""Source of exact columns of the compliance."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 
 class ColumnSource(Protocol):
-    """The compliance of the free surface nodes, column by column.
+    """Compliance of the free surface nodes, column by column.
 
-    A :class:`palpate.core.compliance.dense.DenseCompliance` is one, and so is a factored stiffness
-    that solves for the columns it is asked for, so that the whole of L is never held.
+    Either a :class:`palpate.core.compliance.dense.DenseCompliance` or a factored stiffness that
+    solves for the requested columns, so that L is never held in full.
     """
 
     @property

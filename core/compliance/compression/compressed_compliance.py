@@ -1,4 +1,4 @@
-"""The compliance as clusters, near blocks, bases and couplings in few bits."""
+"""Compliance stored as clusters, near blocks, bases and rounded interactions."""
 
 from __future__ import annotations
 
@@ -21,30 +21,29 @@ TILE = 8
 
 @dataclass(frozen=True, eq=False)
 class CompressedCompliance:
-    """A :class:`palpate.core.compliance.protocol.Compliance` in a few percent of the dense memory.
+    """Compliance in a few percent of the dense memory.
 
-    n nodes lie in q clusters of at most a nodes. Arrays that count in clusters are padded to a
-    nodes each. Cluster c has k_c basis patterns, 8 t_c; all t together are t.
+    n nodes lie in q clusters of at most a nodes; arrays by cluster are padded to a nodes. Cluster c
+    has a basis of rank k_c = 8 t_c; t is the sum of all t_c.
 
     Attributes
     ----------
     free_surface : int64 (n,), node numbers, ascending.
     tolerance : the largest relative column error that was allowed.
-    column_error : float64 (), a bound of the largest relative column error that there is,
-        measured on every entry of L.
-    places : int32 (n,), where a node stands: its cluster times a, plus its place in there.
+    column_error : float64 (), bound of the largest relative column error, measured on every entry
+        of L.
+    places : int32 (n,), padded place of a node: its cluster times a, plus its place in the cluster.
     own_blocks : float64 (n, 3, 3), L_ii, exact.
     near_scale : float32 (q, 3a). Near blocks are ``step * near * near_scale * near_scale``.
     near_table : int32 (q, q), number of the block between two clusters from 1 on, 0 for far ones.
     near_steps : float32 (p,).
-    near : int16 or float32 (p, 3a, 3a), rows of the cluster that counts lower. L_ii is zero here.
+    near : int16 or float32 (p, 3a, 3a), rows of the cluster of lower number. L_ii is zero here.
     tile_counts : int32 (q,), t_c, ascending.
     basis : float32, (3a, 8 t_c) of each cluster, one after the other. Far blocks are
         ``step * B_r M B_c^T``.
     steps : float32 (q,). The step of M between two clusters is the smaller one of theirs.
-    tile_table : int32 (t, t), which tile M has there: 0 none, from 1 on one of ``narrow``, from -1
-        down one of ``wide``, counted from zero.
-    narrow : int8 (x, 8, 8); the first is zero. Rows are of the cluster that counts lower.
+    tile_table : int32 (t, t), tile of M: 0 none, i > 0 ``narrow[i]``, i < 0 ``wide[-1 - i]``.
+    narrow : int8 (x, 8, 8); the first is zero. Rows are of the cluster of lower number.
     wide : int16 or int32 (y, 8, 8).
     """
 
@@ -77,7 +76,7 @@ class CompressedCompliance:
         return sum(array.nbytes for array in self.arrays().values())
 
     def arrays(self) -> dict[str, NDArray[np.generic]]:
-        """Everything but ``free_surface`` and ``tolerance``, for a body file."""
+        """Arrays for a body file: all but ``free_surface`` and ``tolerance``."""
         return {f"compressed_{name}": getattr(self, name) for name in _stored_names()}
 
     @classmethod
@@ -104,7 +103,7 @@ class CompressedCompliance:
         if i == j:
             own: NDArray[np.float64] = self.own_blocks[i].copy()
             return own
-        # One of both is computed and the other one turned: so L is symmetric to the last bit.
+        # The other half is the transpose, so that L is symmetric to the last bit.
         if self.places[i] > self.places[j]:
             return self.block(j, i).T
         (row, _), (column, _) = self._place(i), self._place(j)
@@ -137,14 +136,14 @@ class CompressedCompliance:
             left = self._cluster_basis(row)[rows].astype(np.float64)
             right = self._cluster_basis(column)[columns].astype(np.float64)
             step = float(min(self.steps[row], self.steps[column]))
-            return _as_blocks(step * (left @ self._coupling(row, column) @ right.T))
+            return _as_blocks(step * (left @ self._interaction(row, column) @ right.T))
         near, step = self.near[number - 1], float(self.near_steps[number - 1])
         scale = self.near_scale.astype(np.float64)
         sides = scale[row, rows, None] * scale[column, columns]
         straight = _as_blocks(sides * (step * near[np.ix_(rows, columns)].astype(np.float64)))
         if row != column:
             return straight
-        # Within one cluster both orders are stored; as in `block`, that of the places counts.
+        # Both orders are stored within one cluster; the order of places counts, as in `block`.
         turned = _as_blocks(sides * (step * near[np.ix_(columns, rows)].T.astype(np.float64)))
         is_turned = (a[:, None] > b)[:, :, None, None]
         return np.where(is_turned, turned, straight)
@@ -193,7 +192,7 @@ class CompressedCompliance:
 
     @cached_property
     def _native(self) -> NativeCompliance | None:
-        """The same arrays in native code, about twice as fast; they become read-only."""
+        """The same arrays in native code, about twice as fast; makes them read-only."""
         try:
             from palpate_servo import Compliance
         except ImportError:
@@ -209,7 +208,7 @@ class CompressedCompliance:
 
     @cached_property
     def _rows(self) -> NDArray[np.int64]:
-        """Where each degree of freedom stands among the padded clusters', (3n,)."""
+        """Place of each degree of freedom among the padded clusters, (3n,)."""
         return freedoms(self.places.astype(np.int64))
 
     @cached_property
@@ -222,7 +221,7 @@ class CompressedCompliance:
 
     @cached_property
     def _equal_ranks(self) -> list[tuple[slice, slice, NDArray[np.float32]]]:
-        """Clusters of one rank, their tiles, and their bases (g, 3a, k), views."""
+        """Clusters of equal rank, their tiles, and their bases (g, 3a, k), views."""
         groups, start = [], 0
         edges = np.flatnonzero(np.diff(self.tile_counts, prepend=-1, append=-1))
         for first, last in pairwise(edges.tolist()):
@@ -235,7 +234,7 @@ class CompressedCompliance:
         return groups
 
     def _cluster_basis(self, cluster: int) -> NDArray[np.float32]:
-        """B_c, (3a, k), a view."""
+        """Basis B_c of a cluster, (3a, k), a view."""
         rows = 3 * self._leaf
         start, stop = rows * TILE * self._first_tiles[cluster : cluster + 2]
         return self.basis[start:stop].reshape(rows, -1)
@@ -245,7 +244,7 @@ class CompressedCompliance:
         return cluster, inside
 
     def _by_cluster(self, nodes: NDArray[np.int64]) -> list[tuple[int, NDArray[np.int64]]]:
-        """Every cluster that has some of the nodes, and which entries of ``nodes`` these are."""
+        """Clusters that hold some of the nodes, and their entries of ``nodes``."""
         members: dict[int, list[int]] = {}
         for entry, cluster in enumerate((self.places[nodes] // self._leaf).tolist()):
             members.setdefault(cluster, []).append(entry)
@@ -255,15 +254,15 @@ class CompressedCompliance:
         inside = self.places[nodes] - cluster * self._leaf
         return _Load(cluster, freedoms(inside), forces)
 
-    def _coupling(self, row: int, column: int) -> NDArray[np.float64]:
-        """M between two clusters, row <= column, in steps, (k_row, k_column)."""
+    def _interaction(self, row: int, column: int) -> NDArray[np.float64]:
+        """Interaction M of two clusters, row <= column, in steps, (k_row, k_column)."""
         first, last = self._first_tiles[:-1], self._first_tiles[1:]
         table = self.tile_table[first[row] : last[row], first[column] : last[column]]
         tiles = self._tiles(table.ravel(), np.float64).reshape(*table.shape, TILE, TILE)
         height, width = table.shape
-        whole: NDArray[np.float64] = np.empty((TILE * height, TILE * width))
-        whole.reshape(height, TILE, width, TILE)[...] = tiles.transpose(0, 2, 1, 3)
-        return whole
+        joined: NDArray[np.float64] = np.empty((TILE * height, TILE * width))
+        joined.reshape(height, TILE, width, TILE)[...] = tiles.transpose(0, 2, 1, 3)
+        return joined
 
     def _tiles(self, numbers: NDArray[np.int32], dtype: DTypeLike) -> NDArray[np.floating]:
         """Tiles by their entries in the table (m,), (m, 64)."""
@@ -293,7 +292,7 @@ class CompressedCompliance:
         blocks = numbers[others].astype(np.int64) - 1
         forces = self.near_scale[load.cluster, load.rows, None] * load.forces
         steps = self.near_steps[blocks, None, None]
-        # Blocks are stored once: with a later cluster, rows and columns change places.
+        # Blocks are stored once: for a later cluster, rows and columns are swapped.
         turn = int(np.searchsorted(others, load.cluster))
         size, width = moved.shape[1:]
         each_row = size * (size * blocks[:turn, None] + np.arange(size))
@@ -316,7 +315,7 @@ class CompressedCompliance:
         numbers = np.ascontiguousarray(self.tile_table[first:last].T)
         tiles = self._tiles(numbers.ravel(), dtype).reshape(len(numbers), -1)
         multiply = blas.sgemm if dtype == np.float32 else blas.dgemm
-        # A tile times a part of `own`, or its transpose times that, for all tiles in one product:
+        # Products of all tiles, or their transposes, with a part of `own`, in one call:
         # the tile's 64 numbers as a row, times the part repeated along an identity.
         each = np.arange(TILE)
         weights = np.zeros((count, TILE, TILE, TILE, width), dtype)

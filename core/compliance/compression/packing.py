@@ -1,4 +1,4 @@
-"""Rounded couplings and near blocks laid out for touching: plain arrays, no list of objects."""
+"""Layout of rounded interactions and near blocks as the plain arrays of the result."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from .cluster_columns import LARGEST_16_BITS, TILE
 from .compressed_compliance import CompressedCompliance
-from .coupling import Coupling
+from .interactions import Interactions
 from .tiles import LARGEST_8_BITS, Rounding
 
 
@@ -17,15 +17,15 @@ def packed(
     column_error: float,
     tolerance: float,
 ) -> CompressedCompliance:
-    """Lay everything out, clusters in the order of their ranks.
+    """Compressed compliance, its clusters in order of their ranks.
 
-    Clusters of one rank then stand together, and their bases are multiplied in one go.
+    Clusters of equal rank are then adjacent, and their bases multiplied in one call.
     """
-    coupling = chosen.coupling
+    interactions = chosen.interactions
     tile_counts = _tile_counts(chosen)
     order = np.argsort(tile_counts, kind="stable")
     number = np.argsort(order)
-    clusters = coupling.clusters
+    clusters = interactions.clusters
     leaf = max(len(nodes) for nodes in clusters.members)
     places = np.empty(len(free_surface), np.int32)
     own_blocks = np.empty((len(free_surface), 3, 3))
@@ -34,13 +34,13 @@ def packed(
     for new, old in enumerate(order):
         nodes = clusters.members[old]
         places[nodes] = new * leaf + np.arange(len(nodes))
-        own_blocks[nodes] = coupling.diagonals[old]
-        own = coupling.scale[clusters.span(old)]
+        own_blocks[nodes] = interactions.diagonals[old]
+        own = interactions.scale[clusters.span(old)]
         scale[new, : len(own)] = own
         scaled = np.zeros((3 * leaf, TILE * tile_counts[old]), np.float32)
-        scaled[: len(own)] = own[:, None] * coupling.bases[old][:, : scaled.shape[1]]
+        scaled[: len(own)] = own[:, None] * interactions.bases[old][:, : scaled.shape[1]]
         basis.append(scaled.ravel())
-    near_table, near, near_steps = _near(coupling, number, leaf)
+    near_table, near, near_steps = _near(interactions, number, leaf)
     tile_table, narrow, wide = _tiles(chosen, tile_counts, number)
     return CompressedCompliance(
         free_surface=free_surface,
@@ -62,12 +62,12 @@ def packed(
 
 
 def _tile_counts(chosen: Rounding) -> NDArray[np.int64]:
-    """How many tiles of each cluster's basis any coupling uses, (q,)."""
-    coupling = chosen.coupling
-    counts = np.zeros(coupling.clusters.count, np.int64)
-    all_tiles = np.array([basis.shape[1] // TILE for basis in coupling.bases])
+    """Number of tiles of each cluster's basis that any interaction uses, (q,)."""
+    interactions = chosen.interactions
+    counts = np.zeros(interactions.clusters.count, np.int64)
+    all_tiles = np.array([basis.shape[1] // TILE for basis in interactions.bases])
     firsts = np.concatenate([[0], np.cumsum(all_tiles)])
-    for cluster in range(coupling.clusters.count):
+    for cluster in range(interactions.clusters.count):
         rounded = chosen.rounded(cluster)
         counts[cluster] = max(counts[cluster], _past_last(np.any(rounded.used, axis=0)))
         rows: NDArray[np.bool_] = np.any(rounded.used, axis=1)
@@ -82,15 +82,15 @@ def _past_last(used: NDArray[np.bool_]) -> int:
 
 
 def _near(
-    coupling: Coupling, number: NDArray[np.int64], leaf: int
+    interactions: Interactions, number: NDArray[np.int64], leaf: int
 ) -> tuple[NDArray[np.int32], NDArray[np.int16] | NDArray[np.float32], NDArray[np.float32]]:
-    count = coupling.clusters.count
+    count = interactions.clusters.count
     table = np.zeros((count, count), np.int32)
-    total = sum(len(blocks) for blocks in coupling.near)
-    near = np.zeros((total, 3 * leaf, 3 * leaf), coupling.near[0][0].numbers.dtype)
+    total = sum(len(blocks) for blocks in interactions.near)
+    near = np.zeros((total, 3 * leaf, 3 * leaf), interactions.near[0][0].numbers.dtype)
     steps = np.empty(total, np.float32)
     place = 0
-    for cluster, blocks in enumerate(coupling.near):
+    for cluster, blocks in enumerate(interactions.near):
         for block in blocks:
             row, column, numbers = number[block.row], number[cluster], block.numbers
             if row > column:
@@ -107,21 +107,23 @@ def _tiles(
     tile_counts: NDArray[np.int64],
     number: NDArray[np.int64],
 ) -> tuple[NDArray[np.int32], NDArray[np.int8], NDArray[np.int16] | NDArray[np.int32]]:
-    """The table of tiles, and the tiles of 8 bits and of more."""
-    coupling = chosen.coupling
+    """Table of tiles, the 8-bit tiles, and the wider ones."""
+    interactions = chosen.interactions
     new_counts = np.empty_like(tile_counts)
     new_counts[number] = tile_counts
     new_firsts = np.concatenate([[0], np.cumsum(new_counts)])
-    # Where every tile of every old basis goes; those beyond a cluster's count are never asked for.
+    # New place of each tile of each old basis; those beyond a cluster's count are not used.
     moved = np.concatenate(
         [
             new_firsts[number[cluster]] + np.arange(basis.shape[1] // TILE)
-            for cluster, basis in enumerate(coupling.bases)
+            for cluster, basis in enumerate(interactions.bases)
         ]
     )
-    firsts = np.concatenate([[0], np.cumsum([basis.shape[1] // TILE for basis in coupling.bases])])
+    firsts = np.concatenate(
+        [[0], np.cumsum([basis.shape[1] // TILE for basis in interactions.bases])]
+    )
     rows, columns, tiles = [], [], []
-    for cluster in range(coupling.clusters.count):
+    for cluster in range(interactions.clusters.count):
         rounded = chosen.rounded(cluster)
         above, own = np.nonzero(rounded.used)
         shape = (rounded.used.shape[0], TILE, rounded.used.shape[1], TILE)
@@ -137,7 +139,7 @@ def _tiles(
     order = np.lexsort((column, row))
     row, column, numbers = row[order], column[order], np.concatenate(tiles)[order]
     is_wide = np.abs(numbers).max(axis=(1, 2), initial=0) > LARGEST_8_BITS
-    # Number 0 stands for no tile, and is a tile of zeros; wide ones count downwards from -1.
+    # Number 0 is the tile of zeros, for no tile; wide ones count down from -1.
     places = np.where(is_wide, -np.cumsum(is_wide), np.cumsum(~is_wide))
     table = np.zeros((new_firsts[-1], new_firsts[-1]), np.int32)
     table[row, column] = table[column, row] = places

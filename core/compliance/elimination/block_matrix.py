@@ -1,4 +1,4 @@
-"""The stiffness by node: 3x3 blocks, and the graph of nodes that they couple."""
+"""Stiffness by node: 3x3 blocks, and the graph of nodes that they connect."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from scipy.sparse import csr_array
 
 @dataclass(frozen=True, eq=False)
 class BlockMatrix:
-    """The blocks of a symmetric matrix of 3x3 blocks, in no particular order.
+    """Symmetric matrix of 3x3 blocks, in no particular order.
 
     Attributes
     ----------
     node_count : n; the matrix is (3n, 3n).
-    rows, columns : int64 (m,), which block each is.
+    rows, columns : int64 (m,), indices of the blocks.
     blocks : float64 (m, 3, 3).
     """
 
@@ -27,7 +27,7 @@ class BlockMatrix:
 
     @property
     def edges(self) -> NDArray[np.int64]:
-        """Pairs of different nodes that the matrix couples, (e, 2), each pair once."""
+        """Pairs of different nodes with a nonzero block, (e, 2), each pair once."""
         above = self.rows < self.columns
         return np.stack([self.rows[above], self.columns[above]], axis=1)
 
@@ -38,10 +38,10 @@ class BlockMatrix:
 
 
 def free_blocks(stiffness: csr_array, free: NDArray[np.int64]) -> BlockMatrix:
-    """The blocks of ``stiffness`` (3N, 3N) between the nodes ``free`` (n,), numbered 0 to n - 1.
+    """Blocks of ``stiffness`` (3N, 3N) between the nodes ``free`` (n,), numbered 0 to n - 1.
 
-    The couplings come from the matrix and not from the tetrahedra, because a formulation may couple
-    more nodes than share a tetrahedron.
+    The graph comes from the matrix and not from the tetrahedra, because a formulation may connect
+    nodes that share no tetrahedron.
     """
     by_block = stiffness.tobsr(blocksize=(3, 3))
     number = np.full(stiffness.shape[0] // 3, -1, dtype=np.int64)

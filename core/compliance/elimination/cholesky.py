@@ -1,7 +1,7 @@
-"""Cholesky factors that are kept for solves, of many matrices with one pattern.
+"""Cholesky factors kept for solves, of many matrices of one pattern.
 
-The order of elimination and every index are found once; each further matrix costs arithmetic only.
-The fronts are those of :mod:`.numeric`, without loads carried along.
+Order of elimination and indices are computed once; each further matrix costs arithmetic only. The
+fronts are those of :mod:`.numeric`, without loads.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from .work import FrontWork
 
 
 class NotPositiveDefiniteError(Exception):
-    """A matrix has no Cholesky factor. Whoever asked for one says what that means for the body."""
+    """Matrix without Cholesky factor. The caller says what this means for the body."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +35,7 @@ class CholeskyFactor:
     Attributes
     ----------
     order : int64 (3n,), the freedoms in order of elimination.
-    fronts : what belongs to each front, in order.
+    fronts : each front's part of R, in order.
     """
 
     order: NDArray[np.int64]
@@ -44,13 +44,10 @@ class CholeskyFactor:
     @property
     def nbytes(self) -> int:
         """Bytes of the factor."""
-        return sum(front.pivots.nbytes + front.coupling.nbytes for front in self.fronts)
+        return sum(front.pivots.nbytes + front.border.nbytes for front in self.fronts)
 
     def solve(self, right: NDArray[np.float64]) -> NDArray[np.float64]:
-        """The solution for right sides (3n,) or (3n, k), of the same shape.
-
-        May be called from several threads at once: the factor is only read.
-        """
+        """Solution for right-hand sides (3n,) or (3n, k), of the same shape; thread-safe."""
         if right.size == len(self.order):
             return self._solve_one(right.ravel()).reshape(right.shape)
         columns = right.reshape(len(self.order), -1)
@@ -59,28 +56,28 @@ class CholeskyFactor:
             own = dtrsm(1.0, front.pivots, held[front.span], trans_a=True, overwrite_b=True)
             held[front.span] = own
             if front.boundary.size:
-                held[front.boundary] -= front.coupling.T @ own
+                held[front.boundary] -= front.border.T @ own
         for front in reversed(self.fronts):
             own = held[front.span]
             if front.boundary.size:
-                own = own - front.coupling @ held[front.boundary]
+                own = own - front.border @ held[front.boundary]
             held[front.span] = dtrsm(1.0, front.pivots, own)
         solution = np.empty_like(held)
         solution[self.order] = held
         return solution.reshape(right.shape)
 
     def _solve_one(self, right: NDArray[np.float64]) -> NDArray[np.float64]:
-        """For a single right side, of which the triangular solves for many make copies."""
+        """Solution for one right-hand side, without the copies that the solve for many makes."""
         held: NDArray[np.float64] = right[self.order].astype(np.float64, copy=False)
         for front in self.fronts:
             own = dtrsv(front.pivots, held[front.span], trans=1)
             held[front.span] = own
             if front.boundary.size:
-                held[front.boundary] -= own @ front.coupling
+                held[front.boundary] -= own @ front.border
         for front in reversed(self.fronts):
             own = held[front.span]
             if front.boundary.size:
-                own = own - front.coupling @ held[front.boundary]
+                own = own - front.border @ held[front.boundary]
             held[front.span] = dtrsv(front.pivots, own)
         solution = np.empty_like(held)
         solution[self.order] = held
@@ -89,23 +86,23 @@ class CholeskyFactor:
 
 @dataclass(frozen=True, eq=False)
 class _FrontFactor:
-    """Rows of R: upper (p, p) of the pivots, (p, b) of the boundary, and where they stand."""
+    """Rows of R: upper (p, p) of the pivots, (p, b) of the border, and their places."""
 
     span: slice
     boundary: NDArray[np.int64]
     pivots: NDArray[np.float64]
-    coupling: NDArray[np.float64]
+    border: NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
 class RepeatedElimination:
-    """How to factor symmetric matrices of one pattern of 3x3 blocks.
+    """Symbolic factorization of symmetric matrices of one pattern of 3x3 blocks.
 
     Attributes
     ----------
     symbolic : order of elimination and fronts.
-    entries : where each block goes.
-    runs : for every front and each of its children, where the child's remainder is added.
+    entries : destination of each block.
+    runs : for every front and each of its children, where the child's Schur complement is added.
     """
 
     symbolic: SymbolicFactor
@@ -119,9 +116,9 @@ class RepeatedElimination:
         columns: NDArray[np.int64],
         positions: NDArray[np.float64],
     ) -> RepeatedElimination:
-        """For blocks at ``rows``, ``columns`` (m,), in both halves of the matrix.
+        """Factorization for blocks at ``rows``, ``columns`` (m,), in both halves of the matrix.
 
-        ``positions`` (n, 3) of the nodes make the order good; see :func:`.dissection.dissect`.
+        ``positions`` (n, 3) of the nodes: see :func:`.dissection.dissect`.
         """
         count = len(positions)
         unloaded = np.zeros(count, dtype=bool)
@@ -135,41 +132,41 @@ class RepeatedElimination:
         return cls(symbolic, EntriesByFront(rows, columns, symbolic), runs)
 
     def factor(self, blocks: NDArray[np.float64]) -> CholeskyFactor:
-        """Factor the matrix with these ``blocks`` (m, 3, 3), in the order of the pattern.
+        """Factor the matrix of ``blocks`` (m, 3, 3), in the order of the pattern.
 
         Raises
         ------
         NotPositiveDefiniteError
             The matrix has a negative or vanishing eigenvalue.
         """
-        remainders: dict[int, UpperTiles] = {}
+        updates: dict[int, UpperTiles] = {}
         factors = []
         ordered = self.entries.in_order(blocks)
         with threads_by_work() as suit:
             for index, front in enumerate(self.symbolic.fronts):
                 work = FrontWork.of(front)
                 suit(work.flops)
-                own, remainders[index] = self._eliminated(index, ordered, remainders)
+                own, updates[index] = self._eliminated(index, ordered, updates)
                 factors.append(own)
         return CholeskyFactor(freedoms(self.symbolic.order), tuple(factors))
 
     def _eliminated(
-        self, index: int, blocks: NDArray[np.float64], remainders: dict[int, UpperTiles]
+        self, index: int, blocks: NDArray[np.float64], updates: dict[int, UpperTiles]
     ) -> tuple[_FrontFactor, UpperTiles]:
         front = self.symbolic.fronts[index]
         size, boundary = 3 * front.pivot_count, freedoms(front.boundary)
         pivots = np.zeros((size, size), order="F")
-        coupling = np.zeros((size, len(boundary)), order="F")
+        border = np.zeros((size, len(boundary)), order="F")
         schur = UpperTiles.zeros(len(boundary))
-        self.entries.add_to(index, front, blocks, pivots, coupling)
+        self.entries.add_to(index, front, blocks, pivots, border)
         for child, runs in zip(front.children, self.runs[index], strict=True):
-            extend_add(remainders.pop(child), runs, pivots, coupling, schur)
+            extend_add(updates.pop(child), runs, pivots, border, schur)
         factor, breakdown = dpotrf(pivots, lower=False, clean=False, overwrite_a=True)
         if breakdown:
             raise NotPositiveDefiniteError
-        dtrsm(1.0, factor, coupling, trans_a=True, overwrite_b=True)
-        schur.subtract_gram(coupling, _unmetered)
-        own = _FrontFactor(slice(3 * front.start, 3 * front.stop), boundary, factor, coupling)
+        dtrsm(1.0, factor, border, trans_a=True, overwrite_b=True)
+        schur.subtract_gram(border, _unmetered)
+        own = _FrontFactor(slice(3 * front.start, 3 * front.stop), boundary, factor, border)
         return own, schur
 
 
@@ -179,4 +176,4 @@ def _runs(child: Front, front: Front) -> list[Run]:
 
 
 def _unmetered(_: float) -> None:
-    """Progress is not told: a factor of a body that can be drawn takes seconds at most."""
+    """Progress callback that does nothing: such a factor takes seconds at most."""

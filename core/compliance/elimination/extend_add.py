@@ -1,7 +1,7 @@
-"""Extend-add: what a front leaves on its boundary is added where its parent keeps those nodes.
+"""Extend-add: a front's Schur complement added to its parent's matrix.
 
-Both number nodes in order of elimination, so a child's boundary lies in its parent in the same
-order, in unbroken runs. Runs are added as slices, several times faster than entry by entry.
+Both number nodes in order of elimination, so a child's boundary maps to the parent's in the same
+order, in consecutive runs. Runs are added as slices, several times faster than single entries.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ class Run:
     Attributes
     ----------
     child_tile, child : tile of the child's Schur complement, and the freedoms within that tile.
-    below : the same freedoms counted along the child's whole boundary.
+    below : the same freedoms counted along all of the child's boundary.
     parent_tile, parent : tile of the parent's Schur complement and freedoms within it; tile -1 are
         the parent's pivots.
-    onward : the freedoms counted along the parent's whole boundary, or among its pivots.
+    onward : the freedoms counted along all of the parent's boundary, or among its pivots.
     """
 
     child_tile: int
@@ -45,7 +45,7 @@ def runs_between(
 
     Parameters
     ----------
-    targets : (m,), the freedom of the parent, pivots first, that each of the child's boundary is.
+    targets : (m,), the parent's freedom, pivots first, of each freedom of the child's boundary.
     pivot_count : freedoms of the parent's pivots.
     child_edges, parent_edges : of the tiles of both Schur complements.
     """
@@ -80,7 +80,7 @@ def extend_add(
     child: UpperTiles,
     runs: list[Run],
     pivots: NDArray[np.float64],
-    coupling: NDArray[np.float64],
+    border: NDArray[np.float64],
     schur: UpperTiles,
 ) -> None:
     """Add a child's Schur complement to its parent's three parts, in place.
@@ -90,7 +90,7 @@ def extend_add(
     child : (m, m).
     runs : from :func:`runs_between`.
     pivots : (p, p), upper half.
-    coupling : (p, b), rows pivots, columns boundary.
+    border : (p, b), pivots by boundary.
     schur : (b, b).
     """
     for index, column in enumerate(runs):
@@ -99,7 +99,7 @@ def extend_add(
             if column.parent_tile < 0:
                 pivots[row.parent, column.parent] += source
             elif row.parent_tile < 0:
-                coupling[row.parent, column.onward] += source
+                border[row.parent, column.onward] += source
             else:
                 schur.tiles[column.parent_tile][row.parent_tile][row.parent, column.parent] += (
                     source

@@ -18,14 +18,14 @@ from .work import MOVE_WEIGHT, REAL_BYTES, FrontWork, Meter
 # Rows and columns of L computed at once.
 TILE = 768
 
-# Rows of the table whose columns are brought into order at once.
+# Rows of the table whose columns are reordered at once.
 ROWS_RENUMBERED = 96
 
 
 def inverse_table(
     factor: list[LoadRows], ranks: NDArray[np.int64], dtype: type[np.floating], meter: Meter
 ) -> NDArray[np.floating]:
-    """The inverse at the loaded nodes, (n, 3, 3n), exactly symmetric.
+    """Inverse at the loaded nodes, (n, 3, 3n), exactly symmetric.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ def inverse_table(
     dtype : of the table; the sums are float64.
     """
     count = 3 * len(ranks)
-    # Loads that never meet in a front do not move each other: zeros stay there.
+    # Loads that meet in no front have no interaction: entries stay zero.
     table = np.zeros((count, count), dtype=dtype)
     edges = tile_edges(count, TILE)
     tiles = [slice(start, stop) for start, stop in pairwise(edges)]
@@ -62,7 +62,7 @@ def _renumber(table: NDArray[np.floating], ranks: NDArray[np.int64], meter: Mete
     for first in range(nodes):
         if not pending[first] or order[first] == first:
             continue
-        # Around one cycle of the permutation: each row takes the place of the one just moved away.
+        # Along one cycle of the permutation: each row moves to the place just vacated.
         waiting, place = by_node[first].copy(), first
         while (source := int(order[place])) != first:
             by_node[place] = by_node[source]
@@ -78,11 +78,11 @@ def inverse_weight(works: Iterable[FrontWork], node_count: int) -> float:
 
 
 def inverse_bytes(node_count: int, itemsize: int) -> int:
-    """The most bytes that :func:`inverse_table` holds besides W, for n loaded nodes."""
+    """Peak bytes of :func:`inverse_table` besides W, for n loaded nodes."""
     if not itemsize:
         return 0
     tile = min(3 * node_count, TILE) ** 2
-    # A tile, a copy of it while it is mirrored or added to, and its indices are gone again.
+    # A tile, its copy while it is mirrored or added, and the indices.
     return (3 * node_count) ** 2 * itemsize + 3 * tile * REAL_BYTES
 
 
@@ -93,7 +93,7 @@ def _tile(
     suit: Callable[[float], None],
     meter: Meter,
 ) -> NDArray[np.float64]:
-    """Rows and columns of W^T W; whole, also where both are the same."""
+    """Tile of W^T W, both halves also on the diagonal."""
     block = np.zeros((rows.stop - rows.start, columns.stop - columns.start), order="F")
     for part in factor:
         left, right = _meeting(part, rows), _meeting(part, columns)
@@ -111,7 +111,7 @@ def _tile(
 
 
 def _meeting(part: LoadRows, span: slice) -> slice:
-    """Those freedoms of a span that a part has loads on; start is not before stop if none."""
+    """Freedoms of a span on which a part has loads; empty if start >= stop."""
     return slice(max(part.start, span.start), min(part.stop, span.stop))
 
 

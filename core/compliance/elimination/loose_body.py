@@ -1,4 +1,4 @@
-"""How an elimination finds out that a body is not held."""
+"""Detection of a body that is not held, from the pivots of its elimination."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ...errors import PalpateError
 
-# A pivot that is a smaller share than this of the diagonal entry it began as is rounding. Measured,
+# A pivot below this share of its original diagonal entry is rounding. Measured,
 # with Poisson's ratios up to 0.4999: at most 2e-12 for parts that hang on an edge or a node; at
 # least 1e-9 for a bar 2,000 times as long as thick, 7e-8 with a core a million times as stiff.
 SMALLEST_PIVOT_SHARE = 3e-11
@@ -20,14 +20,14 @@ def refuse_loose(
 
     Parameters
     ----------
-    breakdown : what LAPACK's potrf says; above 0 if a pivot was not positive.
-    pivots : (p,), what is left of the diagonal when its turn comes.
+    breakdown : of LAPACK's potrf; above 0 if a pivot was not positive.
+    pivots : (p,), diagonal at elimination.
     stiffness : (p,), the diagonal as assembled.
 
     Raises
     ------
     PalpateError
-        A pivot that is not positive, or too small beside its stiffness to be more than rounding.
+        A pivot that is not positive, or or rounding compared with its stiffness.
     """
     if breakdown or not (pivots > SMALLEST_PIVOT_SHARE * stiffness).all():
         raise PalpateError(

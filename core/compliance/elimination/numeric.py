@@ -1,13 +1,13 @@
-"""The numeric step: Cholesky of every front, with the unit loads of the surface carried along.
+"""Numeric step: Cholesky of every front, together with the unit loads of the surface.
 
-For a front with pivots p, boundary b and loads E, in Fortran order and upper halves throughout:
+For a front with pivots p, boundary b and loads E, in Fortran order and upper halves:
 
-    [ A_pp  A_pb  E_p ]      R_pp = chol(A_pp)                           gone with the front
-    [       A_bb  E_b ]  ->  R_pb = R_pp^-T A_pb                         gone with the front
+    [ A_pp  A_pb  E_p ]      R_pp = chol(A_pp)                           not kept
+    [       A_bb  E_b ]  ->  R_pb = R_pp^-T A_pb                         not kept
                              W_p  = R_pp^-T E_p                          the result
                              A_bb - R_pb^T R_pb,  E_b - R_pb^T W_p       added to the parent
 
-Loads come to a front from below or begin on its own pivots; W has no entries for loads elsewhere.
+Loads come from the front's children or act on its pivots; W has no entries for other loads.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from .loose_body import refuse_loose
 from .upper_tiles import UpperTiles
 from .work import CHOLESKY_WEIGHT, FRONT_WEIGHT, MOVE_WEIGHT, SOLVE_WEIGHT, FrontWork, Meter
 
-# Floating point operations that one call of BLAS may take: some hundredths of a second.
+# Floating point operations in one call of BLAS at most: some hundredths of a second.
 FLOPS_PER_CALL = 2e9
 
 AXES = np.arange(3)
@@ -39,7 +39,7 @@ class LoadRows:
 
     Attributes
     ----------
-    start, stop : the freedoms of loads that the columns are, in order of elimination.
+    start, stop : load freedoms of the columns, in order of elimination.
     rows : float64 (r, stop - start), Fortran order.
     """
 
@@ -49,15 +49,15 @@ class LoadRows:
 
 
 @dataclass(frozen=True, eq=False)
-class _Remainder:
-    """What a front leaves on its boundary: Schur complement (b, b) and loads (b, c)."""
+class _Update:
+    """Update of a front's boundary: Schur complement (b, b) and loads (b, c)."""
 
     schur: UpperTiles
     loads: NDArray[np.float64]
 
 
 def inverse_factor(matrix: BlockMatrix, symbolic: SymbolicFactor, meter: Meter) -> list[LoadRows]:
-    """W of ``matrix`` for unit loads on the loaded nodes: W^T W is the inverse at those nodes.
+    """W for unit loads on the loaded nodes: W^T W is the inverse at those nodes.
 
     Raises
     ------
@@ -67,9 +67,9 @@ def inverse_factor(matrix: BlockMatrix, symbolic: SymbolicFactor, meter: Meter) 
     entries = EntriesByFront(matrix.rows, matrix.columns, symbolic)
     blocks = entries.in_order(matrix.blocks)
     works = [FrontWork.of(front) for front in symbolic.fronts]
-    # In one piece: between them, what fronts hold for a while would leave holes when it goes.
+    # One allocation for all rows, to avoid fragmentation by the fronts' temporary arrays.
     room = np.zeros(sum(work.loaded_rows * work.loads for work in works))
-    remainders: dict[int, _Remainder] = {}
+    updates: dict[int, _Update] = {}
     result, used = [], 0
     with threads_by_work() as suit:
         for index, (front, work) in enumerate(zip(symbolic.fronts, works, strict=True)):
@@ -77,9 +77,7 @@ def inverse_factor(matrix: BlockMatrix, symbolic: SymbolicFactor, meter: Meter) 
             shape = work.loaded_rows, work.loads
             own = room[used : used + shape[0] * shape[1]].reshape(shape, order="F")
             used += own.size
-            remainders[index] = _eliminated(
-                index, entries, blocks, symbolic, remainders, own, meter
-            )
+            updates[index] = _eliminated(index, entries, blocks, symbolic, updates, own, meter)
             if own.size:
                 result.append(LoadRows(3 * front.load_start, 3 * front.load_stop, own))
     return result
@@ -90,38 +88,38 @@ def _eliminated(
     entries: EntriesByFront,
     blocks: NDArray[np.float64],
     symbolic: SymbolicFactor,
-    remainders: dict[int, _Remainder],
+    updates: dict[int, _Update],
     own: NDArray[np.float64],
     meter: Meter,
-) -> _Remainder:
+) -> _Update:
     """Eliminate a front; its rows of W are written to ``own``, zeros before."""
     front = symbolic.fronts[index]
     work = FrontWork.of(front)
     pivots = np.zeros((work.pivots, work.pivots), order="F")
-    coupling = np.zeros((work.pivots, work.boundary), order="F")
+    border = np.zeros((work.pivots, work.boundary), order="F")
     schur = UpperTiles.zeros(work.boundary)
     skipped = work.pivots - work.loaded_rows
     passed = np.zeros((work.boundary, work.loads), order="F")
 
-    entries.add_to(index, front, blocks, pivots, coupling)
+    entries.add_to(index, front, blocks, pivots, border)
     stiffness = pivots.diagonal().copy()
     loaded = (3 * front.loaded_pivots[:, None] + AXES).ravel()
     own[loaded - skipped, np.arange(work.loads - len(loaded), work.loads)] = 1.0
     for child in front.children:
-        below, remainder = symbolic.fronts[child], remainders.pop(child)
+        below, update = symbolic.fronts[child], updates.pop(child)
         runs = runs_between(
-            targets_of_child(below, front), work.pivots, remainder.schur.edges, schur.edges
+            targets_of_child(below, front), work.pivots, update.schur.edges, schur.edges
         )
-        extend_add(remainder.schur, runs, pivots, coupling, schur)
-        meter.add(MOVE_WEIGHT * remainder.schur.size)
+        extend_add(update.schur, runs, pivots, border, schur)
+        meter.add(MOVE_WEIGHT * update.schur.size)
         if not below.load_count:
-            # Where no load comes from below, W may leave out the pivots before the first loaded.
+            # Without loads from below, W may omit the pivots before the first loaded one.
             continue
         first = 3 * (below.load_start - front.load_start)
-        columns = slice(first, first + remainder.loads.shape[1])
+        columns = slice(first, first + update.loads.shape[1])
         for run in runs:
             target = own if run.parent_tile < 0 else passed
-            part = remainder.loads[run.below]
+            part = update.loads[run.below]
             target[run.onward, columns] = part
             meter.add(MOVE_WEIGHT * part.size)
     meter.add(FRONT_WEIGHT)
@@ -129,18 +127,18 @@ def _eliminated(
     factor, breakdown = dpotrf(pivots, lower=False, clean=False, overwrite_a=True)
     refuse_loose(breakdown, factor.diagonal() ** 2, stiffness)
     meter.add(CHOLESKY_WEIGHT * work.cholesky_flops)
-    _solve_transposed(factor, coupling, meter)
-    schur.subtract_gram(coupling, meter.add)
+    _solve_transposed(factor, border, meter)
+    schur.subtract_gram(border, meter.add)
     if skipped:
         factor = np.asfortranarray(factor[skipped:, skipped:])
-        coupling = np.asfortranarray(coupling[skipped:])
+        border = np.asfortranarray(border[skipped:])
     _solve_transposed(factor, own, meter)
-    _subtract_product(coupling, own, passed, meter)
-    return _Remainder(schur, passed)
+    _subtract_product(border, own, passed, meter)
+    return _Update(schur, passed)
 
 
 def targets_of_child(child: Front, parent: Front) -> NDArray[np.int64]:
-    """Which freedom of the parent, pivots first, each freedom of the child's boundary is."""
+    """Parent's freedom, pivots first, of each freedom of the child's boundary."""
     nodes = np.where(
         child.boundary < parent.stop,
         child.boundary - parent.start,
@@ -161,23 +159,23 @@ def _solve_transposed(
 
 
 def _subtract_product(
-    coupling: NDArray[np.float64],
+    border: NDArray[np.float64],
     own: NDArray[np.float64],
     passed: NDArray[np.float64],
     meter: Meter,
 ) -> None:
-    """Subtract ``coupling.T @ own`` from ``passed`` (b, c)."""
-    if not coupling.size:
+    """Subtract ``border.T @ own`` from ``passed`` (b, c)."""
+    if not border.size:
         return
-    for columns in _short_calls(own.shape[1], 2 * coupling.size):
+    for columns in _short_calls(own.shape[1], 2 * border.size):
         dgemm(
-            -1.0, coupling, own[:, columns], 1.0, passed[:, columns], trans_a=True, overwrite_c=True
+            -1.0, border, own[:, columns], 1.0, passed[:, columns], trans_a=True, overwrite_c=True
         )
-        meter.add(2.0 * coupling.size * own[:, columns].shape[1])
+        meter.add(2.0 * border.size * own[:, columns].shape[1])
 
 
 def _short_calls(columns: int, flops_per_column: int) -> list[slice]:
-    """Cut columns into parts that take one short call each."""
+    """Parts of the columns that take one short call each."""
     if not flops_per_column:
         return []
     step = max(int(FLOPS_PER_CALL / flops_per_column), 16)
@@ -185,9 +183,9 @@ def _short_calls(columns: int, flops_per_column: int) -> list[slice]:
 
 
 class EntriesByFront:
-    """Where the upper half of a block matrix goes in order of elimination, cut into fronts.
+    """Places of a block matrix's upper half in the fronts.
 
-    ``rows`` and ``columns`` (m,) are those of its blocks, both halves of the matrix.
+    ``rows`` and ``columns`` (m,) of the blocks, both halves of the matrix.
     """
 
     def __init__(
@@ -201,7 +199,7 @@ class EntriesByFront:
         self._bounds = np.searchsorted(self._rows, stops)
 
     def in_order(self, blocks: NDArray[np.float64]) -> NDArray[np.float64]:
-        """The blocks of the upper half, sorted for :meth:`add_to`."""
+        """Blocks of the upper half, sorted for :meth:`add_to`."""
         return blocks[self._upper]
 
     def add_to(
@@ -210,15 +208,15 @@ class EntriesByFront:
         front: Front,
         blocks: NDArray[np.float64],
         pivots: NDArray[np.float64],
-        coupling: NDArray[np.float64],
+        border: NDArray[np.float64],
     ) -> None:
-        """Write the entries of front number ``index``, of sorted ``blocks``, into empty arrays."""
+        """Write the entries of front ``index`` of sorted ``blocks`` into empty arrays."""
         span = slice(*self._bounds[index : index + 2])
         rows, columns, blocks = self._rows[span], self._columns[span], blocks[span]
         inside = columns < front.stop
         for chosen, target, places in (
             (inside, pivots, columns - front.start),
-            (~inside, coupling, np.searchsorted(front.boundary, columns)),
+            (~inside, border, np.searchsorted(front.boundary, columns)),
         ):
             row = 3 * (rows[chosen] - front.start)[:, None, None] + AXES[:, None]
             column = 3 * places[chosen][:, None, None] + AXES

@@ -1,4 +1,4 @@
-"""What an elimination will cost, exactly, before it starts."""
+"""Plan of an elimination, with its exact cost before it starts."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from .work import FrontWork, elimination_peak_bytes
 
 @dataclass(frozen=True, eq=False)
 class EliminationPlan:
-    """The symbolic step of a body, and what follows from it.
+    """Symbolic step of a body's elimination, and its cost.
 
     Attributes
     ----------
@@ -29,7 +29,7 @@ class EliminationPlan:
     matrix : the stiffness between free nodes.
     symbolic : fronts and order; nodes are counted among the free ones.
     ranks : int64 (n,), for each loaded node in order of elimination, its place in free_surface.
-    table_itemsize : bytes of a number of the table that is to be made; 0 for none.
+    table_itemsize : bytes of a number of the resulting table; 0 for none.
     """
 
     free_surface: NDArray[np.int64]
@@ -40,12 +40,12 @@ class EliminationPlan:
 
     @cached_property
     def works(self) -> list[FrontWork]:
-        """The work of each front."""
+        """Work of each front."""
         return [FrontWork.of(front) for front in self.symbolic.fronts]
 
     @cached_property
     def flops(self) -> float:
-        """Floating point operations, exactly those that BLAS and LAPACK will be asked for."""
+        """Floating point operations, exactly those of BLAS and LAPACK."""
         eliminated = sum(work.flops for work in self.works)
         if not self.table_itemsize:
             return eliminated
@@ -61,13 +61,13 @@ class EliminationPlan:
 
     @cached_property
     def peak_bytes(self) -> int:
-        """The most bytes that the numeric steps ask for at once, the plan's matrix included.
+        """Peak bytes allocated by the numeric steps, the plan's matrix included.
 
-        A process grows by up to a third more, measured: freed memory is not all given back at once.
+        A process grows by up to a third more, measured: freed memory is not all returned at once.
         """
         peak, factor = elimination_peak_bytes(self.symbolic.fronts)
         table = inverse_bytes(len(self.ranks), self.table_itemsize)
-        # The elimination sorts the upper half of the matrix for itself.
+        # The elimination makes a sorted copy of the matrix's upper half.
         sorted_half = self.matrix.nbytes // 2
         return self.matrix.nbytes + max(sorted_half + peak, factor + table)
 
@@ -79,9 +79,9 @@ def plan_surface_inverse(
     dtype: type[np.floating] = np.float32,
     progress: Progress = unwatched,
 ) -> EliminationPlan:
-    """Plan the whole compliance of the free surface, stored as ``dtype``.
+    """Plan the full compliance of the free surface, stored as ``dtype``.
 
-    ``progress`` is called with about the share of the planning done; it may raise to cancel.
+    ``progress`` is called with the approximate share done; it may raise to cancel.
 
     Raises
     ------
@@ -97,7 +97,7 @@ def plan_factor(
     fixed: NDArray[np.int64],
     progress: Progress = unwatched,
 ) -> EliminationPlan:
-    """Plan the factor alone, from which single columns follow; the rest as for the whole."""
+    """Plan the factor alone, for single columns; otherwise as :func:`plan_surface_inverse`."""
     return _planned(mesh, stiffness, fixed, 0, progress)
 
 

@@ -1,4 +1,4 @@
-"""Single columns of the compliance on demand, from a factor that is smaller than the whole."""
+"""Single columns of the compliance on demand, from a factor smaller than the full table."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from .work import Meter
 
 @dataclass(frozen=True, eq=False)
 class SurfaceColumns:
-    """The compliance of the free surface as its factor W, L = W^T W, in float64.
+    """Compliance of the free surface as its factor W, L = W^T W, in float64.
 
-    W has a row for every node that loads reach in a front, and there a column for each load from
-    that part of the body. A column of L needs the fronts from its node up to the root, no solve.
+    W has a row for every node of a front that loads reach, and a column for each load from that
+    part of the body. A column of L needs the fronts from its node to the root, no solve.
 
     Attributes
     ----------
@@ -48,8 +48,8 @@ class SurfaceColumns:
     def columns(self, nodes: NDArray[np.int64]) -> NDArray[np.float64]:
         """The columns of L for forces on ``nodes`` (k,), as a matrix (3n, 3k), float64.
 
-        Nodes are counted by their place among ``free_surface``. Nodes near each other share most
-        fronts, so asking for them together is cheapest.
+        Nodes are counted by their place in ``free_surface``. Nodes near each other share most
+        fronts: cheapest together.
         """
         order = np.argsort(self.ranks)
         wanted = freedoms(order[nodes])
@@ -68,7 +68,7 @@ class SurfaceColumns:
         return by_node[order].reshape(3 * self.node_count, -1)
 
     def diagonal(self) -> NDArray[np.float64]:
-        """All blocks L_ii, (n, 3, 3), without any whole column."""
+        """All blocks L_ii, (n, 3, 3), without full columns."""
         eliminated = np.zeros((self.node_count, 3, 3))
         for part in self.factor:
             loads = part.rows.T.reshape((part.stop - part.start) // 3, 3, -1)
@@ -82,7 +82,7 @@ def factor_for_columns(
     fixed: NDArray[np.int64],
     progress: Progress = unwatched,
 ) -> SurfaceColumns:
-    """Factor the stiffness so that columns of the compliance can be had one by one.
+    """Factor the stiffness for single columns of the compliance.
 
     Parameters
     ----------

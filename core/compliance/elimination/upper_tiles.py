@@ -1,7 +1,7 @@
-"""The upper half of a symmetric matrix in contiguous tiles, so that BLAS works on it in place.
+"""Upper half of a symmetric matrix in contiguous tiles, so that BLAS works on it in place.
 
-The wrappers of BLAS in scipy take whole arrays only; a part of a larger array would be copied. They
-are handed one tile of a large Schur complement at a time, which also keeps every call short.
+SciPy's BLAS wrappers copy parts of larger arrays; one tile at a time is not copied, and every call
+is short.
 """
 
 from __future__ import annotations
@@ -14,19 +14,19 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg.blas import dgemm, dsyrk
 
-# Rows and columns of a tile. Products of a few hundred run at full speed.
+# Rows and columns of a tile, enough for products at full speed.
 TILE = 512
 
 
 @dataclass(frozen=True, eq=False)
 class UpperTiles:
-    """A symmetric (m, m) matrix, of which the entries on and above the diagonal count.
+    """Symmetric (m, m) matrix, given by the entries on and above the diagonal.
 
     Attributes
     ----------
-    edges : where each block of rows or columns begins, and m at the end.
+    edges : start of each block of rows or columns, and m.
     tiles : ``tiles[k][i]`` for i up to k holds rows of block i and columns of block k. Diagonal
-        tiles are square; below their own diagonal they hold anything finite.
+        tiles are square, with anything finite below their diagonal.
     """
 
     edges: tuple[int, ...]
@@ -34,7 +34,7 @@ class UpperTiles:
 
     @classmethod
     def zeros(cls, size: int, tile: int = TILE) -> UpperTiles:
-        """A matrix of zeros, (size, size)."""
+        """Zero matrix, (size, size)."""
         edges = tile_edges(size, tile)
         widths = np.diff(edges)
         return cls(
@@ -47,13 +47,13 @@ class UpperTiles:
 
     @property
     def size(self) -> int:
-        """How many numbers the tiles hold."""
+        """Numbers held by the tiles."""
         return sum(tile.size for column in self.tiles for tile in column)
 
     def subtract_gram(self, panel: NDArray[np.float64], done: Callable[[float], None]) -> None:
         """Subtract ``panel.T @ panel``; panel is (k, m) and Fortran-ordered.
 
-        ``done`` is told the floating point operations of each call when it ends.
+        ``done`` is called with the floating point operations of each call when it ends.
         """
         parts = [panel[:, a:b] for a, b in pairwise(self.edges)]
         for column, right in enumerate(parts):
@@ -65,7 +65,7 @@ class UpperTiles:
             done(1.0 * right.size * right.shape[1])
 
     def dense(self) -> NDArray[np.float64]:
-        """The whole matrix, (m, m), both halves."""
+        """Full matrix, (m, m), both halves."""
         upper = np.zeros((self.edges[-1],) * 2)
         for column, stack in enumerate(self.tiles):
             columns = slice(*self.edges[column : column + 2])
@@ -76,5 +76,5 @@ class UpperTiles:
 
 
 def tile_edges(size: int, tile: int = TILE) -> tuple[int, ...]:
-    """Where blocks of at most ``tile`` begin along ``size`` rows, and ``size`` itself."""
+    """Starts of blocks of at most ``tile`` along ``size`` rows, and ``size`` itself."""
     return (*range(0, size, tile), size)

@@ -1,1 +1,1 @@
-"""The order in which freedoms are eliminated."""
+"""Order of elimination of the freedoms."""

@@ -1,8 +1,8 @@
 """Nested dissection: the order of elimination, as a tree of small groups of nodes.
 
-A region is cut across one of its main directions. The nodes that meet every coupling across the cut
-are its separator; they are eliminated after everything on either side, so that the sides never come
-to couple. The sides are cut again, until they are small.
+A region is cut across one of its main directions. The nodes that cover all edges across the cut are
+its separator; they are eliminated after both sides, which therefore stay disconnected. The sides
+are cut again until they are small.
 """
 
 from __future__ import annotations
@@ -18,17 +18,17 @@ from scipy.sparse.csgraph import connected_components
 from ...progress import Progress, unwatched
 from .vertex_cover import minimum_vertex_cover
 
-# Regions of so few nodes are eliminated as one dense front: cutting them on would cost more in
-# calls than it saves in arithmetic.
+# Regions of so few nodes are one dense front: further cuts would cost more in calls than they save
+# in arithmetic.
 LEAF_NODES = 64
 
-# Larger regions are cut across each of their three main directions at several heights, given as the
-# share of nodes below, and the best cut is taken. They are few, and their separators cost most.
-# Smaller ones are halved across their longest direction.
+# Larger regions are cut across each of three main directions at several heights (shares of nodes
+# below), and the best cut is taken: their separators cost most. Smaller ones are halved across
+# their longest direction.
 TRY_SEVERAL_CUTS_ABOVE = 1000
 HEIGHTS_TRIED = (0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65)
 
-# How many nodes fewer, as a share, a separator must have to outweigh a cut one off the middle.
+# Share of nodes that a separator must save to outweigh an off-centre cut.
 IMBALANCE_PENALTY = 0.3
 
 # Cells of the space-filling curve along each axis of the bounding box: 2 to this power.
@@ -43,8 +43,8 @@ class Dissection:
     ----------
     order : int64 (n,), the nodes in order of elimination.
     starts : int64 (f + 1,), front i eliminates ``order[starts[i]:starts[i + 1]]``.
-    parents : int64 (f,), the front that a front's remainder is added to; -1 for roots. Fronts are
-        in postorder: all that end up in a front stand directly before it.
+    parents : int64 (f,), the front that a front's update is added to; -1 for roots. Fronts are
+        in postorder: a front's descendants stand directly before it.
     """
 
     order: NDArray[np.int64]
@@ -59,16 +59,15 @@ def dissect(
     leaf_nodes: int = LEAF_NODES,
     progress: Progress = unwatched,
 ) -> Dissection:
-    """An order of elimination that keeps fronts small.
+    """Order of elimination that keeps fronts small.
 
     Parameters
     ----------
-    edges : (e, 2), pairs of coupled nodes, each pair once.
-    positions : (n, 3), where the nodes are; the cuts' quality depends on it, their validity not.
-    last : (n,), nodes that come last within their leaf, because loads will act on them alone.
+    edges : (e, 2), pairs of connected nodes, each pair once.
+    positions : (n, 3) of the nodes; affect the quality of the cuts, not their validity.
+    last : (n,), nodes that come last within their leaf: the only ones that carry loads.
     leaf_nodes : regions of at most so many nodes are not cut.
-    progress : called before every cut that is tried, with about the share of the work done; may
-        raise to cancel.
+    progress : called before every trial cut with the approximate share done; may raise to cancel.
     """
     expected = len(edges) * max(_cuts_expected(len(positions), leaf_nodes), 1.0)
     sorted_edges = 0
@@ -78,8 +77,8 @@ def dissect(
         sorted_edges += count
         progress(min(sorted_edges / max(expected, 1.0), 1.0))
 
-    # Numbered along a curve that fills space, nodes of one separator stand beside their neighbours.
-    # A front's boundary then meets the fronts above it in few unbroken runs.
+    # Numbered along a space-filling curve, nodes of a separator stand next to their neighbours, and
+    # a front's boundary maps to the fronts above it in few runs.
     curve = _along_z_curve(positions)
     along = np.empty_like(curve)
     along[curve] = np.arange(len(curve))
@@ -95,7 +94,7 @@ def dissect(
         return [len(pivots) - 1]
 
     def add_region(nodes: NDArray[np.int64], inside: NDArray[np.int64]) -> list[int]:
-        """Add the fronts of a region (k,) with edges (e, 2) within it; return those on top."""
+        """Add the fronts of a region (k,) with edges (e, 2) within it; return its roots."""
         if len(nodes) > leaf_nodes:
             pieces = _pieces(len(nodes), inside, leaf_nodes)
             if len(pieces) > 1:
@@ -129,7 +128,7 @@ def _along_z_curve(positions: NDArray[np.float64]) -> NDArray[np.int64]:
 def _part(
     nodes: NDArray[np.int64], edges: NDArray[np.int64], part: NDArray[np.int64]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """The nodes of a part of a region, and the edges within it, in the part's own numbering."""
+    """Nodes of a part of a region, and the edges within it, in the part's numbering."""
     number = np.full(len(nodes), -1, dtype=np.int64)
     number[part] = np.arange(len(part))
     ends = number[edges]
@@ -137,7 +136,7 @@ def _part(
 
 
 def _pieces(count: int, edges: NDArray[np.int64], enough: int) -> list[NDArray[np.int64]]:
-    """The connected pieces of a region; small ones in bundles of at most ``enough`` nodes."""
+    """Connected pieces of a region; small ones in bundles of at most ``enough`` nodes."""
     links = coo_array(
         (np.ones(len(edges), dtype=np.int8), (edges[:, 0], edges[:, 1])), (count,) * 2
     )
@@ -145,7 +144,7 @@ def _pieces(count: int, edges: NDArray[np.int64], enough: int) -> list[NDArray[n
     if pieces == 1:
         return [np.arange(count)]
     sizes = np.bincount(label)
-    # A bundle takes pieces until it is half full, and none that would more than fill the rest.
+    # A bundle takes pieces until it is half full, and none that would overfill it.
     half = max(enough // 2, 1)
     small = sizes <= half
     before = np.cumsum(np.where(small, sizes, 0)) - sizes
@@ -155,7 +154,7 @@ def _pieces(count: int, edges: NDArray[np.int64], enough: int) -> list[NDArray[n
 
 @dataclass(frozen=True, eq=False)
 class _Cut:
-    """Both sides of a region and what separates them, and how costly it is to eliminate so."""
+    """Sides and separator of a region, and the cost of eliminating them in this order."""
 
     first: NDArray[np.int64]
     second: NDArray[np.int64]
@@ -164,7 +163,7 @@ class _Cut:
 
 
 def _cuts_expected(nodes: int, leaf_nodes: int) -> float:
-    """How many cuts each edge is sorted for, if every cut halves its region."""
+    """Number of cuts that each edge is sorted for, if every cut halves its region."""
     several = max(0.0, np.log2(nodes / TRY_SEVERAL_CUTS_ABOVE))
     single = max(0.0, np.log2(min(nodes, TRY_SEVERAL_CUTS_ABOVE) / leaf_nodes))
     return float(3 * len(HEIGHTS_TRIED) * np.ceil(several) + np.ceil(single))
@@ -173,7 +172,7 @@ def _cuts_expected(nodes: int, leaf_nodes: int) -> float:
 def _best_cut(
     positions: NDArray[np.float64], edges: NDArray[np.int64], tried: Callable[[int], None]
 ) -> _Cut:
-    """The cheapest of the cuts tried; each is announced by the number of edges it sorted."""
+    """Cheapest of the trial cuts; progress counts the edges that each sorts."""
     centred = positions - positions.mean(axis=0)
     directions = np.linalg.eigh(centred.T @ centred)[1].T[::-1]
     if len(positions) <= TRY_SEVERAL_CUTS_ABOVE:
@@ -190,7 +189,7 @@ def _best_cut(
 
 
 def _ranks(heights: NDArray[np.float64]) -> NDArray[np.int64]:
-    """For each node how many lie lower, (k,); every number occurs once."""
+    """Rank of each node by height, (k,), a permutation."""
     ranks = np.empty(len(heights), dtype=np.int64)
     ranks[np.argsort(heights, kind="stable")] = np.arange(len(heights))
     return ranks

@@ -1,4 +1,4 @@
-"""The symbolic step: which nodes and which loads every front will hold, before any number."""
+"""Symbolic step: nodes and loads of every front, before any arithmetic."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from .dissection import Dissection
 
 @dataclass(frozen=True, eq=False)
 class Front:
-    """A dense piece of the elimination. All counts are nodes, three freedoms each.
+    """Dense part of the elimination. All counts are nodes, three freedoms each.
 
     Attributes
     ----------
     start, stop : the pivots' places in the order of elimination.
-    boundary : int64 (b,), places of the nodes that remain coupled to the pivots, ascending. What
-        the elimination leaves on them is added to the parent.
-    children : fronts whose remainder is added here.
-    load_start, load_stop : which loads arrive here, counted as the loaded nodes are eliminated:
-        those of all fronts below, then those on pivots of this front.
+    boundary : int64 (b,), places of later nodes connected to the pivots, ascending. Their
+        Schur complement is added to the parent.
+    children : fronts whose update is added here.
+    load_start, load_stop : range of loads that arrive here, in order of elimination: those of all
+        descendants, then those on this front's pivots.
     loaded_pivots : int64 (k,), the pivots that carry loads, counted within the front.
     """
 
@@ -45,7 +45,7 @@ class Front:
 
     @property
     def first_loaded(self) -> int:
-        """The first pivot that any load reaches; loads never reach what was eliminated before."""
+        """First pivot that any load reaches; earlier ones never do."""
         if len(self.loaded_pivots) == self.load_count and self.load_count:
             return int(self.loaded_pivots[0])
         return 0
@@ -53,7 +53,7 @@ class Front:
 
 @dataclass(frozen=True, eq=False)
 class SymbolicFactor:
-    """The fronts in order, and how nodes are numbered within them.
+    """Fronts in order, and the numbering of nodes.
 
     Attributes
     ----------
@@ -72,13 +72,13 @@ class SymbolicFactor:
 def analyse(
     dissection: Dissection, edges: NDArray[np.int64], loaded: NDArray[np.bool_]
 ) -> SymbolicFactor:
-    """Find all fronts of an elimination.
+    """All fronts of an elimination.
 
     Parameters
     ----------
     dissection : of the same nodes.
-    edges : (e, 2), pairs of coupled nodes.
-    loaded : (n,), nodes that unit loads will act on.
+    edges : (e, 2), pairs of connected nodes.
+    loaded : (n,), nodes with unit loads.
     """
     order, starts, parents = dissection.order, dissection.starts, dissection.parents
     place = np.empty_like(order)
@@ -92,7 +92,7 @@ def analyse(
     for index, parent in enumerate(parents):
         start, stop = int(starts[index]), int(starts[index + 1])
         below = children[index]
-        coupled = np.unique(
+        reached = np.unique(
             np.concatenate(
                 [ends[first_edge[index] : first_edge[index + 1], 1]]
                 + [fronts[child].boundary for child in below]
@@ -102,7 +102,7 @@ def analyse(
             Front(
                 start,
                 stop,
-                coupled[coupled >= stop],
+                reached[reached >= stop],
                 tuple(below),
                 fronts[below[0]].load_start if below else int(loads_before[start]),
                 int(loads_before[stop]),

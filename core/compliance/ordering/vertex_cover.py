@@ -1,4 +1,4 @@
-"""The smallest set of nodes that meets every edge of a bipartite graph."""
+"""Minimum vertex cover of a bipartite graph."""
 
 from __future__ import annotations
 
@@ -9,12 +9,11 @@ from scipy.sparse.csgraph import maximum_bipartite_matching
 
 
 def minimum_vertex_cover(left: NDArray[np.int64], right: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Nodes (k,) such that each edge ``left[i]`` to ``right[i]`` has one of its ends among them.
+    """Fewest nodes (k,) that include an end of each edge ``left[i]`` to ``right[i]``.
 
-    No smaller set does: by Koenig's theorem a maximum matching has as many edges as the smallest
-    cover has nodes. The cover consists of the left nodes that no alternating path from an unmatched
-    left node reaches, and of the right nodes that one does reach. Nodes on the left and on the
-    right must not share numbers.
+    By Koenig's theorem a maximum matching has as many edges as the smallest cover has nodes. The
+    cover consists of the left nodes that no alternating path from an unmatched left node reaches,
+    and of the right nodes that one does. Left and right nodes must not share numbers.
     """
     left_nodes, left_ends = np.unique(left, return_inverse=True)
     right_nodes, right_ends = np.unique(right, return_inverse=True)

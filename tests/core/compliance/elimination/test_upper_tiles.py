@@ -22,15 +22,15 @@ def test_extend_add_is_addition_by_node_numbers(rng, tile):
     child = UpperTiles.zeros(size, tile)
     child.subtract_gram(np.asfortranarray(rng.normal(size=(size, size))), lambda _: None)
     pivots = np.zeros((pivot_count, pivot_count), order="F")
-    coupling = np.zeros((pivot_count, boundary), order="F")
+    border = np.zeros((pivot_count, boundary), order="F")
     schur = UpperTiles.zeros(boundary, tile)
     runs = runs_between(targets, pivot_count, child.edges, schur.edges)
-    extend_add(child, runs, pivots, coupling, schur)
+    extend_add(child, runs, pivots, border, schur)
 
     expected = np.zeros((pivot_count + boundary,) * 2)
     expected[np.ix_(targets, targets)] = child.dense()
     np.testing.assert_array_equal(np.triu(pivots), np.triu(expected[:pivot_count, :pivot_count]))
-    np.testing.assert_array_equal(coupling, expected[:pivot_count, pivot_count:])
+    np.testing.assert_array_equal(border, expected[:pivot_count, pivot_count:])
     np.testing.assert_array_equal(schur.dense(), expected[pivot_count:, pivot_count:])
 
 

@@ -1,4 +1,4 @@
-"""Couplings between the bases of all clusters, put together while the clusters' columns arrive."""
+"""Interactions between the bases of all clusters, collected as the clusters' columns arrive."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from .clusters import Clusters
 
 
 @dataclass(eq=False)
-class Coupling:
-    """L between far clusters r < c as B_r M_rc B_c^T, and what that leaves out.
+class Interactions:
+    """L between far clusters r < c as B_r M_rc B_c^T, and the error of that.
 
-    Clusters are added in their order. When c arrives, the bases of all r before it are known, and
-    L's symmetry makes the other half; so each column is asked for once and then forgotten.
+    Clusters are added in order: when c arrives, the bases of all r before it are known, and the
+    other half follows from symmetry; so each column is computed once and not kept.
 
     Attributes
     ----------
     clusters, scale : the partition, and s of each degree of freedom, cluster after cluster.
     bases : (3a, k) for each cluster added.
-    blocks : for each, M of all earlier clusters, one above the other, float32.
+    blocks : for each, M of all earlier clusters, stacked, float32.
     near : for each, the near blocks with earlier clusters and itself.
     diagonals : for each, its blocks L_ii.
     norms : of the columns of L.
@@ -50,18 +50,18 @@ class Coupling:
         self.other_cut = np.zeros_like(self.scale)
 
     def add(self, part: ClusterColumns) -> None:
-        """Take the next cluster."""
+        """Add the next cluster."""
         cluster = len(self.bases)
         own = self.clusters.span(cluster)
         self.norms[own] = part.norms
         self.near_error[: own.stop] += part.near_error
         self.own_cut[: own.stop] += part.cut_error
-        self._couple(cluster, part)
+        self._project(cluster, part)
         self.bases.append(part.basis)
         self.near.append(part.near)
         self.diagonals.append(part.diagonal)
 
-    def _couple(self, cluster: int, part: ClusterColumns) -> None:
+    def _project(self, cluster: int, part: ClusterColumns) -> None:
         own, first = self.clusters.span(cluster), 0
         rank = part.basis.shape[1]
         blocks = np.zeros((sum(basis.shape[1] for basis in self.bases), rank), np.float32)
@@ -84,5 +84,5 @@ class Coupling:
             self.other_cut[: own.start] += left_out.sum(axis=1)
 
     def cut_errors(self) -> NDArray[np.float64]:
-        """Bound of the relative error of each column that cut bases make, (3n,)."""
+        """Bound of each column's relative error from cut bases, (3n,)."""
         return (np.sqrt(self.own_cut) + np.sqrt(self.other_cut)) / self.norms
