@@ -1,4 +1,4 @@
-"""Interactions rounded to steps, in tiles of 8 x 8 numbers of 8 or 16 bits; zero tiles are left out.
+"""Interactions rounded to steps, in tiles of 8 x 8 numbers of 8 or 16 bits, without zero tiles.
 
 With orthonormal bases a rounding error is as large in L as in the interaction, so the step follows
 from the tolerance. Basis vectors are sorted by importance: most tiles vanish or fit 8 bits; only

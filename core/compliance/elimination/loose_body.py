@@ -27,7 +27,7 @@ def refuse_loose(
     Raises
     ------
     PalpateError
-        A pivot that is not positive, or or rounding compared with its stiffness.
+        A pivot that is not positive, or no more than rounding of its stiffness.
     """
     if breakdown or not (pivots > SMALLEST_PIVOT_SHARE * stiffness).all():
         raise PalpateError(
