@@ -57,14 +57,17 @@ $(VENV)/.installed: pyproject.toml
 	$(BIN)/pip install --quiet --editable '.[dev]'
 	touch $@
 
-build/servo/.built: $(NATIVE_SOURCES) $(VENV)/.installed
-	rm -rf build/servo
-	mkdir -p build/servo
-	$(BIN)/maturin build --release --quiet $(CRATE) --out build/servo
+# Of the servo there are two: the one of the package, and one that tests and benchmarks can step.
+build/servo/.built: FEATURES := python
+build/servo-harness/.built: FEATURES := python,harness
+build/servo/.built build/servo-harness/.built: $(NATIVE_SOURCES) $(VENV)/.installed
+	rm -rf $(@D)
+	mkdir -p $(@D)
+	$(BIN)/maturin build --release --quiet $(CRATE) --features $(FEATURES) --out $(@D)
 	touch $@
 
-$(VENV)/.servo-installed: build/servo/.built
-	$(BIN)/pip install --quiet --force-reinstall --no-deps build/servo/*.whl
+$(VENV)/.servo-installed: build/servo-harness/.built
+	$(BIN)/pip install --quiet --force-reinstall --no-deps build/servo-harness/*.whl
 	touch $@
 
 # The name under which type checkers find the package (see pyproject.toml).
@@ -138,7 +141,7 @@ lint: $(VENV)/.servo-installed build/typing/palpate | build/reports ## linters, 
 
 .PHONY: test-native
 test-native: $(VENV)/.installed | build/reports ## the servo's own tests
-	$(CARGO) test --quiet $(CRATE) $(REPORT)
+	$(CARGO) test --quiet $(CRATE) --features harness $(REPORT)
 
 .PHONY: test-core
 test-core: $(VENV)/.servo-installed | build/reports ## core, command line and packages, without Blender

@@ -3,10 +3,13 @@
 SI units everywhere (m, N, Pa, s). Arrays that are handed in are copied, those of a Compliance
 excepted; arrays that come out are new. Anything with three numbers (list, numpy array,
 mathutils.Vector) serves as a vector.
+
+Built for tests and benchmarks it also has `palpate_servo.harness`, which is told of in its own
+docstrings (native/src/python/harness).
 """
 
 from collections.abc import Mapping, Sequence
-from typing import Any, Literal, NotRequired, Self, TypeAlias, TypedDict, final
+from typing import Any, Literal, Self, TypeAlias, TypedDict, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -186,9 +189,6 @@ class Compliance:
         The compressed form is summed in float32, its L_ii in float64.
         """
 
-    def seconds_per_block(self, pairs: Sequence[tuple[int, int]]) -> float:
-        """How long it takes to read the blocks of these pairs, on average, s."""
-
 @final
 class Body:
     """A soft body's rest surface and contact stiffness; immutable."""
@@ -258,62 +258,6 @@ class Body:
         self, p: _Vector
     ) -> tuple[int, NDArray[np.float64], NDArray[np.float64], float]:
         """Triangle, area coordinates, nearest surface point and signed distance (inside < 0)."""
-
-@final
-class Proxy:
-    """God object and contact point alone, by the same code as in the servo.
-
-    The god object judges what touches; the contact point that makes the force follows it: smoothly
-    over the borders of facets, shaded, or held back by friction.
-    """
-
-    def __init__(
-        self,
-        body: Body,
-        *,
-        shading: bool = False,
-        static_friction: float = 0.0,
-        dynamic_friction: float = 0.0,
-        rate_hz: int = 1000,
-        mode: ContactMode = "consistent",
-    ) -> None:
-        """Feel the body's facets as the smooth surface they stand for (shading), with coefficients
-        of dry friction, moved rate_hz times a second; friction is judged by the mode's force.
-
-        Raises ValueError unless 0 <= dynamic_friction <= static_friction.
-        """
-
-    def restart(self, position: _Vector) -> None:
-        """Set down at a position; inside the body nothing is felt until it was outside once."""
-
-    def move(self, device: _Vector) -> tuple[bool, NDArray[np.float64], int, NDArray[np.float64]]:
-        """Follow the device: touching, contact point (3,), triangle (-1 if free), alpha (3,)."""
-
-    def follow_path(self, devices: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-        """Follow devices (k, 3) in turn: contact points (k, 3), triangles (k,), -1 free."""
-
-    def time_path(self, devices: ArrayLike, batch: int) -> NDArray[np.float64]:
-        """Follow devices (k, 3) and compute the contact force at each: seconds a tick, averaged
-        over batches of so many ticks each, (ceil(k / batch),).
-        """
-
-    @property
-    def god_object(self) -> NDArray[np.float64]:
-        """The locally nearest point that the surface allows, m (3,), before shading, friction and
-        the smoothing of facet borders; the device itself while free.
-        """
-
-    @property
-    def sticking(self) -> bool:
-        """Whether friction holds the contact point where it is."""
-
-    @property
-    def steps(self) -> int:
-        """Features visited in the last move."""
-
-    @property
-    def rescues(self) -> int:
-        """How often the sign of the distance had to correct a sweep."""
 
 class FingerSnapshot:
     """One finger in one tick, whole: all values belong together."""
@@ -441,14 +385,6 @@ class Snapshot(FingerSnapshot):
     @property
     def nodal_forces(self) -> NDArray[np.float64]:
         """On the nodes of the touched triangle, N, (3, 3): (12), (13); zero for a tool."""
-
-def tick_costs(
-    body: Body, paths: ArrayLike, *, young_modulus: float, mode: ContactMode = "consistent"
-) -> NDArray[np.float64]:
-    """CPU time (ticks,), s, of the servo's whole ticks with fingers on paths (fingers, ticks, 3).
-
-    For benchmarks. ValueError for other shapes, or several fingers on a body that is not whole.
-    """
 
 @final
 class Tool:
@@ -927,129 +863,6 @@ class Servo:
     def __enter__(self) -> Self: ...
     def __exit__(self, kind: object, value: object, trace: object, /) -> None: ...
 
-class SteppedCounters(TypedDict):
-    """Faults and link of a stepped servo."""
-
-    faults: dict[str, int]
-    link: LinkCounters
-
-@final
-class SteppedServo:
-    """The ticks of a Servo, by hand and in virtual time, with a device on a line in memory.
-
-    For tests and simulations: nothing waits, and the same input gives the same output.
-    """
-
-    def __init__(
-        self,
-        body: Body,
-        *,
-        young_modulus: float,
-        rate_hz: int = 1000,
-        max_force: float = 3.0,
-        max_slew: float = 1000.0,
-        ramp_seconds: float = 0.25,
-        max_speed: float = 2.0,
-        mode: ContactMode = "consistent",
-    ) -> None:
-        """As Servo; ValueError as there."""
-
-    def tick(self, received: bytes | None = None, seconds: float | None = None) -> bytes:
-        """Tick once, `seconds` (default: a period) after the last time; what the device has sent,
-        and what is sent to it.
-        """
-
-    def unplug(self) -> None: ...
-    def plug_in(self) -> None: ...
-    def set_enabled(self, enabled: bool) -> None: ...
-    def set_young_modulus(self, young_modulus: float) -> None:
-        """Any number, also none: to see what the tick makes of it."""
-
-    def set_felt(self, felt: FeltName) -> None:
-        """As of Servo; linear at the start."""
-
-    def set_mode(self, mode: ContactMode) -> None:
-        """As of Servo."""
-
-    def set_coupling(self, *, stiffness: float, damping: float, passivity_control: bool) -> None:
-        """As of Servo; none at the start."""
-
-    def set_device_frame(self, rotation: _Matrix, translation: _Vector, scale: float) -> None:
-        """As of Servo."""
-
-    def set_body(self, body: Body, young_modulus: float) -> None:
-        """Exchange the body with the next tick; ValueError for a modulus without sense."""
-
-    def snapshot(self) -> Snapshot: ...
-    def counters(self) -> SteppedCounters: ...
-
-@final
-class SteppedFingers:
-    """The ticks of a Servo, by hand and in virtual time, with fingers led along paths.
-
-    For tests and measurements: no device, no limits, the same input gives the same output. Fingers
-    are as those of pointers, but are where the path says, however far apart its places lie.
-    """
-
-    def __init__(
-        self,
-        body: Body,
-        positions: ArrayLike,
-        *,
-        young_modulus: float,
-        rate_hz: int = 1000,
-        shading: bool = False,
-        static_friction: float = 0.0,
-        dynamic_friction: float = 0.0,
-        mode: ContactMode = "consistent",
-        felt: FeltName = "linear",
-    ) -> None:
-        """Fingers set down at positions (m, 3), m; the other arguments as of Servo, the rate any.
-
-        Raises ValueError for no finger or more than MAX_FINGERS, for several on a body that is not
-        whole, for numbers without sense.
-        """
-
-    def follow(self, paths: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Lead the fingers along paths (ticks, m, 3), m: contact forces on them, N, and torques,
-        N m, (ticks, m, 3), before coupling and safety. ValueError for another shape.
-        """
-
-    def set_tool(self, tool: ToolContact | None, rotation: _Matrix, finger: int = 0) -> None:
-        """Touch with a tool (or again a point), turned from the tool's axes to the body's; it is
-        set down with the next tick. ValueError for no rotation, or no such finger.
-        """
-
-    def set_down(self, position: _Vector, finger: int) -> None:
-        """Lift a finger off and set it down there with the next tick."""
-
-    def set_felt(self, felt: FeltName) -> None:
-        """As of Servo."""
-
-    def set_young_modulus(self, young_modulus: float) -> None: ...
-    def snapshot(self) -> Snapshot: ...
-
-@final
-class BareTimer:
-    """A native thread that only sleeps and wakes: what the machine can do at best."""
-
-    def __init__(self, rate_hz: int = 1000) -> None: ...
-    def counters(self) -> TimingCounters: ...
-    def stop(self) -> TimingCounters: ...
-
-@final
-class Decoder:
-    """Cuts bytes of the link into payloads."""
-
-    def __init__(self) -> None: ...
-    def feed(self, data: bytes) -> list[bytes]: ...
-    @property
-    def crc_errors(self) -> int: ...
-    @property
-    def cobs_errors(self) -> int: ...
-    @property
-    def oversize(self) -> int: ...
-
 class DeviceCoupling(TypedDict):
     """Keywords of Servo.set_coupling."""
 
@@ -1066,104 +879,6 @@ def haply_encoder_step(model: str) -> float:
     """The farthest that two successive encoder readings of a 2DIY lie apart, m; ValueError for a
     model that is not known.
     """
-
-def coupled_forces(
-    displacements: NDArray[np.float64],
-    *,
-    rate_hz: int,
-    body_stiffness: float,
-    stiffness: float,
-    damping: float,
-    passivity_control: bool,
-) -> NDArray[np.float64]:
-    """Forces (n,), N, that the servo's coupling gives for displacements (n,), m into the body, of
-    successive ticks on a body of one stiffness (N/m); negative is out of the body.
-    """
-
-def solve_contacts(
-    compliance: ArrayLike,
-    displacements: ArrayLike,
-    pushes: ArrayLike,
-    start: ArrayLike | None = None,
-) -> NDArray[np.float64]:
-    """Forces (m, 3) on the body at E = 1 of fingers that may only push, as in a tick.
-
-    Takes C (m, m, 3, 3), displacements asked for and pushes (m, 3), forces of the tick before.
-
-    A tick does ten rounds at most where forces lean on their cones. ValueError for more than
-    MAX_FINGERS, other shapes, or a C that is not positive definite.
-    """
-
-class ContactOutcome(TypedDict):
-    """Energies in J: start + motor + hand = kinetic + viscous + coulomb."""
-
-    start: float
-    """Kinetic energy at the start."""
-    kinetic: float
-    """Kinetic energy at the end."""
-    motor: float
-    """Work of the motor."""
-    hand: float
-    """Work of the hand on the device."""
-    viscous: float
-    coulomb: float
-    """Taken by friction."""
-    extracted: float
-    """The most that the motor had given at any time beyond what friction had taken: what a hand
-    could have got out. Never more than 0 for a passive device that begins outside the body.
-    """
-    made_before: float
-    made_late: float
-    """Work of the motor in the third and the last quarter beyond that of an ideal spring."""
-    swing_before: float
-    swing_late: float
-    """Highest minus lowest position (m) in the third and the last quarter."""
-    position: float
-    largest_force: float
-    trace: NotRequired[NDArray[np.float64]]
-    """Time (s), position (m into the body) and held force (N) of every tick (n, 3), if wanted."""
-
-def simulate_contact(
-    *,
-    mass: float,
-    damping: float,
-    coulomb: float,
-    encoder_step: float,
-    force_step: float,
-    delay: float,
-    jitter: float,
-    hand_stiffness: float,
-    hand_damping: float,
-    hand_push: float,
-    hand_target: float,
-    rate_hz: int,
-    body_stiffness: float,
-    stiffness: float,
-    coupling_damping: float,
-    passivity_control: bool,
-    start: float,
-    speed: float,
-    seconds: float,
-    max_force: float = 3.0,
-    max_slew: float = 1000.0,
-    seed: int = 1,
-    trace: bool = False,
-) -> ContactOutcome:
-    """Let a device and a hand press a body with the servo's own coupling and limits, on one axis
-    (positive into the body), without a servo. SI units.
-
-    mass, damping (viscous) and coulomb friction are the device's; encoder_step (m) and
-    force_step (N) may be 0. delay (s) is all that lies between reading and obeying besides the
-    holding of a tick, jitter its random part. The hand is a spring and a damper to hand_target and
-    a constant push. stiffness, coupling_damping and passivity_control are those of
-    Servo.set_coupling. ValueError for numbers without sense.
-    """
-
-def bare_timer(rate_hz: int, seconds: float) -> TimingCounters:
-    """Run a BareTimer for some seconds."""
-
-def encode_frame(payload: bytes) -> bytes:
-    """COBS(payload + CRC) and a zero byte; ValueError beyond 1 to 58 bytes."""
 
 def stop_all() -> None:
     """Stop every servo that still runs; registered with atexit."""

@@ -16,7 +16,7 @@ import sys
 
 import numpy as np
 from numpy.typing import NDArray
-from palpate_servo import SteppedFingers
+from palpate_servo.harness import SteppedFingers
 
 from palpate.core.bake.steps import BakeSettings, bake
 from palpate.core.contact.tool.tools import sphere

@@ -23,7 +23,8 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from palpate_servo import Body, SteppedFingers, ToolContact
+from palpate_servo import Body, ToolContact
+from palpate_servo.harness import SteppedFingers
 
 from palpate.benchmarks.measuring.contact.finger_paths import (
     beside,

@@ -36,7 +36,8 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from palpate_servo import Body, Proxy
+from palpate_servo import Body
+from palpate_servo.harness import Proxy
 from scipy.spatial import ConvexHull
 
 PEER = "PALPATE_PROXY_PEER"

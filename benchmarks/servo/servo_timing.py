@@ -20,7 +20,8 @@ from contextlib import ExitStack
 from typing import Any
 
 import numpy as np
-from palpate_servo import BareTimer, Body, Pointer, Servo
+from palpate_servo import Body, Pointer, Servo
+from palpate_servo.harness import BareTimer
 from scipy.stats import binom
 
 RADIUS = 0.025

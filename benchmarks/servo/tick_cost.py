@@ -40,7 +40,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from palpate_servo import Body, tick_costs
+from palpate_servo import Body
+from palpate_servo.harness import tick_costs
 
 from palpate.core.bake.steps import BakeSettings, bake
 from palpate.core.body.soft_body import SoftBody

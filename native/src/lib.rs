@@ -4,7 +4,8 @@
 //! [`device`], moves the [`proxy`] (god object) on the rest surface of the [`body`], computes the
 //! [`contact`] force, (11) to (14), of points, [`fingers`] and [`tool`]s, passes it through [`control`]
 //! and gives it to the device; the [`clock`] says when. The tick allocates nothing, takes no lock
-//! and knows nothing of Python; the optional `python` feature adds the thin binding.
+//! and knows nothing of Python; the feature `python` adds the thin binding, the feature `harness` what
+//! only tests and benchmarks need.
 
 pub mod algebra;
 pub mod body;
@@ -14,6 +15,7 @@ pub mod control;
 pub mod device;
 pub mod engine;
 pub mod fingers;
+#[cfg(feature = "harness")]
 pub mod harness;
 pub mod proxy;
 #[cfg(feature = "python")]

@@ -11,7 +11,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from palpate_servo import Body, SteppedServo
+from palpate_servo import Body
+from palpate_servo.harness import SteppedServo
 
 from palpate.core.servo import link
 from palpate.simulated.board.simulated_firmware import Firmware

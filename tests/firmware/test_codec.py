@@ -6,8 +6,8 @@ import struct
 import subprocess
 from pathlib import Path
 
-import palpate_servo
 import pytest
+from palpate_servo import harness
 
 from palpate.core.servo import link
 
@@ -183,7 +183,7 @@ def test_worked_examples_are_right_to_the_byte(checker, payload, crc, frame, pro
     low_first = crc.to_bytes(2, "little").hex(" ").upper()
     assert f"`{low_first}` is appended" in prose
     assert f"On the wire, {len(frame)} bytes" in prose
-    assert link.frame(payload) == palpate_servo.encode_frame(payload) == frame
+    assert link.frame(payload) == harness.encode_frame(payload) == frame
     assert checker.ask(f"frame {payload.hex()}") == frame.hex()
     assert read_stream(checker, frame) == ([payload.hex()], 0, 0)
 
@@ -193,7 +193,7 @@ def test_the_hit_between_two_frames_costs_both_and_not_the_next(checker):
     hit = bytes.fromhex(next(line for line in section.splitlines() if line.startswith("    ")))
     stream = hit + link.encode(link.Force(514, (0, -500, 1000)))
     expected = link.pack(link.Force(514, (0, -500, 1000)))
-    python, native = link.Decoder(), palpate_servo.Decoder()
+    python, native = link.Decoder(), harness.Decoder()
     assert python.feed_payloads(stream) == native.feed(stream) == [expected]
     assert (python.errors.crc_errors, python.errors.malformed) == (0, 1)
     assert (native.crc_errors, native.cobs_errors, native.oversize) == (0, 1, 0)

@@ -7,8 +7,8 @@ import csv
 import subprocess
 from pathlib import Path
 
-import palpate_servo
 import pytest
+from palpate_servo import harness
 
 from palpate.core.servo import link
 
@@ -45,7 +45,7 @@ def test_no_more_is_read_that_was_not_sent_than_a_checksum_of_16_bits_lets_throu
 @pytest.mark.parametrize("seed", [11, 12])
 def test_python_reads_a_share_of_it_frame_by_frame_as_the_others_do(checker_program, checker, seed):
     stream = output(checker_program, "write-damage", seed, SHARE)
-    python, native = link.Decoder(), palpate_servo.Decoder()
+    python, native = link.Decoder(), harness.Decoder()
     payloads = python.feed_payloads(stream)
     assert native.feed(stream) == payloads
     errors = (python.errors.crc_errors, python.errors.malformed)
@@ -67,7 +67,7 @@ def test_in_pieces_of_any_size_the_same_is_read(checker_program):
     stream = output(checker_program, "write-damage", 13, 30_000)
     whole = link.Decoder().feed_payloads(stream)
     for step in (1, 2, 7, 61, 62, 63, 4096):
-        python, native = link.Decoder(), palpate_servo.Decoder()
+        python, native = link.Decoder(), harness.Decoder()
         pieces = [stream[i : i + step] for i in range(0, len(stream), step)]
         assert [p for piece in pieces for p in python.feed_payloads(piece)] == whole
         assert [p for piece in pieces for p in native.feed(piece)] == whole

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 import palpate_servo
+from palpate_servo import harness
 
 
 @dataclass(frozen=True)
@@ -96,9 +97,9 @@ def press(
     *,
     trace: bool = False,
 ) -> palpate_servo.ContactOutcome:
-    """Run the loop; see `palpate_servo.simulate_contact`, which raises ValueError."""
+    """Run the loop; see `palpate_servo.harness.simulate_contact`, which raises ValueError."""
     how = Press() if how is None else how
-    return palpate_servo.simulate_contact(
+    return harness.simulate_contact(
         mass=plant.mass,
         damping=plant.damping,
         coulomb=plant.coulomb,

@@ -3,8 +3,8 @@
 import math
 
 import numpy as np
-import palpate_servo
 import pytest
+from palpate_servo import harness
 from passivity.closed_forms import passive_stiffness, quantised_stiffness, stable_stiffness
 from passivity.contact_loop import DevicePlant, PassiveHand, Press, press
 
@@ -58,7 +58,7 @@ def energy_from_path(stiffness, damping, coulomb, encoder_step, reach):
     # It ends where it begins, so that what the spring has stored does not count.
     path = edge + reach * np.array([1.0, *[-1.0, 1.0] * 50])
     seen = np.round(path / encoder_step) * encoder_step if encoder_step > 0.0 else path
-    held = palpate_servo.coupled_forces(
+    held = harness.coupled_forces(
         seen,
         rate_hz=1000,
         body_stiffness=stiffness,

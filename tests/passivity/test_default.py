@@ -6,6 +6,7 @@ import math
 import numpy as np
 import palpate_servo
 import pytest
+from palpate_servo import harness
 from passivity.closed_forms import stable_stiffness
 from passivity.contact_loop import NONE, CouplingSettings, DevicePlant, PassiveHand, Press, press
 from passivity.plant_range import COARSE, RANGE
@@ -130,7 +131,7 @@ def test_passivity_control_takes_back_what_a_late_force_makes():
 
 
 def forces(depths, body_stiffness, coupling):
-    return palpate_servo.coupled_forces(
+    return harness.coupled_forces(
         depths,
         rate_hz=1000,
         body_stiffness=body_stiffness,

@@ -7,7 +7,8 @@ import textwrap
 
 import numpy as np
 import pytest
-from palpate_servo import STATES, BareTimer, Pointer, Servo, bare_timer
+from palpate_servo import STATES, Pointer, Servo
+from palpate_servo.harness import BareTimer, bare_timer
 
 ABOVE = np.array([0.02, 0.03, 0.055])
 PRESSED = np.array([0.021, 0.029, 0.047])
@@ -249,7 +250,7 @@ def test_leaving_the_interpreter_with_a_running_servo_does_not_hang():
         servos = [ps.Servo(body, young_modulus=1.0) for _ in range(3)]
         for servo in servos:
             servo.start(ps.Pointer([2, 2, 2]))
-        timer = ps.BareTimer(1000)
+        timer = ps.harness.BareTimer(1000)
         print("leaving")
     """
     done = subprocess.run(

@@ -42,7 +42,7 @@ CONFIGURATION = """<busconfig>
 # Asks for a thread that has nothing to do, and looks at it from outside.
 ORDINARY_USER = """
 import json, os, resource, time
-from palpate_servo import BareTimer
+from palpate_servo.harness import BareTimer
 timer = BareTimer(1000)
 while timer.counters()["realtime"] == "not asked yet":
     time.sleep(0.005)

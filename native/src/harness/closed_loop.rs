@@ -1,9 +1,5 @@
 //! A device, a hand and a stiff place in a loop with the servo's own coupling and safety: shows
 //! where a contact stays passive. Used by benchmarks and tests, never by the servo.
-//!
-//! One axis, positive into the body. Between events all forces but spring, damper and friction are
-//! constant, and the motion is summed to the last digit by its Taylor series; reversals under
-//! Coulomb friction are found and end in true sticking.
 
 use std::collections::VecDeque;
 
@@ -11,38 +7,7 @@ use glam::{DMat3, DVec3};
 
 use crate::control::coupling::{Contact, Coupler, Coupling, series_compliance};
 use crate::control::safety::{Limits, Safety};
-
-/// The moving part of a device and its electronics. SI units; steps of zero are none.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Plant {
-    /// Moving mass, kg.
-    pub mass: f64,
-    /// Viscous friction, N s/m.
-    pub damping: f64,
-    /// Coulomb friction, N.
-    pub coulomb: f64,
-    /// Encoder step, m.
-    pub encoder_step: f64,
-    /// Step of the motor's force, N.
-    pub force_step: f64,
-    /// From the encoder's reading to the motor's obeying, without the holding of a tick, s.
-    pub delay: f64,
-    /// Random part of the delay, s; a command that comes after a newer one is not obeyed.
-    pub jitter: f64,
-}
-
-/// A passive hand: a spring and a damper to a place that rests, and a constant push.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Hand {
-    /// N/m.
-    pub stiffness: f64,
-    /// N s/m.
-    pub damping: f64,
-    /// N, into the body.
-    pub push: f64,
-    /// Where the spring's other end rests, m into the body.
-    pub target: f64,
-}
+use crate::harness::plant::{Hand, Motion, Plant};
 
 /// A run.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -99,8 +64,6 @@ pub struct Outcome {
 
 /// Longest step of the motion, s.
 const STEP_SECONDS: f64 = 62.5e-6;
-const TERMS: usize = 9;
-const REVERSALS: usize = 4;
 
 /// Runs a trial; `trace` is told time, position (m) and held force (N) at every tick.
 ///
@@ -119,7 +82,7 @@ pub fn run(
         .max(1.0) as u64;
     let step = period / steps as f64;
     let mut dice = trial.seed;
-    let mut body = Motion::new(plant, hand, trial);
+    let mut body = Motion::new(plant, hand, (trial.start, trial.speed));
     let mut controller = Controller::new(trial, plant.force_step);
     let mut on_the_way: VecDeque<(u64, f64)> = VecDeque::new();
     // Before the start all had been at rest there.
@@ -282,121 +245,4 @@ fn unit(state: &mut u64) -> f64 {
     z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
     ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-}
-
-struct Motion {
-    plant: Plant,
-    grip: Hand,
-    x: f64,
-    v: f64,
-    motor: f64,
-    hand: f64,
-    viscous: f64,
-    rubbed: f64,
-}
-
-impl Motion {
-    fn new(plant: &Plant, grip: &Hand, trial: &Trial) -> Self {
-        Self {
-            plant: *plant,
-            grip: *grip,
-            x: trial.start,
-            v: trial.speed,
-            motor: 0.0,
-            hand: 0.0,
-            viscous: 0.0,
-            rubbed: 0.0,
-        }
-    }
-
-    /// Moves for `seconds` under a constant motor force.
-    fn advance(&mut self, force: f64, seconds: f64) {
-        let grip = self.grip;
-        let load = force + grip.push + grip.stiffness * grip.target;
-        let mut left = seconds;
-        for _ in 0..REVERSALS {
-            let pull = load - grip.stiffness * self.x;
-            if self.v == 0.0 && pull.abs() <= self.plant.coulomb {
-                return;
-            }
-            let way = if self.v == 0.0 { pull } else { self.v }.signum();
-            let series = self.series(load - way * self.plant.coulomb);
-            let (end, reversed) = match reversal(&series, left, way) {
-                Some(time) => (time, true),
-                None => (left, false),
-            };
-            self.book(&series, end, force);
-            self.x = value(&series, end);
-            self.v = if reversed { 0.0 } else { slope(&series, end) };
-            left -= end;
-            if !reversed || left <= 0.0 {
-                return;
-            }
-        }
-        // Reversing again and again within microseconds: it stays until the next step.
-    }
-
-    /// Coefficients of the position's Taylor series under a constant load.
-    fn series(&self, load: f64) -> [f64; TERMS] {
-        let (k, c) = (self.grip.stiffness, self.plant.damping + self.grip.damping);
-        let mut a = [0.0; TERMS];
-        (a[0], a[1]) = (self.x, self.v);
-        a[2] = (load - k * self.x - c * self.v) / (2.0 * self.plant.mass);
-        for n in 2..TERMS - 1 {
-            let order = n as f64;
-            a[n + 1] =
-                -(c * order * a[n] + k * a[n - 1]) / (self.plant.mass * order * (order + 1.0));
-        }
-        a
-    }
-
-    fn book(&mut self, series: &[f64; TERMS], seconds: f64, force: f64) {
-        let (begin, end) = (self.x, value(series, seconds));
-        let way = end - begin;
-        let squared = seconds
-            * GAUSS
-                .iter()
-                .map(|&(place, weight)| weight * slope(series, place * seconds).powi(2))
-                .sum::<f64>();
-        let grip = self.grip;
-        self.motor += force * way;
-        self.hand += (grip.push + grip.stiffness * (grip.target - 0.5 * (begin + end))) * way
-            - grip.damping * squared;
-        self.viscous += self.plant.damping * squared;
-        self.rubbed += self.plant.coulomb * way.abs();
-    }
-}
-
-/// Gauss and Legendre's places and weights on [0, 1].
-const GAUSS: [(f64, f64); 3] = [
-    (0.112_701_665_379_258_3, 5.0 / 18.0),
-    (0.5, 8.0 / 18.0),
-    (0.887_298_334_620_741_7, 5.0 / 18.0),
-];
-
-fn value(series: &[f64; TERMS], t: f64) -> f64 {
-    series.iter().rev().fold(0.0, |sum, a| sum * t + a)
-}
-
-fn slope(series: &[f64; TERMS], t: f64) -> f64 {
-    (1..TERMS)
-        .rev()
-        .fold(0.0, |sum, n| sum * t + n as f64 * series[n])
-}
-
-/// When the velocity changes its sign within `seconds`, by bisection.
-fn reversal(series: &[f64; TERMS], seconds: f64, way: f64) -> Option<f64> {
-    if slope(series, seconds) * way >= 0.0 {
-        return None;
-    }
-    let (mut before, mut after) = (0.0, seconds);
-    for _ in 0..40 {
-        let middle = 0.5 * (before + after);
-        if slope(series, middle) * way > 0.0 {
-            before = middle;
-        } else {
-            after = middle;
-        }
-    }
-    Some(after)
 }

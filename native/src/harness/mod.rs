@@ -1,3 +1,4 @@
-//! What benchmarks and tests need and the servo never does.
+//! What only tests and benchmarks need.
 
 pub mod closed_loop;
+pub mod plant;

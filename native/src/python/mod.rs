@@ -3,9 +3,11 @@
 mod body;
 mod device;
 mod engine;
+#[cfg(feature = "harness")]
 mod harness;
 mod servo;
 mod tool;
+mod tool_cost;
 mod vectors;
 
 use pyo3::prelude::*;
@@ -22,38 +24,20 @@ fn palpate_servo(module: &Bound<'_, PyModule>) -> PyResult<()> {
     let py = module.py();
     module.add_class::<body::surface::Body>()?;
     module.add_class::<body::compliance::Compliance>()?;
-    module.add_class::<harness::proxy::Proxy>()?;
     module.add_class::<device::setups::PointerSetup>()?;
     module.add_class::<device::setups::LinkSetup>()?;
     module.add_class::<device::setups::HaplySetup>()?;
     module.add_class::<servo::thread::Servo>()?;
     module.add_class::<servo::snapshot::Snapshot>()?;
     module.add_class::<servo::snapshot::FingerSnapshot>()?;
-    module.add_class::<harness::stepped::SteppedServo>()?;
-    module.add_class::<harness::stepped_fingers::SteppedFingers>()?;
     module.add_class::<tool::Tool>()?;
     module.add_class::<tool::ToolSurface>()?;
     module.add_class::<tool::ToolContact>()?;
     module.add_class::<engine::ContactEngine>()?;
-    module.add_class::<servo::counters::BareTimer>()?;
-    module.add_class::<harness::frames::Decoder>()?;
-    module.add_function(wrap_pyfunction!(servo::counters::bare_timer, module)?)?;
-    module.add_function(wrap_pyfunction!(harness::frames::encode_frame, module)?)?;
-    module.add_function(wrap_pyfunction!(
-        harness::closed_loop::simulate_contact,
-        module
-    )?)?;
-    module.add_function(wrap_pyfunction!(
-        harness::closed_loop::coupled_forces,
-        module
-    )?)?;
-    module.add_function(wrap_pyfunction!(
-        harness::closed_loop::device_coupling,
-        module
-    )?)?;
-    module.add_function(wrap_pyfunction!(harness::several::solve_contacts, module)?)?;
-    module.add_function(wrap_pyfunction!(harness::tick_cost::tick_costs, module)?)?;
+    module.add_function(wrap_pyfunction!(device::coupling::device_coupling, module)?)?;
     module.add_function(wrap_pyfunction!(device::haply::haply_encoder_step, module)?)?;
+    #[cfg(feature = "harness")]
+    harness::register(module)?;
     let stop_all = wrap_pyfunction!(servo::started::stop_all, module)?;
     py.import("atexit")?
         .call_method1("register", (&stop_all,))?;

@@ -14,7 +14,7 @@ use super::vectors::{
 use crate::body::surface;
 use crate::engine::lone::LoneTool;
 use crate::python::body::surface::Body;
-use crate::python::harness::tool_cost::Timing;
+use crate::python::tool_cost::Timing;
 use crate::servo::tip::Tip;
 use crate::tool::collider::Collider;
 use crate::tool::friction::Friction;

@@ -3,6 +3,7 @@
 mod child_thread;
 pub mod exchange;
 pub mod finger;
+pub mod paced;
 pub mod pressed_patch;
 pub mod recorder;
 pub mod snapshot;

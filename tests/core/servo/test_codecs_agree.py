@@ -3,10 +3,10 @@
 import json
 from pathlib import Path
 
-import palpate_servo
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from palpate_servo import harness
 
 from palpate.core.servo import link
 
@@ -21,7 +21,7 @@ def counted(decoder):
 
 
 def agree(data, pieces=1):
-    ours, theirs = link.Decoder(), palpate_servo.Decoder()
+    ours, theirs = link.Decoder(), harness.Decoder()
     step = max(1, len(data) // pieces)
     for start in range(0, len(data), step):
         piece = data[start : start + step]
@@ -32,13 +32,13 @@ def agree(data, pieces=1):
 @pytest.mark.parametrize("vector", VECTORS["messages"], ids=lambda vector: vector["name"])
 def test_the_native_codec_keeps_the_vectors_too(vector):
     payload, frame = bytes.fromhex(vector["payload"]), bytes.fromhex(vector["frame"])
-    assert palpate_servo.encode_frame(payload) == frame
-    assert palpate_servo.Decoder().feed(frame) == [payload]
+    assert harness.encode_frame(payload) == frame
+    assert harness.Decoder().feed(frame) == [payload]
 
 
 @pytest.mark.parametrize("vector", VECTORS["streams"], ids=lambda vector: vector["name"])
 def test_the_native_decoder_reads_the_streams_of_the_vectors(vector):
-    decoder = palpate_servo.Decoder()
+    decoder = harness.Decoder()
     read = decoder.feed(bytes.fromhex(vector["bytes"]))
     assert [payload.hex() for payload in read] == vector["payloads"]
     assert counted(decoder) == (vector["crc_errors"], vector["malformed"])
@@ -46,13 +46,13 @@ def test_the_native_decoder_reads_the_streams_of_the_vectors(vector):
 
 @given(payloads)
 def test_they_write_the_same_frames(payload):
-    assert link.frame(payload) == palpate_servo.encode_frame(payload)
+    assert link.frame(payload) == harness.encode_frame(payload)
 
 
 @given(payloads)
 def test_each_reads_what_the_other_writes(payload):
-    assert link.Decoder().feed_payloads(palpate_servo.encode_frame(payload)) == [payload]
-    assert palpate_servo.Decoder().feed(link.frame(payload)) == [payload]
+    assert link.Decoder().feed_payloads(harness.encode_frame(payload)) == [payload]
+    assert harness.Decoder().feed(link.frame(payload)) == [payload]
 
 
 @pytest.mark.parametrize("payload", [b"", bytes(link.MAX_PAYLOAD + 1)])
@@ -60,7 +60,7 @@ def test_both_refuse_payloads_that_fit_no_frame(payload):
     with pytest.raises(ValueError, match="bytes"):
         link.frame(payload)
     with pytest.raises(ValueError, match="bytes"):
-        palpate_servo.encode_frame(payload)
+        harness.encode_frame(payload)
 
 
 @given(st.binary(max_size=500), st.integers(1, 9))

@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from palpate_servo import Proxy, SteppedFingers
+from palpate_servo.harness import Proxy, SteppedFingers
 
 from palpate.core.bake.steps import BakeSettings, bake
 from palpate.core.contact.tool.tools import sphere

@@ -4,7 +4,8 @@ import time
 
 import numpy as np
 import pytest
-from palpate_servo import Pointer, Proxy
+from palpate_servo import Pointer
+from palpate_servo.harness import Proxy
 
 from palpate.core.errors import PalpateError
 from palpate.core.servo.session import displacements_of, native_body, servo_for

@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from palpate_servo import Pointer, SteppedFingers
+from palpate_servo import Pointer
+from palpate_servo.harness import SteppedFingers
 
 from palpate.core.bake.steps import BakeSettings, bake
 from palpate.core.contact.several_contacts import told_apart

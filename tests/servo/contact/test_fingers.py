@@ -1,9 +1,8 @@
 """Several fingers on one body: against the reference of core, and as real devices and pointers."""
 
 import numpy as np
-import palpate_servo
 import pytest
-from palpate_servo import MAX_FINGERS, STATES, Body, LinkDevice, Pointer, Servo
+from palpate_servo import MAX_FINGERS, STATES, Body, LinkDevice, Pointer, Servo, harness
 
 from palpate.core.bake.steps import BakeSettings, bake
 from palpate.core.contact import several_contacts
@@ -110,7 +109,7 @@ def test_native_contacts_are_those_of_core_also_on_their_cones():
         expected = several_contacts.solve_contacts(compliance, asked, pushes)
         found = np.zeros((count, 3))
         for _ in range(40):  # Ticks at rest: each goes on from the one before.
-            found = palpate_servo.solve_contacts(compliance, asked, pushes, found)
+            found = harness.solve_contacts(compliance, asked, pushes, found)
         scale = np.abs(expected).max()
         np.testing.assert_allclose(found, expected, atol=1e-7 * max(scale, 1e-3))
         limited += not np.allclose(
@@ -118,7 +117,7 @@ def test_native_contacts_are_those_of_core_also_on_their_cones():
         )
     assert limited > 100
     with pytest.raises(ValueError, match="not positive definite"):
-        palpate_servo.solve_contacts(-compliance, asked, pushes)
+        harness.solve_contacts(-compliance, asked, pushes)
 
 
 def test_another_body_must_be_a_whole_one(body, whole, pinched):
@@ -161,7 +160,6 @@ def test_modes_are_refused_by_name(whole):
         servo.set_mode("")
 
 
-@pytest.mark.skipif(not hasattr(palpate_servo, "Tool"), reason="no tools yet")
 def test_a_tool_is_felt_and_shown_and_taken_off_again(body, whole, eventually):
     tool = native_tool(body, whole, sphere(0.008))
     above = np.array([0.025, 0.025, EDGE + 0.01])

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from palpate_servo import Proxy
+from palpate_servo.harness import Proxy
 
 from palpate.core.bake.steps import BakeSettings, bake
 from palpate.core.contact.pressing_fingers import fingers_at, press_fingers

@@ -4,7 +4,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from palpate_servo import Body, Proxy
+from palpate_servo import Body
+from palpate_servo.harness import Proxy
 from scipy.spatial import ConvexHull
 
 MOUSE = Path(__file__).resolve().parents[2] / "meshes" / "mouse-1.7k.npz"

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from bodies.inner_corner import inner_corner
 from bodies.soft_block import soft_block
-from palpate_servo import SteppedFingers, ToolContact, ToolSurface, tick_costs
 from palpate_servo import Tool as NativeTool
+from palpate_servo import ToolContact, ToolSurface
+from palpate_servo.harness import SteppedFingers, tick_costs
 from scipy.spatial.transform import Rotation
 
 from palpate.core.contact.tool.several_tools import press_tools

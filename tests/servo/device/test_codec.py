@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 
 import pytest
-from palpate_servo import Decoder, encode_frame
+from palpate_servo.harness import Decoder, encode_frame
 
 VECTORS = Path(__file__).resolve().parents[2] / "vectors" / "link.json"
 

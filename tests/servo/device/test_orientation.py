@@ -8,6 +8,7 @@ import numpy as np
 import palpate_servo
 import pytest
 from fault_injection.servo_host import ABOVE, YOUNG_MODULUS, cube
+from palpate_servo import harness
 
 from palpate.core.servo import link
 from palpate.simulated.hand.options import SimulatedOptions
@@ -28,7 +29,7 @@ def state(sequence):
 
 @pytest.fixture
 def servo():
-    servo = palpate_servo.SteppedServo(cube(), young_modulus=YOUNG_MODULUS)
+    servo = harness.SteppedServo(cube(), young_modulus=YOUNG_MODULUS)
     servo.tick()
     servo.tick(link.encode(HELLO))
     return servo

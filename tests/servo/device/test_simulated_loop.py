@@ -8,6 +8,7 @@ import time
 import numpy as np
 import palpate_servo
 import pytest
+from palpate_servo import harness
 
 from palpate.core.bake.steps import BakeSettings, bake
 from palpate.core.mesh.paper_cube import paper_cube
@@ -227,7 +228,7 @@ def test_a_press_with_deformation_and_a_busy_interpreter_loses_no_ticks(loop, cu
     device, servo = loop()
     press(device, servo, eventually)
     keep_interpreter = ctypes.PyDLL(None).usleep  # PyDLL: the interpreter's lock stays held
-    bare = palpate_servo.BareTimer(1000)
+    bare = harness.BareTimer(1000)
     try:
         before, bare_before = servo.counters(), bare.counters()
         for _ in range(60):

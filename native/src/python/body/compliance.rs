@@ -113,20 +113,6 @@ impl Compliance {
         let flat: Vec<f64> = moved.iter().flat_map(|v| v.to_array()).collect();
         PyArray1::from_vec(py, flat).reshape([count, 3])
     }
-
-    fn seconds_per_block(&self, pairs: Vec<(usize, usize)>) -> PyResult<f64> {
-        let count = self.inner.node_count();
-        if pairs.is_empty() || pairs.iter().any(|&(i, j)| i >= count || j >= count) {
-            return Err(PyIndexError::new_err(format!(
-                "no pairs, or some beyond the {count} nodes"
-            )));
-        }
-        let start = std::time::Instant::now();
-        for &(i, j) in &pairs {
-            std::hint::black_box(self.inner.block(i, j));
-        }
-        Ok(start.elapsed().as_secs_f64() / pairs.len() as f64)
-    }
 }
 
 fn made(

@@ -1,4 +1,5 @@
 //! Which device is asked for.
 
+pub mod coupling;
 pub mod haply;
 pub mod setups;

@@ -1,19 +1,27 @@
-//! `simulate_contact`, `coupled_forces`, `device_coupling`: the servo's coupling without a servo.
+//! `simulate_contact`, `coupled_forces`: the servo's coupling without a servo.
 
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::control::coupling::Coupling;
 use crate::control::safety::Limits;
-use crate::harness::closed_loop::{Hand, Plant, Trial, forces, run};
+use crate::harness::closed_loop::{Trial, forces, run};
+use crate::harness::plant::{Hand, Plant};
 use crate::python::servo::settings::coupling;
 use crate::python::vectors::{check_rate, positive};
 
 /// Longest run, s: it cannot be interrupted.
 const MOST_SECONDS: f64 = 600.0;
 
+/// Let a device and a hand press a body with the servo's own coupling and limits, on one axis
+/// (positive into the body), without a servo. SI units.
+///
+/// mass, damping (viscous) and coulomb friction are the device's; encoder_step (m) and force_step (N)
+/// may be 0. delay (s) is all that lies between reading and obeying besides the holding of a tick,
+/// jitter its random part. The hand is a spring and a damper to hand_target and a constant push. The
+/// result names the energies of [`crate::harness::closed_loop::Outcome`], with `trace` time (s),
+/// position (m) and held force (N) of every tick (n, 3). ValueError for numbers without sense.
 #[pyfunction]
 #[pyo3(signature = (*, mass, damping, coulomb, encoder_step, force_step, delay, jitter,
     hand_stiffness, hand_damping, hand_push, hand_target, rate_hz, body_stiffness, stiffness,
@@ -139,6 +147,8 @@ pub fn simulate_contact<'py>(
     Ok(result)
 }
 
+/// Forces (n,), N, that the servo's coupling gives for displacements (n,), m into the body, of
+/// successive ticks on a body of one stiffness (N/m); negative is out of the body.
 #[pyfunction]
 #[pyo3(signature = (displacements, *, rate_hz, body_stiffness, stiffness, damping,
     passivity_control))]
@@ -159,25 +169,4 @@ pub fn coupled_forces<'py>(
         1.0 / f64::from(rate_hz),
     );
     Ok(PyArray1::from_vec(py, found))
-}
-
-#[pyfunction]
-#[pyo3(signature = (rate_hz=1000, *, encoder_step=0.0))]
-pub fn device_coupling(
-    py: Python<'_>,
-    rate_hz: u32,
-    encoder_step: f64,
-) -> PyResult<Bound<'_, PyDict>> {
-    check_rate(rate_hz)?;
-    if !(encoder_step >= 0.0 && encoder_step.is_finite()) {
-        return Err(PyValueError::new_err(
-            "encoder_step must be finite and at least 0 m",
-        ));
-    }
-    let coupling = Coupling::for_encoders(rate_hz, encoder_step);
-    let found = PyDict::new(py);
-    found.set_item("stiffness", coupling.stiffness)?;
-    found.set_item("damping", coupling.damping)?;
-    found.set_item("passivity_control", coupling.passivity_control)?;
-    Ok(found)
 }

@@ -6,6 +6,7 @@ use pyo3::types::PyBytes;
 
 use crate::device::link::codec;
 
+/// COBS(payload + CRC) and a zero byte; ValueError beyond 1 to 58 bytes.
 #[pyfunction]
 pub fn encode_frame<'py>(py: Python<'py>, payload: &[u8]) -> PyResult<Bound<'py, PyBytes>> {
     let mut frame = [0; codec::MAX_FRAME];
@@ -19,7 +20,8 @@ pub fn encode_frame<'py>(py: Python<'py>, payload: &[u8]) -> PyResult<Bound<'py,
     Ok(PyBytes::new(py, &frame[..length]))
 }
 
-#[pyclass(module = "palpate_servo")]
+/// Cuts bytes of the link into payloads.
+#[pyclass(module = "palpate_servo.harness")]
 pub struct Decoder {
     inner: codec::Decoder,
 }

@@ -17,7 +17,12 @@ use crate::python::body::surface::Body;
 use crate::python::servo::settings::{contact_mode, feel};
 use crate::python::vectors::{Matrix, Triple, Vector, array, check_rate, finite};
 
-#[pyclass(module = "palpate_servo")]
+/// God object and contact point alone, by the same code as in the servo.
+///
+/// `move(device)` tells: touching, contact point (3,), triangle (-1 if free), alpha (3,); `follow_path`
+/// contact points (k, 3) and triangles (k,) for devices (k, 3); `time_path` seconds a tick, averaged
+/// over batches. ValueError unless 0 <= dynamic_friction <= static_friction.
+#[pyclass(module = "palpate_servo.harness")]
 pub struct Proxy {
     body: Arc<surface::Body>,
     inner: Option<proxy::Proxy>,

@@ -9,6 +9,10 @@ use crate::contact::cones::{Blocks, Cone, MAX_FINGERS, Members, Vectors, solve_d
 use crate::fingers::several::tell_apart;
 use crate::python::vectors::{Matrix, table};
 
+/// Forces (m, 3) on the body at E = 1 of fingers that may only push, as in a tick.
+///
+/// Takes C (m, m, 3, 3), displacements asked for and pushes (m, 3), forces of the tick before.
+/// ValueError for more than MAX_FINGERS, other shapes, or a C that is not positive definite.
 #[pyfunction]
 #[pyo3(signature = (compliance, displacements, pushes, start=None))]
 pub fn solve_contacts<'py>(

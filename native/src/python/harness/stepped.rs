@@ -80,7 +80,11 @@ struct Stepped {
     now: f64,
 }
 
-#[pyclass(frozen, module = "palpate_servo")]
+/// The ticks of a Servo, by hand and in virtual time, with a device on a line in memory.
+///
+/// Nothing waits, and the same input gives the same output. Methods are as of Servo; `tick(received,
+/// seconds)` ticks `seconds` (default: a period) after the last time and returns what is sent.
+#[pyclass(frozen, module = "palpate_servo.harness")]
 pub struct SteppedServo {
     wire: InMemory,
     stepped: Mutex<Stepped>,

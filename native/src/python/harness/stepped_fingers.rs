@@ -80,7 +80,13 @@ struct Stepped {
     ticks: u64,
 }
 
-#[pyclass(frozen, module = "palpate_servo")]
+/// The ticks of a Servo, by hand and in virtual time, with fingers led along paths.
+///
+/// No device, no limits; fingers are where the path says, however far apart its places lie.
+/// `follow(paths)` takes (ticks, m, 3), m, and gives contact forces on the fingers, N, and torques,
+/// N m, (ticks, m, 3), before coupling and safety. ValueError for several fingers on a body that is
+/// not whole, and for other shapes.
+#[pyclass(frozen, module = "palpate_servo.harness")]
 pub struct SteppedFingers(Mutex<Stepped>);
 
 impl SteppedFingers {

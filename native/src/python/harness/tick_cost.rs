@@ -49,6 +49,9 @@ impl Device for Scripted {
     }
 }
 
+/// CPU time (ticks,), s, of the servo's whole ticks with fingers on paths (fingers, ticks, 3).
+///
+/// ValueError for other shapes, or several fingers on a body that is not whole.
 #[pyfunction]
 #[pyo3(signature = (body, paths, *, young_modulus, mode="consistent"))]
 pub fn tick_costs<'py>(

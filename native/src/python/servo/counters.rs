@@ -1,4 +1,4 @@
-//! Counters as dictionaries, and `BareTimer`, the thread to compare with.
+//! Counters as dictionaries.
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -6,10 +6,8 @@ use pyo3::types::PyDict;
 use crate::clock::durations::{BUCKETS, DurationReport, bucket_limit_ns};
 use crate::clock::timing::{LATE_LIMITS_NS, Timing};
 use crate::device::{Fault, LinkReport};
-use crate::python::vectors::{check_rate, check_seconds};
 use crate::servo::snapshot::Told;
 use crate::servo::stages::{Stage, Stages};
-use crate::servo::thread::Paced;
 
 fn us(ns: u64) -> f64 {
     ns as f64 * 1e-3
@@ -124,44 +122,6 @@ pub fn link_counters<'py>(py: Python<'py>, link: &LinkReport) -> PyResult<Bound<
     });
     counters.set_item("device", device.transpose()?)?;
     Ok(counters)
-}
-
-#[pyclass(frozen, module = "palpate_servo")]
-pub struct BareTimer {
-    paced: Paced,
-}
-
-#[pymethods]
-impl BareTimer {
-    #[new]
-    #[pyo3(signature = (rate_hz=1000))]
-    fn new(rate_hz: u32) -> PyResult<Self> {
-        check_rate(rate_hz)?;
-        Ok(Self {
-            paced: Paced::bare(rate_hz)?,
-        })
-    }
-
-    fn counters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        timing_counters(py, self.paced.timing(), &self.paced.realtime())
-    }
-
-    fn stop<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        py.detach(|| self.paced.stop());
-        self.counters(py)
-    }
-}
-
-#[pyfunction]
-pub fn bare_timer<'py>(
-    py: Python<'py>,
-    rate_hz: u32,
-    seconds: f64,
-) -> PyResult<Bound<'py, PyDict>> {
-    check_seconds("seconds", seconds)?;
-    let timer = BareTimer::new(rate_hz)?;
-    py.detach(|| std::thread::sleep(std::time::Duration::from_secs_f64(seconds)));
-    timer.stop(py)
 }
 
 /// Times each fault began.
