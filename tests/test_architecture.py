@@ -117,6 +117,10 @@ def test_only_core_starts_the_servo():
     }
 
 
+def test_nobody_uses_what_only_tests_have_of_the_servo():
+    assert not [path for path in SOURCES if "palpate_servo.harness" in path.read_text("utf-8")]
+
+
 def test_names_of_modules_say_what_they_are_for():
     assert not [path for path in SOURCES if NAMES_THAT_SAY_NOTHING & set(path.stem.split("_"))]
 

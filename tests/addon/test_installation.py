@@ -20,6 +20,10 @@ def test_import_comes_from_the_wheel_inside_the_package(name, palpate):
     assert Path(module.__file__).is_relative_to(user_folder)
 
 
+def test_the_servo_brings_nothing_that_only_tests_need(palpate):
+    assert not hasattr(importlib.import_module("palpate_servo"), "harness")
+
+
 def test_numpy_is_blenders_own(palpate):
     numpy = importlib.import_module("numpy")
     assert not Path(numpy.__file__).is_relative_to(Path(bpy.utils.resource_path("USER")))
