@@ -5,7 +5,8 @@ import pytest
 from bodies.soft_block import soft_block
 from least_energy import Held, least_energy
 from native_tip import native_tip
-from palpate_servo import ContactEngine, SteppedFingers
+from palpate_servo import ContactEngine
+from palpate_servo.harness import SteppedFingers
 
 from palpate.core.contact.tool.tools import Pose, plate, rod, sphere
 from palpate.core.servo.session import native_body, native_tool
