@@ -76,7 +76,9 @@ def body_status(thing: bpy.types.Object, scene: bpy.types.Scene) -> BodyStatus:
     try:
         known = _mesh(thing, scene)
     except PalpateError as problem:
-        return BodyStatus(Fit.CHANGED if thing.palpate.body_key else Fit.NEVER_BAKED, str(problem))
+        return BodyStatus(
+            Fit.CHANGED if thing.palpate.body_key else Fit.NEVER_BAKED, problem.sentence
+        )
     question = _values(thing, STATUS_SETTINGS)
     if question not in known.statuses:
         with known.timed():

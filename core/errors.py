@@ -14,8 +14,9 @@ class PalpateError(Exception):
     """
 
     def __init__(self, template: str, /, **values: object) -> None:
-        known = isinstance(template, Sentence)
-        self.sentence = template if known else Sentence(template, **values)
+        self.sentence: Sentence = (
+            template if isinstance(template, Sentence) else Sentence(template, **values)
+        )
         super().__init__(self.sentence)
 
 

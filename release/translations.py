@@ -14,6 +14,7 @@ import ast
 import json
 import re
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 from babel.messages.catalog import Catalog
@@ -24,11 +25,14 @@ FOLDER = Path("addon") / "translations"
 PACKAGED = FOLDER / "words.json"
 # Where every text that begins like a sentence or a label is shown, and where only these are: the
 # first text of such calls and of errors, and all in such tables.
-SHOWING, MARKING = ("addon", "operators"), ("core",)
-CALLS = {"Sentence", "reported", "shown", "Material", "_by_shore"}
+SHOWING, MARKING = ("addon", "operators"), ("core", "simulated")
+CALLS = {"Sentence", "reported", "shown", "Material", "_by_shore", "super().__init__"}
 TABLES = {"EXPLANATIONS", "STAGES", "STEP_TEXTS"}
 # Read by whoever types commands, in English.
-COMMANDS = {"command.py"}
+COMMANDS = (
+    *("addon/command.py", "core/mesh/read_mesh.py", "core/servo/haply_models.py"),
+    *("simulated/board", "simulated/hand", "simulated/device_process.py"),
+)
 LIKE_WORDS = re.compile(r"[A-Z][a-z]|[A-Z0-9]+ [A-Za-z]|\{\w")
 # The same in every language, in Blender's own dictionary, or names in files.
 UNTRANSLATED = {
@@ -66,13 +70,19 @@ def compiled() -> str:
     return json.dumps(words, ensure_ascii=False, separators=(",", ":"))
 
 
+def shown_sources() -> Iterator[tuple[Path, bool]]:
+    """Yield each source with texts for Blender, and whether only its marked ones are shown."""
+    for folder in (*SHOWING, *MARKING):
+        for path in sorted((REPOSITORY / folder).rglob("*.py")):
+            if not path.relative_to(REPOSITORY).as_posix().startswith(COMMANDS):
+                yield path, folder in MARKING
+
+
 def texts_in_sources() -> set[str]:
     """Return every text that Palpate may show in Blender, read from its sources."""
     found: set[str] = set()
-    for folder in (*SHOWING, *MARKING):
-        for path in (REPOSITORY / folder).rglob("*.py"):
-            if path.name not in COMMANDS:
-                found |= set(texts(path.read_text(encoding="utf-8"), marked=folder in MARKING))
+    for path, marked in shown_sources():
+        found |= set(texts(path.read_text(encoding="utf-8"), marked=marked))
     return found - UNTRANSLATED
 
 
@@ -81,7 +91,7 @@ def texts(source: str, *, marked: bool) -> Iterator[str]:
     nodes = list(ast.walk(ast.parse(source)))
     for node in nodes:
         match node:
-            case ast.Call(args=[first, *_]) if _called(node) in CALLS:
+            case ast.Call(args=[first, *_]) if is_mark(node):
                 yield from filter(None, [_text(first)])
             case (
                 ast.AnnAssign(target=ast.Name(name), value=ast.Dict(values=values))
@@ -96,6 +106,29 @@ def texts(source: str, *, marked: bool) -> Iterator[str]:
         for node in nodes:
             if id(node) not in left_out and LIKE_WORDS.match(_text(node)):
                 yield _text(node)
+
+
+def is_mark(call: ast.Call) -> bool:
+    """Whether the first text of a call is shown: one of CALLS, or an error for users."""
+    name = ast.unparse(call.func)
+    return name in CALLS or name in error_names()
+
+
+@cache
+def error_names() -> frozenset[str]:
+    """Return the names of PalpateError and of all errors that derive from it."""
+    bases = {
+        node.name: {ast.unparse(base) for base in node.bases}
+        for folder in MARKING
+        for path in (REPOSITORY / folder).rglob("*.py")
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.ClassDef)
+    }
+    found, more = set(), {"PalpateError"}
+    while more:
+        found |= more
+        more = {name for name in bases if bases[name] & found} - found
+    return frozenset(found)
 
 
 def update() -> None:
@@ -113,11 +146,6 @@ def update() -> None:
             write_po(file, words, width=100, sort_output=True, ignore_obsolete=True)
         waiting = sum(not message.string or message.fuzzy for message in words if message.id)
         print(f"{path.relative_to(REPOSITORY)}: {waiting} of {len(words)} wait for {language}")
-
-
-def _called(call: ast.Call) -> str:
-    """The last name of what is called."""
-    return call.func.attr if isinstance(call.func, ast.Attribute) else ast.unparse(call.func)
 
 
 def _text(node: ast.AST) -> str:

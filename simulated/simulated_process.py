@@ -17,6 +17,7 @@ from typing import IO, Any, Self
 
 from ..core.errors import PalpateError
 from ..core.machine import run_module
+from ..core.sentence import Sentence
 from .hand.options import SimulatedOptions
 from .hand.plant import Vector
 from .hand.quaternion import Quaternion
@@ -75,8 +76,10 @@ class SimulatedDevice:
         except OSError as error:
             self._remove_folder()
             raise PalpateError(
-                f"the simulated device cannot be started: {python}: {error.strerror}; "
-                "check this installation of Python"
+                "the simulated device cannot be started: {python}: {reason}; check this "
+                "installation of Python",
+                python=python,
+                reason=error.strerror,
             ) from error
         try:
             self.port: str = self._read_json(START_SECONDS)["port"]
@@ -172,7 +175,8 @@ class SimulatedDevice:
             while b"\n" not in self._unread:
                 if not selector.select(max(0.0, deadline - time.monotonic())):
                     raise PalpateError(
-                        f"the simulated device has not answered for {seconds:g} s; start it again"
+                        "the simulated device has not answered for {seconds:g} s; start it again",
+                        seconds=seconds,
                     )
                 piece = os.read(descriptor, 4096)
                 if not piece:
@@ -182,10 +186,10 @@ class SimulatedDevice:
         content: dict[str, Any] = json.loads(line)
         return content
 
-    def _reason_for_end(self) -> str:
+    def _reason_for_end(self) -> Sentence:
         lines = _pipe(self._process.stderr).read().decode(errors="replace").strip().splitlines()
-        reason = lines[-1].removeprefix("palpate: ") if lines else "no reason given"
-        return f"the simulated device has ended: {reason}"
+        reason = lines[-1].removeprefix("palpate: ") if lines else Sentence("no reason given")
+        return Sentence("the simulated device has ended: {reason}", reason=reason)
 
 
 def _pipe(stream: IO[bytes] | None) -> IO[bytes]:

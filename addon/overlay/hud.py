@@ -7,6 +7,7 @@ import bpy
 
 from ...operators.device.servo_words import REASONS, Signal, standing
 from ...operators.scene.quantities import area, pressure
+from ...operators.scene.translated import shown
 from ...operators.session.press_events import Source
 from ...operators.session.press_session import PressSession
 from ...operators.session.press_state import Phase
@@ -96,32 +97,32 @@ def _lines(context: bpy.types.Context, session: PressSession) -> list[Line]:
     """What the HUD says, from the top."""
     figures = readings(session)
     touching = any(one.touching for one in figures)
-    phase, say = _phase(session, touching=touching), bpy.app.translations.pgettext_iface
+    phase = _phase(session, touching=touching)
     measured = _measured(figures, session)
     if session.state.source is Source.DEVICE:
         switch = "Space  Force Off" if session.state.force_on else "Space  Force On"
-        keys = f"{say(switch)}      {say(KEYS.get(phase, ''))}"
+        keys = f"{shown(switch)}      {shown(KEYS.get(phase, ''))}"
         about = [*_device_lines(session, measured), *_shape_lines(session)]
         return [*about, Line(keys, SMALL, GREY)]
     above = phase is Phase.DRAGGING and not touching
-    lines = [*measured, Line(say(ABOVE if above else _state(session, phase)), NORMAL, WHITE)]
+    lines = [*measured, Line(shown(ABOVE if above else _state(session, phase)), NORMAL, WHITE)]
     if session.state.message:
-        lines.append(Line(say(session.state.message), NORMAL, WARNING))
+        lines.append(Line(shown(session.state.message), NORMAL, WARNING))
     lines += _shape_lines(session)
     lines += _buried_lines(session)
     lines += _second_lines(session)
-    return [*lines, Line(say(KEYS.get(phase, "")), SMALL, GREY)]
+    return [*lines, Line(shown(KEYS.get(phase, "")), SMALL, GREY)]
 
 
 def _measured(figures: tuple[Reading, ...], session: PressSession) -> list[Line]:
     """Force and depth of each finger, and of a tool how large and hard its contact is."""
-    say, lines = bpy.app.translations.pgettext_iface, []
+    lines = []
     for number, one in enumerate(figures, start=1):
         name = f"{number}   " if len(figures) > 1 else ""
         lines.append(Line(f"{name}{one.force:.3f} N     {1000 * one.depth:.1f} mm", LARGE, WHITE))
         if session.tip.tool is not None and one.touching:
-            words = f"{say('Contact Area')} {area(one.area)}      "
-            words += f"{say('Largest Pressure')} {pressure(one.largest_pressure)}"
+            words = f"{shown('Contact Area')} {area(one.area)}      "
+            words += f"{shown('Largest Pressure')} {pressure(one.largest_pressure)}"
             lines.append(Line(words, NORMAL, WHITE))
     return lines
 
@@ -137,9 +138,8 @@ def _state(session: PressSession, phase: Phase) -> str:
 def _shape_lines(session: PressSession) -> list[Line]:
     """How far the tables are that the touched place needs."""
     felt = 1.0 if session.loop is None else session.loop.felt.ready
-    say = bpy.app.translations.pgettext_iface
     return [
-        Line(say(text).format(share=f"{100 * ready:.0f}"), NORMAL, GREY)
+        Line(shown(text, share=f"{100 * ready:.0f}"), NORMAL, GREY)
         for text, ready in ((SHAPE, session.seen.shape.ready), (FELT, felt))
         if ready < 1.0
     ]
@@ -150,39 +150,39 @@ def _buried_lines(session: PressSession) -> list[Line]:
     snapshot, inside = session.snapshot, "inside the body"
     if snapshot is None or all(finger.reason != inside for finger in snapshot.fingers):
         return []
-    return [Line(bpy.app.translations.pgettext_iface(REASONS[inside]), NORMAL, WARNING)]
+    return [Line(shown(REASONS[inside]), NORMAL, WARNING)]
 
 
 def _second_lines(session: PressSession) -> list[Line]:
     """A second finger's device that gives no force, and why."""
-    snapshot, say = session.snapshot, bpy.app.translations.pgettext_iface
+    snapshot = session.snapshot
     if snapshot is None or not session.state.has_device or len(session.leads) < 2:
         return []
     now = standing(snapshot.fingers[1])
     if now.signal is not Signal.FAULT:
         return []
-    return [Line(f"2   {say(now.word)}: {say(now.why)}", NORMAL, WARNING)]
+    return [Line(f"2   {shown(now.word)}: {shown(now.why)}", NORMAL, WARNING)]
 
 
 def _device_lines(session: PressSession, measured: list[Line]) -> list[Line]:
     """Whether the motors push, first of all, and why."""
-    say, snapshot = bpy.app.translations.pgettext_iface, session.snapshot
+    snapshot = session.snapshot
     if snapshot is None:
-        return [Line(say("Starting"), NORMAL, WHITE)]
+        return [Line(shown("Starting"), NORMAL, WHITE)]
     now = standing(snapshot)
     fault = now.signal is Signal.FAULT
-    lines = [Line(say(now.word), BADGE, BLACK, FILLS[now.signal])]
+    lines = [Line(shown(now.word), BADGE, BLACK, FILLS[now.signal])]
     if not session.awaits_device and not fault:
         lines += measured
     if now.why:
-        lines.append(Line(say(now.why), NORMAL, WARNING if fault else WHITE))
+        lines.append(Line(shown(now.why), NORMAL, WARNING if fault else WHITE))
     if now.signal in {Signal.FORCE, Signal.RETURNING}:
         given = sum(component**2 for component in snapshot.output_force) ** 0.5
-        lines.append(Line(f"{say('The device gives')} {given:.3f} N", NORMAL, WHITE))
+        lines.append(Line(f"{shown('The device gives')} {given:.3f} N", NORMAL, WHITE))
     if now.limit:
-        lines.append(Line(say(now.limit), NORMAL, WARNING))
+        lines.append(Line(shown(now.limit), NORMAL, WARNING))
     if session.state.message and session.state.phase is not Phase.LOST:
-        lines.append(Line(say(session.state.message), NORMAL, WARNING))
+        lines.append(Line(shown(session.state.message), NORMAL, WARNING))
     return lines + _second_lines(session)
 
 

@@ -8,6 +8,7 @@ from itertools import pairwise
 import bpy
 from mathutils import Vector
 
+from ...operators.scene.translated import shown
 from . import pixels
 from .pressure_colors import ANCHORS
 
@@ -62,7 +63,7 @@ def draw_legend(context: bpy.types.Context, top: float) -> None:
     """
     scale = context.preferences.system.ui_scale
     size, bar, height = SIZE * scale, BAR_WIDTH * scale, BAR_HEIGHT * scale
-    title = bpy.app.translations.pgettext_iface("Pressure")
+    title = shown("Pressure")
     figures = [f"{top * share / 1000:g} kPa" for share in (0.0, 0.5, 1.0)]
     across = max(
         pixels.width_of(title, size),

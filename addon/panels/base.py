@@ -31,8 +31,3 @@ def draw_rows(layout: bpy.types.UILayout, rows: list[tuple[str, str]]) -> None:
         row = layout.split(factor=NAME_SHARE)
         row.label(text=name)
         row.label(text=value, translate=False)
-
-
-def interface(text: str) -> str:
-    """A word of the interface in the user's language."""
-    return str(bpy.app.translations.pgettext_iface(text))

@@ -3,10 +3,12 @@
 import bpy
 
 from ...core.errors import PalpateError
+from ...core.sentence import Sentence
 from ...operators.bake.bake_prediction import Prediction
 from ...operators.scene.quantities import about, duration, memory, percent
+from ...operators.scene.translated import shown
 from .. import known_status
-from .base import draw_rows, interface
+from .base import draw_rows
 from .sentence import say
 
 FORM_NAMES = {"dense": "Full", "compressed": "Compressed"}
@@ -40,7 +42,7 @@ def draw_prediction(layout: bpy.types.UILayout, context: bpy.types.Context) -> N
         ("Bake Time", duration(cost.seconds)),
         ("Peak Memory", memory(cost.peak_bytes)),
         ("File", memory(cost.file_bytes)),
-        ("Compliance", interface(FORM_NAMES[cost.form])),
+        ("Compliance", shown(FORM_NAMES[cost.form])),
     ]
     draw_rows(box, rows)
     if not prediction.fits:
@@ -50,13 +52,13 @@ def draw_prediction(layout: bpy.types.UILayout, context: bpy.types.Context) -> N
 def draw_figures(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """What the last bake made."""
     baked = context.object.palpate
-    form = interface(FORM_NAMES.get(baked.baked_form, baked.baked_form))
+    form = shown(FORM_NAMES.get(baked.baked_form, baked.baked_form))
     box = layout.column(align=True)
     rows = [
         ("Nodes", f"{baked.node_count:,}"),
         ("Tetrahedra", f"{baked.tet_count:,}"),
         ("Free Surface Nodes", f"{baked.free_surface_count:,}"),
-        ("Formulation", interface(FORMULATION_NAMES.get(baked.baked_formulation, ""))),
+        ("Formulation", shown(FORMULATION_NAMES.get(baked.baked_formulation, ""))),
         ("Compliance", form),
         ("Memory", memory(1e6 * baked.compliance_megabytes)),
     ]
@@ -66,7 +68,7 @@ def draw_figures(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
     rows.append(("Bake Time", f"{baked.bake_seconds:.1f} s"))
     draw_rows(box, rows)
     for warning in filter(None, baked.bake_warnings.split("\n")):
-        say(layout, context, warning[:1].upper() + warning[1:], "ERROR")
+        say(layout, context, Sentence.of_line(warning), "ERROR")
 
 
 def _prediction(context: bpy.types.Context) -> Prediction | None:
@@ -102,5 +104,5 @@ def _draw_alarm(
     if prediction.compressed_fits:
         column.operator("palpate.fit_memory", text="Compress It").by = "COMPRESSED"
     if prediction.edge_length is not None:
-        text = interface("Use Edge Length {length}").format(length=f"{prediction.edge_length:g}")
+        text = shown("Use Edge Length {length}", length=f"{prediction.edge_length:g}")
         column.operator("palpate.fit_memory", text=text, translate=False).by = "COARSER"

@@ -5,11 +5,12 @@ import bpy
 from ...core.shape.force_at_depth.softening_table import whole_table_seconds
 from ...core.shape.shape_cost import BodySize, ShapeCost, shape_cost
 from ...operators.scene.quantities import duration, memory, waiting
+from ...operators.scene.translated import shown
 from ...operators.session import press_session
 from ...operators.session.press_session import PressSession
 from ...operators.shape.drawn_shape import chosen_shape
 from ..properties.shape import FELT_ITEMS, SHAPE_ITEMS
-from .base import PalpatePanel, draw_rows, interface, named_properties
+from .base import PalpatePanel, draw_rows, named_properties
 from .sentence import say
 
 # Below this a frame leaves Blender the time for 60 of them a second.
@@ -45,7 +46,7 @@ def draw_progress(
         say(layout, context, shape.problem, "ERROR")
         say(layout, context, "The linear shape is drawn", "BLANK1")
     elif shape.ready < 1.0:
-        text = interface("Shape {share} %").format(share=f"{100 * shape.ready:.0f}")
+        text = shown("Shape {share} %", share=f"{100 * shape.ready:.0f}")
         layout.progress(factor=shape.ready, type="BAR", text=text, translate=False)
 
 

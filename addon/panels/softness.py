@@ -3,6 +3,7 @@
 import bpy
 
 from ...core.errors import PalpateError
+from ...core.sentence import Sentence
 from ...core.softness.ramp import legend
 from ...core.softness.scales.shore import young_range
 from ...operators.softness.softness_colours import ATTRIBUTE
@@ -38,7 +39,7 @@ def _draw_reading(layout: bpy.types.UILayout, context: bpy.types.Context) -> Non
     ]
     draw_rows(layout.column(align=True), rows)
     for warning in filter(None, softness.read_warnings.split("\n")):
-        say(layout, context, warning[:1].upper() + warning[1:], "ERROR")
+        say(layout, context, Sentence.of_line(warning), "ERROR")
 
 
 def _draw_curve(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:

@@ -9,6 +9,7 @@ from ...operators.object.drawn_body import restores_quickly
 from ...operators.object.pin_change import PinFit
 from ...operators.object.soft_object import BodyStatus, Fit
 from ...operators.scene.quantities import duration
+from ...operators.scene.translated import shown
 from ...operators.session.press_events import Source
 from ...operators.session.press_session import PressSession
 from ...operators.session.press_state import Phase
@@ -136,8 +137,7 @@ def _draw_changes(
         names.append("Pins")
     names += status.meshing
     if names:
-        known = bpy.app.translations.pgettext_iface
-        listed = ", ".join(known(name) for name in names)
+        listed = ", ".join(map(shown, names))
         say(layout, context, "Changed since the bake: {names}", "INFO", names=listed)
     if status.meshing:
         say(layout, context, "Make Soft Again takes it over", "BLANK1")

@@ -20,6 +20,7 @@ from ..machine.machine_speed import dgemm_rate
 from ..mesh.surface import Surface
 from ..mesh.tet_mesh import TetMesh
 from ..mesh.winding_volume import enclosed_volume
+from ..sentence import Sentence
 from ..stiffness.formulation import LINEAR, formulation_for
 from ..stiffness.pins import PinBelow, PinNodes, Pins, PinWeights
 from .settings import BakeSettings
@@ -291,7 +292,7 @@ def automatic_form(form: str, dense: BakeCost, available: int | None) -> str:
 
 def affordable_form(
     plan: EliminationPlan, settings: BakeSettings, available: int
-) -> tuple[str, list[str]]:
+) -> tuple[str, list[Sentence]]:
     """The form to compute, and what to tell the maker about its choice.
 
     Raises
@@ -309,15 +310,19 @@ def affordable_form(
     warnings = []
     if settings.form == "auto" and chosen == "compressed" and dense.peak_bytes > available:
         warnings.append(
-            f"the compliance was compressed, since whole it would have taken "
-            f"{_memory(dense.peak_bytes)} of memory, and {_memory(available)} could be had"
+            Sentence(
+                "the compliance was compressed, since whole it would have taken {needed} of "
+                "memory, and {available} could be had",
+                needed=_memory(dense.peak_bytes),
+                available=_memory(available),
+            )
         )
     return chosen, warnings
 
 
 def memory_refusal(
     cost: BakeCost, available: int, compressed: BakeCost | None = None
-) -> str | None:
+) -> Sentence | None:
     """Why a bake must not start, with the remedy; None where the memory suffices.
 
     ``compressed`` is what the compressed form would cost: it is only offered where it would fit.
@@ -325,10 +330,16 @@ def memory_refusal(
     if cost.peak_bytes <= available:
         return None
     would_fit = compressed is None or compressed.peak_bytes <= available
-    remedies = "choose the compressed form or " if cost.form == "dense" and would_fit else ""
-    return (
-        f"bake: {cost.free_surface_nodes:,} free surface nodes take {_memory(cost.peak_bytes)} of "
-        f"memory, and {_memory(available)} can be had; {remedies}use a larger edge length"
+    remedy = Sentence("use a larger edge length")
+    if cost.form == "dense" and would_fit:
+        remedy = Sentence("choose the compressed form or use a larger edge length")
+    return Sentence(
+        "bake: {count:,} free surface nodes take {needed} of memory, and {available} can be had; "
+        "{remedy}",
+        count=cost.free_surface_nodes,
+        needed=_memory(cost.peak_bytes),
+        available=_memory(available),
+        remedy=remedy,
     )
 
 

@@ -59,8 +59,19 @@ def run(folder: Path) -> dict[str, object]:
             tell("store", 1.0)
             body_file.save(body, folder / BODY_FILE)
         except PalpateError as problem:
-            return {"error": str(problem)}
-    return {"report": report.as_dict()}
+            return {"error": problem.sentence.as_line()}
+    warnings = [warning.as_line() for warning in report.warnings]
+    return {"report": {**report.as_dict(), "warnings": warnings}}
+
+
+def out_of_memory() -> str:
+    """What to tell when there is no memory left to bake with."""
+    from ..sentence import Sentence
+
+    return Sentence(
+        "bake: the memory does not suffice for this many surface nodes; choose the compressed form "
+        "or use a larger edge length"
+    ).as_line()
 
 
 def main() -> int:
@@ -74,10 +85,7 @@ def main() -> int:
     try:
         outcome = run(folder)
     except MemoryError:
-        outcome = {
-            "error": "bake: the memory does not suffice for this many surface nodes; choose the "
-            "compressed form or use a larger edge length"
-        }
+        outcome = {"error": out_of_memory()}
     except Exception:  # noqa: BLE001  the parent raises it again, with this traceback
         outcome = {"crash": traceback.format_exc()}
     (folder / OUTCOME_FILE).write_text(json.dumps(outcome), encoding="utf-8")

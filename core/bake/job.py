@@ -26,6 +26,7 @@ from ..mesh.surface import Surface
 from ..mesh.tet_mesh import TetMesh
 from ..mesh.tetrahedralize import Fit
 from ..progress import unwatched
+from ..sentence import Sentence
 from .child import BODY_FILE, OUTCOME_FILE, PROGRESS_FILE
 from .request import BakeRequest
 from .steps import BakeReport, BakeSettings
@@ -112,8 +113,9 @@ class BakeJob:
             if seconds > self._time_limit and not self.finished:
                 self.close()
                 raise PalpateError(
-                    f"tetrahedralization: not done within {self._time_limit:g} s; use a larger "
-                    "edge length or epsilon, decimate the mesh first, or allow more time"
+                    "tetrahedralization: not done within {seconds:g} s; use a larger edge length "
+                    "or epsilon, decimate the mesh first, or allow more time",
+                    seconds=self._time_limit,
                 )
             text = f"{text}: {stage(self._log())}"
         return JobProgress(step, text, share, seconds, self._remaining.update(seconds, share))
@@ -186,7 +188,9 @@ class BakeJob:
                 )
         except OSError as problem:
             raise PalpateError(
-                f"bake: {command[0]} cannot be started ({problem}); reinstall Blender or Python"
+                "bake: {program} cannot be started ({problem}); reinstall Blender or Python",
+                program=command[0],
+                problem=problem,
             ) from problem
 
     def _newest_progress(self) -> tuple[str, float | None]:
@@ -205,19 +209,22 @@ class BakeJob:
         file = self._folder / OUTCOME_FILE
         if not file.exists():
             last = " | ".join(self._log().strip().splitlines()[-3:])
+            words = Sentence(", last words: {words}", words=last) if last else ""
             raise PalpateError(
-                f"bake: the process ended unexpectedly (exit status {self._child.returncode}"
-                f"{', last words: ' + last if last else ''}); use a larger edge length or epsilon, "
-                "or clean the mesh (merge by distance, recalculate normals)"
+                "bake: the process ended unexpectedly (exit status {status}{words}); use a larger "
+                "edge length or epsilon, or clean the mesh (merge by distance, recalculate "
+                "normals)",
+                status=self._child.returncode,
+                words=words,
             )
         outcome = json.loads(file.read_text(encoding="utf-8"))
         if "error" in outcome:
-            raise PalpateError(outcome["error"])
+            raise PalpateError(Sentence.of_line(outcome["error"]))
         if "crash" in outcome:
             raise RuntimeError(f"the bake process failed:\n{outcome['crash']}")
         report = outcome["report"]
         fit = Fit(**report["fit"]) if report["fit"] else None
-        return BakeReport(report["seconds"], fit, report["warnings"])
+        return BakeReport(report["seconds"], fit, [*map(Sentence.of_line, report["warnings"])])
 
 
 def _end_of(file: Path, count: int) -> str:

@@ -92,8 +92,9 @@ def pin_more(body: SoftBody, added_nodes: ArrayLike) -> SoftBody:
     inside = np.setdiff1d(added, body.mesh.surface_nodes)
     if inside.size:
         raise PalpateError(
-            f"pins: node {inside[0]} lies inside the body, and only its surface can be pinned "
-            "without a new bake; bake again with these pins"
+            "pins: node {node} lies inside the body, and only its surface can be pinned without a "
+            "new bake; bake again with these pins",
+            node=inside[0],
         )
     if not added.size:
         return body

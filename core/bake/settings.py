@@ -68,14 +68,19 @@ class BakeSettings:
                 continue
             if not low <= value <= high:
                 raise PalpateError(
-                    f"bake: {name.replace('_', ' ')} is {value}, but must lie between {low:g} and "
-                    f"{high:g}"
+                    "bake: {setting} is {value}, but must lie between {low:g} and {high:g}",
+                    setting=name.replace("_", " "),
+                    value=value,
+                    low=low,
+                    high=high,
                 )
         formulation_for(self.formulation, self.poisson_ratio)
         if isinstance(self.pins, PinBelow):
             fraction_checked(self.pins.fraction)
         if self.form not in FORMS:
             raise PalpateError(
-                f"bake: the form is '{self.form}', but must be one of {', '.join(FORMS)}"
+                "bake: the form is '{form}', but must be one of {forms}",
+                form=self.form,
+                forms=", ".join(FORMS),
             )
         return self

@@ -24,6 +24,7 @@ from ..mesh.surface import Surface
 from ..mesh.tet_mesh import TetMesh
 from ..mesh.tetrahedralize import Fit, check_fit, tetrahedralize
 from ..progress import unwatched
+from ..sentence import Sentence
 from ..stiffness.assembly import assemble
 from ..stiffness.formulation import formulation_for
 from ..stiffness.pins import pinned_nodes
@@ -49,7 +50,7 @@ class BakeReport:
 
     seconds: dict[str, float]
     fit: Fit | None
-    warnings: list[str]
+    warnings: list[Sentence]
 
     def as_dict(self) -> dict[str, object]:
         """The report as plain values for JSON."""
@@ -162,18 +163,24 @@ def _young_scale(
     return None if np.array_equal(scale, np.ones_like(scale)) else scale
 
 
-def _fit_warnings(fit: Fit, mesh: TetMesh) -> list[str]:
+def _fit_warnings(fit: Fit, mesh: TetMesh) -> list[Sentence]:
     diagonal = float(np.linalg.norm(np.ptp(mesh.nodes, axis=0)))
     found = []
     if abs(fit.volume_ratio - 1) > NOTABLE_VOLUME_ERROR:
         found.append(
-            f"the body has {100 * fit.volume_ratio:.0f} % of the volume that the mesh encloses; "
-            "a smaller edge length or epsilon follows it more closely"
+            Sentence(
+                "the body has {share:.0f} % of the volume that the mesh encloses; a smaller edge "
+                "length or epsilon follows it more closely",
+                share=100 * fit.volume_ratio,
+            )
         )
     if fit.input_to_body > NOTABLE_DISTANCE * diagonal:
         found.append(
-            f"parts of the mesh lie up to {1000 * fit.input_to_body:.2g} mm from the body, being "
-            "open or too thin; they follow its nearest place"
+            Sentence(
+                "parts of the mesh lie up to {distance:.2g} mm from the body, being open or too "
+                "thin; they follow its nearest place",
+                distance=1000 * fit.input_to_body,
+            )
         )
     return found
 

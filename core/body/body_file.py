@@ -122,12 +122,14 @@ def load(
     """
     source = Path(path)
     if not source.is_file():
-        raise BodyFileError(f"{source}: there is no such body file; bake the mesh first")
+        raise BodyFileError(
+            "{source}: there is no such body file; bake the mesh first", source=source
+        )
     try:
         with opened(source) as archive:
             return _read(archive, source, mapped_from_bytes)
     except ArchiveError as problem:
-        raise BodyFileError(f"{problem}; bake again") from problem
+        raise BodyFileError("{problem}; bake again", problem=problem) from problem
 
 
 def adopt(finished: Path, target: Path) -> None:
@@ -160,26 +162,39 @@ def _compliance_arrays(compliance: Compliance) -> Arrays:
 def _read(archive: Archive, source: Path, mapped_from_bytes: int | None) -> SoftBody:
     names = archive.names
     if "format" not in names or str(archive.read("format")) != FORMAT:
-        raise BodyFileError(f"{source}: not a Palpate body file; bake the mesh to make one")
+        raise BodyFileError(
+            "{source}: not a Palpate body file; bake the mesh to make one", source=source
+        )
     version = str(archive.read("version")) if "version" in names else "0"
     if version != str(VERSION):
         raise BodyFileError(
-            f"{source}: written in version {version} of the body format, this Palpate reads "
-            f"version {VERSION}; bake again"
+            "{source}: written in version {held} of the body format, this Palpate reads "
+            "version {own}; bake again",
+            source=source,
+            held=version,
+            own=VERSION,
         )
     stored = {name: archive.read(name) for name in names if name != TABLE}
     needed = (*NEEDED, "checksum", *NEEDED_BY_FORM.get(str(stored.get("form")), ()))
     missing = [name for name in needed if name not in names]
     if missing:
-        raise BodyFileError(f"{source}: damaged ({', '.join(missing)} missing); bake again")
+        raise BodyFileError(
+            "{source}: damaged ({missing} missing); bake again",
+            source=source,
+            missing=", ".join(missing),
+        )
     if str(stored["checksum"]) != _checksum(stored):
-        raise BodyFileError(f"{source}: damaged (its checksum does not match); bake again")
+        raise BodyFileError(
+            "{source}: damaged (its checksum does not match); bake again", source=source
+        )
     try:
         return _body(stored, _compliance(stored, archive, source, mapped_from_bytes))
     except PalpateError as problem:
         if isinstance(problem, (ArchiveError, BodyFileError)):
             raise
-        raise BodyFileError(f"{source}: {problem}; bake again") from problem
+        raise BodyFileError(
+            "{source}: {problem}; bake again", source=source, problem=problem
+        ) from problem
 
 
 def _compliance(
@@ -191,7 +206,7 @@ def _compliance(
     if str(stored["form"]) == "compressed":
         return CompressedCompliance.from_arrays(free_surface, stored, float(stored["tolerance"]))
     if str(stored["form"]) != "dense":
-        raise PalpateError(f"its compliance has the unknown form '{stored['form']}'")
+        raise PalpateError("its compliance has the unknown form '{form}'", form=stored["form"])
     checksums, diagonal = stored["compliance_checksums"], stored["compliance_diagonal"]
     is_mapped = mapped_from_bytes is not None and archive.bytes_of(TABLE) >= mapped_from_bytes
     mapped = archive.map(TABLE) if is_mapped else None
@@ -206,7 +221,9 @@ def _compliance(
     if mapped is not None:
         return MappedCompliance(free_surface, mapped, diagonal, checksums, str(source))
     if not np.array_equal(node_checksums(table), checksums):
-        raise BodyFileError(f"{source}: damaged (its checksum does not match); bake again")
+        raise BodyFileError(
+            "{source}: damaged (its checksum does not match); bake again", source=source
+        )
     return DenseCompliance(free_surface, table)
 
 

@@ -129,7 +129,9 @@ class SoftBody:
         """
         modulus = self.young_modulus if young_modulus is None else young_modulus
         if not (math.isfinite(modulus) and modulus > 0.0):
-            raise PalpateError(f"Young's modulus is {modulus} Pa; give a positive number")
+            raise PalpateError(
+                "Young's modulus is {modulus} Pa; give a positive number", modulus=modulus
+            )
         return modulus
 
     def touch(
@@ -288,8 +290,11 @@ def _point_checked(name: str, value: ArrayLike) -> NDArray[np.float64]:
     point = np.asarray(value, dtype=np.float64)
     if point.shape != (3,) or not (np.abs(point) <= LARGEST_COORDINATE).all():
         raise PalpateError(
-            f"--{name}: {np.asarray(value).tolist()} is not a point; give three finite numbers "
-            f"in metres, none beyond {LARGEST_COORDINATE:g}"
+            "--{name}: {point} is not a point; give three finite numbers in metres, none beyond "
+            "{most:g}",
+            name=name,
+            point=np.asarray(value).tolist(),
+            most=LARGEST_COORDINATE,
         )
     return point
 
@@ -301,13 +306,19 @@ def _pairs_checked(at: ArrayLike, by: ArrayLike) -> tuple[NDArray[np.float64], N
     )
     if len(starts) != len(travels) or not len(starts):
         raise PalpateError(
-            f"--at is given {len(starts)} times and --by {len(travels)} times; give one --by for "
-            "every --at, in the same order"
+            "--at is given {starts} times and --by {travels} times; give one --by for every --at, "
+            "in the same order",
+            starts=len(starts),
+            travels=len(travels),
         )
     return starts, travels
 
 
 def _mode_checked(mode: str) -> str:
     if mode not in CONTACT_MODES:
-        raise PalpateError(f"contact mode {mode!r} is unknown; give {' or '.join(CONTACT_MODES)}")
+        raise PalpateError(
+            "contact mode {mode} is unknown; give {known}",
+            mode=repr(mode),
+            known=" or ".join(CONTACT_MODES),
+        )
     return mode

@@ -109,7 +109,7 @@ class MappedCompliance:
             It was truncated.
         """
         if not self.mapped_table.is_complete:
-            raise BodyFileError(f"{self.file}: it was cut short while in use; bake again")
+            raise BodyFileError("{file}: it was cut short while in use; bake again", file=self.file)
 
     def _check(self, nodes: NDArray[np.int64]) -> None:
         """Make sure that the columns of ``nodes`` are what was stored.
@@ -126,7 +126,9 @@ class MappedCompliance:
             found = hashlib.sha256(self.mapped_table.array[node].data).digest()
             if found != self.checksums[node].tobytes():
                 raise BodyFileError(
-                    f"{self.file}: damaged (the compliance of node {self.free_surface[node]} does "
-                    "not match its checksum); bake again"
+                    "{file}: damaged (the compliance of node {node} does not match its checksum); "
+                    "bake again",
+                    file=self.file,
+                    node=self.free_surface[node],
                 )
             self._is_checked[node] = True

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import IO
 
 from ..errors import PalpateError
+from ..sentence import Sentence
 
 
 class UnwritableError(PalpateError):
@@ -27,17 +28,19 @@ def refuse_unwritable(target: Path) -> None:
     target = _followed(target)
     folder = next(parent for parent in target.parents if parent.exists())
     if target.is_dir():
-        reason = "it is a folder"
+        reason = Sentence("it is a folder")
     elif target.exists() and not target.is_file():
-        reason = "it is no ordinary file"
+        reason = Sentence("it is no ordinary file")
     elif not folder.is_dir():
-        reason = f"{folder} is not a folder"
+        reason = Sentence("{folder} is not a folder", folder=folder)
     elif not os.access(folder, os.W_OK | os.X_OK):
-        reason = f"{folder} may not be written"
+        reason = Sentence("{folder} may not be written", folder=folder)
     else:
         return
     raise UnwritableError(
-        f"{target}: cannot be written ({reason}); choose a folder you may write to"
+        "{target}: cannot be written ({reason}); choose a folder you may write to",
+        target=target,
+        reason=reason,
     )
 
 
@@ -51,7 +54,9 @@ def refuse_missing_folder(target: Path) -> None:
     """
     folder = target.absolute().parent
     if not folder.exists():
-        raise UnwritableError(f"{target}: there is no folder {folder}; make it first")
+        raise UnwritableError(
+            "{target}: there is no folder {folder}; make it first", target=target, folder=folder
+        )
 
 
 @contextmanager
@@ -78,8 +83,10 @@ def atomic_file(target: Path, *, make_folders: bool = False) -> Iterator[IO[byte
         unfinished.replace(target)
     except OSError as problem:
         raise UnwritableError(
-            f"{target}: cannot be written ({problem.strerror or problem}); choose a folder you may "
-            "write to, with enough room"
+            "{target}: cannot be written ({reason}); choose a folder you may write to, with "
+            "enough room",
+            target=target,
+            reason=problem.strerror or problem,
         ) from problem
     finally:
         unfinished.unlink(missing_ok=True)

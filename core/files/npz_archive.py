@@ -107,7 +107,11 @@ class Archive:
             or first + count * dtype.itemsize != end
             or end > self._zip.start_dir
         ):
-            raise ArchiveError(f"{self._path}: damaged ('{name}' does not lie where it should)")
+            raise ArchiveError(
+                "{path}: damaged ('{name}' does not lie where it should)",
+                path=self._path,
+                name=name,
+            )
         mapping = mmap.mmap(self._stream.fileno(), 0, access=mmap.ACCESS_READ)
         array = np.frombuffer(mapping, dtype, count, first).reshape(shape)
         return MappedArray(array, mapping, end)
@@ -125,7 +129,9 @@ def opened(path: Path) -> Iterator[Archive]:
     try:
         stream = path.open("rb")
     except OSError as problem:
-        raise ArchiveError(f"{path}: cannot be opened ({problem.strerror})") from problem
+        raise ArchiveError(
+            "{path}: cannot be opened ({reason})", path=path, reason=problem.strerror
+        ) from problem
     with stream:
         try:
             yield Archive(stream, path)
@@ -133,7 +139,9 @@ def opened(path: Path) -> Iterator[Archive]:
             raise
         except Exception as problem:  # zip, its packers and numpy's headers: each fails its own way
             raise ArchiveError(
-                f"{path}: damaged, cut short or not an npz archive ({problem!r})"
+                "{path}: damaged, cut short or not an npz archive ({problem})",
+                path=path,
+                problem=repr(problem),
             ) from problem
 
 

@@ -22,11 +22,16 @@ def refuse_unusable(what: str, points: NDArray[np.float64]) -> None:
     bad = ~np.isfinite(points).all(axis=1)
     if bad.any():
         raise PalpateError(
-            f"{what}: {int(bad.sum())} points have coordinates that are not finite numbers (first: "
-            f"number {int(np.flatnonzero(bad)[0])}); delete or repair them"
+            "{what}: {count} points have coordinates that are not finite numbers (first: number "
+            "{first}); delete or repair them",
+            what=what,
+            count=int(bad.sum()),
+            first=int(np.flatnonzero(bad)[0]),
         )
     farthest = float(np.abs(points).max(initial=0.0))
     if farthest > LARGEST_COORDINATE:
         raise PalpateError(
-            f"{what}: its coordinates reach {farthest:.3g} m; check the unit and the scale"
+            "{what}: its coordinates reach {farthest:.3g} m; check the unit and the scale",
+            what=what,
+            farthest=farthest,
         )

@@ -11,6 +11,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from ..errors import PalpateError
+from ..sentence import Sentence
 from .coordinates import refuse_unusable
 
 # Vertices closer than this share of the diagonal are one: seams that only look open are closed.
@@ -47,15 +48,19 @@ class Surface:
         faces = np.array(triangles, dtype=np.int64).reshape(-1, 3)
         if not len(points) or not len(faces):
             raise PalpateError(
-                f"mesh: it has {len(points)} vertices and {len(faces)} faces, so there is nothing "
-                "to make soft; choose a mesh with faces"
+                "mesh: it has {vertices} vertices and {faces} faces, so there is nothing to make "
+                "soft; choose a mesh with faces",
+                vertices=len(points),
+                faces=len(faces),
             )
-        refuse_unusable("mesh", points)
+        refuse_unusable(Sentence("mesh"), points)
         if faces.min() < 0 or faces.max() >= len(points):
             wrong = int(faces.min()) if faces.min() < 0 else int(faces.max())
             raise PalpateError(
-                f"mesh: a face names vertex {wrong}, but they are numbered 0 to {len(points) - 1}; "
-                "the file is damaged, export it again"
+                "mesh: a face names vertex {wrong}, but they are numbered 0 to {last}; the file "
+                "is damaged, export it again",
+                wrong=wrong,
+                last=len(points) - 1,
             )
         surface = cls(points, faces)
         surface._refuse_sheet()

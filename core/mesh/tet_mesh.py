@@ -11,6 +11,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from ..errors import PalpateError
+from ..sentence import Sentence
 from .coordinates import refuse_unusable
 
 # The four faces of a positively oriented tetrahedron, wound so that normals point outward.
@@ -49,8 +50,11 @@ class TetMesh:
         unused = np.setdiff1d(np.arange(len(node_array)), tet_array)
         if unused.size:
             raise PalpateError(
-                f"tetrahedral mesh: {unused.size} of {len(node_array)} nodes belong to no "
-                f"tetrahedron (first: node {unused[0]}); remove unused nodes and renumber"
+                "tetrahedral mesh: {count} of {all} nodes belong to no tetrahedron (first: node "
+                "{first}); remove unused nodes and renumber",
+                count=unused.size,
+                all=len(node_array),
+                first=unused[0],
             )
         node_array.setflags(write=False)
         tet_array.setflags(write=False)
@@ -78,8 +82,10 @@ class TetMesh:
         if count.max() > 2:
             crowded = corners[order[starts[np.argmax(count)]]]
             raise PalpateError(
-                f"tetrahedral mesh: the face {tuple(crowded.tolist())} belongs to {count.max()} "
-                "tetrahedra, so they overlap; bake the surface again"
+                "tetrahedral mesh: the face {face} belongs to {count} tetrahedra, so they "
+                "overlap; bake the surface again",
+                face=tuple(crowded.tolist()),
+                count=count.max(),
             )
         boundary: NDArray[np.int64] = faces[np.sort(order[starts[count == 1]])]
         return boundary
@@ -122,15 +128,17 @@ def _nodes_checked(nodes: ArrayLike) -> NDArray[np.float64]:
     given = np.asarray(nodes)
     if given.ndim != 2 or given.shape[1] != 3 or not len(given):
         raise PalpateError(
-            f"tetrahedral mesh: nodes have shape {given.shape}, expected (N, 3) with N > 0; "
-            "give one row of x, y, z in metres per node"
+            "tetrahedral mesh: nodes have shape {shape}, expected (N, 3) with N > 0; give one row "
+            "of x, y, z in metres per node",
+            shape=given.shape,
         )
     if given.dtype.kind not in "fiu":
         raise PalpateError(
-            f"tetrahedral mesh: nodes are {given.dtype}, expected real numbers; give metres"
+            "tetrahedral mesh: nodes are {kind}, expected real numbers; give metres",
+            kind=given.dtype,
         )
     array = given.astype(np.float64, order="C")
-    refuse_unusable("tetrahedral mesh", array)
+    refuse_unusable(Sentence("tetrahedral mesh"), array)
     return array
 
 
@@ -138,19 +146,23 @@ def _tets_checked(tets: ArrayLike, node_count: int) -> NDArray[np.int64]:
     given = np.asarray(tets)
     if given.ndim != 2 or given.shape[1] != 4 or not len(given):
         raise PalpateError(
-            f"tetrahedral mesh: tets have shape {given.shape}, expected (M, 4) with M > 0; "
-            "give one row of four node numbers per tetrahedron"
+            "tetrahedral mesh: tets have shape {shape}, expected (M, 4) with M > 0; give one row "
+            "of four node numbers per tetrahedron",
+            shape=given.shape,
         )
     if not np.issubdtype(given.dtype, np.integer):
         raise PalpateError(
-            f"tetrahedral mesh: tets are {given.dtype}, expected integers; give node numbers"
+            "tetrahedral mesh: tets are {kind}, expected integers; give node numbers",
+            kind=given.dtype,
         )
     array = given.astype(np.int64)
     if array.min() < 0 or array.max() >= node_count:
         wrong = int(array.min()) if array.min() < 0 else int(array.max())
         raise PalpateError(
-            f"tetrahedral mesh: a tetrahedron names node {wrong}, but nodes are numbered "
-            f"0 to {node_count - 1}; count from zero"
+            "tetrahedral mesh: a tetrahedron names node {wrong}, but nodes are numbered 0 to "
+            "{last}; count from zero",
+            wrong=wrong,
+            last=node_count - 1,
         )
     return array
 
@@ -165,12 +177,16 @@ def _refuse_flat_or_inverted(nodes: NDArray[np.float64], tets: NDArray[np.int64]
     flat = np.abs(volumes) <= SMALLEST_RELATIVE_VOLUME * longest**3
     if flat.any():
         raise PalpateError(
-            f"tetrahedral mesh: {int(flat.sum())} tetrahedra have no volume (first: tetrahedron "
-            f"{int(np.flatnonzero(flat)[0])}); remove them or bake the surface again"
+            "tetrahedral mesh: {count} tetrahedra have no volume (first: tetrahedron {first}); "
+            "remove them or bake the surface again",
+            count=int(flat.sum()),
+            first=int(np.flatnonzero(flat)[0]),
         )
     inverted = volumes < 0
     if inverted.any():
         raise PalpateError(
-            f"tetrahedral mesh: {int(inverted.sum())} tetrahedra are inverted (first: tetrahedron "
-            f"{int(np.flatnonzero(inverted)[0])}); swap two of their nodes"
+            "tetrahedral mesh: {count} tetrahedra are inverted (first: tetrahedron {first}); swap "
+            "two of their nodes",
+            count=int(inverted.sum()),
+            first=int(np.flatnonzero(inverted)[0]),
         )

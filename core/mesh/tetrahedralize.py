@@ -97,9 +97,11 @@ def check_fit(mesh: TetMesh, surface: Surface, shell: Surface) -> Fit:
     ratio = mesh.volume / volume if volume > 0 else float("inf")
     if not VOLUME_RATIO_BOUNDS[0] < ratio < VOLUME_RATIO_BOUNDS[1]:
         raise PalpateError(
-            f"tetrahedralization: the body has {mesh.volume * 1e6:.3g} cm3, but the surface "
-            f"encloses about {volume * 1e6:.3g} cm3; close large holes, recalculate normals, or "
-            "use a smaller edge length"
+            "tetrahedralization: the body has {body:.3g} cm3, but the surface encloses about "
+            "{surface:.3g} cm3; close large holes, recalculate normals, or use a smaller edge "
+            "length",
+            body=mesh.volume * 1e6,
+            surface=volume * 1e6,
         )
     body_surface = Surface(mesh.nodes, mesh.surface_triangles)
     centres = mesh.nodes[mesh.surface_triangles].mean(axis=1)

@@ -14,6 +14,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from ..sentence import Sentence
+
 # linux/serial.h: flags are the fifth number of struct serial_struct, which is shorter than this.
 _SERIAL_STRUCT = struct.Struct("32i")
 _FLAGS = 4
@@ -57,7 +59,7 @@ def latency_timer_ms(path: str, driver: Path = _DRIVER) -> int | None:
         return None
 
 
-def explain(link: Mapping[str, Any], path: str = "") -> str | None:
+def explain(link: Mapping[str, Any], path: str = "") -> Sentence | None:
     """What to tell the user when the adapter holds STATE back, and what helps; else None.
 
     Parameters
@@ -70,7 +72,9 @@ def explain(link: Mapping[str, Any], path: str = "") -> str | None:
     return _sentence(link["burst_ms"], link["state_interval_us"]["device"] * 1e-3, path)
 
 
-def explain_readings(readings: Sequence[tuple[float, Sequence[int]]], path: str = "") -> str | None:
+def explain_readings(
+    readings: Sequence[tuple[float, Sequence[int]]], path: str = ""
+) -> Sentence | None:
     """The same from what was read of a port, by the rules of `native/src/device/arrival.rs`.
 
     Parameters
@@ -105,31 +109,37 @@ def _since(first_us: int, last_us: int) -> float:
     return (last_us - first_us) % 2**32 * 1e-6
 
 
-def remedy(path: str = "", system: str = sys.platform) -> str:
+def remedy(path: str = "", system: str = sys.platform) -> Sentence:
     """How a user sets the timer to 1 ms."""
     if system == "win32":
-        return (
+        return Sentence(
             "in the Device Manager open the port's properties, Port Settings, Advanced, and set "
             "Latency Timer to 1 ms"
         )
     if system == "darwin":
-        return (
+        return Sentence(
             "install FTDI's own driver and set its LatencyTimer to 1 or 2 (FTDI's technical note "
             "TN_105 tells how), or use a device with USB of its own"
         )
     name = Path(os.path.realpath(path)).name if path else "ttyUSB0"
-    return (
-        f"run 'echo 1 | sudo tee {_DRIVER / name}/latency_timer', or for good put ACTION==\"add\", "
-        'SUBSYSTEM=="usb-serial", DRIVER=="ftdi_sio", ATTR{latency_timer}="1" into a file in '
-        "/etc/udev/rules.d"
+    return Sentence(
+        "run 'echo 1 | sudo tee {timer}', or for good put {rule} into a file in /etc/udev/rules.d",
+        timer=_DRIVER / name / "latency_timer",
+        rule='ACTION=="add", SUBSYSTEM=="usb-serial", DRIVER=="ftdi_sio", ATTR{latency_timer}="1"',
     )
 
 
-def _sentence(burst_ms: float, device_ms: float, path: str) -> str:
+def _sentence(burst_ms: float, device_ms: float, path: str) -> Sentence:
     timer = latency_timer_ms(path) if path else None
-    known = f" (its latency timer is at {timer} ms)" if timer is not None else ""
-    return (
-        f"{f'{path}: ' if path else ''}STATE arrives in bursts, one every {burst_ms:.3g} ms "
-        f"({1e3 / burst_ms:.3g} Hz), though the device makes one every {device_ms:.3g} ms: the USB "
-        f"serial adapter holds bytes back{known}, and the force comes late; {remedy(path)}"
+    known = Sentence(" (its latency timer is at {timer} ms)", timer=timer)
+    said = Sentence(
+        "STATE arrives in bursts, one every {burst:.3g} ms ({rate:.3g} Hz), though the device "
+        "makes one every {device:.3g} ms: the USB serial adapter holds bytes back{timer}, and the "
+        "force comes late; {remedy}",
+        burst=burst_ms,
+        rate=1e3 / burst_ms,
+        device=device_ms,
+        timer="" if timer is None else known,
+        remedy=remedy(path),
     )
+    return Sentence("{path}: {reason}", path=path, reason=said) if path else said

@@ -16,6 +16,7 @@ import serial
 from serial.tools.list_ports import comports
 
 from ..errors import PalpateError
+from ..sentence import Sentence
 from . import link
 from .haply_models import HAPI_USB_IDS
 from .latency_timer import ask_for_low_latency, explain_readings
@@ -31,16 +32,16 @@ LISTEN_SECONDS = 0.4
 _TIOCGEXCL = 0x80045440
 
 _REASONS = {
-    errno.ENOENT: "there is no such port; plug the device in, or see 'palpate devices'",
-    errno.EACCES: (
+    errno.ENOENT: Sentence("there is no such port; plug the device in, or see 'palpate devices'"),
+    errno.EACCES: Sentence(
         "no permission to open it; on Linux add yourself to the group that owns it "
         "(often dialout) and log in again"
     ),
-    errno.EPERM: "no permission to open it; ask whoever runs this computer",
-    errno.EBUSY: "in use by another program; close that program",
-    errno.ENOTTY: "not a serial port; see 'palpate devices' for those there are",
-    errno.ENXIO: "nothing is connected to it; plug the device in",
-    errno.EIO: "it has gone or does not work; plug the device in again",
+    errno.EPERM: Sentence("no permission to open it; ask whoever runs this computer"),
+    errno.EBUSY: Sentence("in use by another program; close that program"),
+    errno.ENOTTY: Sentence("not a serial port; see 'palpate devices' for those there are"),
+    errno.ENXIO: Sentence("nothing is connected to it; plug the device in"),
+    errno.EIO: Sentence("it has gone or does not work; plug the device in again"),
 }
 
 
@@ -48,7 +49,7 @@ class PortError(PalpateError):
     """A port that cannot be used; `reason` is the message without the port's name."""
 
     def __init__(self, path: str, reason: str) -> None:
-        super().__init__(f"{path}: {reason}")
+        super().__init__("{path}: {reason}", path=path, reason=reason)
         self.reason = reason
 
 
@@ -189,8 +190,12 @@ def _exchange(path: str, port: serial.Serial, seconds: float) -> link.DeviceHell
                 case link.OtherHello(protocol):
                     raise PortError(
                         path,
-                        f"speaks version {protocol} of the link, this Palpate speaks version "
-                        f"{link.PROTOCOL}; update the older of the two",
+                        Sentence(
+                            "speaks version {protocol} of the link, this Palpate speaks version "
+                            "{own}; update the older of the two",
+                            protocol=protocol,
+                            own=link.PROTOCOL,
+                        ),
                     )
     raise PortError(path, _silence(seconds))
 
@@ -217,10 +222,11 @@ def _readings(heard: Heard) -> Iterator[tuple[float, list[int]]]:
             yield when, stamps
 
 
-def _silence(seconds: float) -> str:
-    return (
-        f"does not answer HELLO within {seconds:g} s; check that it is a haptic device "
-        "that speaks Palpate's link"
+def _silence(seconds: float) -> Sentence:
+    return Sentence(
+        "does not answer HELLO within {seconds:g} s; check that it is a haptic device that speaks "
+        "Palpate's link",
+        seconds=seconds,
     )
 
 
@@ -230,6 +236,10 @@ def _port_error(path: str, error: OSError) -> PortError:
         # pyserial's own words: a lock held by another program has the number of a read in vain.
         number = errno.EBUSY if "lock" in str(error) else None
     if number is None:
-        return PortError(path, f"cannot be used ({error}); plug the device in again")
-    unknown = f"cannot be opened ({os.strerror(number)}); plug the device in again"
+        return PortError(
+            path, Sentence("cannot be used ({error}); plug the device in again", error=error)
+        )
+    unknown = Sentence(
+        "cannot be opened ({reason}); plug the device in again", reason=os.strerror(number)
+    )
     return PortError(path, _REASONS.get(number, unknown))

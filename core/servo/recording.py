@@ -93,8 +93,9 @@ def check_recording_path(path: Path) -> None:
     """
     if path.suffix.lower() not in SUFFIXES:
         raise RecordingError(
-            f"{path}: a recording is written as CSV or npz; let the name end in "
-            f"{' or '.join(SUFFIXES)}"
+            "{path}: a recording is written as CSV or npz; let the name end in {suffixes}",
+            path=path,
+            suffixes=" or ".join(SUFFIXES),
         )
     refuse_missing_folder(path)
     refuse_unwritable(path)
@@ -112,8 +113,12 @@ def check_room(path: Path, memory_bytes: int) -> None:
     needed, free = growth * memory_bytes, shutil.disk_usage(path.parent).free
     if free < needed:
         raise RecordingError(
-            f"{path}: the recording may take {needed / 1e6:.1f} MB, and {path.parent} has room for "
-            f"{free / 1e6:.1f} MB; record for a shorter time, or choose a folder with more room"
+            "{path}: the recording may take {needed:.1f} MB, and {folder} has room for {free:.1f} "
+            "MB; record for a shorter time, or choose a folder with more room",
+            path=path,
+            needed=needed / 1e6,
+            folder=path.parent,
+            free=free / 1e6,
         )
 
 
@@ -161,7 +166,9 @@ def read_recording(path: Path) -> Recording:
         case ".npz":
             return _read_npz(path)
         case _:
-            raise RecordingError(f"{path}: a recording ends in {' or '.join(SUFFIXES)}")
+            raise RecordingError(
+                "{path}: a recording ends in {suffixes}", path=path, suffixes=" or ".join(SUFFIXES)
+            )
 
 
 def _write_csv(file: IO[bytes], samples: NDArray[np.void], states: Sequence[str]) -> None:
@@ -204,13 +211,15 @@ def _read_npz(path: Path) -> Recording:
     try:
         arrays = read_arrays(path)
     except ArchiveError as problem:
-        raise RecordingError(f"{problem}; record again") from problem
+        raise RecordingError("{problem}; record again", problem=problem) from problem
     try:
         about = json.loads(str(arrays["about"]))
         if about["format"] != FORMAT:
             raise RecordingError(
-                f"{path}: is of the format {about['format']!r}, this Palpate reads {FORMAT!r}; "
-                "update Palpate"
+                "{path}: is of the format {format}, this Palpate reads {own}; update Palpate",
+                path=path,
+                format=repr(about["format"]),
+                own=repr(FORMAT),
             )
         samples = np.zeros(len(arrays["tick"]), DTYPE)
         for name in UNITS:
@@ -219,7 +228,9 @@ def _read_npz(path: Path) -> Recording:
                 samples[name] = arrays[name]
         return Recording(samples, tuple(arrays["states"].tolist()), int(about["rate_hz"]))
     except (KeyError, ValueError, TypeError) as problem:
-        raise RecordingError(f"{path}: is no recording ({problem}); choose another file") from None
+        raise RecordingError(
+            "{path}: is no recording ({problem}); choose another file", path=path, problem=problem
+        ) from None
 
 
 def _read_csv(path: Path) -> Recording:
@@ -228,7 +239,7 @@ def _read_csv(path: Path) -> Recording:
             header = file.readline().rstrip("\n")
             if header not in (CSV_HEADER, CSV_HEADER + FINGER_COLUMN):
                 raise RecordingError(
-                    f"{path}: is no recording (another first line); choose another file"
+                    "{path}: is no recording (another first line); choose another file", path=path
                 )
             is_alone = header == CSV_HEADER
             fields = np.dtype(_CSV_FIELDS + ([] if is_alone else [("finger", "=u4")]))
@@ -239,10 +250,14 @@ def _read_csv(path: Path) -> Recording:
                 rows = np.loadtxt(lines, fields, delimiter=",", comments=None, ndmin=1)
     except OSError as problem:
         raise RecordingError(
-            f"{path}: cannot be read ({problem.strerror}); choose another file"
+            "{path}: cannot be read ({reason}); choose another file",
+            path=path,
+            reason=problem.strerror,
         ) from problem
     except ValueError as problem:
-        raise RecordingError(f"{path}: is damaged ({problem}); record again") from problem
+        raise RecordingError(
+            "{path}: is damaged ({problem}); record again", path=path, problem=problem
+        ) from problem
     samples = np.zeros(len(rows), DTYPE)
     if not is_alone:
         samples["finger"] = rows["finger"]

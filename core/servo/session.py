@@ -114,8 +114,9 @@ def native_body(body: SoftBody, *, whole: bool = False) -> Body:
         )
     except ValueError as problem:
         raise PalpateError(
-            f"servo: the body's surface cannot be touched ({problem}); bake it again, with another "
-            "edge length if that does not help"
+            "servo: the body's surface cannot be touched ({problem}); bake it again, with another "
+            "edge length if that does not help",
+            problem=problem,
         ) from problem
 
 
@@ -186,7 +187,7 @@ def servo_on(
             felt=felt,
         )
     except (ValueError, OverflowError) as problem:
-        raise PalpateError(f"servo: {problem}") from problem
+        raise PalpateError("servo: {problem}", problem=problem) from problem
 
 
 def touched_nodes(body: SoftBody, snapshot: Snapshot) -> NDArray[np.int64]:
@@ -244,4 +245,4 @@ def native_tool(body: SoftBody, surface: Body, tool: Tool, *, friction: float = 
             friction=friction,
         )
     except ValueError as problem:
-        raise PalpateError(f"tool {tool.name}: {problem}") from problem
+        raise PalpateError("tool {name}: {problem}", name=tool.name, problem=problem) from problem

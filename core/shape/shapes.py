@@ -145,5 +145,8 @@ def shape_name(choice: str) -> ShapeName:
         if name == choice:
             return name
     raise PalpateError(
-        f"shape {choice!r} is unknown; give {', '.join(SHAPES[:-1])} or {SHAPES[-1]}"
+        "shape {choice} is unknown; give {others} or {last}",
+        choice=repr(choice),
+        others=", ".join(SHAPES[:-1]),
+        last=SHAPES[-1],
     )

@@ -13,6 +13,7 @@ smaller than the mesh.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,6 +24,7 @@ from ..body.soft_body import SoftBody
 from ..contact.complementarity import solve_complementarity
 from ..contact.near_field.compliance_beneath import near_correction, point_compliance
 from ..errors import PalpateError
+from ..sentence import Sentence
 from .durometer_points import Seat, set_on
 from .place import Place
 from .scales.durometer_type import MILLIMETRE, TYPES, DurometerType
@@ -84,7 +86,7 @@ class DurometerReading:
     depth: float
     foot_depth: float
     thickness: float
-    warnings: tuple[str, ...]
+    warnings: tuple[Sentence, ...]
 
 
 def read_durometer(
@@ -110,12 +112,22 @@ def read_durometer(
         Unknown scale; a load or Young's modulus that is no positive number.
     """
     if scale not in TYPES:
-        raise PalpateError(f"Shore {scale}: there is no such durometer here; choose 00 or A")
+        raise PalpateError(
+            "Shore {scale}: there is no such durometer here; choose 00 or A", scale=scale
+        )
     kind = TYPES[scale]
     modulus = body.modulus(young_modulus)
-    for name, value, unit in (("Young's modulus", modulus, "pascal"), ("load", load, "newton")):
+    for name, value, unit in (
+        (Sentence("Young's modulus"), modulus, Sentence("pascal")),
+        (Sentence("load"), load, Sentence("newton")),
+    ):
         if value is not None and not (np.isfinite(value) and value > 0):
-            raise PalpateError(f"durometer: {name} is {value}; give a positive number of {unit}")
+            raise PalpateError(
+                "durometer: {name} is {value}; give a positive number of {unit}",
+                name=name,
+                value=value,
+                unit=unit,
+            )
     seat = set_on(body, at, kind)
     balance = balanced(seat_compliance(body, seat) / modulus, seat, kind, load)
     return DurometerReading(
@@ -127,7 +139,7 @@ def read_durometer(
         depth=balance.depth,
         foot_depth=balance.foot_depth,
         thickness=seat.thickness,
-        warnings=_warnings(body, seat, kind, balance),
+        warnings=tuple(_warnings(body, seat, kind, balance)),
     )
 
 
@@ -186,8 +198,9 @@ def balanced(
             foot = 0.5 * (above + below) if np.isfinite(below) else above + kind.travel
         found = _at_depth(compliance, seat, kind, foot, laid_on, found.pushes)
     raise PalpateError(
-        f"durometer: no depth was found at which the foot carries {load:g} N there; lay it on "
-        "without a load, or choose another place"
+        "durometer: no depth was found at which the foot carries {load:g} N there; lay it on "
+        "without a load, or choose another place",
+        load=load,
     )
 
 
@@ -229,37 +242,46 @@ def _sprung(
     return compliance + _spring_softness(kind) * np.outer(tip, tip)
 
 
-def _warnings(body: SoftBody, seat: Seat, kind: DurometerType, balance: Balance) -> tuple[str, ...]:
-    warnings = []
+def _warnings(
+    body: SoftBody, seat: Seat, kind: DurometerType, balance: Balance
+) -> Iterator[Sentence]:
     sunk = (balance.depth + balance.foot_depth) / seat.thickness
     if sunk > MOST_OF_THICKNESS:
-        warnings.append(
-            f"the indenter goes in by {100 * sunk:.0f} % of the thickness there, more than a "
-            "linear body can be believed for; try a firmer material or another place"
+        yield Sentence(
+            "the indenter goes in by {share:.0f} % of the thickness there, more than a linear "
+            "body can be believed for; try a firmer material or another place",
+            share=100 * sunk,
         )
     if seat.thickness < LEAST_THICKNESS:
-        warnings.append(
-            f"the body is {1000 * seat.thickness:.1f} mm thick there, and the standard asks for "
-            f"{1000 * LEAST_THICKNESS:.0f} mm; the reading tells part and support together"
+        yield Sentence(
+            "the body is {thickness:.1f} mm thick there, and the standard asks for {least:.0f} "
+            "mm; the reading tells part and support together",
+            thickness=1000 * seat.thickness,
+            least=1000 * LEAST_THICKNESS,
         )
     edge = _edge_length(body, seat)
     felt = np.sqrt(kind.shaft * balance.depth) > LEAST_CONTACT * seat.thickness
     if felt and edge > MOST_EDGE * seat.thickness:
-        warnings.append(
-            f"edges of {1000 * edge:.1f} mm are too long for {1000 * seat.thickness:.1f} mm of "
-            "thickness to be felt; bake with a shorter edge length"
+        yield Sentence(
+            "edges of {edge:.1f} mm are too long for {thickness:.1f} mm of thickness to be "
+            "felt; bake with a shorter edge length",
+            edge=1000 * edge,
+            thickness=1000 * seat.thickness,
         )
     if seat.overhang > MOST_OVERHANG:
-        warnings.append(
-            f"{100 * seat.overhang:.0f} % of the foot has no surface under it; choose a place "
-            "farther from the edge"
+        yield Sentence(
+            "{share:.0f} % of the foot has no surface under it; choose a place farther from "
+            "the edge",
+            share=100 * seat.overhang,
         )
     if balance.reading <= 0.0:
-        remedy = "try the scale 00" if kind.name == "A" else "read a force curve instead"
-        warnings.append(f"softer than this durometer tells; {remedy}")
+        yield (
+            Sentence("softer than this durometer tells; try the scale 00")
+            if kind.name == "A"
+            else Sentence("softer than this durometer tells; read a force curve instead")
+        )
     if seat.place.pinned(body):
-        warnings.append("the place is pinned, or next to what is; it is as firm as its support")
-    return tuple(warnings)
+        yield Sentence("the place is pinned, or next to what is; it is as firm as its support")
 
 
 def _edge_length(body: SoftBody, seat: Seat) -> float:

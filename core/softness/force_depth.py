@@ -13,6 +13,7 @@ from ..contact.tool.tool_contact import press_tool
 from ..contact.tool.tool_touch import ToolTouch
 from ..contact.tool.tools import Pose, Tool
 from ..errors import PalpateError
+from ..sentence import Sentence
 from ..shape.force_at_depth.felt_force import contact_relation
 from .parallel_rays import across
 from .place import Place, nearest_place, thickness
@@ -104,16 +105,24 @@ def force_depth_curve(
     modulus = body.modulus(young_modulus)
     place = nearest_place(body, at)
     end = usual_depth(body, at, tool) if depth is None else depth
-    for name, value in (("depth", end), ("Young's modulus", modulus)):
+    for name, value in ((Sentence("depth"), end), (Sentence("Young's modulus"), modulus)):
         if not (np.isfinite(value) and value > 0):
-            raise PalpateError(f"force curve: {name} is {value}; give a positive number")
+            raise PalpateError(
+                "force curve: {name} is {value}; give a positive number", name=name, value=value
+            )
     if not 1 <= steps <= MOST_STEPS:
-        raise PalpateError(f"force curve: {steps} steps; give a number from 1 to {MOST_STEPS}")
+        raise PalpateError(
+            "force curve: {steps} steps; give a number from 1 to {most}",
+            steps=steps,
+            most=MOST_STEPS,
+        )
     size = float(np.ptp(body.mesh.nodes, axis=0).max())
     if end > size:
         raise PalpateError(
-            f"force curve: a depth of {1000.0 * end:.4g} mm is more than the whole body of "
-            f"{1000.0 * size:.4g} mm; give less"
+            "force curve: a depth of {depth:.4g} mm is more than the whole body of {size:.4g} mm; "
+            "give less",
+            depth=1000.0 * end,
+            size=1000.0 * size,
         )
     depths = np.linspace(0.0, end, steps + 1)
     if tool is None and softenings is not None:

@@ -11,6 +11,7 @@ from ..body.soft_body import SoftBody
 from ..contact.near_field.contact_points import smooth_corner_normals
 from ..errors import PalpateError
 from ..mesh.coordinates import refuse_unusable
+from ..sentence import Sentence
 from .parallel_rays import crossings
 
 
@@ -46,9 +47,10 @@ def nearest_place(body: SoftBody, at: ArrayLike) -> Place:
     point = np.asarray(at, dtype=np.float64)
     if point.shape != (3,):
         raise PalpateError(
-            f"place: {point.tolist()} is not a point; give three finite numbers in metres"
+            "place: {point} is not a point; give three finite numbers in metres",
+            point=point.tolist(),
         )
-    refuse_unusable("place", point[None])
+    refuse_unusable(Sentence("place"), point[None])
     nearest = body.closest_points.query(point)
     triangle, alpha = int(nearest.triangle[0]), nearest.alpha[0]
     axis = -(alpha @ smooth_corner_normals(body.mesh)[triangle])

@@ -77,7 +77,10 @@ def softness_map(
     """
     modulus = body.modulus(young_modulus)
     if not (np.isfinite(pad_radius) and pad_radius >= 0):
-        raise PalpateError(f"softness map: pad radius is {pad_radius}; give zero or more metres")
+        raise PalpateError(
+            "softness map: pad radius is {pad_radius}; give zero or more metres",
+            pad_radius=pad_radius,
+        )
     normals = node_normals(body.mesh)
     blocks = np.linalg.inv(body.contact_blocks)
     if pad_radius > 0:

@@ -104,17 +104,25 @@ def young_scale_checked(young_scale: ArrayLike, tet_count: int) -> NDArray[np.fl
     given = np.asarray(young_scale)
     if given.shape != (tet_count,) or given.dtype.kind not in "fiu":
         raise PalpateError(
-            f"young_scale: an array of {given.dtype} and shape {given.shape} does not fit the "
-            f"body's tetrahedra; give one real number for each, shape ({tet_count},)"
+            "young_scale: an array of {kind} and shape {shape} does not fit the body's "
+            "tetrahedra; give one real number for each, shape ({tet_count},)",
+            kind=given.dtype,
+            shape=given.shape,
+            tet_count=tet_count,
         )
     scale = given.astype(np.float64)
     usable = (scale >= 1 / LARGEST_SCALE) & (scale <= LARGEST_SCALE)
     if not usable.all():
         first = int(np.flatnonzero(~usable)[0])
         raise PalpateError(
-            f"young_scale: {int((~usable).sum())} tetrahedra have a factor on Young's modulus that "
-            f"is not between {1 / LARGEST_SCALE:g} and {LARGEST_SCALE:g} (first: tetrahedron "
-            f"{first} with {scale[first]}); 1 leaves a place as it is"
+            "young_scale: {count} tetrahedra have a factor on Young's modulus that is not between "
+            "{least:g} and {most:g} (first: tetrahedron {first} with {factor}); 1 leaves a place "
+            "as it is",
+            count=int((~usable).sum()),
+            least=1 / LARGEST_SCALE,
+            most=LARGEST_SCALE,
+            first=first,
+            factor=scale[first],
         )
     return scale
 
@@ -129,13 +137,15 @@ def lame_parameters(young_modulus: float, poisson_ratio: float) -> tuple[float, 
     """
     if not (np.isfinite(young_modulus) and young_modulus > 0):
         raise PalpateError(
-            f"Young's modulus is {young_modulus} Pa, but must be a positive number; "
-            "soft props lie between 1e3 and 1e6 Pa"
+            "Young's modulus is {young_modulus} Pa, but must be a positive number; soft props lie "
+            "between 1e3 and 1e6 Pa",
+            young_modulus=young_modulus,
         )
     if not -1 < poisson_ratio < 0.5:
         raise PalpateError(
-            f"Poisson's ratio is {poisson_ratio}, but must lie between -1 and 0.5 (both excluded); "
-            "rubber is about 0.49, foam 0.1 to 0.3"
+            "Poisson's ratio is {poisson_ratio}, but must lie between -1 and 0.5 (both excluded); "
+            "rubber is about 0.49, foam 0.1 to 0.3",
+            poisson_ratio=poisson_ratio,
         )
     first_lame = young_modulus * poisson_ratio / ((1 + poisson_ratio) * (1 - 2 * poisson_ratio))
     return first_lame, young_modulus / (2 * (1 + poisson_ratio))

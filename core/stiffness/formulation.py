@@ -43,7 +43,10 @@ def formulation_checked(name: str) -> str:
     """
     if name not in FORMULATIONS:
         raise PalpateError(
-            f"stiffness: there is no formulation '{name}'; choose {' or '.join(FORMULATIONS)}, "
-            f"or {AUTOMATIC} for a bake"
+            "stiffness: there is no formulation '{name}'; choose {known}, or {automatic} for a "
+            "bake",
+            name=name,
+            known=" or ".join(FORMULATIONS),
+            automatic=AUTOMATIC,
         )
     return name

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from ..errors import PalpateError
 from ..mesh.tet_mesh import TetMesh
+from ..sentence import Sentence
 
 
 def pins_checked(mesh: TetMesh, fixed: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -21,17 +22,23 @@ def pins_checked(mesh: TetMesh, fixed: NDArray[np.int64]) -> NDArray[np.int64]:
     pins = np.unique(np.asarray(fixed, dtype=np.int64))
     if pins.size and (pins[0] < 0 or pins[-1] >= len(mesh.nodes)):
         raise PalpateError(
-            f"pinned nodes: {pins[0] if pins[0] < 0 else pins[-1]} is not a node of this body "
-            f"(0 to {len(mesh.nodes) - 1}); pin nodes that exist"
+            "pinned nodes: {node} is not a node of this body (0 to {last}); pin nodes that exist",
+            node=pins[0] if pins[0] < 0 else pins[-1],
+            last=len(mesh.nodes) - 1,
         )
     for piece in range(mesh.component_count):
         held = mesh.nodes[pins[mesh.node_components[pins] == piece]]
         if not _holds(held):
-            where = "the body" if mesh.component_count == 1 else f"piece {piece + 1} of the body"
+            alone, few = mesh.component_count == 1, len(held) <= 2
             raise PalpateError(
-                f"pins: {where} is pinned at {len(held)} nodes"
-                f"{' on one line' if len(held) > 2 else ''} and could move away; pin at least "
-                "three nodes that do not lie on a line in each piece"
+                "pins: {where} is pinned at {held} and could move away; pin at least three nodes "
+                "that do not lie on a line in each piece",
+                where=Sentence("the body")
+                if alone
+                else Sentence("piece {number} of the body", number=piece + 1),
+                held=Sentence("{count} nodes", count=len(held))
+                if few
+                else Sentence("{count} nodes on one line", count=len(held)),
             )
     if not np.setdiff1d(mesh.surface_nodes, pins).size:
         raise PalpateError(

@@ -77,8 +77,9 @@ def fraction_checked(fraction: float) -> float:
     """
     if not 0 <= fraction <= 1:
         raise PalpateError(
-            f"pins: the fraction is {fraction}, but must lie between 0 (only the very bottom) "
-            "and 1 (everything)"
+            "pins: the fraction is {fraction}, but must lie between 0 (only the very bottom) and "
+            "1 (everything)",
+            fraction=fraction,
         )
     return fraction
 

@@ -94,9 +94,11 @@ def _nearest(
 def _checked(region: StiffRegion, surface: Surface | None) -> tuple[NDArray[np.float64], Surface]:
     if not 1 / LARGEST_SCALE <= region.factor <= LARGEST_SCALE:
         raise PalpateError(
-            f"stiff region: the factor is {region.factor}, but must lie between "
-            f"{1 / LARGEST_SCALE:g} and {LARGEST_SCALE:g}; 1 changes nothing, and 1000 makes bone "
-            "in flesh"
+            "stiff region: the factor is {factor}, but must lie between {least:g} and {most:g}; 1 "
+            "changes nothing, and 1000 makes bone in flesh",
+            factor=region.factor,
+            least=1 / LARGEST_SCALE,
+            most=LARGEST_SCALE,
         )
     weights = np.asarray(region.weights, dtype=np.float64)
     if surface is None or weights.shape != (len(surface.vertices),):

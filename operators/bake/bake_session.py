@@ -45,7 +45,9 @@ class BakeSession:
             Out of time, or cancelled by somebody else; the session has ended.
         """
         if current() is not self:
-            raise CancelledError(f"{self.handle.name}: the bake was cancelled; nothing was changed")
+            raise CancelledError(
+                "{name}: the bake was cancelled; nothing was changed", name=self.handle.name
+            )
         try:
             self.progress = self.job.poll()
         except PalpateError:
@@ -80,7 +82,9 @@ class BakeSession:
                 thing.palpate.baked_edge_length = self.settings.edge_length
                 thing.palpate.baked_epsilon = self.settings.epsilon
             thing.palpate.bake_seconds = sum(report.seconds.values())
-            thing.palpate.bake_warnings = "\n".join(report.warnings)
+            thing.palpate.bake_warnings = "\n".join(
+                warning.as_line() for warning in report.warnings
+            )
         finally:
             self.end()
         return body, report
@@ -95,15 +99,20 @@ class BakeSession:
     def _unchanged_object(self, scene: bpy.types.Scene) -> bpy.types.Object:
         thing = self.handle.find()
         if thing is None:
-            raise PalpateError(f"{self.handle.name}: it was deleted while it was being baked")
+            raise PalpateError(
+                "{name}: it was deleted while it was being baked", name=self.handle.name
+            )
         if soft_object.refusal(thing):
-            raise PalpateError(f"bake: {soft_object.refusal(thing)}; then bake again")
+            raise PalpateError(
+                "bake: {refusal}; then bake again", refusal=soft_object.refusal(thing)
+            )
         drawn = drawn_surface.read(thing, scene)
         now = drawn.fingerprint(self.fingerprint.pins, self.fingerprint.stiffness)
         change = changed_body(self.fingerprint, now)
         if change:
             raise PalpateError(
-                f"{thing.name}: it was edited while it was being baked; press Make Soft again"
+                "{name}: it was edited while it was being baked; press Make Soft again",
+                name=thing.name,
             )
         return thing
 
@@ -131,7 +140,9 @@ def start(thing: bpy.types.Object, scene: bpy.types.Scene, *, rebuild: bool = Fa
     """
     global _current  # noqa: PLW0603  see end
     if _current is not None:
-        raise PalpateError(f"{_current.handle.name} is being baked; wait for it or cancel it")
+        raise PalpateError(
+            "{name} is being baked; wait for it or cancel it", name=_current.handle.name
+        )
     if soft_object.refusal(thing):
         raise PalpateError(soft_object.refusal(thing))
     drawn = drawn_surface.read(thing, scene)
@@ -175,7 +186,9 @@ def _rebuild_job(
     old = Fingerprint.from_text(thing.palpate.fingerprint)
     change = changed_body(old, now)
     if change:
-        raise PalpateError(f"{thing.name}: {change}; press Make Soft to bake it anew")
+        raise PalpateError(
+            "{name}: {change}; press Make Soft to bake it anew", name=thing.name, change=change
+        )
     if old.pins == now.pins:
         settings = replace(settings, pins=PinNodes(within.fixed))
     if old.stiffness == now.stiffness:

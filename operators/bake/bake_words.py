@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import re
 
-import bpy
-
 from ...core.bake.job import JobProgress
 from ..scene.quantities import duration
+from ..scene.translated import shown
 
 WAITING = "The body is ready; leave Edit Mode to receive it"
 
@@ -17,7 +16,7 @@ def how_far(progress: JobProgress) -> str:
     share = "" if progress.share is None else f"{100 * progress.share:.0f} %, "
     if progress.remaining is None:
         return f"{share}{duration(progress.seconds)}"
-    return share + _say("{time} left").format(time=duration(progress.remaining))
+    return share + shown("{time} left", time=duration(progress.remaining))
 
 
 def step(progress: JobProgress) -> str:
@@ -28,8 +27,4 @@ def step(progress: JobProgress) -> str:
 
 def _translated(part: str) -> str:
     words = part.strip()
-    return part.replace(words, _say(words)) if words else part
-
-
-def _say(text: str) -> str:
-    return str(bpy.app.translations.pgettext_iface(text))
+    return part.replace(words, shown(words)) if words else part

@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..scene.translated import shown
 from . import bake_session
 
 
@@ -13,7 +14,7 @@ class PALPATE_OT_cancel_bake(bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         if bake_session.current() is None:
-            cls.poll_message_set("No bake is running")
+            cls.poll_message_set(shown("No bake is running"))
             return False
         return True
 

@@ -7,6 +7,7 @@ import bpy
 from ...core.errors import PalpateError
 from ..object import soft_object
 from ..scene import drawn_surface
+from ..scene.translated import reported, shown
 from .bake_prediction import Prediction, pins_of, predict, settings_of, shape_size
 
 
@@ -29,7 +30,7 @@ class PALPATE_OT_fit_memory(bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         reason = soft_object.refusal(context.object)
         if reason:
-            cls.poll_message_set(reason)
+            cls.poll_message_set(shown(reason))
         return not reason
 
     def execute(self, context: bpy.types.Context) -> set[str]:
@@ -39,7 +40,7 @@ class PALPATE_OT_fit_memory(bpy.types.Operator):
             settings = settings_of(thing, pins_of(thing, drawn))
             self._change(thing, predict(shape_size(drawn), settings))
         except PalpateError as problem:
-            self.report({"ERROR"}, str(problem))
+            self.report({"ERROR"}, reported(problem))
             return {"CANCELLED"}
         return {"FINISHED"}
 
@@ -47,14 +48,16 @@ class PALPATE_OT_fit_memory(bpy.types.Operator):
         if self.by == "COMPRESSED":
             if not now.compressed_fits:
                 raise PalpateError(
-                    f"{thing.name}: compressed, too, it takes more memory than there is; use a "
-                    "larger edge length"
+                    "{name}: compressed, too, it takes more memory than there is; use a larger "
+                    "edge length",
+                    name=thing.name,
                 )
             thing.palpate.form = "COMPRESSED"
             return
         if now.edge_length is None:
             raise PalpateError(
-                f"{thing.name}: no edge length fits the memory there is; close other programs"
+                "{name}: no edge length fits the memory there is; close other programs",
+                name=thing.name,
             )
         thing.palpate.edge_length = now.edge_length
 

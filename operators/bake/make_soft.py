@@ -9,6 +9,7 @@ from ...core.bake.steps import BakeReport
 from ...core.body.soft_body import SoftBody
 from ...core.errors import CancelledError, PalpateError
 from ..object import soft_object
+from ..scene.translated import reported, shown
 from ..scene.viewport import redraw_views
 from ..session import press_session
 from . import bake_session, bake_words
@@ -30,21 +31,23 @@ class BakingOperator:
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         if bake_session.current() is not None:
-            cls.poll_message_set("A bake is running; wait for it or cancel it")
+            cls.poll_message_set(shown("A bake is running; wait for it or cancel it"))
             return False
         if press_session.current() is not None:
-            cls.poll_message_set("Finish pressing first: Enter keeps the shape, Escape restores it")
+            cls.poll_message_set(
+                shown("Finish pressing first: Enter keeps the shape, Escape restores it")
+            )
             return False
         reason = soft_object.refusal(context.object)
         if reason:
-            cls.poll_message_set(reason)
+            cls.poll_message_set(shown(reason))
         return not reason
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         try:
             body, report = bake_session.run(context.object, context.scene, rebuild=self.rebuild)
         except PalpateError as problem:
-            self.report({"ERROR"}, str(problem))
+            self.report({"ERROR"}, reported(problem))
             return {"CANCELLED"}
         self._tell(context.object.name, body, report)
         return {"FINISHED"}
@@ -55,7 +58,7 @@ class BakingOperator:
         try:
             self._session = bake_session.start(context.object, context.scene, rebuild=self.rebuild)
         except PalpateError as problem:
-            self.report({"ERROR"}, str(problem))
+            self.report({"ERROR"}, reported(problem))
             return {"CANCELLED"}
         manager = context.window_manager
         self._timer = manager.event_timer_add(1 / POLLS_PER_SECOND, window=context.window)
@@ -70,7 +73,7 @@ class BakingOperator:
         except PalpateError as problem:
             self._leave(context)
             level = "INFO" if isinstance(problem, CancelledError) else "ERROR"
-            self.report({level}, str(problem))
+            self.report({level}, reported(problem))
             return {"CANCELLED"}
         except BaseException:
             # A fault of ours must not leave a child process, a timer and a status line behind.
@@ -98,12 +101,11 @@ class BakingOperator:
 
     def _show(self, context: bpy.types.Context, *, waiting: bool = False) -> None:
         progress = self._session.progress
-        say = bpy.app.translations.pgettext_iface
         text = f"{bake_words.step(progress)}, {bake_words.how_far(progress)}"
         if waiting:
-            text = say(bake_words.WAITING)
+            text = shown(bake_words.WAITING)
         context.workspace.status_text_set(
-            f"Palpate: {self._session.handle.name}: {text}     [Esc] {say('Cancel')}"
+            f"Palpate: {self._session.handle.name}: {text}     [Esc] {shown('Cancel')}"
         )
         context.window_manager.progress_update(100 * (progress.share or 0.0))
         redraw_views()
@@ -120,10 +122,15 @@ class BakingOperator:
 
     def _tell(self, name: str, body: SoftBody, report: BakeReport) -> None:
         for warning in report.warnings:
-            self.report({"WARNING"}, warning)
+            self.report({"WARNING"}, reported(warning))
         self.report(
             {"INFO"},
-            f"{name} is soft: {len(body.mesh.nodes)} nodes, {sum(report.seconds.values()):.1f} s",
+            reported(
+                "{name} is soft: {nodes} nodes, {seconds:.1f} s",
+                name=name,
+                nodes=len(body.mesh.nodes),
+                seconds=sum(report.seconds.values()),
+            ),
         )
 
 

@@ -3,9 +3,11 @@
 import bpy
 
 from ...core.errors import PalpateError
+from ...core.sentence import Sentence
 from ..object import soft_object
 from ..pins import pin_group
 from ..scene import drawn_surface
+from ..scene.translated import reported, shown
 
 
 class PALPATE_OT_pin_below(bpy.types.Operator):
@@ -30,9 +32,9 @@ class PALPATE_OT_pin_below(bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         reason = soft_object.refusal(context.object)
         if not reason and not context.object.data.polygons:
-            reason = f"{context.object.name} has no faces"
+            reason = Sentence("{name} has no faces", name=context.object.name)
         if reason:
-            cls.poll_message_set(reason)
+            cls.poll_message_set(shown(reason))
         return not reason
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -46,10 +48,10 @@ class PALPATE_OT_pin_below(bpy.types.Operator):
                 thing, drawn_surface.read(thing, context.scene), self.fraction
             )
         except PalpateError as problem:
-            self.report({"ERROR"}, str(problem))
+            self.report({"ERROR"}, reported(problem))
             return {"CANCELLED"}
         thing.palpate.pin_group = pin_group.GROUP_NAME
-        self.report({"INFO"}, f"{count} vertices pinned")
+        self.report({"INFO"}, reported("{count} vertices pinned", count=count))
         return {"FINISHED"}
 
 

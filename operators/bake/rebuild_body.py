@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..scene.translated import shown
 from .make_soft import BakingOperator
 
 
@@ -20,7 +21,9 @@ class PALPATE_OT_rebuild_body(BakingOperator, bpy.types.Operator):
         if not super().poll(context):
             return False
         if not context.object.palpate.body_key:
-            cls.poll_message_set(f"{context.object.name} is not soft yet; press Make Soft")
+            cls.poll_message_set(
+                shown("{name} is not soft yet; press Make Soft", name=context.object.name)
+            )
             return False
         return True
 

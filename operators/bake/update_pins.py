@@ -5,8 +5,10 @@ from __future__ import annotations
 import bpy
 
 from ...core.errors import PalpateError
+from ...core.sentence import Sentence
 from ..object import pin_change, soft_object
 from ..scene import drawn_surface
+from ..scene.translated import reported, shown
 from ..session import press_session
 from . import bake_session
 
@@ -24,11 +26,11 @@ class PALPATE_OT_update_pins(bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         reason = soft_object.refusal(context.object)
         if not reason and not context.object.palpate.body_key:
-            reason = f"{context.object.name} is not soft yet; press Make Soft"
+            reason = Sentence("{name} is not soft yet; press Make Soft", name=context.object.name)
         if not reason and (bake_session.current() or press_session.current()):
             reason = "Finish baking or pressing first"
         if reason:
-            cls.poll_message_set(reason)
+            cls.poll_message_set(shown(reason))
         return not reason
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -45,9 +47,16 @@ class PALPATE_OT_update_pins(bpy.types.Operator):
             soft_object.refuse_changed(thing, soft_object.mesh_status(thing, drawn))
             body = pin_change.take_over(thing, drawn)
         except PalpateError as problem:
-            self.report({"ERROR"}, str(problem))
+            self.report({"ERROR"}, reported(problem))
             return {"CANCELLED"}
-        self.report({"INFO"}, f"{thing.name}: {len(body.fixed)} nodes are pinned, without a bake")
+        self.report(
+            {"INFO"},
+            reported(
+                "{name}: {count} nodes are pinned, without a bake",
+                name=thing.name,
+                count=len(body.fixed),
+            ),
+        )
         return {"FINISHED"}
 
 

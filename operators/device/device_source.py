@@ -88,7 +88,9 @@ def device_frame(scene: bpy.types.Scene, body: BodyFrame, home: DeviceFrame) -> 
     try:
         return frame_of_matrix(np.array(empty.matrix_world), body, chosen.device_scale)
     except PalpateError as problem:
-        raise PalpateError(f"Device Frame {empty.name}: {problem}") from problem
+        raise PalpateError(
+            "Device Frame {name}: {problem}", name=empty.name, problem=problem
+        ) from problem
 
 
 def second_frame(thing: bpy.types.Object, scene: bpy.types.Scene, body: BodyFrame) -> DeviceFrame:
@@ -108,7 +110,9 @@ def second_frame(thing: bpy.types.Object, scene: bpy.types.Scene, body: BodyFram
     try:
         return frame_of_matrix(np.array(empty.matrix_world), body, scale)
     except PalpateError as problem:
-        raise PalpateError(f"Device Frame {empty.name}: {problem}") from problem
+        raise PalpateError(
+            "Device Frame {name}: {problem}", name=empty.name, problem=problem
+        ) from problem
 
 
 def is_planar(scene: bpy.types.Scene) -> bool:

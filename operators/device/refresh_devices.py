@@ -4,6 +4,7 @@ import bpy
 
 from ...core.errors import PalpateError
 from ...core.servo.ports import list_ports
+from ..scene.translated import reported
 
 _ports: list[tuple[str, str]] = []
 
@@ -22,10 +23,10 @@ class PALPATE_OT_refresh_devices(bpy.types.Operator):
         try:
             found = list_ports()
         except PalpateError as problem:
-            self.report({"ERROR"}, str(problem))
+            self.report({"ERROR"}, reported(problem))
             return {"CANCELLED"}
         _ports[:] = [(port.path, port.description) for port in found]
-        self.report({"INFO"}, f"{len(_ports)} serial ports found")
+        self.report({"INFO"}, reported("{count} serial ports found", count=len(_ports)))
         return {"FINISHED"}
 
 

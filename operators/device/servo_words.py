@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
+from ...core.sentence import Sentence
 from ...core.servo.session import FingerSnapshot, Snapshot
 
 
@@ -115,7 +116,7 @@ LIMITABLE = {Signal.READY, Signal.FORCE}
 
 def fault_text(fault: str) -> str:
     """A fault as a sentence with its remedy."""
-    return FAULTS.get(fault, f"The device reports a fault: {fault}")
+    return FAULTS.get(fault, Sentence("The device reports a fault: {fault}", fault=fault))
 
 
 def standing(snapshot: Snapshot | FingerSnapshot) -> Standing:

@@ -109,11 +109,13 @@ def load(thing: bpy.types.Object) -> SoftBody:
     """
     baked = thing.palpate
     if not baked.body_key:
-        raise PalpateError(f"{thing.name}: it is not soft yet; press Make Soft first")
+        raise PalpateError("{name}: it is not soft yet; press Make Soft first", name=thing.name)
     path = locate(thing)
     if path is None:
         raise BodyFileError(
-            f"{thing.name}: its body file '{baked.body_file}' is missing; press Rebuild Body"
+            "{name}: its body file '{file}' is missing; press Rebuild Body",
+            name=thing.name,
+            file=baked.body_file,
         )
     return load_file(path, baked.body_key)
 
@@ -136,7 +138,8 @@ def load_file(path: Path, key: str) -> SoftBody:
 def _with_key(body: SoftBody, key: str, path: Path) -> SoftBody:
     if body.key != key:
         raise BodyFileError(
-            f"{path}: it is the body of something else than its name says; press Rebuild Body"
+            "{path}: it is the body of something else than its name says; press Rebuild Body",
+            path=path,
         )
     return body
 
@@ -161,7 +164,8 @@ def restore(thing: bpy.types.Object) -> SoftBody:
     ratio = round(baked.baked_poisson_ratio, 6)
     if within.key(ratio, baked.baked_formulation) != baked.body_key:
         raise PalpateError(
-            f"{thing.name}: the tetrahedra in this file are not those of its body; press Make Soft"
+            "{name}: the tetrahedra in this file are not those of its body; press Make Soft",
+            name=thing.name,
         )
     settings = BakeSettings(
         ratio,
@@ -205,7 +209,8 @@ def embedded(thing: bpy.types.Object) -> EmbeddedBody:
     baked = thing.palpate
     if any(name not in baked for name in EMBEDDED):
         raise PalpateError(
-            f"{thing.name}: there are no tetrahedra in this file to rebuild from; press Make Soft"
+            "{name}: there are no tetrahedra in this file to rebuild from; press Make Soft",
+            name=thing.name,
         )
     nodes, tets, fixed = (np.array(baked[name]) for name in EMBEDDED)
     scale = np.array(baked[EMBEDDED_SCALE]) if EMBEDDED_SCALE in baked else None

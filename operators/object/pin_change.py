@@ -73,7 +73,7 @@ def look(thing: bpy.types.Object, drawn: DrawnSurface) -> PinChange:
         within = _placed(drawn, ObjectHandle.of(thing), thing.palpate.body_key)
         new = _nodes(thing, drawn, within)
     except PalpateError as problem:
-        return PinChange(PinFit.UNUSABLE, reason=str(problem))
+        return PinChange(PinFit.UNUSABLE, reason=problem.sentence)
     old, surface = within.body.fixed, within.body.mesh.surface_nodes
     change = pins_change(within.body.mesh, old, new)
     if change == "same":
@@ -103,11 +103,11 @@ def take_over(thing: bpy.types.Object, drawn: DrawnSurface) -> SoftBody:
     """
     change = look(thing, drawn)
     if change.fit is PinFit.SAME:
-        raise PalpateError(f"{thing.name}: it is pinned like this already; press Press")
+        raise PalpateError("{name}: it is pinned like this already; press Press", name=thing.name)
     if change.fit is PinFit.UNUSABLE:
         raise PalpateError(change.reason)
     if change.fit in {PinFit.LESS, PinFit.OTHER}:
-        raise PalpateError(f"{thing.name}: these pins need a bake; press Rebuild Body")
+        raise PalpateError("{name}: these pins need a bake; press Rebuild Body", name=thing.name)
     within = _placed(drawn, ObjectHandle.of(thing), thing.palpate.body_key)
     new = _nodes(thing, drawn, within)
     path = body_store.locate_key(_key(thing, within.body, new))

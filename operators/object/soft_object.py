@@ -9,6 +9,7 @@ from enum import Enum
 import bpy
 
 from ...core.errors import PalpateError
+from ...core.sentence import Sentence
 from ...core.stiffness.formulation import formulation_for
 from ..pins import pin_group, stiff_region
 from ..scene import drawn_surface, fingerprint
@@ -46,20 +47,26 @@ def refusal(thing: bpy.types.Object | None) -> str:
     if thing is None:
         return "Select a mesh object"
     if thing.type != "MESH":
-        return f"{thing.name} is not a mesh; select a mesh object"
+        return Sentence("{name} is not a mesh; select a mesh object", name=thing.name)
     if thing.library or thing.override_library or thing.data.library or thing.data.override_library:
-        return f"{thing.name} is linked from another file; make it local (Object > Relations)"
+        return Sentence(
+            "{name} is linked from another file; make it local (Object > Relations)",
+            name=thing.name,
+        )
     others = thing.data.users - thing.data.use_fake_user - 1
     if others > 0:
-        return (
-            f"{thing.name} shares its mesh with {others} more; "
-            "Object > Relations > Make Single User"
+        return Sentence(
+            "{name} shares its mesh with {others} more; Object > Relations > Make Single User",
+            name=thing.name,
+            others=others,
         )
     if thing.mode != "OBJECT":
-        return f"Leave {thing.mode.replace('_', ' ').title()} Mode first"
+        return Sentence("Leave {mode} Mode first", mode=thing.mode.replace("_", " ").title())
     keys = thing.data.shape_keys
     if keys and not keys.use_relative:
-        return f"{thing.name} has absolute shape keys; tick Relative in its shape keys"
+        return Sentence(
+            "{name} has absolute shape keys; tick Relative in its shape keys", name=thing.name
+        )
     return ""
 
 
@@ -111,7 +118,11 @@ def refuse_changed(thing: bpy.types.Object, status: BodyStatus) -> None:
         What changed, with the remedy.
     """
     if status.fit is Fit.CHANGED:
-        raise PalpateError(f"{thing.name}: {status.text}; press Make Soft to bake it again")
+        raise PalpateError(
+            "{name}: {reason}; press Make Soft to bake it again",
+            name=thing.name,
+            reason=status.text,
+        )
 
 
 def formulation_now(thing: bpy.types.Object) -> str:

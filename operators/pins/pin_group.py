@@ -45,14 +45,18 @@ def pins(thing: bpy.types.Object, surface: DrawnSurface) -> PinWeights:
     group = thing.vertex_groups.get(settings.pin_group)
     if group is None:
         raise PalpateError(
-            f"{thing.name}: it has no vertex group '{settings.pin_group}' to pin; choose one under "
-            "Pins, or pin below a height"
+            "{name}: it has no vertex group '{group}' to pin; choose one under Pins, or pin below "
+            "a height",
+            name=thing.name,
+            group=settings.pin_group,
         )
     weights = group_weights(thing, group)
     if not (weights >= 0.5).any():
         raise PalpateError(
-            f"{thing.name}: no vertex has a weight of 0.5 or more in the group '{group.name}'; "
-            "assign the vertices that shall not move"
+            "{name}: no vertex has a weight of 0.5 or more in the group '{group}'; assign the "
+            "vertices that shall not move",
+            name=thing.name,
+            group=group.name,
         )
     return PinWeights(weights)
 

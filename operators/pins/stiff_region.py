@@ -34,13 +34,17 @@ def stiff_region(thing: bpy.types.Object) -> StiffRegion | None:
     group = thing.vertex_groups.get(settings.stiff_group)
     if group is None:
         raise PalpateError(
-            f"{thing.name}: it has no vertex group '{settings.stiff_group}' to make stiff; choose "
-            "one under Stiff Region, or clear the field"
+            "{name}: it has no vertex group '{group}' to make stiff; choose one under Stiff "
+            "Region, or clear the field",
+            name=thing.name,
+            group=settings.stiff_group,
         )
     weights = group_weights(thing, group)
     if not weights.any():
         raise PalpateError(
-            f"{thing.name}: no vertex has a weight in the group '{group.name}', so nothing would "
-            "be stiff; assign the vertices of the stiff part, or clear the field"
+            "{name}: no vertex has a weight in the group '{group}', so nothing would be stiff; "
+            "assign the vertices of the stiff part, or clear the field",
+            name=thing.name,
+            group=group.name,
         )
     return StiffRegion(weights, settings.stiff_factor)

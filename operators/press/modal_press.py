@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ...core.errors import PalpateError
+from ...core.sentence import Sentence
 from ..object import soft_object
 from ..scene import viewport
+from ..scene.translated import reported, shown
 from ..scene.viewport import Viewport, redraw_views
 from ..session import press_session
 from ..session.pointer_hand import PointerHand
@@ -67,7 +69,10 @@ class ModalPress:
         thing = context.object
         if not thing.visible_get():
             self.report(
-                {"ERROR"}, f"{thing.name} is hidden; show it (Object > Show/Hide) to press it"
+                {"ERROR"},
+                reported(
+                    "{name} is hidden; show it (Object > Show/Hide) to press it", name=thing.name
+                ),
             )
             return {"CANCELLED"}
         # A missing body file is computed again first, which may take a few seconds.
@@ -79,7 +84,7 @@ class ModalPress:
                 self._hand.place_on_both_sides(context.space_data.region_3d)
         except PalpateError as problem:
             press_session.give_way("")
-            self.report({"ERROR"}, str(problem))
+            self.report({"ERROR"}, reported(problem))
             redraw_views()
             return {"CANCELLED"}
         finally:
@@ -97,7 +102,7 @@ class ModalPress:
         except PalpateError as problem:
             press_session.give_way("")
             self._leave(context)
-            self.report({"ERROR"}, str(problem))
+            self.report({"ERROR"}, reported(problem))
             return {"CANCELLED"}
         except BaseException:
             # A fault of ours must not leave a servo running and a live key in the mesh.
@@ -105,7 +110,7 @@ class ModalPress:
             self._leave(context)
             raise
         for said in self._session.said:
-            self.report({"WARNING" if said.warning else "INFO"}, said.text)
+            self.report({"WARNING" if said.warning else "INFO"}, reported(said.text))
         self._session.said.clear()
         if self._session.state.phase is not Phase.ENDED:
             self._show(context)
@@ -113,7 +118,7 @@ class ModalPress:
         self._leave(context)
         if not self._session.kept_name:
             return {"CANCELLED"}
-        self.report({"INFO"}, f"Kept as shape key '{self._session.kept_name}'")
+        self.report({"INFO"}, reported("Kept as shape key '{key}'", key=self._session.kept_name))
         return {"FINISHED"}
 
     def cancel(self, context: bpy.types.Context) -> None:
@@ -163,7 +168,7 @@ class ModalPress:
             words = STATUS | PINCH_STATUS
         elif state.source is Source.EMPTY:
             words = STATUS | EMPTY_STATUS
-        status = f"Palpate: {words.get(state.phase, '')}"
+        status = f"Palpate: {shown(words.get(state.phase, ''))}"
         if status != self._status:
             self._status = status
             context.workspace.status_text_set(status)
@@ -184,7 +189,7 @@ def refusal(context: bpy.types.Context) -> str:
     if not reason and press_session.current() is not None:
         reason = "A press is going on; Enter keeps the shape, Escape restores it"
     if not reason and not thing.palpate.body_key:
-        reason = f"{thing.name} is not soft yet; press Make Soft first"
+        reason = Sentence("{name} is not soft yet; press Make Soft first", name=thing.name)
     return reason
 
 

@@ -3,6 +3,7 @@
 import bpy
 
 from ...core.errors import PalpateError
+from ..scene.translated import reported, shown
 from ..session.press_events import Source
 from . import modal_press
 from .modal_press import ModalPress
@@ -43,14 +44,17 @@ class PALPATE_OT_pinch(ModalPress, bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         reason = modal_press.refusal(context)
         if reason:
-            cls.poll_message_set(reason)
+            cls.poll_message_set(shown(reason))
         return not reason
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         for name in ("by_1", "by_2"):
             if not any(getattr(self, name)):
                 self.report(
-                    {"ERROR"}, f"pinch: '{name}' is zero; say how far to press, in world units"
+                    {"ERROR"},
+                    reported(
+                        "pinch: '{name}' is zero; say how far to press, in world units", name=name
+                    ),
                 )
                 return {"CANCELLED"}
         try:
@@ -62,7 +66,7 @@ class PALPATE_OT_pinch(ModalPress, bpy.types.Operator):
                 keep=self.keep,
             )
         except PalpateError as problem:
-            self.report({"ERROR"}, str(problem))
+            self.report({"ERROR"}, reported(problem))
             return {"CANCELLED"}
         report(self, pressed)
         return {"FINISHED"}
@@ -71,7 +75,9 @@ class PALPATE_OT_pinch(ModalPress, bpy.types.Operator):
         if bpy.app.background:
             return self.execute(context)
         if context.area is None or context.area.type != "VIEW_3D":
-            self.report({"ERROR"}, "pinch: start it in a 3D view, where its handles are drawn")
+            self.report(
+                {"ERROR"}, reported("pinch: start it in a 3D view, where its handles are drawn")
+            )
             return {"CANCELLED"}
         return self.start(context, Source.POINTER, pinch=True)
 

@@ -3,6 +3,7 @@
 import bpy
 
 from ...core.errors import PalpateError
+from ..scene.translated import reported, shown
 from ..session.press_events import Source
 from . import modal_press
 from .modal_press import ModalPress
@@ -43,17 +44,19 @@ class PALPATE_OT_press(ModalPress, bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         reason = modal_press.refusal(context)
         if reason:
-            cls.poll_message_set(reason)
+            cls.poll_message_set(shown(reason))
         return not reason
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         if not any(self.by):
-            self.report({"ERROR"}, "press: 'by' is zero; say how far to press, in world units")
+            self.report(
+                {"ERROR"}, reported("press: 'by' is zero; say how far to press, in world units")
+            )
             return {"CANCELLED"}
         try:
             pressed = press_once(context.object, context.scene, self.at, self.by, keep=self.keep)
         except PalpateError as problem:
-            self.report({"ERROR"}, str(problem))
+            self.report({"ERROR"}, reported(problem))
             return {"CANCELLED"}
         report(self, pressed)
         return {"FINISHED"}
@@ -68,9 +71,13 @@ class PALPATE_OT_press(ModalPress, bpy.types.Operator):
 def report(operator: bpy.types.Operator, pressed: Pressed) -> None:
     """Say what a press without a window measured."""
     for remark in pressed.remarks:
-        operator.report({"WARNING"}, remark)
+        operator.report({"WARNING"}, reported(remark))
     figures = [
-        f"{sum(part**2 for part in finger.force) ** 0.5:.3g} N at {1000 * finger.depth:.3g} mm"
+        reported(
+            "{force:.3g} N at {depth:.3g} mm",
+            force=sum(part**2 for part in finger.force) ** 0.5,
+            depth=1000 * finger.depth,
+        )
         for finger in pressed.fingers
     ]
     operator.report({"INFO"}, ", ".join(figures))

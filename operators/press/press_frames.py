@@ -18,6 +18,7 @@ from ...core.contact.tool.tools import Pose
 from ...core.errors import PalpateError
 from ..object.drawn_body import DrawnBody, open_body
 from ..scene.body_frame import BodyFrame
+from ..scene.translated import reported, shown
 from ..shape.drawn_shape import CompleteShape, complete_shape
 from ..tool import tool_turn
 from ..tool.finger_tip import chosen_tip
@@ -70,7 +71,7 @@ class PALPATE_OT_press_frames(bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         reason = modal_press.refusal(context)
         if reason:
-            cls.poll_message_set(reason)
+            cls.poll_message_set(shown(reason))
         return not reason
 
     def execute(self, context: bpy.types.Context) -> set[str]:
@@ -81,30 +82,37 @@ class PALPATE_OT_press_frames(bpy.types.Operator):
             with _frame_kept(scene), complete_shape(thing, drawn) as shape:
                 pressed = list(press_frames(thing, scene, drawn, frames, shape))
         except PalpateError as problem:
-            self.report({"ERROR"}, str(problem))
+            self.report({"ERROR"}, reported(problem))
             return {"CANCELLED"}
         if shape.notice:
-            self.report({"WARNING"}, shape.notice)
+            self.report({"WARNING"}, reported(shape.notice))
         touched = [frame for frame in pressed if frame.displacements is not None]
         if not touched:
             self.report(
                 {"ERROR"},
-                "The tool touches nothing in these frames; move its keyframes to the surface",
+                reported(
+                    "The tool touches nothing in these frames; move its keyframes to the surface"
+                ),
             )
             return {"CANCELLED"}
         if self.current_only:
             if pressed[-1].displacements is None:
-                self.report({"ERROR"}, "The tool touches nothing in this frame; choose another")
+                self.report(
+                    {"ERROR"}, reported("The tool touches nothing in this frame; choose another")
+                )
                 return {"CANCELLED"}
             tools = several_fingers.pressing_tools(pressed[-1].fingers)
             name = keep_shape(thing, drawn, pressed[-1].displacements, tools)
-            self.report({"INFO"}, f"Kept as shape key '{name}'")
+            self.report({"INFO"}, reported("Kept as shape key '{key}'", key=name))
             return {"FINISHED"}
         count = keep_frames(thing, drawn, pressed)
         largest = max(
             float(np.linalg.norm(finger.force)) for frame in touched for finger in frame.fingers
         )
-        self.report({"INFO"}, f"{count} shape keys, up to {largest:.3g} N")
+        self.report(
+            {"INFO"},
+            reported("{count} shape keys, up to {largest:.3g} N", count=count, largest=largest),
+        )
         return {"FINISHED"}
 
     def _frames(self, scene: bpy.types.Scene) -> list[int]:
@@ -115,11 +123,15 @@ class PALPATE_OT_press_frames(bpy.types.Operator):
         frames = list(range(first, last + 1, self.step))
         if not frames:
             raise PalpateError(
-                f"frames: {first} to {last} is none; let the last frame follow the first"
+                "frames: {first} to {last} is none; let the last frame follow the first",
+                first=first,
+                last=last,
             )
         if len(frames) > MOST_FRAMES:
             raise PalpateError(
-                f"frames: {len(frames)} shape keys are more than {MOST_FRAMES}; take a larger step"
+                "frames: {count} shape keys are more than {most}; take a larger step",
+                count=len(frames),
+                most=MOST_FRAMES,
             )
         return frames
 
@@ -182,7 +194,7 @@ def leading_objects(scene: bpy.types.Scene) -> tuple[bpy.types.Object, ...]:
         raise PalpateError("finger: the second finger has no Empty; pick one under Second Finger")
     if chosen.second_empty == first:
         raise PalpateError(
-            f"finger: both fingers are led by {first.name}; choose another Empty for one"
+            "finger: both fingers are led by {name}; choose another Empty for one", name=first.name
         )
     return (first, chosen.second_empty)
 

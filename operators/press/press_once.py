@@ -178,5 +178,9 @@ def _press_tools(
 def _point(value: ArrayLike, name: str) -> Array:
     point = np.asarray(value, dtype=np.float64)
     if point.shape != (3,) or not np.isfinite(point).all():
-        raise PalpateError(f"{name}: {point.tolist()} is not a point; give three finite numbers")
+        raise PalpateError(
+            "{name}: {point} is not a point; give three finite numbers",
+            name=name,
+            point=point.tolist(),
+        )
     return point

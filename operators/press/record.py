@@ -3,6 +3,7 @@
 import bpy
 
 from ...core.errors import PalpateError
+from ..scene.translated import reported, shown
 from ..scene.viewport import redraw_views
 from ..session import press_session
 
@@ -19,7 +20,7 @@ class PALPATE_OT_record(bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         pressing = press_session.current() is not None
         if not pressing:
-            cls.poll_message_set("Start to press first, or choose Record from Start")
+            cls.poll_message_set(shown("Start to press first, or choose Record from Start"))
         return pressing
 
     def execute(self, context: bpy.types.Context) -> set[str]:
@@ -33,7 +34,7 @@ class PALPATE_OT_record(bpy.types.Operator):
             else:
                 session.start_recording()
         except PalpateError as problem:
-            self.report({"ERROR"}, str(problem))
+            self.report({"ERROR"}, reported(problem))
             return {"CANCELLED"}
         redraw_views()
         return {"FINISHED"}

@@ -8,6 +8,7 @@ from ...core.errors import PalpateError
 from ...core.servo.recording import SUFFIXES
 from ..record import recording, recording_writer
 from ..record.recording import Kept, Recorder
+from ..scene.translated import reported, shown
 from ..session import press_session
 
 FORMAT_ITEMS = [
@@ -53,7 +54,7 @@ class PALPATE_OT_save_recording(bpy.types.Operator):
         elif recording_writer.going_on():
             reason = "A recording is being written; wait until it is done"
         if reason:
-            cls.poll_message_set(reason)
+            cls.poll_message_set(shown(reason))
         return not reason
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -75,7 +76,9 @@ class PALPATE_OT_save_recording(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         kept = recorded()
         if kept is None:
-            self.report({"ERROR"}, "Nothing is recorded yet; press Record while you press")
+            self.report(
+                {"ERROR"}, reported("Nothing is recorded yet; press Record while you press")
+            )
             return {"CANCELLED"}
         try:
             path = Path(bpy.path.abspath(self.filepath))
@@ -84,10 +87,18 @@ class PALPATE_OT_save_recording(bpy.types.Operator):
                 return {"FINISHED"}
             recording.write(path, kept)
         except PalpateError as problem:
-            self.report({"ERROR"}, str(problem))
+            self.report({"ERROR"}, reported(problem))
             return {"CANCELLED"}
         seconds = len(kept.samples) / kept.rate_hz
-        self.report({"INFO"}, f"{len(kept.samples):,} ticks ({seconds:.1f} s) saved to {path}")
+        self.report(
+            {"INFO"},
+            reported(
+                "{ticks:,} ticks ({seconds:.1f} s) saved to {path}",
+                ticks=len(kept.samples),
+                seconds=seconds,
+                path=path,
+            ),
+        )
         return {"FINISHED"}
 
 

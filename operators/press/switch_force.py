@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..scene.translated import shown
 from ..scene.viewport import redraw_views
 from ..session import press_session
 from ..session.press_events import Source
@@ -19,7 +20,7 @@ class PALPATE_OT_switch_force(bpy.types.Operator):
         session = press_session.current()
         by_device = session is not None and session.state.source is Source.DEVICE
         if not by_device:
-            cls.poll_message_set("No device presses now")
+            cls.poll_message_set(shown("No device presses now"))
         return by_device
 
     def execute(self, context: bpy.types.Context) -> set[str]:

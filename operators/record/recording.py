@@ -57,7 +57,8 @@ class Recorder:
             self.servo.start_recording(longest)
         except (ValueError, RuntimeError, MemoryError) as problem:
             raise PalpateError(
-                f"recording: {problem}; set a shorter Longest Recording, or stop the one going on"
+                "recording: {problem}; set a shorter Longest Recording, or stop the one going on",
+                problem=problem,
             ) from problem
         self.wanted, self.full, self.seconds, self.lost = True, False, 0.0, 0
         self._longest, self._begun_at, self._stopped = longest, now, False

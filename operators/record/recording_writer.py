@@ -11,6 +11,7 @@ from pathlib import Path
 
 import bpy
 
+from ...core.errors import PalpateError
 from ...core.servo.recording import check_recording_path
 from ..scene.viewport import redraw_views
 from . import recording
@@ -35,6 +36,8 @@ class Writing:
     def problem(self) -> str:
         """Why there is no file; empty if there is one, or may be soon."""
         problem = None if self.going_on else self.outcome.exception()
+        if isinstance(problem, PalpateError):
+            return problem.sentence
         return "" if problem is None else str(problem) or type(problem).__name__
 
 

@@ -49,12 +49,15 @@ def leads_of(scene: bpy.types.Scene, source: Source) -> tuple[FingerLead, ...]:
     second = _lead(lead, chosen.second_empty, "Second Finger")
     if first.empty is not None and first.empty == second.empty:
         raise PalpateError(
-            f"finger: both fingers are led by {first.empty.name}; choose another Empty for one"
+            "finger: both fingers are led by {name}; choose another Empty for one",
+            name=first.empty.name,
         )
     if chosen.second in {"SERIAL", "HAPLY"}:
         port = second_port(scene)
         if chosen.source in {"SERIAL", "HAPLY"} and port == device_source.port_of(scene):
-            raise PalpateError(f"device: both fingers use {port}; choose another port for one")
+            raise PalpateError(
+                "device: both fingers use {port}; choose another port for one", port=port
+            )
     return (first, second)
 
 
@@ -77,7 +80,8 @@ def _lead(lead: Lead, empty: bpy.types.Object | None, panel_name: str) -> Finger
         return FingerLead(lead)
     if empty is None:
         raise PalpateError(
-            f"finger: no Empty is chosen; pick one below {panel_name} (Led By), or add one "
-            "(Add > Empty)"
+            "finger: no Empty is chosen; pick one below {panel_name} (Led By), or add one (Add > "
+            "Empty)",
+            panel_name=panel_name,
         )
     return FingerLead(lead, ObjectHandle.of(empty))

@@ -227,8 +227,12 @@ def servo_errors() -> Iterator[None]:
         yield
     except OSError as problem:
         # It names its remedy itself.
-        raise PalpateError(f"device: {problem}") from problem
+        raise PalpateError("device: {problem}", problem=problem) from problem
     except (ValueError, OverflowError) as problem:
-        raise PalpateError(f"servo: {problem}; set it back and press again") from problem
+        raise PalpateError(
+            "servo: {problem}; set it back and press again", problem=problem
+        ) from problem
     except RuntimeError as problem:
-        raise PalpateError(f"servo: {problem}; leave with Escape and press again") from problem
+        raise PalpateError(
+            "servo: {problem}; leave with Escape and press again", problem=problem
+        ) from problem

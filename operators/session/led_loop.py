@@ -8,6 +8,7 @@ import bpy
 import numpy as np
 
 from ...core.errors import PalpateError
+from ...core.sentence import Sentence
 from ..object.drawn_body import DrawnBody
 from ..record import recording_writer
 from ..tool import tool_turn
@@ -73,16 +74,18 @@ def lead_fingers(
 
     Returns what hinders, a sentence each.
     """
-    troubles = []
+    troubles: list[str] = []
     for finger, lead in enumerate(leads):
         empty = lead.empty.find() if lead.empty is not None else None
         if lead.empty is not None and empty is None:
-            troubles.append(f"{lead.empty.name} was deleted; its finger stays where it was")
+            troubles.append(
+                Sentence("{name} was deleted; its finger stays where it was", name=lead.empty.name)
+            )
         turn = None
         try:
             turn = _turn_of(lead, empty, loop, scene, drawn)
         except PalpateError as problem:
-            troubles.append(str(problem))
+            troubles.append(problem.sentence)
         loop.lead(finger, None if empty is None else _place_of(empty, drawn), turn)
     return troubles
 

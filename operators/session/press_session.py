@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.errors import PalpateError
+from ...core.sentence import Sentence
 from ...core.servo.session import Snapshot
 from ..device import device_source, servo_words
 from ..device.device_source import DeviceFrame
@@ -183,7 +184,7 @@ class PressSession:
     def _start_loop(self, source: Source) -> None:
         thing = self.handle.find()
         if thing is None:
-            raise PalpateError(f"{self.handle.name} is gone; choose another object")
+            raise PalpateError("{name} is gone; choose another object", name=self.handle.name)
         frame = None
         if source is Source.DEVICE:
             frame = device_source.device_frame(self.scene, self.drawn.frame, self.home)
@@ -201,15 +202,15 @@ class PressSession:
         thing = self.handle.find()
         reason = ""
         if thing is None:
-            reason = f"{self.handle.name} was deleted; pressing has ended"
+            reason = "{name} was deleted; pressing has ended"
         elif thing.mode != "OBJECT":
-            reason = f"{thing.name} is being edited; pressing has ended"
+            reason = "{name} is being edited; pressing has ended"
         elif 3 * len(thing.data.vertices) != len(self.drawn.rest):
-            reason = f"{thing.name} was edited; press Make Soft to bake it again"
+            reason = "{name} was edited; press Make Soft to bake it again"
         elif not self._follow_frame(thing):
-            reason = f"{thing.name} was scaled; press Make Soft to bake it again"
+            reason = "{name} was scaled; press Make Soft to bake it again"
         if reason:
-            self.post(GiveWay(reason))
+            self.post(GiveWay(Sentence(reason, name=(thing or self.handle).name)))
             return None
         return thing
 
@@ -230,7 +231,7 @@ class PressSession:
             try:
                 frame = device_source.device_frame(scene, self.drawn.frame, self.home)
             except PalpateError as problem:
-                self._troubles.append(str(problem))
+                self._troubles.append(problem.sentence)
         return LiveSettings.of(thing, scene, frame)
 
     def _tell_troubles(self, loop: ForceLoop) -> None:
@@ -275,7 +276,8 @@ def begin(
     """
     global _current  # noqa: PLW0603  see PressSession.post
     if _current is not None:
-        raise PalpateError(f"{_current.handle.name} is being pressed; end that first (Escape)")
+        busy = _current.handle.name
+        raise PalpateError("{name} is being pressed; end that first (Escape)", name=busy)
     leads = BOTH_POINTER if pinch else leads_of(scene, source)
     tip = chosen_tip(scene, thing)
     drawn = open_body(thing, scene)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.contact.tool.tool_surface import surface_for
+from ...core.sentence import Sentence
 from ...core.servo.session import Snapshot
 from ...core.shape.meeting import FingerLoad
 from ..object.drawn_body import DrawnBody
@@ -95,8 +96,7 @@ class SeenBody:
         if self.shape.ready == 1.0:
             return []
         share = f"{100 * self.shape.ready:.0f}"
-        text = bpy.app.translations.pgettext_iface(KEPT_EARLY).format(share=share)
-        return [Say(text, warning=True)]
+        return [Say(Sentence(KEPT_EARLY, share=share), warning=True)]
 
     def _write(
         self, thing: bpy.types.Object, displacements: Array, snapshot: Snapshot | None

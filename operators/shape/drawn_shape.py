@@ -80,7 +80,7 @@ class DrawnShape:
         try:
             met = self._meeting.step(fingers, young_modulus)
         except PalpateError as problem:
-            self.problem = str(problem)
+            self.problem = problem.sentence
             self._end()
             self._take(LinearShape(self.body))
             return self._meeting.step(fingers, young_modulus)
@@ -115,7 +115,7 @@ class DrawnShape:
         try:
             self._take(making.result())
         except PalpateError as problem:
-            self.problem = str(problem)
+            self.problem = problem.sentence
 
     def _take(self, made: Shape) -> None:
         self._shape, self._meeting = made, Meeting(self.body, made)

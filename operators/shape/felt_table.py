@@ -70,7 +70,7 @@ class FeltTable:
             try:
                 self._table.around(nodes)
             except PalpateError as problem:
-                self.problem = str(problem)
+                self.problem = problem.sentence
             self._asked = asked
 
     def close(self) -> None:

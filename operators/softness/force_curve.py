@@ -5,6 +5,7 @@ import bpy
 from ...core.contact.tool.tools import sphere
 from ...core.softness.force_depth import MILLIMETRES, force_depth_curve
 from ..object.drawn_body import DrawnBody
+from ..scene.translated import reported
 from .softness_operator import SoftnessOperator
 from .softness_place import at_property, pick_property, place_in_body
 
@@ -42,7 +43,14 @@ class PALPATE_OT_force_curve(SoftnessOperator, bpy.types.Operator):
         softness.curve_force = curve.forces[-1]
         softness.curve_stiffness = curve.secant / MILLIMETRES
         softness.curve_text = _write(f"{thing.name} force curve.csv", curve.as_csv())
-        self.report({"INFO"}, f"{softness.curve_stiffness:.3g} N/mm; {softness.curve_text}")
+        self.report(
+            {"INFO"},
+            reported(
+                "{stiffness:.3g} N/mm; {text}",
+                stiffness=softness.curve_stiffness,
+                text=softness.curve_text,
+            ),
+        )
 
 
 def _write(name: str, table: str) -> str:

@@ -4,6 +4,7 @@ import bpy
 
 from ...core.softness.durometer import read_durometer
 from ..object.drawn_body import DrawnBody
+from ..scene.translated import reported
 from .softness_operator import SoftnessOperator
 from .softness_place import at_property, pick_property, place_in_body
 
@@ -31,11 +32,11 @@ class PALPATE_OT_read_durometer(SoftnessOperator, bpy.types.Operator):
         softness.read_scale = reading.shore.scale
         softness.read_value = reading.shore.value
         softness.read_block = reading.block.value
-        softness.read_warnings = "\n".join(reading.warnings)
+        softness.read_warnings = "\n".join(warning.as_line() for warning in reading.warnings)
         for warning in reading.warnings:
-            self.report({"WARNING"}, warning)
+            self.report({"WARNING"}, reported(warning))
         if not reading.warnings:
-            self.report({"INFO"}, f"Shore {reading.shore}")
+            self.report({"INFO"}, reported("Shore {shore}", shore=reading.shore))
 
 
 classes = (PALPATE_OT_read_durometer,)

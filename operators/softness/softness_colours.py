@@ -4,11 +4,13 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.sentence import Sentence
 from ...core.softness.force_depth import MILLIMETRES
 from ...core.softness.ramp import ramp
 from ...core.softness.softness_map import SoftnessMap, softness_map
 from ..object import soft_object
 from ..object.drawn_body import DrawnBody
+from ..scene.translated import reported, shown
 from .softness_operator import Place, SoftnessOperator
 
 ATTRIBUTE = "Palpate Softness"
@@ -36,7 +38,7 @@ class PALPATE_OT_map_softness(SoftnessOperator, bpy.types.Operator):
             softness.shown_before = shown
         _write(thing.data, ramp(_at_vertices(drawn, found)))
         softness.map_low, softness.map_high = (end / MILLIMETRES for end in found.span)
-        self.report({"INFO"}, "Viewport Shading > Color > Attribute shows it")
+        self.report({"INFO"}, reported("Viewport Shading > Color > Attribute shows it"))
 
 
 class PALPATE_OT_remove_softness_map(bpy.types.Operator):
@@ -49,9 +51,9 @@ class PALPATE_OT_remove_softness_map(bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         reason = soft_object.refusal(context.object)
         if not reason and ATTRIBUTE not in context.object.data.color_attributes:
-            reason = f"{context.object.name} has no softness map"
+            reason = Sentence("{name} has no softness map", name=context.object.name)
         if reason:
-            cls.poll_message_set(reason)
+            cls.poll_message_set(shown(reason))
         return not reason
 
     def execute(self, context: bpy.types.Context) -> set[str]:

@@ -10,6 +10,7 @@ import bpy
 from ...core.errors import PalpateError
 from ..object.drawn_body import DrawnBody, open_body
 from ..scene import ray, viewport
+from ..scene.translated import reported, shown
 from .softness_place import refusal
 
 if TYPE_CHECKING:
@@ -41,7 +42,7 @@ class SoftnessOperator(_Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         reason = refusal(context)
         if reason:
-            cls.poll_message_set(reason)
+            cls.poll_message_set(shown(reason))
         return not reason
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -50,10 +51,12 @@ class SoftnessOperator(_Operator):
         try:
             self._drawn = open_body(context.object, context.scene)
         except PalpateError as problem:
-            self.report({"ERROR"}, str(problem))
+            self.report({"ERROR"}, reported(problem))
             return {"CANCELLED"}
         context.window.cursor_modal_set("EYEDROPPER")
-        context.workspace.status_text_set("Click the place on the object; right click to leave")
+        context.workspace.status_text_set(
+            shown("Click the place on the object; right click to leave")
+        )
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
@@ -67,7 +70,10 @@ class SoftnessOperator(_Operator):
         here = viewport.under_pointer(context.window, event.mouse_x, event.mouse_y)
         place = None if here is None else _met(self._drawn, here)
         if place is None:
-            self.report({"WARNING"}, f"{context.object.name} is not there; nothing was measured")
+            self.report(
+                {"WARNING"},
+                reported("{name} is not there; nothing was measured", name=context.object.name),
+            )
             return {"CANCELLED"}
         self.properties.at = place
         return self.execute(context)
@@ -76,7 +82,7 @@ class SoftnessOperator(_Operator):
         try:
             self.measure(context, open_body(context.object, context.scene))
         except PalpateError as problem:
-            self.report({"ERROR"}, str(problem))
+            self.report({"ERROR"}, reported(problem))
             return {"CANCELLED"}
         return {"FINISHED"}
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.errors import PalpateError
+from ...core.sentence import Sentence
 from ..bake import bake_session
 from ..object import soft_object
 from ..object.drawn_body import DrawnBody
@@ -19,7 +20,7 @@ def refusal(context: bpy.types.Context) -> str:
     """Why the active object cannot be asked now; empty if it can."""
     reason = soft_object.refusal(context.object)
     if not reason and not context.object.palpate.body_key:
-        reason = f"{context.object.name} is not soft yet; press Make Soft first"
+        reason = Sentence("{name} is not soft yet; press Make Soft first", name=context.object.name)
     if not reason and (bake_session.current() or press_session.current()):
         reason = "Finish baking or pressing first"
     return reason
@@ -50,8 +51,9 @@ def _middle_of_selected(drawn: DrawnBody, thing: bpy.types.Object) -> NDArray[np
     thing.data.vertices.foreach_get("select", selected)
     if not selected.any():
         raise PalpateError(
-            f"{thing.name} has no selected vertices; select some in Edit Mode and leave it, or "
-            "measure at the 3D cursor"
+            "{name} has no selected vertices; select some in Edit Mode and leave it, or measure "
+            "at the 3D cursor",
+            name=thing.name,
         )
     middle: NDArray[np.float64] = drawn.rest_places[selected].mean(axis=0)
     return middle

@@ -52,7 +52,8 @@ def chosen_tip(scene: bpy.types.Scene, pressed: bpy.types.Object) -> FingerTip:
         case "MESH":
             if chosen.tip_object == pressed:
                 raise PalpateError(
-                    f"tool: {pressed.name} cannot press itself; choose another mesh as the tool"
+                    "tool: {name} cannot press itself; choose another mesh as the tool",
+                    name=pressed.name,
                 )
             return _of_object(chosen.tip_object, scene)
     return FingerTip()

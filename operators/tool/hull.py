@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.errors import PalpateError
+from ...core.sentence import Sentence
 from ..scene.drawn_surface import frame_of
 
 Array = NDArray[np.float64]
@@ -44,25 +45,36 @@ def hull_of(thing: bpy.types.Object, scene: bpy.types.Scene) -> Hull:
         An object that is not a mesh, has no volume, or is flattened by its transform.
     """
     if thing.type != "MESH":
-        raise PalpateError(f"tool: {thing.name} is not a mesh; choose a mesh object as the tool")
+        raise PalpateError(
+            "tool: {name} is not a mesh; choose a mesh object as the tool", name=thing.name
+        )
     try:
         frame = frame_of(thing, scene)
     except PalpateError as problem:
-        raise PalpateError(f"tool {thing.name}: {problem}") from problem
+        raise PalpateError("tool {name}: {problem}", name=thing.name, problem=problem) from problem
     local, hollow = _blenders_hull(thing)
     corners = frame.body_from_local(local)
     if len(corners) < 4 or _thickness(corners) <= FLAT * float(np.ptp(corners, axis=0).max()):
         raise PalpateError(
-            f"tool: {thing.name} has no volume; give it at least four vertices that are not in a "
-            "plane, or choose Plate"
+            "tool: {name} has no volume; give it at least four vertices that are not in a plane, "
+            "or choose Plate",
+            name=thing.name,
         )
     few = _most_spread(corners)
-    said = []
-    if hollow:
-        said.append("it is not convex, so its convex hull presses")
-    if len(few) < len(corners):
-        said.append(f"its hull was simplified from {len(corners)} to {len(few)} corners")
-    return Hull(few, f"{thing.name}: {'; '.join(said)}" if said else "")
+    return Hull(few, _remark(thing.name, len(corners), len(few), hollow=hollow))
+
+
+def _remark(name: str, corners: int, left: int, *, hollow: bool) -> str:
+    """What was done to a mesh so that it can press; empty if nothing was."""
+    convex = Sentence("it is not convex, so its convex hull presses")
+    fewer = Sentence(
+        "its hull was simplified from {corners} to {left} corners", corners=corners, left=left
+    )
+    if hollow and left < corners:
+        return Sentence("{name}: {first}; {second}", name=name, first=convex, second=fewer)
+    if hollow or left < corners:
+        return Sentence("{name}: {problem}", name=name, problem=convex if hollow else fewer)
+    return ""
 
 
 def _blenders_hull(thing: bpy.types.Object) -> tuple[Array, bool]:

@@ -58,7 +58,7 @@ def as_object(thing: bpy.types.Object, scene: bpy.types.Scene, body: BodyFrame) 
     try:
         turned = BodyFrame.of_matrix(np.array(thing.matrix_world), metres_per_unit(scene))
     except PalpateError as problem:
-        raise PalpateError(f"{thing.name}: {problem}") from problem
+        raise PalpateError("{name}: {problem}", name=thing.name, problem=problem) from problem
     rotation: Array = body.rotation.T @ turned.rotation
     return rotation
 

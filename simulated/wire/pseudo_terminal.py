@@ -131,7 +131,7 @@ class PseudoTerminal:
 def _point(link: Path, target: str) -> None:
     """Make `link` lead to `target` in one step, so that nobody ever finds half of it."""
     if link.exists() and not link.is_symlink():
-        raise PalpateError(f"{link}: something else is there already; give another path")
+        raise PalpateError("{link}: something else is there already; give another path", link=link)
     try:
         with tempfile.TemporaryDirectory(dir=link.parent) as folder:
             fresh = Path(folder) / link.name
@@ -139,6 +139,8 @@ def _point(link: Path, target: str) -> None:
             fresh.replace(link)
     except OSError as error:
         raise PalpateError(
-            f"{link}: the link to the port cannot be made ({error.strerror}); "
-            "give a path in a folder you can write to"
+            "{link}: the link to the port cannot be made ({reason}); give a path in a folder you "
+            "can write to",
+            link=link,
+            reason=error.strerror,
         ) from error

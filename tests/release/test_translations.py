@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import json
 from string import Formatter
 
@@ -10,6 +11,11 @@ import translations
 
 LANGUAGES = translations.languages()
 CONTEXTS = {None, "Operator", "Palpate"}
+
+
+def calls(path):
+    nodes = ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+    return [node for node in nodes if isinstance(node, ast.Call) and node.args]
 
 
 @pytest.fixture(scope="module", params=LANGUAGES)
@@ -29,8 +35,31 @@ text = f"Never {label} found"
 raise PalpateError("a file is missing")
 STEP_TEXTS = {"start": "starting"}
 '''
-    assert set(translations.texts(source, marked=False)) == {"Make Soft", "starting"}
-    assert set(translations.texts(source, marked=True)) == {"starting"}
+    marked = {"a file is missing", "starting"}
+    assert set(translations.texts(source, marked=False)) == {"Make Soft", *marked}
+    assert set(translations.texts(source, marked=True)) == marked
+
+
+def test_what_is_filled_into_a_text_is_given_by_name():
+    """An f-string is English for ever."""
+    found = [
+        f"{path.name}, line {call.lineno}"
+        for path, _ in translations.shown_sources()
+        for call in calls(path)
+        if translations.is_mark(call) and isinstance(call.args[0], ast.JoinedStr)
+    ]
+    assert not found
+
+
+def test_reports_and_tooltips_are_in_the_users_language():
+    english = [
+        f"{path.name}, line {call.lineno}"
+        for path, marked in translations.shown_sources()
+        for call in calls(path)
+        if not marked and ast.unparse(call.func).endswith((".report", ".poll_message_set"))
+        if not ast.unparse(call.args[-1]).startswith(("reported(", "shown(", "', '.join("))
+    ]
+    assert not english
 
 
 def test_there_are_hundreds_of_texts():

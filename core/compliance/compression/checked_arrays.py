@@ -98,4 +98,4 @@ def _refuse_wrong_numbers(parts: dict[str, NDArray[Any]]) -> None:
 
 
 def _damaged(reason: str) -> PalpateError:
-    return PalpateError(f"compressed compliance: {reason}; bake the body again")
+    return PalpateError("compressed compliance: {reason}; bake the body again", reason=reason)

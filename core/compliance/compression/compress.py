@@ -79,8 +79,11 @@ def compress(
     """
     if not SMALLEST_TOLERANCE <= tolerance <= LARGEST_TOLERANCE:
         raise PalpateError(
-            f"tolerance: {tolerance} is not between {SMALLEST_TOLERANCE:g} and "
-            f"{LARGEST_TOLERANCE:g}; 0.001 keeps every column to a tenth of a percent"
+            "tolerance: {tolerance} is not between {least:g} and {most:g}; 0.001 keeps every "
+            "column to a tenth of a percent",
+            tolerance=tolerance,
+            least=SMALLEST_TOLERANCE,
+            most=LARGEST_TOLERANCE,
         )
     clusters = cluster_nodes(np.asarray(positions, dtype=np.float64))
     first, second = (share * tolerance for share in CUT_SHARES)

@@ -96,15 +96,19 @@ def contact_points(body: SoftBody, spacing: float) -> ContactPoints:
     """
     if not (np.isfinite(spacing) and spacing > 0):
         raise PalpateError(
-            f"contact points: a spacing of {spacing} m leaves nothing to choose; give a positive "
-            "length, for a fingertip about a third of its radius"
+            "contact points: a spacing of {spacing} m leaves nothing to choose; give a positive "
+            "length, for a fingertip about a third of its radius",
+            spacing=spacing,
         )
     mesh = body.mesh
     expected = int(POINTS_PER_SPACING_SQUARED * surface_area(mesh) / spacing**2)
     if expected > MOST_ON_BODY:
         raise PalpateError(
-            f"contact points: {1000 * spacing:.3g} mm apart the body would have about {expected} "
-            f"of them, more than {MOST_ON_BODY}; take a larger tool"
+            "contact points: {millimetres:.3g} mm apart the body would have about {expected} of "
+            "them, more than {most}; take a larger tool",
+            millimetres=1000 * spacing,
+            expected=expected,
+            most=MOST_ON_BODY,
         )
     corner_normals = smooth_corner_normals(mesh)
     everything = _join(_nodes(mesh), _on_edges(mesh, spacing), _inside(mesh, spacing))

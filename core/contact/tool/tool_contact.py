@@ -101,7 +101,9 @@ def set_down(
     """A tool that appears at a pose. Inside the body it will feel nothing until it was outside."""
     modulus = body.modulus(young_modulus)
     if not (np.isfinite(friction) and friction >= 0.0):
-        raise PalpateError(f"friction coefficient is {friction}; give zero or more")
+        raise PalpateError(
+            "friction coefficient is {friction}; give zero or more", friction=friction
+        )
     placed: tuple[ContactPoints, NearCorrection | None]
     placed = surface_and_correction(body, tool) if surface is None else (surface, correction)
     none, vectors = np.empty(0), np.empty((0, 3))
@@ -136,7 +138,8 @@ def continued(
     """The touch to go on from, its forces at the modulus asked for."""
     if start.body is not body or start.tool is not tool:
         raise PalpateError(
-            f"tool {tool.name}: the touch to start from is of another body or tool; leave it out"
+            "tool {name}: the touch to start from is of another body or tool; leave it out",
+            name=tool.name,
         )
     modulus = body.modulus(young_modulus)
     ratio = modulus / start.young_modulus

@@ -34,7 +34,9 @@ def stride(tool: Tool, start: Pose, goal: Pose) -> tuple[Pose, bool]:
 def too_far(tool: Tool) -> PalpateError:
     """What is wrong with a pose that is too many strides away."""
     return PalpateError(
-        f"tool {tool.name}: the pose is more than {MOST_STRIDES} strides away; begin nearer"
+        "tool {name}: the pose is more than {most} strides away; begin nearer",
+        name=tool.name,
+        most=MOST_STRIDES,
     )
 
 
@@ -71,5 +73,6 @@ def way_out(state: ToolTouch, pose: Pose) -> Pose:
         if is_outside(state, Pose(away, pose.rotation)):
             return Pose(away, pose.rotation)
     raise PalpateError(
-        f"tool {state.tool.name}: there is no way out of the body from where it is; begin outside"
+        "tool {name}: there is no way out of the body from where it is; begin outside",
+        name=state.tool.name,
     )

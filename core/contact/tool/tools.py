@@ -19,6 +19,7 @@ from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
 from ...errors import PalpateError
 from ...mesh.closest_point import closest_area_coordinates
 from ...mesh.coordinates import refuse_unusable
+from ...sentence import Sentence
 
 # Distances to a hull of more corners take too long in the servo's tick.
 MOST_CORE_POINTS = 64
@@ -62,9 +63,10 @@ class Pose:
         turn = np.eye(3) if rotation is None else np.array(rotation, dtype=np.float64)
         if place.shape != (3,):
             raise PalpateError(
-                f"tool's pose: position has shape {place.shape}, expected (3,); give x, y, z"
+                "tool's pose: position has shape {shape}, expected (3,); give x, y, z",
+                shape=place.shape,
             )
-        refuse_unusable("tool's pose", place[None])
+        refuse_unusable(Sentence("tool's pose"), place[None])
         if (
             turn.shape != (3, 3)
             or not np.allclose(turn @ turn.T, np.eye(3), atol=1e-6)
@@ -108,16 +110,21 @@ class Tool:
         core = np.array(self.core, dtype=np.float64)
         if core.ndim != 2 or core.shape[1] != 3 or not len(core):
             raise PalpateError(
-                f"tool {self.name}: core points have shape {core.shape}, expected (k, 3) with "
-                "k > 0; give one row of x, y, z in metres per point"
+                "tool {name}: core points have shape {shape}, expected (k, 3) with k > 0; give "
+                "one row of x, y, z in metres per point",
+                name=self.name,
+                shape=core.shape,
             )
-        refuse_unusable(f"tool {self.name}", core)
+        refuse_unusable(Sentence("tool {name}", name=self.name), core)
         if len(core) > MOST_CORE_POINTS:
             raise PalpateError(
-                f"tool {self.name}: {len(core)} core points are more than the {MOST_CORE_POINTS} "
-                "the servo can follow; give fewer, or use convex(), which simplifies"
+                "tool {name}: {count} core points are more than the {most} the servo can follow; "
+                "give fewer, or use convex(), which simplifies",
+                name=self.name,
+                count=len(core),
+                most=MOST_CORE_POINTS,
             )
-        _refuse_no_length(f"tool {self.name}", "radius", self.radius)
+        _refuse_no_length(self.name, Sentence("radius"), self.radius)
         core.setflags(write=False)
         object.__setattr__(self, "core", core)
 
@@ -240,7 +247,7 @@ def sphere(radius: float, name: str = "sphere") -> Tool:
 
 def rod(radius: float, length: float, name: str = "rod") -> Tool:
     """A round-ended rod (capsule) along x, its axis ``length`` metres long without the ends."""
-    _refuse_no_length(f"tool {name}", "length", length)
+    _refuse_no_length(name, Sentence("length"), length)
     return Tool(name, np.array([[-0.5, 0.0, 0.0], [0.5, 0.0, 0.0]]) * length, radius)
 
 
@@ -262,16 +269,21 @@ def plate(
     PalpateError
         Lengths that are not positive, or a rounding too large for them.
     """
-    _refuse_no_length(f"tool {name}", "width", width)
-    _refuse_no_length(f"tool {name}", "depth", depth)
+    _refuse_no_length(name, Sentence("width"), width)
+    _refuse_no_length(name, Sentence("depth"), depth)
     edge = min(width, depth) / 20 if rounding is None else rounding
     high = min(width, depth) / 2 if thickness is None else thickness
-    _refuse_no_length(f"tool {name}", "rounding", edge)
-    _refuse_no_length(f"tool {name}", "thickness", high)
+    _refuse_no_length(name, Sentence("rounding"), edge)
+    _refuse_no_length(name, Sentence("thickness"), high)
     if 2 * edge >= min(width, depth, high):
         raise PalpateError(
-            f"tool {name}: a rounding of {edge:g} m leaves nothing of a plate of {width:g} by "
-            f"{depth:g} by {high:g} m; give less than half the smallest"
+            "tool {name}: a rounding of {edge:g} m leaves nothing of a plate of {width:g} by "
+            "{depth:g} by {high:g} m; give less than half the smallest",
+            name=name,
+            edge=edge,
+            width=width,
+            depth=depth,
+            high=high,
         )
     x, y = width / 2 - edge, depth / 2 - edge
     core = [(a, b, c) for a in (-x, x) for b in (-y, y) for c in (edge, high - edge)]
@@ -293,17 +305,25 @@ def convex(vertices: ArrayLike, rounding: float = 0.0, name: str = "convex mesh"
     given = np.asarray(vertices, dtype=np.float64)
     if given.ndim != 2 or given.shape[1] != 3 or len(given) < 4:
         raise PalpateError(
-            f"tool {name}: vertices have shape {given.shape}, expected (v, 3) with v >= 4; choose "
-            "a mesh with volume"
+            "tool {name}: vertices have shape {shape}, expected (v, 3) with v >= 4; choose a mesh "
+            "with volume",
+            name=name,
+            shape=given.shape,
         )
-    refuse_unusable(f"tool {name}", given)
+    refuse_unusable(Sentence("tool {name}", name=name), given)
     if _span(given)[0] < 3:
         raise PalpateError(
-            f"tool {name}: its {len(given)} vertices lie in one plane, so it has no inside; give "
-            "it some thickness, or choose the plate"
+            "tool {name}: its {count} vertices lie in one plane, so it has no inside; give it "
+            "some thickness, or choose the plate",
+            name=name,
+            count=len(given),
         )
     if not rounding >= 0.0:
-        raise PalpateError(f"tool {name}: rounding is {rounding}; give zero or more metres")
+        raise PalpateError(
+            "tool {name}: rounding is {rounding}; give zero or more metres",
+            name=name,
+            rounding=rounding,
+        )
     outer = given[ConvexHull(given).vertices]
     planes = ConvexHull(outer).equations
     middle = outer.mean(axis=0)
@@ -311,16 +331,21 @@ def convex(vertices: ArrayLike, rounding: float = 0.0, name: str = "convex mesh"
     edge = max(rounding, SHARPEST_ROUNDING * room)
     if edge >= 0.9 * room:
         raise PalpateError(
-            f"tool {name}: a rounding of {edge:g} m leaves nothing of a hull of which {room:g} m "
-            f"lie about its middle; give less than {0.9 * room:g} m"
+            "tool {name}: a rounding of {edge:g} m leaves nothing of a hull of which {room:g} m "
+            "lie about its middle; give less than {most:g} m",
+            name=name,
+            edge=edge,
+            room=room,
+            most=0.9 * room,
         )
     within = planes + np.array([0.0, 0.0, 0.0, edge])
     try:
         inset = HalfspaceIntersection(within, middle).intersections
     except QhullError as error:
         raise PalpateError(
-            f"tool {name}: its hull cannot be rounded ({str(error).splitlines()[0]}); simplify "
-            "the mesh"
+            "tool {name}: its hull cannot be rounded ({reason}); simplify the mesh",
+            name=name,
+            reason=str(error).splitlines()[0],
         ) from error
     corners = inset[ConvexHull(inset).vertices]
     return Tool(name, _outstanding(corners, MOST_CORE_POINTS), edge)
@@ -349,6 +374,11 @@ def _span(points: NDArray[np.float64]) -> tuple[int, NDArray[np.float64]]:
     return (dimension if lengths.max() > 0.0 else 0), axes.T
 
 
-def _refuse_no_length(what: str, which: str, value: float) -> None:
+def _refuse_no_length(name: str, which: Sentence, value: float) -> None:
     if not (np.isfinite(value) and value > 0.0):
-        raise PalpateError(f"{what}: {which} is {value}; give a positive number of metres")
+        raise PalpateError(
+            "tool {name}: {which} is {value}; give a positive number of metres",
+            name=name,
+            which=which,
+            value=value,
+        )

@@ -62,7 +62,11 @@ def felt_name(choice: str) -> FeltName:
     for name in FELT_CHOICES:
         if name == choice:
             return name
-    raise PalpateError(f"felt force {choice!r} is unknown; give {' or '.join(FELT_CHOICES)}")
+    raise PalpateError(
+        "felt force {choice} is unknown; give {known}",
+        choice=repr(choice),
+        known=" or ".join(FELT_CHOICES),
+    )
 
 
 @dataclass(frozen=True, eq=False)

@@ -174,7 +174,8 @@ class SofteningTable:
             raise problem
         if problem is not None:
             raise PalpateError(
-                f"felt force: softenings cannot be computed ({problem!r}); choose the linear one"
+                "felt force: softenings cannot be computed ({problem}); choose the linear one",
+                problem=repr(problem),
             ) from problem
 
     def _compute(self, local: NDArray[np.int64]) -> None:
@@ -198,7 +199,7 @@ class SofteningTable:
         try:
             arrays = read_table(self._path, KIND, self.body.key)
         except TableFileError as problem:
-            self.notice = str(problem)
+            self.notice = problem.sentence
             return
         # Their checksum is right, so they are what was written.
         new = arrays["known"] & ~self._known

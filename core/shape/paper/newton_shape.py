@@ -105,7 +105,9 @@ class NewtonTable:
         stored = read_table(path, KIND, self.body.key)
         nodes, largest = stored["nodes"], stored["largest"]
         if float(stored["wanted"]) != self.wanted:
-            raise TableFileError(f"{path}: made for another F0; its table is computed anew")
+            raise TableFileError(
+                "{path}: made for another F0; its table is computed anew", path=path
+            )
         self.positive.update(zip(nodes.tolist(), stored["positive"], strict=True))
         self.negative.update(zip(nodes.tolist(), stored["negative"], strict=True))
         self.largest[nodes], self.is_filled[nodes] = largest, True
@@ -229,7 +231,7 @@ class TableShape:
                 self.table.save(self._path)
                 self._kept = filled
             except UnwritableError as problem:
-                self._notice = str(problem)
+                self._notice = problem.sentence
 
     def _take_over(self, path: Path) -> None:
         if not path.exists():
@@ -237,7 +239,7 @@ class TableShape:
         try:
             self.table.load(path)
         except TableFileError as problem:
-            self._notice = str(problem)
+            self._notice = problem.sentence
 
     def _on_free_surface(
         self, nodes: NDArray[np.int64], nodal_forces: NDArray[np.float64]

@@ -135,7 +135,7 @@ class SeriesShape:
         numbers = np.asarray(nodes, dtype=np.int64).reshape(-1)
         self._touch(numbers)
         if (problem := self._filling.problem) is not None:
-            raise PalpateError(f"shape series: {problem}") from problem
+            raise PalpateError("shape series: {problem}", problem=problem) from problem
         if self._by_load and (solid := self._solid) is not None:
             modulus = self._body.modulus(young_modulus)
             forces = np.asarray(nodal_forces, dtype=np.float64).reshape(-1, 3) / modulus
@@ -194,7 +194,7 @@ class SeriesShape:
             try:
                 return SeriesTable.load(self._body, self._path)
             except TableFileError as problem:
-                self._notice = str(problem)
+                self._notice = problem.sentence
         return SeriesTable.empty(self._body)
 
     def _filled_in_file(self, path: Path) -> int:
@@ -254,4 +254,4 @@ class SeriesShape:
                 self._table.save(self._path)
             self._kept = filled
         except UnwritableError as problem:
-            self._notice = str(problem)
+            self._notice = problem.sentence

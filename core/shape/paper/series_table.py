@@ -204,7 +204,9 @@ class SeriesTable:
             return cls._of_arrays(body, stored)
         except (KeyError, ValueError, IndexError) as problem:
             raise TableFileError(
-                f"{path}: its parts contradict each other ({problem!r}); its table is computed anew"
+                "{path}: its parts contradict each other ({problem}); its table is computed anew",
+                path=path,
+                problem=repr(problem),
             ) from problem
 
     @classmethod

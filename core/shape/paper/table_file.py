@@ -65,21 +65,28 @@ def read_table(path: Path, kind: str, key: str) -> dict[str, NDArray[Any]]:
     try:
         stored = read_arrays(path)
     except ArchiveError as problem:
-        raise TableFileError(f"{problem}; its table is computed anew") from problem
+        raise TableFileError("{problem}; its table is computed anew", problem=problem) from problem
     told = {name: str(stored[name]) for name in HEAD if name in stored}
     if told.get("format") != FORMAT:
-        raise TableFileError(f"{path}: no table of Palpate's; its table is computed anew")
+        raise TableFileError("{path}: no table of Palpate's; its table is computed anew", path=path)
     if told.get("version") != str(VERSION) or told.get("kind") != kind:
         raise TableFileError(
-            f"{path}: holds {told.get('kind')} in version {told.get('version')}, not {kind} in "
-            f"version {VERSION}; its table is computed anew"
+            "{path}: holds {held} in version {held_version}, not {kind} in version {version}; its "
+            "table is computed anew",
+            path=path,
+            held=told.get("kind"),
+            held_version=told.get("version"),
+            kind=kind,
+            version=VERSION,
         )
     if told.get("key") != key:
-        raise TableFileError(f"{path}: belongs to another body; its table is computed anew")
+        raise TableFileError(
+            "{path}: belongs to another body; its table is computed anew", path=path
+        )
     arrays = {name: array for name, array in stored.items() if name not in HEAD}
     if told.get("checksum") != _checksum(kind, key, arrays):
         raise TableFileError(
-            f"{path}: damaged (its checksum does not match); its table is computed anew"
+            "{path}: damaged (its checksum does not match); its table is computed anew", path=path
         )
     return arrays
 

@@ -61,9 +61,10 @@ class NoEquilibrium(PalpateError):  # noqa: N818 - it is a result of mechanics, 
 
     def __init__(self, held: float, displacements: NDArray[np.float64]) -> None:
         super().__init__(
-            f"large deformation: the body gives way at {held:.1%} of the load (St. "
+            "large deformation: the body gives way at {held:.1%} of the load (St. "
             "Venant-Kirchhoff solids collapse under strong compression); use less force or a "
-            "stiffer body"
+            "stiffer body",
+            held=held,
         )
         self.held = held
         self.displacements = displacements

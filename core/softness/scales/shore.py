@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from scipy.optimize import brentq
 
 from ...errors import PalpateError
+from ...sentence import Sentence
 from .relations import RELATIONS, RUBBER_POISSON_RATIO, USUAL, Relation
 
 SCALES = tuple(sorted(USUAL))
@@ -47,7 +48,8 @@ class Shore:
             value, scale = last.groups()
         else:
             raise PalpateError(
-                f"'{text}' is not a Shore value of the scales 00 or A; write it as 00-30 or A20"
+                "'{text}' is not a Shore value of the scales 00 or A; write it as 00-30 or A20",
+                text=text,
             )
         return cls("A" if scale == "A" else "00", float(value))
 
@@ -61,11 +63,18 @@ def relation_for(scale: str, name: str | None = None) -> Relation:
         An unknown scale or relation, or a relation of another scale.
     """
     if scale not in USUAL:
-        raise PalpateError(f"Shore {scale}: there is no such scale here; choose 00 or A")
+        raise PalpateError(
+            "Shore {scale}: there is no such scale here; choose 00 or A", scale=scale
+        )
     relation = RELATIONS.get(USUAL[scale] if name is None else name)
     if relation is None or relation.scale != scale:
         known = ", ".join(known for known in RELATIONS if RELATIONS[known].scale == scale)
-        raise PalpateError(f"relation '{name}': not one of Shore {scale}; choose from {known}")
+        raise PalpateError(
+            "relation '{name}': not one of Shore {scale}; choose from {known}",
+            name=name,
+            scale=scale,
+            known=known,
+        )
     return relation
 
 
@@ -85,8 +94,12 @@ def young_from_shore(
     chosen = relation_for(shore.scale, relation)
     if not chosen.lowest <= shore.value <= chosen.highest:
         raise PalpateError(
-            f"Shore {shore}: {chosen.source}'s relation holds from {chosen.lowest:g} to "
-            f"{chosen.highest:g}; {_neighbour(shore, chosen)}"
+            "Shore {shore}: {source}'s relation holds from {lowest:g} to {highest:g}; {remedy}",
+            shore=shore,
+            source=chosen.source,
+            lowest=chosen.lowest,
+            highest=chosen.highest,
+            remedy=_neighbour(shore, chosen),
         )
     return chosen.rubber_modulus(shore.value) * _against_rubber(poisson_ratio)
 
@@ -107,16 +120,23 @@ def shore_from_young(
     """
     if not (math.isfinite(young_modulus) and young_modulus > 0.0):
         raise PalpateError(
-            f"Young's modulus {young_modulus:g} Pa: nothing has it; give a positive number"
+            "Young's modulus {young_modulus:g} Pa: nothing has it; give a positive number",
+            young_modulus=young_modulus,
         )
     chosen = relation_for(scale, relation)
     softest, firmest = young_range(scale, poisson_ratio, relation)
     if not (1.0 - SLACK) * softest <= young_modulus <= (1.0 + SLACK) * firmest:
         low, high = Shore(scale, chosen.lowest), Shore(scale, chosen.highest)
         raise PalpateError(
-            f"Young's modulus {young_modulus:g} Pa: the scale Shore {scale} is used from {low} to "
-            f"{high}, which is {softest:.3g} to {firmest:.3g} Pa; "
-            f"{_other_scale(scale, young_modulus < softest)}"
+            "Young's modulus {young_modulus:g} Pa: the scale Shore {scale} is used from {low} to "
+            "{high}, which is {softest:.3g} to {firmest:.3g} Pa; {remedy}",
+            young_modulus=young_modulus,
+            scale=scale,
+            low=low,
+            high=high,
+            softest=softest,
+            firmest=firmest,
+            remedy=_other_scale(scale, young_modulus < softest),
         )
     rubber = young_modulus / _against_rubber(poisson_ratio)
     # Within the slack at the ends there is no change of sign to be found.
@@ -153,20 +173,23 @@ def _against_rubber(poisson_ratio: float) -> float:
     """
     if not -1.0 < poisson_ratio <= 0.5:
         raise PalpateError(
-            f"Poisson's ratio {poisson_ratio:g}: no stable material has it; give one above -1 and "
-            "up to 0.5"
+            "Poisson's ratio {poisson_ratio:g}: no stable material has it; give one above -1 and "
+            "up to 0.5",
+            poisson_ratio=poisson_ratio,
         )
     return (1.0 - poisson_ratio**2) / (1.0 - RUBBER_POISSON_RATIO**2)
 
 
-def _neighbour(shore: Shore, chosen: Relation) -> str:
-    if shore.value < chosen.lowest:
-        softer = "use the scale 00, or " if shore.scale == "A" else ""
-    else:
-        softer = "use the scale A, or " if shore.scale == "00" else ""
-    return f"{softer}give Young's modulus itself"
+def _neighbour(shore: Shore, chosen: Relation) -> Sentence:
+    if shore.scale == "A" and shore.value < chosen.lowest:
+        return Sentence("use the scale 00, or give Young's modulus itself")
+    if shore.scale == "00" and shore.value >= chosen.lowest:
+        return Sentence("use the scale A, or give Young's modulus itself")
+    return Sentence("give Young's modulus itself")
 
 
-def _other_scale(scale: str, too_soft: bool) -> str:
+def _other_scale(scale: str, too_soft: bool) -> Sentence:
     other = "00" if too_soft else "A"
-    return f"{f'try the scale {other}, or ' if other != scale else ''}keep to Young's modulus"
+    if other == scale:
+        return Sentence("keep to Young's modulus")
+    return Sentence("try the scale {scale}, or keep to Young's modulus", scale=other)
