@@ -1,1 +1,1 @@
-"""The bake: settings, prediction, the job and its child process."""
+"""Bake: settings, prediction, the job and its child process."""

@@ -1,6 +1,6 @@
-"""Run one bake in a process of its own, so that it can be stopped at any moment.
+"""Child process of one bake, which can be stopped at any moment.
 
-Started by ``run_module.py``. What needs numpy is imported only after the parent's path is known.
+Started by ``run_module.py``. Modules that need numpy are imported once the parent's path is known.
 """
 
 import ctypes
@@ -22,22 +22,22 @@ LINUX_PR_SET_PDEATHSIG = 1
 
 
 def die_with_parent(longest_seconds: float) -> None:
-    """Leave no orphan: on Linux the kernel ends us with the parent, elsewhere a timer does."""
+    """End with the parent: by the kernel on Linux, elsewhere by a timer."""
     faulthandler.dump_traceback_later(longest_seconds, exit=True)
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(LINUX_PR_SET_PDEATHSIG, signal.SIGKILL)
 
 
 class ProgressLines:
-    """Progress as lines of a file: each new step, and its share some times a second."""
+    """Progress as lines of a file: each new step, and its share several times a second."""
 
     def __init__(self, lines: TextIO) -> None:
         self._lines = lines
         self._step = ""
         self._next = 0.0
 
-    def tell(self, step: str, share: float | None) -> None:
-        """Write a line, unless one was just written for the same step."""
+    def add(self, step: str, share: float | None) -> None:
+        """Write a line, unless one for the same step was just written."""
         now = time.monotonic()
         if step != self._step or now >= self._next:
             self._step, self._next = step, now + SECONDS_BETWEEN_LINES
@@ -45,7 +45,7 @@ class ProgressLines:
 
 
 def run(folder: Path) -> dict[str, object]:
-    """Bake what the folder asks for; the outcome says how it went."""
+    """Bake the request in the folder and store the outcome."""
     from ..body import body_file
     from ..errors import PalpateError
     from .request import BakeRequest
@@ -53,10 +53,10 @@ def run(folder: Path) -> dict[str, object]:
 
     request = BakeRequest.read(folder)
     with (folder / PROGRESS_FILE).open("a", encoding="utf-8", buffering=1) as lines:
-        tell = ProgressLines(lines).tell
+        progress = ProgressLines(lines).add
         try:
-            body, report = bake(request.source, request.settings, tell, request.surface)
-            tell("store", 1.0)
+            body, report = bake(request.source, request.settings, progress, request.surface)
+            progress("store", 1.0)
             body_file.save(body, folder / BODY_FILE)
         except PalpateError as problem:
             return {"error": problem.sentence.as_line()}
@@ -79,7 +79,7 @@ def main() -> int:
     folder = Path(sys.argv[1])
     context = json.loads((folder / "context.json").read_text(encoding="utf-8"))
     die_with_parent(context["longest_seconds"])
-    # fTetWild drops files where it stands.
+    # fTetWild writes files into the working directory.
     os.chdir(folder)
     sys.path[:] = context["path"]
     try:

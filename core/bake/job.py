@@ -1,4 +1,4 @@
-"""A bake that runs beside the caller: started, polled, cancelled; leaves nothing when cancelled."""
+"""Bake in the background: started, polled, cancelled without remains."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from .child import BODY_FILE, OUTCOME_FILE, PROGRESS_FILE
 from .request import BakeRequest
 from .steps import BakeReport, BakeSettings
 
-# More than any line of progress has.
+# More than the longest line of progress.
 LINE_BYTES = 200
 LOG_FILE = "log.txt"
 STEP_TEXTS = {
@@ -48,14 +48,14 @@ STEP_TEXTS = {
 
 @dataclass(frozen=True)
 class JobProgress:
-    """Where a job stands.
+    """Progress of a job.
 
     Attributes
     ----------
-    step, text : what it is doing, as a word for programs and in words for people.
-    share : of the whole that is done; None while nobody can know.
-    seconds : since it began.
-    remaining : seconds until it is done; None while nobody can know.
+    step, text : the step's identifier and its description.
+    share : of the job done, 0 to 1; None if unknown.
+    seconds : elapsed.
+    remaining : seconds; None if unknown.
     """
 
     step: str
@@ -66,7 +66,7 @@ class JobProgress:
 
 
 class BakeJob:
-    """One bake in a child process and a temporary folder, both gone when the job is closed.
+    """Bake in a child process and a temporary folder, both removed when the job is closed.
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ class BakeJob:
             raise
 
     def poll(self) -> JobProgress:
-        """Where the bake stands now.
+        """Progress now.
 
         Raises
         ------
@@ -122,29 +122,29 @@ class BakeJob:
 
     @property
     def finished(self) -> bool:
-        """Whether the child has ended, well or not."""
+        """Whether the child has ended, successfully or not."""
         return self._child.poll() is not None
 
     def result(self, target: Path | Callable[[SoftBody], Path]) -> tuple[SoftBody, BakeReport]:
-        """The body and what to know about its bake; its file is put at ``target`` in one step.
+        """The body and the report of its bake; the body file replaces ``target`` atomically.
 
         Waits until the job has finished and closes it. The target may depend on the body: some
-        systems do not let a file be renamed once its numbers are in use.
+        systems refuse to rename a mapped file.
 
         Raises
         ------
         PalpateError
-            Whatever kept the bake from succeeding. No file is left then.
+            The reason why the bake failed; no file is left.
         """
         try:
             self._child.wait()
             report = self._report()
-            # Seen to be sound before it replaces another; read where it stays, since a large one
-            # is not read whole.
+            # Checked before it replaces another; loaded from its target, since a large one is
+            # mapped, not read.
             found = body_file.load(self._folder / BODY_FILE)
             place = target(found) if callable(target) else target
             body_file.adopt(self._folder / BODY_FILE, place)
-            # Of one that was read whole nothing is left in the folder that goes.
+            # A body that was read needs nothing from the temporary folder.
             in_file = isinstance(found.compliance, MappedCompliance)
             body = body_file.load(place) if in_file else found
         finally:
@@ -173,7 +173,7 @@ class BakeJob:
     def _start(self, python: Sequence[str]) -> subprocess.Popen[bytes]:
         context = {
             "path": sys.path,
-            # For a parent that died where the kernel does not tell: twice the limit and an hour.
+            # For a parent that died unnoticed: twice the limit and an hour.
             "longest_seconds": 2 * self._time_limit + 3600,
         }
         (self._folder / "context.json").write_text(json.dumps(context), encoding="utf-8")
@@ -195,10 +195,10 @@ class BakeJob:
 
     def _newest_progress(self) -> tuple[str, float | None]:
         file = self._folder / PROGRESS_FILE
-        whole_lines = _end_of(file, 2 * LINE_BYTES).split("\n")[:-1] if file.exists() else []
-        if not whole_lines:
+        complete_lines = _end_of(file, 2 * LINE_BYTES).split("\n")[:-1] if file.exists() else []
+        if not complete_lines:
             return "start", None
-        step, share = json.loads(whole_lines[-1])
+        step, share = json.loads(complete_lines[-1])
         return step, share
 
     def _log(self) -> str:
@@ -228,7 +228,7 @@ class BakeJob:
 
 
 def _end_of(file: Path, count: int) -> str:
-    """The last ``count`` bytes of a text file, or all it has."""
+    """Last ``count`` bytes of a text file, or all of it."""
     with file.open("rb") as stream:
         stream.seek(0, 2)
         stream.seek(max(0, stream.tell() - count))
@@ -245,7 +245,7 @@ def run_bake(
 ) -> tuple[SoftBody, BakeReport]:
     """Bake in a child process and wait; parameters and errors as for :class:`BakeJob`.
 
-    An exception out of ``on_progress``, KeyboardInterrupt included, stops the child.
+    An exception from ``on_progress``, KeyboardInterrupt included, stops the child.
     """
     refuse_unwritable(target)
     with BakeJob(source, settings, surface, python) as job:

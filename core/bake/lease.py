@@ -1,4 +1,4 @@
-"""A sign beside the results of work on many machines that somebody still waits for them."""
+"""Lease file that tells workers that their results are still wanted."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ from ..files.atomic_file import atomic_file, refuse_unwritable
 
 @dataclass(frozen=True)
 class Lease:
-    """A small file in the folder of the results, there as long as they are wanted.
+    """Small file in the folder of results that exists as long as they are wanted.
 
-    Who sees it works in the same folder as the one who waits, and stops once it is gone.
+    A worker that sees it shares the folder with the waiting process, and stops when it is gone.
 
     Attributes
     ----------
-    path : where the file is.
-    word : what it holds, so that another machine's folder of the same name is not mistaken for it.
+    path : of the file.
+    word : its contents, so that another machine's folder of the same name is not mistaken for it.
     """
 
     path: Path
     word: str
 
     def is_seen(self) -> bool:
-        """Whether this process reaches the same folder, and the results are still wanted."""
+        """Whether this process sees the same folder, and the results are still wanted."""
         try:
             return self.path.read_text(encoding="ascii") == self.word
         except FileNotFoundError:
@@ -36,7 +36,7 @@ class Lease:
 
 @contextmanager
 def lease(folder: Path) -> Iterator[Lease]:
-    """Hold a lease in ``folder``, which is made if need be.
+    """Hold a lease in ``folder``, which is made if missing.
 
     Raises
     ------

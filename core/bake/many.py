@@ -1,11 +1,10 @@
-"""Many bodies baked through any ``concurrent.futures`` executor: threads, processes, a cluster.
+"""Bakes of many bodies on any ``concurrent.futures`` executor: threads, processes, a cluster.
 
-Every bake has a child process of its own (:mod:`.bake_job`), whatever kind of worker starts it: a
-mesh that brings fTetWild down does not bring the worker down, a time limit holds, and on one
-machine threads suffice as workers.
+Every bake has a child process of its own (:mod:`.job`), whatever the worker: a mesh that crashes
+fTetWild does not crash the worker, a time limit holds, and on one machine threads suffice.
 
-A worker that reaches the folder of the results writes there itself. One that does not (a cluster
-without a common file system) hands the file back, and this process writes it.
+A worker with access to the folder of results writes there itself; otherwise (a cluster without a
+common file system) it returns the file, and this process writes it.
 """
 
 from __future__ import annotations
@@ -28,21 +27,21 @@ from .job import run_bake
 from .lease import Lease, lease
 from .steps import BakeReport, BakeSettings
 
-# How often the waiting process looks up, and how often a worker asks whether it is still wanted.
+# Seconds between calls of `on_wait`, and between a worker's checks whether it is still wanted.
 LOOK_UP_SECONDS = 0.2
 
-# How long bakes that nobody wants any more may take to notice it.
+# Seconds for cancelled bakes to stop.
 STOP_SECONDS = 10.0
 
 
 @dataclass(frozen=True, eq=False)
 class BakeTask:
-    """One body to bake.
+    """Body to bake.
 
     Attributes
     ----------
-    name : how messages call it, for example the mesh's file.
-    file_name : of the body file, within the folder of the results.
+    name : in messages, for example the mesh's file.
+    file_name : of the body file, in the folder of results.
     source, settings, surface : as for :func:`palpate.core.bake.steps.bake`.
     """
 
@@ -55,15 +54,15 @@ class BakeTask:
 
 @dataclass(frozen=True)
 class BakeOutcome:
-    """What became of a task.
+    """Outcome of a task.
 
     Attributes
     ----------
     name : the task's.
     path : the body file, None if there is none.
     nodes, free_surface_nodes, form : the body's sizes and the form of its compliance.
-    report : what the bake tells of itself.
-    error : one line on what kept the mesh from becoming a body, None if nothing did.
+    report : of the bake.
+    error : one line on why the bake failed, None if it did not.
     """
 
     name: str
@@ -77,14 +76,14 @@ class BakeOutcome:
 
 @dataclass(frozen=True)
 class _Answer:
-    """A worker's answer; ``contents`` is the body file where the worker could not put it."""
+    """A worker's answer; ``contents`` is the body file if the worker could not write it."""
 
     outcome: BakeOutcome
     contents: bytes | None = None
 
 
 def always() -> bool:
-    """The answer of someone who never stops wanting."""
+    """Default of ``wanted``: results are always wanted."""
     return True
 
 
@@ -103,23 +102,22 @@ def bake_many(
 
     Parameters
     ----------
-    tasks : may be a generator; it is asked for a task only when there is room for one.
-    folder : where the body files go; made if need be.
-    executor : anything that takes functions and picklable arguments. One machine's threads are as
-        good as processes here. Set ``settings.threads`` of the tasks so that its workers together
-        have as many threads as there are cores.
-    on_done : called in this thread with each outcome as it comes, failures too.
-    on_wait : called in this thread several times a second with the number of tasks under way;
-        an exception out of it stops all bakes.
-    at_once : how many tasks are handed over and not done, so that those that wait for a worker do
-        not fill its memory.
-    wanted : asked by workers that do not reach ``folder``; a picklable function that turns false
-        when the results are not wanted any more.
-    python : how workers start Python; their own ``sys.executable`` if None.
+    tasks : may be a generator; consumed only as workers become free.
+    folder : of the body files; made if missing.
+    executor : takes functions and picklable arguments. On one machine threads are as good as
+        processes. Set ``settings.threads`` of the tasks so that the workers together have one
+        thread a core.
+    on_done : called in this thread with each outcome as it arrives, failures too.
+    on_wait : called in this thread several times a second with the number of running tasks; an
+        exception from it stops all bakes.
+    at_once : submitted tasks at most, so that waiting tasks do not fill the memory.
+    wanted : called by workers without access to ``folder``; a picklable function that turns false
+        when the results are no longer wanted.
+    python : command to start Python on workers; their own ``sys.executable`` if None.
 
     Returns
     -------
-    The outcomes in the order they came. A mesh that fails does not stop the others.
+    Outcomes in order of completion. A failure does not stop the other bakes.
 
     Raises
     ------
@@ -138,7 +136,7 @@ def bake_many(
             for task in _next_of(waiting, at_once - len(running)):
                 try:
                     future = executor.submit(_bake, task, folder, sign, wanted, python)
-                except Exception as problem:  # noqa: BLE001  told with the mesh's name
+                except Exception as problem:  # noqa: BLE001  reported with the mesh's name
                     note(_failed(task, problem))
                 else:
                     running[future] = task
@@ -160,7 +158,7 @@ def _next_of(waiting: Iterator[BakeTask], count: int) -> Iterator[BakeTask]:
 
 @contextmanager
 def _under_way() -> Iterator[dict[Future[_Answer], BakeTask]]:
-    """Futures and their tasks; those left when an exception passes are cancelled and awaited."""
+    """Futures and their tasks; on an exception the rest is cancelled and awaited."""
     running: dict[Future[_Answer], BakeTask] = {}
     try:
         yield running
@@ -173,7 +171,7 @@ def _under_way() -> Iterator[dict[Future[_Answer], BakeTask]]:
 def _outcome(task: BakeTask, folder: Path, future: Future[_Answer]) -> BakeOutcome:
     try:
         answer = future.result()
-    except Exception as problem:  # noqa: BLE001  told with the mesh's name
+    except Exception as problem:  # noqa: BLE001  reported with the mesh's name
         return _failed(task, problem)
     if answer.contents is not None:
         try:
@@ -200,7 +198,7 @@ def _bake(
     wanted: Callable[[], bool],
     python: Sequence[str] | None,
 ) -> _Answer:
-    """Bake in the worker."""
+    """Run a bake in the worker."""
     reaches_folder = sign.is_seen()
     stop = _stopping(sign.is_seen if reaches_folder else wanted)
     with tempfile.TemporaryDirectory(prefix="palpate-worker-") as scratch:
@@ -228,7 +226,7 @@ def _bake(
 
 
 def _stopping(wanted: Callable[[], bool]) -> Callable[[object], None]:
-    """A progress callback that ends the bake once it is not wanted any more."""
+    """Progress callback that ends the bake once its result is no longer wanted."""
     next_look = 0.0
 
     def stop(_: object) -> None:

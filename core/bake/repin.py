@@ -1,8 +1,8 @@
-"""More pins for a body that is baked: its compliance, held at further nodes of its surface.
+"""Additional pins for a baked body, at further nodes of its surface.
 
-A dense compliance is downdated, which takes seconds where a bake takes minutes. Where the numbers
-as they are stored do not suffice for that, the body's own tetrahedra are eliminated again; a new
-tetrahedralization is never needed.
+A dense compliance is downdated, which takes seconds where a bake takes minutes. Where the stored
+precision does not suffice, the body's tetrahedra are eliminated again; a new tetrahedralization is
+never needed.
 """
 
 from __future__ import annotations
@@ -32,23 +32,23 @@ from ..stiffness.held_pins import pins_checked
 from .bake_cost import MeshSize, estimate_cost
 from .settings import BakeSettings
 
-# The largest relative error of a column that a downdate may cause.
+# Largest relative error of a column from a downdate.
 LARGEST_ERROR = 2e-5
 
-# Standard deviation of a rounding error, as a share of the distance between neighbouring numbers.
+# Standard deviation of a rounding error, in units in the last place.
 ROUNDING_DEVIATION = 0.29
 
-# Rows that are computed at once: large enough for BLAS to run at full speed.
+# Rows computed at once: enough for BLAS to run at full speed.
 ROWS_PER_PRODUCT = 384
 
-# Seconds for each number of a table that is read, changed and written, on one core.
+# Seconds to read, change and write a number of a table, on one core.
 SECONDS_PER_ENTRY = 2e-8
 
 PinsChange = Literal["same", "more", "bake"]
 
 
 def pins_change(mesh: TetMesh, old: ArrayLike, new: ArrayLike) -> PinsChange:
-    """What other pins ask for: nothing, :func:`pin_more`, or a bake.
+    """Work that changed pins need: none, :func:`pin_more`, or a bake.
 
     Parameters
     ----------
@@ -69,18 +69,17 @@ def pins_change(mesh: TetMesh, old: ArrayLike, new: ArrayLike) -> PinsChange:
 
 
 def pin_more(body: SoftBody, added_nodes: ArrayLike) -> SoftBody:
-    """The same body, held at further nodes of its surface; equal to a bake with these pins.
+    """The same body pinned at further nodes of its surface; equal to a bake with these pins.
 
     A dense compliance is downdated, L' = L - L_:P L_PP^-1 L_P: for the nodes that stay free: minus
-    the displacements by the forces that keep the nodes P where they are. Its columns are right to
-    :data:`LARGEST_ERROR`; where rounding in what is stored would cause more, and for a compressed
-    one (whose error L_PP^-1 would amplify beyond its tolerance), the compliance is computed anew
-    from the body's tetrahedra.
+    the displacements by the forces that hold the nodes P. The relative error of its columns is at
+    most :data:`LARGEST_ERROR`; where rounding would cause more, and for a compressed compliance
+    (whose error L_PP^-1 would amplify), it is computed anew from the body's tetrahedra.
 
     Parameters
     ----------
-    body : as it is; it stays so.
-    added_nodes : numbers of nodes to pin besides; what is pinned already changes nothing.
+    body : not modified.
+    added_nodes : numbers of nodes to pin; those already pinned make no difference.
 
     Raises
     ------
@@ -107,15 +106,15 @@ def pin_more(body: SoftBody, added_nodes: ArrayLike) -> SoftBody:
 def pin_more_seconds(
     size: MeshSize, settings: BakeSettings, free_surface_nodes: int, added: int
 ) -> float:
-    """About how long :func:`pin_more` will compute, so that a panel can choose another way.
+    """Estimated seconds of :func:`pin_more`.
 
     Parameters
     ----------
     size : of the body's tetrahedra.
-    settings : that it was baked with: form, formulation, tolerance. A ``dense`` body is taken to
-        be downdated, a ``compressed`` one is computed anew.
+    settings : of the body's bake: form, formulation, tolerance. A ``dense`` body is assumed to be
+        downdated, a ``compressed`` one to be computed anew.
     free_surface_nodes : before the new pins.
-    added : number of nodes to pin besides.
+    added : number of nodes to pin.
     """
     if settings.form == "compressed":
         return estimate_cost(size, settings).seconds
@@ -127,10 +126,7 @@ def pin_more_seconds(
 def _downdated(
     compliance: DenseCompliance | MappedCompliance, pinned: NDArray[np.int64]
 ) -> DenseCompliance | None:
-    """L' where ``pinned`` are the places, among the free surface nodes, of those now held.
-
-    None where the numbers of the table are not exact enough for it.
-    """
+    """L' with ``pinned`` held, places among the free surface nodes; None if too inexact."""
     count = compliance.node_count
     kept = np.setdiff1d(np.arange(count), pinned)
     pinned_rows, kept_rows = freedoms(pinned), freedoms(kept)
@@ -148,7 +144,7 @@ def _downdated(
         rows = slice(first, min(first + ROWS_PER_PRODUCT, len(kept_rows)))
         part = stored[kept_rows[rows]].take(kept_rows[: rows.stop], axis=1).astype(np.float64)
         part -= dgemm(1.0, reach.T[: rows.stop], holding[:, rows]).T
-        # Only one half is computed: so L' is symmetric to the last bit, as L is.
+        # Only one half is computed, so that L' is symmetric to the last bit, as L is.
         table[rows, : rows.stop] = part
         table[:first, rows] = part[:, :first].T
         table[rows, rows] = 0.5 * (part[:, first:] + part[:, first:].T)
@@ -166,11 +162,11 @@ def _rounding_noise(
     kept_rows: NDArray[np.int64],
     holding: NDArray[np.float64],
 ) -> NDArray[np.float64]:
-    """What rounding of L makes of the columns of L', 2-norm, (3k,), as far as can be expected.
+    """Expected error of the columns of L' from rounding of L, 2-norm, (3k,).
 
-    L' = Q^T L Q with Q = [I, -H] of the kept and the pinned freedoms. If every L_ab is off by an
-    independent error of deviation r |L_ab|, the squares of the errors of L' are those of Q, L and
-    Q^T multiplied.
+    L' = Q^T L Q with Q = [I, -H] of the kept and the pinned freedoms. For independent
+    errors of L_ab with deviation r |L_ab|, the squared errors of L' are the product of the
+    elementwise squares of Q^T, r L and Q.
     """
     weights = np.ones(len(kept_rows) + len(pinned_rows))
     squares = holding**2
@@ -187,7 +183,7 @@ def _rounding_noise(
 
 
 def _computed(body: SoftBody, fixed: NDArray[np.int64]) -> Compliance:
-    """The compliance by elimination, in the form that the body has it."""
+    """Compliance by elimination, in the body's form."""
     stiffness = assemble(
         body.mesh,
         body.poisson_ratio,

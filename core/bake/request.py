@@ -1,4 +1,4 @@
-"""What the bake's child process is asked, as files in a folder that both processes know."""
+"""Request to the bake's child process, as files in a folder."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ SETTINGS_FILE = "request.json"
 
 @dataclass(frozen=True, eq=False)
 class BakeRequest:
-    """The arguments of :func:`palpate.core.bake.steps.bake`."""
+    """Arguments of :func:`palpate.core.bake.steps.bake`."""
 
     source: Surface | TetMesh
     settings: BakeSettings
@@ -58,7 +58,7 @@ class BakeRequest:
 
     @classmethod
     def read(cls, folder: Path) -> BakeRequest:
-        """Read back what :meth:`write` stored."""
+        """Read a request stored by :meth:`write`."""
         plain = json.loads((folder / SETTINGS_FILE).read_text(encoding="utf-8"))
         with np.load(folder / ARRAYS_FILE, allow_pickle=False) as file:
             arrays = dict(file)

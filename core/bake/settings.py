@@ -1,4 +1,4 @@
-"""What a bake depends on besides the shape."""
+"""Settings of a bake."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ..stiffness.formulation import AUTOMATIC, formulation_for
 from ..stiffness.pins import PinBelow, Pins, fraction_checked
 from ..stiffness.regions import StiffRegion, TetScale
 
-# How a compliance can be asked for.
+# Choices of the compliance's form.
 FORMS = ("auto", "dense", "compressed")
 
 
@@ -21,16 +21,16 @@ class BakeSettings:
     Attributes
     ----------
     poisson_ratio, young_modulus : material; the modulus (pascal) is only stored, never baked in.
-    pins : which nodes are held.
-    edge_length : wanted edge length of tetrahedra, as a share of the bounding box diagonal.
-    epsilon : how far the body's surface may lie from the input's, as such a share.
-    decimate_above : inputs of more triangles are reduced to this many first.
-    time_limit : seconds after which tetrahedralization is given up.
-    formulation : of the stiffness; ``auto`` takes what suits Poisson's ratio.
+    pins : nodes to hold.
+    edge_length : target edge length of tetrahedra, as a share of the bounding box diagonal.
+    epsilon : largest distance between the body's surface and the input's, as such a share.
+    decimate_above : inputs of more triangles are decimated to this many.
+    time_limit : seconds for tetrahedralization.
+    formulation : of the stiffness; ``auto`` chooses by Poisson's ratio.
     form : of the compliance, ``dense`` or ``compressed``; ``auto`` compresses large bodies.
-    tolerance : largest relative column error that compressing may cause.
-    stiffness : where the body is stiffer or softer than elsewhere; None for the same everywhere.
-    threads : of BLAS at most; None for as many as there are idle cores for this process.
+    tolerance : largest relative column error from compression.
+    stiffness : stiffer and softer regions; None for the same everywhere.
+    threads : of BLAS at most; None for one on each idle core.
     """
 
     poisson_ratio: float = 0.3
@@ -47,7 +47,7 @@ class BakeSettings:
     threads: int | None = None
 
     def checked(self) -> BakeSettings:
-        """These settings, if they can be used.
+        """These settings, checked.
 
         Raises
         ------

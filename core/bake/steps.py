@@ -1,4 +1,4 @@
-"""The bake, step by step: surface -> tetrahedra -> stiffness -> compliance -> body."""
+"""Steps of the bake: surface -> tetrahedra -> stiffness -> compliance -> body."""
 
 from __future__ import annotations
 
@@ -35,25 +35,25 @@ from .work import BakeProgress, BakeWork
 
 __all__ = ["BakeProgress", "BakeReport", "BakeSettings", "bake"]
 
-# Beyond these the drawn shape and the body visibly part ways, and the maker should know.
+# Beyond these the drawn shape and the body differ visibly, and the user is warned.
 NOTABLE_DISTANCE = 0.02
 NOTABLE_VOLUME_ERROR = 0.1
 
-# Bodies of less arithmetic (in operations) are done within a second by one thread; several, waiting
-# for one another on a machine that is busy otherwise, would take longer.
+# Below this arithmetic (operations, a second of one thread) one thread is used: several would wait
+# for each other on a busy machine.
 LEAST_WEIGHT_FOR_THREADS = 2e10
 
 
 @dataclass(frozen=True)
 class BakeReport:
-    """What a bake did: seconds of each step, the fit to the input, and what to tell the maker."""
+    """Report of a bake: seconds of each step, fit to the input, warnings."""
 
     seconds: dict[str, float]
     fit: Fit | None
     warnings: list[Sentence]
 
     def as_dict(self) -> dict[str, object]:
-        """The report as plain values for JSON."""
+        """Plain values for JSON."""
         return asdict(self)
 
 
@@ -66,17 +66,17 @@ def bake(
 ) -> tuple[SoftBody, BakeReport]:
     """Make a body, in this process.
 
-    Tetrahedralization cannot be interrupted here, nor can the assembly of the stiffness (seconds
-    for tens of thousands of nodes, smoothed); programs with a person in front use
+    Tetrahedralization and the assembly of the stiffness (seconds for tens of thousands of nodes,
+    smoothed) cannot be interrupted here; interactive programs use
     :class:`palpate.core.bake.job.BakeJob`, which runs this function in a child process.
 
     Parameters
     ----------
-    source : a surface, or tetrahedra that exist already.
+    source : a surface, or existing tetrahedra.
     settings : see :class:`BakeSettings`.
-    progress : told the step and the share of the whole that is done; may raise to cancel.
-    surface : for tetrahedra with painted pins, the surface the weights were painted on.
-    available : asked, before the compliance is computed, how many bytes of memory can be had.
+    progress : called with the step and the share of the bake done; may raise to cancel.
+    surface : for tetrahedra with painted pins, the painted surface.
+    available : bytes of available memory, called before the compliance is computed.
 
     Raises
     ------
@@ -121,7 +121,7 @@ def bake(
 def _tetrahedra(
     source: Surface, settings: BakeSettings, work: BakeWork, seconds: dict[str, float]
 ) -> tuple[TetMesh, Fit]:
-    """Fill the surface and see whether the tetrahedra fit it."""
+    """Tetrahedra of the surface, and their fit."""
     with _timed(seconds, "tetrahedralize"):
         work.unknown("tetrahedralize")
         welded = source.welded()
@@ -139,7 +139,7 @@ def _tetrahedra(
 def _compliance(
     plan: EliminationPlan, form: str, mesh: TetMesh, settings: BakeSettings, work: BakeWork
 ) -> Compliance:
-    """The compliance by the plan, which is what most of a bake's time goes into."""
+    """Compliance by the plan: most of a bake's time."""
     threads = settings.threads if plan.weight >= LEAST_WEIGHT_FOR_THREADS else 1
     with blas_threads(threads) as threads:
         if form == "dense":
@@ -156,7 +156,7 @@ def _compliance(
 def _young_scale(
     stiffness: StiffRegion | TetScale | None, mesh: TetMesh, surface: Surface | None
 ) -> NDArray[np.float64] | None:
-    """Factors on Young's modulus (M,), None where none differs from 1: the key is the same then."""
+    """Factors on Young's modulus (M,); None if all are 1, for the same key."""
     if stiffness is None:
         return None
     scale = young_scale(stiffness, mesh, surface)

@@ -1,4 +1,4 @@
-"""How much of a bake is done: the shares of its steps, weighed by the time each will take."""
+"""Progress of a bake: its steps weighted by their expected time."""
 
 from __future__ import annotations
 
@@ -6,51 +6,51 @@ from collections.abc import Callable, Mapping
 
 from ..progress import Progress
 
-# (step, share of the whole bake done or None where nobody can know)
+# (step, share of the bake done, or None if unknown)
 BakeProgress = Callable[[str, float | None], None]
 
 
 class BakeWork:
-    """Tells a listener the share of the whole, from what each step tells of itself.
+    """Share of the bake done, from the progress of each step.
 
-    What a step will take is known once there are tetrahedra, and better once the elimination is
-    planned. The share never falls when it becomes known better.
+    The expected time of a step is known once there are tetrahedra, and better once the elimination
+    is planned. The share never falls.
 
     Parameters
     ----------
-    tell : the listener; an exception out of it cancels the bake.
+    report : called with step and share; an exception from it cancels the bake.
     """
 
-    def __init__(self, tell: BakeProgress) -> None:
-        self._tell = tell
+    def __init__(self, report: BakeProgress) -> None:
+        self._report = report
         self._weights: dict[str, float] = {}
         self._done = 0.0
         self._step = ""
         self._share = 0.0
 
     def unknown(self, step: str) -> None:
-        """A step begins of which nobody can know how long it takes."""
-        self._tell(step, None)
+        """Begin a step of unknown duration."""
+        self._report(step, None)
 
     def expect(self, seconds: Mapping[str, float], spent: float = 0.0) -> None:
-        """Set what the coming steps will take, or correct it; ``spent`` are seconds gone by."""
+        """Set or correct the expected seconds of coming steps; ``spent`` are seconds elapsed."""
         self._weights |= seconds
         self._done += spent
 
     def forget(self, step: str) -> None:
-        """A step that was expected is not needed."""
+        """Drop an expected step."""
         self._weights.pop(step, None)
 
     def begin(self, step: str) -> Progress:
-        """An expected step begins; the one before is done. Returns what to tell its share to."""
+        """Begin an expected step, and end the one before; returns its progress callback."""
         self._done += self._weights.pop(self._step, 0.0)
         self._step = step
         self.within(0.0)
         return self.within
 
     def within(self, share: float) -> None:
-        """So much of the present step is done, 0 to 1."""
+        """Set the share of the present step done, 0 to 1."""
         done = self._done + share * self._weights.get(self._step, 0.0)
-        whole = self._done + sum(self._weights.values())
-        self._share = max(self._share, min(1.0, done / whole) if whole > 0 else 0.0)
-        self._tell(self._step, self._share)
+        total = self._done + sum(self._weights.values())
+        self._share = max(self._share, min(1.0, done / total) if total > 0 else 0.0)
+        self._report(self._step, self._share)

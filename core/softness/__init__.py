@@ -1,1 +1,1 @@
-"""Softness in the maker's words: Shore scales, a virtual durometer, curves and maps."""
+"""Softness in makers' words: Shore scales, a virtual durometer, curves and maps."""

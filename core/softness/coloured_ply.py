@@ -1,4 +1,4 @@
-"""A body's surface with its stiffness as colours and numbers, as PLY for any viewer."""
+"""PLY of a body's surface with its stiffness as colours and numbers."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .softness_map import SoftnessMap
 
 
 def write_ply(file: IO[bytes], body: SoftBody, found: SoftnessMap) -> None:
-    """Vertices with red, green, blue and ``stiffness`` in N/m, and the triangles, in metres."""
+    """Write vertices with red, green, blue and ``stiffness`` in N/m, and triangles, in metres."""
     places = body.mesh.nodes[body.mesh.surface_nodes]
     colours = np.round(255.0 * ramp(found.shares())).astype(np.uint8)
     names = ["x", "y", "z", "red", "green", "blue", "stiffness"]

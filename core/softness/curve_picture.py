@@ -1,4 +1,4 @@
-"""A force-depth curve as a picture, written as SVG without any library."""
+"""SVG picture of a force-depth curve."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ WANTED_TICKS = 5
 
 
 def curve_svg(curve: ForceDepthCurve) -> str:
-    """Force in newton over depth in millimetres, its slope told in the title."""
+    """SVG of force in newton over depth in millimetres, with the slope in the title."""
     depths, forces = curve.depths * MILLIMETRES, curve.forces
     x_ticks, y_ticks = ticks(float(depths.max())), ticks(float(forces.max(initial=0.0)))
     x = LEFT + depths / x_ticks[-1] * (WIDTH - LEFT - RIGHT)

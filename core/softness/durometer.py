@@ -1,4 +1,4 @@
-"""A virtual durometer: the standard's indenter pressed into a body, until body and spring balance.
+"""Virtual durometer: the standard's indenter pressed into a body until body and spring balance.
 
 The foot lies on the surface, the indenter stands out of it by p and pushes with the force that its
 spring has then; both are rigid, push along the device's axis only, and may not pull:
@@ -31,30 +31,30 @@ from .scales.durometer_type import MILLIMETRE, TYPES, DurometerType
 from .scales.indentation import indenter_force
 from .scales.shore import Shore
 
-# What the standard asks of a specimen, and when the body is not to be believed any more.
+# The standard's requirements of a specimen, and limits of a credible reading.
 LEAST_THICKNESS = 6.0 * MILLIMETRE
 MOST_OF_THICKNESS = 0.2
 MOST_OVERHANG = 0.05
-# Edges of the surface as a share of the thickness: longer ones do not feel what is beneath. It
-# matters where the contact is wider than so much of the thickness (5 %: by about a point).
+# Longest edges of the surface, as a share of the thickness, to resolve what is beneath; it matters
+# where the contact is wider than a share of the thickness (5 %: by about a point).
 MOST_EDGE = 0.25
 LEAST_CONTACT = 0.05
 
-# How exactly the foot carries its load, as a share of it.
+# Relative tolerance of the load on the foot.
 LOAD_TOLERANCE = 1e-4
 MOST_STEPS = 60
 
 
 @dataclass(frozen=True, eq=False)
 class Balance:
-    """A durometer in balance with what it presses on.
+    """Equilibrium of a durometer and a body.
 
     Attributes
     ----------
     reading : 0 to 100.
     pushes : float64 (p,), forces of the points on the body along the axis, newton.
-    depth : how far the indenter stands out of the foot, metres.
-    foot_depth : how far the foot is below where it first touched, metres.
+    depth : of the indenter below the foot, metres.
+    foot_depth : of the foot below its first touch, metres.
     """
 
     reading: float
@@ -65,17 +65,17 @@ class Balance:
 
 @dataclass(frozen=True, eq=False)
 class DurometerReading:
-    """What a durometer says at a place of a body.
+    """Reading of a durometer at a place of a body.
 
     Attributes
     ----------
     shore : the reading.
-    block : what it would say on a large, thick block of the same material.
-    place : where it stands.
+    block : reading on a large, thick block of the same material.
+    place : of the durometer.
     tip_force, foot_force : newton, on the body.
     depth, foot_depth : as in :class:`Balance`, metres.
     thickness : of the body there, along the axis, metres.
-    warnings : what speaks against believing the reading, in sentences.
+    warnings : reasons to doubt the reading, in sentences.
     """
 
     shore: Shore
@@ -103,8 +103,8 @@ def read_durometer(
     ----------
     scale : "00" or "A".
     young_modulus : pascal; the body's own unless given.
-    load : newton on the whole device, as a stand presses it on; None lays it on so that its foot
-        just touches, as in the relations between Shore values and Young's modulus.
+    load : newton on the device, as of a stand; None for a foot that just touches, as in the
+        relations between Shore values and Young's modulus.
 
     Raises
     ------
@@ -144,7 +144,7 @@ def read_durometer(
 
 
 def seat_compliance(body: SoftBody, seat: Seat) -> NDArray[np.float64]:
-    """How far points give way along the axis per force along it on others, (p, p), at 1 Pa."""
+    """Compliance between the contact points along the axis, (p, p), at 1 Pa."""
     points, everyone = seat.points, np.arange(len(seat.points))
     correction = near_correction(body, points)
     blocks = point_compliance(body, points, everyone, everyone, correction)
@@ -155,7 +155,7 @@ def seat_compliance(body: SoftBody, seat: Seat) -> NDArray[np.float64]:
 
 
 def block_reading(kind: DurometerType, young_modulus: float, poisson_ratio: float) -> float:
-    """What a durometer says on a half-space, by the closed forms of :mod:`.indentation`."""
+    """Reading on a half-space, by the closed forms of :mod:`.indentation`."""
     stiffness = young_modulus / (1.0 - poisson_ratio**2)
 
     def excess(reading: float) -> float:
@@ -167,9 +167,9 @@ def block_reading(kind: DurometerType, young_modulus: float, poisson_ratio: floa
 def balanced(
     compliance: NDArray[np.float64], seat: Seat, kind: DurometerType, load: float | None
 ) -> Balance:
-    """Balance on a body of this ``compliance`` (p, p) along the axis, m/N.
+    """Balance on a body of ``compliance`` (p, p) along the axis, m/N.
 
-    With a load, the foot sinks until all forces together are the load.
+    With a load, the foot sinks until the sum of all forces is the load.
 
     Raises
     ------
@@ -179,8 +179,8 @@ def balanced(
     laid_on = float(seat.heights[~seat.tip].min(initial=float(seat.heights[seat.tip].min())))
     if load is None:
         return _at_depth(compliance, seat, kind, laid_on, laid_on)
-    # The force grows with the depth, and where more points come to carry it, faster: Newton's steps
-    # from below never go past the depth looked for by much, and halving holds them if they would.
+    # The force is convex in the depth: Newton's steps from below hardly overshoot, and bisection
+    # limits them.
     above, below = laid_on - kind.travel, np.inf
     foot, found = laid_on, _at_depth(compliance, seat, kind, laid_on, laid_on)
     for _ in range(MOST_STEPS):
@@ -229,14 +229,14 @@ def _at_depth(
 
 
 def _spring_softness(kind: DurometerType) -> float:
-    """How far the spring gives way, metres per newton."""
+    """Compliance of the spring, metres per newton."""
     return kind.travel / (100.0 * kind.force_per_point)
 
 
 def _sprung(
     compliance: NDArray[np.float64], tip: NDArray[np.bool_], kind: DurometerType, depth: float
 ) -> NDArray[np.float64]:
-    """The compliance together with that of the spring, unless the indenter is at a stop."""
+    """Compliance with that of the spring, unless the indenter is at a stop."""
     if not 0.0 < depth < kind.travel:
         return compliance
     return compliance + _spring_softness(kind) * np.outer(tip, tip)
@@ -285,7 +285,7 @@ def _warnings(
 
 
 def _edge_length(body: SoftBody, seat: Seat) -> float:
-    """Root of the mean square of the edges under the indenter, metres."""
+    """Root mean square of the edges under the indenter, metres."""
     corners = body.mesh.nodes[body.mesh.surface_triangles[seat.place.triangle]]
     edges = np.linalg.norm(np.roll(corners, -1, axis=0) - corners, axis=1)
     return float(np.sqrt((edges**2).mean()))

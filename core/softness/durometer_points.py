@@ -1,7 +1,7 @@
-"""Where a durometer may touch a body: rings of points under its indenter and its foot.
+"""Contact points of a durometer: rings under its indenter and its foot.
 
-The points lie on the surface itself, wherever its nodes are, so that a reading does not depend on
-how the mesh happens to lie under an indenter of two millimetres.
+They lie on the surface, independent of its nodes, so that a reading does not depend on the mesh
+under an indenter of two millimetres.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ FOOT_RINGS = 5
 
 @dataclass(frozen=True, eq=False)
 class Rings:
-    """Points in the plane of a durometer's foot.
+    """Rings of points in the plane of a durometer's foot.
 
     Attributes
     ----------
@@ -40,14 +40,14 @@ class Rings:
 
 @dataclass(frozen=True, eq=False)
 class Seat:
-    """A durometer set on a body.
+    """Position of a durometer on a body.
 
     Attributes
     ----------
     place : of its axis on the rest surface.
     points : the contact points.
     radii : float64 (p,), distances of the points from the axis, metres.
-    heights : float64 (p,), how far below the place the rest surface is there, metres.
+    heights : float64 (p,), depth of the rest surface below the place, metres.
     tip : bool (p,), whether a point is under the indenter.
     thickness : metres from the place to the far side of the body, along the axis.
     overhang : share of the foot that has no surface under it.
@@ -63,8 +63,8 @@ class Seat:
 
 
 def rings(kind: DurometerType) -> Rings:
-    """Evenly spread points: a middle one and rings of 6, 12, ... under the indenter, rings as
-    close to each other as their points under the foot.
+    """Evenly spread points: a central one and rings of 6, 12, ... under the indenter, and rings
+    as close to each other as their points under the foot.
     """
     step = kind.shaft / (TIP_RINGS + 0.5)
     wide = (kind.foot - kind.hole) / FOOT_RINGS
@@ -84,7 +84,7 @@ def _ring(
     radius: float, count: int, area: float, turned: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Places (count, 2) on a circle and their areas (count,); ``turned`` by half a step or not, so
-    that the points of neighbouring rings do not stand in rows.
+    that the points of neighbouring rings do not align.
     """
     angles = 2 * np.pi * (np.arange(count) + 0.5 * turned) / count
     places = radius * np.column_stack([np.cos(angles), np.sin(angles)])
@@ -92,7 +92,7 @@ def _ring(
 
 
 def set_on(body: SoftBody, at: ArrayLike, kind: DurometerType) -> Seat:
-    """A durometer on the surface point nearest to ``at`` (3,), metres, square to the surface.
+    """Durometer at the surface point nearest to ``at`` (3,), metres, along the normal.
 
     Raises
     ------
@@ -128,7 +128,7 @@ def set_on(body: SoftBody, at: ArrayLike, kind: DurometerType) -> Seat:
 
 
 def _first_entries(met: Crossings, reach: float) -> NDArray[np.int64]:
-    """On each line the first crossing into the body that is not farther than ``reach`` away."""
+    """First crossing of each line into the body, within ``reach``."""
     chosen = np.flatnonzero(met.inward & (np.abs(met.heights) <= reach))
     _, first = np.unique(met.lines[chosen], return_index=True)
     return chosen[first]

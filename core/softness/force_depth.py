@@ -1,4 +1,4 @@
-"""How hard a place pushes back the deeper it is pressed: for a point, or for a tool."""
+"""Force against depth at a place, for a point or a tool."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from .place import Place, nearest_place, thickness
 COLUMNS = "depth_mm,force_n,stiffness_n_per_mm,contact_area_mm2"
 MILLIMETRES = 1e3
 
-# Without a depth asked for, a curve goes this far, as a share of the thickness or the tool's size.
+# Default depth of a curve, as a share of the thickness or the tool's size.
 SHARE_OF_THICKNESS = 0.2
 SHARE_OF_TOOL = 0.25
 
@@ -34,8 +34,8 @@ class ForceDepthCurve:
 
     Attributes
     ----------
-    tool : name of what presses; "point" for a point.
-    place : where, and along which axis.
+    tool : its name; "point" for a point.
+    place : position and axis.
     depths : float64 (n,), metres along the axis, from 0 on.
     forces : float64 (n,), newton along the axis.
     stiffness : float64 (n,), slope of the force there, N/m, from the neighbouring depths.
@@ -51,11 +51,11 @@ class ForceDepthCurve:
 
     @property
     def secant(self) -> float:
-        """Force over depth at the end, N/m."""
+        """Force over depth at the last depth, N/m."""
         return float(self.forces[-1] / self.depths[-1])
 
     def as_csv(self) -> str:
-        """Depth in mm, force in N, stiffness in N/mm, contact area in mm2; one line a depth."""
+        """CSV of depth in mm, force in N, stiffness in N/mm, contact area in mm2."""
         table = np.column_stack(
             [
                 self.depths * MILLIMETRES,
@@ -70,7 +70,7 @@ class ForceDepthCurve:
 
 
 def usual_depth(body: SoftBody, at: ArrayLike, tool: Tool | None) -> float:
-    """How far a curve goes if nobody says: metres."""
+    """Default depth of a curve, metres."""
     through = SHARE_OF_THICKNESS * thickness(body, nearest_place(body, at))
     return through if tool is None else min(through, SHARE_OF_TOOL * tool.size)
 
@@ -91,7 +91,7 @@ def force_depth_curve(
     ----------
     depth : metres; see :func:`usual_depth` without.
     tool : a rigid tool, its -z axis along the axis; None for a point.
-    steps : how many depths besides 0.
+    steps : number of depths, without 0.
     young_modulus : pascal; the body's own unless given.
     softenings : (s, 4), for the corrected force of a point
         (:mod:`..large_deformation.felt_force`); None for the linear one. A tool's is linear.
@@ -135,7 +135,7 @@ def force_depth_curve(
 def _of_point(
     body: SoftBody, place: Place, depths: NDArray[np.float64], modulus: float
 ) -> ForceDepthCurve:
-    """A point contact is linear: one touch tells all."""
+    """Curve of a point. A point contact is linear: one touch suffices."""
     touch = body.touch(place.triangle, place.alpha, place.axis, modulus)
     stiffness = -float(touch.force @ place.axis)
     return ForceDepthCurve(
@@ -167,7 +167,7 @@ def _of_softening_point(
 def _of_tool(
     body: SoftBody, place: Place, depths: NDArray[np.float64], modulus: float, tool: Tool
 ) -> ForceDepthCurve:
-    """Deeper and deeper, each depth from the one before."""
+    """Curve of a tool, each depth started from the one before."""
     touch: ToolTouch | None = None
     forces, areas = np.zeros(len(depths)), np.zeros(len(depths))
     for step, depth in enumerate(depths.tolist()):
@@ -180,8 +180,8 @@ def _of_tool(
 
 
 def facing_pose(place: Place, tool: Tool, depth: float) -> Pose:
-    """The tool with its -z axis into the body at a place, its foremost point ``depth`` metres below
-    the rest surface.
+    """Pose of a tool with its -z axis into the body at a place, its foremost point ``depth``
+    metres below the rest surface.
     """
     foremost = float(-tool.core[:, 2].min()) + tool.radius
     sideways = across(-place.axis)

@@ -1,4 +1,4 @@
-"""Where parallel lines meet a surface: seen along them, points in flat triangles."""
+"""Crossings of parallel lines and a surface: points in triangles of a projection."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ from numpy.typing import NDArray
 
 from ..mesh.tet_mesh import TetMesh
 
-# Pairs of line and triangle looked at together; bounds memory to some 100 MB.
+# Pairs of line and triangle in one batch; bounds memory to some 100 MB.
 PAIRS_TOGETHER = 1_000_000
 
-# Area coordinates this far below zero still count, so that no line slips through between triangles.
+# Tolerance of area coordinates below zero, so that no line slips between triangles.
 EDGE_SLACK = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
 class Crossings:
-    """Places where lines cross a surface, sorted by line and then by height.
+    """Crossings of lines and a surface, sorted by line and then by height.
 
     Attributes
     ----------
-    lines : int64 (c,), which line.
+    lines : int64 (c,), number of the line.
     heights : float64 (c,), metres along the direction from the line's own point.
     triangles : int64 (c,), number of the surface triangle.
     alphas : float64 (c, 3), area coordinates there.
@@ -37,7 +37,7 @@ class Crossings:
 
 
 def across(direction: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Two unit vectors (2, 3) that with the unit ``direction`` (3,) make a right-handed frame."""
+    """Two unit vectors (2, 3) that complete the unit ``direction`` (3,) to a right-handed frame."""
     aside = np.eye(3)[int(np.abs(direction).argmin())]
     first = np.cross(aside, direction)
     first /= np.linalg.norm(first)
@@ -47,8 +47,8 @@ def across(direction: NDArray[np.float64]) -> NDArray[np.float64]:
 def crossings(
     mesh: TetMesh, origins: NDArray[np.float64], direction: NDArray[np.float64]
 ) -> Crossings:
-    """Where the lines through ``origins`` (p, 3) along the unit ``direction`` (3,) cross the
-    surface, before and behind the origins.
+    """Crossings of the surface and the lines through ``origins`` (p, 3) along the unit
+    ``direction`` (3,), on both sides of the origins.
     """
     frame = across(direction)
     corners = mesh.nodes[mesh.surface_triangles]
@@ -71,7 +71,7 @@ def crossings(
 
 
 def _overlapping(flat: NDArray[np.float64], seen: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Triangles (s, 3, 2) whose boxes meet that of the points (p, 2) and that are not edge-on."""
+    """Triangles (s, 3, 2), not edge-on, whose boxes overlap that of the points (p, 2)."""
     apart = (flat.min(axis=1) > seen.max(axis=0)) | (flat.max(axis=1) < seen.min(axis=0))
     return np.flatnonzero(~apart.any(axis=1) & (_doubled_areas(flat) != 0))
 
@@ -85,7 +85,7 @@ def _doubled_areas(flat: NDArray[np.float64]) -> NDArray[np.float64]:
 def _in_triangles(
     seen: NDArray[np.float64], flat: NDArray[np.float64], first: int
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
-    """Which points lie in which triangles, and their area coordinates; lines count from first."""
+    """Pairs of point and triangle around it, with area coordinates; lines count from first."""
     one, two = flat[:, 1] - flat[:, 0], flat[:, 2] - flat[:, 0]
     area = _doubled_areas(flat)
     away = seen[:, None] - flat[None, :, 0]

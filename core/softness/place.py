@@ -1,4 +1,4 @@
-"""A place on a body's rest surface, with the direction that goes straight into it."""
+"""Place on a body's rest surface, with the inward direction."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ class Place:
     alpha: NDArray[np.float64]
 
     def pinned(self, body: SoftBody) -> bool:
-        """Whether a node that carries this place is pinned."""
+        """Whether a node of this place's triangle is pinned."""
         corners = body.mesh.surface_triangles[self.triangle][self.alpha > 0]
         return bool(np.isin(corners, body.fixed).any())
 
 
 def nearest_place(body: SoftBody, at: ArrayLike) -> Place:
-    """The place nearest to ``at`` (3,), metres.
+    """Place nearest to ``at`` (3,), metres.
 
     Raises
     ------
@@ -58,7 +58,7 @@ def nearest_place(body: SoftBody, at: ArrayLike) -> Place:
 
 
 def thickness(body: SoftBody, place: Place) -> float:
-    """How far it is through the body along the axis, metres."""
+    """Thickness of the body along the axis, metres."""
     met = crossings(body.mesh, place.position[None], place.axis)
     size = float(np.ptp(body.mesh.nodes, axis=0).max())
     leaving = met.heights[~met.inward & (met.heights > 1e-9 * size)]

@@ -1,7 +1,7 @@
-"""Colours for values, told apart by everybody: dark blue to yellow, lighter all along the way.
+"""Colour map that everybody can read: dark blue to yellow, of rising lightness.
 
-Anchors after *cividis* (Nunez, Anderton and Renslow 2018, PLOS ONE 13, e0199239), which was made so
-that people with and without colour vision deficiency see nearly the same.
+Anchors after *cividis* (Nunez, Anderton and Renslow 2018, PLOS ONE 13, e0199239), designed for
+people with and without colour vision deficiency.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
-"""How soft a body is to a finger, all over its surface.
+"""Map of a body's softness to a finger, all over its surface.
 
-At each node: how hard a small round pad must be pushed for each millimetre that it sinks in, from
-the diagonal blocks of the compliance, k = E / (n . C n). Of a node alone, C = L_aa follows the
-mesh: a node of small triangles gives way more than one of large ones. With the near field
-(:mod:`..near_field`) C is that of a pad of a given size under even pressure, whatever the mesh.
+At each node: the stiffness against a small round pad, from the diagonal blocks of the compliance,
+k = E / (n . C n). C = L_aa of a node alone depends on the mesh: a node of small triangles gives way
+more. With the near field (:mod:`..contact.near_field`) C is that of a pad of a given size under
+even pressure, for any mesh.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from ..contact.near_field.contact_points import ContactPoints, node_normals
 from ..contact.near_field.half_space import OWN_CELL
 from ..errors import PalpateError
 
-# The pad of a fingertip that rests lightly.
+# Pad of a lightly resting fingertip.
 FINGER_RADIUS = 5e-3
 
 # Mean displacement under an even pressure on a disc, times sqrt(area) pi / (1 - nu^2) per newton at
@@ -27,7 +27,7 @@ FINGER_RADIUS = 5e-3
 # and of that IN_CONTACT.
 DISC_MEAN = 16.0 / (3.0 * np.sqrt(np.pi))
 
-# Shares of the nodes that lie outside the colours' range at either end.
+# Shares of the nodes outside the colours' range at either end.
 CLIPPED = 0.02
 
 
@@ -47,12 +47,12 @@ class SoftnessMap:
 
     @property
     def span(self) -> tuple[float, float]:
-        """Lowest and highest stiffness that colours tell apart, N/m; a few nodes lie beyond."""
+        """Lowest and highest stiffness of the colours, N/m; a few nodes lie beyond."""
         low, high = np.quantile(self.stiffness, [CLIPPED, 1.0 - CLIPPED])
         return float(low), float(high)
 
     def shares(self) -> NDArray[np.float64]:
-        """Where each node lies between the ends of :attr:`span`, on a scale of ratios, 0 to 1."""
+        """Each node's position between the ends of :attr:`span`, logarithmic, 0 to 1."""
         low, high = self.span
         if high <= low * (1.0 + 1e-9):
             return np.full(len(self.stiffness), 0.5)
@@ -93,7 +93,7 @@ def softness_map(
 
 
 def _of_pads(body: SoftBody, normals: NDArray[np.float64], radius: float) -> NDArray[np.float64]:
-    """What a pad's own size adds to the block of each node, (s, 3, 3), m / N at 1 Pa."""
+    """Addition of a pad's size to the block of each node, (s, 3, 3), m / N at 1 Pa."""
     mesh = body.mesh
     count = len(mesh.surface_nodes)
     triangle, corner = np.divmod(np.unique(mesh.surface_local_triangles, return_index=True)[1], 3)

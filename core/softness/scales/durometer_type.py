@@ -1,4 +1,4 @@
-"""What a durometer is by ASTM D2240: an indenter on a spring, in the hole of a flat foot.
+"""Durometers by ASTM D2240: an indenter on a spring, in the hole of a flat foot.
 
 Figures are the nominal ones of ASTM D2240 for types A and 00, in SI units. A reading of 100 means
 that the indenter is pushed back flush with the foot, 0 that it stands out all the way.
@@ -16,18 +16,18 @@ MILLIMETRE = 1e-3
 
 @dataclass(frozen=True)
 class DurometerType:
-    """One type of durometer. Lengths in metres, forces in newton.
+    """Type of durometer. Lengths in metres, forces in newton.
 
     Attributes
     ----------
     name : of the scale: "A" or "00".
-    travel : how far the indenter stands out of the foot at a reading of 0.
+    travel : length of the indenter out of the foot at a reading of 0.
     force_at_zero, force_per_point : the spring's law, F = force_at_zero + force_per_point * S.
     shaft : largest radius of the indenter; above its tip it is a cylinder.
     tip : radius of the flat end of a truncated cone, or 0 for a ball of radius ``shaft``.
     half_angle : of the cone, radians; 0 for a ball.
     foot, hole : outer radius of the foot and radius of its hole.
-    load : with what the foot is pressed on in the standard's stand (a mass times 9.81 m/s2).
+    load : on the foot in the standard's stand (a mass times 9.81 m/s2).
     """
 
     name: str
@@ -42,7 +42,7 @@ class DurometerType:
     load: float
 
     def depth(self, reading: float) -> float:
-        """How far the indenter stands out of the foot at a reading, metres."""
+        """Length of the indenter out of the foot at a reading, metres."""
         return self.travel * (1.0 - reading / 100.0)
 
     def force(self, reading: float) -> float:

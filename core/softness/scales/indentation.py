@@ -1,4 +1,4 @@
-"""Closed forms: a rigid indenter of revolution on an elastic half-space, without friction.
+"""Closed forms of rigid indenters of revolution on an elastic half-space, without friction.
 
 Forces are in units of the plane-strain modulus E* = E / (1 - nu^2): newton per pascal, that is m2.
 Contact radius a, depth h, force F:
@@ -9,7 +9,7 @@ ball, exact       h = a/2 ln((R+a)/(R-a)),
                   F = E* ((R^2+a^2)/2 ln((R+a)/(R-a)) - a R)           Segedin 1957, Sneddon 1965
 truncated cone    h = a cot(theta) phi,  cos(phi) = tip/a,
                   F = E* a^2 cot(theta) (phi + sin(phi) cos(phi))      Sneddon 1965
-Past the shaft's radius the contact cannot grow, and every further depth adds that of a flat punch.
+Beyond the shaft's radius the contact stops growing; further depth adds the force of a flat punch.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from scipy.optimize import brentq
 
 from .durometer_type import DurometerType
 
-# So near to a ball's full radius the depth of its contact has long left every durometer's travel.
+# Share of a ball's radius beyond which its depth exceeds every durometer's travel.
 FULLEST_CONTACT = 1.0 - 1e-12
 
 
@@ -44,8 +44,8 @@ def ball_force(radius: float, depth: float) -> float:
 
 
 def cone_force(tip: float, shaft: float, half_angle: float, depth: float) -> float:
-    """Force over E* (m2) of a truncated cone with a flat end of radius ``tip``, which goes over
-    into a cylinder of radius ``shaft``; ``half_angle`` in radians.
+    """Force over E* (m2) of a truncated cone with a flat end of radius ``tip`` that continues
+    as a cylinder of radius ``shaft``; ``half_angle`` in radians.
     """
     if depth <= 0.0:
         return 0.0
@@ -65,7 +65,7 @@ def cone_force(tip: float, shaft: float, half_angle: float, depth: float) -> flo
 
 
 def indenter_force(kind: DurometerType, depth: float) -> float:
-    """Force over E* (m2) of a durometer's indenter at this depth below the surface far away."""
+    """Force over E* (m2) of a durometer's indenter at this depth below the undeformed surface."""
     if kind.tip > 0.0:
         return cone_force(kind.tip, kind.shaft, kind.half_angle, depth)
     return ball_force(kind.shaft, depth)

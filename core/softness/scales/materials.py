@@ -1,12 +1,12 @@
-"""Materials a prop maker knows, as Young's modulus and Poisson's ratio, each with its source.
+"""Material presets for prop makers: Young's modulus and Poisson's ratio, each with its source.
 
-Real batches differ by a factor of two either way. ``basis`` says how a modulus came about:
+Real batches differ by a factor of two either way. ``basis`` is the origin of a modulus:
 
-measured    by the paper that is named
+measured    by the named paper
 derived     from the Shore value on the data sheet by the usual relation of its scale, so that a
-            virtual durometer reads what is written on the tin; ``measured_modulus`` beside it is
-            what tensile tests say, where somebody published them
-estimate    from what is told, or an order of magnitude
+            virtual durometer reads the data sheet's value; ``measured_modulus`` is that of
+            published tensile tests
+estimate    from descriptions, or an order of magnitude
 """
 
 from __future__ import annotations
@@ -25,15 +25,15 @@ NGUYEN = "Nguyen et al. 2014, Ultrasound in Medicine and Biology 40, 168"
 
 @dataclass(frozen=True)
 class Material:
-    """A named isotropic material.
+    """Named isotropic material.
 
     Attributes
     ----------
-    name : as it is shown.
+    name : in panels and tables.
     young_modulus : pascal.
     poisson_ratio : without unit.
     basis : "measured", "derived" or "estimate"; see above.
-    source : where the figures come from.
+    source : of the figures.
     shore : by the data sheet, where it gives one.
     density : kilograms per cubic metre, where it is known.
     measured_modulus : pascal, by tensile tests at small strain, where ``basis`` is another.
@@ -58,12 +58,12 @@ def _by_shore(
     density: float | None = None,
     measured_modulus: float | None = None,
 ) -> Material:
-    """A material whose modulus is that of its Shore value, to three digits."""
+    """Material with the modulus of its Shore value, to three digits."""
     young = float(f"{young_from_shore(shore, poisson_ratio):.3g}")
     return Material(name, young, poisson_ratio, "derived", source, shore, density, measured_modulus)
 
 
-# A .blend keeps the order of the first seven: add new ones at the end only.
+# Files refer to the first seven by number: add new ones at the end only.
 MATERIALS = {
     "PLUSH": Material("Plush toy", 1_000.0, 0.30),
     "JELLY": Material(

@@ -1,7 +1,7 @@
-"""How a Shore value and Young's modulus go together: several relations, each where it is fit.
+"""Relations between Shore values and Young's modulus, each with its range.
 
-All say what modulus a large, thick, linear block must have for a durometer to read S on it. They
-are monotonic in S, so each can be asked both ways. Real materials differ by a factor of two.
+Each gives the modulus of a large, thick, linear block on which a durometer reads S. They are
+monotonic in S and can be inverted. Real materials differ by a factor of two.
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ MEGAPASCAL = 1e6
 
 @dataclass(frozen=True)
 class Relation:
-    """One relation between a Shore value and Young's modulus.
+    """Relation between a Shore value and Young's modulus.
 
     Attributes
     ----------
-    name : how it is chosen.
+    name : for users to choose by.
     scale : "A" or "00".
-    lowest, highest : the readings between which it is used.
+    lowest, highest : readings, its range.
     rubber_modulus : Young's modulus in pascal at a reading, for a Poisson's ratio of 0.5.
-    source : where it comes from.
+    source : publication.
     """
 
     name: str
@@ -66,12 +66,12 @@ def mix(reading: float) -> float:
 
 
 def cone(reading: float) -> float:
-    """Young's modulus in pascal at a Shore A reading: the cone as it is (Sneddon 1965)."""
+    """Young's modulus in pascal at a Shore A reading: the exact cone (Sneddon 1965)."""
     return _rubber_modulus(TYPE_A, reading, indenter_force(TYPE_A, TYPE_A.depth(reading)))
 
 
 def ball(reading: float) -> float:
-    """Young's modulus in pascal at a Shore 00 reading: the ball as it is (Segedin 1957)."""
+    """Young's modulus in pascal at a Shore 00 reading: the exact ball (Segedin 1957)."""
     return _rubber_modulus(TYPE_00, reading, indenter_force(TYPE_00, TYPE_00.depth(reading)))
 
 

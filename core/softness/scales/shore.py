@@ -1,4 +1,4 @@
-"""Shore values as makers write them, and Young's modulus: from one to the other and back."""
+"""Shore values as makers write them, and their conversion to and from Young's modulus."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ...sentence import Sentence
 from .relations import RELATIONS, RUBBER_POISSON_RATIO, USUAL, Relation
 
 SCALES = tuple(sorted(USUAL))
-# A modulus beyond a range by this share is one at its end: no durometer tells them apart.
+# Relative tolerance at the ends of a range, below what a durometer resolves.
 SLACK = 0.01
 # "00-30", "OO 30", "A20", "20A", "20 Shore A", "Shore A 20"; letters O for zeros are common.
 _SCALE_FIRST = re.compile(r"(?:SHORE\s*)?(00|OO|A)[\s-]*(\d+(?:\.\d+)?)")
@@ -22,13 +22,13 @@ _SCALE_LAST = re.compile(r"(\d+(?:\.\d+)?)\s*(?:SHORE\s*)?(00|OO|A)")
 
 @dataclass(frozen=True)
 class Shore:
-    """A reading on a Shore scale, "00" or "A"."""
+    """Reading on a Shore scale, "00" or "A"."""
 
     scale: str
     value: float
 
     def __str__(self) -> str:
-        """As makers write it: ``00-30``, ``A 20``."""
+        """Text as makers write it: ``00-30``, ``A 20``."""
         return f"00-{self.value:.3g}" if self.scale == "00" else f"{self.scale} {self.value:.3g}"
 
     @classmethod
@@ -55,7 +55,7 @@ class Shore:
 
 
 def relation_for(scale: str, name: str | None = None) -> Relation:
-    """The relation of this name, or the usual one of the scale.
+    """Relation of this name, or the scale's usual one.
 
     Raises
     ------
@@ -83,8 +83,8 @@ def young_from_shore(
 ) -> float:
     """Young's modulus in pascal of a large block on which a durometer reads ``shore``.
 
-    What a durometer feels is E / (1 - nu^2); the relations are for rubber, nu = 0.5, and are
-    carried over to other Poisson's ratios by that.
+    A durometer senses E / (1 - nu^2); the relations, which are for rubber, nu = 0.5, are converted
+    by that.
 
     Raises
     ------
@@ -110,7 +110,7 @@ def shore_from_young(
     poisson_ratio: float = RUBBER_POISSON_RATIO,
     relation: str | None = None,
 ) -> Shore:
-    """What a durometer of this scale reads on a large block of ``young_modulus``, pascal.
+    """Reading of this scale's durometer on a large block of ``young_modulus``, pascal.
 
     Raises
     ------
@@ -139,7 +139,7 @@ def shore_from_young(
             remedy=_other_scale(scale, young_modulus < softest),
         )
     rubber = young_modulus / _against_rubber(poisson_ratio)
-    # Within the slack at the ends there is no change of sign to be found.
+    # Within the tolerance at the ends there is no change of sign.
     if rubber <= chosen.rubber_modulus(chosen.lowest):
         return Shore(scale, chosen.lowest)
     if rubber >= chosen.rubber_modulus(chosen.highest):
@@ -164,7 +164,7 @@ def young_range(
 
 
 def _against_rubber(poisson_ratio: float) -> float:
-    """(1 - nu^2) over that of rubber.
+    """Ratio of 1 - nu^2 to that of rubber.
 
     Raises
     ------
