@@ -1,1 +1,1 @@
-"""Devices for everybody without hardware."""
+"""Simulated devices."""

@@ -1,4 +1,4 @@
-"""The simulated device: a process of its own on a pseudo-terminal that speaks the link.
+"""Process of the simulated device, which speaks the link on a pseudo-terminal.
 
 Started as `palpate devices simulate`, or by `SimulatedDevice`.
 """
@@ -29,7 +29,7 @@ Board = SimulatedBoard | HaplyBoard
 
 
 class Clock:
-    """Ticks at absolute deadlines, and what became of them."""
+    """Clock of ticks at absolute deadlines, with statistics."""
 
     def __init__(self, rate_hz: int) -> None:
         self._period = 1.0 / rate_hz
@@ -45,7 +45,7 @@ class Clock:
         return time.perf_counter() - self._start
 
     def wait(self) -> int:
-        """Sleep until the next deadline; returns how many periods have passed, at least 1."""
+        """Sleep until the next deadline; returns the number of periods passed, at least 1."""
         self._deadline += self._period
         while (pause := self._deadline - time.perf_counter()) > 0.0:
             time.sleep(pause)
@@ -59,7 +59,7 @@ class Clock:
         return min(missed + 1, MOST_STEPS_AT_ONCE)
 
     def report(self) -> dict[str, object]:
-        """The rate that was reached, and what kept it from the one asked for."""
+        """Rate reached, and lost ticks."""
         seconds = self.now()
         return {
             "seconds": seconds,
@@ -77,11 +77,11 @@ def run(
     commands: bool = False,
     json_lines: bool = True,
 ) -> None:
-    """Be the device until SIGTERM, SIGINT or, with `commands`, the end of standard input.
+    """Run the device until SIGTERM, SIGINT or, with `commands`, the end of standard input.
 
-    `haply` names the model of a Haply 2DIY to be; without it the device speaks the link.
+    `haply` is the model of a Haply 2DIY to simulate; without it the device speaks the link.
 
-    Prints where the port is at the start and what was counted at the end, a JSON line each.
+    Prints the port at the start and the counters at the end, a JSON line each.
     `commands` reads lines from standard input: `unplug`, `plug`, `buttons MASK`,
     `move X Y Z SECONDS`, `turn W X Y Z SECONDS`, `report` (prints a JSON line).
     Raises PalpateError when there can be no such port.
@@ -98,7 +98,7 @@ def run(
                 board.tick(clock.now(), steps)
                 if inbox and not inbox.obey(board, clock):
                     break
-            # Whoever started this may be gone, and the report with them.
+            # The reader of the report may be gone.
             with contextlib.suppress(BrokenPipeError):
                 report = {"end": True, "realtime": realtime, **clock.report(), **board.report()}
                 _print_json(report, json_lines)
@@ -107,7 +107,7 @@ def run(
 
 
 class _Commands:
-    """Lines on standard input, read without ever waiting for them."""
+    """Commands from standard input, read without blocking."""
 
     def __init__(self) -> None:
         os.set_blocking(0, False)
@@ -115,7 +115,7 @@ class _Commands:
         self._begun = b""
 
     def obey(self, board: Board, clock: Clock) -> bool:
-        """False when standard input has ended or the parent process has."""
+        """Execute pending commands; False when standard input or the parent has ended."""
         try:
             data = os.read(0, 4096)
         except BlockingIOError:
@@ -146,7 +146,7 @@ class _Commands:
 
 
 def _ask_for_real_time() -> bool:
-    """A board has nobody beside it; come as near to that as this user may, below any servo."""
+    """Ask for the highest priority that this user may have, below any servo."""
     if sys.platform != "linux":
         return False
     try:
@@ -179,7 +179,7 @@ def _print(line: str) -> None:
 
 
 def add_haply_option(parser: argparse.ArgumentParser) -> None:
-    """Give `parser` the option to be a Haply 2DIY."""
+    """Add the option for a Haply 2DIY to `parser`."""
     parser.add_argument(
         "--haply",
         nargs="?",
@@ -191,7 +191,7 @@ def add_haply_option(parser: argparse.ArgumentParser) -> None:
 
 
 def main() -> int:
-    """The command line of this file."""
+    """Command line of this file."""
     parser = argparse.ArgumentParser(description="A simulated haptic device on a pseudo-terminal.")
     add_simulated_options(parser)
     add_haply_option(parser)

@@ -1,4 +1,4 @@
-"""Starting and stopping the simulated device from tests, command line and Blender."""
+"""Simulated device as a child process, for tests, command line and Blender."""
 
 from __future__ import annotations
 
@@ -28,12 +28,11 @@ ANSWER_SECONDS = 10.0
 
 
 class SimulatedDevice:
-    """The simulated device as a child process. It ends with `stop`, with the `with` block, and by
-    itself when this process dies.
+    """Child process that ends with `stop`, with the `with` block, and when this process dies.
 
-    `haply` names the model of a Haply 2DIY to be; without it the device speaks the link.
+    `haply` is the model of a Haply 2DIY to simulate; without it the device speaks the link.
 
-    `python` and `python_args` say how to start Python; inside Blender these are `sys.executable`
+    `python` and `python_args` start Python; inside Blender these are `sys.executable`
     and `bpy.app.python_args`. Raises PalpateError where there are no pseudo-terminals and when the
     device does not start.
     """
@@ -50,7 +49,7 @@ class SimulatedDevice:
         options = options or SimulatedOptions()
         self._folder: tempfile.TemporaryDirectory[str] | None = None
         if not options.link:
-            # So that it can be unplugged and come back at the same path.
+            # A link, so that it comes back at the same path after unplugging.
             self._folder = tempfile.TemporaryDirectory(prefix="palpate-device-")
             options = replace(options, link=str(Path(self._folder.name) / "port"))
         self.options = options
@@ -70,7 +69,7 @@ class SimulatedDevice:
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
-                # Ctrl-C is for the host: the device must still be there while the host lets go.
+                # Ctrl-C is for the host: the device must survive until the host has released it.
                 start_new_session=True,
             )
         except OSError as error:
@@ -100,16 +99,16 @@ class SimulatedDevice:
 
     @property
     def running(self) -> bool:
-        """Whether the process lives."""
+        """Whether the process is running."""
         return self._process.poll() is None
 
     @property
     def pid(self) -> int:
-        """Its process number."""
+        """Process id."""
         return self._process.pid
 
     def unplug(self) -> None:
-        """Make the port vanish; `plug_in` brings it back at the same path."""
+        """Remove the port; `plug_in` brings it back at the same path."""
         self._command("unplug")
 
     def plug_in(self) -> None:
@@ -127,18 +126,18 @@ class SimulatedDevice:
 
     def turn_hand(self, rotation: Quaternion, seconds: float) -> None:
         """Leave the script and turn the stylus to a unit quaternion (w, x, y, z) in `seconds`; from
-        then on the device tells how it is turned.
+        then on the device sends its orientation.
         """
         w, x, y, z = map(float, rotation)
         self._command(f"turn {w!r} {x!r} {y!r} {z!r} {float(seconds)!r}")
 
     def report(self) -> dict[str, Any]:
-        """What the device has counted, and where it is now (see `SimulatedBoard.report`)."""
+        """Counters and present state (see `SimulatedBoard.report`)."""
         self._command("report")
         return self._read_json(ANSWER_SECONDS)
 
     def stop(self) -> dict[str, Any]:
-        """End the process and return its last report; idempotent. Empty if it ended without one."""
+        """End the process and return its last report, empty if there is none; idempotent."""
         if self._last_report is None:
             self._last_report = self._end()
             self._remove_folder()
@@ -150,7 +149,7 @@ class SimulatedDevice:
 
     def _end(self) -> dict[str, Any]:
         try:
-            # This closes its standard input, which tells it to stop.
+            # Closes its standard input, which stops it.
             rest, _ = self._process.communicate(timeout=ANSWER_SECONDS)
         except subprocess.TimeoutExpired:
             self._process.kill()

@@ -1,1 +1,1 @@
-"""The native thread, its devices and recordings."""
+"""Sessions with the native thread, its devices and recordings."""

@@ -1,8 +1,8 @@
-"""The five-bar arm of a Haply 2DIY: where its handle is, and what its motors do there.
+"""Kinematics and statics of the five-bar arm of a Haply 2DIY.
 
 Points of the plane are complex numbers, m, in the arm's own axes: motor 1 at 0, motor 2 at
-`spacing` on the real axis, angles from the real towards the imaginary axis. Written apart from the
-servo's geometry, as what it is tested against: the handle by intersecting circles, forces by
+`spacing` on the real axis, angles from the real towards the imaginary axis. Independent of
+the servo's geometry, which is tested against it: the handle by intersecting circles, forces by
 statics.
 """
 
@@ -18,14 +18,14 @@ Vector = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class FiveBar:
-    """Lengths in m: motor to elbow, elbow to handle, motor to motor."""
+    """Five-bar linkage. Lengths in m: motor to elbow, elbow to handle, motor to motor."""
 
     proximal: float
     distal: float
     spacing: float
 
     def handle(self, angles: Pair) -> complex | None:
-        """Where the handle is for motor angles (rad), or None where the forearms cannot meet."""
+        """Place of the handle for motor angles (rad), or None where the forearms cannot meet."""
         left, right = self._elbows(angles)
         gap, bearing = cmath.polar(right - left)
         if not 0.0 < gap <= 2.0 * self.distal:
@@ -46,8 +46,7 @@ class FiveBar:
         """Force on the handle (N) of motors with these torques (N m).
 
         Forearms carry force only along themselves: motor i balances one of size tau / (l sin beta),
-        with beta the angle between its two links. Stretched, where no torque could hold the
-        handle, that is cut off at beta = 1 mrad.
+        beta the angle between its links, at least 1 mrad: no torque holds a stretched arm.
         """
         handle = self.handle(angles)
         if handle is None:

@@ -1,4 +1,4 @@
-"""The 2DIYs that can be simulated: lengths, what is on which port, and the rest pose."""
+"""Models of the 2DIY for simulation: lengths, ports and rest poses."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from .haply_arm import FiveBar, Pair, Vector
 
 @dataclass(frozen=True)
 class HaplyModel:
-    """A device as built.
+    """Device as built.
 
-    Ports count from 0; senses are those with which angles and torques come out right; resolutions
-    are the counts a turn that hosts tell the board.
+    Ports count from 0; senses are those that make angles and torques correct; resolutions are the
+    counts per turn that hosts set.
     """
 
     arm: FiveBar
@@ -29,21 +29,21 @@ class HaplyModel:
     """Middle of the workspace in the arm's axes, m."""
 
     def device_position(self, handle: complex) -> Vector:
-        """From the arm's axes (x to the left, y to the user) to the servo's (right, away, up)."""
+        """Position in the servo's axes (right, away, up) from the arm's (left, to the user)."""
         offset = self.centre - handle
         return (offset.real, offset.imag, 0.0)
 
     def handle(self, position: Vector) -> complex:
-        """The other way round; the height is dropped."""
+        """Place of the handle in the arm's axes; inverse of :meth:`device_position`."""
         return self.centre - complex(position[0], position[1])
 
     def device_force(self, force: complex) -> Vector:
-        """A force in the arm's axes as the servo counts it."""
+        """Force in the servo's axes, from the arm's."""
         return (-force.real, -force.imag, 0.0)
 
     @property
     def rest(self) -> Vector:
-        """The rest pose, m."""
+        """Rest pose, m."""
         handle = self.arm.handle((self._radians[0], self._radians[1]))
         if handle is None:
             raise PalpateError("simulated 2DIY: this model has no rest pose; mend its figures")
@@ -54,11 +54,11 @@ class HaplyModel:
         return (math.radians(self.rest_degrees[0]), math.radians(self.rest_degrees[1]))
 
     def angles(self, position: Vector) -> Pair | None:
-        """Motor angles (degrees, counted through from the rest pose) at a position."""
+        """Motor angles (degrees, continuous from the rest pose) at a position."""
         found = self.arm.angles(self.handle(position))
         if found is None:
             return None
-        # The same angle, at most half a turn from the rest pose.
+        # Within half a turn of the rest pose.
         first, second = (
             rest + math.degrees(cmath.phase(cmath.exp(1j * (angle - math.radians(rest)))))
             for angle, rest in zip(found, self.rest_degrees, strict=True)
@@ -98,7 +98,7 @@ HAPLY_MODELS = {
 DEFAULT_MODEL = "2diy-3.1"
 
 HAPI_USB_IDS = frozenset(
-    # Native ports of the Arduino Due, Zero, M0 and M0 Pro, as which hAPI boards show up.
+    # USB ids of the native ports of the Arduino Due, Zero, M0 and M0 Pro, which hAPI boards show.
     f"{vendor}:{product}"
     for vendor in ("2341", "2a03")
     for product in ("003e", "804d", "804e", "804f")
@@ -107,7 +107,7 @@ HAPI_USB_IDS = frozenset(
 
 
 def haply_model(name: str) -> HaplyModel:
-    """Raises PalpateError for a name that is not known."""
+    """Model by name; raises PalpateError for an unknown one."""
     try:
         return HAPLY_MODELS[name]
     except KeyError:

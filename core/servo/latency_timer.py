@@ -1,8 +1,8 @@
-"""FTDI's latency timer: shortened where an ordinary user may, and recognised where it is not.
+"""FTDI's latency timer: shortened where the user may, and detected where not.
 
-FTDI's USB serial adapters keep received bytes until a timer ends, 16 ms as delivered. STATE made
-every millisecond then arrives in bursts, 62.5 a second, and the force answers to where the probe
-was (FTDI, application note AN232B-04, "Data Throughput, Latency and Handshaking").
+FTDI's USB serial adapters hold received bytes for up to 16 ms by default. STATE at 1 kHz then
+arrives in bursts, 62.5 a second, and the force lags behind the probe (FTDI, application note
+AN232B-04, "Data Throughput, Latency and Handshaking").
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from typing import Any
 
 from ..sentence import Sentence
 
-# linux/serial.h: flags are the fifth number of struct serial_struct, which is shorter than this.
+# linux/serial.h: flags are the fifth number of struct serial_struct, which fits this size.
 _SERIAL_STRUCT = struct.Struct("32i")
 _FLAGS = 4
 _ASYNC_LOW_LATENCY = 1 << 13
@@ -31,10 +31,10 @@ BURST_STATES = 3
 
 
 def ask_for_low_latency(descriptor: int) -> bool:
-    """Ask the driver of an open port to hand bytes over at once; whether it agreed.
+    """Ask the driver of an open port for low latency; whether it agreed.
 
-    Any user may ask on Linux, and FTDI's timer then goes to 1 ms until the adapter is unplugged.
-    Other systems have no such request, and ports without a timer refuse it: neither is a fault.
+    On Linux any user may, which sets FTDI's timer to 1 ms until the adapter is unplugged. Other
+    systems have no such request, and ports without a timer refuse it: neither is a fault.
     """
     if sys.platform != "linux":
         return False
@@ -52,7 +52,7 @@ def ask_for_low_latency(descriptor: int) -> bool:
 
 
 def latency_timer_ms(path: str, driver: Path = _DRIVER) -> int | None:
-    """The timer of the adapter at ``path``; None where it has none or the system does not tell."""
+    """Timer of the adapter at ``path``, ms; None if it has none or it is unknown."""
     try:
         return int((driver / Path(os.path.realpath(path)).name / "latency_timer").read_text())
     except (OSError, ValueError):
@@ -60,7 +60,7 @@ def latency_timer_ms(path: str, driver: Path = _DRIVER) -> int | None:
 
 
 def explain(link: Mapping[str, Any], path: str = "") -> Sentence | None:
-    """What to tell the user when the adapter holds STATE back, and what helps; else None.
+    """Warning with remedy where the adapter holds STATE back, else None.
 
     Parameters
     ----------
@@ -75,12 +75,11 @@ def explain(link: Mapping[str, Any], path: str = "") -> Sentence | None:
 def explain_readings(
     readings: Sequence[tuple[float, Sequence[int]]], path: str = ""
 ) -> Sentence | None:
-    """The same from what was read of a port, by the rules of `native/src/device/arrival.rs`.
+    """Warning from readings of a port, by the rules of `native/src/device/arrival.rs`.
 
     Parameters
     ----------
-    readings : time (s) of each reading and the device times (us) of the STATEs that it brought,
-        none where it was in vain.
+    readings : time (s) of each reading and the device times (us) of its STATEs, if any.
     """
     pauses: list[float] = []
     held = states = 0
@@ -110,7 +109,7 @@ def _since(first_us: int, last_us: int) -> float:
 
 
 def remedy(path: str = "", system: str = sys.platform) -> Sentence:
-    """How a user sets the timer to 1 ms."""
+    """Instructions to set the timer to 1 ms."""
     if system == "win32":
         return Sentence(
             "in the Device Manager open the port's properties, Port Settings, Advanced, and set "

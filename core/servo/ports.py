@@ -1,4 +1,4 @@
-"""Which serial ports there are, what is plugged in, and whether it answers HELLO."""
+"""Serial ports, the devices plugged in, and their answers to HELLO."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ HELLO_EVERY_SECONDS = 0.1
 LISTEN_SECONDS = 0.4
 """So long STATE is watched: 25 bursts of an adapter with its timer as delivered."""
 
-# Linux tells whether somebody holds the terminal alone; Python 3.11 has no name for the request.
+# Linux: whether another process has exclusive access; unnamed in Python 3.11.
 _TIOCGEXCL = 0x80045440
 
 _REASONS = {
@@ -46,7 +46,7 @@ _REASONS = {
 
 
 class PortError(PalpateError):
-    """A port that cannot be used; `reason` is the message without the port's name."""
+    """Unusable port; `reason` is the message without the port's name."""
 
     def __init__(self, path: str, reason: str) -> None:
         super().__init__("{path}: {reason}", path=path, reason=reason)
@@ -55,7 +55,7 @@ class PortError(PalpateError):
 
 @dataclass(frozen=True)
 class Port:
-    """A serial port and what is known of it; texts are empty where nothing is known."""
+    """Serial port; texts are empty where nothing is known."""
 
     path: str
     description: str = ""
@@ -66,7 +66,7 @@ class Port:
     hello: link.DeviceHello | None = None
     """The device's answer."""
     tells_orientation: bool = False
-    """Whether it told how its stylus is turned while it was listened to."""
+    """Whether an ORIENTATION was heard."""
     reason: str = ""
     """Why there is no answer."""
     warning: str = ""
@@ -76,9 +76,9 @@ class Port:
 def list_ports(extra: Sequence[str] = (), seconds: float = ANSWER_SECONDS) -> list[Port]:
     """All ports of this computer, then `extra` paths, each asked for HELLO for up to `seconds`.
 
-    A port that is no USB device is asked only when it is among `extra`: it may be the console, or
-    a machine that does not expect to be spoken to. So is what may be a Haply 2DIY. Those of
-    `extra` are listened to a little longer, for the `warning` and the orientation.
+    Ports that are no USB devices, and possible Haply 2DIYs, are asked only if among `extra`: they
+    may be the console, or a machine that expects something else. Those of `extra` are listened to
+    a little longer, for the `warning` and the orientation.
     """
     found = [
         Port(
@@ -99,7 +99,7 @@ def list_ports(extra: Sequence[str] = (), seconds: float = ANSWER_SECONDS) -> li
 def _asked(port: Port, named: bool, seconds: float) -> Port:
     hello, turns, reason, warning = None, False, "", ""
     if port.usb_id in HAPI_USB_IDS and not named:
-        # A byte of HELLO makes a hAPI board forget its device.
+        # A byte of HELLO resets a hAPI board's device.
         reason = (
             "not asked, as it may be a Haply 2DIY, which HELLO would confuse; try 'palpate servo "
             f"BODY.npz --haply {port.path}', or name it with --port to ask it"
@@ -119,7 +119,7 @@ def _asked(port: Port, named: bool, seconds: float) -> Port:
 
 
 def say_hello(path: str, seconds: float = ANSWER_SECONDS) -> link.DeviceHello:
-    """The answer of the device at `path` to HELLO.
+    """Answer of the device at `path` to HELLO.
 
     Raises PortError when the port cannot be opened or is in use, when nothing answers within
     `seconds`, and when the device speaks another version of the link.
@@ -132,7 +132,7 @@ Heard = list[tuple[float, list[link.Message]]]
 
 
 def _ask(path: str, seconds: float, listen_seconds: float) -> tuple[link.DeviceHello, Heard]:
-    """The answer to HELLO, and what was heard after it."""
+    """Answer to HELLO, and what was heard after it."""
     _look_at(path, even_if_taken=False)
     try:
         with serial.Serial(path, BAUD, timeout=0.02, write_timeout=0.5, exclusive=True) as port:
@@ -144,16 +144,16 @@ def _ask(path: str, seconds: float, listen_seconds: float) -> tuple[link.DeviceH
 
 
 def check_port(path: str) -> None:
-    """Raises PortError when `path` is no port that may be opened; says nothing to it.
+    """Check that `path` can be opened, without sending anything; raises PortError.
 
-    The port's driver is asked for low latency on the way.
+    Also asks the port's driver for low latency.
     """
     _look_at(path, even_if_taken=True)
 
 
 def _look_at(path: str, *, even_if_taken: bool) -> None:
     if sys.platform == "win32":
-        # Ports are no files there; opening one is the only question that can be asked.
+        # Ports are no files there; only opening one tells.
         return
     import fcntl
 
@@ -165,11 +165,11 @@ def _look_at(path: str, *, even_if_taken: bool) -> None:
         if not os.isatty(descriptor):
             raise PortError(path, _REASONS[errno.ENOTTY])
         if sys.platform == "linux" and not even_if_taken:
-            # The superuser may open what others hold alone, and would steal their bytes.
+            # The superuser may open exclusive ports, and would steal their bytes.
             taken = fcntl.ioctl(descriptor, _TIOCGEXCL, struct.pack("i", 0))
             if struct.unpack("i", taken)[0]:
                 raise PortError(path, _REASONS[errno.EBUSY])
-        # Asked while the port is open anyway: to open it once more may restart a board.
+        # While the port is open: opening it again may restart a board.
         ask_for_low_latency(descriptor)
     finally:
         os.close(descriptor)
@@ -201,23 +201,23 @@ def _exchange(path: str, port: serial.Serial, seconds: float) -> link.DeviceHell
 
 
 def _listen(port: serial.Serial, seconds: float) -> Iterator[tuple[float, list[link.Message]]]:
-    """What is heard when; without messages where nothing was there."""
+    """Messages with their times; readings without bytes have none."""
     decoder = link.Decoder()
     port.timeout = 1e-3
     deadline = time.monotonic() + seconds
     while time.monotonic() < deadline:
         data = port.read(max(1, port.in_waiting))
         messages = decoder.feed(data)
-        # A part of a frame is neither a message nor a reading in vain.
+        # Part of a frame: neither a message nor an empty reading.
         if messages or not data:
             yield time.monotonic(), messages
 
 
 def _readings(heard: Heard) -> Iterator[tuple[float, list[int]]]:
-    """Readings of STATE as `explain_readings` takes them."""
+    """Readings of STATE for `explain_readings`."""
     for when, messages in heard:
         stamps = [m.device_time_us for m in messages if isinstance(m, link.State)]
-        # An ORIENTATION alone is no reading in vain either.
+        # Nor is an ORIENTATION alone.
         if stamps or not messages:
             yield when, stamps
 
@@ -233,7 +233,7 @@ def _silence(seconds: float) -> Sentence:
 def _port_error(path: str, error: OSError) -> PortError:
     number = error.errno
     if isinstance(error, serial.SerialException) and number in (None, errno.EAGAIN):
-        # pyserial's own words: a lock held by another program has the number of a read in vain.
+        # pyserial's words: another program's lock has the errno of an empty read.
         number = errno.EBUSY if "lock" in str(error) else None
     if number is None:
         return PortError(

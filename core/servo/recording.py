@@ -1,4 +1,4 @@
-"""Recordings of the servo as files: every tick in CSV or npz, written whole or not at all.
+"""Recordings of the servo as files: every tick in CSV or npz, written atomically.
 
 `docs/recording.md` describes both formats.
 """
@@ -62,18 +62,18 @@ _CSV_FIELDS = [("tick", "=u8"), ("numbers", "=f8", (16,)), ("state", "U32")]
 
 
 class RecordingError(PalpateError):
-    """A recording that cannot be written to or read from where it should."""
+    """Recording that cannot be written or read."""
 
 
 @dataclass(frozen=True, eq=False)
 class Recording:
-    """Ticks from a file.
+    """Recorded ticks from a file.
 
     Attributes
     ----------
     samples : structured array (n,) of `DTYPE`; a row for each finger of each tick.
     states : names of the states that `samples["state"]` counts.
-    rate_hz : of the servo; None in a CSV file, which does not tell.
+    rate_hz : of the servo; None from a CSV file.
     """
 
     samples: NDArray[np.void]
@@ -89,7 +89,7 @@ def check_recording_path(path: Path) -> None:
     RecordingError
         The suffix is neither ``.csv`` nor ``.npz``.
     UnwritableError
-        The path is a folder or a device, or its folder is not there or may not be written.
+        The path is a folder or a device, or its folder is missing or not writable.
     """
     if path.suffix.lower() not in SUFFIXES:
         raise RecordingError(
@@ -102,7 +102,7 @@ def check_recording_path(path: Path) -> None:
 
 
 def check_room(path: Path, memory_bytes: int) -> None:
-    """Check that a recording that takes so many bytes of memory will fit where it shall be written.
+    """Check that a recording of this size in memory will fit on the disk of its path.
 
     Raises
     ------
@@ -125,7 +125,7 @@ def check_room(path: Path, memory_bytes: int) -> None:
 def write_recording(
     path: Path, samples: NDArray[np.void], states: Sequence[str], rate_hz: int
 ) -> None:
-    """Write ``samples`` as the suffix of ``path`` says; an older file is replaced in one step.
+    """Write ``samples`` in the format of ``path``'s suffix; replaces an older file atomically.
 
     Parameters
     ----------
@@ -178,7 +178,7 @@ def _write_csv(file: IO[bytes], samples: NDArray[np.void], states: Sequence[str]
     for start in range(0, len(samples), _ROWS_AT_ONCE):
         rows = samples[start : start + _ROWS_AT_ONCE]
         numbers = np.column_stack([rows["time"], *(rows[name] for name in VECTORS)]).tolist()
-        # A list's text holds the shortest digits that read back as the same number.
+        # A list's text has the shortest digits that read back as the same number.
         ends = [""] * len(rows) if is_alone else [f",{n}" for n in rows["finger"].tolist()]
         file.writelines(
             f"{tick},{str(row)[1:-1].replace(' ', '')},{states[state]}{end}\n".encode()
@@ -223,7 +223,7 @@ def _read_npz(path: Path) -> Recording:
             )
         samples = np.zeros(len(arrays["tick"]), DTYPE)
         for name in UNITS:
-            # Recordings of one finger once did not tell which.
+            # Old recordings of one finger have no column for it.
             if name != "finger" or name in arrays:
                 samples[name] = arrays[name]
         return Recording(samples, tuple(arrays["states"].tolist()), int(about["rate_hz"]))
@@ -244,7 +244,7 @@ def _read_csv(path: Path) -> Recording:
             is_alone = header == CSV_HEADER
             fields = np.dtype(_CSV_FIELDS + ([] if is_alone else [("finger", "=u4")]))
             rows = np.empty(0, fields)
-            # Of no lines at all numpy complains.
+            # numpy warns of files without lines.
             if first := file.readline():
                 lines = itertools.chain([first], file)
                 rows = np.loadtxt(lines, fields, delimiter=",", comments=None, ndmin=1)

@@ -1,4 +1,4 @@
-"""From a soft body to the native thread that touches it, and from its snapshots back."""
+"""Sessions: a soft body as the native thread needs it, and displacements from its snapshots."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from palpate_servo import Compliance as NativeCompliance
 from palpate_servo import Tool as NativeTool
 
 if TYPE_CHECKING:
-    # Types only: the module itself does not have them.
+    # Types only, absent at run time.
     from palpate_servo import ContactMode, FeltName
     from palpate_servo import FingerCounters as FingerCounters  # noqa: PLC0414
     from palpate_servo import LinkCounters as LinkCounters  # noqa: PLC0414

@@ -1,1 +1,1 @@
-"""Boards and their firmware."""
+"""Simulated boards and their firmware."""

@@ -1,7 +1,7 @@
-"""The simulated 2DIY: a five-bar arm in somebody's hand, a hAPI board and its port.
+"""Simulated 2DIY: a five-bar arm in a hand, a hAPI board and its port.
 
-The handle is a mass in the plane (`plant.py`); motors act on it and encoders see it through the
-arm's geometry. The board talks as `haply_firmware.py` does.
+The handle is a mass in the plane (`plant.py`), seen by encoders and moved by motors through the
+arm's geometry. The firmware is `haply_firmware.py`.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ RELEASE_AFTER_SECONDS = 0.25
 
 
 class ByteFaults:
-    """One direction of a line without frames: bytes vanish, bits flip, all come late."""
+    """Faults of one direction of an unframed line: lost bytes, flipped bits, delay."""
 
     def __init__(self, options: SimulatedOptions, seed: int) -> None:
         self.lost = 0
         self.flipped = 0
         self._options = options
-        self._dice = random.Random(seed)  # noqa: S311 - dice for a simulation, not secrets
+        self._dice = random.Random(seed)  # noqa: S311 - simulation, not secrets
         self._on_the_way: deque[tuple[float, bytes]] = deque()
 
     def put(self, data: bytes, now: float) -> None:
@@ -40,7 +40,7 @@ class ByteFaults:
             self._on_the_way.append((now + self._options.delay, self._through(data)))
 
     def take(self, now: float) -> bytes:
-        """What has arrived until `now`."""
+        """Bytes that have arrived until `now`."""
         arrived = b""
         while self._on_the_way and self._on_the_way[0][0] <= now:
             arrived += self._on_the_way.popleft()[1]
@@ -63,14 +63,13 @@ class ByteFaults:
 
 
 class HaplyBoard:
-    """The whole device, in steps; what `SimulatedBoard` is for devices that speak the link.
+    """2DIY, advanced in steps; the counterpart of `SimulatedBoard`, which speaks the link.
 
-    The hand waits in the rest pose, unless `options.rest` is another place than the default, until
-    the first host sets the board up. Of the options those have a meaning that are about the hand,
-    the moving mass and its friction, the plug, and loss (of bytes here), noise and delay; encoders
-    and motors are those of the model. Heights are 0.
+    The hand waits in the rest pose, or at `options.rest` if not the default, until the first host
+    sets the board up. Options of the hand, the moving mass and its friction, the plug, loss (of
+    bytes), noise and delay apply; encoders and motors are the model's. Heights are 0.
 
-    Raises PalpateError for a model that is not known and for options that make no sense.
+    Raises PalpateError for an unknown model and for invalid options.
     """
 
     def __init__(self, options: SimulatedOptions, model: str = DEFAULT_MODEL) -> None:
@@ -106,29 +105,29 @@ class HaplyBoard:
         self.terminal.write(self._to_host.take(now))
 
     def move_hand(self, now: float, position: Vector, seconds: float) -> None:
-        """Leave the script: go from where the hand is to `position` and stay."""
+        """Leave the script: move the hand to `position` and stay."""
         self._schedule.move_hand(now, position, seconds)
 
     def turn_hand(self, now: float, rotation: Quaternion, seconds: float) -> None:
-        """It has no sense of that."""
+        """Do nothing: the device has no orientation."""
 
     def press_buttons(self, mask: int) -> None:
-        """There are none."""
+        """Do nothing: the device has no buttons."""
 
     def unplug(self) -> None:
-        """Pull the plug, if it is in: the motors lose their current too."""
+        """Pull the plug, if it is in: the motors lose power too."""
         if self.terminal.plugged:
             self._unplugged += 1
             self.terminal.unplug()
             self.firmware = HaplyFirmware(self._counts, self.firmware.counters)
 
     def plug_in(self) -> None:
-        """Put the plug back, if it is out: the board starts afresh and knows nothing."""
+        """Put the plug back, if it is out: the board restarts without configuration."""
         if not self.terminal.plugged:
             self.terminal.plug_in()
 
     def report(self) -> dict[str, object]:
-        """Counters and where everything is now; SI units, angles in degrees."""
+        """Counters and present state; SI units, angles in degrees."""
         seen: HaplyCounters = self.firmware.counters
         plant = self.plant
         return {
@@ -159,7 +158,7 @@ class HaplyBoard:
             self._largest_force = max(self._largest_force, math.hypot(*self._force))
             x, y, _ = self._schedule.hand(now, remaining * period)
             self.plant.step(self._force, (x, y, 0.0))
-            # Beyond the arms' reach the elbows stay where they were.
+            # Beyond the arms' reach the elbows stay.
             self._degrees = self.model.angles(self.plant.position) or self._degrees
 
     def _motor_force(self) -> Vector:

@@ -1,11 +1,11 @@
-"""What the program on a hAPI board does with the bytes it reads, as that of the M0 board does.
+"""Firmware of a hAPI board, as of the M0 board.
 
-A loop of at least 50 us reads one command. Single bytes are read without waiting: where none has
-come it reads 255. Floats are read by waiting for up to a second; what has not come by then keeps
-what the memory held before. Nothing marks the beginning of a message, nothing is checked, and
-nobody watches whether the host still speaks: motors keep their torque until they are told another.
+A loop of at least 50 us reads one command. Single bytes are read without waiting: 255 if none has
+come. Floats are awaited for up to a second; missing bytes keep what memory held. Messages have no
+start mark and no checksum, and there is no watchdog: motors keep their torque until the next
+command.
 
-No clock and no port of its own: times, bytes and encoders are handed in.
+No clock and no port of its own: times, bytes and encoders are arguments.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ NOTHING_READ = 0xFF
 
 @dataclass
 class Port:
-    """A motor and an encoder; address 0 is that of nobody, and of all that nobody has."""
+    """Port with a motor and an encoder; address 0 for unused ones."""
 
     motor_address: int = 0
     encoder_address: int = 0
@@ -45,7 +45,7 @@ class Port:
 
 @dataclass
 class HaplyCounters:
-    """What the board has done."""
+    """Counters of the board."""
 
     resets: int = 0
     setups: int = 0
@@ -68,7 +68,7 @@ def _no_counts() -> list[int]:
 
 @dataclass
 class HaplyFirmware:
-    """The board's side of the hAPI protocol. `encoders` are the counts of the two encoders."""
+    """Board's side of the hAPI protocol. `encoders` are the counts of the two encoders."""
 
     encoders: Callable[[], list[int]] = field(default=_no_counts)
     counters: HaplyCounters = field(default_factory=HaplyCounters)
@@ -81,15 +81,15 @@ class HaplyFirmware:
     _memory: bytes = bytes(64)
 
     def torque(self, port: int) -> float:
-        """What the motor at a port makes, N m; positive for a positive one asked of sense 0."""
+        """Torque of the motor at a port, N m; positive for a positive command of sense 0."""
         return self.ports[port].duty / PWM_STEPS * TORQUE_AT_FULL_DUTY
 
     def receive(self, data: bytes) -> None:
-        """Bytes from the host, into the board's buffer."""
+        """Receive bytes from the host into the board's buffer."""
         self._unread.extend(data)
 
     def run(self, now: float) -> bytes:
-        """Work until `now` (s, never less than before); returns what the board has sent."""
+        """Run until `now` (s, never decreasing); returns the bytes sent."""
         sent = b""
         while self._next_loop <= now:
             if self._wait is not None:
@@ -138,7 +138,7 @@ class HaplyFirmware:
         return b""
 
     def _forget(self) -> None:
-        # The motors are not touched: whatever turned them goes on.
+        # The motors keep their torque.
         for port in self.ports:
             port.motor_address = port.encoder_address = 0
         self._pwm_addresses = [0] * PWM_PINS
@@ -149,7 +149,7 @@ class HaplyFirmware:
         self.counters.setups += 1
         address = self._read()
         motors = self._mask()
-        # Senses go to the first ports, whichever ports are in use: so does the original.
+        # Senses go to the first ports, whichever are in use, as in the original.
         for port in range(len(motors)):
             self.ports[port].motor_sense = self._read()
         encoders = self._mask()

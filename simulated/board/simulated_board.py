@@ -1,4 +1,4 @@
-"""The simulated device put together: hand and mass, firmware, bad wires, port."""
+"""Simulated device: hand and mass, firmware, faulty wires, port."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .simulated_firmware import Firmware
 
 
 class SimulatedBoard:
-    """Advances by `tick`; times are seconds since it was switched on. Raises PalpateError."""
+    """Device advanced by `tick`; times are seconds since power-on. Raises PalpateError."""
 
     def __init__(self, options: SimulatedOptions) -> None:
         self._options = options
@@ -35,7 +35,7 @@ class SimulatedBoard:
         self.terminal = PseudoTerminal(Path(options.link) if options.link else None)
 
     def tick(self, now: float, steps: int) -> None:
-        """Read the host, move by `steps` of the device's period, say where the device is."""
+        """Read the host, move by `steps` of the device's period, send STATE."""
         self._schedule.keep_plug(now, self.unplug, self.plug_in)
         self._to_device.put(self.terminal.read(now), now)
         answer = self.firmware.receive(self._to_device.take(now), now)
@@ -51,13 +51,13 @@ class SimulatedBoard:
         self.terminal.write(self._to_host.take(now))
 
     def move_hand(self, now: float, position: Vector, seconds: float) -> None:
-        """Leave the script: go from where the hand is to `position` and stay."""
+        """Leave the script: move the hand to `position` and stay."""
         self._schedule.move_hand(now, position, seconds)
 
     def turn_hand(self, now: float, rotation: Quaternion, seconds: float) -> None:
-        """Leave the script: turn the stylus to `rotation` (unit) and stay; from now on it is told.
+        """Leave the script: turn the stylus to `rotation` (unit) and stay; from now on it is sent.
 
-        The stylus has no inertia against turning: it is held as the hand wants.
+        The stylus has no rotational inertia: it follows the hand.
         """
         self._schedule.turn_hand(now, rotation, seconds)
 
@@ -72,13 +72,13 @@ class SimulatedBoard:
             self.terminal.unplug()
 
     def plug_in(self) -> None:
-        """Put the plug back, if it is out: the board starts afresh."""
+        """Put the plug back, if it is out: the board restarts."""
         if not self.terminal.plugged:
             self.firmware.plug_in()
             self.terminal.plug_in()
 
     def report(self) -> dict[str, object]:
-        """Counters and where everything is now; SI units."""
+        """Counters and present state; SI units."""
         seen, errors, plant = self.firmware.counters, self.firmware.decoder.errors, self.plant
         return {
             "states": seen.states,

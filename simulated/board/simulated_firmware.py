@@ -1,6 +1,6 @@
-"""What the program on a device's board does with the link: answer, stream, obey, let go.
+"""Firmware of a simulated device: answers HELLO, streams STATE, applies FORCE, has a watchdog.
 
-No clock and no port of its own: times and bytes are handed in, so that every rule can be tested.
+No clock and no port of its own: times and bytes are arguments, so that every rule can be tested.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ FAULT_PROTOCOL = 2
 
 @dataclass
 class FirmwareCounters:
-    """What the device has seen; forces in N."""
+    """Counters of the device; forces in N."""
 
     states: int = 0
     hellos: int = 0
@@ -43,7 +43,7 @@ class FirmwareCounters:
 
 
 class Firmware:
-    """The device's side of the link."""
+    """Device's side of the link."""
 
     def __init__(self, hello: link.DeviceHello) -> None:
         self.hello = hello
@@ -60,24 +60,24 @@ class Firmware:
 
     @property
     def limp(self) -> bool:
-        """True while nobody drives the device."""
+        """True while no host drives the device."""
         return self._heard_at is None
 
     def plug_in(self) -> None:
-        """Start afresh, as a board does that gets its power from the plug; counters stay."""
+        """Restart, as a board powered by the plug; counters stay."""
         self.streaming = False
         self._heard_at = None
         errors, self.decoder = self.decoder.errors, link.Decoder()
         self.decoder.errors = errors
 
     def receive(self, data: bytes, now: float) -> bytes:
-        """Read what the host has sent; returns the frames to answer with."""
+        """Process bytes from the host; returns the frames to answer with."""
         return b"".join(self._obey(message, now) for message in self.decoder.feed(data))
 
     def watch(self, now: float, look_seconds: float = 0.0) -> bytes:
-        """Go limp when the host has been silent for too long; returns the FAULT that tells it.
+        """Go limp when the host has been silent for too long; returns the FAULT frame.
 
-        A board that looks again only in `look_seconds` lets go when that would be too late.
+        A board that looks again only in `look_seconds` goes limp when that would be too late.
         """
         looked_at, self._looked_at = self._looked_at, now
         if self._heard_at is None or now - self._heard_at + look_seconds <= WATCHDOG_SECONDS:
@@ -90,7 +90,7 @@ class Firmware:
 
     @property
     def force(self) -> Vector:
-        """What the motors make now, N."""
+        """Force of the motors now, N."""
         return ZERO if self.limp else self._force
 
     @property
@@ -99,7 +99,7 @@ class Firmware:
         return self._braked and not self.limp
 
     def state(self, now: float, position_um: tuple[int, int, int], buttons: int) -> bytes:
-        """The next STATE, or nothing as long as no host has said HELLO."""
+        """Next STATE, or nothing before the first HELLO."""
         if not self.streaming:
             return b""
         time_us = round(now * 1e6) % (1 << 32)
@@ -109,8 +109,8 @@ class Firmware:
         return link.encode(message)
 
     def orientation(self, rotation: Quaternion) -> bytes:
-        """How the stylus is turned in the next STATE, to be sent before it; nothing as long as no
-        host has said HELLO.
+        """ORIENTATION of the next STATE, to be sent before it; nothing before the first
+        HELLO.
         """
         if not self.streaming:
             return b""
@@ -121,12 +121,12 @@ class Firmware:
             case link.HostHello():
                 self.counters.hellos += 1
                 self.streaming = True
-                # A new session: whatever was asked for before is void.
+                # A new session: earlier commands are void.
                 self._heard_at = None
                 return link.encode(self.hello)
             case link.OtherHello():
                 self.counters.hellos += 1
-                # That host could not read what is streamed, and what it sends may mean anything.
+                # A host of another protocol cannot read STATE, and its messages may mean anything.
                 self.streaming = False
                 self._heard_at = None
                 fault = link.Fault(FAULT_PROTOCOL, message.protocol)
@@ -159,7 +159,7 @@ class Firmware:
     def _within_limit(self, force_mn: tuple[int, int, int]) -> Vector:
         x, y, z = (component * 1e-3 for component in force_mn)
         size, limit = math.hypot(x, y, z), self.hello.largest_force
-        # Rounding to mN may carry a force at the limit just past it.
+        # Rounding to mN may exceed the limit.
         if size <= limit + 1e-3:
             return (x, y, z)
         self.counters.clamped += 1

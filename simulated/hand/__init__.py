@@ -1,1 +1,1 @@
-"""The hand and the handle it moves."""
+"""Simulated hand and the handle that it moves."""

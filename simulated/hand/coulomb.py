@@ -1,10 +1,10 @@
-"""One axis with Coulomb friction: it slides, reverses at an instant that is found, or truly sticks.
+"""Axis with Coulomb friction, with exact instants of reversal and true sticking.
 
     m x'' = load - k x - c x' - f_c sign(x')        while it moves
     |load - k x| <= f_c                             while it sticks
 
-Between reversals the friction is constant and the motion is its Taylor series, summed to the last
-digit, so that no step is long enough to creep or to chatter.
+Between reversals friction is constant and the motion is its Taylor series, summed to the last
+digit, so that long steps neither creep nor chatter.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ GAUSS = (
 
 @dataclass(frozen=True)
 class Slid:
-    """State after a step, and what it took: position, velocity, integral of v^2, way rubbed."""
+    """State after a step: position, velocity, integral of v^2, friction path."""
 
     position: float
     velocity: float
@@ -39,7 +39,7 @@ class Slid:
 
 @dataclass(frozen=True)
 class Slider:
-    """Mass (kg), total stiffness (N/m) and damping (N s/m), Coulomb friction (N)."""
+    """Axis of a mass (kg), total stiffness (N/m), damping (N s/m) and Coulomb friction (N)."""
 
     mass: float
     stiffness: float
@@ -47,16 +47,16 @@ class Slider:
     coulomb: float
 
     def pieces(self, seconds: float) -> int:
-        """Into how many pieces a step is cut so that each series converges."""
+        """Number of pieces of a step, so that each series converges."""
         rate = self.damping / self.mass + math.sqrt(self.stiffness / self.mass)
         return max(1, math.ceil(seconds * rate / _MOST_PER_PIECE))
 
     def can_step(self, seconds: float) -> bool:
-        """Whether a step of this length takes a bounded time to work out."""
+        """Whether a step of this length takes bounded time to compute."""
         return self.pieces(seconds) <= _MOST_PIECES
 
     def step(self, position: float, velocity: float, load: float, seconds: float) -> Slid:
-        """Go on for `seconds` under a constant load, N."""
+        """Step of `seconds` under a constant load, N."""
         pieces = self.pieces(seconds)
         here = Slid(position, velocity, 0.0, 0.0)
         for _ in range(pieces):
@@ -86,7 +86,7 @@ class Slider:
             left -= length
             if end is None or left <= 0.0:
                 return here
-        # Reversed again and again within the piece: there it rests until the next one.
+        # Too many reversals within the piece: it rests until the next one.
         return here
 
     def _series(self, here: Slid, load: float) -> list[float]:
@@ -114,7 +114,7 @@ def _slope(series: list[float], time: float) -> float:
 
 
 def _reversal(series: list[float], seconds: float, way: float) -> float | None:
-    """When the velocity along `way` falls to zero, None if not within `seconds`."""
+    """Time when the velocity along `way` falls to zero, None if not within `seconds`."""
     if _slope(series, seconds) * way >= 0.0:
         return None
     before, after = 0.0, seconds

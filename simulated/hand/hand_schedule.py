@@ -1,6 +1,6 @@
-"""What happens to a simulated device by itself: its hand moves, its plug is pulled and put back.
+"""Schedule of a simulated device: motion of its hand, plug pulled and put back.
 
-Everything is counted from the first host's coming. Until then the hand rests and the plug is in.
+Times count from the first host. Until then the hand rests and the plug is in.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from .quaternion import UPRIGHT, Quaternion
 
 
 class HandSchedule:
-    """Times are seconds since the device was switched on; raises PalpateError for bad options."""
+    """Schedule in seconds since power-on; raises PalpateError for bad options."""
 
     def __init__(self, options: SimulatedOptions) -> None:
         self._script = options.hand_script()
@@ -40,22 +40,22 @@ class HandSchedule:
         return -math.inf if self._host_came_at is None else now - self._host_came_at
 
     def hand(self, now: float, before: float = 0.0) -> Vector:
-        """Where the hand wants the device to be, ``before`` seconds ago."""
+        """Target of the hand, ``before`` seconds ago."""
         return self._script.at(self._script_time(now) - before)
 
     def move_hand(self, now: float, position: Vector, seconds: float) -> None:
-        """Leave the script: go from where the hand is to `position` and stay."""
+        """Leave the script: move the hand to `position` and stay."""
         self._script = HandScript((0.0, max(seconds, 1e-6)), (self.hand(now), position))
         self._script_begin = now
 
     def turned(self, now: float) -> Quaternion | None:
-        """How the hand holds the stylus; None for a device that cannot tell."""
+        """Rotation of the stylus; None for a device without orientation."""
         if self._turns is None:
             return None
         return self._turns.at(0.0 if self._turns_begin is None else now - self._turns_begin)
 
     def turn_hand(self, now: float, rotation: Quaternion, seconds: float) -> None:
-        """Leave the script: turn the stylus from how it is held to `rotation` (unit), and stay."""
+        """Leave the script: turn the stylus to `rotation` (unit) and stay."""
         held = self.turned(now) or UPRIGHT
         self._turns = TurnScript((0.0, max(seconds, 1e-6)), (held, rotation))
         self._turns_begin = now
@@ -63,7 +63,7 @@ class HandSchedule:
     def keep_plug(
         self, now: float, unplug: Callable[[], None], plug_in: Callable[[], None]
     ) -> None:
-        """Pull the plug or put it back, once each, when it is time."""
+        """Pull the plug or put it back, once each, at their times."""
         since = self.since_host(now)
         if since >= self._unplug_at:
             self._unplug_at = math.inf

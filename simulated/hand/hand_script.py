@@ -1,5 +1,5 @@
-"""Where the simulated hand wants to be, and how it wants to hold the stylus: keyframes with
-minimum-jerk moves between them.
+"""Keyframes of the simulated hand's target and of the stylus' rotation, with minimum-jerk moves
+between them.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ from .quaternion import UPRIGHT, Quaternion, about, between, unit
 
 
 def minimum_jerk(s: float) -> float:
-    """The smoothest way from 0 to 1: 10 s^3 - 15 s^4 + 6 s^5, at rest at both ends."""
+    """Minimum-jerk profile from 0 to 1: 10 s^3 - 15 s^4 + 6 s^5, at rest at both ends."""
     s = min(max(s, 0.0), 1.0)
     return s * s * s * (10.0 + s * (6.0 * s - 15.0))
 
 
 @dataclass(frozen=True)
 class TurnScript:
-    """Keyframes: times in s, rising; unit quaternions (w, x, y, z), stylus to device. From
-    `repeat_from` on it repeats for ever. Raises PalpateError when they make no sense.
+    """Keyframes of rotation: times in s, rising; unit quaternions (w, x, y, z), stylus to device.
+    From `repeat_from` on it repeats for ever. Raises PalpateError for invalid ones.
     """
 
     times: tuple[float, ...]
@@ -41,17 +41,17 @@ class TurnScript:
             raise PalpateError("the hand's script has a quaternion that is not of length 1")
 
     def at(self, time: float) -> Quaternion:
-        """How the stylus is held at `time`, on the shorter way between two keyframes."""
+        """Rotation at `time`, on the shorter way between two keyframes."""
         before, after, s = _around(time, self.times, self.repeat_from)
         return between(self.rotations[before], self.rotations[after], s)
 
 
 @dataclass(frozen=True)
 class HandScript:
-    """Keyframes: times in s, rising; positions in m. From `repeat_from` on it repeats for ever.
+    """Keyframes of position: times in s, rising; m. From `repeat_from` on it repeats for ever.
 
-    turns : how the stylus is held meanwhile; None for a hand that does not turn it.
-    Raises PalpateError when they make no sense.
+    turns : of the stylus; None for a hand that does not turn it.
+    Raises PalpateError for invalid ones.
     """
 
     times: tuple[float, ...]
@@ -63,7 +63,7 @@ class HandScript:
         _check(self.times, self.positions, self.repeat_from)
 
     def at(self, time: float) -> Vector:
-        """The target at `time`; before the first keyframe and after the last it stays there."""
+        """Target at `time`; constant before the first keyframe and after the last."""
         before, after, s = _around(time, self.times, self.repeat_from)
         a, b = self.positions[before], self.positions[after]
         return (a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1]), a[2] + s * (b[2] - a[2]))
@@ -85,8 +85,8 @@ def _check(
 def _around(
     time: float, times: tuple[float, ...], repeat_from: float | None
 ) -> tuple[int, int, float]:
-    """The keyframes before and after `time`, and the part of the way between them that is done;
-    before the first and after the last it is that one twice.
+    """Keyframes before and after `time`, and the fraction of the interval elapsed; before the
+    first and after the last it is that one twice.
     """
     last = times[-1]
     if repeat_from is not None and time > last:
@@ -102,7 +102,7 @@ def _around(
 def tilt_script(axis: Vector, degrees: float, period: float) -> TurnScript:
     """Tilt the stylus about `axis` (device axes) by so much and back in `period` seconds, for ever.
 
-    Raises PalpateError for an axis without direction, half a turn or more, or a time without sense.
+    Raises PalpateError for a zero axis, half a turn or more, or an invalid period.
     """
     if not (abs(degrees) < 180.0 and 0.0 < period < math.inf):
         raise PalpateError("the hand's turning must be less than 180 degrees, its period over 0 s")
@@ -116,10 +116,10 @@ def tilt_script(axis: Vector, degrees: float, period: float) -> TurnScript:
 def press_script(
     rest: Vector, at: Vector, by: Vector, *, approach: float, period: float, hold: float
 ) -> HandScript:
-    """From `rest` to `at` in `approach` seconds, then press by `by` and come back, again and again.
+    """Script from `rest` to `at` in `approach` seconds, then repeated presses by `by`.
 
-    A press takes `period` seconds, of which the hand stays at the deepest point for `hold`; an
-    infinite `hold` presses once and stays.
+    A press takes `period` seconds, `hold` of them at the deepest point; an infinite `hold` presses
+    once and stays.
     """
     if not (approach > 0.0 and period > 0.0 and hold >= 0.0):
         raise PalpateError(
@@ -140,11 +140,11 @@ def press_script(
 
 
 def read_script(path: Path) -> HandScript:
-    """A script from a file: CSV lines `t,x,y,z` (s, m), or JSON. With `t,x,y,z,qw,qx,qy,qz` in
-    every line the hand turns the stylus too; the quaternions are taken to length 1.
+    """Script from a file: CSV lines `t,x,y,z` (s, m), or JSON. With `t,x,y,z,qw,qx,qy,qz` in
+    every line the hand turns the stylus too; quaternions are normalized.
 
     JSON: {"keyframes": [[t, x, y, z], ...], "repeat_from": seconds or null}.
-    Raises PalpateError when the file cannot be read or understood.
+    Raises PalpateError for an unreadable or invalid file.
     """
     try:
         text = path.read_text(encoding="utf-8")
@@ -171,7 +171,7 @@ def read_script(path: Path) -> HandScript:
 
 
 def _turns(quaternions: list[list[float]]) -> tuple[Quaternion, ...]:
-    """Unit quaternions of all lines, or nothing if no line has any; raises ValueError."""
+    """Unit quaternions of all lines, or none if no line has any; raises ValueError."""
     if not any(quaternions):
         return ()
     return tuple(unit((w, x, y, z)) for w, x, y, z in quaternions)

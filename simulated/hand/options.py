@@ -1,4 +1,4 @@
-"""Everything that can be chosen about the simulated device, once for command line and code."""
+"""Options of the simulated device, for command line and code."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def _about(unit: str, text: str) -> dict[str, str]:
 
 @dataclass(frozen=True)
 class SimulatedOptions:
-    """The device, the hand that holds it, and what goes wrong. SI units.
+    """Options of the device, of the hand that holds it, and of faults. SI units.
 
     Times count from the first HELLO, before which the hand waits at `rest`.
     """
@@ -147,18 +147,18 @@ class SimulatedOptions:
 
     @property
     def hello(self) -> DeviceHello:
-        """What the device says of itself."""
+        """HELLO of the device."""
         return DeviceHello(self.name, 3, self.largest_force, self.workspace, self.rate_hz)
 
     @property
     def impedance(self) -> Impedance:
-        """What moves, and who holds it."""
+        """Impedance of device and hand."""
         return Impedance(
             self.mass, self.damping, self.hand_stiffness, self.hand_damping, self.coulomb
         )
 
     def hand_script(self) -> HandScript:
-        """Raises PalpateError when the script's file is unreadable or its times make no sense."""
+        """Script of the hand; raises PalpateError for an unreadable file or invalid times."""
         if self.script:
             return read_script(Path(self.script))
         at = self.rest if self.at is None else self.at
@@ -166,9 +166,9 @@ class SimulatedOptions:
         return press_script(self.rest, at, self.by, **timing)
 
     def turn_script(self, hand: HandScript) -> TurnScript | None:
-        """How the hand holds the stylus; None for a device that tells no orientation.
+        """Script of the stylus' rotation; None for a device without orientation.
 
-        Raises PalpateError when there are two answers, or one that makes no sense.
+        Raises PalpateError for contradicting or invalid options.
         """
         if self.turning is None:
             return hand.turns
@@ -177,7 +177,7 @@ class SimulatedOptions:
         return tilt_script(self.turning_axis, self.turning, self.turning_period)
 
     def arguments(self) -> list[str]:
-        """The command line that says the same."""
+        """Equivalent command line arguments."""
         line: list[str] = []
         for option in fields(self):
             value = getattr(self, option.name)
@@ -186,13 +186,13 @@ class SimulatedOptions:
                 if len(values) == 1:
                     line.append(f"{_flag(option.name)}={values[0]}")
                 else:
-                    # argparse takes -5e-05 for an option, unless there is a blank in front.
+                    # argparse takes -5e-05 for an option unless a blank precedes it.
                     line += [_flag(option.name), *(f" {value!r}" for value in values)]
         return line
 
 
 def add_simulated_options(parser: argparse.ArgumentParser) -> None:
-    """Give `parser` one option for each field of `SimulatedOptions`."""
+    """Add one option to `parser` for each field of `SimulatedOptions`."""
     for option in fields(SimulatedOptions):
         unit = option.metadata["unit"]
         vector = unit == "XYZ"
@@ -210,7 +210,7 @@ def add_simulated_options(parser: argparse.ArgumentParser) -> None:
 
 
 def simulated_options(arguments: argparse.Namespace) -> SimulatedOptions:
-    """The options that a parser with `add_simulated_options` has read; raises PalpateError."""
+    """Options read by a parser with `add_simulated_options`; raises PalpateError."""
     values: dict[str, Any] = {
         option.name: getattr(arguments, option.name) for option in fields(SimulatedOptions)
     }

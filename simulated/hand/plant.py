@@ -1,11 +1,11 @@
-"""What the simulated device weighs and who holds it: a mass between a motor's force and a hand.
+"""Moving mass of the simulated device, between a motor's force and a hand.
 
     m x'' = F - b x' - f_c sign(x') + k (x_hand - x) + c (x_hand' - x')        for each axis
 
 b and f_c are the device's own viscous and Coulomb friction, k and c are the hand's spring and
-damper. F and the hand's target are constant within a step, for which the solution is exact: no step
-is too long for any stiffness. Coulomb friction acts on each axis by itself, as in a stage of three
-slides (`coulomb.py`).
+damper. F and the hand's target are constant within a step, so that the solution is exact for
+steps of any length. Coulomb friction acts on each axis separately, as in a stage of three slides
+(`coulomb.py`).
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ ZERO: Vector = (0.0, 0.0, 0.0)
 
 @dataclass(frozen=True)
 class Impedance:
-    """Mass in kg, the device's damping and the hand's in N s/m, the hand's stiffness in N/m.
+    """Impedance: mass in kg, damping of device and hand in N s/m, stiffness of the hand in N/m.
 
     coulomb : the device's Coulomb friction on each axis, N.
     """
@@ -36,7 +36,7 @@ class Impedance:
 
 
 def exponential(matrix: Matrix) -> Matrix:
-    """Exponential of a small square matrix, by Taylor's series on a halved argument."""
+    """Exponential of a small square matrix, by scaling and squaring."""
     order = len(matrix)
     halvings = 0
     largest = max(sum(abs(entry) for entry in row) for row in matrix)
@@ -65,7 +65,7 @@ def _product(left: Matrix, right: Matrix) -> Matrix:
 
 @dataclass(frozen=True)
 class Transition:
-    """One exact step of m x'' = -k x - c x' + f with constant f, for one axis."""
+    """Exact step of m x'' = -k x - c x' + f with constant f, for one axis."""
 
     xx: float
     xv: float
@@ -76,7 +76,7 @@ class Transition:
 
     @classmethod
     def over(cls, seconds: float, mass: float, stiffness: float, damping: float) -> Transition:
-        """Work out the step; stiffness and damping may be zero."""
+        """Compute the step; stiffness and damping may be zero."""
         rates = [
             [0.0, seconds, 0.0],
             [-stiffness / mass * seconds, -damping / mass * seconds, seconds / mass],
@@ -88,7 +88,7 @@ class Transition:
 
 @dataclass
 class EnergyBooks:
-    """Where the energy has come from and gone to since the start, J.
+    """Energy balance since the start, J.
 
     motor + hand = kinetic + viscous + coulomb, if the mass was at rest at the start.
     """
@@ -105,11 +105,11 @@ class EnergyBooks:
 
 @dataclass(frozen=True)
 class _Axis:
-    """One axis with one damping: the exact step, its inner places, and the step with friction."""
+    """Axis with one damping: the exact step, its inner places, and the step with friction."""
 
     device_damping: float
     slider: Slider
-    whole: Transition
+    full: Transition
     inner: tuple[tuple[Transition, float], ...]
 
     @classmethod
@@ -127,12 +127,12 @@ class _Axis:
         )
 
     def step(self, x: float, v: float, load: float) -> tuple[float, float, float]:
-        """Position, velocity and integral of v^2 after a step without Coulomb friction."""
+        """State after a step without Coulomb friction: position, velocity and integral of v^2."""
         squared = sum(
             weight * (part.vx * x + part.vv * v + part.vf * load) ** 2
             for part, weight in self.inner
         )
-        move = self.whole
+        move = self.full
         return (
             move.xx * x + move.xv * v + move.xf * load,
             move.vx * x + move.vv * v + move.vf * load,
@@ -141,9 +141,9 @@ class _Axis:
 
 
 class Plant:
-    """The moving mass, in steps of a fixed length. Metres, metres per second, newtons.
+    """Moving mass, in steps of fixed length. Metres, metres per second, newtons.
 
-    Raises PalpateError when, with Coulomb friction, a step is far too long for the mass.
+    Raises PalpateError if, with Coulomb friction, a step is far too long for the mass.
     """
 
     def __init__(
@@ -168,16 +168,16 @@ class Plant:
 
     @property
     def work(self) -> float:
-        """Energy the felt force has put into the device, J."""
+        """Work of the motors' force on the device, J."""
         return self.energy.motor
 
     @property
     def kinetic(self) -> float:
-        """Energy of the moving mass, J."""
+        """Kinetic energy of the moving mass, J."""
         return 0.5 * self.impedance.mass * math.hypot(*self.velocity) ** 2
 
     def step(self, force: Vector, target: Vector, braked: bool = False) -> None:
-        """Go one step on; the hand's target moves evenly from where it was to `target`."""
+        """Advance one step; the hand's target moves linearly to `target`."""
         moving = self._braked if braked else self._free
         hand, books = self.impedance, self.energy
         position, velocity, pushes = [0.0] * 3, [0.0] * 3, [0.0] * 3

@@ -21,7 +21,7 @@ def unit(quaternion: Quaternion) -> Quaternion:
 
 
 def about(axis: tuple[float, float, float], radians: float) -> Quaternion:
-    """The turn about `axis`, of any length; raises ValueError when that is zero."""
+    """Rotation about `axis`, of any length; raises ValueError when that is zero."""
     length = math.hypot(*axis)
     if not 0.0 < length < math.inf:
         raise ValueError(f"{axis} is no axis: its length must be more than 0")
@@ -30,8 +30,8 @@ def about(axis: tuple[float, float, float], radians: float) -> Quaternion:
 
 
 def between(a: Quaternion, b: Quaternion, s: float) -> Quaternion:
-    """The rotation the part `s` of the shorter way from a to b, both unit: spherical linear
-    interpolation (Shoemake 1985).
+    """Spherical linear interpolation at `s` of the shorter way from a to b, both unit
+    (Shoemake 1985).
     """
     cosine = sum(p * q for p, q in zip(a, b, strict=True))
     sign = math.copysign(1.0, cosine)

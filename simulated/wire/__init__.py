@@ -1,1 +1,1 @@
-"""The wire between board and host."""
+"""Simulated wire between board and host."""

@@ -1,4 +1,4 @@
-"""A serial port without a cable: a pseudo-terminal whose path can vanish and come back."""
+"""Pseudo-terminal as a serial port that can be unplugged."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ BACKLOG_BYTES = 256
 
 
 def require_pseudo_terminals() -> None:
-    """Raises PalpateError on Windows, which has none."""
+    """Raise PalpateError on Windows, which has none."""
     if sys.platform == "win32":
         raise PalpateError(
             "the simulated device needs a pseudo-terminal, which Windows does not have; "
@@ -29,9 +29,9 @@ def require_pseudo_terminals() -> None:
 
 
 class PseudoTerminal:
-    """The device's end of a serial port. `link` is a path that always leads to the host's end.
+    """Device's end of a serial port. `link` is a path that always leads to the host's end.
 
-    A host that was silent for `release_after` seconds is taken for gone.
+    A host silent for `release_after` seconds is assumed gone.
     """
 
     def __init__(self, link: Path | None, release_after: float = RELEASE_AFTER_SECONDS) -> None:
@@ -49,7 +49,7 @@ class PseudoTerminal:
 
     @property
     def plugged(self) -> bool:
-        """Whether there is a port at all."""
+        """Whether the port exists."""
         return self._device_end >= 0
 
     @property
@@ -58,13 +58,13 @@ class PseudoTerminal:
 
     @property
     def path(self) -> str:
-        """Where the host opens the port now: the link when there is one."""
+        """Path for the host: the link if there is one."""
         return str(self.link) if self.link else self._target
 
     def plug_in(self) -> None:
-        """Make the port appear."""
+        """Create the port."""
         self._device_end, self._host_end = os.openpty()
-        # The host's end is kept open here too, or reading would fail whenever no host is there.
+        # The host's end is kept open here too, or reads without a host would fail.
         tty.setraw(self._host_end)
         os.set_blocking(self._device_end, False)
         self._backlog = b""
@@ -76,7 +76,7 @@ class PseudoTerminal:
                 raise
 
     def unplug(self) -> None:
-        """Make the port vanish under the host's hands."""
+        """Remove the port, also while the host has it open."""
         if not self.plugged:
             return
         if self.link and self.link.is_symlink() and str(self.link.readlink()) == self._target:
@@ -86,12 +86,12 @@ class PseudoTerminal:
         self._device_end = self._host_end = -1
 
     def read(self, now: float) -> bytes:
-        """What the host has written since; nothing while unplugged. `now` is in seconds."""
+        """Bytes from the host; none while unplugged. `now` is in seconds."""
         heard = self._take()
         if heard:
             self._heard_at = now
         elif self._heard_at is not None and now - self._heard_at > self._release_after:
-            # Once a silence: the next host may be taking the terminal at any later moment.
+            # Once per silence: later, the next host may be opening the terminal.
             self._heard_at = None
             self._release()
         return heard
@@ -105,7 +105,7 @@ class PseudoTerminal:
             return b""
 
     def write(self, data: bytes) -> None:
-        """Send frames to the host, or drop them when it has stopped reading."""
+        """Send frames to the host; dropped if it has stopped reading."""
         if not self.plugged or not data:
             return
         if len(self._backlog) > BACKLOG_BYTES:
@@ -121,15 +121,15 @@ class PseudoTerminal:
     def _release(self) -> None:
         """Let the next host open the port, even if the last one locked it and was killed.
 
-        Exclusive mode belongs to the terminal and outlives whoever set it, as long as the terminal
-        lives; a real port would be closed by then.
+        Exclusive mode belongs to the terminal and outlives the process that set it; a real port
+        would be closed by then.
         """
         if self.plugged:
             fcntl.ioctl(self._host_end, termios.TIOCNXCL)
 
 
 def _point(link: Path, target: str) -> None:
-    """Make `link` lead to `target` in one step, so that nobody ever finds half of it."""
+    """Make `link` lead to `target` atomically."""
     if link.exists() and not link.is_symlink():
         raise PalpateError("{link}: something else is there already; give another path", link=link)
     try:

@@ -1,4 +1,4 @@
-"""What a bad cable does to a stream of frames: loss, flipped bits, delay, jitter."""
+"""Faults of a cable: lost frames, flipped bits, delay, jitter."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from collections import deque
 
 
 class BadWire:
-    """One direction of the link. Every frame that goes in comes out, unless it meets its fate.
+    """One direction of a faulty link.
 
     loss: fraction of frames that vanish. noise: fraction of bits that flip. delay: seconds. jitter:
-    at most so many seconds more, by chance for each frame; on a wire no frame overtakes another.
-    latency_timer: what arrives is held back and handed over only at multiples of this, seconds, as
-    FTDI's adapters do; 0 for at once.
+    largest random extra delay of a frame, seconds; frames never overtake each other.
+    latency_timer: seconds; bytes are delivered at multiples of this, as by FTDI's adapters; 0 for
+    at once.
     """
 
     def __init__(
@@ -31,26 +31,26 @@ class BadWire:
         self._delay = delay
         self._jitter = jitter
         self._latency_timer = latency_timer
-        self._random = random.Random(seed)  # noqa: S311 - dice for a simulation, not secrets
+        self._random = random.Random(seed)  # noqa: S311 - simulation, not secrets
         self._noise = noise
         self._clean_bits = self._draw_clean_bits()
         self._begun = bytearray()
         self._on_the_way: deque[tuple[float, bytes]] = deque()
 
     def put(self, data: bytes, now: float) -> None:
-        """Send bytes at time `now`; a frame is on its way when its closing zero has gone in."""
+        """Send bytes at time `now`; a frame is complete with its closing zero."""
         *endings, rest = data.split(b"\0")
         for ending in endings:
-            whole = bytes(self._begun + ending + b"\0")
+            frame = bytes(self._begun + ending + b"\0")
             self._begun.clear()
             if self._random.random() < self._loss:
                 self.lost += 1
             else:
-                self._on_the_way.append((self._handed_over(now), self._flip(whole)))
+                self._on_the_way.append((self._handed_over(now), self._flip(frame)))
         self._begun += rest
 
     def take(self, now: float) -> bytes:
-        """What has arrived until `now`."""
+        """Bytes that have arrived until `now`."""
         arrived = bytearray()
         while self._on_the_way and self._on_the_way[0][0] <= now:
             arrived += self._on_the_way.popleft()[1]
@@ -64,12 +64,12 @@ class BadWire:
             arrives = math.ceil(arrives / self._latency_timer) * self._latency_timer
         return max(arrives, self._on_the_way[-1][0]) if self._on_the_way else arrives
 
-    def _flip(self, whole: bytes) -> bytes:
-        bits = 8 * len(whole)
+    def _flip(self, frame: bytes) -> bytes:
+        bits = 8 * len(frame)
         if self._clean_bits >= bits:
             self._clean_bits -= bits
-            return whole
-        damaged = bytearray(whole)
+            return frame
+        damaged = bytearray(frame)
         while self._clean_bits < bits:
             place = int(self._clean_bits)
             damaged[place // 8] ^= 1 << place % 8
@@ -79,7 +79,7 @@ class BadWire:
         return bytes(damaged)
 
     def _draw_clean_bits(self) -> float:
-        # Distance to the next flipped bit: a geometric draw instead of one per bit.
+        # Distance to the next flipped bit, drawn from the geometric distribution.
         if self._noise <= 0.0:
             return math.inf
         if self._noise >= 1.0:

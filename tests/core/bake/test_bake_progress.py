@@ -115,8 +115,10 @@ def test_remaining_time_counts_down_while_the_share_stands_still():
 def test_remaining_time_does_not_jump_when_work_gets_slower():
     remaining = RemainingTime()
     remaining.update(0.0, 0.0)
-    told = [remaining.update(s, 0.1 * s if s < 5 else 0.5 + 0.02 * (s - 5)) for s in range(1, 29)]
-    figures = np.array(told[2:])
+    seconds = [
+        remaining.update(s, 0.1 * s if s < 5 else 0.5 + 0.02 * (s - 5)) for s in range(1, 29)
+    ]
+    figures = np.array(left[2:])
     assert np.abs(np.diff(figures)).max() < 10.0
     assert figures[-1] == pytest.approx(3.0, abs=2.5)
 
@@ -125,10 +127,10 @@ def test_progress_lines_are_few(monkeypatch):
     clock = iter(np.arange(0, 100, 0.001).tolist())
     monkeypatch.setattr("palpate.core.bake.child.time.monotonic", lambda: next(clock))
     lines = io.StringIO()
-    tell = ProgressLines(lines).tell
+    add = ProgressLines(lines).add
     for share in np.linspace(0, 1, 1000):
-        tell("compliance", float(share))
-    tell("store", 1.0)
+        add("compliance", float(share))
+    add("store", 1.0)
     written = [json.loads(line) for line in lines.getvalue().splitlines()]
     assert len(written) < 30
     assert written[0] == ["compliance", 0.0]
