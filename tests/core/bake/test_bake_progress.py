@@ -115,9 +115,7 @@ def test_remaining_time_counts_down_while_the_share_stands_still():
 def test_remaining_time_does_not_jump_when_work_gets_slower():
     remaining = RemainingTime()
     remaining.update(0.0, 0.0)
-    seconds = [
-        remaining.update(s, 0.1 * s if s < 5 else 0.5 + 0.02 * (s - 5)) for s in range(1, 29)
-    ]
+    left = [remaining.update(s, 0.1 * s if s < 5 else 0.5 + 0.02 * (s - 5)) for s in range(1, 29)]
     figures = np.array(left[2:])
     assert np.abs(np.diff(figures)).max() < 10.0
     assert figures[-1] == pytest.approx(3.0, abs=2.5)
