@@ -104,8 +104,10 @@ def test_a_part_without_pins_is_refused(tmp_path, temporary, ball):
     above = ball.copy()
     above.apply_translation([0, 0, 0.2])
     both = trimesh.util.concatenate([ball, above])
-    with pytest.raises(PalpateError, match="pins: piece"):
+    with pytest.raises(PalpateError, match="pins: piece") as refused:
         run_bake(surface_of(both), COARSE, tmp_path / "body.npz")
+    # Its parts came along from the other process, so that Blender can translate them.
+    assert refused.value.sentence.values["where"].template == "piece {number} of the body"
     assert not list(temporary.iterdir())
 
 

@@ -22,14 +22,28 @@ def _in_languages(stage: Stage) -> Wait:
     before = view.language
     view.use_translate_interface = True
     try:
-        for language, said in (("ja_JP", "柔らかくする"), ("de_DE", "Weich machen")):
+        for language, said, refused in (
+            ("ja_JP", "柔らかくする", "「by」が 0 です"),
+            ("de_DE", "Weich machen", "„by“ ist null"),
+        ):
             view.language = language
             label = bpy.app.translations.pgettext_iface("Make Soft", "Operator")
             assert label == said
+            assert refused in _refusal()
             assert not _said_otherwise(words()[language.split("_")[0]]["*"])
             yield from stage.picture(language)
     finally:
         view.language = before
+
+
+def _refusal() -> str:
+    """What is reported when there is nothing to press."""
+    bpy.context.view_layer.objects.active = bpy.data.objects["Mouse"]
+    try:
+        bpy.ops.palpate.press("EXEC_DEFAULT")
+    except RuntimeError as refusal:
+        return str(refusal)
+    return ""
 
 
 def _said_otherwise(known: dict[str, str]) -> list[str]:
