@@ -29,6 +29,7 @@ core/servo
 core/softness/scales core/softness
 core
 simulated/wire simulated/hand simulated/board simulated
+operators/reporting
 operators/scene
 operators/pins
 operators/object

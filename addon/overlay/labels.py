@@ -8,7 +8,7 @@ from itertools import pairwise
 import bpy
 from mathutils import Vector
 
-from ...operators.scene.translated import shown
+from ...operators.reporting.translated import shown
 from . import pixels
 from .pressure_colors import ANCHORS
 

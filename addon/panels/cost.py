@@ -5,8 +5,8 @@ import bpy
 from ...core.errors import PalpateError
 from ...core.sentence import Sentence
 from ...operators.bake.bake_prediction import Prediction
+from ...operators.reporting.translated import shown
 from ...operators.scene.quantities import about, duration, memory, percent
-from ...operators.scene.translated import shown
 from .. import known_status
 from .base import draw_rows
 from .sentence import say

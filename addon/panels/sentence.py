@@ -6,7 +6,7 @@ import unicodedata
 import bpy
 
 from ...core.sentence import Sentence
-from ...operators.scene.translated import shown
+from ...operators.reporting.translated import shown
 
 # Width of a letter in the sidebar, unscaled pixels.
 LETTER_PIXELS = 7

@@ -8,8 +8,8 @@ from ...operators.object import soft_object
 from ...operators.object.drawn_body import restores_quickly
 from ...operators.object.pin_change import PinFit
 from ...operators.object.soft_object import BodyStatus, Fit
+from ...operators.reporting.translated import shown
 from ...operators.scene.quantities import duration
-from ...operators.scene.translated import shown
 from ...operators.session.press_events import Source
 from ...operators.session.press_session import PressSession
 from ...operators.session.press_state import Phase

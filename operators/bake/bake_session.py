@@ -13,6 +13,7 @@ from ...core.bake.steps import BakeReport, BakeSettings
 from ...core.body.soft_body import SoftBody
 from ...core.errors import CancelledError, PalpateError
 from ...core.mesh.surface import Surface
+from ...core.sentence import Sentence
 from ...core.stiffness.pins import PinNodes
 from ..object import baked_record, body_store, soft_object
 from ..pins import pin_group, stiff_region
@@ -20,6 +21,7 @@ from ..scene import drawn_surface
 from ..scene.drawn_surface import DrawnSurface
 from ..scene.fingerprint import Fingerprint, changed_body
 from ..scene.object_handle import ObjectHandle
+from ..session import press_session
 
 SECONDS_BETWEEN_POLLS = 0.05
 
@@ -218,3 +220,13 @@ def settings_of(thing: bpy.types.Object, drawn: DrawnSurface) -> BakeSettings:
         tolerance=chosen.compression_tolerance / 100,
         stiffness=stiff_region.stiff_region(thing),
     )
+
+
+def refusal_of_soft(context: bpy.types.Context) -> str:
+    """Why nothing can be done with the active object's body now; empty if it can."""
+    reason = soft_object.refusal(context.object)
+    if not reason and not context.object.palpate.body_key:
+        reason = Sentence("{name} is not soft yet; press Make Soft first", name=context.object.name)
+    if not reason and (current() or press_session.current()):
+        reason = "Finish baking or pressing first"
+    return reason

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 
 from ...core.bake.job import JobProgress
+from ..reporting.translated import shown
 from ..scene.quantities import duration
-from ..scene.translated import shown
 
 WAITING = "The body is ready; leave Edit Mode to receive it"
 

@@ -2,28 +2,23 @@
 
 import bpy
 
-from ..scene.translated import shown
+from ..reporting.acting import Acting
 from . import bake_session
 
 
-class PALPATE_OT_cancel_bake(bpy.types.Operator):
+class PALPATE_OT_cancel_bake(Acting, bpy.types.Operator):
     bl_idname = "palpate.cancel_bake"
     bl_label = "Cancel"
     bl_description = "Stop the bake; nothing is changed and nothing is left"
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        if bake_session.current() is None:
-            cls.poll_message_set(shown("No bake is running"))
-            return False
-        return True
+    def refusal(cls, context: bpy.types.Context) -> str:
+        return "" if bake_session.current() else "No bake is running"
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def act(self, context: bpy.types.Context) -> None:
         session = bake_session.current()
-        if session is None:
-            return {"CANCELLED"}
-        session.end()
-        return {"FINISHED"}
+        if session is not None:
+            session.end()
 
 
 classes = (PALPATE_OT_cancel_bake,)

@@ -6,12 +6,12 @@ import bpy
 
 from ...core.errors import PalpateError
 from ..object import soft_object
+from ..reporting.acting import Acting
 from ..scene import drawn_surface
-from ..scene.translated import reported, shown
 from .bake_prediction import Prediction, pins_of, predict, settings_of, shape_size
 
 
-class PALPATE_OT_fit_memory(bpy.types.Operator):
+class PALPATE_OT_fit_memory(Acting, bpy.types.Operator):
     bl_idname = "palpate.fit_memory"
     bl_label = "Fit Memory"
     bl_description = "Change the bake's settings so that the memory of this machine suffices"
@@ -27,22 +27,14 @@ class PALPATE_OT_fit_memory(bpy.types.Operator):
     )
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        reason = soft_object.refusal(context.object)
-        if reason:
-            cls.poll_message_set(shown(reason))
-        return not reason
+    def refusal(cls, context: bpy.types.Context) -> str:
+        return soft_object.refusal(context.object)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def act(self, context: bpy.types.Context) -> None:
         thing = context.object
-        try:
-            drawn = drawn_surface.read(thing, context.scene)
-            settings = settings_of(thing, pins_of(thing, drawn))
-            self._change(thing, predict(shape_size(drawn), settings))
-        except PalpateError as problem:
-            self.report({"ERROR"}, reported(problem))
-            return {"CANCELLED"}
-        return {"FINISHED"}
+        drawn = drawn_surface.read(thing, context.scene)
+        settings = settings_of(thing, pins_of(thing, drawn))
+        self._change(thing, predict(shape_size(drawn), settings))
 
     def _change(self, thing: bpy.types.Object, now: Prediction) -> None:
         if self.by == "COMPRESSED":

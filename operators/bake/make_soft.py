@@ -1,15 +1,13 @@
 """Make Soft: bake the selected mesh into a body that can be pressed."""
 
-from collections.abc import Callable
-from typing import ClassVar
-
 import bpy
 
 from ...core.bake.steps import BakeReport
 from ...core.body.soft_body import SoftBody
 from ...core.errors import CancelledError, PalpateError
 from ..object import soft_object
-from ..scene.translated import reported, shown
+from ..reporting.acting import Acting
+from ..reporting.translated import reported, shown
 from ..scene.viewport import redraw_views
 from ..session import press_session
 from . import bake_session, bake_words
@@ -18,39 +16,24 @@ from .bake_session import BakeSession
 POLLS_PER_SECOND = 10
 
 
-class BakingOperator:
+class BakingOperator(Acting):
     """What Make Soft and Rebuild Body share: a bake beside Blender, or waited for."""
 
     rebuild = False
-    # What every bpy.types.Operator has, which this is mixed into.
-    report: Callable[[set[str], str], None]
-    poll_message_set: ClassVar[Callable[[str], None]]
     _session: BakeSession
     _timer: bpy.types.Timer | None = None
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
+    def refusal(cls, context: bpy.types.Context) -> str:
         if bake_session.current() is not None:
-            cls.poll_message_set(shown("A bake is running; wait for it or cancel it"))
-            return False
+            return "A bake is running; wait for it or cancel it"
         if press_session.current() is not None:
-            cls.poll_message_set(
-                shown("Finish pressing first: Enter keeps the shape, Escape restores it")
-            )
-            return False
-        reason = soft_object.refusal(context.object)
-        if reason:
-            cls.poll_message_set(shown(reason))
-        return not reason
+            return "Finish pressing first: Enter keeps the shape, Escape restores it"
+        return soft_object.refusal(context.object)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        try:
-            body, report = bake_session.run(context.object, context.scene, rebuild=self.rebuild)
-        except PalpateError as problem:
-            self.report({"ERROR"}, reported(problem))
-            return {"CANCELLED"}
+    def act(self, context: bpy.types.Context) -> None:
+        body, report = bake_session.run(context.object, context.scene, rebuild=self.rebuild)
         self._tell(context.object.name, body, report)
-        return {"FINISHED"}
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if bpy.app.background:

@@ -2,15 +2,15 @@
 
 import bpy
 
-from ...core.errors import PalpateError
 from ...core.sentence import Sentence
 from ..object import soft_object
 from ..pins import pin_group
+from ..reporting.acting import Acting
+from ..reporting.translated import reported
 from ..scene import drawn_surface
-from ..scene.translated import reported, shown
 
 
-class PALPATE_OT_pin_below(bpy.types.Operator):
+class PALPATE_OT_pin_below(Acting, bpy.types.Operator):
     bl_idname = "palpate.pin_below"
     bl_label = "Make Pin Group"
     bl_description = (
@@ -29,30 +29,21 @@ class PALPATE_OT_pin_below(bpy.types.Operator):
     )
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
+    def refusal(cls, context: bpy.types.Context) -> str:
         reason = soft_object.refusal(context.object)
         if not reason and not context.object.data.polygons:
             reason = Sentence("{name} has no faces", name=context.object.name)
-        if reason:
-            cls.poll_message_set(shown(reason))
-        return not reason
+        return reason
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         self.fraction = context.object.palpate.pin_fraction
         return self.execute(context)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def act(self, context: bpy.types.Context) -> None:
         thing = context.object
-        try:
-            count = pin_group.mark_below(
-                thing, drawn_surface.read(thing, context.scene), self.fraction
-            )
-        except PalpateError as problem:
-            self.report({"ERROR"}, reported(problem))
-            return {"CANCELLED"}
+        count = pin_group.mark_below(thing, drawn_surface.read(thing, context.scene), self.fraction)
         thing.palpate.pin_group = pin_group.GROUP_NAME
         self.report({"INFO"}, reported("{count} vertices pinned", count=count))
-        return {"FINISHED"}
 
 
 classes = (PALPATE_OT_pin_below,)

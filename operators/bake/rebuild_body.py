@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..scene.translated import shown
+from ...core.sentence import Sentence
 from .make_soft import BakingOperator
 
 
@@ -17,15 +17,13 @@ class PALPATE_OT_rebuild_body(BakingOperator, bpy.types.Operator):
     rebuild = True
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        if not super().poll(context):
-            return False
-        if not context.object.palpate.body_key:
-            cls.poll_message_set(
-                shown("{name} is not soft yet; press Make Soft", name=context.object.name)
+    def refusal(cls, context: bpy.types.Context) -> str:
+        reason = super().refusal(context)
+        if not reason and not context.object.palpate.body_key:
+            reason = Sentence(
+                "{name} is not soft yet; press Make Soft first", name=context.object.name
             )
-            return False
-        return True
+        return reason
 
 
 classes = (PALPATE_OT_rebuild_body,)

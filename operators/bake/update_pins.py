@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import bpy
 
-from ...core.errors import PalpateError
-from ...core.sentence import Sentence
 from ..object import pin_change, soft_object
+from ..reporting.acting import Acting
+from ..reporting.translated import reported
 from ..scene import drawn_surface
-from ..scene.translated import reported, shown
-from ..session import press_session
-from . import bake_session
+from .bake_session import refusal_of_soft
 
 
-class PALPATE_OT_update_pins(bpy.types.Operator):
+class PALPATE_OT_update_pins(Acting, bpy.types.Operator):
     bl_idname = "palpate.update_pins"
     bl_label = "Update Pins"
     bl_description = (
@@ -23,15 +21,8 @@ class PALPATE_OT_update_pins(bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        reason = soft_object.refusal(context.object)
-        if not reason and not context.object.palpate.body_key:
-            reason = Sentence("{name} is not soft yet; press Make Soft", name=context.object.name)
-        if not reason and (bake_session.current() or press_session.current()):
-            reason = "Finish baking or pressing first"
-        if reason:
-            cls.poll_message_set(shown(reason))
-        return not reason
+    def refusal(cls, context: bpy.types.Context) -> str:
+        return refusal_of_soft(context)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         context.window.cursor_modal_set("WAIT")
@@ -40,15 +31,11 @@ class PALPATE_OT_update_pins(bpy.types.Operator):
         finally:
             context.window.cursor_modal_restore()
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def act(self, context: bpy.types.Context) -> None:
         thing = context.object
-        try:
-            drawn = drawn_surface.read(thing, context.scene)
-            soft_object.refuse_changed(thing, soft_object.mesh_status(thing, drawn))
-            body = pin_change.take_over(thing, drawn)
-        except PalpateError as problem:
-            self.report({"ERROR"}, reported(problem))
-            return {"CANCELLED"}
+        drawn = drawn_surface.read(thing, context.scene)
+        soft_object.refuse_changed(thing, soft_object.mesh_status(thing, drawn))
+        body = pin_change.take_over(thing, drawn)
         self.report(
             {"INFO"},
             reported(
@@ -57,7 +44,6 @@ class PALPATE_OT_update_pins(bpy.types.Operator):
                 count=len(body.fixed),
             ),
         )
-        return {"FINISHED"}
 
 
 classes = (PALPATE_OT_update_pins,)

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING
-
 import bpy
 
 from ...core.errors import PalpateError
 from ...core.sentence import Sentence
 from ..object import soft_object
+from ..reporting.acting import Acting
+from ..reporting.translated import reported, shown
 from ..scene import viewport
-from ..scene.translated import reported, shown
 from ..scene.viewport import Viewport, redraw_views
 from ..session import press_session
 from ..session.pointer_hand import PointerHand
@@ -53,16 +51,27 @@ EMPTY_STATUS = {
 }
 
 
-class ModalPress:
+class Pressing(Acting):
+    """An operator that presses the active object."""
+
+    @classmethod
+    def refusal(cls, context: bpy.types.Context) -> str:
+        thing = context.object
+        reason = soft_object.refusal(thing)
+        if not reason and press_session.current() is not None:
+            reason = "A press is going on; Enter keeps the shape, Escape restores it"
+        if not reason and not thing.palpate.body_key:
+            reason = Sentence("{name} is not soft yet; press Make Soft first", name=thing.name)
+        return reason
+
+
+class ModalPress(Pressing):
     """The running side of an operator that presses; mixed into Press and Pinch."""
 
     _session: PressSession
     _hand: PointerHand
     _timer: bpy.types.Timer | None = None
     _status = ""
-    if TYPE_CHECKING:
-        # Blender's own operators have it.
-        report: Callable[[set[str], str], None]
 
     def start(self, context: bpy.types.Context, source: Source, *, pinch: bool) -> set[str]:
         """Begin to press the active object and have Blender send events."""
@@ -180,17 +189,6 @@ class ModalPress:
         if context.workspace is not None:
             context.workspace.status_text_set(None)
         redraw_views()
-
-
-def refusal(context: bpy.types.Context) -> str:
-    """Why nothing can be pressed now; empty if it can."""
-    thing = context.object
-    reason = soft_object.refusal(thing)
-    if not reason and press_session.current() is not None:
-        reason = "A press is going on; Enter keeps the shape, Escape restores it"
-    if not reason and not thing.palpate.body_key:
-        reason = Sentence("{name} is not soft yet; press Make Soft first", name=thing.name)
-    return reason
 
 
 def _is_blenders(event: bpy.types.Event) -> bool:

@@ -3,9 +3,8 @@
 import bpy
 
 from ...core.errors import PalpateError
-from ..scene.translated import reported, shown
+from ..reporting.translated import reported
 from ..session.press_events import Source
-from . import modal_press
 from .modal_press import ModalPress
 from .press import report
 from .press_once import press_several
@@ -39,13 +38,6 @@ class PALPATE_OT_pinch(ModalPress, bpy.types.Operator):
         default=True,
         options={"SKIP_SAVE"},
     )
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        reason = modal_press.refusal(context)
-        if reason:
-            cls.poll_message_set(shown(reason))
-        return not reason
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         for name in ("by_1", "by_2"):

@@ -17,12 +17,13 @@ from numpy.typing import NDArray
 from ...core.contact.tool.tools import Pose
 from ...core.errors import PalpateError
 from ..object.drawn_body import DrawnBody, open_body
+from ..reporting.translated import reported
 from ..scene.body_frame import BodyFrame
-from ..scene.translated import reported, shown
 from ..shape.drawn_shape import CompleteShape, complete_shape
 from ..tool import tool_turn
 from ..tool.finger_tip import chosen_tip
-from . import modal_press, several_fingers
+from . import several_fingers
+from .modal_press import Pressing
 from .press_once import keep_shape
 from .several_fingers import FingerForce, ToolPress
 
@@ -41,7 +42,7 @@ class PressedFrame:
     displacements: Array | None
 
 
-class PALPATE_OT_press_frames(bpy.types.Operator):
+class PALPATE_OT_press_frames(Pressing, bpy.types.Operator):
     bl_idname = "palpate.press_frames"
     bl_label = "Press Along Animation"
     bl_description = (
@@ -66,13 +67,6 @@ class PALPATE_OT_press_frames(bpy.types.Operator):
         name="This Frame Only",
         description="Press up to the current frame and keep only its shape",
     )
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        reason = modal_press.refusal(context)
-        if reason:
-            cls.poll_message_set(shown(reason))
-        return not reason
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         thing, scene = context.object, context.scene

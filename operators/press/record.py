@@ -2,13 +2,12 @@
 
 import bpy
 
-from ...core.errors import PalpateError
-from ..scene.translated import reported, shown
+from ..reporting.acting import Acting
 from ..scene.viewport import redraw_views
 from ..session import press_session
 
 
-class PALPATE_OT_record(bpy.types.Operator):
+class PALPATE_OT_record(Acting, bpy.types.Operator):
     bl_idname = "palpate.record"
     bl_label = "Record"
     bl_description = (
@@ -17,27 +16,21 @@ class PALPATE_OT_record(bpy.types.Operator):
     )
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        pressing = press_session.current() is not None
-        if not pressing:
-            cls.poll_message_set(shown("Start to press first, or choose Record from Start"))
-        return pressing
+    def refusal(cls, context: bpy.types.Context) -> str:
+        if press_session.current() is not None:
+            return ""
+        return "Start to press first, or choose Record from Start"
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def act(self, context: bpy.types.Context) -> None:
         session = press_session.current()
         if session is None or session.loop is None:
-            return {"CANCELLED"}
+            return
         recorder = session.loop.recorder
-        try:
-            if recorder.going_on:
-                recorder.stop()
-            else:
-                session.start_recording()
-        except PalpateError as problem:
-            self.report({"ERROR"}, reported(problem))
-            return {"CANCELLED"}
+        if recorder.going_on:
+            recorder.stop()
+        else:
+            session.start_recording()
         redraw_views()
-        return {"FINISHED"}
 
 
 classes = (PALPATE_OT_record,)

@@ -8,7 +8,8 @@ from ...core.errors import PalpateError
 from ...core.servo.recording import SUFFIXES
 from ..record import recording, recording_writer
 from ..record.recording import Kept, Recorder
-from ..scene.translated import reported, shown
+from ..reporting.acting import Acting
+from ..reporting.translated import reported
 from ..session import press_session
 
 FORMAT_ITEMS = [
@@ -31,7 +32,7 @@ def recorded() -> Kept | None:
     return recording.last() if recorder is None else recorder.kept()
 
 
-class PALPATE_OT_save_recording(bpy.types.Operator):
+class PALPATE_OT_save_recording(Acting, bpy.types.Operator):
     bl_idname = "palpate.save_recording"
     bl_label = "Save Recording..."
     bl_description = "Write the recorded ticks to a file, also while pressing goes on"
@@ -47,15 +48,13 @@ class PALPATE_OT_save_recording(bpy.types.Operator):
     _in_window = False
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
+    def refusal(cls, context: bpy.types.Context) -> str:
         reason = ""
         if _recorder() is None and recording.last() is None:
             reason = "Nothing is recorded yet; press Record while you press"
         elif recording_writer.going_on():
             reason = "A recording is being written; wait until it is done"
-        if reason:
-            cls.poll_message_set(shown(reason))
-        return not reason
+        return reason
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         beside = Path(bpy.data.filepath).parent if bpy.data.filepath else Path.home()
@@ -73,33 +72,24 @@ class PALPATE_OT_save_recording(bpy.types.Operator):
         self.filepath = str(path.with_name(stem + self.suffix))
         return True
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def act(self, context: bpy.types.Context) -> None:
         kept = recorded()
         if kept is None:
-            self.report(
-                {"ERROR"}, reported("Nothing is recorded yet; press Record while you press")
-            )
-            return {"CANCELLED"}
-        try:
-            path = Path(bpy.path.abspath(self.filepath))
-            if self._in_window:
-                recording_writer.begin(path, kept)
-                return {"FINISHED"}
-            recording.write(path, kept)
-        except PalpateError as problem:
-            self.report({"ERROR"}, reported(problem))
-            return {"CANCELLED"}
-        seconds = len(kept.samples) / kept.rate_hz
+            raise PalpateError("Nothing is recorded yet; press Record while you press")
+        path = Path(bpy.path.abspath(self.filepath))
+        if self._in_window:
+            recording_writer.begin(path, kept)
+            return
+        recording.write(path, kept)
         self.report(
             {"INFO"},
             reported(
                 "{ticks:,} ticks ({seconds:.1f} s) saved to {path}",
                 ticks=len(kept.samples),
-                seconds=seconds,
+                seconds=len(kept.samples) / kept.rate_hz,
                 path=path,
             ),
         )
-        return {"FINISHED"}
 
 
 classes = (PALPATE_OT_save_recording,)

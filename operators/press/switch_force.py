@@ -2,13 +2,13 @@
 
 import bpy
 
-from ..scene.translated import shown
+from ..reporting.acting import Acting
 from ..scene.viewport import redraw_views
 from ..session import press_session
 from ..session.press_events import Source
 
 
-class PALPATE_OT_switch_force(bpy.types.Operator):
+class PALPATE_OT_switch_force(Acting, bpy.types.Operator):
     bl_idname = "palpate.switch_force"
     bl_label = "Force Off"
     bl_description = (
@@ -16,19 +16,16 @@ class PALPATE_OT_switch_force(bpy.types.Operator):
     )
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
+    def refusal(cls, context: bpy.types.Context) -> str:
         session = press_session.current()
         by_device = session is not None and session.state.source is Source.DEVICE
-        if not by_device:
-            cls.poll_message_set(shown("No device presses now"))
-        return by_device
+        return "" if by_device else "No device presses now"
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def act(self, context: bpy.types.Context) -> None:
         session = press_session.current()
         if session is not None:
             session.switch_force()
         redraw_views()
-        return {"FINISHED"}
 
 
 classes = (PALPATE_OT_switch_force,)

@@ -5,7 +5,7 @@ import bpy
 from ...core.contact.tool.tools import sphere
 from ...core.softness.force_depth import MILLIMETRES, force_depth_curve
 from ..object.drawn_body import DrawnBody
-from ..scene.translated import reported
+from ..reporting.translated import reported
 from .softness_operator import SoftnessOperator
 from .softness_place import at_property, pick_property, place_in_body
 

@@ -4,7 +4,7 @@ import bpy
 
 from ...core.softness.durometer import read_durometer
 from ..object.drawn_body import DrawnBody
-from ..scene.translated import reported
+from ..reporting.translated import reported
 from .softness_operator import SoftnessOperator
 from .softness_place import at_property, pick_property, place_in_body
 

@@ -10,7 +10,8 @@ from ...core.softness.ramp import ramp
 from ...core.softness.softness_map import SoftnessMap, softness_map
 from ..object import soft_object
 from ..object.drawn_body import DrawnBody
-from ..scene.translated import reported, shown
+from ..reporting.acting import Acting
+from ..reporting.translated import reported
 from .softness_operator import Place, SoftnessOperator
 
 ATTRIBUTE = "Palpate Softness"
@@ -41,22 +42,20 @@ class PALPATE_OT_map_softness(SoftnessOperator, bpy.types.Operator):
         self.report({"INFO"}, reported("Viewport Shading > Color > Attribute shows it"))
 
 
-class PALPATE_OT_remove_softness_map(bpy.types.Operator):
+class PALPATE_OT_remove_softness_map(Acting, bpy.types.Operator):
     bl_idname = "palpate.remove_softness_map"
     bl_label = "Remove Softness Map"
     bl_description = "Delete the colour attribute Palpate Softness"
     bl_options = {"REGISTER", "UNDO"}
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
+    def refusal(cls, context: bpy.types.Context) -> str:
         reason = soft_object.refusal(context.object)
         if not reason and ATTRIBUTE not in context.object.data.color_attributes:
             reason = Sentence("{name} has no softness map", name=context.object.name)
-        if reason:
-            cls.poll_message_set(shown(reason))
-        return not reason
+        return reason
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def act(self, context: bpy.types.Context) -> None:
         mesh = context.object.data
         softness = context.object.palpate_softness
         mesh.color_attributes.remove(mesh.color_attributes[ATTRIBUTE])
@@ -64,7 +63,6 @@ class PALPATE_OT_remove_softness_map(bpy.types.Operator):
             mesh.color_attributes.active_color_name = softness.shown_before
         for name in ("map_low", "map_high", "shown_before"):
             softness.property_unset(name)
-        return {"FINISHED"}
 
 
 def _at_vertices(drawn: DrawnBody, found: SoftnessMap) -> NDArray[np.float64]:

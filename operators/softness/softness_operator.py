@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ...core.errors import PalpateError
+from ..bake.bake_session import refusal_of_soft
 from ..object.drawn_body import DrawnBody, open_body
+from ..reporting.acting import Acting
+from ..reporting.translated import reported, shown
 from ..scene import ray, viewport
-from ..scene.translated import reported, shown
-from .softness_place import refusal
 
 if TYPE_CHECKING:
 
@@ -30,7 +31,7 @@ class Place(Enum):
     EVERYWHERE = "everywhere"
 
 
-class SoftnessOperator(_Operator):
+class SoftnessOperator(Acting, _Operator):
     """An operator on the body of the active object. What it does is :meth:`measure`; what that
     raises as :class:`PalpateError` is reported. One that asks at one place has ``at`` and ``pick``.
     """
@@ -39,11 +40,8 @@ class SoftnessOperator(_Operator):
     asks = Place.ONE
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        reason = refusal(context)
-        if reason:
-            cls.poll_message_set(shown(reason))
-        return not reason
+    def refusal(cls, context: bpy.types.Context) -> str:
+        return refusal_of_soft(context)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if self.asks is Place.EVERYWHERE or not self.properties.pick:
@@ -78,13 +76,8 @@ class SoftnessOperator(_Operator):
         self.properties.at = place
         return self.execute(context)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        try:
-            self.measure(context, open_body(context.object, context.scene))
-        except PalpateError as problem:
-            self.report({"ERROR"}, reported(problem))
-            return {"CANCELLED"}
-        return {"FINISHED"}
+    def act(self, context: bpy.types.Context) -> None:
+        self.measure(context, open_body(context.object, context.scene))
 
     def measure(self, context: bpy.types.Context, drawn: DrawnBody) -> None:
         """Find it, write it down, report it."""

@@ -9,21 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.errors import PalpateError
-from ...core.sentence import Sentence
-from ..bake import bake_session
-from ..object import soft_object
 from ..object.drawn_body import DrawnBody
-from ..session import press_session
-
-
-def refusal(context: bpy.types.Context) -> str:
-    """Why the active object cannot be asked now; empty if it can."""
-    reason = soft_object.refusal(context.object)
-    if not reason and not context.object.palpate.body_key:
-        reason = Sentence("{name} is not soft yet; press Make Soft first", name=context.object.name)
-    if not reason and (bake_session.current() or press_session.current()):
-        reason = "Finish baking or pressing first"
-    return reason
 
 
 def place_in_body(

@@ -1,0 +1,1 @@
+"""What operators report, and how they refuse, in the user's language."""
