@@ -111,13 +111,5 @@ KNOWN = (
     "core/mesh/read_mesh.py imports core/stiffness/assembly.py",
     "core/servo/link.py is too long",
     "native/src/python/servo/thread.rs is too long",
-    "native/tests holds too many",
-    "native/tests/bodies/mod.rs is too long",
-    "native/tests/fingers.rs is too long",
-    "native/tests/haply.rs is too long",
-    "native/tests/link.rs is too long",
-    "native/tests/no_allocation.rs is too long",
-    "native/tests/proxy_feel.rs is too long",
-    "native/tests/tool_contact.rs is too long",
     "tests/cli/test_command_line.py is too long",
 )

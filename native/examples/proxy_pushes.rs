@@ -15,7 +15,7 @@ use palpate_servo::proxy::Feel;
 
 #[path = "../tests/bodies/mod.rs"]
 mod bodies;
-#[path = "../tests/pushing/mod.rs"]
+#[path = "../tests/proxy/pushing.rs"]
 mod pushing;
 
 use bodies::{Dice, pushed_bodies, soft};

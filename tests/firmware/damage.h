@@ -1,5 +1,5 @@
 // Streams of sound and damaged frames, the same from the same seed in C++ and in Rust
-// (native/tests/damage): one draws what the other draws, in the same order.
+// (native/tests/device/damage.rs): one draws what the other draws, in the same order.
 #pragma once
 
 #include <palpate_link.h>

@@ -1,4 +1,4 @@
-"""Three codecs on the same damaged streams; Rust reads them in `native/tests/fuzz_link.rs`.
+"""Three codecs on the same damaged streams; Rust reads them in `native/tests/device/fuzz_link.rs`.
 
 Where there is no C++ compiler, Python and Rust still meet in `tests/core/devices`.
 """

@@ -1,12 +1,21 @@
 //! Test bodies: a box cut into a grid, an icosphere, extruded voxels with concave edges.
-#![allow(dead_code)] // Each test file takes what it needs.
+#![allow(dead_code, unused_imports)] // Each test program takes what it needs.
+
+mod compliant;
+mod dice;
+mod round;
 
 use std::collections::HashMap;
 use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
-use palpate_servo::body::compliance::{Compliance, Compressed, CompressedParts, Dense, Either};
 use palpate_servo::body::surface::Body;
+
+pub use compliant::{
+    compressed, compressed_parts, elastic, elastic_cube, giving_cube, giving_cube_in_parts,
+};
+pub use dice::Dice;
+pub use round::{globe, lentil, sphere};
 
 pub fn soft(nodes: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Arc<Body> {
     let blocks = (0..nodes.len())
@@ -72,133 +81,6 @@ pub fn cube() -> Arc<Body> {
     body
 }
 
-/// The cube with a compressed compliance made of far blocks alone wherever that can be: the form
-/// that costs a tick the most. The lowest nodes are pinned.
-pub fn giving_cube() -> Arc<Body> {
-    Arc::new(giving_cube_in_parts().0)
-}
-
-/// The same, its compliance, and the nodes that this counts.
-pub fn giving_cube_in_parts() -> (Body, Compliance, Vec<u32>) {
-    let body = Arc::into_inner(cube()).expect("nobody else has it");
-    let free: Vec<u32> = (0..body.nodes.len() as u32)
-        .filter(|&node| body.nodes[node as usize].z > 0.0)
-        .collect();
-    let compliance = compressed(&mut Dice::new(8), free.len(), 4, 2);
-    let body = body.with_compliance(&compliance, &free).expect("it fits");
-    (body, compliance, free)
-}
-
-/// The cube with a made-up compliance that a real body could have: symmetric, positive definite,
-/// falling off with distance, contact blocks that belong to it. The lowest nodes are pinned.
-pub fn elastic_cube() -> Arc<Body> {
-    elastic(&cube())
-}
-
-/// The body's surface with such a compliance, pinned where it is lowest.
-pub fn elastic(body: &Body) -> Arc<Body> {
-    let lowest = body.nodes.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
-    let free: Vec<u32> = (0..body.nodes.len() as u32)
-        .filter(|&node| body.nodes[node as usize].z > lowest + 1e-9)
-        .collect();
-    let shape = DMat3::from_cols_array(&[9.0, 1.0, 0.5, 1.0, 7.0, -0.8, 0.5, -0.8, 11.0]);
-    // Stiffer one way than another, and not alike near and far.
-    let near = DMat3::from_cols_array(&[4.0, -1.5, 1.0, -1.5, 2.0, 0.3, 1.0, 0.3, 1.5]);
-    let block = |a: u32, b: u32| {
-        let gap = body.nodes[a as usize].distance(body.nodes[b as usize]);
-        shape * (-gap / 0.02).exp() + near * (-gap / 0.008).exp()
-    };
-    let mut table = Vec::new();
-    for &loaded in &free {
-        for axis in 0..3 {
-            let column = |&moved: &u32| block(moved, loaded).col(axis).to_array();
-            table.extend(free.iter().flat_map(column));
-        }
-    }
-    let dense = Dense::new(free.len(), Either::Long(table.into())).expect("n x 3 x 3n");
-    let blocks = vec![(shape + near).inverse(); body.nodes.len()];
-    let body = Body::new(body.nodes.clone(), body.triangles.clone(), blocks).expect("sound");
-    let whole = body.with_whole_compliance(Arc::new(Compliance::Dense(dense)), &free);
-    Arc::new(whole.expect("it fits"))
-}
-
-/// Made-up parts of a compressed compliance: clusters that are near to themselves alone, with as
-/// many tiles each as told, every third tile missing and every fifth wide.
-pub fn compressed_parts(
-    dice: &mut Dice,
-    nodes: usize,
-    leaf: usize,
-    tiles: usize,
-) -> CompressedParts {
-    let clusters = nodes.div_ceil(leaf);
-    let (rows, all) = (3 * leaf, clusters * tiles);
-    let mut own_blocks = Vec::new();
-    for _ in 0..nodes {
-        let [a, b, c] = [0, 1, 2].map(|_| dice.within(-0.1, 0.1));
-        own_blocks.extend([1.0, a, b, a, 1.2, c, b, c, 0.8]);
-    }
-    let mut near: Vec<i16> = vec![0; clusters * rows * rows];
-    for block in near.chunks_mut(rows * rows) {
-        for r in 0..rows {
-            for c in 0..=r {
-                // The blocks L_ii are kept apart.
-                let number = if r / 3 == c / 3 {
-                    0
-                } else {
-                    dice.below(200) as i16 - 100
-                };
-                (block[r * rows + c], block[c * rows + r]) = (number, number);
-            }
-        }
-    }
-    let mut tile_table = vec![0; all * all];
-    let (mut narrow, mut wide) = (vec![0_i8; 64], Vec::new());
-    for row in 0..all {
-        for column in (row / tiles + 1) * tiles..all {
-            let number = match (row + column) % 15 {
-                0 | 3 | 6 | 9 | 12 => 0,
-                5 | 10 => {
-                    wide.extend((0..64).map(|_| dice.below(2000) as i16 - 1000));
-                    -(wide.len() as i32 / 64)
-                }
-                _ => {
-                    narrow.extend((0..64).map(|_| dice.below(200) as i8));
-                    narrow.len() as i32 / 64 - 1
-                }
-            };
-            (
-                tile_table[row * all + column],
-                tile_table[column * all + row],
-            ) = (number, number);
-        }
-    }
-    let mut floats = |count: usize, low: f64, high: f64| -> Vec<f32> {
-        (0..count).map(|_| dice.within(low, high) as f32).collect()
-    };
-    CompressedParts {
-        places: (0..nodes as u32).rev().collect(),
-        own_blocks: own_blocks.into(),
-        near_scale: floats(clusters * rows, 0.5, 2.0).into(),
-        near_table: (0..clusters * clusters)
-            .map(|k| if k / clusters == k % clusters { k / clusters + 1 } else { 0 } as u32)
-            .collect(),
-        near_steps: floats(clusters, 1e-3, 2e-3).into(),
-        near: Either::Short(near.into()),
-        tile_counts: vec![tiles as u32; clusters],
-        basis: floats(rows * 8 * all, -0.3, 0.3).into(),
-        steps: floats(clusters, 1e-3, 2e-3).into(),
-        tile_table,
-        narrow: narrow.into(),
-        wide: Either::Short(wide.into()),
-    }
-}
-
-/// A compliance of these parts.
-pub fn compressed(dice: &mut Dice, nodes: usize, leaf: usize, tiles: usize) -> Compliance {
-    let parts = compressed_parts(dice, nodes, leaf, tiles);
-    Compliance::Compressed(Box::new(Compressed::new(parts).expect("sound parts")))
-}
-
 /// A bar with an inner corner along y.
 pub fn angle_bar() -> Arc<Body> {
     let cells: Vec<_> = grid(4, 4, 4)
@@ -246,102 +128,6 @@ pub fn wall(thickness: f64) -> Arc<Body> {
     let scale = DVec3::new(0.0125, 0.0125, thickness);
     let nodes = body.nodes.iter().map(|&p| p * scale).collect();
     soft(nodes, body.triangles.clone())
-}
-
-/// An icosphere around the origin.
-pub fn sphere(radius: f64, halvings: u32) -> Arc<Body> {
-    let g = f64::midpoint(1.0, 5.0_f64.sqrt());
-    let mut nodes: Vec<DVec3> = [
-        [-1.0, g, 0.0],
-        [1.0, g, 0.0],
-        [-1.0, -g, 0.0],
-        [1.0, -g, 0.0],
-        [0.0, -1.0, g],
-        [0.0, 1.0, g],
-        [0.0, -1.0, -g],
-        [0.0, 1.0, -g],
-        [g, 0.0, -1.0],
-        [g, 0.0, 1.0],
-        [-g, 0.0, -1.0],
-        [-g, 0.0, 1.0],
-    ]
-    .map(|p| DVec3::from_array(p).normalize() * radius)
-    .to_vec();
-    let mut triangles: Vec<[u32; 3]> = vec![
-        [0, 11, 5],
-        [0, 5, 1],
-        [0, 1, 7],
-        [0, 7, 10],
-        [0, 10, 11],
-        [1, 5, 9],
-        [5, 11, 4],
-        [11, 10, 2],
-        [10, 7, 6],
-        [7, 1, 8],
-        [3, 9, 4],
-        [3, 4, 2],
-        [3, 2, 6],
-        [3, 6, 8],
-        [3, 8, 9],
-        [4, 9, 5],
-        [2, 4, 11],
-        [6, 2, 10],
-        [8, 6, 7],
-        [9, 8, 1],
-    ];
-    for _ in 0..halvings {
-        let mut middles: HashMap<(u32, u32), u32> = HashMap::new();
-        let mut finer = Vec::with_capacity(4 * triangles.len());
-        for [a, b, c] in triangles {
-            let [ab, bc, ca] = [(a, b), (b, c), (c, a)].map(|(p, q)| {
-                *middles.entry((p.min(q), p.max(q))).or_insert_with(|| {
-                    let middle = (nodes[p as usize] + nodes[q as usize]).normalize() * radius;
-                    nodes.push(middle);
-                    nodes.len() as u32 - 1
-                })
-            });
-            finer.extend([[a, ab, ca], [b, bc, ab], [c, ca, bc], [ab, bc, ca]]);
-        }
-        triangles = finer;
-    }
-    soft(nodes, triangles)
-}
-
-/// A ball with long thin triangles: an icosphere squeezed flat.
-pub fn lentil() -> Arc<Body> {
-    let ball = sphere(0.025, 3);
-    let squeeze = DVec3::new(1.0, 0.02, 1.0);
-    let nodes = ball.nodes.iter().map(|&p| p * squeeze).collect();
-    soft(nodes, ball.triangles.clone())
-}
-
-/// A sphere of 51 meridians and 24 bands: 2,346 triangles, long and thin at the poles.
-pub fn globe(radius: f64) -> Arc<Body> {
-    let (meridians, bands) = (51_u32, 24_u32);
-    let mut nodes = vec![DVec3::Z * radius];
-    for band in 1..bands {
-        let polar = std::f64::consts::PI * f64::from(band) / f64::from(bands);
-        for meridian in 0..meridians {
-            let azimuth = std::f64::consts::TAU * f64::from(meridian) / f64::from(meridians);
-            let (s, c) = azimuth.sin_cos();
-            nodes.push(DVec3::new(c * polar.sin(), s * polar.sin(), polar.cos()) * radius);
-        }
-    }
-    nodes.push(-DVec3::Z * radius);
-    let at = |band: u32, meridian: u32| 1 + (band - 1) * meridians + meridian % meridians;
-    let south = nodes.len() as u32 - 1;
-    let mut triangles = Vec::new();
-    for m in 0..meridians {
-        triangles.push([0, at(1, m), at(1, m + 1)]);
-        for band in 1..bands - 1 {
-            let (a, b) = (at(band, m), at(band + 1, m));
-            let (c, d) = (at(band + 1, m + 1), at(band, m + 1));
-            triangles.extend([[a, b, c], [a, c, d]]);
-        }
-        triangles.push([south, at(bands - 1, m + 1), at(bands - 1, m)]);
-    }
-    assert_eq!(triangles.len(), 2346);
-    soft(nodes, triangles)
 }
 
 /// A block cut into 200 slices: triangles 200 times longer than wide.
@@ -437,47 +223,4 @@ pub fn pushed_bodies() -> Vec<(&'static str, Arc<Body>)> {
         ("1 mm", turned(&angle_bar(), 0.02)),
         ("10 m", turned(&angle_bar(), 200.0)),
     ]
-}
-
-/// The same numbers on every machine.
-pub struct Dice(u64);
-
-impl Dice {
-    pub fn new(seed: u64) -> Self {
-        Self(seed)
-    }
-
-    pub fn bits(&mut self) -> u64 {
-        // SplitMix64.
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
-    pub fn unit(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    pub fn below(&mut self, n: usize) -> usize {
-        (self.bits() % n as u64) as usize
-    }
-
-    pub fn within(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-
-    pub fn direction(&mut self) -> DVec3 {
-        loop {
-            let v = DVec3::new(
-                self.within(-1.0, 1.0),
-                self.within(-1.0, 1.0),
-                self.within(-1.0, 1.0),
-            );
-            if (0.01..1.0).contains(&v.length()) {
-                return v.normalize();
-            }
-        }
-    }
 }

@@ -1,0 +1,7 @@
+//! The body: compliance in both forms, softening, displacement of its surface.
+
+#[path = "../bodies/mod.rs"]
+mod bodies;
+mod compliance;
+mod consistent_contact;
+mod softening;

@@ -1,0 +1,272 @@
+//! The serial device against a wire in memory: greeting, gaps, staleness, faults, unplugging.
+
+use crate::link_bench::{Bench, FRAME, greeted, position, read};
+use glam::DVec3;
+use palpate_servo::device::link::LinkDevice;
+use palpate_servo::device::{Device, DeviceFrame, Fault, Reading};
+
+#[test]
+fn hello_is_repeated_until_it_is_answered() {
+    let bench = Bench::default();
+    let mut device = LinkDevice::open(bench.clone()).unwrap();
+    for tick in 0..200 {
+        let reading = read(&mut device, f64::from(tick) * 1e-3);
+        assert!(matches!(reading, Reading::Waiting(_)));
+        device.write(DVec3::ZERO, false, &FRAME());
+    }
+    assert_eq!(bench.received(), vec![vec![1, 1]; 4]);
+    bench.hello(1, 2.5);
+    bench.state(0, 1000, 0, 1);
+    let Reading::At(probe) = read(&mut device, 0.2) else {
+        panic!("not greeted");
+    };
+    assert!(probe.restart);
+    assert_eq!((probe.position.x, probe.max_force), (1e-3, 2.5));
+    device.write(DVec3::X, true, &FRAME());
+    let mut expected = vec![3, 0, 0];
+    expected.extend(1000_i16.to_le_bytes());
+    expected.extend([0, 0, 0, 0, 1]);
+    assert_eq!(bench.received(), [expected]);
+}
+
+#[test]
+fn gaps_duplicates_and_old_states_are_counted_across_the_wrap() {
+    let (bench, mut device) = greeted();
+    assert_eq!(position(read(&mut device, 0.001)), 1e-3);
+    bench.state(65_535, 1100, 0, 1);
+    bench.state(65_535, 9000, 0, 1);
+    bench.state(3, 1200, 0, 1);
+    bench.state(2, 9000, 0, 1);
+    assert_eq!(position(read(&mut device, 0.002)), 1.2e-3);
+    let report = device.report();
+    assert_eq!(report.states, 3);
+    assert_eq!(
+        (report.lost, report.duplicates, report.out_of_order),
+        (3, 1, 1)
+    );
+}
+
+#[test]
+fn half_the_sequences_ahead_is_late() {
+    let (bench, mut device) = greeted();
+    read(&mut device, 0.001);
+    let first = 65_534_u16;
+    bench.state(first.wrapping_add(0x8000), 9000, 0, 1);
+    assert_eq!(position(read(&mut device, 0.002)), 1e-3);
+    assert_eq!(device.report().out_of_order, 1);
+    bench.state(first.wrapping_add(0x7FFF), 3000, 0, 1);
+    assert_eq!(position(read(&mut device, 0.003)), 3e-3);
+    let report = device.report();
+    assert_eq!((report.lost, report.out_of_order), (0x7FFE, 1));
+}
+
+#[test]
+fn silence_is_stale_and_the_return_takes_any_sequence() {
+    let (bench, mut device) = greeted();
+    read(&mut device, 0.001);
+    assert!(matches!(read(&mut device, 0.0209), Reading::At(_)));
+    assert_eq!(read(&mut device, 0.0212), Reading::Fault(Fault::Stale));
+    assert_eq!(read(&mut device, 0.0600), Reading::Fault(Fault::Stale));
+    assert_eq!(
+        bench.received(),
+        [[1, 1]],
+        "a device that was reset needs HELLO"
+    );
+    bench.state_at(65_594_000, 40, 2000, 0, 1);
+    let Reading::At(probe) = read(&mut device, 0.061) else {
+        panic!("did not come back");
+    };
+    assert!(!probe.restart, "the way it went unseen is swept");
+    assert_eq!(device.report().lost, 0);
+}
+
+#[test]
+fn a_device_whose_clock_began_anew_in_a_silence_was_reset_and_is_set_down_anew() {
+    let (bench, mut device) = greeted();
+    assert!(matches!(read(&mut device, 0.001), Reading::At(p) if p.restart));
+    assert_eq!(read(&mut device, 0.300), Reading::Fault(Fault::Stale));
+    bench.hello(1, 2.5);
+    assert_eq!(read(&mut device, 0.301), Reading::Fault(Fault::Stale));
+    bench.state_at(20_000, 0, -20_000, 0, 1);
+    assert!(matches!(read(&mut device, 0.302), Reading::Waiting(_)));
+    bench.state_at(21_000, 1, -20_000, 0, 1);
+    assert!(matches!(read(&mut device, 0.303), Reading::At(p) if p.restart && p.speed == 0.0));
+    bench.state_at(22_000, 2, -20_000, 0, 1);
+    assert!(matches!(read(&mut device, 0.304), Reading::At(p) if !p.restart));
+}
+
+#[test]
+fn a_hello_with_other_figures_ends_the_session_and_one_with_the_same_does_not() {
+    let (bench, mut device) = greeted();
+    assert!(matches!(read(&mut device, 0.001), Reading::At(p) if p.max_force == 2.5));
+    bench.hello(1, 2.5);
+    assert!(matches!(read(&mut device, 0.002), Reading::At(p) if !p.restart));
+    bench.hello(1, 30.0);
+    bench.state(3, 9000, 0, 1);
+    assert!(matches!(read(&mut device, 0.003), Reading::Waiting(_)));
+    assert!(matches!(read(&mut device, 0.004), Reading::At(p) if p.restart && p.max_force == 30.0));
+}
+
+#[test]
+fn unplugging_is_found_and_the_same_port_opened_again() {
+    let (bench, mut device) = greeted();
+    read(&mut device, 0.001);
+    bench.line().gone = true;
+    assert_eq!(read(&mut device, 0.002), Reading::Fault(Fault::Unplugged));
+    assert_eq!(read(&mut device, 0.203), Reading::Fault(Fault::Unplugged));
+    bench.line().gone = false;
+    assert_eq!(
+        read(&mut device, 0.300),
+        Reading::Fault(Fault::Unplugged),
+        "slow pace"
+    );
+    bench.received();
+    assert!(matches!(read(&mut device, 0.404), Reading::Waiting(_)));
+    assert_eq!(bench.received(), [[1, 1]]);
+    bench.hello(1, 2.5);
+    bench.state(0, 500, 0, 1);
+    let Reading::At(probe) = read(&mut device, 0.405) else {
+        panic!("did not come back");
+    };
+    assert!(probe.restart);
+    assert_eq!(device.report().reopened, 1);
+}
+
+#[test]
+fn another_version_gets_no_force() {
+    let bench = Bench::default();
+    let mut device = LinkDevice::open(bench.clone()).unwrap();
+    bench.hello(2, 2.5);
+    bench.state(0, 0, 0, 1);
+    assert_eq!(read(&mut device, 0.0), Reading::Fault(Fault::Protocol));
+    bench.received();
+    device.write(DVec3::X, true, &FRAME());
+    assert!(bench.received().is_empty());
+}
+
+#[test]
+fn another_version_is_told_whatever_its_hello_looks_like() {
+    let bench = Bench::default();
+    let mut device = LinkDevice::open(bench.clone()).unwrap();
+    bench.send(&[1, 2, 42]);
+    assert_eq!(read(&mut device, 0.0), Reading::Fault(Fault::Protocol));
+    assert_eq!(device.report().greeting.unwrap().protocol, 2);
+}
+
+#[test]
+fn a_greeting_with_figures_that_cannot_be_gets_no_force() {
+    for max_force in [f32::NAN, f32::INFINITY, -1.0] {
+        let (bench, mut device) = greeted();
+        assert!(matches!(read(&mut device, 0.001), Reading::At(_)));
+        bench.received();
+        bench.hello(1, max_force);
+        bench.state(0, 0, 0, 1);
+        assert!(matches!(read(&mut device, 0.002), Reading::Waiting(_)));
+        device.write(DVec3::X, true, &FRAME());
+        assert!(bench.received().iter().all(|payload| payload == &[1, 1]));
+        assert_eq!(device.report().greeting.unwrap().max_force, 2.5);
+        assert_eq!(device.report().unknown, 1);
+    }
+}
+
+#[test]
+fn a_new_session_knows_nothing_of_the_last_one() {
+    let (bench, mut device) = greeted();
+    assert!(matches!(read(&mut device, 0.001), Reading::At(_)));
+    bench.send(&[4, 2, 7, 0]);
+    bench.hello(7, 2.5);
+    assert_eq!(read(&mut device, 0.002), Reading::Fault(Fault::Protocol));
+    bench.hello(1, 2.5);
+    // Neither the place of 498 ms ago nor the fault of the session before.
+    assert!(matches!(read(&mut device, 0.500), Reading::Waiting(_)));
+    // Its sequence is behind that of the session before.
+    bench.state(10, 3000, 0, 1);
+    let Reading::At(probe) = read(&mut device, 0.501) else {
+        panic!("did not come back");
+    };
+    // No sweep leads here from a place that is forgotten.
+    assert!(probe.restart && probe.position.x == 3e-3);
+    assert_eq!(device.report().out_of_order, 0);
+}
+
+#[test]
+fn faults_flags_and_buttons_of_the_device_are_passed_on() {
+    let (bench, mut device) = greeted();
+    read(&mut device, 0.001);
+    bench.state(65_535, 0, 4, 1);
+    assert!(matches!(read(&mut device, 0.002), Reading::At(p) if p.buttons == 4));
+    bench.state(0, 0, 0, 0);
+    assert!(matches!(read(&mut device, 0.003), Reading::Passive(..)));
+    bench.state(1, 0, 0, 3);
+    assert_eq!(read(&mut device, 0.004), Reading::Fault(Fault::Device));
+    bench.state(2, 0, 0, 1);
+    bench.send(&[4, 7, 1, 2]);
+    assert_eq!(read(&mut device, 0.005), Reading::Fault(Fault::Device));
+    assert!(matches!(read(&mut device, 0.006), Reading::At(_)));
+    assert_eq!(device.report().last_fault, Some((7, 513)));
+    bench.send(&[9, 9]);
+    read(&mut device, 0.007);
+    assert_eq!(device.report().unknown, 1);
+}
+
+#[test]
+fn a_jump_is_measured_as_speed() {
+    let (bench, mut device) = greeted();
+    read(&mut device, 0.001);
+    bench.state(65_535, 31_000, 0, 1);
+    // 30 mm; the bench's clock wraps with the sequence, so it went by 1 ms.
+    assert!(matches!(read(&mut device, 0.002), Reading::At(p) if (p.speed - 30.0).abs() < 1e-6));
+}
+
+#[test]
+fn a_full_line_drops_new_forces_and_never_tears_a_frame() {
+    let (bench, mut device) = greeted();
+    read(&mut device, 0.001);
+    bench.line().full = true;
+    for _ in 0..10 {
+        device.write(DVec3::X, true, &FRAME());
+    }
+    bench.line().full = false;
+    device.write(DVec3::Y, true, &FRAME());
+    let received = bench.received();
+    assert_eq!(received.len(), 1);
+    assert_eq!(
+        received[0][..3],
+        [3, 0, 0],
+        "no number is used up by what was not sent"
+    );
+    assert_eq!(device.report().unsent, 10);
+    assert_eq!(bench.line().decoder.errors, Default::default());
+}
+
+#[test]
+fn parking_sends_zero_without_enable() {
+    let (bench, mut device) = greeted();
+    read(&mut device, 0.001);
+    device.write(DVec3::X, true, &FRAME());
+    bench.received();
+    device.park();
+    let received = bench.received();
+    assert_eq!(received.len(), 3);
+    assert!(received.iter().all(|p| p[3..] == [0; 7]));
+    device.write(DVec3::X, true, &FRAME());
+    assert!(bench.received().is_empty());
+}
+
+#[test]
+fn the_frame_maps_positions_and_forces() {
+    let (bench, mut device) = greeted();
+    let frame = DeviceFrame {
+        rotation: glam::DMat3::from_rotation_z(std::f64::consts::FRAC_PI_2),
+        translation: DVec3::new(0.0, 0.0, 0.5),
+        scale: 2.0,
+        epoch: 0,
+    };
+    let Reading::At(probe) = device.read(0.001, 1e-3, &frame) else {
+        panic!("not greeted");
+    };
+    assert!(probe.position.distance(DVec3::new(0.0, 2e-3, 0.5)) < 1e-12);
+    bench.received();
+    device.write(DVec3::Y, true, &frame);
+    assert_eq!(bench.received()[0][3..5], 1000_i16.to_le_bytes());
+}

@@ -1,0 +1,151 @@
+//! A wire in memory, and the device at its end.
+
+use std::collections::VecDeque;
+use std::io::{self, ErrorKind};
+use std::sync::{Arc, Mutex};
+
+use palpate_servo::device::link::LinkDevice;
+use palpate_servo::device::link::codec::{Decoder, MAX_FRAME, encode};
+use palpate_servo::device::serial::port::{Opener, Wire};
+use palpate_servo::device::{Device, DeviceFrame, Reading};
+
+#[derive(Default)]
+pub struct Line {
+    pub to_host: VecDeque<u8>,
+    pub payloads: Vec<Vec<u8>>,
+    pub decoder: Decoder,
+    pub gone: bool,
+    pub full: bool,
+}
+
+/// The device's end of the wire.
+#[derive(Clone, Default)]
+pub struct Bench(pub Arc<Mutex<Line>>);
+
+impl Bench {
+    pub fn line(&self) -> std::sync::MutexGuard<'_, Line> {
+        self.0.lock().unwrap()
+    }
+
+    pub fn send(&self, payload: &[u8]) {
+        let mut frame = [0; MAX_FRAME];
+        let length = encode(payload, &mut frame).unwrap();
+        self.line().to_host.extend(&frame[..length]);
+    }
+
+    pub fn hello(&self, protocol: u8, max_force: f32) {
+        let mut payload = vec![1, protocol];
+        payload.extend([0; 16]);
+        payload.push(3);
+        payload.extend(max_force.to_le_bytes());
+        payload.extend([0; 14]);
+        self.send(&payload);
+    }
+
+    pub fn state(&self, sequence: u16, micrometres: i32, buttons: u8, flags: u8) {
+        self.state_at(
+            u32::from(sequence) * 1000,
+            sequence,
+            micrometres,
+            buttons,
+            flags,
+        );
+    }
+
+    pub fn state_at(&self, time_us: u32, sequence: u16, micrometres: i32, buttons: u8, flags: u8) {
+        let mut payload = vec![2];
+        payload.extend(sequence.to_le_bytes());
+        payload.extend(time_us.to_le_bytes());
+        for um in [micrometres, 0, 0] {
+            payload.extend(um.to_le_bytes());
+        }
+        payload.extend([buttons, flags]);
+        self.send(&payload);
+    }
+
+    /// A turn about z by so many quarters.
+    pub fn turned(&self, sequence: u16, quarters: f64) {
+        let half = quarters * std::f64::consts::FRAC_PI_4;
+        self.quaternion(sequence, [half.cos(), 0.0, 0.0, half.sin()]);
+    }
+
+    pub fn quaternion(&self, sequence: u16, wxyz: [f64; 4]) {
+        let mut payload = vec![5];
+        payload.extend(sequence.to_le_bytes());
+        for component in wxyz {
+            payload.extend(((component * 32_767.0).round() as i16).to_le_bytes());
+        }
+        self.send(&payload);
+    }
+
+    pub fn received(&self) -> Vec<Vec<u8>> {
+        std::mem::take(&mut self.line().payloads)
+    }
+}
+
+impl Wire for Bench {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let mut line = self.line();
+        if line.gone {
+            return Ok(0);
+        }
+        if line.to_host.is_empty() {
+            return Err(ErrorKind::WouldBlock.into());
+        }
+        let length = buffer.len().min(line.to_host.len());
+        for (byte, arrived) in buffer.iter_mut().zip(line.to_host.drain(..length)) {
+            *byte = arrived;
+        }
+        Ok(length)
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let mut line = self.line();
+        if line.full {
+            return Err(ErrorKind::WouldBlock.into());
+        }
+        // Small pieces: partial writes must be continued.
+        let piece = &bytes[..bytes.len().min(5)];
+        for &byte in piece {
+            if let Some(payload) = line.decoder.push(byte).map(<[u8]>::to_vec) {
+                line.payloads.push(payload);
+            }
+        }
+        Ok(piece.len())
+    }
+}
+
+impl Opener for Bench {
+    type Wire = Self;
+
+    fn open(&mut self) -> io::Result<Self> {
+        if self.line().gone {
+            Err(ErrorKind::NotFound.into())
+        } else {
+            Ok(self.clone())
+        }
+    }
+}
+
+pub const FRAME: fn() -> DeviceFrame = DeviceFrame::default;
+
+pub fn read(device: &mut LinkDevice<Bench>, now: f64) -> Reading {
+    device.read(now, 1e-3, &FRAME())
+}
+
+pub fn position(reading: Reading) -> f64 {
+    match reading {
+        Reading::At(probe) => probe.position.x,
+        other => panic!("no position but {other:?}"),
+    }
+}
+
+pub fn greeted() -> (Bench, LinkDevice<Bench>) {
+    let bench = Bench::default();
+    let mut device = LinkDevice::open(bench.clone()).unwrap();
+    assert!(matches!(read(&mut device, 0.0), Reading::Waiting(_)));
+    assert_eq!(bench.received(), [[1, 1]]);
+    bench.hello(1, 2.5);
+    bench.state(65_534, 1000, 0, 1);
+    (bench, device)
+}

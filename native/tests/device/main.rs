@@ -1,0 +1,13 @@
+//! Devices: the link, the 2DIY, wires with all that goes wrong on them.
+
+mod arrival;
+mod codec;
+#[path = "../counting/mod.rs"]
+mod counting;
+mod damage;
+mod fuzz_link;
+mod haply;
+mod link;
+mod link_bench;
+mod link_document;
+mod orientation;

@@ -1,0 +1,128 @@
+//! The coupling inside whole ticks: for devices with motors alone, and what is seen is what is felt.
+
+use crate::scripted::{ABOVE, PRESSED, Table, probe, settings_of};
+use glam::DVec3;
+use palpate_servo::body::softening::{Felt, Relation, Softening};
+use palpate_servo::contact::touch::{ContactMode, contact_stiffness};
+use palpate_servo::control::coupling::Coupling;
+use palpate_servo::device::{DeviceFrame, Probe, Reading};
+use palpate_servo::servo::Settings;
+use palpate_servo::servo::finger::FingerSettings;
+use palpate_servo::servo::snapshot::Snapshot;
+
+const SOFT: Coupling = Coupling {
+    stiffness: 50.0,
+    damping: 0.0,
+    passivity_control: false,
+};
+
+fn pressed_with(coupling: Coupling, scale: f64, max_force: f64) -> Snapshot {
+    let mut table = Table::pressing();
+    table.settings.write(settings_of(FingerSettings {
+        coupling,
+        frame: DeviceFrame {
+            scale,
+            ..DeviceFrame::default()
+        },
+        ..FingerSettings::default()
+    }));
+    let reading = Reading::At(Probe {
+        max_force,
+        ..probe(PRESSED)
+    });
+    (0..20).map(|_| table.tick(reading)).last().unwrap()
+}
+
+#[test]
+fn a_motor_feels_no_more_than_the_limit_and_the_surface_shown_belongs_to_it() {
+    let shot = pressed_with(SOFT, 1.0, 3.0);
+    let depth = shot.probe.distance(shot.proxy);
+    assert!(shot.contact_force.length() > 100.0 * depth);
+    assert!(shot.output_force.length() <= 50.0 * depth * (1.0 + 1e-9));
+    assert!(shot.output_force.length() > 0.2 * 50.0 * depth);
+    let nodal: DVec3 = shot.nodal_forces.iter().sum();
+    assert!((nodal + shot.output_force).length() < 1e-9);
+}
+
+#[test]
+fn behind_the_limit_a_softening_body_takes_its_share_of_the_way() {
+    let softening = Softening {
+        slope: DVec3::Z * -60.0,
+        saturation: 4000.0,
+    };
+    for coupling in [SOFT, Coupling::default()] {
+        let mut table = Table::pressing();
+        for node in 0..table.body.nodes.len() as u32 {
+            table.body.softenings.tell(node, &softening);
+        }
+        table.settings.write(Settings {
+            felt: Felt::Corrected,
+            ..settings_of(FingerSettings {
+                coupling,
+                ..FingerSettings::default()
+            })
+        });
+        let shot = (0..200)
+            .map(|_| table.tick(Reading::At(probe(PRESSED))))
+            .last()
+            .unwrap();
+        assert_eq!((shot.felt, shot.felt_share), (Felt::Corrected, 1.0));
+        let (triangle, alpha) = shot.hold.unwrap();
+        let mode = ContactMode::Consistent;
+        let stiffness = contact_stiffness(&table.body, mode, triangle, alpha);
+        let relation = Relation {
+            stiffness,
+            softening,
+        };
+        let u = shot.probe - shot.proxy;
+        let felt = relation.force(u) * -1e4;
+        assert!(shot.contact_force.distance(felt) < 1e-12);
+        assert!(felt.length() < 0.95 * 1e4 * (stiffness * u).length());
+        // What the body does not take of the way, the spring of the limit does.
+        let drawn: DVec3 = shot.nodal_forces.iter().sum();
+        let taken = stiffness.inverse() * drawn / 1e4;
+        let force = relation.force(taken) * 1e4;
+        assert!((shot.output_force + force).length() < 1e-9 * force.length());
+        let left = u - taken;
+        if coupling.stiffness.is_finite() {
+            assert!(left.length() > 0.2 * u.length());
+            assert!(left.angle_between(force) < 1e-6);
+            assert!(shot.output_force.length() < 50.0 * u.length());
+        } else {
+            assert!(left.length() < 1e-9 * u.length());
+        }
+    }
+}
+
+#[test]
+fn a_pointer_feels_the_body_itself() {
+    let shot = pressed_with(SOFT, 1.0, f64::INFINITY);
+    let nodal: DVec3 = shot.nodal_forces.iter().sum();
+    assert!((nodal + shot.contact_force).length() < 1e-12);
+    assert_eq!(shot.output_force, shot.contact_force);
+}
+
+#[test]
+fn motion_that_is_scaled_up_scales_the_limit_down() {
+    let shot = pressed_with(SOFT, 4.0, 3.0);
+    let depth = shot.probe.distance(shot.proxy);
+    assert!(shot.output_force.length() <= 50.0 / 4.0 * depth * (1.0 + 1e-9));
+}
+
+#[test]
+fn damping_ends_with_the_touch() {
+    let mut table = Table::pressing();
+    table.settings.write(settings_of(FingerSettings {
+        coupling: Coupling::for_devices(1000),
+        ..FingerSettings::default()
+    }));
+    let step = DVec3::Z * -2e-4;
+    let mut most = 0.0_f64;
+    for tick in 0..10 {
+        let shot = table.tick(Reading::At(probe(PRESSED + step * f64::from(tick))));
+        most = most.max(shot.output_force.length() / shot.contact_force.length());
+    }
+    assert!(most > 1.05, "{most}");
+    let shot = table.tick(Reading::At(probe(ABOVE)));
+    assert_eq!(shot.output_force, DVec3::ZERO);
+}
