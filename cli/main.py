@@ -19,15 +19,15 @@ EXIT_ERROR = 2
 
 
 class _OneLineParser(argparse.ArgumentParser):
-    """A parser whose errors are one line, like all others of this program."""
+    """Parser with one-line errors."""
 
     def error(self, message: str) -> NoReturn:
-        """Print the message and end with the status of an error."""
+        """Print the message and exit with the status of an error."""
         self.exit(EXIT_ERROR, f"palpate: {message}; see '{self.prog} --help'\n")
 
 
 def make_parser() -> argparse.ArgumentParser:
-    """The whole command line."""
+    """Parser of all commands."""
     parser = _OneLineParser(
         prog="palpate", description="Make props soft, press them, and read the force."
     )
@@ -38,9 +38,9 @@ def make_parser() -> argparse.ArgumentParser:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run one command; 0 when it did what was asked, 2 with one line on standard error if not."""
+    """Run one command; 0 on success, 2 with one line on standard error on failure."""
     if not sys.warnoptions:
-        # What libraries warn of is for developers; people get a result, or one line.
+        # Warnings of libraries are for developers; users get a result, or one line.
         warnings.simplefilter("ignore")
     given = sys.argv[1:] if arguments is None else arguments
     parsed = make_parser().parse_args([_shielded(word) for word in given])
@@ -59,13 +59,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _refused(message: str) -> int:
-    # Reasons that come from elsewhere, and names of files, may have several lines.
+    # Errors of libraries and file names may have several lines.
     print("palpate:", " ".join(message.splitlines()), file=sys.stderr)
     return EXIT_ERROR
 
 
 def _shielded(word: str) -> str:
-    """Keep argparse from taking a number such as -5e-3 for an option: a blank in front helps."""
+    """Arguments with a blank before numbers such as -5e-3, which argparse takes for options."""
     try:
         float(word)
     except ValueError:

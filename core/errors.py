@@ -1,13 +1,13 @@
-"""The one exception that is meant for a person to read."""
+"""Exceptions for users to read."""
 
 from .sentence import Sentence
 
 
 class PalpateError(Exception):
-    """Something the user can act on.
+    """Error that the user can act on.
 
-    The message is one line and names the thing, the reason and the remedy. The command line shows
-    it as it is; Blender translates its template, so what differs is given by name:
+    The message is one line and names the thing, the reason and the remedy. Values are given by name
+    since Blender translates the template:
 
     >>> PalpateError("{file}: damaged; bake again", file="hare.npz")
     PalpateError('hare.npz: damaged; bake again')
@@ -25,4 +25,4 @@ class CancelledError(PalpateError):
 
 
 class BodyFileError(PalpateError):
-    """A body file that cannot be used. A new bake replaces it."""
+    """Unusable body file. A new bake replaces it."""

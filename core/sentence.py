@@ -1,4 +1,4 @@
-"""Sentences for users that can be said in other languages after they were filled in."""
+"""Sentences for users, translatable after they were filled in."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ Value: TypeAlias = str | int | float
 
 
 class Sentence(str):
-    """English text that remembers its template and what was filled in.
+    """English text that keeps its template and values; otherwise a plain string.
 
-    It is a plain string to whoever only reads it. Sentences and errors may be values of another:
+    Sentences and errors may be values of another:
 
     >>> edited = Sentence("the shape of {name} was edited", name="Hare")
     >>> Sentence("{reason}; press Make Soft", reason=edited)
@@ -23,7 +23,7 @@ class Sentence(str):
     Attributes
     ----------
     template : English with {names}, formats included; what translators see.
-    values : what stands for the names: text, numbers or sentences.
+    values : text, numbers or sentences, by name.
     """
 
     __slots__ = ("template", "values")
@@ -31,36 +31,37 @@ class Sentence(str):
     values: dict[str, Value]
 
     def __new__(cls, template: str, /, **values: object) -> Self:
-        """Fill in; a template without values is taken as it is, also with braces."""
+        """Fill in; a template without values stays as it is, also with braces."""
         plain = {name: _plain(value) for name, value in values.items()}
         text = super().__new__(cls, template.format(**plain) if plain else template)
         text.template, text.values = template, plain
         return text
 
-    def retold(self, tell: Callable[[str], str]) -> str:
-        """The sentence in the language of ``tell``, which translates a template."""
+    def translated(self, translate: Callable[[str], str]) -> str:
+        """The sentence with its template, and those of its values, mapped by ``translate``."""
         values = {
-            name: value.retold(tell) if isinstance(value, Sentence) else value
+            name: value.translated(translate) if isinstance(value, Sentence) else value
             for name, value in self.values.items()
         }
-        return tell(self.template).format(**values) if values else tell(self.template)
+        template = translate(self.template)
+        return template.format(**values) if values else template
 
     def as_line(self) -> str:
-        """A line for a file or another process, from which :meth:`of_line` makes it again."""
+        """Line for a file or another process; inverse of :meth:`of_line`."""
         return json.dumps(_parts(self))
 
     @classmethod
     def of_line(cls, line: str) -> Self:
-        """The sentence of a line; a line that is not of :meth:`as_line` is taken as it is."""
+        """Sentence from a line of :meth:`as_line`; any other line is plain text."""
         return cls._of_parts(*json.loads(line)) if line.startswith("[") else cls(line)
 
     @classmethod
     def _of_parts(cls, template: str, values: dict[str, Any]) -> Self:
-        whole = {
+        known = {
             name: cls._of_parts(*value) if isinstance(value, list) else value
             for name, value in values.items()
         }
-        return cls(template, **whole)
+        return cls(template, **known)
 
 
 def _parts(sentence: Sentence) -> list[Any]:
@@ -72,7 +73,7 @@ def _parts(sentence: Sentence) -> list[Any]:
 
 
 def _plain(value: object) -> Value:
-    """What JSON can keep: an error's sentence, a number of Python's own, or its text."""
+    """Value for JSON: an error's sentence, a Python number, or text."""
     if isinstance(value, BaseException) and value.args and isinstance(value.args[0], Sentence):
         return value.args[0]
     if isinstance(value, np.generic):

@@ -1,4 +1,4 @@
-"""``palpate bake``: from mesh files to body files, or a prediction of what that would take."""
+"""``palpate bake``: mesh files to body files, or a prediction of the cost."""
 
 from __future__ import annotations
 
@@ -69,11 +69,11 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Bake and print figures. Whoever asks it to stop finds nothing unfinished."""
+    """Bake and print figures; nothing unfinished is left when stopped."""
     if arguments.predict:
         _refuse_options_for_many(arguments)
         return bake_prediction.run(arguments)
-    # From the first import on: readers of meshes swallow the exception that Ctrl-C is.
+    # From the first import on: mesh readers swallow KeyboardInterrupt.
     with stopped_by_signals() as stopped:
         try:
             if arguments.output_folder is not None:
@@ -81,7 +81,7 @@ def run(arguments: argparse.Namespace) -> int:
             body, report = _bake(arguments, stopped)
         except PalpateError:
             if stopped:
-                # A terminal stops the child too, which then looks like one that failed.
+                # Ctrl-C in a terminal stops the child too, which then looks like a failure.
                 raise KeyboardInterrupt from None
             raise
     for warning in report.warnings:

@@ -1,4 +1,4 @@
-"""``palpate bake --output-folder``: many meshes, on this computer's cores or on a cluster."""
+"""``palpate bake --output-folder``: many meshes, on local cores or on a cluster."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ EXIT_ERROR = 2
 
 @dataclass(frozen=True)
 class Workers:
-    """Who bakes.
+    """Workers for the bakes.
 
     Attributes
     ----------
-    executor : takes the tasks.
-    count : how many tasks it works on at once.
+    executor : of the tasks.
+    count : tasks at once.
     threads : of BLAS for each task.
-    wanted : how workers far away learn that nobody waits for them any more.
+    wanted : called by remote workers: whether their results are still wanted.
     """
 
     executor: Executor
@@ -40,7 +40,7 @@ class Workers:
 
 
 def run(arguments: argparse.Namespace, stopped: Sequence[int]) -> int:
-    """Bake all meshes; 0 when each became a body, 2 when some did not, each with its reason."""
+    """Bake all meshes; 0 if all succeeded, 2 if some failed, each with its reason."""
     names = _file_names(arguments.meshes, arguments.output_folder)
     outcomes: list[BakeOutcome] = []
     started = time.monotonic()
@@ -48,7 +48,7 @@ def run(arguments: argparse.Namespace, stopped: Sequence[int]) -> int:
     def note(outcome: BakeOutcome) -> None:
         outcomes.append(outcome)
         clear()
-        _tell(outcome, as_json=arguments.json)
+        _print_outcome(outcome, as_json=arguments.json)
 
     def watch(running: int) -> None:
         if stopped:
@@ -65,7 +65,7 @@ def run(arguments: argparse.Namespace, stopped: Sequence[int]) -> int:
             workers.executor,
             on_done=note,
             on_wait=watch,
-            # As many in store as there are workers, so that none waits for a mesh to be read.
+            # Twice as many as workers, so that none waits for a mesh to be read.
             at_once=2 * workers.count,
             wanted=workers.wanted,
         )
@@ -75,7 +75,7 @@ def run(arguments: argparse.Namespace, stopped: Sequence[int]) -> int:
 
 
 def _file_names(meshes: Sequence[Path], folder: Path) -> dict[Path, str]:
-    """The body file of each mesh, if they do not get into each other's way."""
+    """Body file names of the meshes, checked to be distinct."""
     if folder.exists() and not folder.is_dir():
         raise PalpateError(f"--output-folder: {folder} is a file; name a folder, existing or new")
     names: dict[Path, str] = {}
@@ -101,7 +101,7 @@ def _workers(arguments: argparse.Namespace, meshes: int) -> Iterator[Workers]:
         from .scheduler import cluster
 
         with cluster(arguments.scheduler) as found:
-            # A worker of a cluster has its share of the machine's cores already.
+            # Workers of a cluster already have their share of the machine's cores.
             yield Workers(found.executor, found.slots, _threads(arguments, 1), found.wanted)
         return
     cores = available_cores()
@@ -122,7 +122,7 @@ def _tasks(
     threads: int,
     note: Callable[[BakeOutcome], None],
 ) -> Iterator[BakeTask]:
-    """Read meshes as they are asked for; those that cannot be read are noted."""
+    """Tasks, their meshes read on demand; unreadable ones are noted."""
     for mesh, file_name in names.items():
         try:
             given = bake_input(arguments, mesh, threads)
@@ -132,7 +132,7 @@ def _tasks(
             yield BakeTask(str(mesh), file_name, given.source, given.settings)
 
 
-def _tell(outcome: BakeOutcome, *, as_json: bool) -> None:
+def _print_outcome(outcome: BakeOutcome, *, as_json: bool) -> None:
     if outcome.error is not None or outcome.report is None:
         print(f"palpate: {outcome.name}: {outcome.error}", file=sys.stderr)
         return

@@ -1,4 +1,4 @@
-"""What ``palpate bake`` can be told, and the bake's arguments that follow from it."""
+"""Options of ``palpate bake``, and the bake's arguments that follow from them."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ AXES = {"x": 0, "y": 1, "z": 2}
 
 @dataclass(frozen=True, eq=False)
 class BakeInput:
-    """A mesh as it was read, and the settings for it."""
+    """Mesh and settings for a bake."""
 
     source: Surface | TetMesh
     settings: BakeSettings
 
 
 def add_bake_options(parser: argparse.ArgumentParser) -> None:
-    """Describe shape, pins, material, and how the compliance is computed and kept."""
+    """Add options of shape, pins, material and compliance."""
     default = BakeSettings()
     shape = parser.add_argument_group("shape")
     shape.add_argument(
@@ -128,7 +128,7 @@ def add_bake_options(parser: argparse.ArgumentParser) -> None:
 
 
 def bake_input(arguments: argparse.Namespace, mesh: Path, threads: int | None) -> BakeInput:
-    """Read the mesh and say how to bake it.
+    """Read the mesh and its settings.
 
     Raises
     ------
@@ -178,7 +178,7 @@ def _settings(
 
 
 def _material(arguments: argparse.Namespace) -> tuple[float, float]:
-    """Young's modulus in pascal and Poisson's ratio: as given, else the preset's, else usual."""
+    """Young's modulus in pascal and Poisson's ratio: as given, the preset's, or the default."""
     start = BakeSettings() if arguments.material is None else arguments.material
     ratio = start.poisson_ratio if arguments.poisson is None else arguments.poisson
     if arguments.shore is not None:

@@ -1,4 +1,4 @@
-"""``palpate bake --predict``: what a bake would take, before it starts."""
+"""``palpate bake --predict``: predicted cost of a bake."""
 
 from __future__ import annotations
 
@@ -60,5 +60,5 @@ def _within(spread: float) -> str:
 
 
 def _size(count: int) -> str:
-    """Bytes for reading, three digits."""
+    """Bytes in readable units, three digits."""
     return f"{count / 1e9:.3g} GB" if count >= 1e9 else f"{count / 1e6:.3g} MB"

@@ -1,4 +1,4 @@
-"""``palpate pin``: hold a body at more of its surface, without a new bake."""
+"""``palpate pin``: more pins for a body, without a new bake."""
 
 from __future__ import annotations
 

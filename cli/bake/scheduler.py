@@ -1,4 +1,4 @@
-"""A Dask cluster as the workers of ``palpate bake --scheduler``."""
+"""Dask cluster as the workers of ``palpate bake --scheduler``."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ CONNECT_SECONDS = 10
 
 @dataclass(frozen=True)
 class StillWanted:
-    """Asked within a task of the cluster: whether the one who submitted it still waits.
+    """Callable within a task of the cluster: whether its results are still wanted.
 
-    ``event`` is the name of a cluster-wide event that is set once nobody does.
+    ``event`` is the name of a cluster-wide event, set once they are not.
     """
 
     event: str
@@ -39,13 +39,13 @@ class StillWanted:
 
 @dataclass(frozen=True)
 class Cluster:
-    """Workers that were found at an address, all with this Palpate.
+    """Workers of a cluster, all with this version of Palpate.
 
     Attributes
     ----------
-    executor : hands tasks to them.
-    slots : how many tasks they work on at once.
-    wanted : tells them when nobody waits any more.
+    executor : submits tasks to them.
+    slots : tasks at once.
+    wanted : whether results are still wanted.
     """
 
     executor: Executor
@@ -55,7 +55,7 @@ class Cluster:
 
 @contextmanager
 def cluster(address: str) -> Iterator[Cluster]:
-    """The cluster whose scheduler is at ``address``, or described in a scheduler file.
+    """Cluster whose scheduler is at ``address``, or described in a scheduler file.
 
     Raises
     ------
@@ -70,13 +70,13 @@ def cluster(address: str) -> Iterator[Cluster]:
         stop = Event(f"palpate-stop-{secrets.token_hex(8)}", client=client)
         try:
             yield Cluster(
-                # Not pure: Dask would look through every mesh for tasks that are the same.
+                # Not pure: else Dask would hash every mesh to find equal tasks.
                 client.get_executor(pure=False),
                 sum(client.nthreads().values()),
                 StillWanted(stop.name),
             )
         except BaseException:
-            # A cluster that is gone cannot be told, and has nobody left to tell.
+            # A cluster that is gone needs no notice.
             with suppress(OSError):
                 stop.set()
             raise
@@ -91,7 +91,7 @@ def _connected(address: str) -> Iterator[Client]:
             "--scheduler: Dask is not installed here; install it with "
             "'pip install palpate[scheduler]'"
         ) from missing
-    # What it has to say of connections is said here, in one line.
+    # Connection errors are reported here, in one line.
     for name in list(logging.root.manager.loggerDict):
         if name.split(".")[0] == "distributed":
             logging.getLogger(name).setLevel(logging.CRITICAL)
@@ -115,7 +115,7 @@ def _connected(address: str) -> Iterator[Client]:
 
 
 def _address_in(file: Path) -> str:
-    """The address in a scheduler file, as ``dask scheduler --scheduler-file`` writes it."""
+    """Address in a scheduler file, as ``dask scheduler --scheduler-file`` writes it."""
     try:
         address = json.loads(file.read_text(encoding="utf-8"))["address"]
     except (ValueError, LookupError, TypeError) as problem:
@@ -143,5 +143,5 @@ def _refuse_other_palpates(client: Client, address: str) -> None:
 
 
 def installed_version() -> str:
-    """Palpate's, where this is called."""
+    """Version of Palpate on the machine of the call."""
     return importlib.metadata.version("palpate")

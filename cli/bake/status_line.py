@@ -1,4 +1,4 @@
-"""One line on a terminal that says where long work stands; nothing where nobody looks."""
+"""Status line on a terminal for long work."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ LONGEST_AS_MINUTES = 2 * 3600
 
 @contextmanager
 def status_line() -> Iterator[None]:
-    """Whatever :func:`show` printed within is gone afterwards."""
+    """Clear the line of :func:`show` when the block ends."""
     try:
         yield
     finally:
@@ -29,7 +29,7 @@ def show(text: str) -> None:
 
 
 def clear() -> None:
-    """Take the line away, so that something else can be printed."""
+    """Clear the line before other output."""
     show("")
 
 
@@ -43,7 +43,7 @@ def bake_status(progress: JobProgress) -> str:
 
 
 def duration(seconds: float) -> str:
-    """Seconds for reading: ``12 s``, ``3.5 min``, ``2.2 h``."""
+    """Seconds in readable units: ``12 s``, ``3.5 min``, ``2.2 h``."""
     if seconds < LONGEST_AS_SECONDS:
         return f"{seconds:.0f} s"
     if seconds < LONGEST_AS_MINUTES:

@@ -1,1 +1,1 @@
-"""palpate info, and what commands say of bodies."""
+"""palpate info, and figures of bodies."""

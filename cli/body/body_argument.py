@@ -1,4 +1,4 @@
-"""The body that a command works on."""
+"""Argument for a command's body."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 
 
 def add_body(parser: argparse.ArgumentParser) -> None:
-    """``BODY.npz``, always the first argument."""
+    """Add ``BODY.npz``, always the first argument."""
     parser.add_argument(
         "body", type=Path, metavar="BODY.npz", help="body file, as 'palpate bake' writes it"
     )

@@ -1,4 +1,4 @@
-"""The figures of a body that ``bake`` and ``info`` print."""
+"""Figures of a body, printed by ``bake`` and ``info``."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from ...core.compliance.protocol import Compliance
 def body_figures(body: SoftBody) -> dict[str, object]:
     """Sizes and identity of a body as plain values for JSON.
 
-    ``compliance_bytes`` is what the compliance takes as it is stored; a dense one is float32, so
-    the same table in float64, as in the paper's Table 1, takes twice that.
+    ``compliance_bytes`` are those of the stored compliance, float32 if dense; in float64, as in the
+    paper's Table 1, twice that.
     """
     return {
         "nodes": len(body.mesh.nodes),
@@ -38,14 +38,14 @@ def body_figures(body: SoftBody) -> dict[str, object]:
 
 
 def _stiffness_range(body: SoftBody) -> dict[str, object]:
-    """Smallest and largest factor on Young's modulus, where a body is not the same all over."""
+    """Smallest and largest factor on Young's modulus, where it varies."""
     if body.young_scale is None:
         return {}
     return {"young_scale": [float(body.young_scale.min()), float(body.young_scale.max())]}
 
 
 def _compression(compliance: Compliance) -> dict[str, object]:
-    """What compressing was allowed to change, and what it did."""
+    """Allowed and actual error of the compression."""
     if not isinstance(compliance, CompressedCompliance):
         return {}
     return {

@@ -1,4 +1,4 @@
-"""Figures for reading; programs take them as JSON, where no digit is left out."""
+"""Figures as readable lines; JSON has all digits."""
 
 from __future__ import annotations
 
@@ -7,16 +7,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-# Beside the largest of its row or table a number below this share is rounding.
+# Numbers below this share of the largest in their row or table are rounding.
 NOTHING = 1e-9
 
 
 def as_lines(figures: dict[str, object]) -> str:
-    """Figures one a line, without those that say nothing; numbers to six digits."""
-    told = {name: value for name, value in figures.items() if value is not None and value != []}
-    width = max(map(len, told), default=0)
+    """Figures one a line, without empty ones; numbers to six digits."""
+    known = {name: value for name, value in figures.items() if value is not None and value != []}
+    width = max(map(len, known), default=0)
     return "\n".join(
-        f"{name.replace('_', ' '):{width}}  {_text(value)}" for name, value in told.items()
+        f"{name.replace('_', ' '):{width}}  {_text(value)}" for name, value in known.items()
     )
 
 
@@ -54,7 +54,7 @@ def _without_rounding(table: NDArray[Any]) -> NDArray[Any]:
 
 
 def _rows(table: NDArray[Any]) -> str:
-    """Numbers apart by a space, rows of a table by a semicolon."""
+    """Numbers separated by spaces, rows of a table by semicolons."""
     if table.ndim > 1:
         return "; ".join(map(_rows, table))
     return " ".join(map(_text, table.tolist()))

@@ -1,4 +1,4 @@
-"""``palpate info``: what a body file holds."""
+"""``palpate info``: contents of a body file."""
 
 from __future__ import annotations
 

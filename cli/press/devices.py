@@ -12,7 +12,7 @@ from ...simulated.hand.options import add_simulated_options, simulated_options
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Describe the command and the one below it."""
+    """Describe the command and its subcommand."""
     parser = subparsers.add_parser(
         "devices",
         help="list haptic devices, or simulate one",
@@ -43,7 +43,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """List all ports with what answers there."""
+    """List all ports and their devices."""
     ports = list_ports(arguments.port)
     if arguments.json:
         print(json.dumps({"ports": [dataclasses.asdict(port) for port in ports]}))
@@ -58,7 +58,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def run_simulate(arguments: argparse.Namespace) -> int:
-    """Simulate until somebody says stop."""
+    """Simulate until stopped."""
     options = simulated_options(arguments)
     device_process.run(options, haply=arguments.haply, json_lines=arguments.json)
     return 0

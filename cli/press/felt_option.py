@@ -1,4 +1,4 @@
-"""``--felt``: which relation between displacement and force points feel."""
+"""``--felt``: the force law of points."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from ...core.shape.force_at_depth.softening_table import SofteningTable
 
 
 def add_felt(parser: argparse.ArgumentParser) -> None:
-    """Offer the choice."""
+    """Add the option."""
     parser.add_argument(
         "--felt",
         choices=FELT_CHOICES,
@@ -32,9 +32,9 @@ def add_felt(parser: argparse.ArgumentParser) -> None:
 
 @contextmanager
 def softening_table(body: SoftBody, body_file: Path) -> Iterator[SofteningTable]:
-    """The softenings of a body, kept beside its file when the block ends.
+    """Softenings of a body, stored next to its file when the block ends.
 
-    Where they cannot be kept they are computed anew the next time: told, but no reason to fail.
+    If that fails it is reported, and they are computed anew the next time.
     """
     table = SofteningTable(body, body_file)
     try:
@@ -65,7 +65,7 @@ def felt_forces(
 
 
 def refuse_with_tool(arguments: argparse.Namespace) -> None:
-    """Tools feel the linear relation: their points share what one node would soften by."""
+    """Refuse a corrected force law for a tool, whose points share the softening of one node."""
     if arguments.felt != "linear":
         raise PalpateError(
             "--felt: a tool's force is linear; leave it out with a tool, or press with a point"

@@ -1,4 +1,4 @@
-"""What ``palpate servo`` needs to know of a Haply 2DIY."""
+"""Options and connection of a Haply 2DIY for ``palpate servo``."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ STANDING = ((1.0, 0.0, 0.0), (0.0, 0.0, -1.0), (0.0, 1.0, 0.0))
 def add_haply_options(
     parser: argparse.ArgumentParser, device: argparse._MutuallyExclusiveGroup
 ) -> None:
-    """Give the command the choice of a 2DIY."""
+    """Add options for a 2DIY."""
     device.add_argument(
         "--haply",
         metavar="PORT",
@@ -48,7 +48,7 @@ def add_haply_options(
 def connect_haply(
     servo: Servo, arguments: argparse.Namespace, at: Vector, stopped: Sequence[int]
 ) -> None:
-    """Start with the 2DIY at `arguments.haply`, the middle of its workspace at `at` (m).
+    """Start with the 2DIY at `arguments.haply`, the centre of its workspace at `at` (m).
 
     Raises PalpateError when the port cannot be opened, PortError when no board answers.
     """

@@ -19,7 +19,7 @@ _SOLIDS: dict[str, tuple[int, Callable[..., Tool]]] = {
 
 
 def tool_from(words: str) -> Tool:
-    """The tool that ``words`` name; lengths in metres, a mesh's as its file has them.
+    """Tool from text; lengths in metres, a mesh's as in its file.
 
     Raises
     ------

@@ -55,7 +55,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Press deeper and deeper, print and write."""
+    """Compute the curve, print and write it."""
     for option, path, suffix in (
         ("--csv", arguments.csv, ".csv"),
         ("--picture", arguments.picture, ".svg"),

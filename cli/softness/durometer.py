@@ -45,7 +45,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Read and print; what speaks against the reading goes to standard error."""
+    """Read and print; doubts about the reading go to standard error."""
     body = body_file.load(arguments.body)
     modulus = young_modulus_of(arguments, body)
     load = TYPES[arguments.scale].load if arguments.stand else arguments.load

@@ -1,4 +1,4 @@
-"""``palpate materials``: the presets, with what is known of them."""
+"""``palpate materials``: the presets and their sources."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print all of them."""
+    """Print all presets."""
     if arguments.json:
         print(json.dumps({name: _figures(material) for name, material in MATERIALS.items()}))
         return 0
@@ -34,7 +34,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def material_named(word: str) -> Material:
-    """The preset of a name as it is printed, for ``argparse``."""
+    """Preset by its printed name, for ``argparse``."""
     key = word.upper().replace("-", "_")
     if key not in MATERIALS:
         raise argparse.ArgumentTypeError(

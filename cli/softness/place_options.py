@@ -1,4 +1,4 @@
-"""Options of the commands that ask a body at a place: where, and how firm it is."""
+"""Options for the place and firmness of a measured body."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ...core.stiffness.assembly import lame_parameters
 
 
 def add_at(parser: argparse.ArgumentParser) -> None:
-    """``--at X Y Z``."""
+    """Add ``--at X Y Z``."""
     parser.add_argument(
         "--at",
         type=float,
@@ -23,7 +23,7 @@ def add_at(parser: argparse.ArgumentParser) -> None:
 
 
 def add_young(parser: argparse.ArgumentParser) -> None:
-    """``--young PA`` or ``--shore SHORE``."""
+    """Add ``--young PA`` or ``--shore SHORE``."""
     group = parser.add_mutually_exclusive_group()
     group.add_argument(
         "--young", type=float, metavar="PA", help="Young's modulus (default: the body's own)"
@@ -49,7 +49,7 @@ def young_modulus_of(arguments: argparse.Namespace, body: SoftBody) -> float:
 
 
 def positive_length(text: str) -> float:
-    """A length in metres, for ``argparse``."""
+    """Length in metres, for ``argparse``."""
     try:
         value = float(text)
     except ValueError:
@@ -60,7 +60,7 @@ def positive_length(text: str) -> float:
 
 
 def refuse_suffix(option: str, name: str, suffix: str, known: tuple[str, ...]) -> None:
-    """Refuse a file of a kind that cannot be written.
+    """Refuse a file of an unknown kind.
 
     Raises
     ------

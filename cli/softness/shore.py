@@ -1,4 +1,4 @@
-"""``palpate shore``: a Shore value as Young's modulus by every relation, or the other way."""
+"""``palpate shore``: Shore value to Young's modulus by every relation, or the inverse."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def _moduli(arguments: argparse.Namespace) -> dict[str, object]:
 
 
 def _both_scales(arguments: argparse.Namespace) -> dict[str, object]:
-    """The value on each scale that reaches to this modulus; where none does, its refusal."""
+    """Value on each scale whose range includes this modulus; raises if there is none."""
     figures: dict[str, object] = {"young_modulus": arguments.young}
     refusals = []
     for scale in SCALES:
@@ -72,7 +72,7 @@ def _both_scales(arguments: argparse.Namespace) -> dict[str, object]:
         else:
             figures[f"shore_{scale.lower()}"] = round(shore.value, 1)
     if len(refusals) == len(SCALES):
-        # Scales go from soft to firm: what is softer than all of them is refused by the first.
+        # Scales go from soft to firm: the first one's error fits a modulus softer than all.
         softest, _ = young_range(SCALES[0], arguments.poisson)
         raise refusals[0 if arguments.young < softest else -1]
     return figures

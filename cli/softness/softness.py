@@ -1,4 +1,4 @@
-"""``palpate softness``: a map of how soft a body is all over its surface."""
+"""``palpate softness``: map of a body's softness over its surface."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Map, write, and print the legend."""
+    """Compute the map, write it, and print the legend."""
     refuse_suffix("--output", arguments.output.name, arguments.output.suffix, KINDS)
     refuse_missing_folder(arguments.output)
     body = body_file.load(arguments.body)

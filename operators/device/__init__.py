@@ -1,1 +1,1 @@
-"""Devices and what is said of them."""
+"""Haptic devices: ports, frames and status texts."""

@@ -1,4 +1,4 @@
-"""Where a device with two axes moves, if no Empty says it: upright through the object's top."""
+"""Default plane of a device with two axes: upright through the object's top."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-# Half extents (m) of what the arms reach, x and y, before the device tells them itself.
+# Half extents (m) of the arms' reach, x and y, before the device sends them.
 HAPLY_HALF_EXTENTS = {"kit": (0.045, 0.025)}
 USUAL_HALF_EXTENTS = (0.06, 0.035)
 # The plane's x is the world's X, its y is up.
@@ -17,13 +17,13 @@ UPRIGHT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 
 
 def half_extents(model: str) -> tuple[float, float]:
-    """Of a Haply 2DIY's workspace, metres."""
+    """Half extents of a Haply 2DIY's workspace, metres."""
     return HAPLY_HALF_EXTENTS.get(model, USUAL_HALF_EXTENTS)
 
 
 def upright_plane(thing: bpy.types.Object) -> Array:
-    """World matrix (4, 4) of an upright plane whose origin is the surface's top above the middle
-    of the object; where there is no surface, as in a ring, the top of its bounding box.
+    """World matrix (4, 4) of an upright plane through the surface above the middle of the
+    object; where there is none, as in a ring, through the top of its bounding box.
     """
     corners = np.array([thing.matrix_world @ Vector(corner) for corner in thing.bound_box])
     top = (corners.min(axis=0) + corners.max(axis=0)) / 2
@@ -35,7 +35,7 @@ def upright_plane(thing: bpy.types.Object) -> Array:
 
 
 def _below(thing: bpy.types.Object, place: Array) -> Array:
-    """Where the vertical line down from ``place`` meets the object; itself if nowhere."""
+    """Point of the object vertically below ``place``; ``place`` if there is none."""
     if not thing.visible_get():
         return place
     to_local = thing.matrix_world.inverted_safe()

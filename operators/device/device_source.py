@@ -1,4 +1,4 @@
-"""The haptic device of a press: which port, and where its workspace lies in the body."""
+"""Haptic device of a press: its port, and the frame of its workspace in the body."""
 
 from __future__ import annotations
 
@@ -20,24 +20,24 @@ from .device_plane import half_extents, upright_plane
 
 Array = NDArray[np.float64]
 
-# The simulated hand starts this far above the body and presses this deep, as shares of its size.
+# Start of the simulated hand above the body and depth of its presses, as shares of the body's size.
 SIMULATED_REST, SIMULATED_DEPTH = 0.15, 0.12
-# World directions from which a simulated hand comes: the first's, and a second one's.
+# World directions from which the first and the second simulated hand come.
 FROM_ABOVE, FROM_THE_SIDE = np.array([0.0, 0.0, 1.0]), np.array([1.0, 0.0, 0.0])
-# In a plane at most this share of what its arms reach.
+# Largest share of the arms' reach that is used in a plane.
 SIMULATED_REACH = 0.8
 
 
 @dataclass(frozen=True, eq=False)
 class DeviceFrame:
-    """From device to body, metres: ``scale * rotation @ device + translation``."""
+    """Map from device to body, metres: ``scale * rotation @ device + translation``."""
 
     rotation: Array
     translation: Array
     scale: float
 
     def same_as(self, other: DeviceFrame) -> bool:
-        """Whether both map alike."""
+        """Whether both maps are equal."""
         return (
             self.scale == other.scale
             and np.array_equal(self.rotation, other.rotation)
@@ -45,13 +45,13 @@ class DeviceFrame:
         )
 
     def device_from_body(self, points: Array) -> Array:
-        """Points (..., 3) of the body as the device counts them."""
+        """Points (..., 3) of the body in the device's coordinates."""
         device: Array = (points - self.translation) @ self.rotation / self.scale
         return device
 
 
 def frame_of_matrix(matrix: Array, body: BodyFrame, scale: float) -> DeviceFrame:
-    """A device whose origin and axes are those of a world matrix (4, 4).
+    """Frame with the origin and axes of a world matrix (4, 4).
 
     Raises
     ------
@@ -65,8 +65,8 @@ def frame_of_matrix(matrix: Array, body: BodyFrame, scale: float) -> DeviceFrame
 
 
 def home_of_device(thing: bpy.types.Object, scene: bpy.types.Scene, body: BodyFrame) -> DeviceFrame:
-    """Where a device is that no Empty places: at the object's own origin and axes, or upright
-    through its top if it moves in a plane.
+    """Frame without an Empty: at the object's origin and axes, or upright through its top for a
+    planar device.
     """
     if is_planar(scene):
         return frame_of_matrix(upright_plane(thing), body, 1.0)
@@ -74,7 +74,7 @@ def home_of_device(thing: bpy.types.Object, scene: bpy.types.Scene, body: BodyFr
 
 
 def device_frame(scene: bpy.types.Scene, body: BodyFrame, home: DeviceFrame) -> DeviceFrame:
-    """Where the device is: at the chosen Empty, else at ``home``.
+    """Frame of the device: of the chosen Empty, else ``home``.
 
     Raises
     ------
@@ -94,8 +94,8 @@ def device_frame(scene: bpy.types.Scene, body: BodyFrame, home: DeviceFrame) -> 
 
 
 def second_frame(thing: bpy.types.Object, scene: bpy.types.Scene, body: BodyFrame) -> DeviceFrame:
-    """Where the second finger's device is: at its Empty, else at the object's origin and axes, or
-    upright through its top if it moves in a plane.
+    """Frame of the second finger's device: of its Empty, else at the object's origin and axes, or
+    upright through its top for a planar device.
 
     Raises
     ------
@@ -124,14 +124,14 @@ def is_planar(scene: bpy.types.Scene) -> bool:
 
 
 def port_of(scene: bpy.types.Scene) -> str:
-    """The chosen serial port.
+    """Chosen serial port.
 
     Raises
     ------
     PalpateError
         None is chosen.
     """
-    # The list suggests "path (description)".
+    # Entries of the list are "path (description)".
     port = scene.palpate.port.partition(" (")[0].strip()
     if not port:
         raise PalpateError("device: no port is chosen; pick one in the panel Device")
@@ -139,12 +139,12 @@ def port_of(scene: bpy.types.Scene) -> str:
 
 
 def _top(drawn: DrawnBody, up: Array) -> Array:
-    """The surface point above the body's middle, where a hand would press it."""
+    """Surface point above the body's middle."""
     nodes, triangles = drawn.body.mesh.nodes, drawn.body.mesh.surface_triangles
     above = nodes.mean(axis=0) + 2.0 * drawn.size * up
     hit = ray.first_hit(above, -up, nodes, triangles)
     if hit is None:
-        # Nothing there, as in a ring: then the highest place.
+        # None, as in a ring: the highest point.
         highest: Array = nodes[np.argmax(nodes @ up)]
         return highest
     point: Array = hit.alpha @ nodes[triangles[hit.triangle]]
@@ -158,10 +158,10 @@ def start_simulated(
     towards: Array = FROM_ABOVE,
 ) -> SimulatedDevice:
     """Start the simulated device, whose hand presses the body from the world direction ``towards``
-    (3,), again and again: on its top, unless told otherwise.
+    (3,) repeatedly, by default on its top.
 
-    ``haply`` names the model of a Haply 2DIY to simulate: then it presses in the device's plane,
-    as far as its arms reach.
+    ``haply`` is the model of a Haply 2DIY to simulate: it presses in the device's plane, within
+    its arms' reach.
 
     Raises
     ------
@@ -173,7 +173,7 @@ def start_simulated(
     if haply is None:
         options = _hand(frame, _top(drawn, up), above * up, deep * up)
     else:
-        # Its own rest pose, where it begins, is what its angles are counted from.
+        # Its angles count from its rest pose, where it begins.
         reach = SIMULATED_REACH * half_extents(haply)[1] * frame.scale
         above, deep = min(above, reach), min(deep, reach)
         hand = _hand(frame, frame.translation + above * up, 0.0 * up, (above + deep) * up)
@@ -184,7 +184,7 @@ def start_simulated(
 
 
 def _hand(frame: DeviceFrame, at: Array, above: Array, deep: Array) -> SimulatedOptions:
-    """A hand that rests ``above`` a place and presses ``deep`` there; vectors of the body, m."""
+    """Options of a hand that rests ``above`` a place and presses ``deep``; body vectors, m."""
     return SimulatedOptions(
         rest=_vector(frame.device_from_body(at + above)),
         at=_vector(frame.device_from_body(at)),

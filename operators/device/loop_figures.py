@@ -1,4 +1,4 @@
-"""The servo's counters, looked up as often as a person reads them."""
+"""Counters of the servo, refreshed at a readable rate."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ SECONDS_BETWEEN = 0.5
 
 @dataclass(eq=False)
 class LoopFigures:
-    """``counters`` as they were last looked up, None before the first time."""
+    """Latest ``counters``, None before the first refresh."""
 
     counters: ServoCounters | None = None
     _looked_at: float = 0.0
 
     def look(self, servo: Servo, now: float) -> None:
-        """Look again, if it is time; ``now`` in s, of any clock."""
+        """Refresh if it is time; ``now`` in s, of any clock."""
         if self.counters is None or now - self._looked_at >= SECONDS_BETWEEN:
             self.counters, self._looked_at = servo.counters(), now

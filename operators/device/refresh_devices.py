@@ -10,7 +10,7 @@ _ports: list[tuple[str, str]] = []
 
 
 def known_ports() -> list[tuple[str, str]]:
-    """Ports found last, as (path, description)."""
+    """Latest ports, as (path, description)."""
     return list(_ports)
 
 

@@ -1,7 +1,7 @@
-"""The servo's states, faults, reasons and limits in words for whoever sits beside the motors.
+"""Texts for the servo's states, faults, reasons and limits.
 
-The keys are the servo's own names (``palpate_servo.STATES`` and ``FAULTS``); a test sees to it that
-none is missing. Sentences are looked up in the user's language where they are shown.
+The keys are the servo's own names (``palpate_servo.STATES`` and ``FAULTS``); a test finds
+missing ones. Sentences are translated where they are shown.
 """
 
 from __future__ import annotations
@@ -14,20 +14,20 @@ from ...core.servo.session import FingerSnapshot, Snapshot
 
 
 class Signal(Enum):
-    """Whether force may come, at a glance."""
+    """Signal of whether force may come."""
 
-    OFF = "off"  # none, until somebody wants it
+    OFF = "off"  # none, until switched on
     WAITING = "waiting"  # none yet
     READY = "ready"  # as soon as the surface is touched
-    FORCE = "force"  # it is there
-    RETURNING = "returning"  # it comes back, slowly
+    FORCE = "force"  # present
+    RETURNING = "returning"  # ramping up
     FAULT = "fault"  # none, something is wrong
 
 
 @dataclass(frozen=True)
 class Standing:
-    """What a user must know of the force: a word, why it is so with what to do, and which limit
-    shortens the force now (empty if none does).
+    """Status of the force: a word, the reason with its remedy, and the limit that reduces the
+    force now (empty if none).
     """
 
     signal: Signal
@@ -58,7 +58,7 @@ FAULTS = {
     "pressing goes on by itself",
     "internal error": "The force loop has failed, so pressing has ended; press again",
 }
-# In a list beside how often they happened.
+# For a list with their counts.
 FAULT_NAMES = {
     "unplugged": "Unplugged",
     "stale": "Silent",
@@ -110,17 +110,17 @@ LIMITS = {
 
 # Where the motors may push.
 FORCEFUL = {Signal.READY, Signal.FORCE, Signal.RETURNING}
-# Where a limit is worth telling: a force that rises slowly is told already.
+# Where a limit is worth showing: a rising force is shown already.
 LIMITABLE = {Signal.READY, Signal.FORCE}
 
 
 def fault_text(fault: str) -> str:
-    """A fault as a sentence with its remedy."""
+    """Sentence for a fault, with its remedy."""
     return FAULTS.get(fault, Sentence("The device reports a fault: {fault}", fault=fault))
 
 
 def standing(snapshot: Snapshot | FingerSnapshot) -> Standing:
-    """What a snapshot says of the force."""
+    """Status of the force from a snapshot."""
     known = STATES.get(snapshot.state, Standing(Signal.WAITING, snapshot.state))
     why, signal = known.why, known.signal
     if snapshot.fault:

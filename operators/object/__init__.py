@@ -1,1 +1,1 @@
-"""What an object keeps of its softness."""
+"""State of a soft object and its body."""

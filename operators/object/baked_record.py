@@ -1,4 +1,4 @@
-"""What an object knows of its body without opening the body's file."""
+"""Record of its body on an object, known without the body file."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Where an object's body is kept: a file beside the .blend, and its tetrahedra inside the .blend.
+"""Storage of an object's body: a file next to the .blend, and its tetrahedra inside the .blend.
 
-The file holds the compliance and may be large. Should it be missing or damaged, the tetrahedra that
-travel with the object make the same body again in seconds, without a new tetrahedralization.
+The file holds the compliance and may be large. If it is missing or damaged, the tetrahedra stored
+with the object give the same body in seconds, without a new tetrahedralization.
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ from ..scene.package_preferences import PACKAGE, preferences
 FOLDER = "palpate"
 KEY_LETTERS = 12
 EMBEDDED = ("nodes", "tets", "fixed")
-# Only where the body is not equally stiff everywhere.
+# Only where the stiffness varies.
 EMBEDDED_SCALE = "young_scale"
 
 
 @dataclass(frozen=True, eq=False)
 class EmbeddedBody:
-    """What travels inside the .blend: the tetrahedra, the pinned nodes (p,), and the factor on
-    Young's modulus of each tetrahedron (M,), None where all are 1.
+    """Body inside the .blend: the tetrahedra, the pinned nodes (p,), and the factor on Young's
+    modulus of each tetrahedron (M,), None where all are 1.
     """
 
     mesh: TetMesh
@@ -45,15 +45,15 @@ class EmbeddedBody:
 
     @property
     def stiffness(self) -> TetScale | None:
-        """The factors as a bake takes them."""
+        """Factors for a bake."""
         return None if self.young_scale is None else TetScale(self.young_scale)
 
     def key(self, poisson_ratio: float, formulation: str) -> str:
-        """The key of the body that these and a material make."""
+        """Key of the body with a material."""
         return body_key(self.mesh, self.fixed, poisson_ratio, formulation, self.young_scale)
 
 
-# Files found damaged, and the time they had then: the panel offers to rebuild them.
+# Damaged files and their modification times: the panel offers to rebuild them.
 _damaged: dict[Path, int] = {}
 
 
@@ -63,7 +63,7 @@ def file_name(thing: bpy.types.Object, key: str) -> str:
 
 
 def folder_for_new_files() -> Path:
-    """Beside the saved .blend; before that the folder of the preferences, or the user's."""
+    """Folder next to the saved .blend; before saving that of the preferences, or the user's."""
     if bpy.data.filepath:
         return Path(bpy.data.filepath).parent / FOLDER
     return _unsaved_folder()
@@ -79,7 +79,7 @@ def _unsaved_folder() -> Path:
 
 
 def locate(thing: bpy.types.Object) -> Path | None:
-    """The object's body file, wherever it is among the known places."""
+    """Body file of the object, searched in all known folders."""
     name = thing.palpate.body_file
     if not name:
         return None
@@ -87,7 +87,7 @@ def locate(thing: bpy.types.Object) -> Path | None:
 
 
 def locate_key(key: str) -> Path | None:
-    """A body file with this key, whatever object it was made for."""
+    """Body file with this key, of any object."""
     found = (path for place in _places() for path in place.glob(f"*-{key[:KEY_LETTERS]}.npz"))
     return next((path for path in found if not is_known_damaged(path)), None)
 
@@ -98,14 +98,14 @@ def _places() -> list[Path]:
 
 
 def load(thing: bpy.types.Object) -> SoftBody:
-    """Read the object's body and make sure that it is this object's.
+    """Read the object's body and check that it is this object's.
 
     Raises
     ------
     PalpateError
         Never baked.
     BodyFileError
-        Missing, damaged, or the body of something else; Rebuild Body makes it again.
+        Missing, damaged, or another object's; Rebuild Body makes it again.
     """
     baked = thing.palpate
     if not baked.body_key:
@@ -121,7 +121,7 @@ def load(thing: bpy.types.Object) -> SoftBody:
 
 
 def load_file(path: Path, key: str) -> SoftBody:
-    """Read a body file that must have this key; remembers it where it is found damaged.
+    """Read a body file and check its key; remembers damaged files.
 
     Raises
     ------
@@ -145,14 +145,14 @@ def _with_key(body: SoftBody, key: str, path: Path) -> SoftBody:
 
 
 def is_known_damaged(path: Path) -> bool:
-    """Whether :func:`load` found this file damaged, and it has not been written since."""
+    """Whether :func:`load` found this file damaged, and it is unchanged since."""
     return path in _damaged and _damaged[path] == path.stat().st_mtime_ns
 
 
 def restore(thing: bpy.types.Object) -> SoftBody:
     """Compute a missing body again from the tetrahedra in the .blend, and store its file.
 
-    Waits: a second or two for a thousand free surface nodes.
+    Blocks: a second or two for a thousand free surface nodes.
 
     Raises
     ------
@@ -182,7 +182,7 @@ def restore(thing: bpy.types.Object) -> SoftBody:
 
 
 def embed(thing: bpy.types.Object, body: SoftBody) -> None:
-    """Put the tetrahedra into the .blend, on the object."""
+    """Store the tetrahedra on the object, in the .blend."""
     _remove_embedded(thing)
     thing.palpate["nodes"] = body.mesh.nodes.ravel()
     thing.palpate["tets"] = body.mesh.tets.astype(np.int32).ravel()
@@ -199,7 +199,7 @@ def _remove_embedded(thing: bpy.types.Object) -> None:
 
 
 def embedded(thing: bpy.types.Object) -> EmbeddedBody:
-    """The tetrahedra, pins and stiffness that travel with the object.
+    """Tetrahedra, pins and stiffness stored with the object.
 
     Raises
     ------
@@ -219,7 +219,7 @@ def embedded(thing: bpy.types.Object) -> EmbeddedBody:
 
 
 def forget(thing: bpy.types.Object) -> None:
-    """Remove the body: its file, unless another object uses it, and all that the object keeps."""
+    """Remove the body: its file, unless shared with another object, and the object's record."""
     name, path = thing.palpate.body_file, locate(thing)
     shared = any(o != thing and o.palpate.body_file == name for o in bpy.data.objects)
     if path is not None and not shared:
@@ -230,13 +230,13 @@ def forget(thing: bpy.types.Object) -> None:
 
 
 def new_files() -> set[Path]:
-    """What is in the folder where new body files are put now, and the folder itself."""
+    """Folder for new body files, and its contents."""
     folder = folder_for_new_files()
     return {folder, *folder.iterdir()} if folder.is_dir() else set()
 
 
 def take_back(before: set[Path]) -> None:
-    """Remove what came into that folder since :func:`new_files` was asked."""
+    """Remove files that are new in the folder since :func:`new_files`."""
     for path in sorted(new_files() - before, reverse=True):
         if path.is_dir():
             path.rmdir()
@@ -245,9 +245,9 @@ def take_back(before: set[Path]) -> None:
 
 
 def gather_beside(blend: Path, found: dict[str, Path], *, is_open_file: bool) -> None:
-    """After a save: put the body files at ``found`` (by name) into the folder beside ``blend``.
+    """After a save, collect the body files at ``found`` (by name) in the folder next to ``blend``.
 
-    Files that lay in the user's folder because there was no .blend yet are moved, others copied.
+    Files in the user's folder, from before there was a .blend, are moved, others copied.
 
     Raises
     ------

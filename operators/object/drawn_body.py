@@ -1,4 +1,4 @@
-"""A body and the mesh that hangs on it: from a contact to coordinates that can be drawn."""
+"""Body with its drawn mesh: from a contact to drawn coordinates."""
 
 from __future__ import annotations
 
@@ -23,22 +23,24 @@ from .soft_object import BodyStatus, Fit
 
 Array = NDArray[np.float64]
 
-# Two stretches that differ by less than this, relatively, are one: float32 matrices are not exact.
+# Relative tolerance of equal stretches: matrices are float32.
 SAME_STRETCH = 1e-5
 
-# A missing body of this many free surface nodes takes a few seconds; a larger one wants progress.
+# Free surface nodes at most for restoring a missing body, a few seconds, without progress.
 MOST_NODES_AT_ONCE = 1500
 
 
 @dataclass(frozen=True, eq=False)
 class DrawnBody:
-    """Attributes
+    """Body with its drawn mesh.
+
+    Attributes
     ----------
-    body : the body, metres.
+    body : metres.
     hung : the map W to the drawn vertices.
     rest : flat float32 (3 p,), the drawn vertices at rest, local units.
     frame : between local units, metres and the world.
-    file : where the body came from, beside which its tables are kept; None if that is nowhere.
+    file : of the body, next to which its tables are stored; None without.
     """
 
     body: SoftBody
@@ -54,7 +56,7 @@ class DrawnBody:
 
     @property
     def surface_nodes(self) -> Array:
-        """The surface nodes at rest, (s, 3), metres."""
+        """Surface nodes at rest, (s, 3), metres."""
         mesh = self.body.mesh
         nodes: Array = mesh.nodes[mesh.surface_nodes]
         return nodes
@@ -66,8 +68,8 @@ class DrawnBody:
         return ray.node_normals(mesh.nodes, mesh.surface_triangles)
 
     def nearest(self, place: Array) -> tuple[Array, Array]:
-        """The point of the rest surface nearest to ``place`` (3,), and the outward unit normal
-        there, (3,) each.
+        """Point of the rest surface nearest to ``place`` (3,), and its outward unit normal, (3,)
+        each.
         """
         mesh, found = self.body.mesh, self.body.closest_points.query(place)
         corners, alpha = mesh.surface_triangles[found.triangle[0]], found.alpha[0]
@@ -76,7 +78,7 @@ class DrawnBody:
 
     @cached_property
     def rest_places(self) -> Array:
-        """The drawn vertices at rest, (p, 3), metres, body coordinates."""
+        """Drawn vertices at rest, (p, 3), metres, body coordinates."""
         return self.frame.body_from_local(self.rest.reshape(-1, 3).astype(np.float64))
 
     def local_coordinates(
@@ -102,22 +104,22 @@ class DrawnBody:
         return everywhere
 
     def moved_to(self, frame: BodyFrame) -> DrawnBody | None:
-        """The same body where its object is now; None if the object was scaled or sheared."""
+        """The same body with its object's present frame; None if that was scaled or sheared."""
         old, new = self.frame.metric, frame.metric
         if np.abs(new - old).max() > SAME_STRETCH * np.abs(old).max():
             return None
-        # The stretch stays the one that was baked, so that nothing creeps while the object moves.
+        # The baked stretch is kept, so that rounding does not accumulate while the object moves.
         return replace(self, frame=replace(frame, stretch=self.frame.stretch))
 
 
 def restores_quickly(thing: bpy.types.Object) -> bool:
-    """Whether somebody who wants to press can wait for the body, without progress or Escape."""
+    """Whether a missing body is restored so quickly that no progress or Escape is needed."""
     return bool(bpy.app.background or thing.palpate.free_surface_count <= MOST_NODES_AT_ONCE)
 
 
 def open_body(thing: bpy.types.Object, scene: bpy.types.Scene) -> DrawnBody:
-    """Load an object's body, if it fits; a missing one of usual size is computed again at once,
-    and more pins are taken over where that takes no bake.
+    """Load an object's body if it fits; a missing one of usual size is recomputed at once, and
+    added pins are applied where that needs no bake.
 
     Raises
     ------
@@ -141,11 +143,11 @@ def open_body(thing: bpy.types.Object, scene: bpy.types.Scene) -> DrawnBody:
 
 
 def _body(thing: bpy.types.Object, surface: DrawnSurface, status: BodyStatus) -> SoftBody:
-    """The object's body, held where its pins are now if that needs no bake."""
+    """Body of the object, with its present pins if that needs no bake."""
     if status.fit is Fit.FILE_MISSING and restores_quickly(thing):
         body_store.restore(thing)
         status = replace(status, fit=Fit.READY, pins=pin_change.look(thing, surface))
-    # Other settings wait for Rebuild Body, and the pins with them.
+    # Other changed settings, and the pins with them, wait for Rebuild Body.
     if status.fit is Fit.READY and status.pins.quick and not status.changed:
         return pin_change.take_over(thing, surface)
     return kept_body.load(thing)

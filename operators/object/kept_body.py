@@ -1,7 +1,6 @@
-"""The body that was pressed last, kept while its file stays as it is.
+"""Cache of the body pressed last, valid while its file is unchanged.
 
-What a tool needs of a body takes seconds to compute and lives as long as the body: the next press
-shall not wait for it again.
+Tools need seconds to prepare on a body; the next press on it reuses that.
 """
 
 from __future__ import annotations
@@ -14,25 +13,25 @@ from ...core.body.soft_body import SoftBody
 from ...core.compliance.mapped import MappedCompliance
 from . import body_store
 
-# What was read, of which file as it was then.
+# The body, its file, and the file's state when read.
 _kept: tuple[tuple[object, ...], SoftBody] | None = None
 
 
 def load(thing: bpy.types.Object) -> SoftBody:
-    """As :func:`body_store.load`, but the same body again while its file is the same.
+    """Load as :func:`body_store.load`, but the same body while its file is unchanged.
 
     Raises
     ------
     PalpateError
         As there.
     """
-    global _kept  # noqa: PLW0603  one body at most is a fact of the module
+    global _kept  # noqa: PLW0603  one cached body
     path = body_store.locate(thing)
     stamp = None if path is None else _stamp(path, thing.palpate.body_key)
     if _kept is not None and _kept[0] == stamp:
         return _kept[1]
     body = body_store.load(thing)
-    # A table that is read in its file would hold the file, which some systems do not let go then.
+    # A mapped table keeps its file open, which some systems then cannot replace.
     in_file = isinstance(body.compliance, MappedCompliance)
     _kept = None if stamp is None or in_file else (stamp, body)
     return body

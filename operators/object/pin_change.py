@@ -1,4 +1,4 @@
-"""What other pins ask for: nothing, a body that is there already, a second's work, or a bake."""
+"""Work that changed pins need: none, loading another body, a second's work, or a bake."""
 
 from __future__ import annotations
 
@@ -28,26 +28,26 @@ from ..scene.object_handle import ObjectHandle
 from . import baked_record, body_store
 from .body_store import EmbeddedBody
 
-# A downdate that takes longer is left to Rebuild Body, which has progress and Escape.
+# Seconds; longer downdates are left to Rebuild Body, which has progress and Escape.
 LONGEST_SECONDS = 5.0
-# A body file is read, written and read again at about this many bytes a second.
+# Bytes a second of reading, writing and reading a body file again.
 BYTES_PER_SECOND = 2e8
 
 
 class PinFit(Enum):
-    """How the pins that are set now stand to those of the body."""
+    """Relation of the pins that are set to those of the body."""
 
     SAME = "same"
-    KNOWN = "known"  # the body with these pins lies in its file
+    KNOWN = "known"  # a file has the body with these pins
     MORE = "more"  # computed from the body in seconds
-    LESS = "less"  # some were let go: needs a bake
+    LESS = "less"  # pins were removed: needs a bake
     OTHER = "other"  # elsewhere, or too many more for a quick answer: needs a bake
     UNUSABLE = "unusable"  # they pin nothing, or everything
 
 
 @dataclass(frozen=True, eq=False)
 class PinChange:
-    """A look at the pins: ``seconds`` is what taking them over takes, ``reason`` why it cannot."""
+    """Fit of the pins, ``seconds`` to apply them, and the ``reason`` if that is impossible."""
 
     fit: PinFit
     seconds: float = 0.0
@@ -55,7 +55,7 @@ class PinChange:
 
     @property
     def quick(self) -> bool:
-        """Whether they can be taken over now, without a bake."""
+        """Whether they can be applied now, without a bake."""
         return self.fit in {PinFit.KNOWN, PinFit.MORE}
 
 
@@ -65,7 +65,7 @@ SAME = PinChange(PinFit.SAME)
 def look(thing: bpy.types.Object, drawn: DrawnSurface) -> PinChange:
     """Compare the pins that are set with those of the body. Reads tetrahedra, not the body file.
 
-    Only meant for an object whose mesh still fits its body.
+    Only for an object whose mesh still fits its body.
     """
     if Fingerprint.from_text(thing.palpate.fingerprint).pins == pin_group.pin_rule(thing):
         return SAME
@@ -93,7 +93,7 @@ def look(thing: bpy.types.Object, drawn: DrawnSurface) -> PinChange:
 
 
 def take_over(thing: bpy.types.Object, drawn: DrawnSurface) -> SoftBody:
-    """Hold the body where the pins are now: from its file, or computed and stored beside it.
+    """Apply the pins to the body: from its file, or computed and stored next to it.
 
     Raises
     ------
@@ -117,7 +117,7 @@ def take_over(thing: bpy.types.Object, drawn: DrawnSurface) -> SoftBody:
         body = pin_more(body_store.load(thing), np.setdiff1d(new, within.body.fixed))
         path = body_store.folder_for_new_files() / body_store.file_name(thing, body.key)
         body_file.save(body, path)
-    # What is stiff is not taken over here, so the record of it stays.
+    # Stiff regions are not applied here, so their record stays.
     old = Fingerprint.from_text(thing.palpate.fingerprint)
     fingerprint = drawn.fingerprint(pin_group.pin_rule(thing), old.stiffness)
     baked_record.record(thing, body, path.name, drawn, fingerprint)
@@ -126,14 +126,14 @@ def take_over(thing: bpy.types.Object, drawn: DrawnSurface) -> SoftBody:
 
 @dataclass(frozen=True, eq=False)
 class _PlacedBody:
-    """An embedded body, and where its surface nodes lie on the drawn surface."""
+    """Embedded body, and the places of its surface nodes on the drawn surface."""
 
     body: EmbeddedBody
     surface: Surface
     places: SurfacePoints
 
 
-# A slider asks many times for one object; the search takes up to a second for large meshes.
+# For sliders: the search takes up to a second for large meshes.
 @lru_cache(maxsize=1)
 def _placed(drawn: DrawnSurface, handle: ObjectHandle, key: str) -> _PlacedBody:
     thing = handle.find()
@@ -154,7 +154,7 @@ def _key(thing: bpy.types.Object, body: EmbeddedBody, fixed: NDArray[np.int64]) 
 
 
 def _seconds(thing: bpy.types.Object, mesh: TetMesh, added: int) -> float:
-    """About how long :func:`take_over` computes and stores."""
+    """Estimated seconds of :func:`take_over`."""
     baked = thing.palpate
     settings = BakeSettings(
         poisson_ratio=round(baked.baked_poisson_ratio, 6),

@@ -1,4 +1,4 @@
-"""What an object allows now, in words: may it be made soft, does its body still fit it."""
+"""Status of an object: whether it can be made soft, and whether its body still fits."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from .pin_change import PinChange
 
 
 class Fit(Enum):
-    """How an object stands to its body."""
+    """Fit of an object and its body."""
 
     NEVER_BAKED = "never baked"
     READY = "ready"
@@ -31,8 +31,8 @@ class Fit(Enum):
 
 @dataclass(frozen=True)
 class BodyStatus:
-    """``text`` says why; ``changed`` names settings that are not in the body yet, other than pins,
-    which may not need a bake: ``pins``; ``meshing`` names those that ask for other tetrahedra.
+    """Fit of a body; ``text`` is the reason; ``changed`` names settings that are not in the body
+    yet; so does ``pins``, which may need no bake; ``meshing`` names those that need a new mesh.
     """
 
     fit: Fit
@@ -43,7 +43,7 @@ class BodyStatus:
 
 
 def refusal(thing: bpy.types.Object | None) -> str:
-    """Why this object cannot be made soft or pressed at all; empty if it can."""
+    """Reason why this object can never be soft; empty if it can."""
     if thing is None:
         return "Select a mesh object"
     if thing.type != "MESH":
@@ -71,7 +71,7 @@ def refusal(thing: bpy.types.Object | None) -> str:
 
 
 def body_status(thing: bpy.types.Object, scene: bpy.types.Scene) -> BodyStatus:
-    """Whether the object's body is there and still fits it. Reads the mesh, not the body file.
+    """Whether the object's body exists and still fits. Reads the mesh, not the body file.
 
     Raises
     ------
@@ -82,7 +82,7 @@ def body_status(thing: bpy.types.Object, scene: bpy.types.Scene) -> BodyStatus:
 
 
 def with_file(thing: bpy.types.Object, status: BodyStatus) -> BodyStatus:
-    """A :func:`mesh_status` together with what is known of the body file; quick."""
+    """Status from :func:`mesh_status` and what is known of the body file; quick."""
     if status.fit is not Fit.READY:
         return status
     status = replace(status, meshing=_other_meshing(thing.palpate))
@@ -95,7 +95,7 @@ def with_file(thing: bpy.types.Object, status: BodyStatus) -> BodyStatus:
 
 
 def mesh_status(thing: bpy.types.Object, drawn: DrawnSurface) -> BodyStatus:
-    """Whether the object was baked and its mesh, as read now, is still the same; takes its time."""
+    """Whether the object was baked and its mesh is still the same; slow for large meshes."""
     baked = thing.palpate
     if not baked.body_key:
         return BodyStatus(Fit.NEVER_BAKED)
@@ -110,7 +110,7 @@ def mesh_status(thing: bpy.types.Object, drawn: DrawnSurface) -> BodyStatus:
 
 
 def refuse_changed(thing: bpy.types.Object, status: BodyStatus) -> None:
-    """Refuse an object that is not what was baked any more.
+    """Refuse an object that has changed since the bake.
 
     Raises
     ------
@@ -126,7 +126,7 @@ def refuse_changed(thing: bpy.types.Object, status: BodyStatus) -> None:
 
 
 def formulation_now(thing: bpy.types.Object) -> str:
-    """The formulation that a bake would take, with Automatic resolved."""
+    """Formulation of a bake, with Automatic resolved."""
     settings = thing.palpate
     return formulation_for(settings.formulation.lower(), round(settings.poisson_ratio, 6))
 
@@ -156,7 +156,7 @@ def _other_meshing(settings: bpy.types.PropertyGroup) -> tuple[str, ...]:
 
 
 def _other_form(settings: bpy.types.PropertyGroup) -> bool:
-    """Whether a form is asked for that the body does not have. Automatic leaves it as it is."""
+    """Whether the chosen form is not the body's; Automatic accepts any."""
     if settings.form == "AUTO":
         return False
     if settings.form.lower() != settings.baked_form:

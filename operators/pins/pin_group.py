@@ -1,4 +1,4 @@
-"""What is pinned: a vertex group that the user painted, or all below a height, which makes one."""
+"""Pins: a painted vertex group, or all vertices below a height, which makes one."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from ..scene.drawn_surface import DrawnSurface
 from .group_weights import group_digest, group_weights
 
 GROUP_NAME = "Pinned"
-# Keeps a level bottom whole in spite of rounding, as a share of the height.
+# Tolerance for rounding of a level bottom, as a share of the height.
 LEVEL = 1e-5
 
 
 def pin_rule(thing: bpy.types.Object) -> str:
-    """What the object's pins are now, as text that changes when they do."""
+    """Text that changes with the object's pins."""
     settings = thing.palpate
     if settings.pin_mode == "BELOW":
         return f"below {settings.pin_fraction:.4f}"
@@ -28,10 +28,9 @@ def pin_rule(thing: bpy.types.Object) -> str:
 
 
 def pins(thing: bpy.types.Object, surface: DrawnSurface) -> PinWeights:
-    """The object's pins for a bake, one weight per vertex; pinned where it reaches one half.
+    """Pins for a bake, one weight per vertex; pinned where it reaches one half.
 
-    A height is handed over as weights that fall linearly with it: they are then exact anywhere
-    between the vertices, however coarse the mesh.
+    A height is given as weights linear in it, which are exact between vertices of any mesh.
 
     Raises
     ------
@@ -62,7 +61,7 @@ def pins(thing: bpy.types.Object, surface: DrawnSurface) -> PinWeights:
 
 
 def mark_below(thing: bpy.types.Object, surface: DrawnSurface, fraction: float) -> int:
-    """Make or renew the group of all vertices below ``fraction`` of the height; returns how many.
+    """Group all vertices below ``fraction`` of the height; returns their number.
 
     Up is the world's Z axis, as the object stands now.
     """

@@ -1,4 +1,4 @@
-"""Where the object is stiffer or softer than its material: a vertex group and a factor."""
+"""Stiff region of an object: a vertex group and a factor on its material."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from .group_weights import group_digest, group_weights
 
 
 def stiff_rule(thing: bpy.types.Object) -> str:
-    """What the object's stiff region is now, as text that changes when it does; empty for none."""
+    """Text that changes with the object's stiff region; empty for none."""
     settings = thing.palpate
     if not settings.stiff_group:
         return ""
@@ -21,7 +21,7 @@ def stiff_rule(thing: bpy.types.Object) -> str:
 
 
 def stiff_region(thing: bpy.types.Object) -> StiffRegion | None:
-    """The object's stiff region for a bake, one weight per vertex; None where none is chosen.
+    """Stiff region for a bake, one weight per vertex; None if none is chosen.
 
     Raises
     ------

@@ -1,7 +1,6 @@
-"""The recording of a press: every tick of the force loop, kept in memory until the next one.
+"""Recording of a press: every tick of the force loop, kept in memory until the next one.
 
-The servo's own thread collects the ticks, so that none is missing however busy Blender is. What was
-recorded stays here when the press has ended.
+The servo's thread collects the ticks, so that none is missing however busy Blender is.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ BYTES_A_TICK = DTYPE.itemsize
 
 @dataclass(frozen=True, eq=False)
 class Kept:
-    """Ticks of a press that has ended, structured array (n,) of ``core.servo.recording.DTYPE``."""
+    """Recorded ticks of an ended press, structured array (n,) of ``core.servo.recording.DTYPE``."""
 
     samples: NDArray[np.void]
     rate_hz: int
@@ -30,9 +29,9 @@ class Kept:
 
 @dataclass(eq=False)
 class Recorder:
-    """What a press records, once somebody has wanted it.
+    """Recorder of a press.
 
-    ``seconds`` is how much there is; ``full`` once the longest time is over.
+    ``seconds`` is the length so far; ``full`` once the limit is reached.
     """
 
     servo: Servo
@@ -46,7 +45,7 @@ class Recorder:
     _stopped: bool = False
 
     def start(self, longest: float, now: float) -> None:
-        """Record from here on, instead of what there was; ``now`` is the servo's time, s.
+        """Start a new recording; ``now`` is the servo's time, s.
 
         Raises
         ------
@@ -64,22 +63,22 @@ class Recorder:
         self._longest, self._begun_at, self._stopped = longest, now, False
 
     def stop(self) -> None:
-        """Record no more; what there is stays."""
+        """Stop recording and keep it."""
         self.servo.stop_recording()
         self._stopped = True
 
     def follow(self, now: float) -> None:
-        """Note how long the recording is by now."""
+        """Update the length of the recording."""
         if not self.wanted or self.full or self._stopped:
             return
         self.lost = self.servo.recording_lost
         self.seconds = min(now - self._begun_at, self._longest)
-        # Nobody stopped it: its time is over.
+        # The limit is reached.
         self.full = not self.servo.is_recording
 
     @property
     def going_on(self) -> bool:
-        """Whether ticks are being recorded."""
+        """Whether a recording is running."""
         return self.wanted and self.servo.is_recording
 
     def kept(self) -> Kept:
@@ -91,12 +90,12 @@ _last: Kept | None = None
 
 
 def last() -> Kept | None:
-    """What the last press with a recording left."""
+    """Latest recording of an ended press."""
     return _last
 
 
 def keep(recorder: Recorder | None) -> None:
-    """Keep what a press has recorded, if it has: it is about to end."""
+    """Keep the recording of a press that is about to end, if there is one."""
     global _last  # noqa: PLW0603  one recording is kept, as there is one press at a time
     if recorder is not None and recorder.wanted:
         _last = recorder.kept()

@@ -1,6 +1,6 @@
-"""A recording on its way to a file, in a thread of its own.
+"""Writing of a recording in a background thread.
 
-Ten minutes of CSV take many seconds. Meanwhile the window must go on: Space has to let a device go.
+Ten minutes of CSV take many seconds; meanwhile Space must still release a device.
 """
 
 from __future__ import annotations
@@ -22,19 +22,19 @@ SECONDS_BETWEEN_LOOKS = 0.2
 
 @dataclass(frozen=True, eq=False)
 class Writing:
-    """A file that is being written, or was."""
+    """File being written, or written."""
 
     path: Path
     outcome: Future[None]
 
     @property
     def going_on(self) -> bool:
-        """Whether it is not done yet."""
+        """Whether it is still being written."""
         return not self.outcome.done()
 
     @property
     def problem(self) -> str:
-        """Why there is no file; empty if there is one, or may be soon."""
+        """Reason of a failure; empty if there is none so far."""
         problem = None if self.going_on else self.outcome.exception()
         if isinstance(problem, PalpateError):
             return problem.sentence
@@ -45,27 +45,27 @@ _latest: Writing | None = None
 
 
 def latest() -> Writing | None:
-    """What was written last, or is being written."""
+    """Latest file."""
     return _latest
 
 
 def going_on() -> bool:
-    """Whether a recording is being written."""
+    """Whether a recording is being written now."""
     return _latest is not None and _latest.going_on
 
 
 def begin(path: Path, kept: Kept) -> None:
-    """Write a recording while Blender goes on; only while none is :func:`going_on`.
+    """Write a recording in the background; only while none is :func:`going_on`.
 
     Raises
     ------
     PalpateError
-        The path cannot be written, or is neither CSV nor npz. What goes wrong later is told by
+        The path cannot be written, or is neither CSV nor npz. Later errors are in
         :func:`latest`.
     """
     global _latest  # noqa: PLW0603  one file at a time
     check_recording_path(path)
-    # Python waits for this thread before it ends, so that quitting Blender loses nothing.
+    # Not a daemon: Python waits for it at exit, so that quitting Blender loses nothing.
     thread = ThreadPoolExecutor(1, "palpate-recording")
     _latest = Writing(path, thread.submit(recording.write, path, kept))
     thread.shutdown(wait=False)
@@ -73,7 +73,7 @@ def begin(path: Path, kept: Kept) -> None:
 
 
 def forget() -> None:
-    """Tell no more of the last file: there is another recording now."""
+    """Forget the last file: there is another recording now."""
     global _latest  # noqa: PLW0603  see begin
     if not going_on():
         _latest = None

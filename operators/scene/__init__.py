@@ -1,1 +1,1 @@
-"""What is asked of Blender's scene."""
+"""Access to Blender's scene."""

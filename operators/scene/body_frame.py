@@ -1,8 +1,8 @@
-"""Where Blender's coordinates become metres: the one border between an object and its soft body.
+"""Map between Blender's coordinates and metres: the only one between an object and its soft body.
 
 An object's matrix M = R P (polar decomposition) has a rigid part R and a symmetric stretch P that
-carries scale, shear and mirroring. The body lives in ``metres_per_unit * P @ local``: it has its
-true size, and moving or turning the object later leaves it as it is.
+carries scale, shear and mirroring. The body is in ``metres_per_unit * P @ local``: of true
+size, and invariant when the object is moved or rotated.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from ...core.errors import PalpateError
 
 Array = NDArray[np.float64]
 
-# Stretches below this share of the largest one flatten the object: nothing can be pressed back.
+# Stretches below this share of the largest one count as flat.
 SMALLEST_RELATIVE_STRETCH = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
 class BodyFrame:
-    """The map between an object's local coordinates, its body in metres, and the world.
+    """Map between an object's local coordinates, its body in metres, and the world.
 
     Attributes
     ----------
@@ -65,12 +65,12 @@ class BodyFrame:
 
     @property
     def mirrored(self) -> bool:
-        """Whether the stretch turns the surface inside out, so that triangles must be rewound."""
+        """Whether the stretch mirrors the surface, so that triangles must be rewound."""
         return bool(np.linalg.det(self.stretch) < 0.0)
 
     @property
     def metric(self) -> Array:
-        """Metres of body per local unit, (3, 3): all of the frame that a body depends on."""
+        """Metres of body per local unit, (3, 3): the part of the frame that a body depends on."""
         return self.metres_per_unit * self.stretch
 
     def body_from_local(self, local: ArrayLike) -> Array:
@@ -106,5 +106,5 @@ class BodyFrame:
         return turned
 
     def wind(self, triangles: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Triangles (m, 3) of the local surface, rewound if mirroring turned them inside out."""
+        """Triangles (m, 3) of the local surface, rewound if mirrored."""
         return triangles[:, ::-1] if self.mirrored else triangles

@@ -1,4 +1,4 @@
-"""The mesh as drawn at rest, read from Blender into arrays: what a body is made from and hangs on.
+"""Drawn mesh at rest, read from Blender into arrays: the surface that a body is made from.
 
 It is the base mesh (the Basis of its shape keys), not the evaluated one: modifiers stay on top.
 """
@@ -25,9 +25,9 @@ class DrawnSurface:
     Attributes
     ----------
     local : float64 (p, 3), vertex coordinates in local units.
-    triangles : int64 (m, 3), n-gons cut by Blender.
+    triangles : int64 (m, 3), n-gons triangulated by Blender.
     corners, face_starts : int64, polygons as loops of vertex numbers.
-    frame : how local units become metres.
+    frame : from local units to metres.
     """
 
     local: NDArray[np.float64]
@@ -56,7 +56,7 @@ class DrawnSurface:
         return fingerprint.take(self.local, self.body, self.corners, self.face_starts)
 
     def fingerprint(self, pins: str, stiffness: str) -> Fingerprint:
-        """What a body baked from this surface, with these rules, remembers of it."""
+        """Fingerprint of the surface with these rules, stored with a body."""
         return replace(self._shape, pins=pins, stiffness=stiffness)
 
 
@@ -99,7 +99,7 @@ def rest_coordinates(mesh: bpy.types.Mesh) -> NDArray[np.float32]:
 
 
 def frame_of(thing: bpy.types.Object, scene: bpy.types.Scene) -> BodyFrame:
-    """The object's border between local units and metres.
+    """Frame of the object, from local units to metres.
 
     Raises
     ------
@@ -110,6 +110,6 @@ def frame_of(thing: bpy.types.Object, scene: bpy.types.Scene) -> BodyFrame:
 
 
 def metres_per_unit(scene: bpy.types.Scene) -> float:
-    """What one Blender unit is in metres; without a unit system it is one."""
+    """Metres per Blender unit; 1 without a unit system."""
     units = scene.unit_settings
     return 1.0 if units.system == "NONE" else float(units.scale_length)

@@ -1,8 +1,8 @@
-"""What a body was baked from, in a few numbers, and what has changed since.
+"""Fingerprint of the surface that a body was baked from, and changes since.
 
-Coordinates are not hashed: turning an object changes the last bits of its matrix, and a hash would
-call that another body. They are projected on a few fixed pseudo-random directions instead, and the
-projections compared with a tolerance: one vertex moved by a ten-thousandth of the body shows.
+Coordinates are not hashed, since rotating an object changes the last bits of its matrix. They are
+projected on a few fixed pseudo-random directions, and the projections compared with a tolerance:
+one vertex moved by a ten-thousandth of the body is detected.
 """
 
 from __future__ import annotations
@@ -17,16 +17,16 @@ from numpy.typing import NDArray
 from ...core.sentence import Sentence
 
 PROJECTIONS = 8
-# Rounding of a float32 matrix is about 1e-7 of the size; a real edit moves far more than this.
+# Between the rounding of a float32 matrix, about 1e-7 of the size, and real edits.
 TOLERANCE = 2e-6
 SEED = 19980331
 
 
 @dataclass(frozen=True)
 class Fingerprint:
-    """A drawn surface as a body sees it: topology, shape and size; and the rules painted on it.
+    """Topology, shape and size of a drawn surface, and the rules painted on it.
 
-    ``pins`` and ``stiffness`` are texts that change when what is pinned or stiff does.
+    ``pins`` and ``stiffness`` are texts that change with pins and stiff regions.
     """
 
     vertices: int
@@ -40,7 +40,7 @@ class Fingerprint:
     stiffness: str = ""
 
     def to_text(self) -> str:
-        """As stored on the object."""
+        """Text stored on the object."""
         return json.dumps(asdict(self))
 
     @classmethod
@@ -70,7 +70,7 @@ def take(
 
 
 def digest(*arrays: NDArray[np.int64]) -> str:
-    """A short hex digest of integer arrays."""
+    """Short hex digest of integer arrays."""
     sha = hashlib.sha256()
     for array in arrays:
         sha.update(np.ascontiguousarray(array, dtype=np.int64).tobytes())
@@ -79,7 +79,7 @@ def digest(*arrays: NDArray[np.int64]) -> str:
 
 
 def changed_body(old: Fingerprint, new: Fingerprint) -> str:
-    """What makes the baked body unusable now, in words for the panel; empty if nothing does."""
+    """Changes that make the baked body unusable, as text for the panel; empty if none."""
     if (old.vertices, old.faces) != (new.vertices, new.faces):
         return Sentence(
             "the mesh has {vertices} vertices and {faces} faces now, {old_vertices} and "

@@ -1,4 +1,4 @@
-"""The shape key that follows a press: added, written each frame, then kept or taken away.
+"""Shape key that follows a press: added, written each frame, then kept or removed.
 
 Other shape keys, the active one, and the mesh itself stay as they are, bit for bit.
 """
@@ -14,13 +14,13 @@ from numpy.typing import NDArray
 LIVE_NAME = "Palpate live"
 BASIS_NAME = "Basis"
 KEPT_NAME = "Press"
-# On the key block's owner: what it was before the press, for a clean-up after undo or a crash.
+# Custom property with the state before the press, for a clean-up after undo or a crash.
 FOUND_MARK = "palpate_found"
 
 
 @dataclass(frozen=True)
 class FoundKeys:
-    """How the object's shape keys were before a press."""
+    """State of the object's shape keys before a press."""
 
     had_basis: bool
     active_index: int
@@ -28,7 +28,7 @@ class FoundKeys:
 
     @classmethod
     def of(cls, thing: bpy.types.Object) -> FoundKeys:
-        """As they are now."""
+        """Present state."""
         return cls(
             thing.data.shape_keys is not None,
             thing.active_shape_key_index,
@@ -36,7 +36,7 @@ class FoundKeys:
         )
 
     def put_back(self, thing: bpy.types.Object) -> None:
-        """Which key is active, and whether it is shown alone."""
+        """Restore the active key, and whether it is shown alone."""
         thing.show_only_shape_key = self.showed_only_one
         thing.active_shape_key_index = self.active_index
 
@@ -54,12 +54,12 @@ def hang(thing: bpy.types.Object) -> None:
         found.active_index,
         int(found.showed_only_one),
     ]
-    # Shown alone, the active key would hide the live one.
+    # An active key that is shown alone would hide the live one.
     thing.show_only_shape_key = False
 
 
 def write(mesh: bpy.types.Mesh, coordinates: NDArray[np.float32]) -> None:
-    """Write flat float32 coordinates (3 p,) into the live shape key and have it drawn."""
+    """Write flat float32 coordinates (3 p,) into the live shape key and redraw."""
     live = _live(mesh)
     if live is not None:
         live.points.foreach_set("co", coordinates)
@@ -67,7 +67,7 @@ def write(mesh: bpy.types.Mesh, coordinates: NDArray[np.float32]) -> None:
 
 
 def remove(thing: bpy.types.Object) -> None:
-    """Take the live shape key away, and the Basis if it came with it. Safe without one."""
+    """Remove the live shape key, and the Basis if it came with it. Safe without one."""
     live = _live(thing.data)
     if live is None:
         return
@@ -98,7 +98,7 @@ def keep(thing: bpy.types.Object) -> str:
 
 
 def remove_leftovers() -> None:
-    """Clean every object of live shape keys: undo and autosave may bring one back."""
+    """Remove live shape keys from all objects: undo and autosave may bring one back."""
     for thing in bpy.data.objects:
         if thing.type == "MESH" and thing.is_editable and _live(thing.data) is not None:
             remove(thing)
@@ -114,7 +114,7 @@ def _found(mesh: bpy.types.Mesh) -> FoundKeys:
 
 
 def leave_edit_mode(thing: bpy.types.Object) -> None:
-    """Shape keys can only be taken away while nobody edits them."""
+    """Leave edit mode, in which shape keys cannot be removed."""
     if thing.mode == "OBJECT":
         return
     with bpy.context.temp_override(active_object=thing, object=thing):

@@ -1,4 +1,4 @@
-"""Finding an object again. Blender frees and replaces data on undo, so nobody keeps references."""
+"""Handle of an object instead of a reference, since undo frees and replaces Blender's data."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ import bpy
 
 @dataclass(frozen=True)
 class ObjectHandle:
-    """An object by its identity in this session; survives undo and renaming."""
+    """Object by its identity in this session; survives undo and renaming."""
 
     session_uid: int
     name: str
 
     @classmethod
     def of(cls, thing: bpy.types.Object) -> ObjectHandle:
-        """A handle for an object that exists now."""
+        """Handle of an existing object."""
         return cls(thing.session_uid, thing.name)
 
     def find(self) -> bpy.types.Object | None:

@@ -1,8 +1,8 @@
-"""How a pointer on a flat screen moves a probe in depth. No Blender: vectors in, vectors out.
+"""Probe moved in depth by a pointer on a flat screen, without Blender.
 
-A drag along the screen image of the inward normal goes in; where that normal points at the viewer
-its image is too short to follow, and dragging downward goes in. The other screen direction moves
-the probe along the surface. Wheel and pen pressure add depth.
+A drag along the projected inward normal goes in; where the normal points at the viewer, dragging
+downward goes in. The other screen direction moves the probe along the surface. Wheel and pen
+pressure add depth.
 """
 
 from __future__ import annotations
@@ -14,16 +14,16 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-# Below this sine of the angle between normal and view, dragging downward goes in.
+# Sine of the angle between normal and view below which dragging downward goes in.
 SHORTEST_IMAGE = 0.35
-# One notch of the wheel, as a share of the body's size; and the deepest a pen presses.
+# One notch of the wheel and the largest depth of a pen, as shares of the body's size.
 WHEEL_STEP = 0.01
 PEN_DEPTH = 0.10
 
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """The view where the probe was set down, in body coordinates.
+    """View in which the probe was set down, in body coordinates.
 
     ``right`` and ``up`` (3,) are unit vectors of the screen; ``metres_per_pixel`` holds at the
     depth of the touched point.
@@ -36,7 +36,7 @@ class View:
 
 @dataclass(frozen=True, eq=False)
 class ProbeDrag:
-    """A probe set down at ``point`` on a surface whose outward unit normal is ``normal``."""
+    """Probe set down at ``point`` on a surface with outward unit normal ``normal``."""
 
     point: Array
     normal: Array
@@ -49,11 +49,11 @@ class ProbeDrag:
     pressure: float = 0.0
 
     def dragged(self, cursor: tuple[float, float], pressure: float = 0.0) -> ProbeDrag:
-        """The pointer is at ``cursor`` (pixels), pressing with ``pressure`` 0..1 (pens)."""
+        """Drag with the pointer at ``cursor`` (pixels) and pen ``pressure`` 0..1."""
         return replace(self, cursor=cursor, pressure=pressure)
 
     def wheeled(self, notches: int) -> ProbeDrag:
-        """The wheel turned; positive goes in."""
+        """Drag with the wheel turned; positive goes in."""
         return replace(self, notches=self.notches + notches)
 
     @property
@@ -65,7 +65,7 @@ class ProbeDrag:
 
     @property
     def depth(self) -> float:
-        """How far the probe is below the surface along the normal, metres; negative above."""
+        """Depth of the probe below the surface along the normal, metres; negative above."""
         along = self._pixels @ self.inward_on_screen
         return float(
             along * self.view.metres_per_pixel * self.sensitivity
@@ -75,7 +75,7 @@ class ProbeDrag:
 
     @property
     def target(self) -> Array:
-        """Where the probe should be, (3,), body coordinates."""
+        """Target of the probe, (3,), body coordinates."""
         inward = self.inward_on_screen
         aside = np.array([-inward[1], inward[0]])
         on_screen = aside[0] * self.view.right + aside[1] * self.view.up

@@ -1,4 +1,4 @@
-"""Quantities as a person reads them: few digits, fit units."""
+"""Quantities as readable text: few digits, fitting units."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ TENTHS_BELOW = 10.0
 
 
 def duration(seconds: float) -> str:
-    """A time: ``8 s``, ``2 min 10 s``, ``1 h 5 min``."""
+    """Time: ``8 s``, ``2 min 10 s``, ``1 h 5 min``."""
     if seconds < MINUTE:
         return f"{max(0, round(seconds))} s"
     if seconds < HOUR:
@@ -18,7 +18,7 @@ def duration(seconds: float) -> str:
 
 
 def waiting(seconds: float) -> str:
-    """A time that is waited for: ``0.3 s``, then as :func:`duration`."""
+    """Waiting time: ``0.3 s``, then as :func:`duration`."""
     return f"{seconds:.1f} s" if seconds < TENTHS_BELOW else duration(seconds)
 
 
@@ -31,28 +31,28 @@ def memory(count: float) -> str:
 
 
 def microseconds(time: float) -> str:
-    """A short time in µs: ``0.4 µs``, ``12 µs``, ``1.2 ms``."""
+    """Short time in µs: ``0.4 µs``, ``12 µs``, ``1.2 ms``."""
     if time >= 1000.0:
         return f"{time / 1000:.1f} ms"
     return f"{time:.{1 if time < 10.0 else 0}f} µs"
 
 
 def about(count: float) -> str:
-    """A predicted number, two digits of it: ``1,700``."""
+    """Predicted number, two digits: ``1,700``."""
     return f"{float(f'{count:.2g}'):,.0f}"
 
 
 def percent(share: float) -> str:
-    """A share in percent, two digits of it: ``0.1 %``."""
+    """Share in percent, two digits: ``0.1 %``."""
     return f"{100 * share:.2g} %"
 
 
 def area(square_metres: float) -> str:
-    """A contact's area: ``12.3 mm²``, ``4.6 cm²``."""
+    """Contact area: ``12.3 mm²``, ``4.6 cm²``."""
     small = 1e6 * square_metres
     return f"{small:.3g} mm²" if small < 100.0 else f"{small / 100:.3g} cm²"
 
 
 def pressure(pascal: float) -> str:
-    """A pressure in kPa, three digits of it."""
+    """Pressure in kPa, three digits."""
     return f"{pascal / 1000:.3g} kPa"

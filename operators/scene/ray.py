@@ -1,4 +1,4 @@
-"""Where a line of sight meets a surface of triangles (Moeller and Trumbore 1997), all at once."""
+"""Intersection of a ray and a triangle surface (Moeller and Trumbore 1997)."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Hit:
-    """A met triangle, area coordinates (3,) of its corners and the distance along the ray."""
+    """Hit triangle, area coordinates (3,), and distance along the ray."""
 
     triangle: int
     alpha: Array
@@ -22,7 +22,7 @@ class Hit:
 def first_hit(
     origin: Array, direction: Array, nodes: Array, triangles: NDArray[np.int64]
 ) -> Hit | None:
-    """The nearest triangle that the ray meets from its front (wound counter-clockwise), if any."""
+    """Nearest triangle hit from its front (wound counter-clockwise), if any."""
     a, b, c = (nodes[triangles[:, corner]] for corner in range(3))
     to_b, to_c, from_a = b - a, c - a, origin - a
     normal = np.cross(to_b, to_c)

@@ -1,4 +1,4 @@
-"""The 3D view under the pointer: which one, its line of sight, and its scale at a place."""
+"""3D view under the pointer: its line of sight, and its scale at a place."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ DEFAULT_GIZMO_SIZE = 80
 
 @dataclass(frozen=True, eq=False)
 class Viewport:
-    """A 3D view's window region and a pointer in it, in pixels of that region."""
+    """Window region of a 3D view and a pointer in it, in pixels of the region."""
 
     area: bpy.types.Area
     region: bpy.types.Region
@@ -30,7 +30,7 @@ class Viewport:
 
     @property
     def region_3d(self) -> bpy.types.RegionView3D:
-        """The view's projection."""
+        """Projection of the view."""
         return self.region.data
 
     def ray(self, frame: BodyFrame) -> tuple[Array, Array]:
@@ -71,7 +71,7 @@ class Viewport:
         return right - width <= x <= right and top - height <= y <= top
 
     def _covered(self, kind: str) -> int:
-        """Pixels of the window region that another region of this kind lies upon."""
+        """Pixels of the window region covered by another region of this kind."""
         across = "width" if kind == "UI" else "height"
         return sum(
             getattr(r, across)
@@ -81,7 +81,7 @@ class Viewport:
 
 
 def under_pointer(window: bpy.types.Window, x: int, y: int) -> Viewport | None:
-    """The 3D view at window coordinates, unless another region lies on top of it there."""
+    """3D view at window coordinates, unless another region covers it there."""
     for area in window.screen.areas:
         if area.type != "VIEW_3D":
             continue
@@ -94,7 +94,7 @@ def under_pointer(window: bpy.types.Window, x: int, y: int) -> Viewport | None:
 
 
 def over_file_browser(window: bpy.types.Window, event: bpy.types.Event) -> bool:
-    """Whether an event belongs to a file browser that lies in this window."""
+    """Whether an event belongs to a file browser in this window."""
     return any(
         area.type == "FILE_BROWSER" and _contains(area, event.mouse_x, event.mouse_y)
         for area in window.screen.areas
@@ -102,7 +102,7 @@ def over_file_browser(window: bpy.types.Window, event: bpy.types.Event) -> bool:
 
 
 def redraw_views() -> None:
-    """Have every 3D view, with its sidebar, drawn again."""
+    """Redraw all 3D views and their sidebars."""
     for window in bpy.context.window_manager.windows:
         for area in window.screen.areas:
             if area.type == "VIEW_3D":
