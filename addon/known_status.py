@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 
 import bpy
 
-from ..core.bake.bake_cost import ShapeSize
+from ..core.bake.cost.size import ShapeSize
 from ..core.bake.settings import BakeSettings
 from ..core.errors import PalpateError
 from ..core.machine.machine_speed import dgemm_rate

@@ -7,7 +7,10 @@ import dataclasses
 import json
 from pathlib import Path
 
-from ...core.bake.bake_cost import BakeCost, MeshSize, ShapeSize, estimate_cost, memory_refusal
+from ...core.bake.cost.bake_cost import BakeCost
+from ...core.bake.cost.memory import memory_refusal
+from ...core.bake.cost.prediction import estimate_cost
+from ...core.bake.cost.size import MeshSize, ShapeSize
 from ...core.machine.available_memory import available_memory
 from ...core.mesh.surface import Surface
 from .bake_options import bake_input

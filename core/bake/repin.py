@@ -29,7 +29,8 @@ from ..mesh.tet_mesh import TetMesh
 from ..stiffness.assembly import assemble
 from ..stiffness.freedoms import freedoms
 from ..stiffness.held_pins import pins_checked
-from .bake_cost import MeshSize, estimate_cost
+from .cost.prediction import estimate_cost
+from .cost.size import MeshSize
 from .settings import BakeSettings
 
 # Largest relative error of a column from a downdate.

@@ -29,7 +29,9 @@ from ..stiffness.assembly import assemble
 from ..stiffness.formulation import formulation_for
 from ..stiffness.pins import pinned_nodes
 from ..stiffness.regions import StiffRegion, TetScale, young_scale
-from .bake_cost import MeshSize, affordable_form, check_seconds, rest_seconds
+from .cost.memory import affordable_form
+from .cost.prediction import check_seconds, rest_seconds
+from .cost.size import MeshSize
 from .settings import BakeSettings
 from .work import BakeProgress, BakeWork
 

@@ -7,13 +7,9 @@ from dataclasses import dataclass, replace
 import bpy
 import numpy as np
 
-from ...core.bake.bake_cost import (
-    BakeCost,
-    ShapeSize,
-    bending,
-    edge_length_that_fits,
-    estimate_cost,
-)
+from ...core.bake.cost.bake_cost import BakeCost
+from ...core.bake.cost.prediction import edge_length_that_fits, estimate_cost
+from ...core.bake.cost.size import ShapeSize, bending
 from ...core.bake.settings import BakeSettings
 from ...core.errors import PalpateError
 from ...core.machine.available_memory import available_memory

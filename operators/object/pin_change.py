@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.bake.bake_cost import MeshSize
+from ...core.bake.cost.size import MeshSize
 from ...core.bake.repin import pin_more, pin_more_seconds, pins_change
 from ...core.bake.settings import BakeSettings
 from ...core.body import body_file

@@ -6,18 +6,10 @@ import numpy as np
 import pytest
 import trimesh
 
-from palpate.core.bake.bake_cost import (
-    BakeCost,
-    MeshSize,
-    ShapeSize,
-    affordable_form,
-    automatic_form,
-    bending,
-    edge_length_that_fits,
-    estimate_cost,
-    memory_refusal,
-    planned_cost,
-)
+from palpate.core.bake.cost.bake_cost import BakeCost, planned_cost
+from palpate.core.bake.cost.memory import affordable_form, automatic_form, memory_refusal
+from palpate.core.bake.cost.prediction import edge_length_that_fits, estimate_cost
+from palpate.core.bake.cost.size import MeshSize, ShapeSize, bending
 from palpate.core.bake.settings import BakeSettings
 from palpate.core.bake.steps import bake
 from palpate.core.compliance.elimination.plan import plan_surface_inverse

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from palpate.core.bake import repin
-from palpate.core.bake.bake_cost import MeshSize, estimate_cost
+from palpate.core.bake.cost.prediction import estimate_cost
+from palpate.core.bake.cost.size import MeshSize
 from palpate.core.bake.repin import LARGEST_ERROR, pin_more, pin_more_seconds, pins_change
 from palpate.core.bake.settings import BakeSettings
 from palpate.core.body import body_file

@@ -1,0 +1,1 @@
+"""Cost of a bake, predicted before it starts: nodes, time, memory, size of the file."""

@@ -1,0 +1,82 @@
+"""Sizes of surfaces and meshes, as far as the cost of a bake depends on them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...mesh.surface import Surface
+from ...mesh.tet_mesh import TetMesh
+from ...mesh.winding_volume import enclosed_volume
+
+# Edges sharper than this are edges of the shape, which need no finer triangles.
+SHARP_EDGE = np.radians(60.0)
+
+
+@dataclass(frozen=True)
+class ShapeSize:
+    """What the cost of a surface's bake depends on.
+
+    Attributes
+    ----------
+    area : of the surface, square metres.
+    volume : that it encloses, cubic metres.
+    diagonal : of its bounding box, metres.
+    triangles : how many it has.
+    bending : see :func:`bending`, metres; None to assume a body as round as its volume allows.
+    """
+
+    area: float
+    volume: float
+    diagonal: float
+    triangles: int
+    bending: float | None = None
+
+    @classmethod
+    def of(cls, surface: Surface) -> ShapeSize:
+        """Measure a surface; for open or overlapping ones this takes up to a second."""
+        welded = surface.welded()
+        return cls(
+            float(welded.areas.sum()),
+            enclosed_volume(welded),
+            welded.diagonal,
+            len(welded.triangles),
+            bending(welded),
+        )
+
+
+@dataclass(frozen=True)
+class MeshSize:
+    """What the cost of a bake from tetrahedra depends on: counts of its nodes."""
+
+    nodes: int
+    surface_nodes: int
+
+    @classmethod
+    def of(cls, mesh: TetMesh) -> MeshSize:
+        """Count a mesh's nodes."""
+        return cls(len(mesh.nodes), len(mesh.surface_nodes))
+
+
+def bending(surface: Surface) -> float:
+    """How much the surface curves in all, metres: half of edge length times angle, summed.
+
+    On a smooth surface that is the integral of the mean curvature. Sharp edges do not count.
+    """
+    triangles = surface.triangles
+    i, j, k = (surface.vertices[triangles[:, corner]] for corner in range(3))
+    normals = np.cross(j - i, k - i)
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), np.finfo(float).tiny)
+    starts, ends = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
+    edge = np.minimum(starts, ends) * len(surface.vertices) + np.maximum(starts, ends)
+    order = np.argsort(edge)
+    first, second = order[:-1], order[1:]
+    paired = edge[first] == edge[second]
+    first, second = first[paired], second[paired]
+    cosine = np.einsum("ex,ex->e", normals[first // 3], normals[second // 3])
+    # Faces that look opposite ways do so by their winding, as a rule.
+    angle = np.arccos(np.clip(np.abs(cosine), 0.0, 1.0))
+    along = surface.vertices[ends[first]] - surface.vertices[starts[first]]
+    lengths = np.linalg.norm(along, axis=1)
+    return float(0.5 * (lengths * angle)[angle < SHARP_EDGE].sum())
