@@ -9,7 +9,7 @@ docstrings (native/src/python/harness).
 """
 
 from collections.abc import Mapping, Sequence
-from typing import Any, Literal, Self, TypeAlias, TypedDict, final
+from typing import Any, Literal, Protocol, Self, TypeAlias, TypedDict, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -713,6 +713,48 @@ class HaplyDevice:
         ValueError as there, and for a model or angles without sense.
         """
 
+class _Coupling(Protocol):
+    @property
+    def stiffness(self) -> float: ...
+    @property
+    def damping(self) -> float: ...
+    @property
+    def passivity_control(self) -> bool: ...
+
+class _Frame(Protocol):
+    @property
+    def rotation(self) -> NDArray[np.float64]: ...
+    @property
+    def translation(self) -> NDArray[np.float64]: ...
+    @property
+    def scale(self) -> float: ...
+
+class ServoSettings(Protocol):
+    """What a servo may be told at any time: `palpate.core.servo.settings.Settings`, which says what
+    each is, or whatever else has these attributes.
+    """
+
+    @property
+    def young_modulus(self) -> float: ...
+    @property
+    def enabled(self) -> bool: ...
+    @property
+    def shading(self) -> bool: ...
+    @property
+    def static_friction(self) -> float: ...
+    @property
+    def dynamic_friction(self) -> float: ...
+    @property
+    def mode(self) -> ContactMode: ...
+    @property
+    def felt(self) -> FeltName: ...
+    @property
+    def coupling(self) -> _Coupling | None: ...
+    @property
+    def frames(self) -> Sequence[_Frame | None]: ...
+    @property
+    def orientations(self) -> Sequence[_Matrix]: ...
+
 @final
 class Servo:
     """A native thread between fingers, each led by a device or a pointer, and a body."""
@@ -720,8 +762,8 @@ class Servo:
     def __init__(
         self,
         body: Body,
+        settings: ServoSettings,
         *,
-        young_modulus: float,
         rate_hz: int = 1000,
         max_force: float = 3.0,
         max_slew: float = 1000.0,
@@ -729,16 +771,17 @@ class Servo:
         max_speed: float = 2.0,
         glide_speed: float = 0.5,
         record_seconds: float = 10.0,
-        shading: bool = False,
-        static_friction: float = 0.0,
-        dynamic_friction: float = 0.0,
-        mode: ContactMode = "consistent",
-        felt: FeltName = "linear",
     ) -> None:
-        """Prepare a servo; ValueError for a rate beyond 100 to 8000 Hz or limits without sense.
+        """Prepare a servo; ValueError for settings that cannot be, a rate beyond 100 to 8000 Hz or
+        limits without sense.
 
         max_force N, max_slew N/s, max_speed (device) and glide_speed (pointer) m/s. On a body
         without a compliance both modes are the paper's.
+        """
+
+    def set(self, settings: ServoSettings) -> None:
+        """Take over settings with the next tick; ValueError, and nothing changed, for one that
+        cannot be.
         """
 
     def start(self, device: Pointer | LinkDevice | HaplyDevice) -> None:
@@ -765,11 +808,6 @@ class Servo:
         RuntimeError unless that finger is a pointer.
         """
 
-    def set_orientation(self, rotation: _Matrix, finger: int = 0) -> None:
-        """Turn a finger's tool: tool to body for a pointer, tool to stylus for a device, whose
-        stylus keeps the device's axes unless it tells otherwise. ValueError unless a rotation.
-        """
-
     def set_tool(self, tool: ToolContact | None, finger: int = 0) -> None:
         """Give a finger a tool, also while the servo runs, or make it a point again (None).
 
@@ -778,46 +816,14 @@ class Servo:
         uses it. ValueError for a tool that was made for another Body than that of the servo.
         """
 
-    def set_young_modulus(self, young_modulus: float) -> None: ...
-    def set_body(self, body: Body, young_modulus: float) -> None:
-        """Touch another body, also while the servo runs: zero force in that tick, then a ramp.
-        ValueError if there is more than one finger and the body is not whole.
+    def set_body(self, body: Body, settings: ServoSettings) -> None:
+        """Touch another body with its settings, also while the servo runs: zero force in that tick,
+        then a ramp. ValueError if there is more than one finger and the body is not whole.
 
         The probe is set down anew: inside of the new body nothing is felt until it was outside. A
         finger with a tool waits until that is set again, made for the new body.
         Returns when the thread uses the new body and the old one is freed.
         """
-
-    def set_device_frame(
-        self, rotation: _Matrix, translation: _Vector, scale: float, finger: int = 0
-    ) -> None:
-        """Map a device elsewhere; its probe is lifted off and set down at its new place."""
-
-    def set_feel(self, *, shading: bool, static_friction: float, dynamic_friction: float) -> None:
-        """Shading and friction of the surface; ValueError unless 0 <= dynamic <= static."""
-
-    def set_felt(self, felt: FeltName) -> None:
-        """Which relation between displacement and force points feel; while touching, the other one
-        comes in over 50 ms. Where the body was not told its softenings, both are linear. ValueError
-        for another name.
-        """
-
-    def set_mode(self, mode: ContactMode) -> None:
-        """How a contact becomes a force, from the next tick on; ValueError for another mode."""
-
-    def set_coupling(self, *, stiffness: float, damping: float, passivity_control: bool) -> None:
-        """What lies between body and motors: the most stiffness that the device may see (N/m, inf
-        for the body as it is), the damping that goes with it (N s/m; a softer body has its share),
-        and whether energy that the contact would make is taken back. For all fingers; a pointer has
-        no motors.
-
-        Unless told otherwise it is `device_coupling` of the servo's rate, with a `HaplyDevice` of
-        the model's encoders too. ValueError for a stiffness that is not more than 0, or a damping
-        that is negative or not finite.
-        """
-
-    def set_enabled(self, enabled: bool) -> None:
-        """False: zero force from the next tick on. True: the force ramps up."""
 
     def snapshot(self) -> Snapshot:
         """The newest tick; state "stopped" before the start and after the end."""
@@ -864,7 +870,7 @@ class Servo:
     def __exit__(self, kind: object, value: object, trace: object, /) -> None: ...
 
 class DeviceCoupling(TypedDict):
-    """Keywords of Servo.set_coupling."""
+    """Keywords of `palpate.core.servo.settings.Coupling`."""
 
     stiffness: float
     damping: float

@@ -22,6 +22,7 @@ from palpate.core.bake.steps import BakeSettings, bake
 from palpate.core.contact.tool.tools import sphere
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.servo.session import native_body, native_tool
+from palpate.core.servo.settings import Settings
 from palpate.core.stiffness.pins import PinNodes
 
 Vectors = NDArray[np.float64]
@@ -83,7 +84,7 @@ def main() -> int:
 
     def fingers(start: Vectors, **feel: float) -> SteppedFingers:
         above = descent(start)[0]
-        return SteppedFingers(native, above, young_modulus=YOUNG_MODULUS, **feel)
+        return SteppedFingers(native, above, Settings(YOUNG_MODULUS, **feel))
 
     def told(what: str, value: float, claim: float | None) -> None:
         nonlocal misses

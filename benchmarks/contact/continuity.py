@@ -42,6 +42,7 @@ from palpate.core.contact.tool.tools import Tool, convex, plate, rod, sphere
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.mesh.tet_mesh import TetMesh
 from palpate.core.servo.session import native_body, native_tool
+from palpate.core.servo.settings import Settings
 from palpate.core.stiffness.pins import PinNodes
 
 Vectors = NDArray[np.float64]
@@ -132,12 +133,14 @@ def by_points(
         fingers = SteppedFingers(
             native,
             path[0],
-            young_modulus=YOUNG_MODULUS,
+            Settings(
+                YOUNG_MODULUS,
+                mode="paper" if mode == "paper" else "consistent",
+                static_friction=friction[0],
+                dynamic_friction=friction[1],
+                **feel,
+            ),
             rate_hz=rate,
-            mode="paper" if mode == "paper" else "consistent",
-            static_friction=friction[0],
-            dynamic_friction=friction[1],
-            **feel,
         )
         return fingers.follow(path)[0]
 
@@ -186,10 +189,8 @@ def by_tool(
         fingers = SteppedFingers(
             native,
             path[0] + raised,
-            young_modulus=YOUNG_MODULUS,
+            Settings(YOUNG_MODULUS, static_friction=friction, dynamic_friction=friction),
             rate_hz=rate,
-            static_friction=friction,
-            dynamic_friction=friction,
         )
         fingers.set_tool(contact, rotation)
         return fingers.follow(path + raised)[0]

@@ -24,6 +24,8 @@ from palpate_servo import Body, Pointer, Servo
 from palpate_servo.harness import BareTimer
 from scipy.stats import binom
 
+from palpate.core.servo.settings import Settings
+
 RADIUS = 0.025
 MOST = 1.2
 """How many times the bare thread's late ticks and p99.9 lateness the servo's may be."""
@@ -112,7 +114,7 @@ def measure(
     body: Body, rate_hz: int, run: Callable[[Servo], None]
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Counters of the servo and of the bare thread while `run` goes on."""
-    with Servo(body, young_modulus=1000.0, rate_hz=rate_hz, record_seconds=1.0) as servo:
+    with Servo(body, Settings(1000.0), rate_hz=rate_hz, record_seconds=1.0) as servo:
         servo.start(Pointer([0.0, 0.0, 0.03]))
         bare = BareTimer(rate_hz)
         run(servo)

@@ -24,6 +24,7 @@ from ...core.servo.latency_timer import explain
 from ...core.servo.ports import PortError, check_port
 from ...core.servo.recording import check_recording_path, check_room, write_recording
 from ...core.servo.session import STATES, LinkDevice, native_body, servo_on
+from ...core.servo.settings import Settings
 from ...core.stiffness.assembly import lame_parameters
 from ...simulated.hand.options import SimulatedOptions
 from ...simulated.simulated_process import SimulatedDevice
@@ -115,10 +116,8 @@ def run(arguments: argparse.Namespace) -> int:
         surface = native_body(body, whole=bool(others))
         servo = servo_on(
             surface,
-            young_modulus=young_modulus,
+            Settings(young_modulus, mode=arguments.mode, felt=arguments.felt),
             rate_hz=arguments.rate,
-            mode=arguments.mode,
-            felt=arguments.felt,
         )
         table = None
         if arguments.felt == "corrected":

@@ -25,7 +25,6 @@ from palpate_servo import Tool as NativeTool
 
 if TYPE_CHECKING:
     # Types only, absent at run time.
-    from palpate_servo import ContactMode, FeltName
     from palpate_servo import FingerCounters as FingerCounters  # noqa: PLC0414
     from palpate_servo import LinkCounters as LinkCounters  # noqa: PLC0414
     from palpate_servo import ServoCounters as ServoCounters  # noqa: PLC0414
@@ -38,6 +37,7 @@ from ..compliance.protocol import Compliance
 from ..contact.tool.tool_surface import correction_for, surface_for
 from ..contact.tool.tools import Tool
 from ..errors import PalpateError
+from .settings import Settings
 
 __all__ = [
     "STATES",
@@ -54,7 +54,6 @@ __all__ = [
     "native_body",
     "native_compliance",
     "native_tool",
-    "servo_for",
     "servo_on",
     "touched_nodes",
 ]
@@ -120,56 +119,24 @@ def native_body(body: SoftBody, *, whole: bool = False) -> Body:
         ) from problem
 
 
-def servo_for(
-    body: SoftBody,
+def servo_on(
+    surface: Body,
+    settings: Settings,
     *,
-    young_modulus: float | None = None,
     rate_hz: int = 1000,
     max_force: float = 3.0,
     record_seconds: float = 10.0,
-    mode: ContactMode = "consistent",
-    felt: FeltName = "linear",
 ) -> Servo:
-    """A servo for this body, ready to be started with a pointer or a serial device.
+    """A servo for a native body, ready to be started with a pointer or a serial device.
 
     Parameters
     ----------
-    young_modulus : pascal; the body's own unless given. Can be changed while it runs.
+    surface : see :func:`native_body`. For the felt force ``corrected`` it needs its softenings: let
+        a :class:`..shape.force_at_depth.softening_table.SofteningTable` tell them.
+    settings : to begin with.
     rate_hz : 100 to 8000.
     max_force : newton; the clamp on what any device is told.
     record_seconds : how long samples are kept until somebody takes them.
-    mode : how a contact inside a triangle becomes a force; can be changed while it runs.
-    felt : which relation between displacement and force points feel; can be changed while it runs.
-        ``corrected`` is ``linear`` where the native body was not told its softenings: let a
-        :class:`.large_deformation.softening_table.SofteningTable` tell ``Body.set_softenings``.
-
-    Raises
-    ------
-    PalpateError
-        A setting out of its range, or a body that cannot be touched.
-    """
-    return servo_on(
-        native_body(body),
-        young_modulus=body.modulus(young_modulus),
-        rate_hz=rate_hz,
-        max_force=max_force,
-        record_seconds=record_seconds,
-        mode=mode,
-        felt=felt,
-    )
-
-
-def servo_on(
-    surface: Body,
-    *,
-    young_modulus: float,
-    rate_hz: int = 1000,
-    max_force: float = 3.0,
-    record_seconds: float = 10.0,
-    mode: ContactMode = "consistent",
-    felt: FeltName = "linear",
-) -> Servo:
-    """As :func:`servo_for`, for a native body that others use as well: its tools.
 
     Raises
     ------
@@ -179,12 +146,10 @@ def servo_on(
     try:
         return Servo(
             surface,
-            young_modulus=young_modulus,
+            settings,
             rate_hz=rate_hz,
             max_force=max_force,
             record_seconds=record_seconds,
-            mode=mode,
-            felt=felt,
         )
     except (ValueError, OverflowError) as problem:
         raise PalpateError("servo: {problem}", problem=problem) from problem
@@ -222,7 +187,7 @@ def native_tool(body: SoftBody, surface: Body, tool: Tool, *, friction: float = 
     ----------
     surface : of ``native_body(body, whole=True)``, the one that the servo touches.
     friction : coefficient of the contact when it is stepped alone; a servo's fingers have that of
-        ``Servo.set_feel``.
+        its settings.
 
     Raises
     ------

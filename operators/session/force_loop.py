@@ -5,10 +5,11 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 from ...core.errors import PalpateError
 from ...core.servo.session import (
@@ -55,6 +56,8 @@ class ForceLoop:
     second_simulated: SimulatedDevice | None = None
     port: str = ""
     figures: LoopFigures = field(default_factory=LoopFigures)
+    _enabled: bool = True
+    _turns: dict[int, NDArray[np.float64]] = field(default_factory=dict)
     _led: dict[int, tuple[Point | None, Turn | None]] = field(default_factory=dict)
 
     @classmethod
@@ -69,14 +72,8 @@ class ForceLoop:
             A body that cannot be touched, or a setting that the servo refuses.
         """
         touched = native_body(drawn.body, whole=fingers > 1 or tip.tool is not None)
-        servo = servo_on(
-            touched,
-            young_modulus=settings.young_modulus,
-            rate_hz=rate_hz,
-            max_force=preferences().max_force,
-        )
-        with servo_errors():
-            settings.hand_over(servo)
+        limit = preferences().max_force
+        servo = servo_on(touched, settings.servo, rate_hz=rate_hz, max_force=limit)
         felt = FeltTable(drawn.body, touched, drawn.file)
         return cls(servo, settings, Recorder(servo, rate_hz), drawn, touched, tip, felt)
 
@@ -122,7 +119,7 @@ class ForceLoop:
         before = self._led.get(finger, (None, None))
         with servo_errors():
             if turn is not None and turn != before[1]:
-                self.servo.set_orientation(np.array(turn), finger=finger)
+                self._turn(finger, turn)
             if place is not None and place != before[0]:
                 self.servo.set_target(place, finger=finger)
         self._led[finger] = (place, turn)
@@ -162,21 +159,30 @@ class ForceLoop:
         PalpateError
             The servo refuses a setting.
         """
-        with servo_errors():
-            settings.hand_over(self.servo, self.settings)
         self.settings = settings
+        with servo_errors():
+            self._set()
+
+    def _turn(self, finger: int, turn: Turn) -> None:
+        self._turns[finger] = np.array(turn)
+        self._set()
+
+    def _set(self) -> None:
+        turns = [self._turns.get(k, np.eye(3)) for k in range(max(self._turns, default=-1) + 1)]
+        self.servo.set(replace(self.settings.servo, enabled=self._enabled, orientations=turns))
 
     def carry_out(self, effect: PlaceProbe | MoveProbe | SwitchForce) -> None:
         """Do what the press wants of the servo."""
         match effect:
             case PlaceProbe(point, finger, turn):
                 if turn is not None:
-                    self.servo.set_orientation(np.array(turn), finger=finger)
+                    self._turn(finger, turn)
                 self.servo.set_target(point, restart=True, finger=finger)
             case MoveProbe(point, finger):
                 self.servo.set_target(point, finger=finger)
             case SwitchForce(on):
-                self.servo.set_enabled(on)
+                self._enabled = on
+                self._set()
 
     def snapshot(self) -> Snapshot:
         """The newest tick; counters and recording are looked at, too."""
@@ -184,7 +190,7 @@ class ForceLoop:
         self.figures.look(self.servo, time.monotonic())
         self.recorder.follow(snapshot.time)
         # Tools feel the linear relation.
-        felt = self.settings.felt if self.tip.tool is None else "linear"
+        felt = self.settings.servo.felt if self.tip.tool is None else "linear"
         self.felt.follow(felt, touched_nodes(self.drawn.body, snapshot))
         return snapshot
 

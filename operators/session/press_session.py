@@ -104,7 +104,7 @@ class PressSession:
         self._watch_faults(snapshot)
         self._tell_troubles(loop)
         if self.state.phase is not Phase.LOST and not self.state.withdrawn:
-            self.seen.draw(thing, snapshot, loop.settings.young_modulus)
+            self.seen.draw(thing, snapshot, loop.settings.servo.young_modulus)
         return moved
 
     def switch_force(self) -> None:

@@ -12,6 +12,7 @@ from random import Random
 import numpy as np
 
 from palpate.core.servo import link
+from palpate.core.servo.settings import Settings
 from palpate.simulated.hand.quaternion import UPRIGHT, about
 
 from .servo_host import ABOVE, YOUNG_MODULUS, cube
@@ -81,9 +82,9 @@ def _fault_message(press: VirtualPress, dice: Random) -> list[Shot]:
 
 
 def _switch(press: VirtualPress, dice: Random) -> list[Shot]:
-    press.servo.set_enabled(False)
+    press.servo.set(Settings(YOUNG_MODULUS, enabled=False))
     shots = [press.tick() for _ in range(dice.randint(1, 60))]
-    press.servo.set_enabled(True)
+    press.servo.set(Settings(YOUNG_MODULUS))
     return shots
 
 
@@ -115,14 +116,14 @@ def _fast(clock: Callable[[float], Callable[[float], float]]) -> Inject:
 
 
 def _modulus(press: VirtualPress, dice: Random) -> list[Shot]:
-    press.servo.set_young_modulus(dice.choice([math.nan, math.inf, -math.inf, -1.0, 0.0]))
+    press.servo.set(Settings(dice.choice([math.nan, math.inf, -math.inf, -1.0, 0.0])))
     shots = [press.tick() for _ in range(dice.randint(1, 20))]
-    press.servo.set_young_modulus(YOUNG_MODULUS)
+    press.servo.set(Settings(YOUNG_MODULUS))
     return shots
 
 
 def _other_body(press: VirtualPress, dice: Random) -> list[Shot]:
-    press.servo.set_body(cube(dice.uniform(0.045, 0.05)), YOUNG_MODULUS)
+    press.servo.set_body(cube(dice.uniform(0.045, 0.05)), Settings(YOUNG_MODULUS))
     return [press.tick()]
 
 
@@ -284,9 +285,9 @@ def _unknown(press: VirtualPress, dice: Random) -> list[Shot]:
 
 
 def _stiffer(press: VirtualPress, dice: Random) -> list[Shot]:
-    press.servo.set_young_modulus(YOUNG_MODULUS * dice.uniform(10, 1e6))
+    press.servo.set(Settings(YOUNG_MODULUS * dice.uniform(10, 1e6)))
     shots = [press.tick() for _ in range(60)]
-    press.servo.set_young_modulus(YOUNG_MODULUS)
+    press.servo.set(Settings(YOUNG_MODULUS))
     return shots
 
 

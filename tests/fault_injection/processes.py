@@ -19,6 +19,7 @@ from typing import Any, Self
 
 from palpate_servo import Pointer, Servo
 
+from palpate.core.servo.settings import Settings
 from palpate.simulated.hand.options import SimulatedOptions
 from palpate.simulated.simulated_process import SimulatedDevice
 
@@ -289,7 +290,7 @@ def unplugged_row(times: int) -> Row:
 
 def stalled_reader_row(seconds: float = STOPPED_SECONDS) -> Row:
     """Nobody takes snapshots or samples, and the ring is full; then the reader is there again."""
-    with Servo(cube(), young_modulus=YOUNG_MODULUS, record_seconds=0.1) as servo:
+    with Servo(cube(), Settings(YOUNG_MODULUS), record_seconds=0.1) as servo:
         servo.start(Pointer(ABOVE))
         eventually(lambda: servo.snapshot().tick > 0, "the servo runs")
         first = servo.counters()

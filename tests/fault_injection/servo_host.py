@@ -15,6 +15,8 @@ from typing import Any
 import numpy as np
 from palpate_servo import STATES, Body, LinkDevice, Servo
 
+from palpate.core.servo.settings import Settings
+
 EDGE = 0.05
 YOUNG_MODULUS = 10_000.0
 RAMP_SECONDS = 0.1
@@ -61,7 +63,7 @@ def report(servo: Servo) -> dict[str, Any]:
 
 def main() -> int:
     """Touch until standard input ends."""
-    with Servo(cube(), young_modulus=YOUNG_MODULUS, ramp_seconds=RAMP_SECONDS) as servo:
+    with Servo(cube(), Settings(YOUNG_MODULUS), ramp_seconds=RAMP_SECONDS) as servo:
         servo.start(LinkDevice(sys.argv[1]))
         for line in sys.stdin:
             answer = samples(servo) if line.strip() == "samples" else report(servo)

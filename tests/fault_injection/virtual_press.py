@@ -15,6 +15,7 @@ from palpate_servo import Body
 from palpate_servo.harness import SteppedServo
 
 from palpate.core.servo import link
+from palpate.core.servo.settings import Settings
 from palpate.simulated.board.simulated_firmware import Firmware
 from palpate.simulated.hand.quaternion import Quaternion
 
@@ -60,7 +61,7 @@ class VirtualPress:
     def __init__(self, body: Body, *, largest_force: float = MAX_FORCE) -> None:
         self.servo = SteppedServo(
             body,
-            young_modulus=YOUNG_MODULUS,
+            Settings(YOUNG_MODULUS),
             max_force=MAX_FORCE,
             max_slew=MAX_SLEW,
             ramp_seconds=RAMP_SECONDS,

@@ -11,6 +11,7 @@ import pytest
 from palpate_servo import Body, LinkDevice, Servo
 
 from palpate.core.servo import link
+from palpate.core.servo.settings import Settings
 
 # Corners, triangles and stiffness of a cube of 50 mm: 100 N/m at 10 kPa everywhere.
 SQUARES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
@@ -66,7 +67,7 @@ def body():
 
 @pytest.fixture
 def servo(body):
-    with Servo(body, young_modulus=10_000.0, ramp_seconds=0.05) as servo:
+    with Servo(body, Settings(10_000.0), ramp_seconds=0.05) as servo:
         yield servo
 
 
@@ -137,7 +138,7 @@ def test_a_stylus_that_is_told_no_more_is_a_fault_until_it_is_told_again(board, 
 
 def test_the_devices_largest_force_holds_at_both_ends(body, start_board, eventually):
     board = start_board("--largest", "0.25")
-    with Servo(body, young_modulus=10_000.0) as servo:
+    with Servo(body, Settings(10_000.0)) as servo:
         servo.start(LinkDevice(board.port))
         eventually(state_is(servo, "free"), servo.snapshot)
         board.move(DEEP, 300)
@@ -166,7 +167,8 @@ HOST = """
 import json, sys, time
 import numpy as np
 from palpate_servo import Body, LinkDevice, Servo
-servo = Servo(Body(*map(np.array, json.loads(sys.argv[2]))), young_modulus=1e4)
+from palpate.core.servo.settings import Settings
+servo = Servo(Body(*map(np.array, json.loads(sys.argv[2]))), Settings(1e4))
 servo.start(LinkDevice(sys.argv[1]))
 time.sleep(60)
 """
@@ -228,7 +230,7 @@ def test_damage_in_the_middle_of_a_press_is_counted_and_survived(press, board, e
 
 def test_a_board_of_another_protocol_gets_no_force(body, start_board, eventually):
     board = start_board("--protocol", "2")
-    with Servo(body, young_modulus=10_000.0) as servo:
+    with Servo(body, Settings(10_000.0)) as servo:
         servo.start(LinkDevice(board.port))
         eventually(lambda: servo.snapshot().fault == "wrong protocol", servo.snapshot)
         eventually(lambda: servo.counters()["link"]["last_fault"] == (2, 1), servo.counters)

@@ -56,7 +56,7 @@ class PassiveHand:
 
 @dataclass(frozen=True)
 class CouplingSettings:
-    """What `Servo.set_coupling` takes."""
+    """What `Coupling` of the servo's settings takes."""
 
     stiffness: float = math.inf
     damping: float = 0.0

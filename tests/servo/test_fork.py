@@ -10,10 +10,11 @@ SCRIPT = """
 import os, sys, time
 import numpy as np
 from palpate_servo import Body, Pointer, Servo
+from palpate.core.servo.settings import Settings
 
 nodes = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]) * 0.1
 triangles = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
-servo = Servo(Body(nodes, triangles, np.array([0.01 * np.eye(3)] * 4)), young_modulus=1e4)
+servo = Servo(Body(nodes, triangles, np.array([0.01 * np.eye(3)] * 4)), Settings(1e4))
 servo.start_recording(10.0)
 servo.start(Pointer((0.2, 0.2, 0.2)))
 child = os.fork()

@@ -10,6 +10,8 @@ import pytest
 from palpate_servo import STATES, Pointer, Servo
 from palpate_servo.harness import BareTimer, bare_timer
 
+from palpate.core.servo.settings import Settings
+
 ABOVE = np.array([0.02, 0.03, 0.055])
 PRESSED = np.array([0.021, 0.029, 0.047])
 ASIDE = np.array([0.03, 0.0, 0.0])
@@ -18,7 +20,7 @@ MODULUS = 10_000.0
 
 @pytest.fixture
 def servo(cube):
-    with Servo(cube.native, young_modulus=MODULUS, ramp_seconds=0.05) as servo:
+    with Servo(cube.native, Settings(MODULUS), ramp_seconds=0.05) as servo:
         yield servo
 
 
@@ -56,12 +58,12 @@ def test_youngs_modulus_changes_the_force_in_proportion(servo, eventually):
     servo.set_target(PRESSED)
     eventually(at(servo, PRESSED))
     soft = servo.snapshot().contact_force
-    servo.set_young_modulus(3 * MODULUS)
+    servo.set(Settings(3 * MODULUS))
     eventually(lambda: np.allclose(servo.snapshot().contact_force, 3 * soft, rtol=1e-12))
 
 
 def test_the_probe_glides_and_never_jumps(cube, eventually):
-    with Servo(cube.native, young_modulus=MODULUS, glide_speed=0.2) as servo:
+    with Servo(cube.native, Settings(MODULUS), glide_speed=0.2) as servo:
         servo.start(Pointer(ABOVE))
         servo.set_target(ABOVE + ASIDE)
         eventually(at(servo, ABOVE + ASIDE))
@@ -106,19 +108,19 @@ def test_set_down_inside_nothing_is_felt_until_it_was_outside(servo, eventually)
 
 
 def test_switching_off_silences_at_once_and_on_ramps(cube, eventually):
-    with Servo(cube.native, young_modulus=MODULUS, ramp_seconds=0.2) as servo:
+    with Servo(cube.native, Settings(MODULUS), ramp_seconds=0.2) as servo:
         servo.start(Pointer(ABOVE))
         servo.set_target(PRESSED)
         eventually(at(servo, PRESSED))
         eventually(
             lambda: np.allclose(servo.snapshot().output_force, servo.snapshot().contact_force)
         )
-        servo.set_enabled(False)
+        servo.set(Settings(MODULUS, enabled=False))
         eventually(lambda: servo.snapshot().state == "disabled")
         assert not servo.snapshot().output_force.any()
         assert servo.snapshot().contact_force.any()
         servo.samples()
-        servo.set_enabled(True)
+        servo.set(Settings(MODULUS))
         eventually(
             lambda: np.allclose(servo.snapshot().output_force, servo.snapshot().contact_force)
         )
@@ -132,7 +134,7 @@ def test_switching_off_silences_at_once_and_on_ramps(cube, eventually):
 
 
 def test_the_force_is_clamped_with_its_direction(cube, eventually):
-    with Servo(cube.native, young_modulus=MODULUS, max_force=0.1, ramp_seconds=0) as servo:
+    with Servo(cube.native, Settings(MODULUS), max_force=0.1, ramp_seconds=0) as servo:
         servo.start(Pointer(ABOVE))
         servo.set_target(PRESSED)
         eventually(at(servo, PRESSED))
@@ -143,7 +145,7 @@ def test_the_force_is_clamped_with_its_direction(cube, eventually):
 
 
 def test_snapshots_are_never_torn(cube):
-    with Servo(cube.native, young_modulus=MODULUS, rate_hz=8000, glide_speed=20) as servo:
+    with Servo(cube.native, Settings(MODULUS), rate_hz=8000, glide_speed=20) as servo:
         servo.start(Pointer(ABOVE))
         rng = np.random.default_rng(3)
         seen = touching = 0
@@ -169,7 +171,7 @@ def test_snapshots_are_never_torn(cube):
 
 
 def test_every_tick_is_recorded_until_the_ring_is_full(cube, eventually):
-    with Servo(cube.native, young_modulus=MODULUS, record_seconds=0.1) as servo:
+    with Servo(cube.native, Settings(MODULUS), record_seconds=0.1) as servo:
         servo.start(Pointer(ABOVE))
         eventually(lambda: servo.counters()["samples_lost"] > 10)
         samples = servo.samples()
@@ -221,8 +223,8 @@ def test_stopping_is_idempotent_and_starting_again_works(servo, eventually):
 
 def test_two_servos_run_side_by_side(cube, eventually):
     with (
-        Servo(cube.native, young_modulus=MODULUS) as one,
-        Servo(cube.native, young_modulus=2 * MODULUS, rate_hz=500) as two,
+        Servo(cube.native, Settings(MODULUS)) as one,
+        Servo(cube.native, Settings(2 * MODULUS), rate_hz=500) as two,
     ):
         for servo in (one, two):
             servo.start(Pointer(ABOVE))
@@ -235,7 +237,7 @@ def test_two_servos_run_side_by_side(cube, eventually):
 
 
 def test_a_forgotten_servo_ends_with_its_object(cube):
-    servo = Servo(cube.native, young_modulus=MODULUS)
+    servo = Servo(cube.native, Settings(MODULUS))
     servo.start(Pointer(ABOVE))
     del servo
     gc.collect()
@@ -244,10 +246,11 @@ def test_a_forgotten_servo_ends_with_its_object(cube):
 def test_leaving_the_interpreter_with_a_running_servo_does_not_hang():
     script = """
         import numpy as np, palpate_servo as ps
+        from palpate.core.servo.settings import Settings
         nodes = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]])
         triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
         body = ps.Body(nodes, triangles, np.tile(np.eye(3), (4, 1, 1)))
-        servos = [ps.Servo(body, young_modulus=1.0) for _ in range(3)]
+        servos = [ps.Servo(body, Settings(1.0)) for _ in range(3)]
         for servo in servos:
             servo.start(ps.Pointer([2, 2, 2]))
         timer = ps.harness.BareTimer(1000)
@@ -319,5 +322,7 @@ def test_a_bare_timer_counts_what_it_did():
     ],
 )
 def test_settings_without_sense_are_refused(cube, setting, reason):
+    options = {"young_modulus": 1.0} | setting
+    modulus = options.pop("young_modulus")
     with pytest.raises(ValueError, match=reason):
-        Servo(cube.native, **({"young_modulus": 1.0} | setting))
+        Servo(cube.native, Settings(modulus), **options)

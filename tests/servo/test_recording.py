@@ -7,13 +7,15 @@ import numpy as np
 import pytest
 from palpate_servo import STATES, Pointer, Servo
 
+from palpate.core.servo.settings import Settings
+
 MODULUS = 10_000.0
 ABOVE, PRESSED = (0.02, 0.03, 0.055), (0.02, 0.03, 0.047)
 
 
 @pytest.fixture
 def servo(cube):
-    with Servo(cube.native, young_modulus=MODULUS, ramp_seconds=0.05) as servo:
+    with Servo(cube.native, Settings(MODULUS), ramp_seconds=0.05) as servo:
         yield servo
 
 

@@ -15,6 +15,8 @@ from fault_injection.servo_host import ABOVE, DEEP, cube
 from fault_injection.virtual_press import VirtualPress
 from palpate_servo import STATES, Pointer, Servo
 
+from palpate.core.servo.settings import Settings
+
 DOCUMENT = Path(__file__).resolve().parents[2] / "docs" / "safety.md"
 SILENT = next(cause for cause in CAUSES if cause.outcome is Outcome.SILENT)
 HARMLESS = next(cause for cause in CAUSES if cause.outcome is Outcome.HARMLESS)
@@ -70,14 +72,14 @@ def test_a_broken_rule_is_printed(capsys):
 
 
 def test_a_body_replaced_while_it_is_touched_is_silent_named_and_ramps(eventually):
-    with Servo(cube(), young_modulus=1e4, ramp_seconds=0.1) as servo:
+    with Servo(cube(), Settings(1e4), ramp_seconds=0.1) as servo:
         servo.start(Pointer(ABOVE))
         eventually(lambda: servo.snapshot().state == "free", servo.snapshot)
         servo.set_target(DEEP)
         eventually(lambda: np.allclose(servo.snapshot().probe, DEEP), servo.snapshot)
         assert servo.snapshot().output_force.any()
         old = servo.snapshot()
-        servo.set_body(cube(0.049), 2e4)
+        servo.set_body(cube(0.049), Settings(2e4))
         shot = servo.snapshot()
         assert (old.body, shot.body) == (0, 1)
         assert (shot.state, shot.reason) == ("ramping", "body replaced")
@@ -96,12 +98,12 @@ def test_a_body_replaced_while_it_is_touched_is_silent_named_and_ramps(eventuall
         expected = 200.0 * (0.049 - DEEP[2])
         np.testing.assert_allclose(servo.snapshot().output_force, [0, 0, expected], atol=1e-9)
         with pytest.raises(ValueError, match="young_modulus"):
-            servo.set_body(cube(), float("nan"))
+            servo.set_body(cube(), Settings(float("nan")))
 
 
 def test_a_body_set_before_the_start_is_the_one_that_is_touched(eventually):
-    with Servo(cube(), young_modulus=1e4) as servo:
-        servo.set_body(cube(0.045), 3e4)
+    with Servo(cube(), Settings(1e4)) as servo:
+        servo.set_body(cube(0.045), Settings(3e4))
         assert (servo.snapshot().state, servo.snapshot().reason) == ("stopped", "not started")
         servo.start(Pointer(ABOVE))
         eventually(lambda: servo.snapshot().state == "free", servo.snapshot)

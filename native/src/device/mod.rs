@@ -38,6 +38,12 @@ impl Default for DeviceFrame {
 }
 
 impl DeviceFrame {
+    /// Whether another one maps alike.
+    pub fn maps_as(&self, other: &Self) -> bool {
+        let epoch = self.epoch;
+        *self == Self { epoch, ..*other }
+    }
+
     /// Position in the body of a device position.
     pub fn to_body(&self, p: DVec3) -> DVec3 {
         self.rotation * p * self.scale + self.translation

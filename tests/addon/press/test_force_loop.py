@@ -24,6 +24,8 @@ from soft_scene import (
     wait,
 )
 
+from palpate.core.servo.settings import Settings
+
 
 def said(session):
     return part("operators.device.servo_words").standing(session.snapshot)
@@ -86,7 +88,7 @@ def test_an_adapter_that_holds_bytes_back_is_explained_in_the_panel(sessions, st
 
 
 def test_the_coupling_is_the_default_of_the_rate_until_own_values_are_chosen(palpate):
-    scene, of = bpy.context.scene, part("operators.session.live_settings").Coupling.of
+    scene, of = bpy.context.scene, part("operators.session.live_settings").coupling_of
     scene.palpate.rate = 2000
     default = of(scene)
     assert default.passivity_control
@@ -317,7 +319,7 @@ def test_a_port_that_cannot_be_opened_has_one_remedy(palpate):
         [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]],
         np.tile(np.eye(3), (4, 1, 1)),
     )
-    servo = palpate_servo.Servo(body, young_modulus=1000.0)
+    servo = palpate_servo.Servo(body, Settings(1000.0))
     error = part("core.errors").PalpateError
     with (
         pytest.raises(error, match=r"^device: /no/such/port: cannot be opened \([^;]*\); [^;]*$"),

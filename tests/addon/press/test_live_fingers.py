@@ -101,7 +101,7 @@ def test_a_haply_presses_beside_the_pointer(sessions, states):
     with device_source.start_simulated(drawn, frame, "2diy-3.1") as device:
         chosen.second_port = device.port
         session = begin(sessions, states, thing)
-        assert session.loop.settings.coupling.stiffness < 800
+        assert session.loop.settings.servo.coupling.stiffness < 800
         session.post(states.SetDown(LEFT, 0))
         session.post(states.Move(LEFT_IN, 0))
         wait(session, lambda: session.snapshot.fingers[0].touching, 20.0)

@@ -19,6 +19,7 @@ from palpate.core.servo.recording import (
     read_recording,
     write_recording,
 )
+from palpate.core.servo.settings import Settings
 
 STATES = palpate_servo.STATES
 both = pytest.mark.parametrize("suffix", [".csv", ".npz", ".CSV"])
@@ -49,7 +50,7 @@ def cube_servo():
     nodes = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
     triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
     body = palpate_servo.Body(nodes, triangles, [np.eye(3)] * 4)
-    return palpate_servo.Servo(body, young_modulus=1.0)
+    return palpate_servo.Servo(body, Settings(1.0))
 
 
 @both

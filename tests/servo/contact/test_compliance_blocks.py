@@ -12,7 +12,8 @@ from palpate.core.bake.steps import BakeSettings, bake
 from palpate.core.body import body_file
 from palpate.core.errors import BodyFileError
 from palpate.core.mesh.tet_mesh import TetMesh
-from palpate.core.servo.session import native_body, native_compliance, servo_for
+from palpate.core.servo.session import native_body, native_compliance, servo_on
+from palpate.core.servo.settings import Settings
 from palpate.core.stiffness.pins import PinNodes
 
 MOUSE = Path(__file__).resolve().parents[2] / "meshes" / "mouse-1.7k.npz"
@@ -71,7 +72,7 @@ def test_snapshots_and_samples_tell_where_the_surface_is(body, eventually):
     low, high = body.mesh.nodes.min(axis=0), body.mesh.nodes.max(axis=0)
     above = np.array([*(0.5 * (low + high))[:2], high[2] + 0.01])
     pressed = above - [0, 0, 0.02]
-    with servo_for(body) as servo:
+    with servo_on(native_body(body), Settings(body.young_modulus)) as servo:
         servo.start(Pointer(above))
         eventually(lambda: servo.snapshot().tick > 0)
         assert servo.snapshot().surface_point is None

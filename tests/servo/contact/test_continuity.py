@@ -10,6 +10,7 @@ from palpate.core.bake.steps import BakeSettings, bake
 from palpate.core.contact.tool.tools import sphere
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.servo.session import native_body, native_tool
+from palpate.core.servo.settings import Settings
 from palpate.core.stiffness.pins import PinNodes
 
 YOUNG_MODULUS = 10_000.0
@@ -34,8 +35,8 @@ def fingertip(cube, native):
     return native_tool(cube, native, sphere(0.012))
 
 
-def fingers_at(native, start, **feel):
-    return SteppedFingers(native, start, young_modulus=YOUNG_MODULUS, **feel)
+def fingers_at(native, start, rate_hz=1000, **feel):
+    return SteppedFingers(native, start, Settings(YOUNG_MODULUS, **feel), rate_hz=rate_hz)
 
 
 def along(corners, step):

@@ -8,7 +8,8 @@ from palpate_servo import Pointer
 from palpate_servo.harness import Proxy
 
 from palpate.core.errors import PalpateError
-from palpate.core.servo.session import displacements_of, native_body, servo_for
+from palpate.core.servo.session import displacements_of, native_body, servo_on
+from palpate.core.servo.settings import Settings
 
 PRESSES = 10_000
 
@@ -59,7 +60,7 @@ def test_a_probe_pushed_in_feels_what_the_reference_says_there(body):
 def test_the_running_servo_publishes_what_the_reference_computes(body, mode):
     low, high = body.mesh.nodes.min(axis=0), body.mesh.nodes.max(axis=0)
     above = np.array([*(0.5 * (low + high))[:2], high[2] + 0.01])
-    with servo_for(body, mode=mode) as servo:
+    with servo_on(native_body(body), Settings(body.young_modulus, mode=mode)) as servo:
         servo.start(Pointer(above))
         servo.set_target(above - [0, 0, 0.02])
         snapshot = servo.snapshot()
@@ -85,9 +86,11 @@ def test_the_running_servo_publishes_what_the_reference_computes(body, mode):
     [
         ({"rate_hz": 10}, "servo: .*rate"),
         ({"max_force": -1.0}, "servo: .*force"),
-        ({"young_modulus": 0.0}, "Young's modulus"),
+        ({"young_modulus": 0.0}, "servo: .*young_modulus"),
     ],
 )
 def test_settings_out_of_range_are_refused(body, setting, told):
+    options = {"young_modulus": body.young_modulus} | setting
+    modulus = options.pop("young_modulus")
     with pytest.raises(PalpateError, match=told):
-        servo_for(body, **setting)
+        servo_on(native_body(body), Settings(modulus), **options)

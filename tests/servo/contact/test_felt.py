@@ -10,6 +10,7 @@ from palpate.core.contact.several_contacts import told_apart
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.mesh.tet_mesh import TetMesh
 from palpate.core.servo.session import native_body, servo_on
+from palpate.core.servo.settings import Settings
 from palpate.core.shape.force_at_depth.felt_coupling import STRONG, coupled, couplings, share_of
 from palpate.core.shape.force_at_depth.felt_force import contact_relation, corrected_touch
 from palpate.core.shape.force_at_depth.softening_table import SofteningTable
@@ -63,7 +64,7 @@ def test_native_forces_are_those_of_the_reference(baked, table, surface, mode):
 
 def pressed(surface, depths, **keywords):
     """Forces of a finger led down above TOP to depths (k,), and the fingers themselves."""
-    fingers = SteppedFingers(surface, [TOP + 0.01 * UP], young_modulus=1e4, **keywords)
+    fingers = SteppedFingers(surface, [TOP + 0.01 * UP], Settings(1e4, **keywords))
     down = np.linspace(0.001, -depths[0], 200)
     path = np.concatenate([down, -np.asarray(depths)])
     paths = TOP + path[:, None, None] * UP
@@ -110,9 +111,9 @@ def test_the_choice_changes_live_without_a_jump(surface):
     _, fingers = pressed(surface, [depth])
     still = np.tile(TOP - depth * UP, (2 * BLEND_TICKS, 1, 1))
     before = fingers.follow(still[:2])[0][-1, 0, 2]
-    fingers.set_felt("corrected")
+    fingers.set(Settings(1e4, felt="corrected"))
     forces = fingers.follow(still)[0][:, 0, 2]
-    fingers.set_felt("linear")
+    fingers.set(Settings(1e4))
     back = fingers.follow(still)[0][:, 0, 2]
     change = before - forces[-1]
     assert change > 0.2 * before
@@ -126,10 +127,7 @@ def test_round_a_closed_path_a_held_finger_does_no_work(surface):
     fingers = SteppedFingers(
         surface,
         [TOP + 0.01 * UP],
-        young_modulus=1e4,
-        static_friction=1e6,
-        dynamic_friction=1e6,
-        felt="corrected",
+        Settings(1e4, static_friction=1e6, dynamic_friction=1e6, felt="corrected"),
     )
     angle = np.linspace(0, 2 * np.pi, 4001)[:, None]
     circle = np.hstack([0.004 * np.sin(angle), 0.003 * np.cos(angle), 0.003 * np.sin(2 * angle)])
@@ -144,7 +142,7 @@ def test_round_a_closed_path_a_held_finger_does_no_work(surface):
 
 
 def two_fingers(surface, places, **keywords):
-    fingers = SteppedFingers(surface, np.asarray(places) + 0.01 * UP, young_modulus=1e4, **keywords)
+    fingers = SteppedFingers(surface, np.asarray(places) + 0.01 * UP, Settings(1e4, **keywords))
     down = np.linspace(0.01, 0.0005, 50)[:, None, None] * UP
     fingers.follow(np.asarray(places) + down)
     return fingers
@@ -226,7 +224,7 @@ def test_a_pinch_comes_and_goes_without_a_jump_and_is_the_references(arm):
     table.listen(surface.set_softenings)
     places = np.array([[0.0655, 0.0105, 0.02], [0.0655, 0.0105, 0.0]])
     outward = np.array([UP, -UP])
-    fingers = SteppedFingers(surface, places + 0.01 * outward, young_modulus=1e4, felt="corrected")
+    fingers = SteppedFingers(surface, places + 0.01 * outward, Settings(1e4, felt="corrected"))
     first = np.concatenate([np.linspace(0.01, -0.003, 1300), np.full(3200, -0.003)])
     # 5 mm/s: as the other one comes to touch, the correction may change by far more in a tick than
     # the way does. It comes from where the first one has bent the bar to.
@@ -254,18 +252,18 @@ def test_a_pinch_comes_and_goes_without_a_jump_and_is_the_references(arm):
 
 
 def test_the_running_servo_takes_the_choice_while_it_runs(baked, surface, eventually):
-    with servo_on(surface, young_modulus=1e4, felt="corrected") as servo:
+    with servo_on(surface, Settings(1e4, felt="corrected")) as servo:
         servo.start(Pointer(TOP + 0.002 * UP))
         servo.set_target(TOP - 0.006 * UP)
         eventually(lambda: servo.snapshot().felt_share == pytest.approx(1.0))
         eventually(lambda: servo.snapshot().probe[2] == pytest.approx(EDGE - 0.006))
         soft = servo.snapshot().contact_force[2]
-        servo.set_felt("linear")
+        servo.set(Settings(1e4))
         eventually(lambda: servo.snapshot().felt_share == 0.0)
         assert servo.snapshot().felt == "linear"
         assert servo.snapshot().contact_force[2] > 1.1 * soft
         with pytest.raises(ValueError, match='felt is "real"'):
-            servo.set_felt("real")
+            servo.set(Settings(1e4, felt="real"))
 
 
 def test_softenings_that_make_no_relation_are_refused(baked):

@@ -9,6 +9,7 @@ from palpate.core.contact import several_contacts
 from palpate.core.contact.tool.tools import sphere
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.servo.session import displacements_of, native_body, native_tool
+from palpate.core.servo.settings import Settings
 from palpate.core.stiffness.pins import PinNodes
 from palpate.simulated.hand.options import SimulatedOptions
 from palpate.simulated.simulated_process import SimulatedDevice
@@ -49,7 +50,7 @@ def rests_at(servo, depth):
 
 @pytest.fixture
 def pinched(whole, eventually):
-    with Servo(whole, young_modulus=MODULUS) as servo:
+    with Servo(whole, Settings(MODULUS)) as servo:
         assert servo.add(Pointer(RIGHT)) == 1
         servo.start(Pointer(LEFT))
         pinch(servo, 0.004)
@@ -92,7 +93,7 @@ def test_the_recording_tells_fingers_apart(pinched, eventually):
 
 
 def test_switching_off_silences_every_finger(pinched, eventually):
-    pinched.set_enabled(False)
+    pinched.set(Settings(MODULUS, enabled=False))
     eventually(lambda: all(f.state == "disabled" for f in pinched.snapshot().fingers))
     assert not any(finger.output_force.any() for finger in pinched.snapshot().fingers)
 
@@ -122,27 +123,27 @@ def test_native_contacts_are_those_of_core_also_on_their_cones():
 
 def test_another_body_must_be_a_whole_one(body, whole, pinched):
     with pytest.raises(ValueError, match="whole=True"):
-        pinched.set_body(native_body(body), MODULUS)
-    pinched.set_body(whole, MODULUS)
+        pinched.set_body(native_body(body), Settings(MODULUS))
+    pinched.set_body(whole, Settings(MODULUS))
 
 
 def test_fingers_are_refused_with_the_reason(body, whole, cube):
     assert isinstance(cube.native, Body)
     with pytest.raises(ValueError, match="whole=True"):
-        Servo(cube.native, young_modulus=MODULUS).add(Pointer(LEFT))
-    servo = Servo(whole, young_modulus=MODULUS)
+        Servo(cube.native, Settings(MODULUS)).add(Pointer(LEFT))
+    servo = Servo(whole, Settings(MODULUS))
     for number in range(1, MAX_FINGERS):
         assert servo.add(Pointer(RIGHT)) == number
     with pytest.raises(ValueError, match=f"at most {MAX_FINGERS} fingers"):
         servo.add(Pointer(RIGHT))
     with pytest.raises(OSError, match="cannot be opened"):
-        Servo(whole, young_modulus=MODULUS).add(LinkDevice("/dev/nobody"))
+        Servo(whole, Settings(MODULUS)).add(LinkDevice("/dev/nobody"))
     with pytest.raises(RuntimeError, match="finger 3 is none"):
-        Servo(whole, young_modulus=MODULUS).set_target(LEFT, finger=3)
+        Servo(whole, Settings(MODULUS)).set_target(LEFT, finger=3)
     with pytest.raises(ValueError, match="no rotation"):
-        servo.set_orientation(2 * np.eye(3))
+        servo.set(Settings(MODULUS, orientations=[2 * np.eye(3)]))
     with pytest.raises(ValueError, match="fingers 0 to"):
-        servo.set_orientation(np.eye(3), finger=MAX_FINGERS)
+        servo.set(Settings(MODULUS, orientations=[np.eye(3)] * (MAX_FINGERS + 1)))
     with servo:
         servo.start(Pointer(LEFT))
         assert servo.finger_count == MAX_FINGERS
@@ -153,17 +154,17 @@ def test_fingers_are_refused_with_the_reason(body, whole, cube):
 
 def test_modes_are_refused_by_name(whole):
     with pytest.raises(ValueError, match="paper"):
-        Servo(whole, young_modulus=MODULUS, mode="exact")
-    servo = Servo(whole, young_modulus=MODULUS)
-    servo.set_mode("paper")
+        Servo(whole, Settings(MODULUS, mode="exact"))
+    servo = Servo(whole, Settings(MODULUS))
+    servo.set(Settings(MODULUS, mode="paper"))
     with pytest.raises(ValueError, match="consistent"):
-        servo.set_mode("")
+        servo.set(Settings(MODULUS, mode=""))
 
 
 def test_a_tool_is_felt_and_shown_and_taken_off_again(body, whole, eventually):
     tool = native_tool(body, whole, sphere(0.008))
     above = np.array([0.025, 0.025, EDGE + 0.01])
-    with Servo(whole, young_modulus=MODULUS) as servo:
+    with Servo(whole, Settings(MODULUS)) as servo:
         servo.set_tool(tool)
         servo.start(Pointer(above))
         servo.set_target(above - [0, 0, 0.005])
@@ -185,7 +186,7 @@ def test_a_tool_is_felt_and_shown_and_taken_off_again(body, whole, eventually):
         servo.set_target([0.025, 0.025, EDGE - 0.002])
         eventually(lambda: servo.snapshot().triangle_index >= 0)
     with pytest.raises(ValueError, match="another body"):
-        Servo(native_body(body, whole=True), young_modulus=MODULUS).set_tool(tool)
+        Servo(native_body(body, whole=True), Settings(MODULUS)).set_tool(tool)
 
 
 def hand(way, side):
@@ -206,7 +207,7 @@ def test_two_devices_on_pseudo_terminals_press_one_body_and_feel_each_other(
     with (
         SimulatedDevice(left) as one,
         SimulatedDevice(right) as two,
-        Servo(whole, young_modulus=MODULUS) as servo,
+        Servo(whole, Settings(MODULUS)) as servo,
     ):
         assert servo.add(LinkDevice(two.port)) == 1
         servo.start(LinkDevice(one.port))

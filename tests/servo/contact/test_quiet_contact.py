@@ -6,6 +6,7 @@ from itertools import pairwise
 import pytest
 from palpate_servo import LinkDevice, Servo
 
+from palpate.core.servo.settings import Coupling, Settings
 from palpate.simulated.hand.options import SimulatedOptions
 from palpate.simulated.simulated_process import SimulatedDevice
 
@@ -36,10 +37,10 @@ def shaken(cube, eventually, coupling):
     )
     with (
         SimulatedDevice(late) as device,
-        Servo(cube.native, young_modulus=STIFF, ramp_seconds=0.05, max_speed=100.0) as servo,
+        Servo(cube.native, Settings(STIFF), ramp_seconds=0.05, max_speed=100.0) as servo,
     ):
         if coupling is not None:
-            servo.set_coupling(**coupling)
+            servo.set(Settings(STIFF, coupling=Coupling(**coupling)))
         servo.start(LinkDevice(device.port))
         eventually(lambda: servo.snapshot().state == "free")
         device.move_hand(PRESSED, 0.2)

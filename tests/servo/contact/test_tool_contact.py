@@ -15,6 +15,7 @@ from palpate.core.contact.tool.tool_surface import correction_for, surface_for
 from palpate.core.contact.tool.tools import Pose, convex, plate, rod, sphere
 from palpate.core.errors import PalpateError
 from palpate.core.servo.session import native_body, native_tool
+from palpate.core.servo.settings import Settings
 
 BOX = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * 0.008
 TOOLS = {
@@ -202,7 +203,7 @@ def test_two_fingers_that_squeeze_a_thin_strip_feel_what_the_reference_feels():
         sides = (depth - tool.radius, 0.012 + tool.radius - depth)
         return np.array([[0.029, y, 0.02] for y in sides])
 
-    fingers = SteppedFingers(native, places(-0.001), young_modulus=strip.young_modulus)
+    fingers = SteppedFingers(native, places(-0.001), Settings(strip.young_modulus))
     for finger in (0, 1):
         fingers.set_tool(native_tool(strip, native, tool), np.eye(3), finger)
     pressing = np.array([places(depth) for depth in np.linspace(-0.001, 0.002, 150)])
@@ -228,7 +229,7 @@ def test_a_surface_that_another_finger_has_bulged_is_met_where_it_has_gone():
     def places(depth, gap):
         return np.array([[0.029, y, 0.03] for y in (depth - tool.radius, 0.02 + gap)])
 
-    fingers = SteppedFingers(native, places(-0.001, 0.006), young_modulus=strip.young_modulus)
+    fingers = SteppedFingers(native, places(-0.001, 0.006), Settings(strip.young_modulus))
     for finger in (0, 1):
         fingers.set_tool(native_tool(strip, native, tool), np.eye(3), finger)
     fingers.follow(np.array([places(depth, 0.006) for depth in np.linspace(-0.001, 0.003, 150)]))

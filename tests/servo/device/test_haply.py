@@ -19,7 +19,14 @@ from palpate.core.bake.steps import BakeSettings, bake
 from palpate.core.body import body_file
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.servo.haply_models import DEFAULT_MODEL, haply_model
-from palpate.core.servo.session import HaplyDevice, device_coupling, haply_encoder_step, servo_for
+from palpate.core.servo.session import (
+    HaplyDevice,
+    device_coupling,
+    haply_encoder_step,
+    native_body,
+    servo_on,
+)
+from palpate.core.servo.settings import Coupling, Settings
 from palpate.core.stiffness.pins import PinNodes
 from palpate.simulated.board.haply_firmware import PWM_STEPS, TORQUE_AT_FULL_DUTY
 from palpate.simulated.hand.options import SimulatedOptions
@@ -57,8 +64,8 @@ def loop(cube):
     def start(plane="upright", **options):
         device = SimulatedDevice(SimulatedOptions(**options), haply=DEFAULT_MODEL)
         started.append(device)
-        servo = servo_for(cube)
-        servo.set_coupling(stiffness=math.inf, damping=0.0, passivity_control=False)
+        coupling = Coupling(math.inf, 0.0, passivity_control=False)
+        servo = servo_on(native_body(cube), Settings(cube.young_modulus, coupling=coupling))
         started.append(servo)
         servo.start(HaplyDevice(device.port, rotation=PLANES[plane], translation=TOP))
         eventually(lambda: servo.snapshot().state == "free", servo)
@@ -116,9 +123,8 @@ def test_coarse_encoders_soften_the_coupling_unless_another_was_chosen(cube):
     own = device_coupling()
     for chosen, stiffest in ((None, limit), (own, own["stiffness"])):
         device = SimulatedDevice(SimulatedOptions(coulomb=0.1), haply=DEFAULT_MODEL)
-        with device, servo_for(cube, young_modulus=1e6) as servo:
-            if chosen:
-                servo.set_coupling(**chosen)
+        settings = Settings(1e6, coupling=chosen and Coupling(**chosen))
+        with device, servo_on(native_body(cube), settings) as servo:
             servo.start(HaplyDevice(device.port, rotation=PLANES["upright"], translation=TOP))
             eventually(lambda: servo.snapshot().state == "free", servo)
             device.move_hand(SHALLOW, 0.3)
@@ -256,7 +262,7 @@ def test_a_line_that_loses_and_flips_bytes_gives_no_wild_force(loop):
 
 
 def test_what_makes_no_sense_is_refused_before_any_port_is_opened(cube):
-    servo = servo_for(cube)
+    servo = servo_on(native_body(cube), Settings(cube.young_modulus))
     for wrong, reason in (
         ({"model": "3diy"}, r"3diy.*2diy-3\.1"),
         ({"angles": (400.0, 0.0)}, "between -360 and 360"),

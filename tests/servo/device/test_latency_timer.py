@@ -4,6 +4,7 @@ import pytest
 from palpate_servo import LinkDevice, Servo
 
 from palpate.core.servo.latency_timer import explain
+from palpate.core.servo.settings import Settings
 from palpate.simulated.hand.options import SimulatedOptions
 from palpate.simulated.simulated_process import SimulatedDevice
 
@@ -15,7 +16,7 @@ def counted(cube, eventually):
     def run(states, **options):
         with (
             SimulatedDevice(SimulatedOptions(**options)) as device,
-            Servo(cube.native, young_modulus=1e4) as servo,
+            Servo(cube.native, Settings(1e4)) as servo,
         ):
             servo.start(LinkDevice(device.port))
             eventually(lambda: servo.counters()["link"]["states"] > states)

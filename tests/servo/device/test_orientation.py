@@ -3,6 +3,7 @@
 import json
 import math
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import palpate_servo
@@ -11,6 +12,7 @@ from fault_injection.servo_host import ABOVE, YOUNG_MODULUS, cube
 from palpate_servo import harness
 
 from palpate.core.servo import link
+from palpate.core.servo.settings import Settings
 from palpate.simulated.hand.options import SimulatedOptions
 from palpate.simulated.hand.quaternion import about
 from palpate.simulated.simulated_process import SimulatedDevice
@@ -29,7 +31,7 @@ def state(sequence):
 
 @pytest.fixture
 def servo():
-    servo = harness.SteppedServo(cube(), young_modulus=YOUNG_MODULUS)
+    servo = harness.SteppedServo(cube(), Settings(YOUNG_MODULUS))
     servo.tick()
     servo.tick(link.encode(HELLO))
     return servo
@@ -73,7 +75,12 @@ def test_what_is_none_by_the_vectors_is_refused_by_the_servo_too(servo, vector):
 
 
 def test_the_frame_turns_the_stylus_from_the_left(servo):
-    servo.set_device_frame(QUARTER, (0.1, 0.0, 0.0), 2.0)
+    servo.set(
+        Settings(
+            YOUNG_MODULUS,
+            frames=[SimpleNamespace(rotation=QUARTER, translation=(0.1, 0.0, 0.0), scale=2.0)],
+        )
+    )
     tilted = about((1.0, 0.0, 0.0), 0.5)
     servo.tick(link.encode(link.orientation(0, tilted)) + state(0))
     seen = servo.snapshot().orientation
@@ -89,7 +96,7 @@ def turning(eventually):
     def start(**options):
         device = SimulatedDevice(SimulatedOptions(rest=ABOVE, **options))
         started.append(device)
-        servo = palpate_servo.Servo(cube(), young_modulus=YOUNG_MODULUS)
+        servo = palpate_servo.Servo(cube(), Settings(YOUNG_MODULUS))
         started.append(servo)
         servo.start(palpate_servo.LinkDevice(device.port))
         eventually(lambda: servo.snapshot().state == "free")
@@ -131,8 +138,8 @@ def test_how_the_hand_holds_the_stylus_arrives_in_the_body(turning, eventually):
     device, servo = turning(turning=0.0)
     np.testing.assert_array_equal(servo.snapshot().orientation, np.eye(3))
     held, fixed = about((1.0, 2.0, -1.0), 1.2), rotation(about((0.0, 0.0, 1.0), 0.4))
-    servo.set_device_frame(QUARTER, (0.0, 0.0, 0.0), 1.0)
-    servo.set_orientation(fixed)
+    frame = SimpleNamespace(rotation=QUARTER, translation=(0.0, 0.0, 0.0), scale=1.0)
+    servo.set(Settings(YOUNG_MODULUS, frames=[frame], orientations=[fixed]))
     device.turn_hand(held, 0.3)
     expected = QUARTER @ rotation(held) @ fixed
     eventually(lambda: np.allclose(servo.snapshot().orientation, expected, atol=1e-4))

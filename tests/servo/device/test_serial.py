@@ -13,6 +13,8 @@ import numpy as np
 import pytest
 from palpate_servo import STATES, LinkDevice, Servo
 
+from palpate.core.servo.settings import Settings
+
 pytestmark = pytest.mark.skipif(not hasattr(os, "openpty"), reason="needs pseudo-terminals")
 
 ABOVE = (0.02, 0.03, 0.055)
@@ -138,7 +140,7 @@ def device(tmp_path):
 
 @pytest.fixture
 def servo(cube):
-    with Servo(cube.native, young_modulus=MODULUS, ramp_seconds=0.05) as servo:
+    with Servo(cube.native, Settings(MODULUS), ramp_seconds=0.05) as servo:
         yield servo
 
 
@@ -183,7 +185,7 @@ def test_stopping_while_pressing_leaves_zero_force_without_enable(device, servo,
 def test_the_devices_own_limit_clamps(cube, tmp_path, eventually):
     device = FakeDevice(tmp_path, max_force=0.05)
     try:
-        with Servo(cube.native, young_modulus=MODULUS) as servo:
+        with Servo(cube.native, Settings(MODULUS)) as servo:
             servo.start(LinkDevice(str(device.path)))
             press(device, servo, eventually)
             device.glide(ABOVE)
@@ -266,7 +268,7 @@ def test_a_device_with_a_fault_or_not_ready_gets_no_force(device, servo, eventua
 def test_another_protocol_is_a_fault(cube, tmp_path, eventually):
     device = FakeDevice(tmp_path, protocol=2)
     try:
-        with Servo(cube.native, young_modulus=MODULUS) as servo:
+        with Servo(cube.native, Settings(MODULUS)) as servo:
             servo.start(LinkDevice(str(device.path)))
             eventually(lambda: servo.snapshot().fault == "wrong protocol", servo.snapshot)
         assert device.forces == []

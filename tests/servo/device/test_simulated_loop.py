@@ -12,7 +12,8 @@ from palpate_servo import harness
 
 from palpate.core.bake.steps import BakeSettings, bake
 from palpate.core.mesh.paper_cube import paper_cube
-from palpate.core.servo.session import displacements_of, servo_for
+from palpate.core.servo.session import displacements_of, native_body, servo_on
+from palpate.core.servo.settings import Settings
 from palpate.core.stiffness.pins import PinNodes
 from palpate.simulated.hand.options import SimulatedOptions
 from palpate.simulated.simulated_process import SimulatedDevice
@@ -39,7 +40,7 @@ def loop(cube, eventually):
             SimulatedOptions(rest=ABOVE, hand_stiffness=HAND_STIFFNESS, **options)
         )
         started.append(device)
-        servo = servo_for(cube)
+        servo = servo_on(native_body(cube), Settings(cube.young_modulus))
         started.append(servo)
         servo.start(palpate_servo.LinkDevice(device.port))
         eventually(lambda: servo.snapshot().state == "free")
@@ -90,15 +91,15 @@ def undisturbed(device, servo, eventually):
     return eventually(at_rest)
 
 
-def test_the_felt_force_pushes_the_hand_back_until_both_agree(loop, eventually):
+def test_the_felt_force_pushes_the_hand_back_until_both_agree(loop, cube, eventually):
     device, servo = loop()
-    servo.set_enabled(False)
+    servo.set(Settings(cube.young_modulus, enabled=False))
     device.move_hand(DEEP, 0.3)
     alone = settled(device, eventually)
     assert alone["felt_force"] == [0.0, 0.0, 0.0]
     assert alone["position"] == pytest.approx(DEEP, abs=1e-5)
 
-    servo.set_enabled(True)
+    servo.set(Settings(cube.young_modulus))
     eventually(lambda: servo.snapshot().state == "touching")
     # Until the ramp is through, what is sent is less than the contact's force.
     eventually(
@@ -134,7 +135,7 @@ def test_softer_material_gives_way_while_the_servo_runs(loop, eventually):
     device, servo = loop()
     press(device, servo, eventually)
     firm = settled(device, eventually)
-    servo.set_young_modulus(2_000.0)
+    servo.set(Settings(2_000.0))
     eventually(lambda: device.report()["felt_force"][2] < 0.5 * firm["felt_force"][2])
     soft = settled(device, eventually)
     assert soft["position"][2] < firm["position"][2] - 2e-4

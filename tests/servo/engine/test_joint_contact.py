@@ -10,6 +10,7 @@ from palpate_servo.harness import SteppedFingers
 
 from palpate.core.contact.tool.tools import Pose, plate, rod, sphere
 from palpate.core.servo.session import native_body, native_tool
+from palpate.core.servo.settings import Settings
 
 TOP, MIDDLE = 0.05, [0.0262, 0.0243]
 TIP = sphere(0.012)
@@ -88,7 +89,7 @@ def test_through_a_thin_plate_two_tools_are_at_rest_within_ten_ticks(bent, squee
         sides = (bend - tool.radius, 0.006 + bend + tool.radius - squeeze)
         return np.array([[0.029, y, 0.03] for y in sides])
 
-    fingers = SteppedFingers(native, places(-0.001, -0.001), young_modulus=thin.young_modulus)
+    fingers = SteppedFingers(native, places(-0.001, -0.001), Settings(thin.young_modulus))
     for finger in (0, 1):
         fingers.set_tool(native_tool(thin, native, tool), np.eye(3), finger)
     ways = [places(bend, -0.001) for bend in np.linspace(-0.001, bent, 200)]

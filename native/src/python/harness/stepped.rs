@@ -12,9 +12,8 @@ use crate::device::link::LinkDevice;
 use crate::device::serial::port::{Opener, Wire};
 use crate::python::body::surface::Body;
 use crate::python::servo::counters::{fault_counters, link_counters};
-use crate::python::servo::settings::{contact_mode, coupling, device_frame, felt_choice, options};
+use crate::python::servo::settings::{Chosen, Given, options};
 use crate::python::servo::snapshot::Snapshot;
-use crate::python::vectors::{Rows, Triple, positive};
 use crate::servo::exchange::{Hand, exchange};
 use crate::servo::snapshot::Published;
 use crate::servo::{Servo, Settings};
@@ -94,34 +93,26 @@ impl SteppedServo {
     fn stepped(&self) -> MutexGuard<'_, Stepped> {
         self.stepped.lock().unwrap_or_else(PoisonError::into_inner)
     }
-
-    fn change(&self, edit: impl FnOnce(&mut Settings)) {
-        let mut stepped = self.stepped();
-        edit(&mut stepped.settings);
-        let settings = stepped.settings;
-        stepped.settings_in.write(settings);
-    }
 }
 
 #[pymethods]
 impl SteppedServo {
     #[new]
-    #[pyo3(signature = (body, *, young_modulus, rate_hz=1000, max_force=3.0, max_slew=1000.0,
-        ramp_seconds=0.25, max_speed=2.0, mode="consistent"))]
+    #[pyo3(signature = (body, settings, *, rate_hz=1000, max_force=3.0, max_slew=1000.0,
+        ramp_seconds=0.25, max_speed=2.0))]
     #[allow(clippy::too_many_arguments)] // Keywords in Python.
     fn new(
         body: &Body,
-        young_modulus: f64,
+        settings: Given,
         rate_hz: u32,
         max_force: f64,
         max_slew: f64,
         ramp_seconds: f64,
         max_speed: f64,
-        mode: &str,
     ) -> PyResult<Self> {
         let options = options(rate_hz, max_force, max_slew, ramp_seconds, max_speed)?;
-        let mut settings = Settings::new(positive("young_modulus", young_modulus)?);
-        settings.feel.mode = contact_mode(mode)?;
+        let plain = Settings::new(1.0);
+        let settings = Chosen::checked(&settings)?.on(&plain.fingers, &plain);
         let wire = InMemory::default();
         let (settings_in, settings_out) = triple_buffer(&settings);
         let (snapshots_in, snapshots) = triple_buffer(&Published::before_the_start(1));
@@ -177,43 +168,19 @@ impl SteppedServo {
         self.wire.line().is_unplugged = false;
     }
 
-    fn set_enabled(&self, enabled: bool) {
-        self.change(|s| s.enabled = enabled);
-    }
-
-    fn set_young_modulus(&self, young_modulus: f64) {
-        self.change(|s| s.young_modulus = young_modulus);
-    }
-
-    fn set_felt(&self, felt: &str) -> PyResult<()> {
-        let felt = felt_choice(felt)?;
-        self.change(|s| s.felt = felt);
+    fn set(&self, settings: Given) -> PyResult<()> {
+        let chosen = Chosen::with_any_modulus(&settings)?;
+        let mut stepped = self.stepped();
+        let brought = Settings::new(1.0).fingers;
+        stepped.settings = chosen.on(&brought, &stepped.settings);
+        let settings = stepped.settings;
+        stepped.settings_in.write(settings);
         Ok(())
     }
 
-    fn set_mode(&self, mode: &str) -> PyResult<()> {
-        let mode = contact_mode(mode)?;
-        self.change(|s| s.feel.mode = mode);
-        Ok(())
-    }
-
-    #[pyo3(signature = (*, stiffness, damping, passivity_control))]
-    fn set_coupling(&self, stiffness: f64, damping: f64, passivity_control: bool) -> PyResult<()> {
-        let coupling = coupling(stiffness, damping, passivity_control)?;
-        self.change(|s| s.fingers[0].coupling = coupling);
-        Ok(())
-    }
-
-    fn set_device_frame(&self, rotation: Rows, translation: Triple, scale: f64) -> PyResult<()> {
-        let frame = device_frame(rotation, translation, scale)?;
-        self.change(|s| s.fingers[0].move_device(frame));
-        Ok(())
-    }
-
-    fn set_body(&self, body: &Body, young_modulus: f64) -> PyResult<()> {
-        let young_modulus = positive("young_modulus", young_modulus)?;
+    fn set_body(&self, body: &Body, settings: Given) -> PyResult<()> {
         self.stepped().hand.give(body.inner.clone());
-        self.change(|s| s.young_modulus = young_modulus);
+        self.set(settings)?;
         self.stepped().hand.settle();
         Ok(())
     }

@@ -12,12 +12,11 @@ use triple_buffer::{Input, Output, triple_buffer};
 use crate::contact::cones::MAX_FINGERS;
 use crate::control::safety::Limits;
 use crate::device::{Device, DeviceFrame, LinkReport, Probe, Reading};
-use crate::proxy::Feel;
 use crate::python::body::surface::Body;
-use crate::python::servo::settings::{contact_mode, feel, felt_choice};
+use crate::python::servo::settings::{Chosen, Given};
 use crate::python::servo::snapshot::Snapshot;
 use crate::python::tool::{ToolContact, tip};
-use crate::python::vectors::{Rows, Triple, finite, positive, rotation as turn};
+use crate::python::vectors::{Rows, Triple, finite, rotation as turn};
 use crate::servo::pressed_patch::PressedPatch;
 use crate::servo::snapshot::Published;
 use crate::servo::tip::{Tip, TipHand, exchange_tips};
@@ -98,19 +97,12 @@ impl SteppedFingers {
 #[pymethods]
 impl SteppedFingers {
     #[new]
-    #[pyo3(signature = (body, positions, *, young_modulus, rate_hz=1000, shading=false,
-        static_friction=0.0, dynamic_friction=0.0, mode="consistent", felt="linear"))]
-    #[allow(clippy::too_many_arguments)] // Keywords in Python.
+    #[pyo3(signature = (body, positions, settings, *, rate_hz=1000))]
     fn new(
         body: &Body,
         positions: PyArrayLike2<'_, f64, AllowTypeChange>,
-        young_modulus: f64,
+        settings: Given,
         rate_hz: u32,
-        shading: bool,
-        static_friction: f64,
-        dynamic_friction: f64,
-        mode: &str,
-        felt: &str,
     ) -> PyResult<Self> {
         let places = places_of(&positions)?;
         if places.is_empty() || places.len() > MAX_FINGERS {
@@ -133,12 +125,8 @@ impl SteppedFingers {
             },
             max_speed: NO_LIMIT,
         };
-        let mut settings = Settings::new(positive("young_modulus", young_modulus)?);
-        settings.feel = Feel {
-            mode: contact_mode(mode)?,
-            ..feel(shading, static_friction, dynamic_friction)?
-        };
-        settings.felt = felt_choice(felt)?;
+        let plain = Settings::new(1.0);
+        let settings = Chosen::checked(&settings)?.on(&plain.fingers, &plain);
         let led: Vec<Led> = (places.into_iter())
             .map(|position| {
                 Led(Arc::new(Mutex::new(Place {
@@ -249,18 +237,15 @@ impl SteppedFingers {
         Ok(())
     }
 
-    fn set_felt(&self, felt: &str) -> PyResult<()> {
-        let felt = felt_choice(felt)?;
+    fn set(&self, settings: Given) -> PyResult<()> {
+        let chosen = Chosen::checked(&settings)?;
         let stepped = &mut *self.stepped();
-        stepped.settings.felt = felt;
-        stepped.settings_in.write(stepped.settings);
-        Ok(())
-    }
-
-    fn set_young_modulus(&self, young_modulus: f64) -> PyResult<()> {
-        let young_modulus = positive("young_modulus", young_modulus)?;
-        let stepped = &mut *self.stepped();
-        stepped.settings.young_modulus = young_modulus;
+        let before = stepped.settings;
+        stepped.settings = chosen.on(&before.fingers, &before);
+        // How tools are turned is told with them.
+        for (finger, before) in stepped.settings.fingers.iter_mut().zip(&before.fingers) {
+            finger.orientation = before.orientation;
+        }
         stepped.settings_in.write(stepped.settings);
         Ok(())
     }

@@ -5,15 +5,17 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::body::softening::Felt;
+use crate::contact::cones::MAX_FINGERS;
 use crate::contact::touch::ContactMode;
 use crate::control::coupling::Coupling;
 use crate::control::safety::Limits;
 use crate::device::DeviceFrame;
 use crate::proxy::Feel;
 use crate::python::vectors::{
-    Rows, Triple, check_rate, check_seconds, finite, is_orthonormal, matrix, positive,
+    Rows, Triple, check_rate, check_seconds, finite, is_orthonormal, matrix, positive, rotation,
 };
-use crate::servo::Options;
+use crate::servo::finger::FingerSettings;
+use crate::servo::{Options, Settings};
 
 /// What stays as it is while a servo runs.
 pub fn options(
@@ -54,6 +56,116 @@ pub fn felt_choice(name: &str) -> PyResult<Felt> {
             "felt is {name:?}; it must be \"linear\" or \"corrected\""
         ))
     })
+}
+
+/// Settings as Python gives them: any object with these attributes, `core/servo/settings.py` has one.
+#[derive(FromPyObject)]
+pub struct Given {
+    young_modulus: f64,
+    enabled: bool,
+    shading: bool,
+    static_friction: f64,
+    dynamic_friction: f64,
+    mode: String,
+    felt: String,
+    coupling: Option<GivenCoupling>,
+    frames: Vec<Option<GivenFrame>>,
+    orientations: Vec<Rows>,
+}
+
+#[derive(FromPyObject)]
+struct GivenCoupling {
+    stiffness: f64,
+    damping: f64,
+    passivity_control: bool,
+}
+
+#[derive(FromPyObject)]
+struct GivenFrame {
+    rotation: Rows,
+    translation: Triple,
+    scale: f64,
+}
+
+/// Settings that can be; what a device brings with it stands where nothing was given.
+#[derive(Debug, Clone, Copy)]
+pub struct Chosen {
+    settings: Settings,
+    coupling: Option<Coupling>,
+    frames: [Option<DeviceFrame>; MAX_FINGERS],
+}
+
+impl Chosen {
+    /// Checks settings.
+    ///
+    /// # Errors
+    /// ValueError for one that cannot be.
+    pub fn checked(given: &Given) -> PyResult<Self> {
+        let modulus = positive("young_modulus", given.young_modulus)?;
+        Self::with_modulus(given, modulus)
+    }
+
+    /// The same with a modulus that may be none, to see what comes of it.
+    ///
+    /// # Errors
+    /// As [`Self::checked`], but for the modulus.
+    pub fn with_any_modulus(given: &Given) -> PyResult<Self> {
+        Self::with_modulus(given, given.young_modulus)
+    }
+
+    fn with_modulus(given: &Given, young_modulus: f64) -> PyResult<Self> {
+        let most = given.frames.len().max(given.orientations.len());
+        if most > MAX_FINGERS {
+            return Err(PyValueError::new_err(format!(
+                "settings are of {most} fingers; a servo has fingers 0 to {}",
+                MAX_FINGERS - 1
+            )));
+        }
+        let mut settings = Settings {
+            enabled: given.enabled,
+            feel: Feel {
+                mode: contact_mode(&given.mode)?,
+                ..feel(given.shading, given.static_friction, given.dynamic_friction)?
+            },
+            felt: felt_choice(&given.felt)?,
+            ..Settings::new(young_modulus)
+        };
+        let mut frames = [None; MAX_FINGERS];
+        for (frame, given) in frames.iter_mut().zip(&given.frames) {
+            *frame = (given.as_ref())
+                .map(|f| device_frame(f.rotation, f.translation, f.scale))
+                .transpose()?;
+        }
+        for (finger, &given) in settings.fingers.iter_mut().zip(&given.orientations) {
+            finger.orientation = rotation("orientation", given)?;
+        }
+        Ok(Self {
+            settings,
+            coupling: (given.coupling.as_ref())
+                .map(|c| coupling(c.stiffness, c.damping, c.passivity_control))
+                .transpose()?,
+            frames,
+        })
+    }
+
+    /// These settings for devices that bring couplings and frames, after others: a frame that is
+    /// another one than before sets the probe down anew.
+    pub fn on(&self, brought: &[FingerSettings; MAX_FINGERS], before: &Settings) -> Settings {
+        let mut settings = self.settings;
+        for (k, finger) in settings.fingers.iter_mut().enumerate() {
+            let orientation = finger.orientation;
+            *finger = FingerSettings {
+                frame: before.fingers[k].frame,
+                coupling: self.coupling.unwrap_or(brought[k].coupling),
+                orientation,
+            };
+            let frame = self.frames[k].unwrap_or(brought[k].frame);
+            if !frame.maps_as(&finger.frame) {
+                finger.move_device(frame);
+            }
+        }
+        settings
+    }
 }
 
 /// The surface, felt in the default mode.

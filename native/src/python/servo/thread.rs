@@ -10,19 +10,16 @@ use crate::body::surface;
 use crate::clock::timing::Timing;
 use crate::contact::cones::MAX_FINGERS;
 use crate::control::coupling::Coupling;
-use crate::device::Device;
-use crate::proxy::Feel;
+use crate::device::{Device, DeviceFrame};
 use crate::python::body::surface::Body;
 use crate::python::device::setups::{DeviceSetup, Lead};
 use crate::python::servo::counters::{finger_counters, stage_counters, timing_counters};
 use crate::python::servo::samples::{structured, structured_pieces};
-use crate::python::servo::settings::{
-    contact_mode, coupling, device_frame, feel, felt_choice, options,
-};
+use crate::python::servo::settings::{Chosen, Given, options};
 use crate::python::servo::snapshot::Snapshot;
 use crate::python::servo::started::remember;
 use crate::python::tool::{MadeTool, ToolContact, tip};
-use crate::python::vectors::{Rows, Triple, check_seconds, finite, positive, rotation as turn};
+use crate::python::vectors::{Triple, check_seconds, finite, positive};
 use crate::servo::finger::FingerSettings;
 use crate::servo::snapshot::{Published, Sample};
 use crate::servo::thread::Running;
@@ -44,9 +41,7 @@ pub struct Servo {
     record_samples: usize,
     /// What the next start shall record.
     armed_ticks: Mutex<usize>,
-    settings: Mutex<Settings>,
-    /// The user's, if one was set; else that of the device.
-    own_coupling: Mutex<Option<Coupling>>,
+    settings: Mutex<Standing>,
     running: Mutex<Option<Arc<Running>>>,
     /// Fingers 1, 2, ... of the next start.
     others: Mutex<Vec<Box<dyn Device>>>,
@@ -54,6 +49,41 @@ pub struct Servo {
     tools: Mutex<[Option<MadeTool>; MAX_FINGERS]>,
     /// Of pointers, by finger.
     targets: Mutex<[Option<Lead>; MAX_FINGERS]>,
+}
+
+/// What holds now, of what was chosen and what the devices brought.
+#[derive(Clone, Copy)]
+struct Standing {
+    chosen: Chosen,
+    brought: [FingerSettings; MAX_FINGERS],
+    settings: Settings,
+}
+
+impl Standing {
+    fn new(chosen: Chosen, brought: [FingerSettings; MAX_FINGERS]) -> Self {
+        let before = Settings {
+            fingers: brought,
+            ..Settings::new(1.0)
+        };
+        let settings = chosen.on(&brought, &before);
+        Self {
+            chosen,
+            brought,
+            settings,
+        }
+    }
+
+    fn choose(&mut self, chosen: Chosen) -> Settings {
+        self.chosen = chosen;
+        self.settings = chosen.on(&self.brought, &self.settings);
+        self.settings
+    }
+
+    fn bring(&mut self, finger: usize, frame: DeviceFrame, coupling: Coupling) {
+        let brought = &mut self.brought[finger];
+        (brought.frame, brought.coupling) = (frame, coupling);
+        self.settings = self.chosen.on(&self.brought, &self.settings);
+    }
 }
 
 impl Servo {
@@ -66,14 +96,6 @@ impl Servo {
         self.current().filter(|r| r.paced().is_running())
     }
 
-    fn change(&self, edit: impl FnOnce(&mut Settings)) {
-        let mut settings = locked(&self.settings);
-        edit(&mut settings);
-        if let Some(running) = self.current() {
-            running.set(*settings);
-        }
-    }
-
     /// The device of a finger, open, with what it brings: its frame and coupling, or its targets.
     fn opened(
         &self,
@@ -83,10 +105,8 @@ impl Servo {
     ) -> PyResult<Box<dyn Device>> {
         let opened = device.open(py, self.glide_speed)?;
         if let Some((frame, encoder_step)) = opened.mount {
-            let settings = &mut locked(&self.settings).fingers[finger];
-            settings.frame = frame;
-            settings.coupling = locked(&self.own_coupling)
-                .unwrap_or_else(|| Coupling::for_encoders(self.options.rate_hz, encoder_step));
+            let coupling = Coupling::for_encoders(self.options.rate_hz, encoder_step);
+            locked(&self.settings).bring(finger, frame, coupling);
         }
         locked(&self.targets)[finger] = opened.lead;
         Ok(opened.device)
@@ -116,7 +136,7 @@ impl Servo {
     fn run(&self, py: Python<'_>, first: Box<dyn Device>) -> PyResult<()> {
         let mut devices = vec![first];
         devices.append(&mut locked(&self.others));
-        let settings = *locked(&self.settings);
+        let settings = locked(&self.settings).settings;
         let armed_ticks = *locked(&self.armed_ticks);
         let tools = locked(&self.tools).clone();
         let running = py.detach(|| {
@@ -141,13 +161,12 @@ impl Servo {
 #[pymethods]
 impl Servo {
     #[new]
-    #[pyo3(signature = (body, *, young_modulus, rate_hz=1000, max_force=3.0, max_slew=1000.0,
-        ramp_seconds=0.25, max_speed=2.0, glide_speed=0.5, record_seconds=10.0, shading=false,
-        static_friction=0.0, dynamic_friction=0.0, mode="consistent", felt="linear"))]
+    #[pyo3(signature = (body, settings, *, rate_hz=1000, max_force=3.0, max_slew=1000.0,
+        ramp_seconds=0.25, max_speed=2.0, glide_speed=0.5, record_seconds=10.0))]
     #[allow(clippy::too_many_arguments)] // Keywords in Python.
     fn new(
         body: &Body,
-        young_modulus: f64,
+        settings: Given,
         rate_hz: u32,
         max_force: f64,
         max_slew: f64,
@@ -155,37 +174,36 @@ impl Servo {
         max_speed: f64,
         glide_speed: f64,
         record_seconds: f64,
-        shading: bool,
-        static_friction: f64,
-        dynamic_friction: f64,
-        mode: &str,
-        felt: &str,
     ) -> PyResult<Self> {
         check_seconds("record_seconds", record_seconds)?;
+        let options = options(rate_hz, max_force, max_slew, ramp_seconds, max_speed)?;
+        let brought = FingerSettings {
+            coupling: Coupling::for_devices(rate_hz),
+            ..FingerSettings::default()
+        };
+        let standing = Standing::new(Chosen::checked(&settings)?, [brought; MAX_FINGERS]);
         Ok(Self {
             body: Mutex::new(body.inner.clone()),
-            options: options(rate_hz, max_force, max_slew, ramp_seconds, max_speed)?,
+            options,
             glide_speed: positive("glide_speed", glide_speed)?,
             record_samples: (record_seconds * f64::from(rate_hz)).ceil() as usize,
             armed_ticks: Mutex::new(0),
-            settings: Mutex::new(Settings {
-                feel: Feel {
-                    mode: contact_mode(mode)?,
-                    ..feel(shading, static_friction, dynamic_friction)?
-                },
-                felt: felt_choice(felt)?,
-                fingers: [FingerSettings {
-                    coupling: Coupling::for_devices(rate_hz),
-                    ..FingerSettings::default()
-                }; MAX_FINGERS],
-                ..Settings::new(positive("young_modulus", young_modulus)?)
-            }),
-            own_coupling: Mutex::new(None),
+            settings: Mutex::new(standing),
             running: Mutex::new(None),
             others: Mutex::default(),
             tools: Mutex::default(),
             targets: Mutex::default(),
         })
+    }
+
+    fn set(&self, settings: Given) -> PyResult<()> {
+        let chosen = Chosen::checked(&settings)?;
+        let mut standing = locked(&self.settings);
+        let settings = standing.choose(chosen);
+        if let Some(running) = self.current() {
+            running.set(settings);
+        }
+        Ok(())
     }
 
     fn start(&self, py: Python<'_>, device: DeviceSetup<'_>) -> PyResult<()> {
@@ -232,14 +250,6 @@ impl Servo {
         }
     }
 
-    #[pyo3(signature = (rotation, finger=0))]
-    fn set_orientation(&self, rotation: Rows, finger: usize) -> PyResult<()> {
-        check_finger(finger)?;
-        let orientation = turn("rotation", rotation)?;
-        self.change(|s| s.fingers[finger].orientation = orientation);
-        Ok(())
-    }
-
     #[pyo3(signature = (tool, finger=0))]
     fn set_tool(
         &self,
@@ -265,14 +275,8 @@ impl Servo {
         })
     }
 
-    fn set_young_modulus(&self, young_modulus: f64) -> PyResult<()> {
-        let young_modulus = positive("young_modulus", young_modulus)?;
-        self.change(|s| s.young_modulus = young_modulus);
-        Ok(())
-    }
-
-    fn set_body(&self, py: Python<'_>, body: &Body, young_modulus: f64) -> PyResult<()> {
-        let young_modulus = positive("young_modulus", young_modulus)?;
+    fn set_body(&self, py: Python<'_>, body: &Body, settings: Given) -> PyResult<()> {
+        let chosen = Chosen::checked(&settings)?;
         let body = body.inner.clone();
         let is_enough = self.finger_count() == 1 || body.is_whole();
         if !is_enough {
@@ -280,70 +284,16 @@ impl Servo {
         }
         // Whoever waits for a lock in here may hold the interpreter's.
         py.detach(|| {
-            let mut settings = locked(&self.settings);
-            settings.young_modulus = young_modulus;
+            let mut standing = locked(&self.settings);
+            let settings = standing.choose(chosen);
             (*locked(&self.body)).clone_from(&body);
             // Tools are made for one body.
             *locked(&self.tools) = Default::default();
             if let Some(running) = self.current() {
-                running.set_body(body, *settings);
+                running.set_body(body, settings);
             }
         });
         Ok(())
-    }
-
-    #[pyo3(signature = (rotation, translation, scale, finger=0))]
-    fn set_device_frame(
-        &self,
-        rotation: Rows,
-        translation: Triple,
-        scale: f64,
-        finger: usize,
-    ) -> PyResult<()> {
-        check_finger(finger)?;
-        let frame = device_frame(rotation, translation, scale)?;
-        self.change(|s| s.fingers[finger].move_device(frame));
-        Ok(())
-    }
-
-    #[pyo3(signature = (*, shading, static_friction, dynamic_friction))]
-    fn set_feel(&self, shading: bool, static_friction: f64, dynamic_friction: f64) -> PyResult<()> {
-        let feel = feel(shading, static_friction, dynamic_friction)?;
-        self.change(|s| {
-            s.feel = Feel {
-                mode: s.feel.mode,
-                ..feel
-            }
-        });
-        Ok(())
-    }
-
-    fn set_mode(&self, mode: &str) -> PyResult<()> {
-        let mode = contact_mode(mode)?;
-        self.change(|s| s.feel.mode = mode);
-        Ok(())
-    }
-
-    fn set_felt(&self, felt: &str) -> PyResult<()> {
-        let felt = felt_choice(felt)?;
-        self.change(|s| s.felt = felt);
-        Ok(())
-    }
-
-    #[pyo3(signature = (*, stiffness, damping, passivity_control))]
-    fn set_coupling(&self, stiffness: f64, damping: f64, passivity_control: bool) -> PyResult<()> {
-        let coupling = coupling(stiffness, damping, passivity_control)?;
-        *locked(&self.own_coupling) = Some(coupling);
-        self.change(|s| {
-            for finger in &mut s.fingers {
-                finger.coupling = coupling;
-            }
-        });
-        Ok(())
-    }
-
-    fn set_enabled(&self, enabled: bool) {
-        self.change(|s| s.enabled = enabled);
     }
 
     fn snapshot(&self, py: Python<'_>) -> PyResult<Py<Snapshot>> {
