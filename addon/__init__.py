@@ -1,4 +1,4 @@
-"""What Blender shows and keeps, and the one place where all of it registers."""
+"""Blender's interface and properties, and their registration."""
 
 import bpy
 
@@ -61,8 +61,8 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Take all of it out again; what is going on ends first."""
-    # Handlers first: they end a bake or press while everything is still there.
+    """Remove all of Palpate from Blender; running work ends first."""
+    # Handlers first: they end a bake or press while everything is still registered.
     for module in reversed(modules):
         if hasattr(module, "unregister"):
             module.unregister()

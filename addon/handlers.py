@@ -1,4 +1,4 @@
-"""What Blender is about to do, and who must give way: one table of application handlers."""
+"""Application handlers: work that ends or updates before Blender saves, loads or undoes."""
 
 import atexit
 from pathlib import Path
@@ -15,7 +15,7 @@ from ..operators.session import press_session
 from ..operators.session.press_events import SaveBegins, SaveEnds
 from . import known_status
 
-# Where body files were before a save that may change the .blend's folder.
+# Body files before a save that may change the .blend's folder.
 _found_before_save: dict[str, Path] = {}
 
 
@@ -76,7 +76,7 @@ def _after_save(path: str = "", *_: object) -> None:
                 is_open_file=written == Path(bpy.data.filepath),
             )
     except PalpateError as problem:
-        # A handler has no report; the console and the panel's state line are what is left.
+        # A handler has no report, only the console and the panel's state line.
         print(f"palpate: {problem}")  # noqa: T201
     finally:
         _after_failed_save()
@@ -116,14 +116,14 @@ HANDLERS = {
 
 
 def register() -> None:
-    """Listen to what Blender is about to do."""
+    """Add the handlers."""
     for name, handler in HANDLERS.items():
         getattr(bpy.app.handlers, name).append(handler)
     atexit.register(_before_exit)
 
 
 def unregister() -> None:
-    """End everything and stop listening."""
+    """End everything and remove the handlers."""
     end_everything("Palpate was switched off; pressing has ended")
     kept_body.forget()
     atexit.unregister(_before_exit)

@@ -1,7 +1,7 @@
-"""How meshes fit their bodies, and what a bake would cost, as last looked up.
+"""Cache of body statuses and predicted costs for panels.
 
 A panel is drawn many times a second, and reading a large mesh takes a second: it is read again only
-after something changed that a handler tells of, and where that takes long only once it rests.
+after a handler has reported a change, and a slow one only once it rests.
 """
 
 from __future__ import annotations
@@ -26,13 +26,13 @@ from ..operators.scene import drawn_surface
 from ..operators.scene.drawn_surface import DrawnSurface
 from ..operators.scene.viewport import redraw_views
 
-# The panel appears first, then the machine's speed is measured, a tenth of a second.
+# The machine's speed is measured, a tenth of a second, after the panel has appeared.
 SECONDS_TO_MEASURING = 0.2
 SECONDS_OF_REST = 0.6
-# A mesh that was read in less is read again while it changes: dragging stays smooth then.
+# Seconds; a mesh read in less is read again while it changes, and dragging stays smooth.
 QUICK_SECONDS = 0.05
 PIN_SETTINGS = ("pin_mode", "pin_group", "pin_fraction")
-# What a status depends on, besides what the mesh has in it.
+# Properties that a status depends on, besides the mesh.
 STATUS_SETTINGS = (
     *PIN_SETTINGS,
     "body_key",
@@ -48,9 +48,9 @@ Values = tuple[object, ...]
 
 @dataclass(eq=False)
 class _KnownMesh:
-    """A mesh as it was read, and what was concluded from it, by the settings of the time.
+    """Mesh as read, and the statuses derived from it, by settings.
 
-    ``seconds`` is the longest that one of these steps took.
+    ``seconds`` is the time of the slowest step.
     """
 
     drawn: DrawnSurface
@@ -60,19 +60,19 @@ class _KnownMesh:
 
     @contextmanager
     def timed(self) -> Iterator[None]:
-        """Watch how long a step takes."""
+        """Measure the time of a step."""
         begun = time.perf_counter()
         yield
         self.seconds = max(self.seconds, time.perf_counter() - begun)
 
 
 _known: dict[Values, _KnownMesh] = {}
-# Kept while meshes change, and measured again once they rest: it takes a second for large ones.
+# Kept while meshes change and measured again once they rest: a second for large ones.
 _sizes: dict[Values, ShapeSize] = {}
 
 
 def body_status(thing: bpy.types.Object, scene: bpy.types.Scene) -> BodyStatus:
-    """As ``body_status``, but the mesh is read only after changes."""
+    """``body_status`` with the mesh read only after changes."""
     try:
         known = _mesh(thing, scene)
     except PalpateError as problem:
@@ -87,7 +87,7 @@ def body_status(thing: bpy.types.Object, scene: bpy.types.Scene) -> BodyStatus:
 
 
 def prediction(thing: bpy.types.Object, scene: bpy.types.Scene) -> Prediction | None:
-    """What a bake would cost with the settings of now; None until this machine's speed is known.
+    """Predicted cost of a bake with the present settings; None until the machine's speed is known.
 
     Raises
     ------
@@ -112,7 +112,7 @@ def prediction(thing: bpy.types.Object, scene: bpy.types.Scene) -> Prediction | 
 def forget() -> None:
     """Look everything up again: a mesh, a transform or a file changed."""
     if bpy.app.background:
-        # Timers do not fire there, and nobody drags anything.
+        # Timers do not fire there, and nothing is dragged.
         _known.clear()
         _sizes.clear()
         return
@@ -131,14 +131,14 @@ def _forget_what_is_slow() -> None:
 
 
 def _which(thing: bpy.types.Object, scene: bpy.types.Scene) -> Values:
-    # No handler tells of a changed unit scale.
+    # No handler reports a changed unit scale.
     return (thing.session_uid, drawn_surface.metres_per_unit(scene))
 
 
 def _mesh(thing: bpy.types.Object, scene: bpy.types.Scene) -> _KnownMesh:
     which = _which(thing, scene)
     known = _known.get(which)
-    # Weights of other vertices than were read would not fit them.
+    # Weights must belong to the vertices that were read.
     if known is None or len(known.drawn.local) != len(thing.data.vertices):
         begun = time.perf_counter()
         drawn = drawn_surface.read(thing, scene)

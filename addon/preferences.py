@@ -1,4 +1,4 @@
-"""What a user chooses once for all files."""
+"""Preferences of the extension, for all files."""
 
 import bpy
 

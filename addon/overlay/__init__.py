@@ -1,1 +1,1 @@
-"""What is drawn into the view."""
+"""Overlay drawn into the 3D view."""

@@ -20,7 +20,7 @@ LARGE, BADGE, NORMAL, SMALL = 26, 20, 14, 12
 LINE = 1.5
 GREY, WARNING = (0.8, 0.8, 0.8, 1.0), (1.0, 0.72, 0.2, 1.0)
 
-# Grey: no force. Green: it may come. Orange: it is there. Yellow: it comes back. Red: a fault.
+# Grey: no force. Green: it may come. Orange: present. Yellow: ramping up. Red: a fault.
 FILLS = {
     Signal.OFF: (0.62, 0.62, 0.62, 1.0),
     Signal.WAITING: (0.62, 0.62, 0.62, 1.0),
@@ -30,7 +30,7 @@ FILLS = {
     Signal.FAULT: (0.95, 0.3, 0.3, 1.0),
 }
 
-# A word with what belongs to it (keys have two spaces behind them), and the space where it may end.
+# A word with its punctuation (keys are followed by two spaces), and the space where a line may end.
 BREAKS = re.compile(r"(\S+(?:  \S+)*)( *)")
 
 STATES = {
@@ -57,7 +57,7 @@ KEYS = {
 
 @dataclass(frozen=True)
 class Line:
-    """A line of the HUD; ``fill`` is the colour behind it, for what must be seen at a glance."""
+    """Line of the HUD; ``fill`` is its background colour, for what must be seen at a glance."""
 
     text: str
     size: float
@@ -66,12 +66,12 @@ class Line:
 
 
 def draw(context: bpy.types.Context, session: PressSession) -> None:
-    """Draw the HUD of a press in the region that is being drawn."""
+    """Draw the HUD of a press in the current region."""
     scale = context.preferences.system.ui_scale
     left = pixels.covered(context, "TOOLS", "LEFT") + MARGIN * scale
     padding = PADDING * scale
     right = context.region.width - pixels.covered(context, "UI", "RIGHT") - MARGIN * scale
-    # In a view that has no room even for words, they are cut rather than broken into letters.
+    # In a view too narrow for words, they are cut rather than broken into letters.
     width = max(NARROWEST * scale, right - left - 2 * padding)
     lines = [
         replace(line, text=part, size=line.size * scale)
@@ -94,7 +94,7 @@ def draw(context: bpy.types.Context, session: PressSession) -> None:
 
 
 def _lines(context: bpy.types.Context, session: PressSession) -> list[Line]:
-    """What the HUD says, from the top."""
+    """Lines of the HUD, from the top."""
     figures = readings(session)
     touching = any(one.touching for one in figures)
     phase = _phase(session, touching=touching)
@@ -115,7 +115,7 @@ def _lines(context: bpy.types.Context, session: PressSession) -> list[Line]:
 
 
 def _measured(figures: tuple[Reading, ...], session: PressSession) -> list[Line]:
-    """Force and depth of each finger, and of a tool how large and hard its contact is."""
+    """Force and depth of each finger, and area and pressure of a tool."""
     lines = []
     for number, one in enumerate(figures, start=1):
         name = f"{number}   " if len(figures) > 1 else ""
@@ -136,7 +136,7 @@ def _state(session: PressSession, phase: Phase) -> str:
 
 
 def _shape_lines(session: PressSession) -> list[Line]:
-    """How far the tables are that the touched place needs."""
+    """Progress of the tables at the touched place."""
     felt = 1.0 if session.loop is None else session.loop.felt.ready
     return [
         Line(shown(text, share=f"{100 * ready:.0f}"), NORMAL, GREY)
@@ -146,7 +146,7 @@ def _shape_lines(session: PressSession) -> list[Line]:
 
 
 def _buried_lines(session: PressSession) -> list[Line]:
-    """That a finger is inside the body and feels nothing, once for all fingers."""
+    """Warning of a finger inside the body, which has no force; once for all fingers."""
     snapshot, inside = session.snapshot, "inside the body"
     if snapshot is None or all(finger.reason != inside for finger in snapshot.fingers):
         return []
@@ -154,7 +154,7 @@ def _buried_lines(session: PressSession) -> list[Line]:
 
 
 def _second_lines(session: PressSession) -> list[Line]:
-    """A second finger's device that gives no force, and why."""
+    """Reason why a second finger's device gives no force."""
     snapshot = session.snapshot
     if snapshot is None or not session.state.has_device or len(session.leads) < 2:
         return []
@@ -165,7 +165,7 @@ def _second_lines(session: PressSession) -> list[Line]:
 
 
 def _device_lines(session: PressSession, measured: list[Line]) -> list[Line]:
-    """Whether the motors push, first of all, and why."""
+    """Whether the motors push, and why."""
     snapshot = session.snapshot
     if snapshot is None:
         return [Line(shown("Starting"), NORMAL, WHITE)]
@@ -187,13 +187,13 @@ def _device_lines(session: PressSession, measured: list[Line]) -> list[Line]:
 
 
 def _phase(session: PressSession, *, touching: bool) -> Phase:
-    """Where the press stands for the user: a probe let go in the air presses nothing yet."""
+    """Phase of the press for the user: a probe released in the air does not press yet."""
     phase = session.state.phase
     return Phase.READY if phase is Phase.HOLDING and not touching else phase
 
 
 def _wrapped(text: str, size: float, width: float) -> list[str]:
-    """The text on lines that fit ``width`` pixels; words stay whole where they fit at all."""
+    """Text on lines that fit ``width`` pixels; words that fit are not broken."""
     if pixels.width_of(text, size) <= width:
         return [text]
     lines = [""]

@@ -1,4 +1,4 @@
-"""Values beside what they belong to: forces at their arrows, pressure beside its colours."""
+"""Labels of values: forces at their arrows, pressure next to its colours."""
 
 from __future__ import annotations
 
@@ -13,30 +13,29 @@ from . import pixels
 from .pressure_colors import ANCHORS
 
 SIZE, PADDING, ASIDE = 13, 5, 8
-# The legend: how far from the right, its bar, the space between bar and figures,
-# and that around all of it.
+# Legend: distance from the right, width of the bar, space between bar and figures, margin.
 MARGIN, BAR_WIDTH, BAR_HEIGHT, GAP, AROUND = 24, 14, 130, 6, 10
-# What Blender's own buttons for the view take at the top, headers included.
+# Height of Blender's view buttons at the top, headers included.
 NAVIGATION = 300
 
 
 @dataclass(frozen=True)
 class Label:
-    """A text beside a place in the region, pixels; None where that is behind the viewer."""
+    """Text next to a place in the region, pixels; None behind the viewer."""
 
     text: str
     place: Vector | None
 
 
 def draw(labels: list[Label], region: bpy.types.Region, scale: float) -> None:
-    """Write labels on a dark ground; one that would cover another goes above it."""
+    """Draw labels on a dark background; overlapping ones are stacked."""
     taken: list[tuple[float, float, float, float]] = []
     size, padding = SIZE * scale, PADDING * scale
     for label in labels:
         if label.place is None:
             continue
         width, height = pixels.width_of(label.text, size) + 2 * padding, 1.6 * size
-        # At the rim of the view it stays readable.
+        # Readable at the rim of the view.
         x = min(max(0.0, label.place.x + ASIDE * scale), max(0.0, region.width - width))
         y = min(max(0.0, label.place.y), region.height - height)
         while any(_overlap((x, y, width, height), other) for other in taken):
@@ -58,8 +57,8 @@ def _overlap(
 
 
 def draw_legend(context: bpy.types.Context, top: float) -> None:
-    """The colours of pressure from 0 to ``top`` (Pa), at the right of the view, half way up or
-    lower where Blender's buttons are.
+    """Draw the colours of pressure from 0 to ``top`` (Pa), at the right of the view, half way
+    up or below Blender's buttons.
     """
     scale = context.preferences.system.ui_scale
     size, bar, height = SIZE * scale, BAR_WIDTH * scale, BAR_HEIGHT * scale
@@ -91,7 +90,7 @@ def draw_legend(context: bpy.types.Context, top: float) -> None:
 
 
 def legend_bottom(region_height: float, height: float, scale: float) -> float:
-    """Where a bar of this height begins: half way up, or lower where Blender's buttons are."""
+    """Bottom of a bar of this height: half way up, or below Blender's buttons."""
     above, below = (2.5 * SIZE + AROUND) * scale, (0.5 * SIZE + AROUND) * scale
     free = region_height - NAVIGATION * scale - height - above
     return max(below, min(0.5 * (region_height - height), free))

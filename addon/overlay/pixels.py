@@ -1,4 +1,4 @@
-"""Words and rectangles in a view, in pixels."""
+"""Text and rectangles in a view, in pixels."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ BACKGROUND = (0.05, 0.05, 0.06, 0.72)
 
 
 def width_of(text: str, size: float) -> float:
-    """How wide a text of this size is."""
+    """Width of a text of this size."""
     blf.size(FONT, size)
     return blf.dimensions(FONT, text)[0]
 
 
 def write(text: str, x: float, y: float, size: float, color: Color) -> None:
-    """Write from the left end of its base line on."""
+    """Draw a text from the left end of its base line."""
     blf.size(FONT, size)
     blf.color(FONT, *color)
     blf.position(FONT, x, y, 0)
@@ -36,7 +36,7 @@ def rectangle(x: float, y: float, width: float, height: float, color: Color) -> 
 
 
 def shaded(x: float, y: float, width: float, height: float, colors: Sequence[Color]) -> None:
-    """Fill a rectangle whose corners have colours, counter-clockwise from the lower left."""
+    """Fill a rectangle with colours at its corners, counter-clockwise from the lower left."""
     corners = [(x, y), (x + width, y), (x + width, y + height), (x, y + height)]
     shader = gpu.shader.from_builtin("SMOOTH_COLOR")
     batch = batch_for_shader(
@@ -48,7 +48,7 @@ def shaded(x: float, y: float, width: float, height: float, colors: Sequence[Col
 
 
 def covered(context: bpy.types.Context, kind: str, side: str) -> float:
-    """Pixels of the view that a region of this kind lies upon at its left or right."""
+    """Pixels of the view covered by a region of this kind at its left or right."""
     overlap = context.preferences.system.use_region_overlap
     return sum(
         region.width

@@ -1,4 +1,4 @@
-"""What a press measures now, in numbers for panel and HUD."""
+"""Measurements of a press, for panel and HUD."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Patch:
-    """Where a tool touches: places (p, 3) and outward directions (p, 3) in the world, pressures
-    (p,) in Pa, and the radius (p,) of the disc that each stands for, in world units.
+    """Contact patch of a tool: places (p, 3) and outward directions (p, 3) in the world,
+    pressures (p,) in Pa, and the radius (p,) of the disc around each, in world units.
     """
 
     places: Array
@@ -30,10 +30,9 @@ class Patch:
 
 @dataclass(frozen=True, eq=False)
 class Reading:
-    """One finger's force (N, on the finger), depth (m), and where it happens, world coordinates
-    (3,).
+    """Force (N, on the finger), depth (m) and places of a finger, world coordinates (3,).
 
-    ``contact`` lies on the surface as it is seen; ``force_vector`` has world axes. ``turn`` (3, 3)
+    ``contact`` lies on the drawn surface; ``force_vector`` has world axes. ``turn`` (3, 3)
     takes the tool's axes to the world's. ``area`` (m^2) and ``largest_pressure`` (Pa) are 0 for a
     point.
     """
@@ -54,13 +53,13 @@ NOTHING = Reading(0.0, 0.0, False, np.zeros(3), np.zeros(3), np.zeros(3), np.eye
 
 
 def reading(session: PressSession) -> Reading:
-    """The first finger's."""
+    """Reading of the first finger."""
     return readings(session)[0]
 
 
 def readings(session: PressSession) -> tuple[Reading, ...]:
-    """What the newest snapshot says of each finger; nothing before the first, and while the device
-    is away.
+    """Readings of all fingers from the latest snapshot; none before the first, and while the
+    device is disconnected.
     """
     snapshot = session.snapshot
     if snapshot is None or session.state.phase is Phase.LOST:
@@ -103,7 +102,7 @@ def _of_tool(session: PressSession, finger: FingerSnapshot, tool: Tool) -> Readi
     force, pushes = _force(finger), np.asarray(finger.point_forces)
     carries = pressures > 0.0
     sizes = np.linalg.norm(pushes[carries], axis=1)
-    # Three times its own area, so that neighbours flow into each other.
+    # Three times its own area, so that neighbours blend.
     radii = np.sqrt(3.0 * sizes / pressures[carries] / np.pi) / frame.metres_per_unit
     points = _as_drawn(session, finger, np.asarray(finger.points)[carries])
     places = frame.world_from_body(points)
@@ -124,7 +123,7 @@ def _of_tool(session: PressSession, finger: FingerSnapshot, tool: Tool) -> Readi
 
 
 def _as_drawn(session: PressSession, finger: FingerSnapshot, points: Array) -> Array:
-    """Points (p, 3) of the surface by the linear shape, on the shape that is drawn."""
+    """Points (p, 3) of the linear shape mapped to the drawn one."""
     if session.seen.displacements is None or session.seen.linear is None or not len(finger.nodes):
         return points
     mesh, drawn = session.drawn.body.mesh, session.drawn
@@ -133,7 +132,7 @@ def _as_drawn(session: PressSession, finger: FingerSnapshot, points: Array) -> A
     beyond = drawn.node_displacements(session.seen.displacements)[nodes] - linear
     if not beyond.any():
         return points
-    # Weighted by nearness, so that neighbouring points go alike.
+    # Weighted by distance, for a smooth map.
     away = np.linalg.norm(points[:, None] - (mesh.nodes[nodes] + linear), axis=2)
     nearness = 1.0 / (away + 1e-3 * drawn.size) ** 2
     moved: Array = points + nearness @ beyond / nearness.sum(axis=1, keepdims=True)
@@ -141,7 +140,7 @@ def _as_drawn(session: PressSession, finger: FingerSnapshot, points: Array) -> A
 
 
 def depth_of(tool: Tool, pose: Pose, surface: Array) -> float:
-    """How deep a tool is in the surface at rest, of which places (n, 3) are known, m."""
+    """Depth of a tool below the rest surface, given by places (n, 3), m."""
     near = surface[np.linalg.norm(surface - pose.position, axis=1) <= tool.reach]
     if not len(near):
         return 0.0
@@ -150,5 +149,5 @@ def depth_of(tool: Tool, pose: Pose, surface: Array) -> float:
 
 
 def _force(finger: FingerSnapshot) -> Array:
-    # A limp device gives nothing, however deep it is.
+    # A limp device has no force at any depth.
     return np.zeros(3) if finger.state == "disabled" else np.asarray(finger.contact_force)

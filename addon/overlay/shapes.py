@@ -1,4 +1,4 @@
-"""Small shapes for the overlay, shaded by hand: Blender's plain shaders know no light."""
+"""Small shapes for the overlay, shaded on the CPU: Blender's plain shaders have no light."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from ...core.contact.tool.tools import Tool
 Lit = tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.int32]]
 
 RINGS, SEGMENTS = 10, 20
-# Light from the upper left before the viewer, and how dark the far side is.
+# Light from the upper left before the viewer, and brightness of the far side.
 LIGHT = np.array([-0.4, 0.6, 0.7]) / np.linalg.norm([-0.4, 0.6, 0.7])
 AMBIENT = 0.45
-# Glass: how much of a tool's colour is seen where one looks through it, and at its rim.
+# Glass: opacity of a tool in its middle and at its rim.
 GLASS, RIM = 0.13, 0.75
 # A disc has its full colour up to this share of its radius.
 DISC_SEGMENTS, FULL_SHARE = 14, 0.6
@@ -25,7 +25,7 @@ DISC_SEGMENTS, FULL_SHARE = 14, 0.6
 
 @dataclass(frozen=True, eq=False)
 class Shape:
-    """Vertices (v, 3) of unit size, their normals, and triangles (t, 3)."""
+    """Shape with vertices (v, 3) of unit size, their normals, and triangles (t, 3)."""
 
     vertices: NDArray[np.float64]
     normals: NDArray[np.float64]
@@ -40,7 +40,7 @@ def lit(
     view_axes: NDArray[np.float64],
     turn: NDArray[np.float64] | None = None,
 ) -> Lit:
-    """A shape at ``place``, lit as the view sees it."""
+    """Shape at ``place``, lit for the view."""
     rotation = np.eye(3) if turn is None else turn
     vertices = np.asarray(place) + (shape.vertices * np.asarray(size)) @ rotation.T
     brightness = AMBIENT + (1.0 - AMBIENT) * np.clip(
@@ -59,7 +59,7 @@ def glass(
     view_axes: NDArray[np.float64],
     turn: NDArray[np.float64],
 ) -> Lit:
-    """A shape that one can look through, its outline stronger than its middle."""
+    """Transparent shape, its outline stronger than its middle."""
     vertices, rgba, triangles = lit(shape, place, size, color, view_axes, turn)
     across = 1.0 - np.abs(shape.normals @ turn.T @ view_axes[2])
     rgba[:, 3] *= (GLASS + (RIM - GLASS) * across**3).astype(np.float32)
@@ -102,7 +102,7 @@ def discs(
 
 
 def tool_shape(tool: Tool) -> Shape:
-    """A tool's outside, metres in its own frame: the hull of balls at its core points."""
+    """Surface of a tool, metres in its own frame: the hull of balls at its core points."""
     points = (tool.core[:, None] + tool.radius * SPHERE.vertices).reshape(-1, 3)
     normals = np.tile(SPHERE.vertices, (len(tool.core), 1))
     hull = ConvexHull(points)
@@ -143,7 +143,7 @@ def _sphere() -> Shape:
 
 
 def _cone() -> Shape:
-    """Along +Z, from a base of radius 1 at 0 to the tip at 1."""
+    """Cone along +Z, from a base of radius 1 at 0 to the tip at 1."""
     cosine, sine = _circle()
     zero, one = np.zeros(SEGMENTS), np.ones(SEGMENTS)
     rings = [(zero, zero, zero), (cosine, sine, zero), (cosine, sine, zero), (zero, zero, one)]

@@ -1,7 +1,6 @@
-"""What a press shows in the view: each finger with its contact on the surface and its force, the
-tool as glass, and where it presses as colour.
+"""Overlay of a press: fingers with contact and force, tools as glass, contact patches as colour.
 
-Probes and arrows are drawn twice: faintly through the body, and fully where nothing hides them.
+Probes and arrows are drawn twice: faintly through the body, and fully where visible.
 """
 
 from __future__ import annotations
@@ -35,19 +34,19 @@ Array = NDArray[np.float64]
 Line = tuple[Array, Array, Sequence[float], float]
 
 SEEN_THROUGH = 0.5
-# The arrow has half its full length at this force: small ones show, large ones fit the screen.
+# Force of an arrow of half the full length: small ones show, large ones fit the screen.
 HALF_LENGTH_FORCE = 0.3
 CONTACT_SIZE, LINE_PIXELS = 0.6, 2.5
 WORKSPACE_COLOR, WORKSPACE_PIXELS = (0.75, 0.85, 1.0, 0.4), 1.5
 HEAD_LENGTH, HEAD_WIDTH, SHAFT_PIXELS = 20.0, 7.0, 4.0
-# The patch is drawn this share of a disc's radius nearer to the viewer than it is: the surface that
-# is drawn is coarser than the contact.
+# The patch is drawn this share of a disc's radius nearer to the viewer, since the drawn surface is
+# coarser than the contact.
 PATCH_LIFT, PATCH_SEEN_THROUGH = 0.5, 0.9
 
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """The view that is being drawn: its axes (3, 3) in the world, and the interface's scale."""
+    """View being drawn: its axes (3, 3) in the world, and the interface's scale."""
 
     region: bpy.types.Region
     region_3d: bpy.types.RegionView3D
@@ -67,7 +66,7 @@ class View:
         return self.scale * step / pixels if pixels > 0.0 else 0.0
 
     def seen(self, place: Array) -> Vector | None:
-        """Where a place of the world is in the region, pixels."""
+        """Position of a world place in the region, pixels."""
         return view3d_utils.location_3d_to_region_2d(self.region, self.region_3d, Vector(place))
 
 
@@ -112,15 +111,15 @@ def _view() -> View | None:
 
 
 def _worth_drawing(session: PressSession, figures: Reading) -> bool:
-    """A pointer that has not touched yet has no probe to show, nor has a device not heard of.
-    Handles are there to be seen from the beginning.
+    """Whether a finger has a probe to show: pointers after the first touch, devices after the
+    first STATE, handles always.
     """
     nowhere = session.awaits_device or session.state.phase in {Phase.READY, Phase.LOST}
     return figures.touching or session.pinches or not nowhere
 
 
 def _pressure_scale(session: PressSession, shown: list[Reading]) -> float:
-    """The pressure of the last colour, one scale for all fingers of a press."""
+    """Pressure of the last colour, one scale for all fingers of a press."""
     scale = _scales.setdefault(session, PressureScale())
     return scale.follow(max(one.largest_pressure for one in shown))
 
@@ -133,7 +132,7 @@ def _ball(place: Array, size: float, color: Sequence[float], view: View) -> Lit:
 def _add_contact(
     figures: Reading, session: PressSession, view: View, parts: list[Lit], lines: list[Line]
 ) -> None:
-    """A point's contact and the line to its probe, and anyone's force."""
+    """Add a point's contact and the line to its probe, and the force of any finger."""
     chosen = preferences()
     if session.tip.tool is None:
         parts.append(_ball(figures.contact, CONTACT_SIZE, chosen.contact_color, view))
@@ -151,7 +150,7 @@ def _add_contact(
 
 
 def arrow_tip(figures: Reading, pixel: float) -> tuple[Array, Array]:
-    """Where a force's arrow ends and its unit direction, world; ``pixel`` is a pixel's length."""
+    """Tip and unit direction of a force's arrow, world; ``pixel`` is a pixel's length."""
     direction = figures.force_vector / np.linalg.norm(figures.force_vector)
     share = figures.force / (figures.force + HALF_LENGTH_FORCE)
     length = HEAD_LENGTH + preferences().arrow_pixels * share
@@ -159,13 +158,13 @@ def arrow_tip(figures: Reading, pixel: float) -> tuple[Array, Array]:
 
 
 def _draw_patches(patches: list[Patch], top: float, view: View) -> None:
-    """Through the surface that is drawn, too, for it does not follow a tool as closely as the
-    contact does; but not what looks away from the viewer, on the body's other side.
+    """Draw patches, also through the drawn surface, which follows a tool less closely than the
+    contact; but not those on the far side of the body.
     """
     toward = view.axes[2]
     for patch in patches:
         lifted = patch.places + PATCH_LIFT * patch.radii[:, None] * toward
-        # What presses hardest is drawn last, so that no weaker neighbour covers it.
+        # The highest pressure is drawn last, so that nothing covers it.
         order = np.argsort(patch.pressures)
         seen = order[patch.normals[order] @ toward > 0.0]
         for chosen, depth_test, opacity in (
@@ -222,7 +221,7 @@ def _draw(
 
 
 def draw_hud() -> None:
-    """Draw in pixels, on top of everything."""
+    """Draw the HUD in pixels, on top of everything."""
     session, view = press_session.current(), _view()
     if session is None or view is None:
         return
@@ -235,7 +234,7 @@ def draw_hud() -> None:
 
 
 def _labels(session: PressSession, shown: list[Reading], view: View) -> list[Label]:
-    """Each arrow's value at its tip, and the handles' numbers beside them."""
+    """Labels of the arrows' values and of the handles' numbers."""
     labels = []
     for number, figures in enumerate(shown, start=1):
         name = f"{number}  " if len(session.leads) > 1 else ""
@@ -251,9 +250,9 @@ _handles: list[object] = []
 
 
 def register() -> None:
-    """Draw in all 3D views."""
+    """Add the drawing to all 3D views."""
     if bpy.app.background:
-        # There is no view to draw in.
+        # No views in background mode.
         return
     add = bpy.types.SpaceView3D.draw_handler_add
     _handles.append(add(draw_in_view, (), "WINDOW", "POST_VIEW"))

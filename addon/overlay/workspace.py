@@ -1,4 +1,4 @@
-"""Where a device reaches: a box in the view, or a rectangle for one that moves in a plane."""
+"""Workspace of a device: a box in the view, or a rectangle for a planar one."""
 
 from __future__ import annotations
 
@@ -19,21 +19,21 @@ from ...operators.session.press_session import PressSession
 Array = NDArray[np.float64]
 
 CORNERS = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))
-# Pairs of corners that differ in one axis.
+# Pairs of corners that differ in one axis: the edges.
 EDGES = [
     (a, b) for a, b in itertools.combinations(range(8), 2) if np.sum(CORNERS[a] != CORNERS[b]) == 1
 ]
 
 
 def outline(context: bpy.types.Context, session: PressSession | None) -> list[tuple[Array, Array]]:
-    """Ends of the lines to draw, world coordinates; none where there is nothing to tell."""
+    """Ends of the lines to draw, world coordinates; none if unknown."""
     if not context.scene.palpate.show_workspace:
         return []
     return _of_plane(context) if session is None else _of_device(session)
 
 
 def _of_device(session: PressSession) -> list[tuple[Array, Array]]:
-    """As the device that presses has told it."""
+    """Outline sent by the pressing device."""
     loop = session.loop
     if session.state.source is not Source.DEVICE or loop is None or loop.figures.counters is None:
         return []
@@ -44,7 +44,7 @@ def _of_device(session: PressSession) -> list[tuple[Array, Array]]:
 
 
 def _of_plane(context: bpy.types.Context) -> list[tuple[Array, Array]]:
-    """Before a press, of a device that needs placing: one that moves in a plane."""
+    """Outline before a press, for a planar device, which needs placing."""
     thing, scene = context.object, context.scene
     if thing is None or not thing.palpate.body_key or not device_source.is_planar(scene):
         return []
@@ -53,7 +53,7 @@ def _of_plane(context: bpy.types.Context) -> list[tuple[Array, Array]]:
         home = device_source.home_of_device(thing, scene, body)
         frame = device_source.device_frame(scene, body, home)
     except PalpateError:
-        # Something is flattened to nothing, which Press says with its remedy.
+        # A flattened transform; Press reports it with its remedy.
         return []
     extents = (*device_plane.half_extents(scene.palpate.haply_model), 0.0)
     return _lines(np.array(extents), frame, body)
@@ -62,7 +62,7 @@ def _of_plane(context: bpy.types.Context) -> list[tuple[Array, Array]]:
 def _lines(extents: Array, device: DeviceFrame, body: BodyFrame) -> list[tuple[Array, Array]]:
     corners = device.scale * (CORNERS * extents) @ device.rotation.T + device.translation
     world = body.world_from_body(corners)
-    # An axis that a device does not have draws no edges, and those beside it only once.
+    # A missing axis has no edges, and parallel ones coincide.
     return [
         (world[a], world[b])
         for a, b in EDGES

@@ -1,1 +1,1 @@
-"""The sidebar."""
+"""Panels of the sidebar."""

@@ -1,4 +1,4 @@
-"""What all panels of the tab share."""
+"""Base of all panels of the tab."""
 
 import bpy
 
@@ -18,7 +18,7 @@ class PalpatePanel:
 
 
 def named_properties(panel: bpy.types.Panel) -> bpy.types.UILayout:
-    """The panel's layout, for properties with their names on the left."""
+    """Layout for properties with their names on the left."""
     layout = panel.layout
     layout.use_property_split = True
     layout.use_property_decorate = False
@@ -26,7 +26,7 @@ def named_properties(panel: bpy.types.Panel) -> bpy.types.UILayout:
 
 
 def draw_rows(layout: bpy.types.UILayout, rows: list[tuple[str, str]]) -> None:
-    """Figures below each other, their names on the left."""
+    """Draw figures below each other, their names on the left."""
     for name, value in rows:
         row = layout.split(factor=NAME_SHARE)
         row.label(text=name)

@@ -1,4 +1,4 @@
-"""What a bake would take, before it starts, and what the last one made."""
+"""Predicted cost of a bake, and figures of the last one."""
 
 import bpy
 
@@ -16,7 +16,7 @@ FORMULATION_NAMES = {"linear": "Linear", "smoothed": "Smoothed"}
 
 
 def draw_summary(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """One line below Make Soft, and the alarm where the memory would not suffice."""
+    """Draw a line below Make Soft, and an alert if memory would not suffice."""
     prediction = _prediction(context)
     if prediction is None:
         return
@@ -29,7 +29,7 @@ def draw_summary(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
 
 
 def draw_prediction(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """What a bake with the settings of now would take."""
+    """Draw the predicted cost with the present settings."""
     prediction = _prediction(context)
     if prediction is None:
         return
@@ -50,7 +50,7 @@ def draw_prediction(layout: bpy.types.UILayout, context: bpy.types.Context) -> N
 
 
 def draw_figures(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """What the last bake made."""
+    """Draw the figures of the last bake."""
     baked = context.object.palpate
     form = shown(FORM_NAMES.get(baked.baked_form, baked.baked_form))
     box = layout.column(align=True)
@@ -75,7 +75,7 @@ def _prediction(context: bpy.types.Context) -> Prediction | None:
     try:
         return known_status.prediction(context.object, context.scene)
     except PalpateError:
-        # What cannot be baked says so when it is to be baked, with the remedy.
+        # Make Soft reports what cannot be baked, with the remedy.
         return None
 
 

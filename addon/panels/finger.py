@@ -1,4 +1,4 @@
-"""What touches the surface: a point or a tool, how contact is computed, and a second finger."""
+"""Fingers: point or tool, contact mode, and a second finger."""
 
 import bpy
 

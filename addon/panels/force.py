@@ -1,4 +1,4 @@
-"""Whether the device gives force, why, and the button that lets it go."""
+"""Force of the device: on or off, why, and the button to release it."""
 
 import bpy
 
@@ -19,11 +19,11 @@ ICONS = {
 
 
 def draw(layout: bpy.types.UILayout, context: bpy.types.Context, press: PressSession) -> None:
-    """At the top of the panel while a device presses."""
+    """Draw the force at the top of the panel while a device presses."""
     row = layout.row()
     row.scale_y = 2.0
     text, icon = ("Force Off", "COLORSET_01_VEC") if press.state.force_on else ("Force On", "PLAY")
-    # Red behind dark letters, as in the light theme, would hide them.
+    # In the light theme dark letters are unreadable on red.
     row.alert = press.state.force_on and _has_bright_letters(context)
     row.operator("palpate.switch_force", text=text, icon=icon)
     if press.snapshot is not None:
@@ -36,7 +36,7 @@ def _draw_standing(layout: bpy.types.UILayout, context: bpy.types.Context, now: 
     column = layout.column(align=True)
     column.alert = now.signal is Signal.FAULT
     column.label(text=now.word, icon=ICONS[now.signal])
-    # What comes and goes many times a second would move everything below: the view tells it.
+    # Too frequent a change for the panel, which would jump; the view shows it.
     if now.why and now.signal not in FORCEFUL:
         say(column, context, now.why, "BLANK1")
 

@@ -1,4 +1,4 @@
-"""The force loop: how fast it shall run, and while somebody presses how well it does."""
+"""Force loop: its rate, and its timing during a press."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class PALPATE_PT_loop(PalpatePanel, bpy.types.Panel):
 
 
 def _draw_coupling(layout: bpy.types.UILayout, scene: bpy.types.Scene) -> None:
-    """What keeps the contact of a device with motors stable."""
+    """Draw the virtual coupling, which keeps contact with motors stable."""
     chosen = scene.palpate
     if chosen.source == "POINTER" or not chosen.stable_contact:
         return
@@ -60,7 +60,7 @@ def _draw_coupling(layout: bpy.types.UILayout, scene: bpy.types.Scene) -> None:
 
 
 def draw_adapter_warning(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """Whether the USB adapter of the device that presses holds bytes back, and what helps."""
+    """Warn of a USB adapter that holds bytes back, with the remedy."""
     session = press_session.current()
     loop = session.loop if session is not None else None
     if loop is None or loop.figures.counters is None:
@@ -90,7 +90,7 @@ def _draw_timing(
 
 
 def _draw_stages(layout: bpy.types.UILayout, counters: ServoCounters) -> None:
-    """Where the time of a tick goes: mean, and what 99 of 100 ticks keep below."""
+    """Draw the time of a tick by stage: mean and 99th percentile."""
     stages = counters["stages_us"]
     rows = [
         (name, f"{microseconds(stages[stage]['mean'])}, {microseconds(stages[stage]['p99'])}")

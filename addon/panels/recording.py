@@ -1,4 +1,4 @@
-"""Recording a press: begin, see how long it is, save it."""
+"""Recording of a press: start, length, save."""
 
 import bpy
 

@@ -1,4 +1,4 @@
-"""Sentences in a panel: translated, and on as many lines as the sidebar's width needs."""
+"""Sentences in a panel: translated and wrapped to the sidebar's width."""
 
 import textwrap
 import unicodedata
@@ -10,9 +10,9 @@ from ...operators.reporting.translated import shown
 
 # Width of a letter in the sidebar, unscaled pixels.
 LETTER_PIXELS = 7
-# Letters that icon and margins take, and the frame of a box besides.
+# Letters' widths taken by icon and margins, and by the frame of a box.
 MARGIN_LETTERS, BOX_LETTERS, FEWEST_LETTERS = 5, 4, 20
-# Marks that do not begin a line in Japanese.
+# Characters that must not begin a line in Japanese.
 NEVER_FIRST = "、。」)・"
 
 
@@ -42,7 +42,7 @@ def say(
 
 
 def wrapped(text: str, letters: int) -> list[str]:
-    """The text on lines of so many letters. Wide letters count twice, and break anywhere."""
+    """Text on lines of at most ``letters``. Wide letters count twice, and break anywhere."""
     if not any(_letters(letter) == 2 for letter in text):
         return textwrap.wrap(text, letters)
     lines = [""]

@@ -1,4 +1,4 @@
-"""Large deformation: which shape is drawn, what that costs, how far it is, and the felt force."""
+"""Large deformation: drawn shape, its cost and progress, and the force law."""
 
 import bpy
 
@@ -13,7 +13,7 @@ from ..properties.shape import FELT_ITEMS, SHAPE_ITEMS
 from .base import PalpatePanel, draw_rows, named_properties
 from .sentence import say
 
-# Below this a frame leaves Blender the time for 60 of them a second.
+# Seconds of a frame that leave Blender time for 60 a second.
 SMOOTH_SECONDS = 0.012
 
 
@@ -40,7 +40,7 @@ class PALPATE_PT_shape(PalpatePanel, bpy.types.Panel):
 def draw_progress(
     layout: bpy.types.UILayout, context: bpy.types.Context, press: PressSession
 ) -> None:
-    """How far the touched place's share of a table is, or why there is none."""
+    """Draw the progress of the touched place's part of a table, or why there is none."""
     shape = press.seen.shape
     if shape.problem:
         say(layout, context, shape.problem, "ERROR")
@@ -51,7 +51,7 @@ def draw_progress(
 
 
 def cost_now(thing: bpy.types.Object) -> ShapeCost | None:
-    """What the chosen shape costs of the object's body; None of an object that is not soft."""
+    """Cost of the chosen shape for the object's body; None for an object that is not soft."""
     baked = thing.palpate
     if not baked.free_surface_count:
         return None
@@ -88,7 +88,7 @@ def _draw_cost(
 def _draw_felt(
     layout: bpy.types.UILayout, context: bpy.types.Context, thing: bpy.types.Object
 ) -> None:
-    """What the corrected force takes, and where it is not felt."""
+    """Draw the cost of the corrected force law, and its limits."""
     baked, press = thing.palpate, press_session.current()
     if context.scene.palpate.tip != "POINT":
         say(layout, context, "Tools feel the linear force", "INFO")

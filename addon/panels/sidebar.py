@@ -1,4 +1,4 @@
-"""The sidebar tab: what is chosen, what is baked, and what a bake would take."""
+"""Sidebar tab: settings, body and predicted cost."""
 
 import bpy
 
@@ -10,7 +10,7 @@ from . import cost, finger, loop, recording, shape, softness, state
 from .base import PalpatePanel, named_properties
 from .sentence import say
 
-# What the chosen formulation is for, in a line.
+# Purpose of each formulation, in a line.
 FORMULATION_TEXTS = {
     "linear": "Linear: as in the paper, right up to about 0.4",
     "smoothed": "Smoothed: does not lock near 0.5",

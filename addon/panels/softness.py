@@ -1,4 +1,4 @@
-"""Softness in the maker's words: Shore value, durometer, force curve and map."""
+"""Softness in makers' words: Shore value, durometer, force curve and map."""
 
 import bpy
 
@@ -57,14 +57,14 @@ def _draw_curve(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
 
 
 def _draw_measuring(layout: bpy.types.UILayout, operator: str, icon: str) -> None:
-    """The button, and beside it one that lets the place be clicked."""
+    """Draw the button, and next to it one to click the place."""
     row = layout.row(align=True)
     row.operator(operator, icon=icon)
     row.operator(operator, icon="EYEDROPPER", text="").pick = True
 
 
 def _draw_map(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """Buttons, and the legend while the mesh carries the colours."""
+    """Draw the buttons, and the legend while the mesh has the colours."""
     thing = context.object
     softness = thing.palpate_softness
     row = layout.row(align=True)
@@ -83,7 +83,7 @@ def _draw_map(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
 
 
 def draw_shore(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """The Shore value and its scale, or that the scale does not reach the material."""
+    """Draw the Shore value and its scale, or that the material is beyond the scale."""
     thing = context.object
     softness = thing.palpate_softness
     row = layout.row(align=True)

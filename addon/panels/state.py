@@ -1,4 +1,4 @@
-"""The top of the sidebar tab: what goes on, what is missing, and what to do about it."""
+"""Top of the sidebar tab: present activity, what is missing, and its remedy."""
 
 import bpy
 
@@ -18,7 +18,7 @@ from ..overlay.reading import readings
 from . import cost, force
 from .sentence import say
 
-# Why other pins need what they need.
+# Reasons for the work that changed pins need.
 PIN_TEXTS = {
     PinFit.KNOWN: "These pins were computed before: no bake needed",
     PinFit.MORE: "More is pinned: takes effect in about {time}, no bake needed",
@@ -28,10 +28,10 @@ PIN_TEXTS = {
 
 
 def draw_bake(layout: bpy.types.UILayout, context: bpy.types.Context, bake: BakeSession) -> None:
-    """While a bake runs."""
+    """Draw a running bake."""
     progress = bake.progress
     layout.label(text=bake.handle.name, icon="MOD_SOFT", translate=False)
-    # A share that nobody can know yet is shown as time only.
+    # An unknown share is shown as time only.
     factor = progress.share or 0.0
     layout.progress(factor=factor, type="BAR", text=bake_words.how_far(progress), translate=False)
     say(layout, context, bake_words.step(progress), "TIME")
@@ -39,7 +39,7 @@ def draw_bake(layout: bpy.types.UILayout, context: bpy.types.Context, bake: Bake
 
 
 def draw_press(layout: bpy.types.UILayout, context: bpy.types.Context, press: PressSession) -> None:
-    """While somebody presses."""
+    """Draw a running press."""
     layout.label(text=press.handle.name, icon="MOD_SOFT", translate=False)
     if press.state.source is Source.DEVICE:
         force.draw(layout, context, press)
@@ -54,7 +54,7 @@ def draw_press(layout: bpy.types.UILayout, context: bpy.types.Context, press: Pr
 
 
 def draw_idle(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """Otherwise: what can be done with the object."""
+    """Draw the possible actions on the object."""
     thing = context.object
     refusal = soft_object.refusal(thing)
     column = layout.column(align=True)
@@ -84,17 +84,17 @@ def draw_idle(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
 
 
 def _press_restores(thing: bpy.types.Object, status: BodyStatus) -> bool:
-    """Whether Press itself computes the missing body again."""
+    """Whether Press recomputes the missing body itself."""
     return status.fit is Fit.FILE_MISSING and restores_quickly(thing)
 
 
 def _pins_alone(status: BodyStatus) -> bool:
-    """Whether pins are all that differs from the body."""
+    """Whether only the pins differ from the body."""
     return status.fit is Fit.READY and not status.changed and status.pins.fit is not PinFit.SAME
 
 
 def _update_suffices(status: BodyStatus) -> bool:
-    """Whether Update Pins makes the body as it is set."""
+    """Whether Update Pins applies all changed settings."""
     return _pins_alone(status) and status.pins.quick
 
 
@@ -124,7 +124,7 @@ def _draw_status(
 def _draw_changes(
     layout: bpy.types.UILayout, context: bpy.types.Context, status: BodyStatus
 ) -> None:
-    """What is set otherwise than the body has it, and what takes it over."""
+    """Draw settings that differ from the body, and the operator that applies them."""
     pins = status.pins
     if pins.fit is PinFit.UNUSABLE:
         say(layout, context, pins.reason, "ERROR")

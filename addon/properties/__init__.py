@@ -1,1 +1,1 @@
-"""What Blender keeps with objects, scenes and preferences."""
+"""Properties of objects and scenes."""

@@ -1,4 +1,4 @@
-"""What a scene remembers of the fingers: how contact is computed, their tip, and the second one."""
+"""Properties of a scene's fingers: contact mode, tip, and the second finger."""
 
 import bpy
 
@@ -43,7 +43,7 @@ HAPLY_ITEMS = [
 
 
 def haply_model() -> object:
-    """Which Haply 2DIY a finger's is."""
+    """Model of a finger's Haply 2DIY."""
     return bpy.props.EnumProperty(
         name="Model",
         description="Which of the 2DIYs it is",
@@ -53,7 +53,7 @@ def haply_model() -> object:
 
 
 def haply_at_rest() -> object:
-    """Whether its handle lies where its angles are counted from."""
+    """Whether its handle is in the rest pose, from which its angles count."""
     return bpy.props.BoolProperty(
         name="Handle at Rest",
         description="The handle lies in its rest pose now: let the board count its angles from "
@@ -85,7 +85,7 @@ def _length(name: str, description: str, default: float, context: str = "*") -> 
 
 
 class FingerProperties:
-    """The part of ``scene.palpate`` that is about fingers; lengths in scene units."""
+    """Part of ``scene.palpate`` for fingers; lengths in scene units."""
 
     contact_mode: bpy.props.EnumProperty(
         name="Contact",
@@ -99,7 +99,7 @@ class FingerProperties:
     tip_radius: _length("Radius", "Radius of the fingertip or rod", 0.008)
     rod_length: _length("Length", "Length of the rod without its round ends", 0.03)
     plate_width: _length("Width", "Width of the plate", 0.02)
-    # Elsewhere a depth is how far something is pressed: some languages have two words.
+    # Not the depth of a press: some languages have two words.
     plate_depth: _length("Depth", "Depth of the plate, across its width", 0.02, "Palpate")
     tip_object: bpy.props.PointerProperty(
         name="Tool",

@@ -1,4 +1,4 @@
-"""What a scene remembers: who presses, where the device is, and how the force loop runs."""
+"""Properties of a scene: pressing device, its place, and the force loop."""
 
 import bpy
 
@@ -30,7 +30,7 @@ def _suggest_ports(
 
 
 class PalpateScene(FingerProperties, bpy.types.PropertyGroup):
-    """``scene.palpate``: who presses."""
+    """``scene.palpate``: device, place and force loop."""
 
     source: bpy.props.EnumProperty(
         name="Press With",

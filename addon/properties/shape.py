@@ -1,4 +1,4 @@
-"""What an object remembers of large deformation: the shape drawn and the force felt."""
+"""Properties of an object for large deformation: drawn shape and force law."""
 
 import bpy
 
@@ -19,7 +19,7 @@ FELT_ITEMS = [
 
 
 class ShapeProperties:
-    """The part of ``object.palpate`` that is about large deformation."""
+    """Part of ``object.palpate`` for large deformation."""
 
     shape: bpy.props.EnumProperty(
         name="Shape",

@@ -1,4 +1,4 @@
-"""What an object remembers: the material, its feel, the pins, the baked body."""
+"""Properties of an object: material, surface rendering, pins, baked body."""
 
 import math
 from collections.abc import Callable
@@ -53,7 +53,7 @@ def _take_material(settings: bpy.types.PropertyGroup, context: bpy.types.Context
 
 
 def _leave_material(name: str) -> Callable[[bpy.types.PropertyGroup, bpy.types.Context], None]:
-    """An update that says Custom as soon as the number ``name`` is not the preset's any more."""
+    """Update callback that sets Custom once the number ``name`` differs from the preset's."""
 
     def update(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
         material = MATERIALS.get(settings.material)
@@ -66,7 +66,7 @@ def _leave_material(name: str) -> Callable[[bpy.types.PropertyGroup, bpy.types.C
 
 
 def _keep_order(changed: str) -> Callable[[bpy.types.PropertyGroup, bpy.types.Context], None]:
-    """An update that lets the other friction follow: sliding never holds better than resting."""
+    """Update callback that keeps dynamic friction at most as large as static friction."""
 
     def update(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
         if settings.dynamic_friction <= settings.static_friction:
@@ -80,8 +80,8 @@ def _keep_order(changed: str) -> Callable[[bpy.types.PropertyGroup, bpy.types.Co
 
 
 class PalpateObject(ShapeProperties, bpy.types.PropertyGroup):
-    """``object.palpate``. The tetrahedra lie beside these as ID properties nodes, tets,
-    fixed and, where there is a stiff region, young_scale.
+    """``object.palpate``. The tetrahedra are ID properties: nodes, tets, fixed and, with a stiff
+    region, young_scale.
     """
 
     material: bpy.props.EnumProperty(
@@ -233,15 +233,15 @@ class PalpateObject(ShapeProperties, bpy.types.PropertyGroup):
         step=1000,
     )
 
-    # What the last bake left. Written by the operators only.
+    # Results of the last bake, written by the operators only.
     body_key: bpy.props.StringProperty(name="Body Key", options={"HIDDEN"})
     body_file: bpy.props.StringProperty(name="Body File", options={"HIDDEN"})
     fingerprint: bpy.props.StringProperty(name="Fingerprint", options={"HIDDEN"})
-    # 0 where nobody knows any more.
+    # 0 if unknown.
     baked_edge_length: bpy.props.FloatProperty(options={"HIDDEN"})
     baked_epsilon: bpy.props.FloatProperty(options={"HIDDEN"})
     baked_poisson_ratio: bpy.props.FloatProperty(precision=3, options={"HIDDEN"})
-    # What bodies of files from before there was a choice have.
+    # Of bodies in files from before there was a choice.
     baked_formulation: bpy.props.StringProperty(default="linear", options={"HIDDEN"})
     baked_form: bpy.props.StringProperty(default="dense", options={"HIDDEN"})
     # Of a compressed body, in percent: what was allowed, and what it is.
@@ -259,12 +259,12 @@ classes = (PalpateObject, PalpateScene)
 
 
 def register() -> None:
-    """Give objects and scenes their properties."""
+    """Add the properties to objects and scenes."""
     bpy.types.Object.palpate = bpy.props.PointerProperty(type=PalpateObject)
     bpy.types.Scene.palpate = bpy.props.PointerProperty(type=PalpateScene)
 
 
 def unregister() -> None:
-    """Take them away; files keep what is stored in them."""
+    """Remove the properties; files keep their values."""
     del bpy.types.Object.palpate
     del bpy.types.Scene.palpate

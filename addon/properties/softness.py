@@ -1,7 +1,7 @@
-"""``object.palpate_softness``: softness in the maker's words.
+"""``object.palpate_softness``: softness in makers' words.
 
-The Shore value is no number of its own but Young's modulus read and set in other words: so the two
-cannot disagree, and it takes effect while somebody presses, as Young's modulus does.
+The Shore value is computed from Young's modulus and sets it: so the two cannot disagree, and both
+take effect during a press.
 """
 
 import bpy
@@ -20,12 +20,12 @@ LEGEND_STEPS = 5
 
 
 def shore_now(thing: bpy.types.Object) -> Shore:
-    """The Shore value of the object's material on the scale that is chosen.
+    """Shore value of the object's material on the chosen scale.
 
     Raises
     ------
     PalpateError
-        The material is softer or firmer than the scale says.
+        The material is beyond the scale.
     """
     material = thing.palpate
     scale = thing.palpate_softness.shore_scale
@@ -36,7 +36,7 @@ def _read_shore(settings: bpy.types.PropertyGroup) -> float:
     try:
         return shore_now(settings.id_data).value
     except PalpateError:
-        # A property cannot refuse to be read; the panel says that this is not the material's.
+        # A property cannot refuse to be read; the panel shows that this is not the material's.
         return 0.0
 
 
@@ -49,7 +49,7 @@ def _set_shore(settings: bpy.types.PropertyGroup, value: float) -> None:
 
 
 def legend_colour(step: int) -> bpy.props.FloatVectorProperty:
-    """One colour of the map's legend, for show."""
+    """Colour of the map's legend, read-only."""
     colour = tuple(ramp([step / (LEGEND_STEPS - 1)])[0].tolist())
     return bpy.props.FloatVectorProperty(
         name="Colour",
@@ -59,7 +59,7 @@ def legend_colour(step: int) -> bpy.props.FloatVectorProperty:
         min=0.0,
         max=1.0,
         get=lambda _: colour,
-        # Without a way to be set it would be drawn as switched off, darker than it is.
+        # Without a setter it would be drawn as disabled, darker than it is.
         set=lambda _, __: None,
         options={"HIDDEN"},
     )
@@ -114,7 +114,7 @@ class PalpateSoftness(bpy.types.PropertyGroup):
     colours_3: legend_colour(3)
     colours_4: legend_colour(4)
 
-    # What was found last. Written by the operators only; lengths in mm, stiffness in N/mm.
+    # Latest results, written by the operators only; lengths in mm, stiffness in N/mm.
     read_scale: bpy.props.StringProperty(options={"HIDDEN"})
     read_value: bpy.props.FloatProperty(options={"HIDDEN"})
     read_block: bpy.props.FloatProperty(options={"HIDDEN"})
@@ -132,10 +132,10 @@ classes = (PalpateSoftness,)
 
 
 def register() -> None:
-    """Give objects their softness."""
+    """Add the properties to objects."""
     bpy.types.Object.palpate_softness = bpy.props.PointerProperty(type=PalpateSoftness)
 
 
 def unregister() -> None:
-    """Take it away; files keep what is stored in them."""
+    """Remove the properties; files keep their values."""
     del bpy.types.Object.palpate_softness
