@@ -34,7 +34,7 @@ def draw_bake(layout: bpy.types.UILayout, context: bpy.types.Context, bake: Bake
     # An unknown share is shown as time only.
     factor = progress.share or 0.0
     layout.progress(factor=factor, type="BAR", text=bake_words.how_far(progress), translate=False)
-    say(layout, context, bake_words.step(progress), "TIME")
+    say(layout, context, progress.text, "TIME")
     layout.operator("palpate.cancel_bake", icon="CANCEL")
 
 

@@ -59,7 +59,7 @@ class JobProgress:
     """
 
     step: str
-    text: str
+    text: Sentence
     share: float | None
     seconds: float
     remaining: float | None = None
@@ -108,7 +108,7 @@ class BakeJob:
         """
         seconds = time.monotonic() - self._started
         step, share = self._newest_progress()
-        text = STEP_TEXTS[step]
+        text = Sentence(STEP_TEXTS[step])
         if step == "tetrahedralize":
             if seconds > self._time_limit and not self.finished:
                 self.close()
@@ -117,7 +117,7 @@ class BakeJob:
                     "or epsilon, decimate the mesh first, or allow more time",
                     seconds=self._time_limit,
                 )
-            text = f"{text}: {stage(self._log())}"
+            text = Sentence("{step}: {stage}", step=text, stage=stage(self._log()))
         return JobProgress(step, text, share, seconds, self._remaining.update(seconds, share))
 
     @property

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 
+from ..sentence import Sentence
+
 # Words of its log in order of appearance, and the stages they stand for.
 STAGES = {
     "Starting tetrahedralization": "reading the mesh",
@@ -14,7 +16,7 @@ STAGES = {
 }
 
 
-def stage(log: str) -> str:
+def stage(log: str) -> Sentence:
     """The latest stage named in ``log``, with the pass and worst energy while it improves.
 
     fTetWild stops once the worst energy has fallen to 10, which is the only progress it shows.
@@ -26,6 +28,10 @@ def stage(log: str) -> str:
     passes = re.findall(r"/ pass (\d+) /", log)
     energies = re.findall(r"max_energy = ([0-9.e+]+)", log)
     if reached == "improving tetrahedra" and passes and energies:
-        worst = float(energies[-1])
-        return f"{reached}, pass {int(passes[-1]) + 1}, worst energy {worst:.0f} (goal 10)"
-    return reached
+        return Sentence(
+            "{stage}, pass {number}, worst energy {energy:.0f} (goal 10)",
+            stage=Sentence(reached),
+            number=int(passes[-1]) + 1,
+            energy=float(energies[-1]),
+        )
+    return Sentence(reached)

@@ -1,9 +1,5 @@
 """Where a bake stands, in words of the user's language."""
 
-from __future__ import annotations
-
-import re
-
 from ...core.bake.job import JobProgress
 from ..reporting.translated import shown
 from ..scene.quantities import duration
@@ -17,14 +13,3 @@ def how_far(progress: JobProgress) -> str:
     if progress.remaining is None:
         return f"{share}{duration(progress.seconds)}"
     return share + shown("{time} left", time=duration(progress.remaining))
-
-
-def step(progress: JobProgress) -> str:
-    """What it is doing: ``Filling with tetrahedra: finishing``."""
-    # The parts are fixed, what stands between and behind them are figures.
-    return re.sub(r"[^:,]+", lambda part: _translated(part.group()), progress.text)
-
-
-def _translated(part: str) -> str:
-    words = part.strip()
-    return part.replace(words, shown(words)) if words else part

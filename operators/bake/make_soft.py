@@ -84,7 +84,7 @@ class BakingOperator(Acting):
 
     def _show(self, context: bpy.types.Context, *, waiting: bool = False) -> None:
         progress = self._session.progress
-        text = f"{bake_words.step(progress)}, {bake_words.how_far(progress)}"
+        text = f"{shown(progress.text)}, {bake_words.how_far(progress)}"
         if waiting:
             text = shown(bake_words.WAITING)
         context.workspace.status_text_set(

@@ -61,7 +61,9 @@ def refusal(thing: bpy.types.Object | None) -> str:
             others=others,
         )
     if thing.mode != "OBJECT":
-        return Sentence("Leave {mode} Mode first", mode=thing.mode.replace("_", " ").title())
+        # The name of most modes is in Blender's own dictionary.
+        mode = f"{thing.mode.replace('_', ' ').title()} Mode"
+        return Sentence("Leave {mode} first", mode=Sentence(mode))
     keys = thing.data.shape_keys
     if keys and not keys.use_relative:
         return Sentence(

@@ -8,6 +8,7 @@ from enum import Enum
 import bpy
 
 from ...core.errors import PalpateError
+from ...core.sentence import Sentence
 from ..device import device_source
 from ..scene.object_handle import ObjectHandle
 from .press_events import Source
@@ -80,8 +81,7 @@ def _lead(lead: Lead, empty: bpy.types.Object | None, panel_name: str) -> Finger
         return FingerLead(lead)
     if empty is None:
         raise PalpateError(
-            "finger: no Empty is chosen; pick one below {panel_name} (Led By), or add one (Add > "
-            "Empty)",
-            panel_name=panel_name,
+            "finger: no Empty is chosen; pick one below {panel} (Led By), or add one (Add > Empty)",
+            panel=Sentence(panel_name),
         )
     return FingerLead(lead, ObjectHandle.of(empty))
