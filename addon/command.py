@@ -14,7 +14,7 @@ import bpy
 
 from ..core.errors import PalpateError
 from ..core.shape.force_at_depth.felt_force import FELT_CHOICES
-from ..core.shape.shapes import SHAPES
+from ..core.shape.shapes import FORMER_NAMES, SHAPES, shape_name
 from ..core.softness.scales.materials import MATERIALS
 from ..operators.bake import bake_session
 from ..operators.object import body_store
@@ -127,7 +127,7 @@ def press(arguments: argparse.Namespace) -> dict[str, object]:
         "object": thing.name,
         **(fingers[0] if len(fingers) == 1 else {"fingers": fingers}),
         "max_displacement": pressed.largest_displacement,
-        "shape": chosen_shape(thing),
+        "shape": shape_name(chosen_shape(thing)),
         "shape_key": pressed.shape_key,
     }
 
@@ -142,7 +142,8 @@ def _choose(thing: bpy.types.Object, arguments: argparse.Namespace) -> None:
     if arguments.felt is not None:
         thing.palpate.felt = arguments.felt.upper()
     if arguments.shape is not None:
-        thing.palpate.shape = arguments.shape.upper().replace("-", "_")
+        asked = "table" if arguments.shape == "paper" else arguments.shape
+        thing.palpate.shape = asked.upper().replace("-", "_")
     for option, name in (("mode", "contact_mode"), ("tip", "tip")):
         if getattr(arguments, option) is not None:
             setattr(bpy.context.scene.palpate, name, getattr(arguments, option).upper())
@@ -233,7 +234,8 @@ def _parser() -> argparse.ArgumentParser:
     tips = [name.lower() for name, *_ in TIP_ITEMS]
     two.add_argument("--tip", choices=tips, help="what touches; else as the scene says")
     two.add_argument("--radius", type=float, metavar="R", help="of fingertip or rod, scene units")
-    two.add_argument("--shape", choices=SHAPES, help="how it deforms; else as the object says")
+    shapes = (*SHAPES, *FORMER_NAMES)
+    two.add_argument("--shape", choices=shapes, help="how it deforms; else as the object says")
     two.add_argument("--felt", choices=FELT_CHOICES, help="force; else as the object says")
     two.add_argument("--keep", action="store_true", help="keep a shape key and save the file")
     two.set_defaults(run=press)

@@ -22,7 +22,7 @@ sys.path[:0] = [str(HERE), str(SCENES)]
 # World axes, metres: from below the tip of the left ear to the side and down, where an ear comes to
 # that is bent without being stretched.
 BELOW, BY = 0.008, (0.004, 0.050, -0.022)
-SHAPES = ("LINEAR", "TABLE", "SERIES", "ROTATION_STRAIN")
+SHAPES = ("LINEAR", "TABLE", "ROTATION_STRAIN")
 TRUTH = "Newton's Method"
 SAMPLES, WIDTH, HEIGHT = 12, 400, 500
 OUTLINE = (1.0, 1.0, 1.0, 1.0)

@@ -1,15 +1,19 @@
 """Large deformation: drawn shape, its cost and progress, and the force law."""
 
+from collections.abc import Sequence
+from typing import Any
+
 import bpy
 
 from ...core.shape.force_at_depth.softening_table import whole_table_seconds
 from ...core.shape.shape_cost import BodySize, ShapeCost, shape_cost
+from ...core.shape.shapes import shape_name
 from ...operators.reporting.translated import shown
 from ...operators.scene.quantities import duration, memory, waiting
 from ...operators.session import press_session
 from ...operators.session.press_session import PressSession
 from ...operators.shape.drawn_shape import chosen_shape
-from ..properties.shape import FELT_ITEMS, SHAPE_ITEMS
+from ..properties.shape import FELT_ITEMS, FORMER_ITEM, SHAPE_ITEMS
 from .base import PalpatePanel, draw_rows, named_properties
 from .sentence import say
 
@@ -25,8 +29,10 @@ class PALPATE_PT_shape(PalpatePanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         layout, thing = named_properties(self), context.object
         settings = thing.palpate
-        layout.prop(settings, "shape")
-        say(layout, context, _explained(SHAPE_ITEMS, settings.shape), "BLANK1")
+        choices = layout.column(heading="Shape", align=True)
+        for item in SHAPE_ITEMS:
+            choices.prop_enum(settings, "shape", item[0])
+        say(layout, context, _explained([*SHAPE_ITEMS, FORMER_ITEM], settings.shape), "BLANK1")
         _draw_cost(layout, context, thing)
         press = press_session.current()
         if press is not None and press.handle.find() == thing:
@@ -56,7 +62,7 @@ def cost_now(thing: bpy.types.Object) -> ShapeCost | None:
     if not baked.free_surface_count:
         return None
     size = BodySize(baked.node_count, baked.tet_count, baked.free_surface_count)
-    return shape_cost(chosen_shape(thing), size)
+    return shape_cost(shape_name(chosen_shape(thing)), size)
 
 
 def _draw_cost(
@@ -105,5 +111,5 @@ def _draw_felt(
         say(layout, context, "The linear force is felt", "BLANK1")
 
 
-def _explained(items: list[tuple[str, str, str]], chosen: str) -> str:
-    return next(text for name, _, text in items if name == chosen)
+def _explained(items: Sequence[tuple[Any, ...]], chosen: str) -> str:
+    return next(item[2] for item in items if item[0] == chosen)

@@ -1,6 +1,6 @@
 """What a drawn frame costs in every shape, in its parts.
 
-    python benchmarks/shape/frame_cost.py [--quick] [--shapes linear series ...]
+    python benchmarks/shape/frame_cost.py [--quick] [--shapes linear paper ...]
 
 For ``mouse-1.7k`` and ``mouse-20k``, under touches of 3 mm in the middle of random triangles, one
 after the other, with all at hand that the shapes prepare in the background:
@@ -12,9 +12,7 @@ after the other, with all at hand that the shapes prepare in the background:
 - frame: all of it.
 
 Times are the thread's processor time, medians, so that other programs count only by the caches and
-the memory they take; ``clock`` is the median by the clock. For the larger body each column of the
-paper's table takes a minute of Newton's method: there its entries are L's, which cost a frame the
-same, and nothing is prepared.
+the memory they take; ``clock`` is the median by the clock.
 
 Claim: at 1.7k nodes every shape leaves 60 frames a second. ``--quick`` leaves out ``mouse-20k``,
 whose body is baked first and kept in build/frame-cost.
@@ -44,8 +42,7 @@ from palpate.core.bake.settings import BakeSettings
 from palpate.core.bake.steps import bake
 from palpate.core.body import body_file
 from palpate.core.body.soft_body import SoftBody
-from palpate.core.shape.paper.newton_shape import TableShape
-from palpate.core.shape.shapes import MAKERS, SHAPES, Shape, ShapeName, shape
+from palpate.core.shape.shapes import MAKERS, SHAPES, ShapeName, shape
 from palpate.core.stiffness.pins import PinNodes
 
 KEPT = Path(__file__).resolve().parents[2] / "build" / "frame-cost"
@@ -53,7 +50,6 @@ TOUCHES = 3
 FRAMES = 60
 LARGEST_FRAME = 1 / 60
 CLAIMED_NODES = 2000
-LARGEST_FOR_NEWTONS_TABLE = 5000
 
 
 def baked(measured: MeasuredBody) -> SoftBody:
@@ -87,25 +83,12 @@ def draw_seconds(body: SoftBody) -> float:
     return processor + (blender_write_seconds() or 0.0)
 
 
-def shape_at_hand(body: SoftBody, name: ShapeName, touches: list[Load]) -> Shape:
-    """A shape that knows all touches; the paper's table of a large body has stand-ins for them."""
-    made = shape(body, name)
-    if isinstance(made, TableShape) and len(body.mesh.nodes) > LARGEST_FOR_NEWTONS_TABLE:
-        table = made.table
-        for node in np.unique(body.free_index(np.concatenate([each.triangle for each in touches]))):
-            rows = body.compliance.columns(np.array([node])).T.astype(np.float32)
-            table.positive[int(node)], table.negative[int(node)] = rows, rows.copy()
-        table.largest[:] = table.wanted
-        table.is_filled[:] = True
-    made.wait_for(touches[0].triangle)
-    made.displacements(touches[0].triangle, touches[0].nodal_forces)
-    return made
-
-
 def measure(body: SoftBody, name: ShapeName, touches: list[Load], draw: float) -> float:
     """Print a row for a shape; returns the seconds of a frame."""
     start = time.perf_counter()
-    made = shape_at_hand(body, name, touches)
+    made = shape(body, name)
+    made.wait_for(touches[0].triangle)
+    made.displacements(touches[0].triangle, touches[0].nodal_forces)
     prepare = time.perf_counter() - start
     try:
         for touch in touches:

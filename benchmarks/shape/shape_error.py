@@ -34,7 +34,7 @@ from palpate.core.body.soft_body import SoftBody
 from palpate.core.compliance.elimination.block_matrix import free_blocks
 from palpate.core.compliance.elimination.cholesky import CholeskyFactor, RepeatedElimination
 from palpate.core.mesh.tet_mesh import signed_volumes
-from palpate.core.shape.paper.newton_table import largest_carried, usual_largest_force
+from palpate.core.shape.paper.paper_entries import EntryFinder, usual_largest_force
 from palpate.core.shape.paper.paper_formula import PaperColumns, paper_displacements
 from palpate.core.shape.shapes import MAKERS, SHAPES, ShapeName, shape
 from palpate.core.shape.solid.free_solid import FreeSolid
@@ -102,7 +102,7 @@ def rows_of(load: Load, seen: Seen, choices: list[ShapeName]) -> list[Row]:
     truth = equilibrium(solid, forces).displacements[solid.surface]
     rows = [Row("true", 0.0, *seen.volume_and_worst(truth))]
     for name in choices:
-        found = by_table(load, solid) if name == "table" else drawn(load, name)
+        found = by_table(load, solid) if name == "paper" else drawn(load, name)
         error = float(np.linalg.norm(found - truth) / np.linalg.norm(truth))
         rows.append(Row(name, error, *seen.volume_and_worst(found)))
     return rows
@@ -119,20 +119,18 @@ def drawn(load: Load, name: ShapeName) -> NDArray[np.float64]:
 
 
 def by_table(load: Load, solid: FreeSolid) -> NDArray[np.float64]:
-    """As the shape ``table`` draws it, with no more entries than this load needs."""
+    """As the shape ``paper`` draws it, with no more entries than this load needs."""
     places = load.body.free_index(load.nodes)
     forces = load.nodal_forces.ravel() / load.body.young_modulus
     loaded = np.flatnonzero(forces)
-    linear = load.body.compliance.columns(places).T[loaded]
-    wanted = usual_largest_force(load.body.mesh)
-    rows, largest = [], []
-    for index in loaded.tolist():
-        freedom = 3 * int(places[index // 3]) + index % 3
-        carried, found = largest_carried(solid, freedom, np.copysign(wanted, forces[index]))
-        rows.append(found.displacements[solid.surface].ravel() / carried)
-        largest.append([abs(carried)] * 2)
-    table = np.array(rows)
-    columns = PaperColumns(linear, table, table, np.array(largest))
+    finder, wanted = EntryFinder(solid), usual_largest_force(load.body.mesh)
+    found = [finder.entries(3 * int(places[at // 3]) + at % 3, wanted) for at in loaded.tolist()]
+    columns = PaperColumns(
+        load.body.compliance.columns(places).T[loaded],
+        np.array([one.per_force[0] for one in found]),
+        np.array([one.per_force[1] for one in found]),
+        np.array([one.largest for one in found]),
+    )
     return paper_displacements(columns, forces[loaded]).reshape(-1, 3)
 
 

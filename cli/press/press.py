@@ -16,7 +16,7 @@ from ...core.contact.equations import CONTACT_MODES, ContactMode, Touch
 from ...core.errors import PalpateError
 from ...core.files.atomic_file import atomic_file
 from ...core.shape.meeting import FingerLoad, settled
-from ...core.shape.shapes import SHAPES, shape
+from ...core.shape.shapes import FORMER_NAMES, SHAPES, shape, shape_name
 from ...core.stiffness.assembly import lame_parameters
 from ..body.body_argument import add_body
 from ..body.figure_lines import as_lines
@@ -72,11 +72,11 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add_felt(parser)
     parser.add_argument(
         "--shape",
-        choices=SHAPES,
+        choices=(*SHAPES, *FORMER_NAMES),
         default="linear",
         help="how the deformed shape is computed under the forces: linear elasticity, the paper's "
-        "(16) by tables or by power series, or linear elasticity bent by the rotations it means "
-        "and relaxed (default: linear)",
+        "(16) (paper; formerly table and series), or linear elasticity bent by the rotations it "
+        "means and relaxed (default: linear)",
     )
     parser.add_argument(
         "--displacements",
@@ -179,7 +179,7 @@ def _common_figures(
     return {
         "max_displacement": float(np.linalg.norm(displacements, axis=1).max()),
         "young_modulus": young_modulus,
-        "shape": arguments.shape,
+        "shape": shape_name(arguments.shape),
     }
 
 

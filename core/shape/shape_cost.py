@@ -5,14 +5,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from .paper.series_shape import LARGEST_WHOLE_LOAD
+from .paper.paper_shape import MOST_BYTES
 from .rotation_strain.rotation_strain_shape import frame_plan
 from .shapes import ShapeName
 
 # The coefficients below were measured on a body of so many nodes, and their exponents up to 20,000.
 MEASURED_NODES = 1700
-# By how much the table of the series is packed.
-PACKED = 15
 
 
 @dataclass(frozen=True)
@@ -49,10 +47,8 @@ def shape_cost(name: ShapeName, size: BodySize) -> ShapeCost:
             return ShapeCost(_linear_seconds(size), 0.0, 0.0, 0.0)
         case "rotation-strain":
             return _rotation_strain(size)
-        case "series":
-            return _series(size)
-        case "table":
-            return _table(size)
+        case "paper":
+            return _paper(size)
 
 
 def _rotation_strain(size: BodySize) -> ShapeCost:
@@ -68,29 +64,15 @@ def _rotation_strain(size: BodySize) -> ShapeCost:
     return ShapeCost(frame, first, 0.0, 1.3 * _factor_bytes(size) + 200.0 * size.tets)
 
 
-def _series(size: BodySize) -> ShapeCost:
-    fields = 144.0 * size.tets
-    if size.nodes <= LARGEST_WHOLE_LOAD:
-        frame = 2 * _solve_seconds(size) + 1e-6 * size.tets
-        return ShapeCost(frame, _factor_seconds(size) + 0.1, 0.0, _factor_bytes(size) + fields)
-    entry = 0.010 * _grown(size, 1.5)
-    freedoms = 3 * size.free_surface_nodes
-    return ShapeCost(
-        _linear_seconds(size) + 3e-4,
-        _factor_seconds(size) + 9 * entry,
-        freedoms * entry,
-        _factor_bytes(size) + fields + 2 * _dense_bytes(size) / PACKED,
-    )
-
-
-def _table(size: BodySize) -> ShapeCost:
-    # On average: F0 is found by halving, and hard ones take four times as long as easy ones.
-    entry = 2.6 * _grown(size, 1.4)
+def _paper(size: BodySize) -> ShapeCost:
+    # The mean for one sign; easy ones take a fifth of it, those that Newton's method ends thrice.
+    entry = 0.08 * _grown(size, 1.5)
+    table = 2 * _dense_bytes(size)
     return ShapeCost(
         _linear_seconds(size) + 1e-3,
         _factor_seconds(size) + 18 * entry,
         6 * size.free_surface_nodes * entry,
-        _factor_bytes(size) + 2 * _dense_bytes(size),
+        _factor_bytes(size) + 3500.0 * size.tets + min(table, MOST_BYTES),
     )
 
 

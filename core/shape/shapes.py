@@ -15,18 +15,22 @@ from numpy.typing import NDArray
 
 from ..body.soft_body import SoftBody
 from ..errors import PalpateError
-from .paper.newton_shape import TableShape
-from .paper.series_shape import SeriesShape
+from ..sentence import Sentence
+from .paper.paper_shape import PaperShape
 from .rotation_strain.rotation_strain_shape import RotationStrainShape
 
-ShapeName: TypeAlias = Literal["linear", "table", "series", "rotation-strain"]
+ShapeName: TypeAlias = Literal["linear", "paper", "rotation-strain"]
 SHAPES: tuple[ShapeName, ...] = get_args(ShapeName)
 EXPLANATIONS: dict[ShapeName, str] = {
     "linear": "As the force is computed; large bends look swollen",
-    "table": "The paper's (16): stored large deformations, solved exactly; takes long to compute",
-    "series": "Power series in the force: right for bends and moderate dents, in milliseconds",
+    "paper": "The paper's (16): large deformations of single nodes, stored and added up",
     "rotation-strain": "Bends and twists keep their size; nearest to the truth, without a table",
 }
+# Names that files and scripts may still hold.
+FORMER_NAMES: dict[str, ShapeName] = {"table": "paper", "series": "paper"}
+SERIES_IS_PAPER = Sentence(
+    "the shape Series is no more; Paper is drawn, whose tables are now found by its power series"
+)
 
 
 class Shape(Protocol):
@@ -42,7 +46,9 @@ class Shape(Protocol):
 
     @property
     def notice(self) -> str:
-        """Which file of a table could not be used or written, and why; empty otherwise."""
+        """What users should know: which file of a table could not be used or written, and why, or
+        that another shape is drawn than the one that was named; empty otherwise.
+        """
         ...
 
     def displacements(
@@ -112,8 +118,7 @@ class LinearShape:
 MAKERS: dict[ShapeName, Callable[[SoftBody, Path | None], Shape]] = {
     "linear": lambda body, _: LinearShape(body),
     "rotation-strain": lambda body, _: RotationStrainShape(body),
-    "series": SeriesShape,
-    "table": TableShape,
+    "paper": PaperShape,
 }
 
 
@@ -122,7 +127,7 @@ def shape(body: SoftBody, choice: str, body_file: Path | None = None) -> Shape:
 
     Parameters
     ----------
-    choice : one of :data:`SHAPES`.
+    choice : one of :data:`SHAPES` or :data:`FORMER_NAMES`.
     body_file : where the body came from; tables are kept beside it. Without it they are not kept.
 
     Raises
@@ -130,11 +135,13 @@ def shape(body: SoftBody, choice: str, body_file: Path | None = None) -> Shape:
     PalpateError
         An unknown name, or a body for which there is no such shape.
     """
+    if choice == "series":
+        return PaperShape(body, body_file, remark=SERIES_IS_PAPER)
     return MAKERS[shape_name(choice)](body, body_file)
 
 
 def shape_name(choice: str) -> ShapeName:
-    """The name, checked.
+    """The name, checked; of a former name, what it means now.
 
     Raises
     ------
@@ -142,7 +149,7 @@ def shape_name(choice: str) -> ShapeName:
         An unknown one.
     """
     for name in SHAPES:
-        if name == choice:
+        if name == FORMER_NAMES.get(choice, choice):
             return name
     raise PalpateError(
         "shape {choice} is unknown; give {others} or {last}",

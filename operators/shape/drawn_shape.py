@@ -18,16 +18,17 @@ from ...core.body.soft_body import SoftBody
 from ...core.errors import PalpateError
 from ...core.servo.session import Snapshot
 from ...core.shape.meeting import FingerLoad, Meeting, Met, settled
-from ...core.shape.shapes import LinearShape, Shape, ShapeName, shape, shape_name
+from ...core.shape.shapes import LinearShape, Shape, shape
 from ..object.drawn_body import DrawnBody
 
 # So long a shape that is kept waits for what it needs, s.
 PATIENCE = 3.0
 
 
-def chosen_shape(thing: bpy.types.Object) -> ShapeName:
-    """What the object's panel says."""
-    return shape_name(thing.palpate.shape.lower().replace("_", "-"))
+def chosen_shape(thing: bpy.types.Object) -> str:
+    """What the object's panel says, or an older file: also a former name."""
+    name: str = thing.palpate.shape.lower().replace("_", "-")
+    return name
 
 
 @dataclass(eq=False)
@@ -42,7 +43,7 @@ class DrawnShape:
 
     body: SoftBody
     body_file: Path | None
-    name: ShapeName = "linear"
+    name: str = "linear"
     problem: str = ""
     _shape: Shape = field(init=False)
     _meeting: Meeting = field(init=False)
@@ -62,7 +63,7 @@ class DrawnShape:
         """Which file of a table could not be used, and why; empty otherwise."""
         return self._shape.notice
 
-    def follow(self, name: ShapeName) -> None:
+    def follow(self, name: str) -> None:
         """Draw this one from now on, as soon as it can be. Waits for nothing."""
         if name != self.name:
             self._end()

@@ -58,6 +58,11 @@ class RecordedLayout:
         assert name in data.bl_rna.properties, name
         self.written.properties.append(name)
 
+    def prop_enum(self, data: Any, name: str, value: str, **_: Any) -> None:
+        """A button for one value; fails where there is none of this name."""
+        assert value in data.bl_rna.properties[name].enum_items
+        self.prop(data, name)
+
     def prop_search(self, data: Any, name: str, place: Any, names: str, **_: Any) -> None:
         """A property with a list to choose from."""
         assert hasattr(place, names)

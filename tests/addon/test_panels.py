@@ -13,8 +13,7 @@ from soft_scene import cube, part, soft_cube, wait
 TOP = (0.002, 0.001, 0.02501)
 SHAPES = {
     "LINEAR": "linear",
-    "TABLE": "table",
-    "SERIES": "series",
+    "TABLE": "paper",
     "ROTATION_STRAIN": "rotation-strain",
 }
 # Nodes, tetrahedra and free surface nodes of larger bodies.
@@ -74,7 +73,7 @@ def test_each_shape_is_explained_and_its_cost_told_before_the_press(panel, name)
     shapes = part("core.shape.shapes")
     felt = part("core.shape.force_at_depth.felt_force")
     said = drawn(panel, thing)
-    assert said.properties == ["shape", "felt"]
+    assert said.properties == [*["shape"] * len(SHAPES), "felt"]
     assert shapes.EXPLANATIONS[SHAPES[name]] in said.text
     assert felt.EXPLANATIONS["linear"] in said.text
     assert not said.bars
@@ -93,7 +92,7 @@ def test_figures_are_those_of_the_prediction_with_their_units(panel):
     cost, size = (
         getattr(part("core.shape.shape_cost"), name) for name in ("shape_cost", "BodySize")
     )
-    expected = cost("table", size(*LARGE))
+    expected = cost("paper", size(*LARGE))
     quantities = part("operators.scene.quantities")
     said = drawn(panel, thing).lines
     rows = dict(pairwise(said))
@@ -140,9 +139,9 @@ def test_progress_is_a_bar_while_the_touched_place_is_computed(panel, press, mon
         made.append(Halfway(body))
         return made[0]
 
-    monkeypatch.setitem(shapes.MAKERS, "series", slowly)
+    monkeypatch.setitem(shapes.MAKERS, "paper", slowly)
     thing = soft_cube()
-    thing.palpate.shape = "SERIES"
+    thing.palpate.shape = "TABLE"
     session = press(thing)
     assert drawn(panel, thing).bars == [(0.0, "Shape 0 %")]
     allowed.set()
@@ -158,7 +157,7 @@ def test_why_the_linear_shape_is_drawn_stands_in_the_panel(panel, press, monkeyp
     def refuse(*_):
         raise part("core.errors").PalpateError("shape: no room; choose another")
 
-    monkeypatch.setitem(part("core.shape.shapes").MAKERS, "table", refuse)
+    monkeypatch.setitem(part("core.shape.shapes").MAKERS, "paper", refuse)
     thing = soft_cube()
     thing.palpate.shape = "TABLE"
     session = press(thing)

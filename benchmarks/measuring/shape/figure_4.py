@@ -16,8 +16,8 @@ from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from numpy.typing import NDArray
 
 from palpate.core.body.soft_body import SoftBody
-from palpate.core.shape.paper.newton_shape import NewtonTable
 from palpate.core.shape.paper.paper_formula import paper_displacements
+from palpate.core.shape.paper.paper_table import PaperTable
 from palpate.core.shape.solid.free_solid import FreeSolid
 from palpate.core.shape.solid.newton import NoEquilibrium, equilibrium
 
@@ -32,7 +32,7 @@ PRESSES = (
 )
 
 
-def draw_figure_4(path: Path, table: NewtonTable) -> None:
+def draw_figure_4(path: Path, table: PaperTable) -> None:
     """Draw it as a picture, and print how far the shapes are from Newton's."""
     body = table.body
     solid = FreeSolid.of(body)
@@ -55,7 +55,7 @@ def draw_figure_4(path: Path, table: NewtonTable) -> None:
 
 
 def _shapes(
-    table: NewtonTable,
+    table: PaperTable,
     solid: FreeSolid,
     share: NDArray[np.float64],
     displacement: NDArray[np.float64],

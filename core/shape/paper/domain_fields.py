@@ -99,16 +99,3 @@ def product(first: Field, second: Field) -> Field:
     """A B."""
     result: Field = np.einsum("iadk,ajdk->ijdk", first, second)
     return result
-
-
-def volume_ratio(gradient: Field) -> NDArray[np.float64]:
-    """Det(I + H), (d, k)."""
-    f = gradient.copy()
-    for axis in range(3):
-        f[axis, axis] += 1.0
-    ratio: NDArray[np.float64] = (
-        f[0, 0] * (f[1, 1] * f[2, 2] - f[1, 2] * f[2, 1])
-        - f[0, 1] * (f[1, 0] * f[2, 2] - f[1, 2] * f[2, 0])
-        + f[0, 2] * (f[1, 0] * f[2, 1] - f[1, 1] * f[2, 0])
-    )
-    return ratio

@@ -30,8 +30,7 @@ class OutwardFilling:
         is_filled: NDArray[np.bool_],
         fill: Callable[[NDArray[np.int64]], None],
         at_once: int,
-        prepare: Callable[[], None] | None = None,
-        complete: Callable[[NDArray[np.int64]], None] | None = None,
+        most: int | None = None,
     ) -> None:
         """Begin with nothing to do.
 
@@ -41,35 +40,24 @@ class OutwardFilling:
         is_filled : bool (n,), kept up to date by ``fill``.
         fill : called in the thread with the numbers (k,) of places that are empty.
         at_once : largest k.
-        prepare : called in the thread first of all, at once.
-        complete : called in the thread with the touched places, once all of them are filled.
+        most : places that are filled, beyond which only those asked for are; None for all.
         """
         self._positions = positions
         self._is_filled = is_filled
         self._fill = fill
         self._at_once = at_once
-        self._prepare = prepare
-        self._complete = complete
+        self._most = len(positions) if most is None else most
         self._changed = threading.Condition()
         self._wish: NDArray[np.int64] = np.zeros(0, dtype=np.int64)
-        self._is_complete = True
         self._is_closed = False
         self._last_frame = -np.inf
         self._problem: BaseException | None = None
-        self._is_prepared = prepare is None
         self._thread: threading.Thread | None = None
-        if prepare is not None:
-            self._begin()
 
     @property
     def problem(self) -> BaseException | None:
         """What ended the thread, if anything did."""
         return self._problem
-
-    @property
-    def is_prepared(self) -> bool:
-        """Whether what comes first is done."""
-        return self._is_prepared
 
     def around(self, places: NDArray[np.int64]) -> None:
         """Fill these places next, and then outward from them. Returns at once.
@@ -81,7 +69,6 @@ class OutwardFilling:
             if np.array_equal(places, self._wish):
                 return
             self._wish = places.copy()
-            self._is_complete = self._complete is None
             self._changed.notify_all()
         self._begin()
 
@@ -96,22 +83,11 @@ class OutwardFilling:
             Whatever ended the filling.
         """
         self.around(places)
-        self._wait(places, is_touched=True)
-
-    def finish(self) -> None:
-        """Return when everything is filled; errors as for :meth:`wait_for`."""
-        everything = np.arange(len(self._positions))
-        if not len(self._wish):
-            self.around(everything[:1])
-        self._wait(everything)
-
-    def _wait(self, places: NDArray[np.int64], *, is_touched: bool = False) -> None:
         with self._changed:
             self._last_frame = -np.inf
 
             def is_there() -> bool:
-                filled = bool(self._is_filled[places].all())
-                return filled and (self._is_complete or not is_touched)
+                return bool(self._is_filled[places].all())
 
             self._changed.wait_for(lambda: self._is_closed or self._problem or is_there())
             if self._problem is not None:
@@ -138,44 +114,29 @@ class OutwardFilling:
 
     def _run(self) -> None:
         try:
-            if self._prepare is not None:
-                self._prepare()
-                self._is_prepared = True
-                self._tell()
             while (next_places := self._next()) is not None:
                 began = time.monotonic()
-                if self._is_filled[next_places].all():
-                    self._complete_touched(next_places)
-                else:
-                    self._fill(next_places)
+                self._fill(next_places)
                 self._tell()
                 self._give_way(time.monotonic() - began)
         except Exception as problem:  # noqa: BLE001 - raised again where it is waited for
             self._problem = problem
             self._tell()
 
-    def _complete_touched(self, places: NDArray[np.int64]) -> None:
-        if self._complete is not None:
-            self._complete(places)
-        with self._changed:
-            self._is_complete |= np.array_equal(places, self._wish)
-
     def _tell(self) -> None:
         with self._changed:
             self._changed.notify_all()
 
     def _next(self) -> NDArray[np.int64] | None:
-        """The places of the next slice, or touched ones to complete; None when there is none."""
+        """The places of the next slice; None when it is closed."""
         with self._changed:
             while not self._is_closed:
                 wish = self._wish
                 missing = wish[~self._is_filled[wish]]
                 if missing.size:
                     return missing[: self._at_once]
-                if not self._is_complete:
-                    return wish
                 empty = np.flatnonzero(~self._is_filled)
-                if wish.size and empty.size:
+                if wish.size and empty.size > len(self._positions) - self._most:
                     middle = self._positions[wish].mean(axis=0)
                     distances = np.linalg.norm(self._positions[empty] - middle, axis=1)
                     return empty[np.argsort(distances, kind="stable")[: self._at_once]]

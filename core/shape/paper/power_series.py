@@ -13,93 +13,32 @@ B. Cochelin: A path-following technique via an asymptotic-numerical method, Comp
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..solid.free_solid import FreeSolid
-from .domain_fields import DomainFields, Field, gram, product, put, symmetric, volume_ratio
-
-ORDER = 3
+from .domain_fields import DomainFields, Field, gram, product, put, symmetric
 
 
-@dataclass(frozen=True, eq=False)
-class SeriesSolid:
-    """A body ready for series: its factored stiffness, and its strains for many loads at once.
+def series_terms(
+    body: FreeSolid, fields: Sequence[DomainFields], forces: NDArray[np.float64], order: int
+) -> list[NDArray[np.float64]]:
+    """a_1 ... a_order, (f, 3, k) each, of loads (f, 3, k) on the free nodes, at unit modulus.
 
-    Everything at unit modulus; displacements and forces are (f, 3, k): free nodes, axes, loads.
+    ``fields`` are those of the body's terms of strain energy, :meth:`DomainFields.of`.
     """
+    terms, partial = [_solved(body, forces)], [_PartialSeries(field) for field in fields]
+    while len(terms) < order:
+        lower = np.zeros_like(forces)
+        for each in partial:
+            lower -= each.next_forces(terms[-1])
+        terms.append(_solved(body, lower))
+    return terms
 
-    body: FreeSolid
 
-    @cached_property
-    def fields(self) -> tuple[DomainFields, ...]:
-        """The terms of the strain energy."""
-        return tuple(DomainFields.of(term) for term in self.body.solid.terms)
-
-    def solve(self, forces: NDArray[np.float64]) -> NDArray[np.float64]:
-        """K^-1 times forces."""
-        solved = self.body.factor.solve(forces.reshape(-1, forces.shape[2]))
-        return solved.reshape(forces.shape)
-
-    def unit_loads(self, freedoms: NDArray[np.int64]) -> NDArray[np.float64]:
-        """1 N on each of these freedoms (k,) of the free surface, ``3 * place + axis``."""
-        loads = np.zeros((self.body.node_count, 3, len(freedoms)))
-        loads[self.body.surface[freedoms // 3], freedoms % 3, np.arange(len(freedoms))] = 1.0
-        return loads
-
-    def terms(self, forces: NDArray[np.float64], order: int = ORDER) -> list[NDArray[np.float64]]:
-        """a_1 ... a_order, (f, 3, k) each, for loads f."""
-        terms, partial = [self.solve(forces)], [_PartialSeries(field) for field in self.fields]
-        while len(terms) < order:
-            lower = np.zeros_like(forces)
-            for each in partial:
-                lower -= each.next_forces(terms[-1])
-            terms.append(self.solve(lower))
-        return terms
-
-    def second(self, first: NDArray[np.float64]) -> NDArray[np.float64]:
-        """a_2 (f, 3, k) of loads whose a_1 is given."""
-        lower = np.zeros_like(first)
-        for field in self.fields:
-            lower -= _PartialSeries(field).next_forces(first)
-        return self.solve(lower)
-
-    def forces(self, displacements: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Forces (f, 3, k) that hold the body at displacements; as :meth:`FreeSolid.forces`."""
-        total = np.zeros_like(displacements)
-        for field in self.fields:
-            stresses = field.no_stress(displacements.shape[2])
-            for span, gradient in field.gradients_of(displacements):
-                strain = symmetric(gradient) + 0.5 * gram(gradient, gradient)
-                stress = field.stress(strain, span)
-                put(stresses, span, stress + product(gradient, stress))
-            total += field.nodal_forces(stresses)
-        return total
-
-    def tangent_forces(
-        self, displacements: NDArray[np.float64], change: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
-        """The tangent stiffness at ``displacements`` times ``change``, load by load, (f, 3, k)."""
-        total = np.zeros_like(displacements)
-        for field in self.fields:
-            stresses = field.no_stress(displacements.shape[2])
-            both = zip(field.gradients_of(displacements), field.gradients_of(change), strict=True)
-            for (span, gradient), (_, turn) in both:
-                strain = symmetric(gradient) + 0.5 * gram(gradient, gradient)
-                stress = field.stress(strain, span)
-                gain = field.stress(symmetric(turn) + gram(gradient, turn), span)
-                put(stresses, span, gain + product(gradient, gain) + product(turn, stress))
-            total += field.nodal_forces(stresses)
-        return total
-
-    def smallest_volume_ratio(self, displacements: NDArray[np.float64]) -> NDArray[np.float64]:
-        """The smallest det F among the domains, (k,)."""
-        ratios = [volume_ratio(part) for _, part in self.fields[0].gradients_of(displacements)]
-        smallest: NDArray[np.float64] = np.concatenate(ratios).min(axis=0)
-        return smallest
+def _solved(body: FreeSolid, forces: NDArray[np.float64]) -> NDArray[np.float64]:
+    return body.factor.solve(forces.reshape(-1, forces.shape[2])).reshape(forces.shape)
 
 
 class _PartialSeries:
@@ -143,12 +82,4 @@ def _square(gradients: Sequence[Field]) -> Field:
         total += gram(gradients[place], gradients[count - 1 - place])
     if count % 2:
         total += 0.5 * gram(gradients[count // 2], gradients[count // 2])
-    return total
-
-
-def value(terms: Sequence[NDArray[np.float64]], share: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The series at shares s (k,) of its loads, terms (..., k) each."""
-    total = np.zeros_like(terms[0])
-    for term in reversed(terms):
-        total = (total + term) * share
     return total

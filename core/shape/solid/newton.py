@@ -78,7 +78,7 @@ class Equilibrium:
     ----------
     displacements : (f, 3) of the free nodes, metres.
     load_steps : how many parts the load was applied in.
-    iterations : Newton steps in all, those of failed load steps included.
+    iterations : Newton steps in all, those of failed load steps included, from ``start`` or rest.
     residual : largest force that is not balanced, as a share of the largest of the load.
     history : that share before every iteration of the last load step, and at its end.
     """
@@ -114,13 +114,11 @@ def equilibrium(
     """
     if not forces.any():
         return Equilibrium(np.zeros_like(forces), 0, 0, 0.0, ())
-    iterations = 0
-    if start is not None and is_upright(body.solid, start):
-        step = _newton(body, forces, start, RESIDUAL_SHARE, may_go_on)
-        iterations += step.iterations
-        if step.found:
-            return Equilibrium(step.displacements, 1, iterations, step.history[-1], step.history)
-    reached, held, steps = np.zeros_like(forces), 0.0, 0
+    if start is not None:
+        found = equilibrium_near(body, forces, start, RESIDUAL_SHARE, may_go_on)
+        if found is not None:
+            return found
+    reached, held, steps, iterations = np.zeros_like(forces), 0.0, 0, 0
     # Newton's first step is the linear one: more load than that can take is not tried at once.
     share = min(largest_step, 2.0 * unhindered_share(body.solid, reached, body.linear(forces)))
     smallest_step = min(smallest_step, 0.25 * share)
@@ -139,6 +137,25 @@ def equilibrium(
             share = 0.5 * min(share, target - held)
             if share < smallest_step:
                 raise NoEquilibrium(held, reached)
+
+
+def equilibrium_near(
+    body: FreeSolid,
+    forces: NDArray[np.float64],
+    start: NDArray[np.float64],
+    residual_share: float,
+    may_go_on: Callable[[], None] = unwatched,
+) -> Equilibrium | None:
+    """The body under ``forces`` (f, 3), from displacements (f, 3) nearby; None if none is there.
+
+    ``residual_share`` is the largest force left unbalanced, as a share of the largest of the load.
+    """
+    if not is_upright(body.solid, start):
+        return None
+    step = _newton(body, forces, start, residual_share, may_go_on)
+    if not step.found:
+        return None
+    return Equilibrium(step.displacements, 1, step.iterations, step.history[-1], step.history)
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,15 +11,7 @@ import pytest
 from soft_scene import key_coordinates, key_names, mesh_state, part, press_down, soft_cube, wait
 
 TOP, DEPTH = (0.002, 0.001, 0.02501), 0.004
-SHAPES = ("LINEAR", "TABLE", "SERIES", "ROTATION_STRAIN")
-
-
-@pytest.fixture
-def series_table(palpate, monkeypatch):
-    """The table of a series, which only large bodies have by themselves."""
-    shape = part("core.shape.paper.series_shape").SeriesShape
-    makers = part("core.shape.shapes").MAKERS
-    monkeypatch.setitem(makers, "series", lambda body, file: shape(body, file, whole_load=False))
+SHAPES = ("LINEAR", "TABLE", "ROTATION_STRAIN")
 
 
 def begin_pressed(sessions, states, thing):
@@ -43,8 +35,7 @@ def test_every_shape_leaves_the_mesh_as_it_was(sessions, states, name, way):
     before = mesh_state(thing)
     thing.palpate.shape = name
     session = begin_pressed(sessions, states, thing)
-    # Newton's table is left while it is computed.
-    wait(session, lambda: name == "TABLE" or session.seen.shape.ready == 1.0)
+    wait(session, lambda: session.seen.shape.ready == 1.0)
     assert not session.seen.shape.problem
     assert mesh_state(thing) != before
     if way == "escape":
@@ -56,34 +47,26 @@ def test_every_shape_leaves_the_mesh_as_it_was(sessions, states, name, way):
 
 
 @pytest.mark.parametrize("name", SHAPES)
-def test_enter_keeps_what_every_shape_drew(sessions, states, name, monkeypatch):
-    monkeypatch.setattr(part("operators.shape.drawn_shape"), "PATIENCE", 0.2)
+def test_enter_keeps_what_every_shape_drew(sessions, states, name):
     thing = soft_cube()
     thing.palpate.shape = name
     session = begin_pressed(sessions, states, thing)
-    wait(
-        session,
-        lambda: name == "TABLE" or (session.seen.shape.ready == 1.0 and session.seen.drawn_contact),
-    )
+    wait(session, lambda: session.seen.shape.ready == 1.0 and session.seen.drawn_contact)
     drawn = key_coordinates(thing, "Palpate live")
     session.post(states.Keep())
     assert key_names(thing) == ["Basis", "Press 1"]
     kept = key_coordinates(thing, "Press 1")
     assert not np.array_equal(kept, key_coordinates(thing, "Basis"))
-    # Newton's table went on being solved between the last frame and Enter.
-    if name != "TABLE":
-        np.testing.assert_array_equal(kept, drawn)
+    np.testing.assert_array_equal(kept, drawn)
 
 
 @pytest.mark.parametrize("trouble", ["missing", "damaged", "foreign", "no table"])
-def test_a_table_file_that_is_no_good_is_told_once_and_made_anew(
-    sessions, states, series_table, trouble
-):
+def test_a_table_file_that_is_no_good_is_told_once_and_made_anew(sessions, states, trouble):
     thing = soft_cube()
-    thing.palpate.shape = "SERIES"
+    thing.palpate.shape = "TABLE"
     press_down(thing, depth=DEPTH)
     first = key_coordinates(thing, "Press 1")
-    file = table_file(thing, "series")
+    file = table_file(thing, "newton-table")
     good = file.read_bytes()
     match trouble:
         case "missing":
@@ -110,12 +93,10 @@ def test_a_table_file_that_is_no_good_is_told_once_and_made_anew(
     np.testing.assert_allclose(key_coordinates(thing, "Press 1"), first, rtol=0, atol=1e-7)
 
 
-def test_a_table_that_cannot_be_used_is_a_warning_of_the_operator(
-    palpate, series_table, monkeypatch
-):
+def test_a_table_that_cannot_be_used_is_a_warning_of_the_operator(palpate, monkeypatch):
     thing = soft_cube()
-    thing.palpate.shape = "SERIES"
-    file = table_file(thing, "series")
+    thing.palpate.shape = "TABLE"
+    file = table_file(thing, "newton-table")
     file.write_bytes(b"nothing")
     once = part("operators.press.press_once").press_once
     pressed = once(thing, bpy.context.scene, TOP, (0.0, 0.0, -DEPTH), keep=False)
@@ -140,11 +121,11 @@ def test_a_file_of_softenings_that_is_damaged_is_told_once(sessions, states):
     assert str(file) in told[0]
 
 
-def test_two_troubles_are_told_once_each_not_in_turns(sessions, states, series_table):
+def test_two_troubles_are_told_once_each_not_in_turns(sessions, states):
     thing = soft_cube()
-    for kind in ("series", "softening"):
+    for kind in ("newton-table", "softening"):
         table_file(thing, kind).write_bytes(b"nothing")
-    thing.palpate.shape, thing.palpate.felt = "SERIES", "CORRECTED"
+    thing.palpate.shape, thing.palpate.felt = "TABLE", "CORRECTED"
     session = begin_pressed(sessions, states, thing)
     wait(session, lambda: session.seen.shape.ready == session.loop.felt.ready == 1.0)
     for _ in range(5):

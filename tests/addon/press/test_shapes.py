@@ -14,8 +14,7 @@ from soft_scene import key_coordinates, key_names, mesh_state, part, press_down,
 TOP, DEPTH = (0.002, 0.001, 0.02501), 0.004
 NAMES = {
     "LINEAR": "linear",
-    "TABLE": "table",
-    "SERIES": "series",
+    "TABLE": "paper",
     "ROTATION_STRAIN": "rotation-strain",
 }
 
@@ -65,10 +64,26 @@ def drawn_depth(thing, key="Palpate live"):
 
 def test_the_panel_offers_every_shape_with_its_sentence(palpate, shapes):
     items = bpy.context.object.palpate.bl_rna.properties["shape"].enum_items
-    assert {item.identifier: NAMES[item.identifier] for item in items} == NAMES
+    assert {item.identifier for item in items} == {*NAMES, "SERIES"}
+    # Older files hold these numbers.
+    assert [items[name].value for name in ("LINEAR", "TABLE", "SERIES", "ROTATION_STRAIN")] == [
+        *range(4)
+    ]
     assert tuple(NAMES.values()) == shapes.SHAPES
-    for item in items:
-        assert item.description == shapes.EXPLANATIONS[NAMES[item.identifier]]
+    for name, explained in NAMES.items():
+        assert items[name].description == shapes.EXPLANATIONS[explained]
+
+
+def test_scripts_that_name_the_former_series_get_paper_and_are_told(palpate, shapes):
+    thing = soft_cube()
+    once, keys = part("operators.press.press_once").press_once, {}
+    for name in ("TABLE", "SERIES"):
+        thing.palpate.shape = name
+        pressed = once(thing, bpy.context.scene, TOP, (0.0, 0.0, -DEPTH), keep=True)
+        assert pressed.remarks == ((shapes.SERIES_IS_PAPER,) if name == "SERIES" else ())
+        keys[name] = key_coordinates(thing, pressed.shape_key)
+    np.testing.assert_array_equal(keys["SERIES"], keys["TABLE"])
+    assert part("addon.panels.shape").cost_now(thing).table_seconds > 0.0
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -78,17 +93,15 @@ def test_costs_are_told_before_and_grow_with_the_body(palpate, name):
     thing.palpate.shape = name
     now = part("addon.panels.shape").cost_now(thing)
     large = cost.shape_cost(NAMES[name], cost.BodySize(20_000, 80_000, 6_400))
-    # Series of large bodies come from a table, which is quicker than to compute them.
-    assert 0.0 < now.frame_seconds < (1.0 if name == "SERIES" else large.frame_seconds)
+    assert 0.0 < now.frame_seconds < large.frame_seconds
     assert now.memory_bytes <= large.memory_bytes
-    assert (large.table_seconds > 10.0) == (name in {"TABLE", "SERIES"})
+    assert (large.table_seconds > 10.0) == (name == "TABLE")
     assert now.first_seconds <= large.first_seconds
     thing.palpate.free_surface_count = 0
     assert part("addon.panels.shape").cost_now(thing) is None
 
 
-# Newton's table takes seconds for each node: tests of the core compute some.
-@pytest.mark.parametrize("name", [name for name in NAMES if name != "TABLE"])
+@pytest.mark.parametrize("name", NAMES)
 def test_a_script_keeps_the_shape_that_is_chosen(palpate, name):
     thing = soft_cube()
     press_down(thing, depth=DEPTH)
@@ -100,7 +113,7 @@ def test_a_script_keeps_the_shape_that_is_chosen(palpate, name):
     assert np.array_equal(chosen, linear) == (name == "LINEAR")
 
 
-@pytest.mark.parametrize("name", ["SERIES", "ROTATION_STRAIN"])
+@pytest.mark.parametrize("name", ["TABLE", "ROTATION_STRAIN"])
 def test_a_shape_is_switched_while_pressing_and_nothing_is_lost(sessions, states, name):
     thing = soft_cube()
     before = mesh_state(thing)
@@ -134,8 +147,8 @@ def test_until_it_is_made_and_filled_the_linear_shape_is_drawn(
         made[0].ready = 0.37
         return made[0]
 
-    monkeypatch.setitem(shapes.MAKERS, "series", slowly)
-    thing.palpate.shape = "SERIES"
+    monkeypatch.setitem(shapes.MAKERS, "paper", slowly)
+    thing.palpate.shape = "TABLE"
     session = begin_pressed(sessions, states, thing)
     linear = drawn_depth(thing)
     assert session.seen.shape.ready == 0.0
@@ -158,7 +171,7 @@ def test_what_is_kept_waits_a_little_and_says_what_it_lacks(sessions, states, sh
         made[0].ready = 0.5
         return made[0]
 
-    monkeypatch.setitem(shapes.MAKERS, "table", half)
+    monkeypatch.setitem(shapes.MAKERS, "paper", half)
     monkeypatch.setattr(part("operators.shape.drawn_shape"), "PATIENCE", 0.2)
     thing.palpate.shape = "TABLE"
     session = begin_pressed(sessions, states, thing)
@@ -175,7 +188,7 @@ def test_a_shape_that_cannot_be_made_is_told_once_and_the_press_goes_on(
     def refuse(body, file):
         raise part("core.errors").PalpateError("shape: no room; choose another")
 
-    monkeypatch.setitem(shapes.MAKERS, "table", refuse)
+    monkeypatch.setitem(shapes.MAKERS, "paper", refuse)
     thing = soft_cube()
     thing.palpate.shape = "TABLE"
     session = begin_pressed(sessions, states, thing)
@@ -196,10 +209,10 @@ def test_the_end_of_a_press_ends_the_work_behind_it(sessions, states, shapes, mo
     thing, made = soft_cube(), []
     monkeypatch.setitem(
         shapes.MAKERS,
-        "series",
+        "paper",
         lambda body, file: made.append(Narrower(body, file)) or made[0],
     )
-    thing.palpate.shape = "SERIES"
+    thing.palpate.shape = "TABLE"
     session = begin_pressed(sessions, states, thing)
     wait(session, lambda: session.seen.shape.ready == 1.0 and bool(made))
     if way == "cancel":
@@ -223,8 +236,8 @@ def test_a_shape_still_being_made_is_closed_when_it_is_there(sessions, states, s
         made.append(Narrower(body, file))
         return made[0]
 
-    monkeypatch.setitem(shapes.MAKERS, "series", slowly)
-    thing.palpate.shape = "SERIES"
+    monkeypatch.setitem(shapes.MAKERS, "paper", slowly)
+    thing.palpate.shape = "TABLE"
     session = begin_pressed(sessions, states, thing)
     session.post(states.Cancel())
     allowed.set()

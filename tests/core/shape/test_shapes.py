@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from palpate.core.errors import PalpateError
-from palpate.core.shape.shapes import EXPLANATIONS, MAKERS, SHAPES, shape
+from palpate.core.shape.shapes import EXPLANATIONS, MAKERS, SERIES_IS_PAPER, SHAPES, shape
 
 EDGE = 0.05
 
@@ -30,6 +30,14 @@ def test_every_name_is_explained_in_a_line():
 def test_an_unknown_name_is_refused_with_those_there_are(cube):
     with pytest.raises(PalpateError, match=r"'round' is unknown; give linear, .* or rotation"):
         shape(cube, "round")
+
+
+@pytest.mark.parametrize("former", ["table", "series"])
+def test_former_names_mean_paper_and_series_says_so(cube, former):
+    made = shape(cube, former)
+    made.close()
+    assert type(made) is MAKERS["paper"]
+    assert (made.notice == SERIES_IS_PAPER) == (former == "series")
 
 
 def test_small_forces_give_the_linear_shape(made, cube):

@@ -36,11 +36,11 @@ def filling(table):
     filling.close()
 
 
-def test_what_is_waited_for_comes_first_and_then_what_is_near(table, filling):
+def test_what_is_waited_for_comes_first_and_then_what_is_near(table, filling, eventually):
     wanted = np.array([10, 11, 12])
     filling.wait_for(wanted)
     assert table.order[:3] == [10, 11, 12]
-    filling.finish()
+    eventually(lambda: len(table.order) == COUNT)
     distances = np.abs(np.array(table.order) - 11)
     assert sorted(table.order) == list(range(COUNT))
     assert (np.diff(distances[3:]) >= 0).all()
@@ -97,20 +97,13 @@ def test_a_problem_reaches_whoever_waits(table):
     filling.close()
 
 
-def test_touched_places_are_completed_once_they_are_filled(table):
-    completed = []
-
-    def complete(places):
-        assert table.is_filled[places].all()
-        completed.append(places.tolist())
-
-    filling = OutwardFilling(POSITIONS, table.is_filled, table.fill, 2, complete=complete)
-    for wanted in ([4, 5, 6], [20, 21], [4, 5, 6]):
-        filling.wait_for(np.array(wanted))
-        assert completed[-1] == wanted
-    filling.wait_for(np.array([4, 5, 6]))
+def test_beyond_the_most_only_what_is_asked_for_is_filled(table, eventually):
+    filling = OutwardFilling(POSITIONS, table.is_filled, table.fill, 2, most=6)
+    filling.wait_for(np.array([10, 11]))
+    eventually(lambda: len(table.order) == 6)
+    filling.wait_for(np.array([28, 29]))
     filling.close()
-    assert completed == [[4, 5, 6], [20, 21], [4, 5, 6]]
+    assert sorted(table.order) == [8, 9, 10, 11, 12, 13, 28, 29]
 
 
 def test_nothing_begins_before_a_touch(table):

@@ -7,7 +7,8 @@ from palpate.core.body.soft_body import SoftBody
 from palpate.core.compliance.surface_compliance import surface_compliance
 from palpate.core.errors import CancelledError
 from palpate.core.mesh.paper_cube import paper_cube
-from palpate.core.shape.paper.newton_shape import KIND, NewtonTable, TableShape
+from palpate.core.shape.paper.paper_shape import PaperShape
+from palpate.core.shape.paper.paper_table import KIND, PaperTable
 from palpate.core.shape.paper.table_file import TableFileError, table_path
 from palpate.core.shape.solid.free_solid import FreeSolid
 from palpate.core.shape.solid.newton import equilibrium
@@ -29,7 +30,7 @@ def corner(cube):
 
 
 def test_under_the_largest_force_the_shape_is_newtons(cube, corner):
-    shape = TableShape(cube, wanted=1e-5)
+    shape = PaperShape(cube, wanted=1e-5)
     try:
         shape.wait_for(corner)
         assert shape.ready == 1.0
@@ -41,12 +42,12 @@ def test_under_the_largest_force_the_shape_is_newtons(cube, corner):
     u = equilibrium(solid, solid.on_free_nodes(corner, force / MODULUS)).displacements
     expected = u[solid.surface]
     size = np.abs(expected).max()
-    assert np.abs(found - expected).max() < 1e-6 * size
+    assert np.abs(found - expected).max() < 2e-4 * size
     assert np.abs(cube.deform(corner, force) - expected).max() > 0.02 * size
 
 
 def test_what_is_not_there_yet_is_linear_and_comes(cube, corner, eventually):
-    shape = TableShape(cube)
+    shape = PaperShape(cube)
     force = np.array([[0.05, 0.0, 0.0]])
     try:
         linear = cube.deform(corner, force)
@@ -59,10 +60,10 @@ def test_what_is_not_there_yet_is_linear_and_comes(cube, corner, eventually):
 
 
 def test_other_nodes_stay_linear_beside_a_known_one(cube, corner):
-    table = NewtonTable(cube)
+    table = PaperTable(cube)
     known = cube.free_index(corner)
     table.fill(known)
-    shape = TableShape(cube)
+    shape = PaperShape(cube)
     shape.close()
     shape.table.positive.update(table.positive)
     shape.table.negative.update(table.negative)
@@ -79,11 +80,11 @@ def test_other_nodes_stay_linear_beside_a_known_one(cube, corner):
 
 def test_a_table_is_kept_beside_the_body_and_taken_over(cube, corner, tmp_path):
     body_file = tmp_path / "cube.npz"
-    first = TableShape(cube, body_file)
+    first = PaperShape(cube, body_file)
     first.wait_for(corner)
     first.close()
     path = table_path(body_file, KIND)
-    again = TableShape(cube, body_file)
+    again = PaperShape(cube, body_file)
     try:
         known = cube.free_index(corner)
         assert again.table.is_filled[known].all()
@@ -95,16 +96,16 @@ def test_a_table_is_kept_beside_the_body_and_taken_over(cube, corner, tmp_path):
     finally:
         again.close()
     with pytest.raises(TableFileError, match="another F0"):
-        NewtonTable(cube, 1e-5).load(path)
+        PaperTable(cube, 1e-5).load(path)
     path.write_bytes(path.read_bytes()[:-200])
-    damaged = TableShape(cube, body_file)
+    damaged = PaperShape(cube, body_file)
     damaged.close()
     assert str(path) in damaged.notice
     assert not damaged.table.is_filled.any()
 
 
 def test_a_cancelled_table_ends_and_leaves_the_node_empty(cube):
-    table = NewtonTable(cube)
+    table = PaperTable(cube)
     table.cancel()
     with pytest.raises(CancelledError):
         table.fill(np.array([3]))
@@ -112,7 +113,7 @@ def test_a_cancelled_table_ends_and_leaves_the_node_empty(cube):
 
 
 def test_three_tables_take_three_times_the_memory_once_all_is_filled(cube, corner):
-    table = NewtonTable(cube)
+    table = PaperTable(cube)
     assert table.nbytes == table.largest.nbytes
     table.fill(cube.free_index(corner))
     a_node = table.nbytes - table.largest.nbytes
@@ -121,7 +122,7 @@ def test_three_tables_take_three_times_the_memory_once_all_is_filled(cube, corne
 
 def test_a_place_that_cannot_be_written_is_told_and_the_shape_is_there(cube, corner, tmp_path):
     (tmp_path / "file").write_text("")
-    shape = TableShape(cube, tmp_path / "file" / "cube.npz", wanted=1e-6)
+    shape = PaperShape(cube, tmp_path / "file" / "cube.npz", wanted=1e-6)
     shape.wait_for(corner)
     assert shape.notice == ""
     shape.close()
@@ -132,11 +133,11 @@ def test_a_place_that_cannot_be_written_is_told_and_the_shape_is_there(cube, cor
 def test_what_another_program_kept_meanwhile_is_not_lost(cube, corner, tmp_path):
     body_file = tmp_path / "cube.npz"
     opposite = np.array([cube.compliance.free_surface[0]])
-    shapes = [TableShape(cube, body_file, wanted=1e-6) for _ in range(2)]
+    shapes = [PaperShape(cube, body_file, wanted=1e-6) for _ in range(2)]
     for shape, node in zip(shapes, (corner, opposite), strict=True):
         shape.wait_for(node)
     for shape in shapes:
         shape.close()
-    kept = NewtonTable(cube, 1e-6)
+    kept = PaperTable(cube, 1e-6)
     kept.load(table_path(body_file, KIND))
     assert kept.is_filled[cube.free_index(np.append(corner, opposite))].all()
