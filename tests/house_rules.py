@@ -101,7 +101,6 @@ KNOWN = (
     "core/contact/tool/tool_law.py imports core/contact/complementarity.py",
     "core/contact/tool/tools.py is too long",
     # Shapes are being merged.
-    "core/shape/paper holds too many",
     "core/shape/solid/solid.py is too long",
     # Being put into their rooms.
     "addon/command.py is too long",
