@@ -34,8 +34,8 @@ from ..compliance.protocol import Compliance
 from ..errors import BodyFileError, PalpateError
 from ..files.atomic_file import atomic_file
 from ..files.npz_archive import Archive, ArchiveError, opened, write_arrays
-from ..mesh.tet_mesh import TetMesh
-from ..stiffness.assembly import lame_parameters, young_scale_checked
+from ..mesh.tet_mesh import TetMesh, young_scale_checked
+from ..stiffness.assembly import lame_parameters
 from ..stiffness.formulation import formulation_checked
 from .body_key import body_key
 from .soft_body import SoftBody

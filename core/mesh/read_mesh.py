@@ -12,9 +12,8 @@ from numpy.typing import NDArray
 
 from ..errors import PalpateError
 from ..files.npz_archive import ArchiveError, read_arrays
-from ..stiffness.assembly import young_scale_checked
 from .surface import Surface
-from .tet_mesh import TetMesh
+from .tet_mesh import TetMesh, young_scale_checked
 
 
 def read_surface(path: Path, metres_per_unit: float = 1.0) -> Surface:

@@ -20,6 +20,10 @@ OUTWARD_FACES = np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])
 # A tetrahedron thinner than this share of its longest edge cubed has no usable stiffness.
 SMALLEST_RELATIVE_VOLUME = 1e-12
 
+# Largest factor, up or down, on the body's Young's modulus: enough for steel in foam, and far from
+# where rounding would hide the softer part.
+LARGEST_SCALE = 1e6
+
 
 @dataclass(frozen=True, eq=False)
 class TetMesh:
@@ -190,3 +194,37 @@ def _refuse_flat_or_inverted(nodes: NDArray[np.float64], tets: NDArray[np.int64]
             count=int(inverted.sum()),
             first=int(np.flatnonzero(inverted)[0]),
         )
+
+
+def young_scale_checked(young_scale: ArrayLike, tet_count: int) -> NDArray[np.float64]:
+    """Factors on Young's modulus as float64 (M,), if they can be used.
+
+    Raises
+    ------
+    PalpateError
+        Not one number a tetrahedron, or one not between 1e-6 and 1e6.
+    """
+    given = np.asarray(young_scale)
+    if given.shape != (tet_count,) or given.dtype.kind not in "fiu":
+        raise PalpateError(
+            "young_scale: an array of {kind} and shape {shape} does not fit the body's "
+            "tetrahedra; give one real number for each, shape ({tet_count},)",
+            kind=given.dtype,
+            shape=given.shape,
+            tet_count=tet_count,
+        )
+    scale = given.astype(np.float64)
+    usable = (scale >= 1 / LARGEST_SCALE) & (scale <= LARGEST_SCALE)
+    if not usable.all():
+        first = int(np.flatnonzero(~usable)[0])
+        raise PalpateError(
+            "young_scale: {count} tetrahedra have a factor on Young's modulus that is not between "
+            "{least:g} and {most:g} (first: tetrahedron {first} with {factor}); 1 leaves a place "
+            "as it is",
+            count=int((~usable).sum()),
+            least=1 / LARGEST_SCALE,
+            most=LARGEST_SCALE,
+            first=first,
+            factor=scale[first],
+        )
+    return scale

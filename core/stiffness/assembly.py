@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import bsr_array, csr_array
 
 from ..errors import PalpateError
-from ..mesh.tet_mesh import TetMesh
+from ..mesh.tet_mesh import TetMesh, young_scale_checked
 from .formulation import LINEAR, formulation_checked
 from .strain_smoothing import (
     SmoothingDomains,
@@ -16,10 +16,6 @@ from .strain_smoothing import (
     node_domains,
     tet_domains,
 )
-
-# Largest factor, up or down, on the body's Young's modulus: enough for steel in foam, and far from
-# where rounding would hide the softer part.
-LARGEST_SCALE = 1e6
 
 
 def assemble(
@@ -91,40 +87,6 @@ def isotropic(products: bsr_array, first_lame: float, shear_modulus: float) -> b
     for axis in range(3):
         blocks[:, axis, axis] += shear_modulus * trace
     return bsr_array((blocks, products.indices, products.indptr), shape=products.shape)
-
-
-def young_scale_checked(young_scale: ArrayLike, tet_count: int) -> NDArray[np.float64]:
-    """Factors on Young's modulus as float64 (M,), if they can be used.
-
-    Raises
-    ------
-    PalpateError
-        Not one number a tetrahedron, or one not between 1e-6 and 1e6.
-    """
-    given = np.asarray(young_scale)
-    if given.shape != (tet_count,) or given.dtype.kind not in "fiu":
-        raise PalpateError(
-            "young_scale: an array of {kind} and shape {shape} does not fit the body's "
-            "tetrahedra; give one real number for each, shape ({tet_count},)",
-            kind=given.dtype,
-            shape=given.shape,
-            tet_count=tet_count,
-        )
-    scale = given.astype(np.float64)
-    usable = (scale >= 1 / LARGEST_SCALE) & (scale <= LARGEST_SCALE)
-    if not usable.all():
-        first = int(np.flatnonzero(~usable)[0])
-        raise PalpateError(
-            "young_scale: {count} tetrahedra have a factor on Young's modulus that is not between "
-            "{least:g} and {most:g} (first: tetrahedron {first} with {factor}); 1 leaves a place "
-            "as it is",
-            count=int((~usable).sum()),
-            least=1 / LARGEST_SCALE,
-            most=LARGEST_SCALE,
-            first=first,
-            factor=scale[first],
-        )
-    return scale
 
 
 def lame_parameters(young_modulus: float, poisson_ratio: float) -> tuple[float, float]:

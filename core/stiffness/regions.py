@@ -11,8 +11,7 @@ from ..errors import PalpateError
 from ..mesh.closest_point import ClosestPoints
 from ..mesh.surface import Surface
 from ..mesh.surface_parts import nested_parts
-from ..mesh.tet_mesh import TetMesh
-from .assembly import LARGEST_SCALE, young_scale_checked
+from ..mesh.tet_mesh import LARGEST_SCALE, TetMesh, young_scale_checked
 
 
 @dataclass(frozen=True, eq=False)

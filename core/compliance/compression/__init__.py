@@ -11,5 +11,6 @@ bits as the tolerance asks for. Blocks between neighbours are stored in full.
     interactions.py        projections -> interactions between bases, and the error of cutting
     tiles.py                 interactions -> numbers of 8 and 16 bits, and the error of rounding
     compress.py              all of it, one pass over the columns
+    compressed_arrays.py     the arrays that come of it
     compressed_compliance.py the result: blocks, columns, displacements
 """

@@ -16,9 +16,7 @@ from scipy.linalg import blas, eigh
 from ...errors import PalpateError
 from .clusters import Clusters
 from .column_source import ColumnSource
-
-# The rank of a basis is a multiple of this.
-TILE = 8
+from .compressed_arrays import TILE
 
 LARGEST_16_BITS = 32_767
 

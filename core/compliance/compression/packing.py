@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from .cluster_columns import LARGEST_16_BITS, TILE
+from .cluster_columns import LARGEST_16_BITS
+from .compressed_arrays import TILE
 from .compressed_compliance import CompressedCompliance
 from .interactions import Interactions
 from .tiles import LARGEST_8_BITS, Rounding

@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import blas, qr
 
-from .cluster_columns import TILE, cluster_softness
+from .cluster_columns import cluster_softness
+from .compressed_arrays import TILE
 from .interactions import Interactions
 
 LARGEST_8_BITS = 127

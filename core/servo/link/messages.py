@@ -1,21 +1,15 @@
-"""The serial link, version 1: messages to frames and back. `docs/link.md` is its definition.
-
-On the wire: COBS(payload + CRC) + 0x00, with CRC-16/CCITT-FALSE, everything little-endian.
-"""
+"""Messages of the link and their payloads, everything little-endian."""
 
 from __future__ import annotations
 
-import binascii
 import math
 import struct
 from dataclasses import dataclass
 from enum import IntFlag
 
+from .frames import LinkError
+
 PROTOCOL = 1
-MAX_FRAME = 62
-"""Longest frame on the wire in bytes, the closing zero counted."""
-MAX_PAYLOAD = MAX_FRAME - 4
-"""Longest payload in bytes: a frame adds the COBS code, two of CRC and the zero."""
 SEQUENCES = 1 << 16
 
 HELLO, STATE, FORCE, FAULT, ORIENTATION = 0x01, 0x02, 0x03, 0x04, 0x05
@@ -32,10 +26,6 @@ QUATERNION_UNIT = 32767
 """What 1 is in an ORIENTATION."""
 QUATERNION_LENGTHS = (32440, 33094)
 """Shortest and longest quaternion that is believed, in its own steps: 1 % around a unit's."""
-
-
-class LinkError(ValueError):
-    """Bytes that are not a message of this link, or a message that does not fit into bytes."""
 
 
 class StateFlag(IntFlag):
@@ -136,38 +126,6 @@ def orientation(sequence: int, quaternion: tuple[float, float, float, float]) ->
     return Orientation(sequence, (w, x, y, z))
 
 
-def crc16(payload: bytes) -> int:
-    """CRC-16/CCITT-FALSE: polynomial 0x1021, start 0xFFFF, no reflection, no final xor."""
-    return binascii.crc_hqx(payload, 0xFFFF)
-
-
-def cobs_encode(plain: bytes) -> bytes:
-    """`plain` (at most 253 bytes) without any zero byte, one byte longer."""
-    if len(plain) >= 0xFE:
-        raise LinkError(f"{len(plain)} bytes are more than the one COBS block this link uses")
-    return b"".join(bytes([len(run) + 1]) + run for run in plain.split(b"\0"))
-
-
-def cobs_decode(coded: bytes) -> bytes:
-    """Inverse of `cobs_encode`; raises LinkError when a code points past the end or is zero."""
-    runs: list[bytes] = []
-    start = 0
-    while start < len(coded):
-        end = start + coded[start]
-        if end == start or end > len(coded):
-            raise LinkError(f"COBS code {coded[start]} at byte {start} of {len(coded)}")
-        runs.append(coded[start + 1 : end])
-        start = end
-    return b"\0".join(runs)
-
-
-def frame(payload: bytes) -> bytes:
-    """The bytes on the wire for one payload of 1 to 58 bytes."""
-    if not 1 <= len(payload) <= MAX_PAYLOAD:
-        raise LinkError(f"a payload has 1 to {MAX_PAYLOAD} bytes, not {len(payload)}")
-    return cobs_encode(payload + struct.pack("<H", crc16(payload))) + b"\0"
-
-
 def pack(message: Message) -> bytes:
     """The payload of a message; raises LinkError when a number does not fit its field."""
     try:
@@ -195,11 +153,6 @@ def pack(message: Message) -> bytes:
                 raise LinkError("a HELLO of another protocol can be read, not written")
     except (struct.error, OverflowError) as error:
         raise LinkError(f"{message} does not fit the link: {error}") from error
-
-
-def encode(message: Message) -> bytes:
-    """The frame of a message, ready for the wire."""
-    return frame(pack(message))
 
 
 def unpack(payload: bytes) -> Message:
@@ -255,78 +208,3 @@ def _unpack_orientation(payload: bytes) -> Orientation:
     if not message.is_unit:
         raise LinkError(f"an ORIENTATION of {message.quaternion}, which is no unit quaternion")
     return message
-
-
-@dataclass
-class LinkErrors:
-    """What a decoder had to throw away, in frames."""
-
-    crc_errors: int = 0
-    malformed: int = 0
-    """No COBS, too short for a type and a CRC, or too long."""
-    unknown: int = 0
-    """Right CRC, but no message of this version."""
-
-    @property
-    def total(self) -> int:
-        """Frames thrown away for whatever reason."""
-        return self.crc_errors + self.malformed + self.unknown
-
-
-class Decoder:
-    """Bytes as they arrive, in pieces of any size, to messages.
-
-    Zero occurs on the wire only at the end of a frame, so damage costs the frame it is in (two when
-    the zero between them is hit) and the next one is read again.
-    """
-
-    def __init__(self) -> None:
-        self.errors = LinkErrors()
-        self._begun = bytearray()
-        self._too_long = False
-
-    def feed(self, data: bytes) -> list[Message]:
-        """The messages completed by `data`, in order; broken frames are counted and left out."""
-        messages: list[Message] = []
-        for payload in self.feed_payloads(data):
-            try:
-                messages.append(unpack(payload))
-            except LinkError:
-                self.errors.unknown += 1
-        return messages
-
-    def feed_payloads(self, data: bytes) -> list[bytes]:
-        """Like `feed`, but the payloads: their CRC was right, their meaning is not looked at."""
-        payloads: list[bytes] = []
-        *endings, rest = data.split(b"\0")
-        for ending in endings:
-            self._extend(ending)
-            payload = self._finish()
-            if payload is not None:
-                payloads.append(payload)
-        self._extend(rest)
-        return payloads
-
-    def _extend(self, piece: bytes) -> None:
-        room = MAX_FRAME - 1 - len(self._begun)
-        self._too_long = self._too_long or len(piece) > room
-        self._begun += piece[:room]
-
-    def _finish(self) -> bytes | None:
-        coded, too_long = bytes(self._begun), self._too_long
-        self._begun.clear()
-        self._too_long = False
-        if not coded:
-            return None
-        try:
-            plain = b"" if too_long else cobs_decode(coded)
-        except LinkError:
-            plain = b""
-        if len(plain) < 3:
-            self.errors.malformed += 1
-            return None
-        payload, crc = plain[:-2], int.from_bytes(plain[-2:], "little")
-        if crc16(payload) != crc:
-            self.errors.crc_errors += 1
-            return None
-        return payload

@@ -1,0 +1,53 @@
+"""The serial link, version 1: messages to frames and back. `docs/link.md` is its definition."""
+
+from .codec import Decoder, LinkErrors, encode
+from .frames import MAX_FRAME, MAX_PAYLOAD, LinkError, cobs_decode, cobs_encode, crc16, frame
+from .messages import (
+    NAME_BYTES,
+    PROTOCOL,
+    QUATERNION_UNIT,
+    SEQUENCES,
+    DeviceHello,
+    Fault,
+    Force,
+    ForceFlag,
+    HostHello,
+    Message,
+    Orientation,
+    OtherHello,
+    State,
+    StateFlag,
+    orientation,
+    pack,
+    unpack,
+)
+
+__all__ = [
+    "MAX_FRAME",
+    "MAX_PAYLOAD",
+    "NAME_BYTES",
+    "PROTOCOL",
+    "QUATERNION_UNIT",
+    "SEQUENCES",
+    "Decoder",
+    "DeviceHello",
+    "Fault",
+    "Force",
+    "ForceFlag",
+    "HostHello",
+    "LinkError",
+    "LinkErrors",
+    "Message",
+    "Orientation",
+    "OtherHello",
+    "State",
+    "StateFlag",
+    "cobs_decode",
+    "cobs_encode",
+    "crc16",
+    "encode",
+    "frame",
+    "orientation",
+    "pack",
+    "unpack",
+]
