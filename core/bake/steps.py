@@ -68,6 +68,13 @@ def bake(
 ) -> tuple[SoftBody, BakeReport]:
     """Make a body, in this process.
 
+    >>> from palpate.core.mesh.paper_cube import paper_cube
+    >>> from palpate.core.stiffness.pins import PinBelow
+    >>> mesh, _ = paper_cube()
+    >>> body, report = bake(mesh, BakeSettings(poisson_ratio=0.45, pins=PinBelow(0.0)))
+    >>> len(body.fixed), body.compliance.form, list(report.seconds)
+    (25, 'dense', ['stiffness', 'plan', 'compliance'])
+
     Tetrahedralization and the assembly of the stiffness (seconds for tens of thousands of nodes,
     smoothed) cannot be interrupted here; interactive programs use
     :class:`palpate.core.bake.job.BakeJob`, which runs this function in a child process.

@@ -73,6 +73,16 @@ MAPPED_FROM_BYTES = 64_000_000 if os.name == "posix" else None
 def save(body: SoftBody, path: str | os.PathLike[str]) -> None:
     """Write a body file; an existing one is replaced in one step or stays as it was.
 
+    >>> from tempfile import TemporaryDirectory
+    >>> from palpate.core.bake.settings import BakeSettings
+    >>> from palpate.core.bake.steps import bake
+    >>> from palpate.core.mesh.paper_cube import paper_cube
+    >>> body, _ = bake(paper_cube()[0], BakeSettings(poisson_ratio=0.45, young_modulus=1e5))
+    >>> with TemporaryDirectory() as folder:
+    ...     save(body, f"{folder}/cube.npz")
+    ...     load(f"{folder}/cube.npz").key == body.key
+    True
+
     Raises
     ------
     UnwritableError

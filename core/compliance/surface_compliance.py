@@ -24,6 +24,13 @@ def surface_compliance(
 ) -> DenseCompliance:
     """Invert the stiffness for the free surface nodes (paper, eq. 4, restricted as in its text).
 
+    >>> from palpate.core.mesh.paper_cube import paper_cube
+    >>> from palpate.core.stiffness.assembly import assemble
+    >>> mesh, fixed = paper_cube()
+    >>> compliance = surface_compliance(mesh, assemble(mesh, poisson_ratio=0.45), fixed)
+    >>> compliance.node_count, compliance.block(0, 1).shape
+    (73, (3, 3))
+
     Parameters
     ----------
     mesh : the body.

@@ -42,6 +42,10 @@ class TetMesh:
     def checked(cls, nodes: ArrayLike, tets: ArrayLike) -> TetMesh:
         """Make a mesh from arrays of shape (N, 3) and (M, 4), both copied.
 
+        >>> mesh = TetMesh.checked([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 1, 2, 3]])
+        >>> mesh.surface_triangles.shape, round(6 * mesh.volume, 9)
+        ((4, 3), 1.0)
+
         Raises
         ------
         PalpateError

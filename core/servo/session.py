@@ -127,7 +127,18 @@ def servo_on(
     max_force: float = 3.0,
     record_seconds: float = 10.0,
 ) -> Servo:
-    """A servo for a native body, ready to be started with a pointer or a serial device.
+    """Servo for a native body, ready to be started with a pointer or a serial device.
+
+    >>> from palpate.core.bake.settings import BakeSettings
+    >>> from palpate.core.bake.steps import bake
+    >>> from palpate.core.mesh.paper_cube import paper_cube
+    >>> body, _ = bake(paper_cube()[0], BakeSettings(poisson_ratio=0.45, young_modulus=1e5))
+    >>> servo = servo_on(native_body(body), Settings(young_modulus=body.young_modulus))
+    >>> servo.start(Pointer((0.025, 0.025, 0.06)))
+    >>> servo.set_target((0.025, 0.025, 0.049))
+    >>> while servo.snapshot().output_force[2] < 0.2:
+    ...     pass
+    >>> servo.stop()
 
     Parameters
     ----------

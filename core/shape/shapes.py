@@ -125,6 +125,15 @@ MAKERS: dict[ShapeName, Callable[[SoftBody, Path | None], Shape]] = {
 def shape(body: SoftBody, choice: str, body_file: Path | None = None) -> Shape:
     """The shape of this name for a body.
 
+    >>> from palpate.core.bake.settings import BakeSettings
+    >>> from palpate.core.bake.steps import bake
+    >>> from palpate.core.mesh.paper_cube import paper_cube
+    >>> body, _ = bake(paper_cube()[0], BakeSettings(poisson_ratio=0.45, young_modulus=1e5))
+    >>> top = body.compliance.free_surface[-1:]
+    >>> drawn = shape(body, "rotation-strain").displacements(top, np.array([[0.0, 0.0, -1.0]]))
+    >>> drawn.shape, bool(drawn[-1, 2] < 0.0)
+    ((73, 3), True)
+
     Parameters
     ----------
     choice : one of :data:`SHAPES` or :data:`FORMER_NAMES`.

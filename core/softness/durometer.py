@@ -99,6 +99,13 @@ def read_durometer(
 ) -> DurometerReading:
     """Read a durometer set on the surface point nearest to ``at`` (3,), metres.
 
+    >>> from palpate.core.bake.settings import BakeSettings
+    >>> from palpate.core.bake.steps import bake
+    >>> from palpate.core.mesh.paper_cube import paper_cube
+    >>> body, _ = bake(paper_cube()[0], BakeSettings(poisson_ratio=0.45, young_modulus=1e5))
+    >>> print(read_durometer(body, (0.025, 0.025, 0.05), "00").shore)
+    00-23.6
+
     Parameters
     ----------
     scale : "00" or "A".

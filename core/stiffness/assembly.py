@@ -28,6 +28,12 @@ def assemble(
 ) -> csr_array:
     """Stiffness matrix of an isotropic body (paper, eq. 1).
 
+    >>> from palpate.core.mesh.paper_cube import paper_cube
+    >>> mesh, fixed = paper_cube()
+    >>> stiffness = assemble(mesh, poisson_ratio=0.45)
+    >>> stiffness.shape, bool(np.allclose(stiffness @ np.ones(375), 0.0))  # moved, not deformed
+    ((375, 375), True)
+
     Parameters
     ----------
     mesh : tetrahedra, metres.

@@ -83,6 +83,9 @@ def young_from_shore(
 ) -> float:
     """Young's modulus in pascal of a large block on which a durometer reads ``shore``.
 
+    >>> round(young_from_shore(Shore.parse("00-30")), -3)
+    103000.0
+
     A durometer senses E / (1 - nu^2); the relations, which are for rubber, nu = 0.5, are converted
     by that.
 
