@@ -20,12 +20,14 @@ REPOSITORY = Path(__file__).resolve().parent.parent
 PAGES = sorted(
     [
         REPOSITORY / "README.md",
+        REPOSITORY / "CONTRIBUTING.md",
         *(REPOSITORY / "docs").glob("*.md"),
         *(REPOSITORY / "firmware").glob("*.md"),
     ]
 )
 FOLDERS = (
-    "addon|benchmarks|cli|core|demo|docs|firmware|native|operators|release|sample_scenes|tests"
+    "addon|benchmarks|cli|core|demo|docs|firmware|native|operators|release|sample_scenes|simulated|"
+    "tests"
 )
 NAMED_FILE = re.compile(rf"(?<![\w/.-])((?:{FOLDERS})/[\w./*-]*[\w*/])")
 LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
