@@ -100,8 +100,6 @@ KNOWN = (
     "core/contact/near_field/regular_field.py is too long",
     "core/contact/tool/tool_law.py imports core/contact/complementarity.py",
     "core/contact/tool/tools.py is too long",
-    # Shapes are being merged.
-    "core/shape/solid/solid.py is too long",
     # Being put into their rooms.
     "addon/command.py is too long",
     "cli/press/servo.py is too long",

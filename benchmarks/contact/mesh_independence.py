@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from scipy.sparse import diags_array
 from scipy.sparse.linalg import cg
 
-from palpate.benchmarks.measuring.contact.refined import coarse_ball, refined
+from palpate.benchmarks.measuring.refined import coarse_ball, refined
 from palpate.core.body.soft_body import SoftBody
 from palpate.core.compliance.surface_compliance import surface_compliance
 from palpate.core.contact.near_field.compliance_beneath import NearCorrection, near_correction

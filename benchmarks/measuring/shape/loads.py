@@ -17,7 +17,8 @@ from palpate.core.mesh.tet_mesh import TetMesh
 from palpate.core.stiffness.assembly import assemble
 
 from ..bodies import PROJECT, stored_body
-from .solved_body import SolvedBody, cut_in_eight
+from ..refined import refined
+from .solved_body import SolvedBody
 
 CUBE_EDGE = 0.05
 BEAM_LENGTH, BEAM_WIDTH, BEAM_CELLS = 0.12, 0.02, 6
@@ -177,7 +178,7 @@ def hare_tets() -> tuple[TetMesh, NDArray[np.int64]]:
 
 def large_hare() -> SolvedBody:
     """The hare with every tetrahedron cut in eight, 12,000 nodes."""
-    return SolvedBody.of(*cut_in_eight(*hare_tets()), 0.3, 1000.0)
+    return SolvedBody.of(*refined(*hare_tets()), 0.3, 1000.0)
 
 
 def large_mouse() -> SolvedBody:

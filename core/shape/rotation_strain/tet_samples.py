@@ -13,8 +13,8 @@ from ...mesh.tet_mesh import TetMesh
 MOST_CUTS = 4
 # The two ends of each edge, and the eight tetrahedra between corners (0 to 3) and the middles of
 # these edges (4 to 9).
-_EDGES = np.array([[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]])
-_CUT = np.array(
+EDGES = np.array([[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]])
+EIGHT = np.array(
     [
         [0, 4, 5, 6],
         [1, 4, 7, 8],
@@ -49,7 +49,7 @@ class TetSamples:
     def of(cls, mesh: TetMesh, length: float) -> TetSamples:
         """Of a body; edges longer than ``length`` are cut in halves, up to :data:`MOST_CUTS`."""
         corners = mesh.nodes[mesh.tets]
-        longest = np.linalg.norm(corners[:, _EDGES[:, 0]] - corners[:, _EDGES[:, 1]], axis=2)
+        longest = np.linalg.norm(corners[:, EDGES[:, 0]] - corners[:, EDGES[:, 1]], axis=2)
         halvings = np.ceil(np.log2(np.maximum(longest.max(axis=1) / length, 1.0)))
         cuts = np.minimum(halvings, MOST_CUTS).astype(np.int64)
         # A tetrahedron's second moment is V / 20 times the squares of its corners about its middle.
@@ -83,7 +83,7 @@ def _middles(times: int) -> NDArray[np.float64]:
     """Barycentric coordinates (8^times, 4) of the middles of a tetrahedron's pieces."""
     pieces = np.eye(4)[None]
     for _ in range(times):
-        between = 0.5 * (pieces[:, _EDGES[:, 0]] + pieces[:, _EDGES[:, 1]])
-        pieces = np.concatenate([pieces, between], axis=1)[:, _CUT].reshape(-1, 4, 4)
+        between = 0.5 * (pieces[:, EDGES[:, 0]] + pieces[:, EDGES[:, 1]])
+        pieces = np.concatenate([pieces, between], axis=1)[:, EIGHT].reshape(-1, 4, 4)
     middles: NDArray[np.float64] = pieces.mean(axis=1)
     return middles

@@ -7,23 +7,7 @@ from numpy.typing import NDArray
 
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.mesh.tet_mesh import TetMesh, signed_volumes
-
-EDGES = ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3))
-
-# Corners 0 to 3 and, from 4 on, the middles of the edges above: four tetrahedra at the corners, and
-# the octahedron between them cut along the line from the middle of (0, 1) to that of (2, 3).
-EIGHT = np.array(
-    [
-        [0, 4, 5, 6],
-        [4, 1, 7, 8],
-        [5, 7, 2, 9],
-        [6, 8, 9, 3],
-        [4, 9, 5, 6],
-        [4, 9, 6, 8],
-        [4, 9, 8, 7],
-        [4, 9, 7, 5],
-    ]
-)
+from palpate.core.shape.rotation_strain.tet_samples import EDGES, EIGHT
 
 
 def refined(mesh: TetMesh, fixed: NDArray[np.int64]) -> tuple[TetMesh, NDArray[np.int64]]:
