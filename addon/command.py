@@ -20,6 +20,7 @@ from ..operators.bake import bake_session
 from ..operators.object import body_store
 from ..operators.press.press_once import PressedFinger, press_several
 from ..operators.shape.drawn_shape import chosen_shape
+from .blend_file import opened_object, save
 from .properties.finger import MODE_ITEMS, TIP_ITEMS
 from .properties.soft_object import FORM_ITEMS, FORMULATION_ITEMS
 
@@ -70,12 +71,12 @@ def run(words: list[str]) -> int:
 
 def bake(arguments: argparse.Namespace) -> dict[str, object]:
     """Make an object soft and save the file."""
-    thing = _open(arguments)
+    thing = opened_object(arguments.file, arguments.object)
     _set_up(thing.palpate, arguments)
     before = body_store.new_files()
     body, report = bake_session.run(thing, bpy.context.scene)
     try:
-        _save(arguments.file)
+        save(arguments.file)
     except PalpateError:
         # The body of a scene that was not saved is nobody's.
         body_store.take_back(before)
@@ -106,7 +107,7 @@ def _error(baked: bpy.types.PropertyGroup) -> dict[str, object]:
 
 def press(arguments: argparse.Namespace) -> dict[str, object]:
     """Press an object once; with --keep save the shape in the file."""
-    thing = _open(arguments)
+    thing = opened_object(arguments.file, arguments.object)
     if arguments.young is not None:
         young = _within(thing.palpate, "young_modulus", "young", arguments.young)
         thing.palpate.young_modulus = young
@@ -121,7 +122,7 @@ def press(arguments: argparse.Namespace) -> dict[str, object]:
     for remark in pressed.remarks:
         print(f"palpate: warning: {remark}", file=sys.stderr)
     if arguments.keep:
-        _save(arguments.file)
+        save(arguments.file)
     fingers = [_figures(finger) for finger in pressed.fingers]
     return {
         "object": thing.name,
@@ -247,35 +248,6 @@ def _add_common(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--object", required=True, metavar="NAME")
     parser.add_argument("--young", type=float, metavar="PA", help="Young's modulus")
     parser.add_argument("--json", action="store_true", help="print figures as JSON")
-
-
-def _open(arguments: argparse.Namespace) -> bpy.types.Object:
-    if not arguments.file.is_file():
-        raise PalpateError(f"{arguments.file}: there is no such file; give the path of a .blend")
-    try:
-        bpy.ops.wm.open_mainfile(filepath=str(arguments.file.resolve()), load_ui=False)
-    except RuntimeError as problem:
-        reason = str(problem).strip().removeprefix("Error: ")
-        raise PalpateError(
-            f"{arguments.file}: Blender cannot open it ({reason}); give a .blend file"
-        ) from problem
-    thing = bpy.data.objects.get(arguments.object)
-    if thing is None:
-        meshes = ", ".join(o.name for o in bpy.data.objects if o.type == "MESH") or "none"
-        raise PalpateError(
-            f"{arguments.file}: it has no object '{arguments.object}'; its mesh objects: {meshes}"
-        )
-    return thing
-
-
-def _save(file: Path) -> None:
-    try:
-        bpy.ops.wm.save_mainfile(filepath=str(file.resolve()))
-    except RuntimeError as problem:
-        raise PalpateError(
-            f"{file}: Blender cannot save it ({str(problem).strip()}); choose a folder you may "
-            "write to"
-        ) from problem
 
 
 def _within(
