@@ -1,4 +1,4 @@
-//! Deadlines of a rate, and when in the period they lie.
+//! Deadlines of a rate, and where in the period they lie.
 
 use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
 

@@ -1,4 +1,4 @@
-//! The best clock and the best sleep each system gives.
+//! Clock and sleep of each system, the most exact that it has.
 
 #[cfg(target_os = "linux")]
 mod system {

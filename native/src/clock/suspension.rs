@@ -1,4 +1,4 @@
-//! How long the computer itself has slept: time that the clock of the ticks does not count.
+//! Suspension of the computer: time that the clock of the ticks does not count.
 //!
 //! On Linux and macOS the clocks by which threads sleep stand still while the computer does. Without
 //! this, the tick after an hour of sleep would look like any other.
@@ -9,19 +9,19 @@ const TOGETHER_NS: u64 = 1_000_000;
 
 /// Time slept since it was made.
 #[derive(Debug)]
-pub struct Asleep {
+pub struct Suspension {
     start_ns: u64,
     slept_ns: u64,
 }
 
-impl Default for Asleep {
+impl Default for Suspension {
     fn default() -> Self {
         let start_ns = std::iter::repeat_with(offset_ns).take(100).flatten().next();
         Self::since(start_ns.unwrap_or(u64::MAX))
     }
 }
 
-impl Asleep {
+impl Suspension {
     fn since(start_ns: u64) -> Self {
         Self {
             start_ns,
@@ -103,8 +103,8 @@ mod tests {
 
     #[test]
     fn a_sleep_is_counted_once_and_an_interrupted_reading_is_not() {
-        let mut asleep = Asleep::since(5_000_000_000);
-        let mut told = |offset| asleep.update(offset);
+        let mut suspension = Suspension::since(5_000_000_000);
+        let mut told = |offset| suspension.update(offset);
         assert_eq!(told(Some(5_000_000_000)), 0.0);
         assert_eq!(told(None), 0.0);
         assert_eq!(told(Some(4_999_999_000)), 0.0);
@@ -115,15 +115,15 @@ mod tests {
 
     #[test]
     fn where_nothing_is_known_nothing_is_told() {
-        assert_eq!(Asleep::since(u64::MAX).update(Some(7)), 0.0);
+        assert_eq!(Suspension::since(u64::MAX).update(Some(7)), 0.0);
     }
 
     #[test]
     fn a_computer_that_is_awake_has_not_slept() {
-        let mut asleep = Asleep::default();
+        let mut suspension = Suspension::default();
         for _ in 0..1000 {
             // Two clocks that are read one after the other are never quite at one.
-            assert!(asleep.seconds() < 1.1e-3);
+            assert!(suspension.seconds() < 1.1e-3);
         }
     }
 }

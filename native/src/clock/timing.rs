@@ -1,4 +1,4 @@
-//! Absolute deadlines without drift, and what is known about keeping them.
+//! Waking at a fixed rate, and counters of how well deadlines were kept.
 
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
@@ -18,7 +18,7 @@ pub struct Timing {
     longest_gap_ns: AtomicU64,
     lateness: Durations,
     busy: Durations,
-    spun: Durations,
+    busy_waited: Durations,
 }
 
 /// A reading of [`Timing`].
@@ -34,8 +34,8 @@ pub struct TimingReport {
     pub lateness: DurationReport,
     /// Time spent working in each tick that has ended.
     pub busy: DurationReport,
-    /// Time spent turning around before each deadline, awake but without work.
-    pub spun: DurationReport,
+    /// Time spent busy-waiting before each deadline.
+    pub busy_waited: DurationReport,
 }
 
 impl Timing {
@@ -58,7 +58,7 @@ impl Timing {
             longest_gap_ns: self.longest_gap_ns.load(Relaxed),
             lateness: self.lateness.report(),
             busy: self.busy.report(),
-            spun: self.spun.report(),
+            busy_waited: self.busy_waited.report(),
         }
     }
 }
@@ -74,9 +74,9 @@ impl TimingReport {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Waking {
     /// The timer is set to the deadline.
-    Plain,
-    /// The timer is set a little earlier, by a [`Margin`], and the rest is spent turning around.
-    Early,
+    Timer,
+    /// The timer is set a little earlier, by a [`Margin`], and the rest is spent busy-waiting.
+    BusyWait,
 }
 
 /// Wakes a thread at a fixed rate.
@@ -108,11 +108,12 @@ impl Pace {
         let now = sleeper.now_ns();
         let phase = Phase::claim();
         let schedule = Schedule::new(rate_hz, now, &phase);
-        // Turning around takes a processor; where there is only one, it would be everybody's.
-        let may_spin = std::thread::available_parallelism().is_ok_and(|count| count.get() > 1);
-        let is_early = waking == Waking::Early && may_spin;
+        // Busy-waiting takes a processor; where there is only one, it would be everybody's.
+        let has_processor_to_spare =
+            std::thread::available_parallelism().is_ok_and(|count| count.get() > 1);
+        let busy_waits = waking == Waking::BusyWait && has_processor_to_spare;
         Self {
-            margin: is_early.then(|| Margin::new(SECOND_NS / u64::from(rate_hz.max(1)))),
+            margin: busy_waits.then(|| Margin::new(SECOND_NS / u64::from(rate_hz.max(1)))),
             number: schedule.last_before(now),
             begun_ns: now,
             woke_ns: now,
@@ -146,7 +147,7 @@ impl Pace {
         })
     }
 
-    /// Sleeps, and turns around for what is left; the time then.
+    /// Sleeps, and busy-waits for what is left; the time then.
     fn reach(&mut self, deadline_ns: u64, done_ns: u64, timing: &Timing) -> u64 {
         let margin_ns = self.margin.as_ref().map_or(0, Margin::ns);
         let timer_ns = deadline_ns - margin_ns;
@@ -159,7 +160,7 @@ impl Pace {
             }
         }
         if self.margin.is_some() {
-            timing.spun.record(deadline_ns.saturating_sub(now));
+            timing.busy_waited.record(deadline_ns.saturating_sub(now));
         }
         while now < deadline_ns {
             std::hint::spin_loop();
@@ -193,7 +194,7 @@ mod tests {
     fn every_deadline_is_kept_or_counted_as_missed() {
         for rate_hz in [1000, 1234, 8000] {
             let timing = Timing::default();
-            let mut pace = Pace::new(rate_hz, Waking::Early);
+            let mut pace = Pace::new(rate_hz, Waking::BusyWait);
             let before = pace.number;
             for _ in 0..30 {
                 pace.wait(&timing, || true);

@@ -1,15 +1,15 @@
-//! Waking a little before the deadline: how much, is learned.
+//! Margin of time between a thread's timer and its deadline, learned while it runs.
 //!
 //! Between a timer and the thread that waits for it lie an idle processor's way back and the
-//! scheduler. A thread that sets its timer earlier by what this nearly always takes, and turns
-//! around until the deadline, keeps it more exactly. What is left are the rare long waits.
+//! scheduler. A thread that sets its timer earlier by what this nearly always takes, and busy-waits
+//! until the deadline, keeps it more exactly. What is left are the rare long waits.
 
-/// Share of the wakings that shall come before the deadline: 19 of 20.
-const STEP_LATER_NS: u64 = 50;
-const STEP_EARLIER_NS: u64 = 19 * STEP_LATER_NS;
-/// At most this part of the period is spent turning around: 4 % of one processor.
+/// Steps of the margin: 19 of 20 wakings come before the deadline where these balance.
+const STEP_DOWN_NS: u64 = 50;
+const STEP_UP_NS: u64 = 19 * STEP_DOWN_NS;
+/// At most this part of the period is spent busy-waiting: 4 % of one processor.
 const LARGEST_PART: u64 = 25;
-/// At most this long, ns: beyond are waits that no turning around saves.
+/// At most this long, ns: beyond are waits that no busy-waiting saves.
 const LARGEST_NS: u64 = 100_000;
 
 /// How long before the deadline a thread sets its timer.
@@ -38,9 +38,9 @@ impl Margin {
     /// 19 of 20 suffice (stochastic approximation of a quantile, Robbins and Monro 1951).
     pub fn learn(&mut self, latency_ns: u64) {
         self.ns = if latency_ns > self.ns {
-            (self.ns + STEP_EARLIER_NS).min(self.largest_ns)
+            (self.ns + STEP_UP_NS).min(self.largest_ns)
         } else {
-            self.ns.saturating_sub(STEP_LATER_NS)
+            self.ns.saturating_sub(STEP_DOWN_NS)
         };
     }
 }

@@ -16,7 +16,7 @@ use crate::body::surface::Body;
 use crate::proxy::descent::descend;
 use crate::proxy::feel::Feel;
 use crate::proxy::friction::Friction;
-use crate::proxy::place::Hold;
+use crate::proxy::place::SurfacePoint;
 use crate::proxy::shading::shaded;
 
 /// How much of the device's own way the contact point may gain on the device in a tick.
@@ -36,7 +36,7 @@ const LONGEST_REACH: f64 = 2.0;
 /// Contact point and its memory.
 #[derive(Debug, Clone)]
 pub(super) struct ContactPoint {
-    pub(super) hold: Hold,
+    pub(super) hold: SurfacePoint,
     pub(super) position: DVec3,
     pub(super) friction: Friction,
     device: DVec3,
@@ -46,15 +46,15 @@ pub(super) struct ContactPoint {
 
 /// What the god object came to in this tick.
 pub(super) struct Judged {
-    pub(super) hold: Hold,
+    pub(super) hold: SurfacePoint,
     pub(super) position: DVec3,
     /// Where it met the surface, and how often it has done so.
-    pub(super) entry: Hold,
+    pub(super) entry: SurfacePoint,
     pub(super) landings: u64,
 }
 
 impl ContactPoint {
-    pub(super) fn new(position: DVec3, hold: Hold) -> Self {
+    pub(super) fn new(position: DVec3, hold: SurfacePoint) -> Self {
         Self {
             hold,
             position,
@@ -124,13 +124,13 @@ impl ContactPoint {
         }
     }
 
-    fn put(&mut self, body: &Body, hold: Hold) {
+    fn put(&mut self, body: &Body, hold: SurfacePoint) {
         self.hold = hold;
         self.position = body.face(hold.triangle).at(hold.alpha);
     }
 
     /// The shaded contact point, if it is one for this god object.
-    fn shade(&self, body: &Body, god: &Judged, device: DVec3) -> Option<Hold> {
+    fn shade(&self, body: &Body, god: &Judged, device: DVec3) -> Option<SurfacePoint> {
         let depth = device.distance(god.position);
         let found = shaded(body, self.hold.triangle, device, depth)
             .filter(|hold| is_near(body, hold, god, device, depth));
@@ -149,7 +149,7 @@ impl ContactPoint {
         device: DVec3,
         feel: &Feel,
         dt: f64,
-    ) -> Option<(Hold, bool)> {
+    ) -> Option<(SurfacePoint, bool)> {
         let depth = device.distance(god.position);
         // A contact point may trail by its cone, widened for blocks that are stiffer one way than
         // another; what trails farther belongs to a surface that has passed.
@@ -172,7 +172,7 @@ impl ContactPoint {
     fn lag(
         &mut self,
         body: &Body,
-        (aim, point): (Hold, DVec3),
+        (aim, point): (SurfacePoint, DVec3),
         device: DVec3,
         moved: DVec3,
         dt: f64,
@@ -205,7 +205,7 @@ impl ContactPoint {
     }
 }
 
-fn is_near(body: &Body, hold: &Hold, god: &Judged, device: DVec3, depth: f64) -> bool {
+fn is_near(body: &Body, hold: &SurfacePoint, god: &Judged, device: DVec3, depth: f64) -> bool {
     let face = body.face(hold.triangle);
     face.at(hold.alpha).distance(god.position) <= FARTHEST_SHADE * depth && face.side(device) <= 0.0
 }

@@ -4,13 +4,13 @@ use glam::DVec3;
 
 use crate::body::face::closest_on_face;
 use crate::body::surface::Body;
-use crate::proxy::place::Hold;
+use crate::proxy::place::SurfacePoint;
 
 /// Triangles entered at most; a descent that ends here is where it came to.
 const MAX_TRIANGLES: u32 = 64;
 
 /// From `hold` downhill to the locally nearest surface point to `goal`, without leaving the sheet.
-pub(super) fn descend(body: &Body, hold: Hold, goal: DVec3) -> Hold {
+pub(super) fn descend(body: &Body, hold: SurfacePoint, goal: DVec3) -> SurfacePoint {
     let mut triangle = hold.triangle;
     let (mut alpha, mut point) = closest_on_face(body.face(triangle), goal);
     for _ in 0..MAX_TRIANGLES {
@@ -41,5 +41,5 @@ pub(super) fn descend(body: &Body, hold: Hold, goal: DVec3) -> Hold {
             None => break,
         }
     }
-    Hold { triangle, alpha }
+    SurfacePoint { triangle, alpha }
 }

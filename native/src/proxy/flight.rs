@@ -6,7 +6,7 @@ use crate::body::closest::{closest_point, coincident_face};
 use crate::body::surface::Body;
 use crate::body::sweep::{Feature, Sweep};
 use crate::proxy::god_object::Proxy;
-use crate::proxy::place::{Hold, Place};
+use crate::proxy::place::{Place, SurfacePoint};
 use crate::proxy::walk::Walk;
 
 /// Releases and landings in one tick at most.
@@ -77,7 +77,7 @@ impl Proxy {
     pub(super) fn look(&mut self, body: &Body, p: DVec3) -> (f64, bool) {
         let (closest, inside) = closest_point(body, p, self.hold.triangle);
         self.queried = p;
-        self.hold = Hold {
+        self.hold = SurfacePoint {
             triangle: closest.triangle,
             alpha: closest.alpha,
         };
@@ -93,7 +93,7 @@ impl Proxy {
         }
         let found = coincident_face(body, p, distance, rounding);
         if let Some(closest) = found {
-            self.hold = Hold {
+            self.hold = SurfacePoint {
                 triangle: closest.triangle,
                 alpha: closest.alpha,
             };
@@ -123,7 +123,7 @@ impl Proxy {
             return false;
         }
         if let Some(crossing) = entering {
-            self.hold = Hold {
+            self.hold = SurfacePoint {
                 triangle: crossing.triangle,
                 alpha: crossing.alpha,
             };

@@ -13,7 +13,7 @@ use crate::body::surface::Body;
 use crate::contact::touch::contact_stiffness;
 use crate::proxy::descent::descend;
 use crate::proxy::feel::Feel;
-use crate::proxy::place::Hold;
+use crate::proxy::place::SurfacePoint;
 use crate::proxy::shading::normal_at;
 
 /// Rounds of slipping in one tick.
@@ -34,7 +34,7 @@ pub(super) struct Friction {
 
 /// What a tick of friction came to.
 pub(super) struct Slip {
-    pub(super) hold: Hold,
+    pub(super) hold: SurfacePoint,
     /// The contact has just torn loose: its force is meant to drop.
     pub(super) broke_away: bool,
 }
@@ -54,7 +54,7 @@ impl Friction {
     pub(super) fn follow(
         &mut self,
         body: &Body,
-        hold: Hold,
+        hold: SurfacePoint,
         device: DVec3,
         feel: &Feel,
         dt: f64,
@@ -104,8 +104,8 @@ impl Friction {
 }
 
 impl Pull {
-    fn at(body: &Body, hold: Hold, device: DVec3, feel: &Feel) -> Option<Self> {
-        let Hold { triangle, alpha } = hold;
+    fn at(body: &Body, hold: SurfacePoint, device: DVec3, feel: &Feel) -> Option<Self> {
+        let SurfacePoint { triangle, alpha } = hold;
         let face = body.face(triangle);
         let stiffness = contact_stiffness(body, feel.mode, triangle, alpha);
         let displacement = device - face.at(alpha);
@@ -153,8 +153,8 @@ impl Pull {
 }
 
 /// The direction nearest to `towards` among the normals of the surface at a place.
-fn nearest_normal(body: &Body, hold: Hold, shading: bool, towards: DVec3) -> DVec3 {
-    let Hold { triangle, alpha } = hold;
+fn nearest_normal(body: &Body, hold: SurfacePoint, shading: bool, towards: DVec3) -> DVec3 {
+    let SurfacePoint { triangle, alpha } = hold;
     let face = body.face(triangle);
     let of = |t: u32, alpha: [f64; 3]| {
         if shading {

@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::body::surface::Body;
 use crate::proxy::contact_point::{ContactPoint, Judged};
 use crate::proxy::feel::Feel;
-use crate::proxy::place::{Hold, Place, snap};
+use crate::proxy::place::{Place, SurfacePoint, snap};
 
 /// The god object and the contact point that follows it.
 #[derive(Debug, Clone)]
@@ -13,8 +13,8 @@ pub struct Proxy {
     pub(super) place: Place,
     pub(super) position: DVec3,
     pub(super) queried: DVec3,
-    pub(super) hold: Hold,
-    entry: Hold,
+    pub(super) hold: SurfacePoint,
+    entry: SurfacePoint,
     landings: u64,
     contact: ContactPoint,
     pub(super) steps: u32,
@@ -24,7 +24,7 @@ pub struct Proxy {
 impl Proxy {
     /// A proxy that was set down at `position`.
     pub fn new(body: &Body, position: DVec3) -> Self {
-        let hold = Hold {
+        let hold = SurfacePoint {
             triangle: 0,
             alpha: [1.0, 0.0, 0.0],
         };
@@ -75,7 +75,7 @@ impl Proxy {
 
     /// The contact that makes the force, if there is one.
     #[inline]
-    pub fn hold(&self) -> Option<Hold> {
+    pub fn hold(&self) -> Option<SurfacePoint> {
         self.god_hold().map(|_| self.contact.hold)
     }
 
@@ -87,7 +87,7 @@ impl Proxy {
 
     /// The place on the surface that it touches, or was nearest to when that was last asked for.
     #[inline]
-    pub fn nearest(&self) -> Hold {
+    pub fn nearest(&self) -> SurfacePoint {
         self.god_hold().map_or(self.hold, |_| self.contact.hold)
     }
 
@@ -98,7 +98,7 @@ impl Proxy {
 
     /// Where the god object touches, if it does.
     #[inline]
-    pub fn god_hold(&self) -> Option<Hold> {
+    pub fn god_hold(&self) -> Option<SurfacePoint> {
         match self.place {
             Place::Free { .. } | Place::Buried { .. } => None,
             _ => Some(self.hold),

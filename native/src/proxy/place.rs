@@ -35,7 +35,7 @@ pub(super) enum Place {
 
 /// Where the proxy touches.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Hold {
+pub struct SurfacePoint {
     /// Triangle that carries the contact.
     pub triangle: u32,
     /// Area coordinates; exact zeros on edges and nodes.
@@ -44,8 +44,8 @@ pub struct Hold {
 
 impl Place {
     /// What carries a point of the surface whose area coordinates are snapped.
-    pub(super) fn of(hold: Hold) -> Self {
-        let Hold { triangle, alpha } = hold;
+    pub(super) fn of(hold: SurfacePoint) -> Self {
+        let SurfacePoint { triangle, alpha } = hold;
         let corner = |corner| Self::Corner { triangle, corner };
         let edge = |edge, part| Self::Edge {
             edge: HalfEdge { triangle, edge },

@@ -10,7 +10,7 @@ use glam::DVec3;
 
 use crate::body::face::HalfEdge;
 use crate::body::surface::Body;
-use crate::proxy::place::Hold;
+use crate::proxy::place::SurfacePoint;
 
 /// Triangles tried at most.
 const MAX_TRIANGLES: u32 = 48;
@@ -24,7 +24,7 @@ const OUTSIDE: f64 = 1e-12;
 /// The shaded contact point near `start`, at most about `depth` above the device.
 ///
 /// None where there is none: beyond a crease, or so deep that the normals meet.
-pub(super) fn shaded(body: &Body, start: u32, device: DVec3, depth: f64) -> Option<Hold> {
+pub(super) fn shaded(body: &Body, start: u32, device: DVec3, depth: f64) -> Option<SurfacePoint> {
     let mut triangle = start;
     let mut t = -depth;
     for _ in 0..MAX_TRIANGLES {
@@ -34,7 +34,7 @@ pub(super) fn shaded(body: &Body, start: u32, device: DVec3, depth: f64) -> Opti
             let alpha = alpha.map(|a| a.max(0.0));
             let sum: f64 = alpha.iter().sum();
             let alpha = alpha.map(|a| a / sum);
-            return (root <= 0.0).then_some(Hold { triangle, alpha });
+            return (root <= 0.0).then_some(SurfacePoint { triangle, alpha });
         }
         let edge = HalfEdge {
             triangle,

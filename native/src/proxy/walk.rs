@@ -6,7 +6,7 @@ use crate::body::face::HalfEdge;
 use crate::body::surface::Body;
 use crate::body::sweep::Feature;
 use crate::proxy::god_object::Proxy;
-use crate::proxy::place::{BORDER, Hold, Place, snap};
+use crate::proxy::place::{BORDER, Place, SurfacePoint, snap};
 
 /// Features visited in one tick at most; a tick that ends here goes on in the next one.
 const MAX_STEPS: u32 = 512;
@@ -72,7 +72,7 @@ impl Proxy {
         let face = body.face(triangle);
         let goal = face.area_coordinates(device);
         if goal.iter().all(|&g| g > BORDER) {
-            self.hold = Hold {
+            self.hold = SurfacePoint {
                 triangle,
                 alpha: goal,
             };
@@ -235,7 +235,7 @@ impl Proxy {
         if gain <= 0.0 && step == Step::Down {
             return false;
         }
-        self.hold = Hold { triangle, alpha };
+        self.hold = SurfacePoint { triangle, alpha };
         self.land(body);
         true
     }

@@ -52,7 +52,7 @@ impl Paced {
     /// # Errors
     /// When the system gives no thread.
     pub fn bare(rate_hz: u32) -> std::io::Result<Self> {
-        Self::spawn("palpate-bare", rate_hz, Waking::Plain, |wake| {
+        Self::spawn("palpate-bare", rate_hz, Waking::Timer, |wake| {
             while wake().is_some() {}
         })
     }

@@ -8,7 +8,7 @@ use rtrb::Consumer;
 use triple_buffer::{Input, Output, triple_buffer};
 
 use crate::body::surface::Body;
-use crate::clock::suspension::Asleep;
+use crate::clock::suspension::Suspension;
 use crate::clock::timing::Waking;
 use crate::device::{Device, Fault};
 use crate::servo::exchange::{Hand, exchange};
@@ -105,12 +105,12 @@ impl Running {
         let paced = Paced::spawn(
             "palpate-servo",
             options.rate_hz,
-            Waking::Early,
+            Waking::BusyWait,
             move |wake| {
                 let run = catch_unwind(AssertUnwindSafe(|| {
-                    let mut asleep = Asleep::default();
+                    let mut suspension = Suspension::default();
                     while let Some(now) = wake() {
-                        servo.tick(now + asleep.seconds());
+                        servo.tick(now + suspension.seconds());
                     }
                 }));
                 servo.park(run.is_err().then_some(Fault::Internal));

@@ -104,7 +104,7 @@ fn the_counter_counts() {
 #[test]
 fn waking_and_counting_allocate_nothing() {
     let timing = Timing::default();
-    let mut pace = Pace::new(8000, Waking::Early);
+    let mut pace = Pace::new(8000, Waking::BusyWait);
     let mut woken = 0.0;
     assert_eq!(
         counted(|| (0..200).for_each(|_| woken = pace.wait(&timing, || true).unwrap().seconds)).1,

@@ -43,10 +43,10 @@ pub fn timing_counters<'py>(
     busy.set_item("mean", report.busy.mean_ns() * 1e-3)?;
     busy.set_item("max", us(report.busy.largest_ns))?;
     counters.set_item("busy_us", busy)?;
-    let spun = PyDict::new(py);
-    spun.set_item("mean", report.spun.mean_ns() * 1e-3)?;
-    spun.set_item("max", us(report.spun.largest_ns))?;
-    counters.set_item("spun_us", spun)?;
+    let busy_waited = PyDict::new(py);
+    busy_waited.set_item("mean", report.busy_waited.mean_ns() * 1e-3)?;
+    busy_waited.set_item("max", us(report.busy_waited.largest_ns))?;
+    counters.set_item("spun_us", busy_waited)?;
     counters.set_item("realtime", realtime)?;
     Ok(counters)
 }
