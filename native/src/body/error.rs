@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// Why a surface cannot be touched.
+/// The reason why a surface cannot be touched.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct BodyError(pub String);
 

@@ -9,7 +9,7 @@ use crate::body::error::BodyError;
 pub struct HalfEdge {
     /// Triangle the half-edge belongs to.
     pub triangle: u32,
-    /// Which of its three edges.
+    /// Number of the edge, 0 to 2.
     pub edge: u8,
 }
 
@@ -28,7 +28,7 @@ pub struct Face {
     pub across: [HalfEdge; 3],
     /// The fan each corner belongs to.
     pub fans: [u32; 3],
-    /// How far rounding may turn `normal`, rad, doubled; large for slivers.
+    /// Angle by which rounding may turn `normal`, rad, doubled; large for slivers.
     slack: f64,
 }
 
@@ -101,7 +101,7 @@ impl Fan {
 pub struct Corner {
     /// Triangle number.
     pub triangle: u32,
-    /// Which of its corners.
+    /// Number of the corner, 0 to 2.
     pub corner: u8,
 }
 

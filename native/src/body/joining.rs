@@ -1,4 +1,4 @@
-//! Which triangles meet: half-edges paired across the free side, and fans around nodes.
+//! Neighbours of triangles: half-edges paired across the free side, and fans around nodes.
 
 use glam::DVec3;
 

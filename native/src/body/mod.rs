@@ -1,4 +1,4 @@
-//! The body as the servo knows it: its rest surface and how that gives way.
+//! The body: its rest surface, and how that gives way.
 
 mod between_nodes;
 pub mod closest;

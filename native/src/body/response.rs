@@ -1,4 +1,4 @@
-//! How the surface gives way under forces on the nodes of one triangle.
+//! Compliance between the nodes of one triangle.
 
 use std::collections::HashMap;
 
@@ -19,11 +19,11 @@ const PINNED: u32 = u32::MAX;
 pub struct Response {
     /// L_aa of each node, the inverse of its contact block where it is pinned.
     own: Vec<DMat3>,
-    /// Where each node stands in the compliance.
+    /// Place of each node in the compliance.
     places: Vec<u32>,
     /// L_ab of each edge, a < b.
     between: Vec<DMat3>,
-    /// For each triangle which of `between` its three edges are.
+    /// Places in `between` of each triangle's three edges.
     edges: Vec<[u32; 3]>,
 }
 
@@ -94,7 +94,7 @@ impl Response {
     }
 }
 
-/// Where each of `node_count` nodes stands in a compliance of the free ones.
+/// Places of `node_count` nodes in a compliance of the free ones.
 pub fn places_of(free_nodes: &[u32], node_count: usize) -> Result<Vec<u32>, BodyError> {
     let mut places = vec![PINNED; node_count];
     for (place, &node) in free_nodes.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! The felt force at large depth: the choices, and what the softer one does to a contact's relation.
+//! Softening at large depth: the choices of what is felt, and the softer one's force and tangent.
 //!
 //! Readable reference: `core/shape/force_at_depth/felt_force.py`, which says why this is convex, and
 //! hence continuous, growing and without gain on closed paths, for every softening there may be.
@@ -12,13 +12,13 @@ const LEAST_SHARE: f64 = 0.05;
 /// A change of what is felt while touching comes in over this time, s.
 pub const BLEND_SECONDS: f64 = 0.05;
 
-/// Which relation between displacement and force is felt.
+/// Relation between displacement and force that is felt.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Felt {
     /// The paper's: in proportion, however deep.
     #[default]
     Linear,
-    /// As a solid of large deformation: softer where it is pressed in far.
+    /// That of a solid of large deformation: softer where it is pressed in far.
     Corrected,
 }
 
@@ -35,7 +35,7 @@ impl Felt {
     }
 }
 
-/// How a place departs from the linear relation; none by default.
+/// Departure of a place from the linear relation; none by default.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Softening {
     /// b, 1/m: how much softer the place becomes on the way along it.
@@ -81,7 +81,7 @@ pub struct Softened {
 }
 
 impl Softened {
-    /// For a linear force K u.
+    /// The numbers for a linear force K u.
     #[inline]
     fn of(linear: DVec3, mean_stiffness: f64, softening: &Softening, u: DVec3) -> Self {
         let twice = linear.dot(u);
@@ -109,7 +109,7 @@ impl Softened {
 pub struct Relation {
     /// K at rest.
     pub stiffness: DMat3,
-    /// How it departs from that.
+    /// Departure from that.
     pub softening: Softening,
 }
 
@@ -120,7 +120,7 @@ impl Relation {
         (k.x_axis.x + k.y_axis.y + k.z_axis.z) / 3.0
     }
 
-    /// What becomes of displacement `u`.
+    /// Energy and root at displacement `u`.
     #[inline]
     pub fn softened(&self, u: DVec3) -> Softened {
         let linear = self.stiffness * u;
@@ -147,7 +147,7 @@ impl Relation {
         self.stiffness * LEAST_SHARE + softened * (1.0 - LEAST_SHARE)
     }
 
-    /// How far the body gives way where a spring of this compliance lies between it and a
+    /// Displacement of the body where a spring of this compliance lies between it and a
     /// displacement `u`: v + c f(v) = u, by Newton's method from the linear answer.
     ///
     /// Where the relation softens along the way, every step stays short of the answer and comes
@@ -224,13 +224,13 @@ impl Softenings {
     }
 }
 
-/// What a finger feels of the softenings under it: what is news to it comes in gradually.
+/// Softenings under a finger, brought in gradually as they become known.
 #[derive(Debug, Clone, Copy)]
 pub struct Blend {
     /// From 0, linear, to 1, corrected; `None` while nothing is touched: then it begins anew.
     choice: Option<f64>,
     nodes: [u32; 3],
-    /// Of each node: how much of what is known is in.
+    /// Share of each node's softening that is in.
     shares: [f64; 3],
 }
 
@@ -244,17 +244,17 @@ impl Default for Blend {
     }
 }
 
-/// What is felt of the softenings of a touched triangle's nodes.
+/// Softenings felt of a touched triangle's nodes.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Blended {
-    /// Of each node.
+    /// Softening of each node.
     pub softenings: [Softening; 3],
-    /// Of each node: how much of the corrected relation that is, 0 to 1.
+    /// Share of the corrected relation at each node, 0 to 1.
     shares: [f64; 3],
 }
 
 impl Blended {
-    /// How much of the corrected relation is felt at a place, 0 to 1.
+    /// Share of the corrected relation that is felt at a place, 0 to 1.
     pub fn share(&self, alpha: [f64; 3]) -> f64 {
         self.shares.iter().zip(alpha).map(|(s, a)| s * a).sum()
     }

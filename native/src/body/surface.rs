@@ -35,7 +35,7 @@ pub struct Body {
     size: f64,
     response: Option<Response>,
     between_nodes: Option<BetweenNodes>,
-    /// How nodes soften under a press, as far as that was told.
+    /// Softenings of the nodes, as far as they are known.
     pub softenings: Softenings,
 }
 

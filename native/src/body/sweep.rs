@@ -9,7 +9,7 @@ use crate::body::face::{Face, orientation};
 use crate::body::surface::Body;
 use crate::body::tree::{Node, STACK, Tree};
 
-/// Where a segment crosses a triangle.
+/// Crossing of a segment and a triangle.
 #[derive(Debug, Clone, Copy)]
 pub struct Crossing {
     /// Part of the segment before the crossing, 0 to 1.

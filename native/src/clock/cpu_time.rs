@@ -1,4 +1,4 @@
-//! Time that this thread has spent on its processor.
+//! CPU time of this thread.
 
 /// Since the thread began, s.
 ///

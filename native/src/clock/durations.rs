@@ -20,13 +20,13 @@ pub struct Durations {
 /// A reading of [`Durations`].
 #[derive(Debug, Clone)]
 pub struct DurationReport {
-    /// How many were counted.
+    /// Number of durations.
     pub count: u64,
     /// All together, ns.
     pub sum_ns: u64,
     /// The largest, ns.
     pub largest_ns: u64,
-    /// How many fell into each bucket; see [`bucket_limit_ns`].
+    /// Number in each bucket; see [`bucket_limit_ns`].
     pub histogram: Vec<u64>,
 }
 
@@ -62,12 +62,12 @@ impl Durations {
         raise(&self.histogram[bucket(ns)], 1);
     }
 
-    /// How many were counted so far.
+    /// Number of durations so far.
     pub fn count(&self) -> u64 {
         self.count.load(Relaxed)
     }
 
-    /// What was counted so far.
+    /// All counts so far.
     pub fn report(&self) -> DurationReport {
         DurationReport {
             count: self.count.load(Relaxed),

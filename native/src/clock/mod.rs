@@ -1,4 +1,4 @@
-//! When a tick runs, and what is known about keeping its deadlines.
+//! Deadlines of the ticks: waiting for them, priority, and counters of how they were kept.
 
 pub mod cpu_time;
 pub mod durations;

@@ -41,7 +41,7 @@ impl Suspension {
     }
 }
 
-/// By how much the clock that goes on is ahead of the one that stops; None if the thread was
+/// Lead of the clock that goes on over the one that stops, ns; None if the thread was
 /// interrupted between the readings, or if the system cannot tell.
 #[cfg(target_os = "linux")]
 fn offset_ns() -> Option<u64> {

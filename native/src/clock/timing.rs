@@ -70,7 +70,7 @@ impl TimingReport {
     }
 }
 
-/// How a thread waits for its deadline.
+/// Way in which a thread waits for its deadline.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Waking {
     /// The timer is set to the deadline.

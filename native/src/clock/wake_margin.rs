@@ -12,7 +12,7 @@ const LARGEST_PART: u64 = 25;
 /// At most this long, ns: beyond are waits that no busy-waiting saves.
 const LARGEST_NS: u64 = 100_000;
 
-/// How long before the deadline a thread sets its timer.
+/// Time before the deadline for which a thread sets its timer.
 #[derive(Debug)]
 pub struct Margin {
     ns: u64,
@@ -28,7 +28,7 @@ impl Margin {
         }
     }
 
-    /// What has been learned, ns.
+    /// The margin as learned so far, ns.
     pub fn ns(&self) -> u64 {
         self.ns
     }

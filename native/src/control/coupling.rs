@@ -1,4 +1,4 @@
-//! What keeps a stiff body, a delay and a motor from making energy together.
+//! The virtual coupling: it keeps a stiff body, a delay and a motor from making energy together.
 //!
 //! Between the body's force (14) and the safety limits lies a spring with a damper (a virtual
 //! coupling: Colgate, Stanley and Brown 1995) and an observer of energy ([`Passivity`]). Both
@@ -8,7 +8,7 @@ use glam::{DMat3, DVec3};
 
 use crate::control::passivity::{LAG_SECONDS, Passivity};
 
-/// How the body is coupled to a device with motors.
+/// Coupling of the body to a device with motors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coupling {
     /// The most the device may see of any body's stiffness, N/m; infinite for the body as it is.
@@ -75,7 +75,7 @@ const MOST_STIFFNESS: f64 = 800.0;
 const LEAD_SECONDS: f64 = 5.0e-3;
 /// Up to this step of the encoders, m, [`Coupling::for_devices`] is passive.
 const FINE_STEP: f64 = 60.0e-6;
-/// What a step of coarser encoders may make of the spring's force, N: Coulomb friction has to swallow
+/// Change of the spring's force with a step of coarser encoders, N: Coulomb friction has to swallow
 /// half of it (Diolaiti, Niemeyer, Barbagli and Salisbury 2006), and the damping's part too.
 const FORCE_OF_A_STEP: f64 = 0.06;
 /// Smoothing of the velocity, s: steps of an encoder come as single jumps.
@@ -108,15 +108,15 @@ pub fn series_compliance(stiffness: &DMat3, most: f64) -> f64 {
 /// A touch as the coupling sees it.
 #[derive(Debug, Clone, Copy)]
 pub struct Contact {
-    /// Of the touched place, N/m.
+    /// Stiffness of the touched place, N/m.
     pub stiffness: DMat3,
     /// From god object to probe, m.
     pub displacement: DVec3,
-    /// Of the body on the finger (14), N.
+    /// Force of the body on the finger (14), N.
     pub force: DVec3,
 }
 
-/// What became of a touch.
+/// A touch after the coupling.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Coupled {
     /// The part of the displacement that the body takes, m; the spring takes the rest.
@@ -129,7 +129,7 @@ pub struct Coupled {
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Coupler {
     displacement: DVec3,
-    /// Of the displacement, smoothed, m/s.
+    /// Velocity of the displacement, smoothed, m/s.
     velocity: DVec3,
     passivity: Passivity,
 }
@@ -195,7 +195,7 @@ impl Coupler {
     }
 }
 
-/// What may be added to the spring's force: nothing at first touch and at release, no pull.
+/// Part of `added` that may go with the spring's force: none at first touch and at release, no pull.
 ///
 /// Against the spring and across it at most as much as its own; with it some times as much, because
 /// a force that comes late has to make up for the way already gone. Where the body is softer in one

@@ -1,4 +1,4 @@
-//! Whether there may be force, and how much a motor can hold.
+//! Control of the force: whether there may be any, and how much stays stable with a motor.
 
 pub mod coupling;
 pub mod passivity;

@@ -1,4 +1,4 @@
-//! Time-domain passivity: watches the energy that the motors give, and brakes it away.
+//! Time-domain passivity: an observer of the energy that the motors give, and a brake.
 //!
 //! After Hannaford and Ryu, "Time-domain passivity control of haptic interfaces" (2002), in the form
 //! that follows a reference energy (Ryu, Preusche, Hannaford and Hirzinger 2005): the energy given is
@@ -15,7 +15,7 @@ const MEMORY: usize = 32;
 const FRICTION: f64 = 0.03;
 /// Most damping, N s/m: more, itself delayed, would make energy.
 const MOST_DAMPING: f64 = 1.0;
-/// What the device's friction may have taken more than was made, J: no credit for later.
+/// Largest surplus of energy taken by the device's friction, J: no credit for later.
 const MOST_SURPLUS: f64 = 1.0e-6;
 
 /// Observer and controller of one touch.

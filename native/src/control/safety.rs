@@ -1,4 +1,4 @@
-//! What stands between a computed force and a motor: pure, and on by default.
+//! Limits between a computed force and a motor: pure, and on by default.
 //!
 //! Going to zero is never delayed: permission withdrawn, a fault or a number that is not finite
 //! give zero in the same tick. Growing is limited three times, by ramp, clamp and slew.
@@ -30,7 +30,7 @@ pub const SLEW: &str = "slew";
 pub struct Limited {
     /// N.
     pub force: DVec3,
-    /// What shortened it, one of [`LIMITERS`], or empty; of several the first in that order.
+    /// Limiter that shortened it, one of [`LIMITERS`], or empty; of several the first in that order.
     pub by: &'static str,
 }
 

@@ -1,4 +1,4 @@
-//! What the servo is doing and why, as a state machine: pure, one transition a tick.
+//! The state machine: what the servo is doing and why; pure, one transition a tick.
 //!
 //! `docs/safety.md` has the same table for people. Whatever takes the force away does so in the
 //! tick in which it is found; force comes back only by way of [`State::Ramping`].
@@ -6,7 +6,7 @@
 use crate::device::Fault;
 use crate::device::reason::{self, after};
 
-/// What the servo is doing.
+/// State of the servo.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[repr(u8)]
 pub enum State {
@@ -64,7 +64,7 @@ pub const CALM_SECONDS: f64 = 0.1;
 /// stored is read, which is older than it seems.
 pub const STEADY_SECONDS: f64 = 0.02;
 
-/// How long a fault lasts after its cause has gone, s.
+/// Time that a fault lasts after its cause has gone, s.
 const fn lasts(fault: Fault) -> f64 {
     match fault {
         Fault::TooFast => CALM_SECONDS,
@@ -73,7 +73,7 @@ const fn lasts(fault: Fault) -> f64 {
     }
 }
 
-/// What one tick has found.
+/// Findings of one tick.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Findings {
     /// Something is wrong now.
@@ -98,7 +98,7 @@ pub struct Findings {
     pub inside: bool,
 }
 
-/// Where the machine stands.
+/// State of the machine, with its reason.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Standing {
     /// The state.
@@ -107,7 +107,7 @@ pub struct Standing {
     pub fault: Option<Fault>,
     /// Why, or empty.
     pub reason: &'static str,
-    /// How much longer the fault lasts at least, s.
+    /// Least time that the fault still lasts, s.
     lasts: f64,
 }
 
@@ -138,7 +138,7 @@ impl Standing {
     }
 }
 
-/// Where the machine stands after a tick of `dt` seconds with these findings.
+/// Next state of the machine, after a tick of `dt` seconds with these findings.
 ///
 /// The first rule that applies decides: a fault; a fault that still lasts; a device that waits; the
 /// user's switch; the device's button; a ramp; touching or free.
@@ -185,7 +185,7 @@ pub fn transition(before: &Standing, found: &Findings, dt: f64) -> Standing {
     }
 }
 
-/// Why there is a ramp after a state without force.
+/// Reason of a ramp after a state without force.
 fn way_back(before: &Standing) -> &'static str {
     match (before.fault, before.state) {
         (Some(fault), _) => after(fault),

@@ -12,7 +12,7 @@ const BURST_STATES: u32 = 3;
 /// After a longer pause the line was silent, which is another fault, s.
 const SILENCE: f64 = 0.5;
 
-/// What was seen so far.
+/// Counters so far.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ArrivalReport {
     /// Pauses from one tick with new STATEs to the next.
@@ -45,11 +45,11 @@ struct Batch {
 #[derive(Debug, Clone, Default)]
 pub struct Arrivals {
     batch: Option<Batch>,
-    /// When the last batch came, s, and the device's clock in its last STATE.
+    /// Time of the last batch, s, and the device's clock in its last STATE.
     last: Option<(f64, u32)>,
     /// The last tick that looked in vain, s.
     in_vain: f64,
-    /// What was seen so far.
+    /// Counters so far.
     pub report: ArrivalReport,
 }
 

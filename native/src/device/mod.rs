@@ -13,7 +13,7 @@ use glam::{DMat3, DVec3};
 
 pub use crate::device::report::{Greeting, LinkReport};
 
-/// How device coordinates lie in the body: `p_body = scale * rotation * p_device + translation`.
+/// Map from the device to the body: `p_body = scale * rotation * p_device + translation`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DeviceFrame {
     /// Orthonormal.
@@ -60,7 +60,7 @@ impl DeviceFrame {
     }
 }
 
-/// Why there is no force although there should be.
+/// Fault: the reason why there is no force although there should be.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Fault {
@@ -110,7 +110,7 @@ impl Fault {
     }
 }
 
-/// Where the probe is.
+/// Position, orientation and speed of the probe.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Probe {
     /// Position in the body, m.
@@ -135,7 +135,7 @@ impl Probe {
     }
 }
 
-/// What a device answers each tick.
+/// Answer of a device to a tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Reading {
     /// A position to work with.

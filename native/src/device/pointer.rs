@@ -1,16 +1,16 @@
-//! The pointer as a device: glides to the newest target, so that 60 Hz input teleports nothing.
+//! The pointer as a device: it glides to the newest target, so that 60 Hz input makes no jumps.
 
 use glam::{DMat3, DVec3};
 use triple_buffer::Output;
 
 use crate::device::{Device, DeviceFrame, LinkReport, Probe, Reading};
 
-/// Where the user interface wants the probe.
+/// Target of the probe, from the user interface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Target {
     /// Position in the body, m.
     pub position: DVec3,
-    /// Where the probe was last set down instead of gliding there, m.
+    /// Place where the probe was last set down instead of gliding there, m.
     pub set_down: DVec3,
     /// Changes with every `set_down`. Both are carried on by newer targets, so that none of them
     /// can hide that the probe was set down, or where.

@@ -1,4 +1,4 @@
-//! Reasons that are told beside a state.
+//! Reasons shown beside a state.
 
 use super::Fault;
 

@@ -2,7 +2,7 @@
 
 use crate::device::arrival::ArrivalReport;
 
-/// What a device says of itself.
+/// Greeting of a device.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Greeting {
     /// Protocol version the device speaks; of another one than the host's nothing else is known.
@@ -29,7 +29,7 @@ impl Greeting {
     }
 }
 
-/// What happened on a link so far; all zero for a pointer.
+/// Counters of a link; all zero for a pointer.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct LinkReport {
     /// Valid STATE messages.
@@ -68,7 +68,7 @@ pub struct LinkReport {
     pub reopened: u64,
     /// Code and detail of the device's last FAULT.
     pub last_fault: Option<(u8, u16)>,
-    /// When STATE messages arrived.
+    /// Arrivals of STATE messages.
     pub arrivals: ArrivalReport,
     /// The device's greeting.
     pub greeting: Option<Greeting>,

@@ -1,4 +1,4 @@
-//! How fast a device moves, by its own clock as long as that can be believed.
+//! Speed of a device, by its own clock as long as that can be believed.
 
 use glam::DVec3;
 
@@ -9,21 +9,21 @@ const CLOCK_SECONDS: f64 = 0.25;
 const CLOCK_FACTOR: f64 = 2.0;
 /// After silence for so long, or a host that was held up, clocks are compared afresh, s.
 const GAP_SECONDS: f64 = 0.02;
-/// What comes together may have been this long on its way, s: more time than that and what the host
+/// Longest delay of messages that come together, s: more time than that and what the host
 /// saw go by, the device cannot have taken.
 const DELAY_SECONDS: f64 = 0.05;
 
-/// What came together is taken to be this far apart where the device's clock does not tell, s: a jump
+/// Time between messages that came together where the device's clock does not tell, s: a jump
 /// is found, while the small steps of an ordinary hand are none.
 const TOGETHER_SECONDS: f64 = 5e-4;
 
-/// Where a device was, by both clocks.
+/// Position of a device, with its time by both clocks.
 #[derive(Debug, Clone, Copy)]
 struct Seen {
     position: DVec3,
     device_us: u32,
     now: f64,
-    /// Where it was, and when (s), when something had come before that: what comes together was
+    /// Position and time (s) of the first message after a pause: what comes together was
     /// measured since then.
     before: (DVec3, f64),
 }

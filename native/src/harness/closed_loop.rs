@@ -16,21 +16,21 @@ pub struct Trial {
     pub rate_hz: u32,
     /// Stiffness of the body, N/m.
     pub body_stiffness: f64,
-    /// What lies between body and device.
+    /// Coupling between body and device.
     pub coupling: Coupling,
     /// The servo's.
     pub limits: Limits,
-    /// Where the device begins, m into the body.
+    /// Position at the start, m into the body.
     pub start: f64,
-    /// How fast, m/s.
+    /// Speed at the start, m/s.
     pub speed: f64,
     /// s.
     pub seconds: f64,
-    /// Of the jitter.
+    /// Seed of the jitter.
     pub seed: u64,
 }
 
-/// What became of the energy, J. Books: start + motor + hand = kinetic + viscous + coulomb.
+/// Energies, J: start + motor + hand = kinetic + viscous + coulomb.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Outcome {
     /// Kinetic energy at the start.
@@ -186,7 +186,7 @@ fn stored_energy(stiffness: f64, most: f64, plant: &Plant, x: f64) -> f64 {
     }
 }
 
-/// What the device sees at rest, N/m.
+/// Stiffness that the device sees at rest, N/m.
 fn seen_stiffness(trial: &Trial) -> f64 {
     let own = DMat3::from_diagonal(DVec3::splat(trial.body_stiffness));
     let compliance = series_compliance(&own, trial.coupling.stiffness);

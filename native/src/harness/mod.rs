@@ -1,4 +1,4 @@
-//! What only tests and benchmarks need.
+//! Closed loops for tests and benchmarks; never in the package.
 
 pub mod closed_loop;
 pub mod plant;

@@ -32,7 +32,7 @@ pub struct Hand {
     pub damping: f64,
     /// N, into the body.
     pub push: f64,
-    /// Where the spring's other end rests, m into the body.
+    /// Rest position of the spring's other end, m into the body.
     pub target: f64,
 }
 
@@ -140,7 +140,7 @@ fn slope(series: &[f64; TERMS], t: f64) -> f64 {
         .fold(0.0, |sum, n| sum * t + n as f64 * series[n])
 }
 
-/// When the velocity changes its sign within `seconds`, by bisection.
+/// Time of the velocity's change of sign within `seconds`, by bisection.
 fn reversal(series: &[f64; TERMS], seconds: f64, way: f64) -> Option<f64> {
     if slope(series, seconds) * way >= 0.0 {
         return None;

@@ -19,7 +19,7 @@ use crate::proxy::friction::Friction;
 use crate::proxy::place::SurfacePoint;
 use crate::proxy::shading::shaded;
 
-/// How much of the device's own way the contact point may gain on the device in a tick.
+/// Share of the device's own way that the contact point may gain on it in a tick.
 const GAIN: f64 = 0.7;
 /// At rest what lags is made up with this time constant, s,
 const CATCH_UP: f64 = 0.005;
@@ -44,11 +44,11 @@ pub(super) struct ContactPoint {
     landing: Option<u64>,
 }
 
-/// What the god object came to in this tick.
+/// The god object after this tick.
 pub(super) struct Judged {
     pub(super) hold: SurfacePoint,
     pub(super) position: DVec3,
-    /// Where it met the surface, and how often it has done so.
+    /// Place where it met the surface, and how often it has done so.
     pub(super) entry: SurfacePoint,
     pub(super) landings: u64,
 }
@@ -141,7 +141,7 @@ impl ContactPoint {
             .filter(|hold| is_near(body, hold, god, device, depth))
     }
 
-    /// Where friction leaves the contact point, and whether its way there is to be smooth.
+    /// Place where friction leaves the contact point, and whether its way there is to be smooth.
     fn rub(
         &mut self,
         body: &Body,

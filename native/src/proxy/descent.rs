@@ -1,4 +1,4 @@
-//! To the surface point nearest to a point close by, from triangle to triangle.
+//! Descent from triangle to triangle to the surface point nearest to a point close by.
 
 use glam::DVec3;
 

@@ -1,4 +1,4 @@
-//! What a surface feels like beyond its shape.
+//! Shading and friction of a touched surface.
 
 use crate::contact::touch::ContactMode;
 
@@ -11,6 +11,6 @@ pub struct Feel {
     pub static_friction: f64,
     /// Coefficient of friction while the finger slips, at most the static one.
     pub dynamic_friction: f64,
-    /// How a contact becomes a force; friction is judged by it.
+    /// Mode in which a contact becomes a force; friction is judged by it.
     pub mode: ContactMode,
 }

@@ -32,7 +32,7 @@ pub(super) struct Friction {
     quiet: f64,
 }
 
-/// What a tick of friction came to.
+/// Outcome of a tick of friction.
 pub(super) struct Slip {
     pub(super) hold: SurfacePoint,
     /// The contact has just torn loose: its force is meant to drop.
@@ -50,7 +50,7 @@ struct Pull {
 }
 
 impl Friction {
-    /// Where the contact point goes that was at `hold`; None when nothing presses it there.
+    /// Next place of the contact point that was at `hold`; None when nothing presses it there.
     pub(super) fn follow(
         &mut self,
         body: &Body,
@@ -125,7 +125,7 @@ impl Pull {
         self.sideways.length() / self.pressing
     }
 
-    /// How far the contact point must move in the tangent plane to come onto the cone.
+    /// Way of the contact point in the tangent plane onto the cone.
     fn to_cone(&self, coefficient: f64) -> Option<DVec3> {
         let (x, y) = self.normal.any_orthonormal_pair();
         let (along_x, along_y) = (self.stiffness * x, self.stiffness * y);

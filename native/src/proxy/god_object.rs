@@ -1,4 +1,4 @@
-//! The proxy itself: god object, contact point, and what is asked of both.
+//! The proxy: god object and contact point together.
 
 use glam::DVec3;
 
@@ -96,7 +96,7 @@ impl Proxy {
         matches!(self.place, Place::Buried { .. })
     }
 
-    /// Where the god object touches, if it does.
+    /// Place on the surface that the god object touches, if it does.
     #[inline]
     pub fn god_hold(&self) -> Option<SurfacePoint> {
         match self.place {
@@ -116,7 +116,7 @@ impl Proxy {
         self.steps
     }
 
-    /// How often the sign of the distance had to correct a sweep.
+    /// Number of sweeps that the sign of the distance had to correct.
     pub fn rescues(&self) -> u64 {
         self.rescues
     }

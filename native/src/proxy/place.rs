@@ -6,7 +6,7 @@ use crate::body::face::HalfEdge;
 /// no step of the walk is too short to be told from rounding. It moves along the surface only.
 pub(super) const BORDER: f64 = 1e-12;
 
-/// What the god object stands on.
+/// Place of the god object.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Place {
     /// In free space; the surface is farther than `clearance` from the last query point, and for
@@ -33,7 +33,7 @@ pub(super) enum Place {
     },
 }
 
-/// Where the proxy touches.
+/// A point of the surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SurfacePoint {
     /// Triangle that carries the contact.
@@ -43,7 +43,7 @@ pub struct SurfacePoint {
 }
 
 impl Place {
-    /// What carries a point of the surface whose area coordinates are snapped.
+    /// Place of a surface point whose area coordinates are snapped.
     pub(super) fn of(hold: SurfacePoint) -> Self {
         let SurfacePoint { triangle, alpha } = hold;
         let corner = |corner| Self::Corner { triangle, corner };

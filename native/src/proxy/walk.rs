@@ -11,13 +11,13 @@ use crate::proxy::place::{BORDER, Place, SurfacePoint, snap};
 /// Features visited in one tick at most; a tick that ends here goes on in the next one.
 const MAX_STEPS: u32 = 512;
 
-/// What the walk on the surface came to.
+/// Outcome of the walk on the surface.
 pub(super) enum Walk {
     Rested,
     Released(Feature),
 }
 
-/// What a step of the walk must bring.
+/// Condition on a step of the walk.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Step {
     /// The distance to the device must fall in floating point. Every step onto a feature with a

@@ -1,4 +1,4 @@
-//! What a tool's ticks cost their thread: once as they come, and again where one took long.
+//! CPU time of a tool's ticks: once as they come, and again where one took long.
 //!
 //! A processor that is shared (a virtual one, too) charges a thread with time that it did not have.
 //! A tick computes the same from the same state, so one that took long is led there again from a
@@ -23,20 +23,20 @@ const STRETCH: usize = 200;
 /// Ticks before a stretch from which it is gone through again: the first of them finds the caches full
 /// of the copy.
 const WARMING: usize = 20;
-/// How often a stretch with a long tick is gone through again, at most.
+/// Most replays of a stretch with a long tick.
 const REPLAYS: usize = 10;
 /// Ticks to one round of the control.
 const TICKS_A_CONTROL: usize = 4;
 /// Rounds that its length is found from.
 const CALIBRATIONS: usize = 50;
 
-/// How a path is timed.
+/// Timing of a path.
 #[derive(Debug, Clone, Copy)]
 pub struct Timing {
     pub young_modulus: f64,
     /// Ticks that took longer are replayed, s.
     pub replay_over: f64,
-    /// How long a round of the control is to take, s; none where zero.
+    /// Time that a round of the control is to take, s; none where zero.
     pub control: f64,
 }
 

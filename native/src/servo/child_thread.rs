@@ -33,7 +33,7 @@ impl ChildThread {
         self.is_here() && !self.handle.is_finished()
     }
 
-    /// To wake it.
+    /// Handle to wake it.
     pub fn thread(&self) -> &Thread {
         self.handle.thread()
     }

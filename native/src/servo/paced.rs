@@ -62,7 +62,7 @@ impl Paced {
         &self.timing
     }
 
-    /// What the system said to the wish for real-time priority.
+    /// Answer of the system to the wish for real-time priority.
     pub fn realtime(&self) -> String {
         let granted = self.realtime.get();
         granted.map_or_else(|| "not asked yet".to_owned(), Granted::text)

@@ -8,7 +8,7 @@ use crate::tool::collider::{Collider, MOST_NEAR, MOST_NODES};
 /// A point of the surface that a tool presses.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct PressedPoint {
-    /// Where it is now, m.
+    /// Position now, m.
     pub position: DVec3,
     /// On the body, N.
     pub force: DVec3,

@@ -15,7 +15,7 @@ use rtrb::{Consumer, Producer, RingBuffer};
 use crate::servo::child_thread::ChildThread;
 use crate::servo::snapshot::Sample;
 
-/// How long the thread that empties the ring may be held up without a loss, s.
+/// Longest delay of the thread that empties the ring without a loss, s.
 pub const RING_SECONDS: u32 = 10;
 /// The ring is emptied this often.
 const PAUSE: Duration = Duration::from_millis(20);

@@ -1,4 +1,4 @@
-//! What a tick tells the rest of the world: named state, positions, forces and counters.
+//! Snapshots of a tick for other threads: named state, positions, forces and counters.
 
 use glam::{DMat3, DVec3};
 
@@ -15,9 +15,9 @@ pub struct Snapshot {
     pub tick: u64,
     /// Since the start, s.
     pub time: f64,
-    /// Where the finger is, m.
+    /// Position of the finger, m.
     pub probe: DVec3,
-    /// How its tool is turned, tool to body.
+    /// Rotation from its tool's axes to the body's.
     pub orientation: DMat3,
     /// Contact point that makes the force, m: the god object, shaded or held back by friction.
     pub proxy: DVec3,
@@ -27,20 +27,20 @@ pub struct Snapshot {
     pub hold: Option<(u32, [f64; 3])>,
     /// Whether friction holds the contact point where it is.
     pub sticking: bool,
-    /// Which relation was to be felt.
+    /// Relation that was to be felt.
     pub felt: Felt,
     /// Node numbers of that triangle.
     pub triangle: [u32; 3],
     /// (12), (13), of the linear relation whatever is felt: with them the linear body gives way as
     /// far as the finger has come, N.
     pub nodal_forces: [DVec3; 3],
-    /// How much of the corrected relation is in the felt force, 0 to 1.
+    /// Share of the corrected relation in the felt force, 0 to 1.
     pub felt_share: f64,
     /// (14) before coupling and safety, N.
     pub contact_force: DVec3,
     /// On a tool about its reference point, N m, before safety; none on a point.
     pub torque: DVec3,
-    /// Where the touched point of the surface is now, m; known while touching, if the body has a
+    /// Position of the touched point of the surface, m; known while touching, if the body has a
     /// compliance.
     pub surface_point: Option<DVec3>,
     /// Sent to the device, N, body axes.
@@ -49,9 +49,9 @@ pub struct Snapshot {
     pub state: State,
     /// The fault while `state` is [`State::Fault`].
     pub fault: Option<Fault>,
-    /// Why it waits, ramps, is disabled or stopped, or empty.
+    /// Reason why it waits, ramps, is disabled or stopped, or empty.
     pub reason: &'static str,
-    /// Which limiter shortens the force now, one of [`LIMITERS`](crate::control::safety::LIMITERS), or empty.
+    /// Limiter that shortens the force, one of [`LIMITERS`](crate::control::safety::LIMITERS), or empty.
     pub limited: &'static str,
     /// A bit a button.
     pub buttons: u8,
@@ -77,7 +77,7 @@ pub struct Told {
 /// One tick of all fingers.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Published {
-    /// By number; beyond `count` nothing.
+    /// Reports by finger; beyond `count` nothing.
     pub told: [Told; MAX_FINGERS],
     /// Fingers in use.
     pub count: usize,
@@ -86,7 +86,7 @@ pub struct Published {
 }
 
 impl Published {
-    /// What is told of so many fingers before the first tick.
+    /// Reports of so many fingers before the first tick.
     pub fn before_the_start(count: usize) -> Self {
         let mut published = Self {
             count,
@@ -98,12 +98,12 @@ impl Published {
         published
     }
 
-    /// Of the fingers in use.
+    /// Reports of the fingers in use.
     pub fn fingers(&self) -> &[Told] {
         &self.told[..self.count]
     }
 
-    /// Of finger 0, which is always there.
+    /// Report of finger 0, which is always there.
     pub fn first(&self) -> &Told {
         &self.told[0]
     }
@@ -121,7 +121,7 @@ pub struct Sample {
     pub probe: [f64; 3],
     /// m.
     pub proxy: [f64; 3],
-    /// Where the touched point of the surface is, m; not a number while free or unknown.
+    /// Position of the touched point of the surface, m; not a number while free or unknown.
     pub surface: [f64; 3],
     /// (14), N.
     pub force: [f64; 3],

@@ -1,4 +1,4 @@
-//! How long each part of a tick takes.
+//! Durations of the parts of a tick.
 
 use std::time::Instant;
 

@@ -20,7 +20,7 @@ use crate::servo::stages::Stages;
 use crate::servo::tip::{Tip, TipHand, exchange_tips};
 use crate::servo::{Options, Servo, Settings};
 
-/// How long an exchange of the body waits for the thread.
+/// Longest wait of an exchange of the body for the thread.
 const EXCHANGE_SECONDS: Duration = Duration::from_millis(200);
 
 /// Reads of a snapshot until it is of the same tick as the patches.

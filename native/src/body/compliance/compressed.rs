@@ -1,4 +1,4 @@
-//! Uniform block low rank, as `core/compliance/compression` makes it: near blocks whole, far ones in tiles.
+//! The compressed compliance, as `core/compliance/compression` makes it: uniform block low rank.
 
 use glam::{DMat3, DVec3};
 
@@ -12,7 +12,7 @@ pub(super) const TILE: usize = 8;
 /// The arrays of a compressed compliance, as `core/compliance/compression` names and lays them out.
 #[derive(Debug)]
 pub struct CompressedParts {
-    /// Where each node stands among the padded clusters.
+    /// Place of each node among the padded clusters.
     pub places: Vec<u32>,
     /// L_ii, row by row.
     pub own_blocks: Table<f64>,
@@ -30,7 +30,7 @@ pub struct CompressedParts {
     pub basis: Table<f32>,
     /// Step of each cluster's couplings.
     pub steps: Table<f32>,
-    /// Which tile stands where: 0 none, from 1 on narrow, from -1 down wide.
+    /// Numbers of tiles by place: 0 none, from 1 on narrow, from -1 down wide.
     pub tile_table: Vec<i32>,
     /// Tiles of 8 bits.
     pub narrow: Table<i8>,

@@ -1,4 +1,4 @@
-//! Every number stored, as the paper has it.
+//! The dense compliance: every number stored, as in the paper.
 
 use glam::{DMat3, DVec3};
 

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// Why a compliance cannot be used.
+/// The reason why a compliance cannot be used.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ComplianceError(pub String);
 

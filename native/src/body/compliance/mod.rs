@@ -1,4 +1,4 @@
-//! The compliance in both of its forms, block by block.
+//! The compliance in either form, read block by block.
 //!
 //! L_ij is the displacement of free surface node i per force on node j at unit modulus. Blocks are
 //! read where they lie, among hundreds of megabytes; nothing is allocated or copied for one.
@@ -36,7 +36,7 @@ impl Compliance {
         }
     }
 
-    /// What files and panels call this form.
+    /// Name of this form in files and panels.
     pub const fn form(&self) -> &'static str {
         match self {
             Self::Dense(_) => "dense",

@@ -108,7 +108,7 @@ impl Compressed {
         })
     }
 
-    /// What near blocks and patterns move a place among the padded clusters by.
+    /// Displacement of a place among the padded clusters by near blocks and patterns.
     fn moved(&self, place: usize, near: &[f32], patterns: &[[f32; TILE]]) -> DVec3 {
         let (cluster, inside) = (3 * place / self.rows, 3 * place % self.rows);
         let tiles = self.first_tile[cluster]..self.first_tile[cluster + 1];

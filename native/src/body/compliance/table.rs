@@ -1,4 +1,4 @@
-//! Numbers that somebody else owns, read in place.
+//! Tables of numbers that somebody else owns, read in place.
 
 use std::any::Any;
 use std::fmt;

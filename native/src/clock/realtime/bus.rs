@@ -17,7 +17,7 @@ use dbus::channel::Channel;
 /// libdbus counts time in whole milliseconds: with these, a call that it gives up is past ours.
 const ROUNDING: Duration = Duration::from_millis(2);
 
-/// Where a service is found.
+/// Address of a service on the bus.
 #[derive(Debug, Clone, Copy)]
 pub struct Service {
     pub name: &'static str,

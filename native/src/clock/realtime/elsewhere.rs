@@ -1,13 +1,13 @@
 //! Multimedia class on Windows, time constraint on macOS.
 
-/// What the calling thread was given.
+/// Scheduling that the calling thread was given.
 #[derive(Debug)]
 pub struct Granted {
     text: String,
 }
 
 impl Granted {
-    /// What was given, or why not.
+    /// Text for people: the priority, or why there is none.
     pub fn text(&self) -> String {
         self.text.clone()
     }

@@ -11,7 +11,7 @@ const WANTED_PRIORITY: libc::c_int = 20;
 const SLICE_NS: u64 = 100_000;
 const REMEDY: &str = "install rtkit, or allow your user an rtprio of 20 in /etc/security/limits.d";
 
-/// What the calling thread was given.
+/// Scheduling that the calling thread was given.
 #[derive(Debug)]
 pub struct Granted {
     text: String,
@@ -20,7 +20,7 @@ pub struct Granted {
 }
 
 impl Granted {
-    /// What was given, or why not and what helps. A watchdog may take real-time priority back
+    /// Text for people: the priority, or why there is none and what helps. A watchdog may take it back
     /// (ours, RealtimeKit's), so this looks again.
     pub fn text(&self) -> String {
         // SAFETY: asks about a number; a thread that has ended is an error.
@@ -102,7 +102,7 @@ fn fifo_or_rr(priority: i32) -> String {
     format!("{name} {priority}")
 }
 
-/// What the rtprio limit allows, once its soft value is raised to the hard one.
+/// Priority that the rtprio limit allows, once its soft value is raised to the hard one.
 fn allowed_priority() -> libc::c_int {
     let mut limit = libc::rlimit {
         rlim_cur: 0,

@@ -20,7 +20,7 @@ const KIT: Service = Service {
 };
 const WANTED_NICE: i32 = -11;
 
-/// What was had.
+/// Priority that the service granted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Granted {
     /// A real-time priority.

@@ -1,4 +1,4 @@
-//! Threads with real-time priority that never sleep lose the priority, not the process its life.
+//! Watchdog for real-time threads that never sleep: they lose the priority, the process lives.
 //!
 //! RealtimeKit wants a limit on the time that a real-time thread may run without sleeping
 //! (`RLIMIT_RTTIME`). Beyond its soft value the kernel sends `SIGXCPU` and beyond the hard one

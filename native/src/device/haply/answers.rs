@@ -15,7 +15,7 @@ use crate::device::serial::port::Opener;
 const ASK_SECONDS: f64 = 0.05;
 /// A board that answers with its address alone has said so by then, s.
 const ANSWER_SECONDS: f64 = 0.01;
-/// So often a board that knows this device may answer nonsense before it is set up anew.
+/// Unsound answers of a board that knows this device before it is set up anew.
 const ASKED_IN_VAIN: u32 = 3;
 /// Boards lose a little memory with each setup: no oftener than this, s.
 const SETUP_EVERY_SECONDS: f64 = 0.02;
@@ -25,7 +25,7 @@ const RESTORE_SECONDS: f64 = 0.05;
 const FASTEST_TURN: f64 = 3000.0;
 /// Answers that come together belong to different moments, degrees.
 const JUMP_DEGREES: f64 = 2.0;
-/// How far the arms may turn while they are set up anew, degrees.
+/// Largest turn of the arms while they are set up anew, degrees.
 const SETUP_DEGREES: f64 = 8.0;
 /// Completes whatever a board still waits for: the end of the longest message.
 const FILL_BYTES: usize = 18;
@@ -155,7 +155,7 @@ impl<O: Opener> HaplyDevice<O> {
     }
 }
 
-/// What the device would say of itself, if it could.
+/// Greeting that the device would send if its protocol had one.
 fn greeting(model: &Model) -> Greeting {
     let mut name = [0; 16];
     name[..model.name.len()].copy_from_slice(model.name.as_bytes());

@@ -1,4 +1,4 @@
-//! The 2DIY as the servo sees it: asks with torques, is answered with angles, notices all that is odd.
+//! The 2DIY as a device: torques out, angles in, and a watch on all that is odd.
 //!
 //! Every tick sends torques; each such request is answered with the angles of its moment. No answer
 //! is waited for: what has come by the next tick counts. Boards have no watchdog, so a request with
@@ -19,7 +19,7 @@ use crate::device::serial::line::Line;
 use crate::device::serial::port::Opener;
 use crate::device::{Device, DeviceFrame, Fault, LinkReport, Probe, Reading};
 
-/// So many answers of the address alone say that a board has no such device.
+/// Answers of the address alone that say that a board has no such device.
 const LONE_ADDRESSES: usize = 3;
 /// Without an answer for this long there is no force, s.
 const STALE_SECONDS: f64 = 0.02;
@@ -30,7 +30,7 @@ const PARKING_REQUESTS: u32 = 3;
 /// Reads in one tick at most, so that a flood of bytes cannot hold it up.
 const READS_PER_TICK: usize = 16;
 
-/// How the angles get their zero.
+/// Zero of the angles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Calibration {
     /// Angles at the start, degrees (arm 1, arm 2).
@@ -65,7 +65,7 @@ impl Phase {
 /// A 2DIY on a line.
 pub struct HaplyDevice<O: Opener> {
     pub(super) line: Line<O>,
-    /// What has come and is no answer yet.
+    /// Received bytes that are no answer yet.
     pub(super) inbox: Inbox,
     pub(super) model: &'static Model,
     pub(super) calibration: Calibration,

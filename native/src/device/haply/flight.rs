@@ -1,4 +1,4 @@
-//! Which requests have no answer yet.
+//! Requests that have no answer yet.
 
 /// Requests that may wait for their answers at once; more would only queue on the way.
 const MOST: usize = 4;

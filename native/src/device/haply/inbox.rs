@@ -1,4 +1,4 @@
-//! Bytes on their way to an answer.
+//! Received bytes that are no whole answer yet.
 
 use crate::device::haply::message::ANSWER_BYTES;
 
@@ -16,7 +16,7 @@ impl Inbox {
         length: 0,
     };
 
-    /// What is there.
+    /// The bytes so far.
     pub fn bytes(&self) -> &[u8] {
         &self.bytes[..self.length]
     }

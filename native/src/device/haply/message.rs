@@ -1,4 +1,4 @@
-//! The bytes of the hAPI protocol.
+//! Messages of the hAPI protocol, byte for byte.
 //!
 //! A board reads a command byte, an address and as many bytes as it believes to follow; nothing marks
 //! a beginning. Bytes other than 0, 1 and 2 where a command should be are skipped. So torques are
@@ -8,11 +8,11 @@
 
 use crate::device::haply::model::Model;
 
-/// Forget the device and its ports. The motors keep what they had.
+/// Command: forget the device and its ports. The motors keep what they had.
 pub const RESET: u8 = 0;
-/// What is on which port.
+/// Command: set up the ports of motors and encoders.
 pub const SETUP: u8 = 1;
-/// Take torques, answer with angles.
+/// Command: take torques, answer with angles.
 pub const TORQUES: u8 = 2;
 /// No command, no address of ours, and harmless as any byte of a torque.
 pub const FILL: u8 = 0x10;
@@ -25,7 +25,7 @@ pub const ANSWER_BYTES: usize = 9;
 
 /// Torques smaller than this are none, N m.
 const LEAST_TORQUE: f64 = 1e-6;
-/// How far an angle may be from a whole count in units of its last place: boards may round twice.
+/// Distance of an angle from a whole count in units of its last place: boards may round twice.
 const GRID_ULPS: u32 = 2;
 
 /// Sets up both arms, whose encoders stand at `degrees` (arm 1, arm 2) now.

@@ -1,4 +1,4 @@
-//! What the makers sold, as their public example programs set it up; `docs/haply.md` names them.
+//! Models of the 2DIY, as the makers' public example programs set them up (`docs/haply.md`).
 
 use std::f64::consts::TAU;
 
@@ -27,7 +27,7 @@ pub struct Arm {
 /// A device as it is set up.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Model {
-    /// How a user names it.
+    /// Name for users.
     pub key: &'static str,
     /// Name for people, at most 16 bytes.
     pub name: &'static str,
@@ -165,7 +165,7 @@ impl Model {
             .fold(0.0, f64::max)
     }
 
-    /// Where a point of the pantograph is for the servo, m: from the workspace's middle, x to the
+    /// Device position of a point of the pantograph, m: from the workspace's middle, x to the
     /// user's right, y away from the user, z up. The pantograph's own axes are turned by half a
     /// turn: x to the left, y towards the user.
     pub fn to_device(&self, position: DVec2) -> DVec3 {

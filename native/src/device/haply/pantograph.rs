@@ -23,7 +23,7 @@ pub struct Pantograph {
 pub struct Pose {
     /// Handle, m.
     pub position: DVec2,
-    /// How the handle moves with each motor's angle, m/rad: the columns of the Jacobian.
+    /// Columns of the Jacobian: motion of the handle with each motor's angle, m/rad.
     pub columns: [DVec2; 2],
     /// Sine of the angle between the forearms: 0 in a singular pose, where the handle can move
     /// although both motors are held.

@@ -30,7 +30,7 @@ pub fn encode(payload: &[u8], frame: &mut [u8; MAX_FRAME]) -> Option<usize> {
     Some(coded + 1)
 }
 
-/// What was wrong with received bytes.
+/// Counts of frames that were not sound.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct DecodeErrors {
     /// Frames whose checksum did not fit.

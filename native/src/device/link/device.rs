@@ -1,4 +1,4 @@
-//! The serial device: link of version 1 as the host speaks it, with all that goes wrong on a wire.
+//! The serial device: the host's end of the link, with all that goes wrong on a wire.
 
 use glam::DVec3;
 

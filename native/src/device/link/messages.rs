@@ -13,12 +13,12 @@ const FORCE: u8 = 0x03;
 const FAULT: u8 = 0x04;
 const ORIENTATION: u8 = 0x05;
 
-/// What 1 is in an ORIENTATION.
+/// Steps of a quaternion's component of 1 in an ORIENTATION.
 const QUATERNION_UNIT: f64 = 32_767.0;
 /// Shortest and longest quaternion that is believed, in its own steps: within 1 % of a unit's.
 const QUATERNION_LENGTHS: [i64; 2] = [32_440, 33_094];
 
-/// Where a device is.
+/// State of a device: position, buttons, readiness.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DeviceState {
     /// Counts up by one a message, wraps.
@@ -43,7 +43,7 @@ impl DeviceState {
     }
 }
 
-/// How a device's stylus is turned.
+/// Orientation of a device's stylus.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DeviceOrientation {
     /// That of the STATE which it belongs to.
@@ -71,7 +71,7 @@ pub enum Message {
     Hello(Greeting),
     /// One sample of the STATE stream.
     State(DeviceState),
-    /// How the stylus is turned in the STATE that follows.
+    /// Orientation of the stylus in the STATE that follows.
     Orientation(DeviceOrientation),
     /// A fault report.
     Fault {

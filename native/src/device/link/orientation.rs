@@ -18,7 +18,7 @@ struct Turned {
     at: f64,
 }
 
-/// What became of the ORIENTATION messages.
+/// Counts of ORIENTATION messages.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct OrientationReport {
     /// Came with their STATE.

@@ -1,4 +1,4 @@
-//! Messages taken one by one: where a session of the device begins, and which STATE counts.
+//! Sessions of a device on the link: where one begins, and which STATE counts.
 
 use crate::device::link::device::{LinkDevice, Newest};
 use crate::device::link::messages::{DeviceState, Message, parse};

@@ -1,4 +1,4 @@
-//! A port that may go and come back, with what has not left through it yet. Never waits.
+//! A port that may be unplugged and come back, with the bytes not sent yet. Never blocks.
 
 use std::io::ErrorKind;
 

@@ -1,4 +1,4 @@
-//! A serial port that may go and come back.
+//! Serial ports that may be unplugged and come back.
 
 pub(crate) mod line;
 pub mod port;

@@ -1,4 +1,4 @@
-//! A serial port that never makes the servo wait: reads what is there, writes what fits.
+//! A serial port that never blocks: it reads what is there and writes what fits.
 
 use std::io;
 use std::time::Duration;
@@ -20,7 +20,7 @@ pub trait Wire: Send {
 
 /// Opens a line, at the start and again after unplugging. May take time and memory.
 pub trait Opener: Send {
-    /// What it opens.
+    /// Kind of wire that it opens.
     type Wire: Wire;
     /// Opens the line.
     ///
@@ -97,7 +97,7 @@ mod on_unix {
     fn shorten_latency(fd: std::os::fd::RawFd) {
         /// `ASYNC_LOW_LATENCY` of linux/tty_flags.h.
         const LOW_LATENCY: i32 = 1 << 13;
-        /// Where linux/serial.h has `flags` in `struct serial_struct`, of 18 words at most.
+        /// Place of `flags` in linux/serial.h's `struct serial_struct`, of 18 words at most.
         const FLAGS: usize = 4;
         let mut serial = [0_i32; 32];
         // SAFETY: the descriptor is open and the buffer larger than what the kernel writes or reads.

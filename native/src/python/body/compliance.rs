@@ -16,7 +16,7 @@ use crate::body::compliance::table::Table;
 use crate::body::compliance::{self, Compressed, CompressedParts, Dense, Either};
 use crate::python::vectors::{Matrix, square};
 
-/// What the names of a compressed compliance's arrays begin with.
+/// Prefix of the names of a compressed compliance's arrays.
 const PREFIX: &str = "compressed_";
 
 #[pyclass(frozen, module = "palpate_servo")]

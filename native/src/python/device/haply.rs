@@ -1,4 +1,4 @@
-//! What a start with a 2DIY is told.
+//! Models and angles of a 2DIY, from what Python gives.
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

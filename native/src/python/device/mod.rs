@@ -1,4 +1,4 @@
-//! Which device is asked for.
+//! Devices as Python describes them.
 
 pub mod coupling;
 pub mod haply;

@@ -97,15 +97,15 @@ pub enum DeviceSetup<'py> {
     Haply(PyRef<'py, HaplySetup>),
 }
 
-/// Where a pointer is led, and where it was led last.
+/// Target of a pointer, and the last one.
 pub type Lead = (Input<Target>, Target);
 
 /// A device that can be read.
 pub struct Opened {
     pub device: Box<dyn Device>,
-    /// Of a pointer.
+    /// Lead of a pointer.
     pub lead: Option<Lead>,
-    /// Of a device with motors: where it is in the body, and the step of its encoders, m.
+    /// Mount of a device with motors: where it is in the body, and the step of its encoders, m.
     pub mount: Option<(DeviceFrame, f64)>,
 }
 

@@ -1,4 +1,4 @@
-//! `seconds_per_block`: what a block of a compliance costs.
+//! `seconds_per_block`: time to read a block of a compliance.
 
 use std::hint::black_box;
 use std::time::Instant;

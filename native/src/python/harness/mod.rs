@@ -1,4 +1,4 @@
-//! `palpate_servo.harness`: what only tests and benchmarks need; not in the wheel of the extension.
+//! `palpate_servo.harness`: parts for tests and benchmarks; not in the extension's wheel.
 
 mod bare_timer;
 mod block_cost;

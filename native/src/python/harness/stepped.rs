@@ -18,7 +18,7 @@ use crate::servo::exchange::{Hand, exchange};
 use crate::servo::snapshot::Published;
 use crate::servo::{Servo, Settings};
 
-/// What is on the line in either direction.
+/// Bytes on the line in either direction.
 #[derive(Debug, Default)]
 struct Line {
     to_host: Vec<u8>,

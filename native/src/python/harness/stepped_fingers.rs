@@ -28,7 +28,7 @@ type Felt<'py> = (Bound<'py, PyArray3<f64>>, Bound<'py, PyArray3<f64>>);
 /// N, N/s and m/s: beyond all that is asked for, and still a number.
 const NO_LIMIT: f64 = 1e12;
 
-/// Where a finger is to be in the next tick.
+/// Place of a finger in the next tick.
 #[derive(Debug, Clone, Copy)]
 struct Place {
     position: DVec3,

@@ -1,4 +1,4 @@
-//! `tick_costs`: what the servo's ticks cost their thread, with fingers that follow a script.
+//! `tick_costs`: CPU time of the servo's ticks, with fingers that follow a script.
 
 use std::sync::Arc;
 

@@ -133,7 +133,7 @@ pub fn fault_counters<'py>(py: Python<'py>, told: &Told) -> PyResult<Bound<'py, 
     Ok(faults)
 }
 
-/// What one finger has counted.
+/// Counters of one finger.
 pub fn finger_counters(py: Python<'_>, counters: &Bound<'_, PyDict>, told: &Told) -> PyResult<()> {
     counters.set_item("faults", fault_counters(py, told)?)?;
     counters.set_item("link", link_counters(py, &told.link)?)?;

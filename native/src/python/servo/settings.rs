@@ -1,4 +1,4 @@
-//! What a servo is set to, from the names and numbers that Python gives.
+//! Settings of a servo, from the names and numbers that Python gives.
 
 use glam::DMat3;
 use pyo3::exceptions::PyValueError;

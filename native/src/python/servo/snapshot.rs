@@ -13,7 +13,7 @@ use crate::servo::snapshot::Published;
 #[derive(Clone)]
 pub struct FingerSnapshot {
     shot: crate::servo::snapshot::Snapshot,
-    /// Of a tool that touches.
+    /// Patch of a tool that touches.
     patch: Option<Box<PressedPatch>>,
 }
 
