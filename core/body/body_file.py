@@ -1,4 +1,4 @@
-"""The body file: one ``.npz`` that ``numpy.load(allow_pickle=False)`` reads.
+"""Body file: one ``.npz`` that ``numpy.load(allow_pickle=False)`` reads.
 
 Keys
 ----
@@ -65,13 +65,13 @@ NEEDED_BY_FORM = {
     "compressed": ("tolerance",),
 }
 
-# Tables of at least so many bytes stay in the file. Not on Windows: a file that is mapped there can
-# be neither replaced nor deleted, so a new bake would fail for as long as the old body is in use.
+# Bytes from which tables are memory-mapped. Not on Windows, where a mapped file can be neither
+# replaced nor deleted: a new bake would fail while the old body is in use.
 MAPPED_FROM_BYTES = 64_000_000 if os.name == "posix" else None
 
 
 def save(body: SoftBody, path: str | os.PathLike[str]) -> None:
-    """Write a body file; an existing one is replaced in one step or stays as it was.
+    """Write a body file; an existing one is replaced atomically.
 
     >>> from tempfile import TemporaryDirectory
     >>> from palpate.core.bake.settings import BakeSettings
@@ -86,7 +86,7 @@ def save(body: SoftBody, path: str | os.PathLike[str]) -> None:
     Raises
     ------
     UnwritableError
-        The place cannot be written.
+        The target cannot be written.
     """
     arrays: Arrays = {
         "key": np.array(body.key),
@@ -117,13 +117,13 @@ def load(
 ) -> SoftBody:
     """Read a body file and check it: format, version, checksum, key.
 
-    A large dense table stays in the file: its columns are read and checked when they are used
-    (:class:`.mapped_compliance.MappedCompliance`). The file may be replaced or deleted meanwhile.
+    A large dense table is mapped, its columns checked when they are used
+    (:class:`..compliance.mapped.MappedCompliance`). The file may be replaced or deleted meanwhile.
 
     Parameters
     ----------
     path : the file.
-    mapped_from_bytes : how large a table has to be for that; None never leaves one in the file.
+    mapped_from_bytes : smallest size of a mapped table; None maps none.
 
     Raises
     ------
@@ -143,12 +143,12 @@ def load(
 
 
 def adopt(finished: Path, target: Path) -> None:
-    """Put the ``finished`` body file at ``target`` in one step, also across file systems.
+    """Move the ``finished`` body file to ``target`` atomically, also across file systems.
 
     Raises
     ------
     UnwritableError
-        The place cannot be written; nothing is left there.
+        The target cannot be written; nothing is left there.
     """
     with atomic_file(target, make_folders=True) as file, finished.open("rb") as source:
         shutil.copyfileobj(source, file)
@@ -210,7 +210,7 @@ def _read(archive: Archive, source: Path, mapped_from_bytes: int | None) -> Soft
 def _compliance(
     stored: Arrays, archive: Archive, source: Path, mapped_from_bytes: int | None
 ) -> Compliance:
-    """The compliance in the form that is stored; a dense table that is read is checked whole."""
+    """Compliance in the stored form; a dense table that is read is checked completely."""
     free_surface = stored["free_surface"].astype(np.int64)
     count = len(free_surface)
     if str(stored["form"]) == "compressed":
@@ -238,7 +238,7 @@ def _compliance(
 
 
 def _body(stored: Arrays, compliance: Compliance) -> SoftBody:
-    """The body of arrays whose checksum is right; PalpateError where they contradict each other."""
+    """Body from arrays with checked checksum; PalpateError where they contradict each other."""
     mesh = TetMesh.checked(stored["nodes"], stored["tets"])
     poisson_ratio, young_modulus = float(stored["poisson_ratio"]), float(stored["young_modulus"])
     lame_parameters(young_modulus, poisson_ratio)

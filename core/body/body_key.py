@@ -1,4 +1,4 @@
-"""The name of a compliance: a digest of everything that it depends on."""
+"""Key of a compliance: a digest of everything that it depends on."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from ..mesh.tet_mesh import TetMesh
 
-# Counts changes of what a key is made of, not of the file that stores it.
+# Version of the key's ingredients, not of the file.
 KEY_VERSION = 1
 
 
@@ -22,8 +22,7 @@ def body_key(
 ) -> str:
     """Hex digest of everything the compliance depends on.
 
-    Young's modulus is not part of it, nor is the form in which the compliance is stored: a
-    compressed body stands for the same compliance as a dense one.
+    Young's modulus is not part of it, nor is the form of the compliance.
 
     Parameters
     ----------

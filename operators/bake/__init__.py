@@ -1,1 +1,1 @@
-"""The bake and its operators."""
+"""Bake and its operators."""

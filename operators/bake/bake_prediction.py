@@ -1,4 +1,4 @@
-"""What a bake of an object will cost, before it starts."""
+"""Predicted cost of an object's bake."""
 
 from __future__ import annotations
 
@@ -20,15 +20,14 @@ from ..scene.drawn_surface import DrawnSurface
 
 @dataclass(frozen=True)
 class Prediction:
-    """What a bake takes, and how it could take less where that is too much.
+    """Cost of a bake, and settings that would fit the memory.
 
     Attributes
     ----------
     cost : of the bake as it is set.
-    available : bytes of memory that can be had.
+    available : bytes of memory.
     compressed_fits : whether the compressed form would fit the memory.
-    edge_length : the smallest one that fits, None where none does; the one that is set where it
-        fits already.
+    edge_length : smallest that fits, None if none does; the set one where it fits.
     """
 
     cost: BakeCost
@@ -43,9 +42,8 @@ class Prediction:
 
 
 def shape_size(drawn: DrawnSurface) -> ShapeSize:
-    """Area, volume and fineness of a drawn surface; quick also where it has several parts.
+    """Size of a drawn surface; quick also for several parts, whose overlaps count twice.
 
-    Parts that overlap count twice in the volume. The bake measures that; a prediction need not.
 
     Raises
     ------
@@ -61,19 +59,19 @@ def shape_size(drawn: DrawnSurface) -> ShapeSize:
 
 
 def pins_of(thing: bpy.types.Object, drawn: DrawnSurface) -> Pins:
-    """What is held, as far as a cost depends on it; reads the vertex group if there is one."""
+    """Pins, as far as a cost depends on them; reads the vertex group if there is one."""
     settings = thing.palpate
     if settings.pin_mode == "BELOW":
         return PinBelow(settings.pin_fraction)
     try:
         return pin_group.pins(thing, drawn)
     except PalpateError:
-        # Said beside the pins; the cost is one for the whole surface then.
+        # Reported next to the pins; the cost is that of the whole surface then.
         return PinBelow(0.0)
 
 
 def settings_of(thing: bpy.types.Object, pins: Pins) -> BakeSettings:
-    """What the panel asks of a bake, as far as its cost depends on it."""
+    """Settings of the panel, as far as the cost depends on them."""
     chosen = thing.palpate
     return BakeSettings(
         poisson_ratio=round(chosen.poisson_ratio, 6),
@@ -88,7 +86,7 @@ def settings_of(thing: bpy.types.Object, pins: Pins) -> BakeSettings:
 
 
 def predict(size: ShapeSize, settings: BakeSettings) -> Prediction:
-    """What baking a surface of this size will take on this machine now."""
+    """Predicted cost of a surface of this size on this machine now."""
     available = available_memory()
     cost = estimate_cost(size, settings, available)
     if cost.peak_bytes <= available:

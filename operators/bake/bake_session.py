@@ -1,4 +1,4 @@
-"""One bake of one object: started, polled, then given to the object or gone without a trace."""
+"""Bake of an object: started, polled, then applied to the object or dropped without remains."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ SECONDS_BETWEEN_POLLS = 0.05
 
 @dataclass(eq=False)
 class BakeSession:
-    """A running bake. Make one with :func:`start`; it is :func:`current` until it ends."""
+    """Running bake. Make one with :func:`start`; it is :func:`current` until it ends."""
 
     handle: ObjectHandle
     surface: DrawnSurface
@@ -39,7 +39,7 @@ class BakeSession:
     rebuild: bool
 
     def poll(self) -> bool:
-        """Look how far it is; True when there is a result to :meth:`commit`.
+        """Update the progress; True when there is a result to :meth:`commit`.
 
         Raises
         ------
@@ -59,12 +59,12 @@ class BakeSession:
 
     @property
     def can_commit(self) -> bool:
-        """Whether the object can take the result now: not while it is being edited."""
+        """Whether the result can be applied now: not in edit mode."""
         thing = self.handle.find()
         return thing is None or thing.mode == "OBJECT"
 
     def commit(self, scene: bpy.types.Scene) -> tuple[SoftBody, BakeReport]:
-        """Give the object its body. Ends the session, whatever happens.
+        """Give the object its body. Ends the session in any case.
 
         Raises
         ------
@@ -93,7 +93,7 @@ class BakeSession:
 
     def end(self) -> None:
         """Stop the child process and remove its folder. Safe to repeat."""
-        global _current  # noqa: PLW0603  one bake at a time is a fact of the module
+        global _current  # noqa: PLW0603  one bake at a time
         self.job.close()
         if _current is self:
             _current = None
@@ -123,17 +123,17 @@ _current: BakeSession | None = None
 
 
 def current() -> BakeSession | None:
-    """The bake that is running, if one is."""
+    """Running bake, if any."""
     return _current
 
 
 def start(thing: bpy.types.Object, scene: bpy.types.Scene, *, rebuild: bool = False) -> BakeSession:
-    """Begin to bake an object in a child process.
+    """Start to bake an object in a child process.
 
     Parameters
     ----------
-    rebuild : make the compliance again from the tetrahedra in the .blend, with the pins and the
-        material that are set now.
+    rebuild : only recompute the compliance, from the tetrahedra in the .blend with the present
+        pins and material.
 
     Raises
     ------
@@ -183,7 +183,7 @@ def _rebuild_job(
     surface: Surface,
     python: tuple[str, ...],
 ) -> BakeJob:
-    """Same tetrahedra; also the same nodes pinned and stiff where the rules are, for one key."""
+    """Job with the same tetrahedra; with unchanged rules also the same nodes, for an equal key."""
     within = body_store.embedded(thing)
     old = Fingerprint.from_text(thing.palpate.fingerprint)
     change = changed_body(old, now)
@@ -199,7 +199,7 @@ def _rebuild_job(
 
 
 def settings_of(thing: bpy.types.Object, drawn: DrawnSurface) -> BakeSettings:
-    """What the panel asks of a bake.
+    """Settings of a bake from the panel.
 
     Raises
     ------
@@ -223,7 +223,7 @@ def settings_of(thing: bpy.types.Object, drawn: DrawnSurface) -> BakeSettings:
 
 
 def refusal_of_soft(context: bpy.types.Context) -> str:
-    """Why nothing can be done with the active object's body now; empty if it can."""
+    """Reason why the active object's body cannot be changed now; empty if it can."""
     reason = soft_object.refusal(context.object)
     if not reason and not context.object.palpate.body_key:
         reason = Sentence("{name} is not soft yet; press Make Soft first", name=context.object.name)

@@ -1,4 +1,4 @@
-"""Where a bake stands, in words of the user's language."""
+"""Progress of a bake as translated text."""
 
 from ...core.bake.job import JobProgress
 from ..reporting.translated import shown
@@ -8,7 +8,7 @@ WAITING = "The body is ready; leave Edit Mode to receive it"
 
 
 def how_far(progress: JobProgress) -> str:
-    """Share and remaining time: ``62 %, 12 s left``; the time so far while nobody knows."""
+    """Share and remaining time: ``62 %, 12 s left``; elapsed time if unknown."""
     share = "" if progress.share is None else f"{100 * progress.share:.0f} %, "
     if progress.remaining is None:
         return f"{share}{duration(progress.seconds)}"

@@ -1,4 +1,4 @@
-"""Cancel Bake: the button for those who do not press Escape."""
+"""Cancel Bake: a button besides Escape."""
 
 import bpy
 

@@ -17,7 +17,7 @@ POLLS_PER_SECOND = 10
 
 
 class BakingOperator(Acting):
-    """What Make Soft and Rebuild Body share: a bake beside Blender, or waited for."""
+    """Base of Make Soft and Rebuild Body: a bake in the background, or waited for."""
 
     rebuild = False
     _session: BakeSession
@@ -59,7 +59,7 @@ class BakingOperator(Acting):
             self.report({level}, reported(problem))
             return {"CANCELLED"}
         except BaseException:
-            # A fault of ours must not leave a child process, a timer and a status line behind.
+            # A bug must not leave a child process, a timer and a status line.
             self.cancel(context)
             raise
 
@@ -78,7 +78,7 @@ class BakingOperator(Acting):
         return {"FINISHED"}
 
     def cancel(self, context: bpy.types.Context) -> None:
-        """Blender ends the operator: another file, or exit."""
+        """End with the operator: another file, or exit."""
         self._session.end()
         self._leave(context)
 
@@ -98,7 +98,7 @@ class BakingOperator(Acting):
             context.window_manager.event_timer_remove(self._timer)
             self._timer = None
         context.window_manager.progress_end()
-        # There is none while Blender replaces its windows for another file.
+        # None while Blender replaces its windows for another file.
         if context.workspace is not None:
             context.workspace.status_text_set(None)
         redraw_views()

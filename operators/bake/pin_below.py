@@ -1,4 +1,4 @@
-"""Pin Below Height: put all vertices below a height into the group "Pinned"."""
+"""Pin Below Height: assign all vertices below a height to the group "Pinned"."""
 
 import bpy
 

@@ -1,4 +1,4 @@
-"""Rebuild Body: the body again from the tetrahedra in the .blend, with what is set now."""
+"""Rebuild Body: recompute the body from the tetrahedra in the .blend, with present settings."""
 
 import bpy
 

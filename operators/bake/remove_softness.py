@@ -1,4 +1,4 @@
-"""Remove Softness: take the body away; the mesh and the shapes kept from it stay."""
+"""Remove Softness: delete the body; the mesh and its kept shapes stay."""
 
 import bpy
 

@@ -1,4 +1,4 @@
-"""Update Pins: hold the body where the pins are now, without a bake."""
+"""Update Pins: apply changed pins to the body, without a bake."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""What operators report, and how they refuse, in the user's language."""
+"""Reports and refusals of operators, translated."""

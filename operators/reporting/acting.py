@@ -1,4 +1,4 @@
-"""One way for operators to refuse: beforehand by their tooltip, while they work by a report."""
+"""Refusal of operators: in advance by the tooltip, during work by a report."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from .translated import reported, shown
 
 
 class Acting:
-    """Mixed into an operator: :meth:`refusal` says why it cannot run now, :meth:`act` does its
-    work, and an error for the user becomes a report that nothing was done.
+    """Mixin for an operator: :meth:`refusal` is the reason why it cannot run now, :meth:`act` does
+    its work, and a PalpateError becomes a report that nothing was done.
     """
 
-    # What every bpy.types.Operator has.
+    # Of every bpy.types.Operator.
     report: Callable[[set[str], str], None]
     poll_message_set: ClassVar[Callable[[str], None]]
 
     @classmethod
     def refusal(cls, context: bpy.types.Context) -> str:
-        """Why it cannot run now, a sentence; empty if it can."""
+        """Reason why it cannot run now, a sentence; empty if it can."""
         return ""
 
     @classmethod
@@ -36,7 +36,7 @@ class Acting:
         return self.guarded(lambda: self.act(context))
 
     def act(self, context: bpy.types.Context) -> None:
-        """Do it.
+        """Do the work.
 
         Raises
         ------
@@ -46,7 +46,7 @@ class Acting:
         raise NotImplementedError
 
     def guarded(self, act: Callable[[], None]) -> set[str]:
-        """What Blender is told of work that may fail with a sentence for the user."""
+        """Run work that may raise PalpateError, and report it; returns Blender's result."""
         try:
             act()
         except PalpateError as problem:

@@ -1,1 +1,1 @@
-"""The drawn shape and the felt force."""
+"""Drawn shape and force law of a press."""

@@ -1,6 +1,6 @@
-"""The shape that a press draws: as chosen, made in the background, changed while somebody presses.
+"""Shape drawn by a press: made in the background, exchangeable during the press.
 
-Until it is made, and where it cannot be, the linear one is drawn.
+Until it is ready, and where it cannot be made, the linear one is drawn.
 """
 
 from __future__ import annotations
@@ -21,23 +21,23 @@ from ...core.shape.meeting import FingerLoad, Meeting, Met, settled
 from ...core.shape.shapes import LinearShape, Shape, shape
 from ..object.drawn_body import DrawnBody
 
-# So long a shape that is kept waits for what it needs, s.
+# Longest wait for a kept shape's table, s.
 PATIENCE = 3.0
 
 
 def chosen_shape(thing: bpy.types.Object) -> str:
-    """What the object's panel says, or an older file: also a former name."""
+    """Shape chosen in the object's panel, or by an older file: also a former name."""
     name: str = thing.palpate.shape.lower().replace("_", "-")
     return name
 
 
 @dataclass(eq=False)
 class DrawnShape:
-    """Draws a body under its fingers.
+    """Shape of a body under its fingers.
 
     Attributes
     ----------
-    name : of the shape that is asked for.
+    name : of the chosen shape.
     problem : why the linear one is drawn instead, empty otherwise.
     """
 
@@ -55,16 +55,16 @@ class DrawnShape:
 
     @property
     def ready(self) -> float:
-        """Share (0 to 1) of what the touched place needs that is there."""
+        """Share (0 to 1) of the touched place's table that is ready."""
         return 0.0 if self._making is not None else self._shape.ready
 
     @property
     def notice(self) -> str:
-        """Which file of a table could not be used, and why; empty otherwise."""
+        """Reason why a table's file could not be used; empty otherwise."""
         return self._shape.notice
 
     def follow(self, name: str) -> None:
-        """Draw this one from now on, as soon as it can be. Waits for nothing."""
+        """Draw this shape as soon as it is ready. Does not wait."""
         if name != self.name:
             self._end()
             self.name, self.problem = name, ""
@@ -77,7 +77,7 @@ class DrawnShape:
             self._take_made()
 
     def draw(self, fingers: Sequence[FingerLoad], young_modulus: float) -> Met:
-        """The body under these fingers; the linear shape until all is there that they need."""
+        """Displacements under these fingers; linear until the shape is ready."""
         try:
             met = self._meeting.step(fingers, young_modulus)
         except PalpateError as problem:
@@ -91,7 +91,7 @@ class DrawnShape:
         return met
 
     def finish(self, fingers: Sequence[FingerLoad], young_modulus: float) -> Met:
-        """The body under these fingers, with what it needs as far as that is there in time."""
+        """Displacements under these fingers, after waiting for the shape for a limited time."""
         end = time.monotonic() + PATIENCE
         self._take_made()
         met = self.draw(fingers, young_modulus)
@@ -101,7 +101,7 @@ class DrawnShape:
         return met if met.settled else self._meeting.settle(fingers, young_modulus)
 
     def close(self) -> None:
-        """End what works in the background; what it made is kept. Waits for nothing."""
+        """End background work; its results are kept. Does not wait."""
         self._end()
         self._take(LinearShape(self.body))
         if self._behind is not None:
@@ -109,7 +109,7 @@ class DrawnShape:
             self._behind = None
 
     def _take_made(self) -> None:
-        """Take what is made in the background, waiting for it if need be."""
+        """Take the shape made in the background, waiting if necessary."""
         making, self._making = self._making, None
         if making is None:
             return
@@ -122,7 +122,7 @@ class DrawnShape:
         self._shape, self._meeting = made, Meeting(self.body, made)
 
     def _end(self) -> None:
-        """Close what there is, where that is waited for by nobody: files may be written."""
+        """Close the shape in the background, since files may be written."""
         if self._behind is None:
             return
         making, self._making = self._making, None
@@ -134,13 +134,13 @@ class DrawnShape:
 
 @dataclass(frozen=True, eq=False)
 class CompleteShape:
-    """A shape that waits until all is there that the fingers' loads need."""
+    """Shape that waits for the tables of the fingers' loads."""
 
     body: SoftBody
     shape: Shape
 
     def under(self, fingers: Sequence[FingerLoad], young_modulus: float) -> Met:
-        """The body under these fingers.
+        """Displacements under these fingers.
 
         Raises
         ------
@@ -151,13 +151,13 @@ class CompleteShape:
 
     @property
     def notice(self) -> str:
-        """Which file of a table could not be used or, once closed, written; empty otherwise."""
+        """Reason why a table's file could not be used or, once closed, written; empty otherwise."""
         return self.shape.notice
 
 
 @contextmanager
 def complete_shape(thing: bpy.types.Object, drawn: DrawnBody) -> Iterator[CompleteShape]:
-    """What the object's panel asks for; closed in the end.
+    """Shape chosen in the object's panel; closed in the end.
 
     Raises
     ------
@@ -172,7 +172,7 @@ def complete_shape(thing: bpy.types.Object, drawn: DrawnBody) -> Iterator[Comple
 
 
 def loads_of(body: SoftBody, snapshot: Snapshot) -> list[FingerLoad]:
-    """The loads of all fingers that touch."""
+    """Loads of all touching fingers."""
     return [
         FingerLoad(body.mesh.surface_nodes[finger.nodes], finger.nodal_forces)
         for finger in snapshot.fingers
@@ -184,7 +184,7 @@ def _close(made: Shape) -> None:
     told = made.notice
     made.close()
     if made.notice != told:
-        # Nobody presses any more who could be told; the table is computed again next time.
+        # The press has ended, so there is no report; the table is computed again next time.
         print(f"palpate: {made.notice}")  # noqa: T201
 
 

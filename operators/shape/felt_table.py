@@ -1,7 +1,7 @@
-"""What the corrected felt force needs of the touched place: found behind a press, kept beside the
-body file.
+"""Softenings of the touched place for the corrected force law: computed in the background, stored
+next to the body file.
 
-Nothing is computed before that force is chosen; until a place is known, it feels linear.
+Only computed for that force law; until a place is known, its force is linear.
 """
 
 from __future__ import annotations
@@ -26,15 +26,15 @@ from ..object.drawn_body import DrawnBody
 
 
 def chosen_felt(thing: bpy.types.Object) -> FeltName:
-    """What the object's panel says."""
+    """Force law chosen in the object's panel."""
     return felt_name(thing.palpate.felt.lower())
 
 
 @dataclass(eq=False)
 class FeltTable:
-    """For one press of ``body``, which the servo touches as ``touched``.
+    """Softenings for a press of ``body``, whose native body is ``touched``.
 
-    ``problem`` says why the linear force is felt instead, empty otherwise.
+    ``problem`` is the reason for a linear force instead, empty otherwise.
     """
 
     body: SoftBody
@@ -49,16 +49,16 @@ class FeltTable:
 
     @property
     def ready(self) -> float:
-        """Share (0 to 1) of what the touched place needs that is known; 1 if it needs nothing."""
+        """Share (0 to 1) of the touched place's softenings that is known; 1 if none is needed."""
         return 1.0 if self._table is None else self._table.ready
 
     @property
     def notice(self) -> str:
-        """Which file of softenings could not be used, and why; empty otherwise."""
+        """Reason why a file of softenings could not be used; empty otherwise."""
         return "" if self._table is None else self._table.notice
 
     def follow(self, felt: FeltName, nodes: NDArray[np.int64]) -> None:
-        """Find what the force that is felt needs of touched ``nodes`` (k,); waits for nothing."""
+        """Request the softenings of touched ``nodes`` (k,) if needed; does not wait."""
         if felt == "linear" or self.problem:
             self._end()
             return
@@ -74,7 +74,7 @@ class FeltTable:
             self._asked = asked
 
     def close(self) -> None:
-        """End what works in the background; what it found is kept. Waits for nothing."""
+        """End background work; its results are kept. Does not wait."""
         self._end()
         self._behind.shutdown(wait=False)
 
@@ -113,5 +113,5 @@ def _close(table: SofteningTable) -> None:
     try:
         table.close()
     except PalpateError as problem:
-        # Nobody presses any more who could be told; it is found again next time.
+        # The press has ended, so there is no report; it is computed again next time.
         print(f"palpate: {problem}")  # noqa: T201

@@ -1,1 +1,1 @@
-"""Softness tools."""
+"""Softness operators."""

@@ -54,7 +54,7 @@ class PALPATE_OT_force_curve(SoftnessOperator, bpy.types.Operator):
 
 
 def _write(name: str, table: str) -> str:
-    """Put a table into a text block, in place of the last one; its name as Blender has it."""
+    """Write a table into a text block, replacing the last one; returns its name."""
     text = bpy.data.texts.get(name) or bpy.data.texts.new(name)
     text.clear()
     text.write(table)

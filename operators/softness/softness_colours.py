@@ -66,7 +66,7 @@ class PALPATE_OT_remove_softness_map(Acting, bpy.types.Operator):
 
 
 def _at_vertices(drawn: DrawnBody, found: SoftnessMap) -> NDArray[np.float64]:
-    """Where the drawn vertices (p,) lie on the scale of colours, from the nodes around each."""
+    """Positions of the drawn vertices (p,) on the colour scale, from the nodes around each."""
     local = drawn.rest.reshape(-1, 3)
     places = drawn.body.closest_points.query(drawn.frame.body_from_local(local))
     corners = drawn.body.mesh.surface_local_triangles[places.triangle]
@@ -75,7 +75,7 @@ def _at_vertices(drawn: DrawnBody, found: SoftnessMap) -> NDArray[np.float64]:
 
 
 def _write(mesh: bpy.types.Mesh, colours: NDArray[np.float64]) -> None:
-    """Colours (p, 3), sRGB, onto the vertices; shown in the view, while renders keep theirs."""
+    """Write colours (p, 3), sRGB, to the vertices; shown in the view, while renders keep theirs."""
     attributes = mesh.color_attributes
     rendered = attributes.default_color_name
     old = attributes.get(ATTRIBUTE)

@@ -1,4 +1,4 @@
-"""What the operators that measure softness have in common: when they may run, and where."""
+"""Base of the operators that measure softness: when they may run, and where."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ if TYPE_CHECKING:
 else:
 
     class _Operator:
-        """Nothing: Blender registers what is of its class, each operator, not what they share."""
+        """Empty base: Blender registers subclasses of its own class, not what they share."""
 
 
 class Place(Enum):
-    """Whether an operator asks at one place, which a click may tell, or all over."""
+    """Whether an operator measures at one place, which may be clicked, or everywhere."""
 
     ONE = "one"
     EVERYWHERE = "everywhere"
 
 
 class SoftnessOperator(Acting, _Operator):
-    """An operator on the body of the active object. What it does is :meth:`measure`; what that
-    raises as :class:`PalpateError` is reported. One that asks at one place has ``at`` and ``pick``.
+    """Operator on the body of the active object, by :meth:`measure`, whose
+    :class:`PalpateError` is reported. One for a single place has ``at`` and ``pick``.
     """
 
     bl_options = {"REGISTER", "UNDO"}
@@ -80,7 +80,7 @@ class SoftnessOperator(Acting, _Operator):
         self.measure(context, open_body(context.object, context.scene))
 
     def measure(self, context: bpy.types.Context, drawn: DrawnBody) -> None:
-        """Find it, write it down, report it."""
+        """Measure, store and report."""
         raise NotImplementedError
 
     def _leave(self, context: bpy.types.Context) -> None:
@@ -92,7 +92,7 @@ MODAL = {"RUNNING_MODAL"}
 
 
 def _met(drawn: DrawnBody, here: viewport.Viewport) -> tuple[float, float, float] | None:
-    """Where the line of sight through the pointer meets the body, world units."""
+    """Point of the body under the pointer, world units."""
     mesh = drawn.body.mesh
     origin, direction = here.ray(drawn.frame)
     hit = ray.first_hit(origin, direction, mesh.nodes, mesh.surface_triangles)

@@ -1,5 +1,5 @@
-"""Where softness is asked for: the object's body, ready, and the place: the 3D cursor, the
-selected vertices, or where a script or a click says.
+"""Place of a softness measurement: the 3D cursor, the selected vertices, or as given by a script
+or a click.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ from ..object.drawn_body import DrawnBody
 def place_in_body(
     drawn: DrawnBody, context: bpy.types.Context, operator: bpy.types.Operator
 ) -> NDArray[np.float64]:
-    """The operator's ``at`` if it was set, else what the object's softness is measured at: the 3D
-    cursor, or the middle of the selected vertices. Metres in the body, (3,).
+    """Place (3,), metres in the body: the operator's ``at`` if it was set, else the 3D cursor or
+    the middle of the selected vertices, as chosen.
 
     Raises
     ------
@@ -46,7 +46,7 @@ def _middle_of_selected(drawn: DrawnBody, thing: bpy.types.Object) -> NDArray[np
 
 
 def at_property() -> bpy.props.FloatVectorProperty:
-    """The place for scripts, world units."""
+    """Property of the place for scripts, world units."""
     return bpy.props.FloatVectorProperty(
         name="Place",
         description="The surface point nearest to this is asked, world coordinates. "
@@ -58,7 +58,7 @@ def at_property() -> bpy.props.FloatVectorProperty:
 
 
 def pick_property() -> bpy.props.BoolProperty:
-    """Whether a click tells the place."""
+    """Property of whether the place is clicked."""
     return bpy.props.BoolProperty(
         name="Pick",
         description="Click the place in the view",

@@ -1,4 +1,4 @@
-"""The chosen finger tip, from scene units to metres: the one border of tools."""
+"""Chosen finger tip, from scene units to metres."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from . import hull
 
 @dataclass(frozen=True, eq=False)
 class FingerTip:
-    """``tool`` in metres, None for a point; ``remark`` tells what was done to a mesh, if much."""
+    """Finger tip: ``tool`` in metres, None for a point; ``remark`` on a much changed mesh."""
 
     tool: Tool | None = None
     remark: str = ""
 
     def pressing(self, snapshot: Snapshot) -> tuple[PressingTool, ...]:
-        """The tools that press in a snapshot, for drawing."""
+        """Tools pressing in a snapshot, for drawing."""
         if self.tool is None:
             return ()
         return tuple(
@@ -34,7 +34,7 @@ class FingerTip:
 
 
 def chosen_tip(scene: bpy.types.Scene, pressed: bpy.types.Object) -> FingerTip:
-    """What the scene says touches the surface of ``pressed``.
+    """Finger tip that the scene chooses for ``pressed``.
 
     Raises
     ------

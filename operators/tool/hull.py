@@ -1,6 +1,6 @@
-"""A mesh object of the scene as a convex tool: Blender's convex hull, with few corners.
+"""Convex tool from a mesh object: Blender's convex hull, with few corners.
 
-The object itself, its mesh and its modifiers stay as they are.
+The object is not modified.
 """
 
 from __future__ import annotations
@@ -18,18 +18,18 @@ from ..scene.drawn_surface import frame_of
 
 Array = NDArray[np.float64]
 
-# As many as the tick's distance to a hull takes.
+# Corners at most, for the tick's distance to a hull.
 MOST_CORNERS = 64
-# A hull that is this much larger than the mesh, as a share, tells of a hollow.
+# Relative excess volume of a hull over its mesh that indicates a hollow.
 HOLLOW = 0.01
-# Thinner than this share of its size, it is flat.
+# Share of its size below which a hull is flat.
 FLAT = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
 class Hull:
-    """Corners (k, 3), metres, about the object's own origin and along its axes, and in words what
-    was done to the mesh; empty where it was convex and simple.
+    """Corners (k, 3) of a hull, metres in the object's axes, and a remark on changes to the mesh;
+    empty where it was convex and simple.
     """
 
     corners: Array
@@ -37,7 +37,7 @@ class Hull:
 
 
 def hull_of(thing: bpy.types.Object, scene: bpy.types.Scene) -> Hull:
-    """The convex hull of an object as it is seen, modifiers and scale included.
+    """Convex hull of an object with modifiers and scale.
 
     Raises
     ------
@@ -65,7 +65,7 @@ def hull_of(thing: bpy.types.Object, scene: bpy.types.Scene) -> Hull:
 
 
 def _remark(name: str, corners: int, left: int, *, hollow: bool) -> str:
-    """What was done to a mesh so that it can press; empty if nothing was."""
+    """Remark on changes to a mesh; empty if there were none."""
     convex = Sentence("it is not convex, so its convex hull presses")
     fewer = Sentence(
         "its hull was simplified from {corners} to {left} corners", corners=corners, left=left
@@ -120,13 +120,13 @@ def _volume(corners: Array) -> float:
 
 
 def _thickness(points: Array) -> float:
-    """The smallest extent of the points along their principal axes."""
+    """Smallest extent of the points along their principal axes."""
     axes = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)[2]
     return float(np.ptp(points @ axes.T, axis=0).min())
 
 
 def _most_spread(corners: Array) -> Array:
-    """All corners if they are few; else those that lie furthest from the ones taken before."""
+    """All corners if they are few; else a farthest-point sample."""
     if len(corners) <= MOST_CORNERS:
         return corners
     taken = [int(np.argmax(np.linalg.norm(corners - corners.mean(axis=0), axis=1)))]

@@ -1,4 +1,4 @@
-"""What a bake takes; known exactly once its elimination is planned."""
+"""Cost of a bake, exact once its elimination is planned."""
 
 from __future__ import annotations
 
@@ -8,29 +8,29 @@ from ...compliance.dense import BYTES_PER_PAIR
 from ...compliance.elimination.plan import EliminationPlan
 from ...machine.machine_speed import dgemm_rate
 
-# A process grows by more than is asked for at once: freed memory is not all given back. Measured,
-# from 1,000 to 46,000 nodes: by up to 1.31 times as much.
+# Growth of a process over the allocated peak, since freed memory is not all returned; measured from
+# 1,000 to 46,000 nodes: up to 1.31.
 PROCESS_GROWTH = 1.35
 
-# Couplings before they are rounded, as a share of the dense table.
+# Interactions before rounding, as a share of the dense table.
 COMPRESSING_SHARE = 0.1
-# Floating point operations to compress: each cluster of columns multiplies the whole factor.
+# Floating point operations to compress: each cluster of columns multiplies the full factor.
 COMPRESSING_FLOPS = 0.4
 
 
 @dataclass(frozen=True)
 class BakeCost:
-    """What a bake takes.
+    """Cost of a bake.
 
     Attributes
     ----------
     nodes, free_surface_nodes : of the tetrahedra.
     seconds : from the start to the body.
-    peak_bytes : memory at the moment that takes most.
+    peak_bytes : of memory.
     file_bytes : of the body file.
     form : of the compliance, ``dense`` or ``compressed``.
-    spread : the true number of nodes lies within this factor of the predicted one, either way, in
-        nine of ten cases; 1 where it is known. Memory goes about with its square.
+    spread : factor, either way, within which the true number of nodes lies in nine of ten cases; 1
+        where it is known. Memory goes about with its square.
     seconds_spread : the same for the time.
     """
 
@@ -45,7 +45,7 @@ class BakeCost:
 
 
 def planned_cost(plan: EliminationPlan, form: str, threads: int | None = None) -> BakeCost:
-    """What computing a compliance takes from here on, when its elimination is planned."""
+    """Cost of computing a compliance by its planned elimination."""
     nodes, free = plan.matrix.node_count, len(plan.free_surface)
     table = BYTES_PER_PAIR * free**2
     if form == "dense":

@@ -1,4 +1,4 @@
-"""The form of a compliance that the memory has room for."""
+"""Form of a compliance that fits the memory."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from ...sentence import Sentence
 from ..settings import BakeSettings
 from .bake_cost import BakeCost, planned_cost
 
-# A dense table of more bytes is compressed when the form is left open.
+# Dense tables of more bytes are compressed when the form is ``auto``.
 LARGEST_AUTOMATIC_TABLE = 300_000_000
 
 
 def automatic_form(form: str, dense: BakeCost, available: int | None) -> str:
-    """The form that ``auto`` stands for: ``dense`` unless its table is large or does not fit."""
+    """Form for ``auto``: ``dense`` unless its table is large or does not fit."""
     if form != "auto":
         return form
     too_large = BYTES_PER_PAIR * dense.free_surface_nodes**2 > LARGEST_AUTOMATIC_TABLE
@@ -25,7 +25,7 @@ def automatic_form(form: str, dense: BakeCost, available: int | None) -> str:
 def affordable_form(
     plan: EliminationPlan, settings: BakeSettings, available: int
 ) -> tuple[str, list[Sentence]]:
-    """The form to compute, and what to tell the maker about its choice.
+    """Form to compute, and warnings for the user about its choice.
 
     Raises
     ------
@@ -55,9 +55,9 @@ def affordable_form(
 def memory_refusal(
     cost: BakeCost, available: int, compressed: BakeCost | None = None
 ) -> Sentence | None:
-    """Why a bake must not start, with the remedy; None where the memory suffices.
+    """Reason with remedy why memory forbids a bake; None where it suffices.
 
-    ``compressed`` is what the compressed form would cost: it is only offered where it would fit.
+    ``compressed`` is the cost of the compressed form, which is offered only where it would fit.
     """
     if cost.peak_bytes <= available:
         return None

@@ -1,4 +1,4 @@
-"""Predictions from a surface, since fTetWild does not make the same tetrahedra twice.
+"""Prediction of the cost from a surface, since fTetWild is not deterministic.
 
 The figures below were fitted to fTetWild's runs on seven shapes (cube, plate, bar, sphere, capsule,
 torus, plush mouse), with edge lengths from 0.0175 to 0.1 of the diagonal and epsilons from 0.001 to
@@ -23,15 +23,15 @@ from .memory import automatic_form, memory_refusal
 from .size import MeshSize, ShapeSize
 
 # Surface nodes, for an edge length h and an envelope e in metres:
-# ((1.24 area / h^2)^1.6 + (0.31 bending / e)^1.6)^(1/1.6). The first is what equilateral triangles
-# ask for, the second what it takes to stay within the envelope where the surface is curved.
+# ((1.24 area / h^2)^1.6 + (0.31 bending / e)^1.6)^(1/1.6). The first is for equilateral
+# triangles, the second for staying within the envelope of a curved surface.
 NODES_PER_AREA = 1.24
 NODES_PER_BENDING = 0.31
 BLENDING = 1.6
-# All nodes are these and volume / h^3, and a layer that grades from the surface inwards.
+# All nodes: these, volume / h^3, and a layer graded from the surface inwards.
 GRADED_NODES = 0.23
-# Nine of ten runs had between 0.7 and 1.3 times the nodes so predicted; without the bending, which
-# is nil for boxes and large for limbs, between half and twice of them.
+# Nine of ten runs had between 0.7 and 1.3 times the predicted nodes; without the bending, which is
+# nil for boxes and large for limbs, between half and twice.
 NODE_SPREAD = 1.5
 
 # Seconds of fTetWild: 6.5e-6 triangles^0.93 epsilon^-0.64 nodes^0.3, within a factor of three.
@@ -46,36 +46,36 @@ TETS_PER_NODE = 5.0
 # Comparing with the mesh: seconds for each of its triangles and each surface node.
 CHECK_SECONDS = 2.5e-5
 
-# Bytes of the stiffness for each node, beside what the elimination holds.
+# Bytes of the stiffness for each node, besides the elimination's.
 STIFFNESS_BYTES = {LINEAR: 1_500, "smoothed": 7_000}
 
 # A compressed table has about 3.3 MB for 1,000 free surface nodes at a tolerance of 0.001.
 COMPRESSED_BYTES = 3.3e6
 COMPRESSED_EXPONENTS = (1.3, -0.3)
-# What a body file holds besides the compliance, for each node of the mesh.
+# Bytes of a body file for each node of the mesh, besides the compliance.
 MESH_BYTES = 300
 
-# Edge lengths that are offered when the one that is set takes too much memory.
+# Edge lengths to offer when the set one takes too much memory.
 COARSENING = 1.05
 COARSEST_EDGE_LENGTH = 0.5
 
 
 @dataclass(frozen=True)
 class PowerLaw:
-    """``scale * nodes^by_nodes * free_surface_nodes^by_surface``."""
+    """Power law ``scale * nodes^by_nodes * free_surface_nodes^by_surface``."""
 
     scale: float
     by_nodes: float
     by_surface: float
 
     def at(self, nodes: int, free_surface_nodes: int) -> float:
-        """Its value for a body."""
+        """Value for a body."""
         return float(self.scale * nodes**self.by_nodes * free_surface_nodes**self.by_surface)
 
 
 @dataclass(frozen=True)
 class EliminationLaws:
-    """What eliminations take, fitted to plans; shapes scatter by a factor of two.
+    """Cost of eliminations, fitted to plans; shapes scatter by a factor of two.
 
     Attributes
     ----------
@@ -108,13 +108,13 @@ ELIMINATION = {
 def estimate_cost(
     size: ShapeSize | MeshSize, settings: BakeSettings, available: int | None = None
 ) -> BakeCost:
-    """Predict what a bake will take. Quick enough for a panel once the machine's speed is known.
+    """Predicted cost of a bake. Quick enough for a panel once the machine's speed is known.
 
     Parameters
     ----------
-    size : of the surface or of the tetrahedra that are given.
+    size : of the surface or of given tetrahedra.
     settings : as for the bake.
-    available : bytes of memory that can be had; None where ``form="auto"`` need not look at them.
+    available : bytes of memory; None to ignore them for ``form="auto"``.
     """
     if isinstance(size, MeshSize):
         cost = replace(_form_cost(size, settings, available), seconds_spread=2.0)
@@ -127,7 +127,7 @@ def estimate_cost(
 
 
 def rest_seconds(size: MeshSize, settings: BakeSettings) -> dict[str, float]:
-    """What each step will take once there are tetrahedra, before their elimination is planned."""
+    """Seconds of each step after tetrahedralization, before the elimination is planned."""
     assembly, planning = _assembly_seconds(size, settings)
     cost = _form_cost(size, settings, None)
     compressing = 0.0
@@ -146,15 +146,15 @@ def rest_seconds(size: MeshSize, settings: BakeSettings) -> dict[str, float]:
 
 
 def check_seconds(surface: Surface, mesh: TetMesh) -> float:
-    """What comparing a body with the surface it was made from will take."""
+    """Seconds to compare a body with the surface it was made from."""
     return CHECK_SECONDS * (len(surface.triangles) + len(mesh.surface_nodes))
 
 
 def edge_length_that_fits(size: ShapeSize, settings: BakeSettings, available: int) -> float | None:
-    """The smallest edge length, from the one that is set upwards, whose bake fits the memory."""
+    """Smallest edge length, from the set one upwards, whose bake fits the memory."""
     edge_length = settings.edge_length
     while edge_length <= COARSEST_EDGE_LENGTH:
-        # Two digits are what a person would type.
+        # Two digits, as a person would type.
         rounded = max(settings.edge_length, float(f"{edge_length:.2g}"))
         cost = estimate_cost(size, replace(settings, edge_length=rounded), available)
         if memory_refusal(cost, available) is None:
@@ -164,11 +164,11 @@ def edge_length_that_fits(size: ShapeSize, settings: BakeSettings, available: in
 
 
 def _predicted_mesh(size: ShapeSize, settings: BakeSettings) -> MeshSize:
-    """Nodes and surface nodes that fTetWild will make."""
+    """Predicted nodes and surface nodes of fTetWild's mesh."""
     length = settings.edge_length * size.diagonal
     # A ball of this area and volume bends by area^2 / (3 volume); boxes less, limbs more.
     bends = size.area**2 / max(6 * size.volume, 1e-300) if size.bending is None else size.bending
-    # The envelope is not followed more finely than the surface that is handed over.
+    # The envelope is not followed more finely than the given surface.
     finest = 0.5 * min(size.triangles, settings.decimate_above)
     curved = min(NODES_PER_BENDING * bends / (settings.epsilon * size.diagonal), finest)
     flat = NODES_PER_AREA * size.area / length**2
@@ -185,14 +185,14 @@ def _tetrahedralize_seconds(size: ShapeSize, settings: BakeSettings, nodes: int)
 
 
 def _assembly_seconds(size: MeshSize, settings: BakeSettings) -> tuple[float, float]:
-    """To assemble the stiffness, and to plan its elimination."""
+    """Seconds to assemble the stiffness, and to plan its elimination."""
     formulation = formulation_for(settings.formulation, settings.poisson_ratio)
     tets = TETS_PER_NODE * size.nodes
     return ASSEMBLY_SECONDS[formulation] * tets, PLANNING_SECONDS[formulation] * size.nodes
 
 
 def _form_cost(size: MeshSize, settings: BakeSettings, available: int | None) -> BakeCost:
-    """The elimination's cost, in the form that is asked for or, by itself, the one that suits."""
+    """Cost of the elimination in the chosen form, or in that of ``auto``."""
     pinned = _pinned_share(settings.pins, size.surface_nodes)
     free = max(1, round(size.surface_nodes * (1 - pinned)))
     dense = _elimination_cost(size.nodes, free, settings, "dense")
@@ -207,7 +207,7 @@ def _elimination_cost(nodes: int, free: int, settings: BakeSettings, form: str) 
     factor = laws.factor_peak.at(nodes, free)
     if form == "dense":
         flops = laws.table_weight.at(nodes, free)
-        # Of sheets and bars, nearly all nodes are free surface nodes: the table outweighs the rest.
+        # In sheets and bars nearly all nodes are free surface nodes: the table outweighs the rest.
         peak = max(laws.table_peak.at(nodes, free), table + factor)
     else:
         flops = laws.factor_weight.at(nodes, free) + compressing_flops(free, factor)

@@ -1,4 +1,4 @@
-"""Sizes of surfaces and meshes, as far as the cost of a bake depends on them."""
+"""Sizes of surfaces and meshes that the cost of a bake depends on."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ from ...mesh.surface import Surface
 from ...mesh.tet_mesh import TetMesh
 from ...mesh.winding_volume import enclosed_volume
 
-# Edges sharper than this are edges of the shape, which need no finer triangles.
+# Edges sharper than this are features of the shape, which need no finer triangles.
 SHARP_EDGE = np.radians(60.0)
 
 
 @dataclass(frozen=True)
 class ShapeSize:
-    """What the cost of a surface's bake depends on.
+    """Size of a surface.
 
     Attributes
     ----------
     area : of the surface, square metres.
-    volume : that it encloses, cubic metres.
+    volume : enclosed, cubic metres.
     diagonal : of its bounding box, metres.
-    triangles : how many it has.
+    triangles : their number.
     bending : see :func:`bending`, metres; None to assume a body as round as its volume allows.
     """
 
@@ -48,7 +48,7 @@ class ShapeSize:
 
 @dataclass(frozen=True)
 class MeshSize:
-    """What the cost of a bake from tetrahedra depends on: counts of its nodes."""
+    """Size of a tetrahedral mesh: counts of its nodes."""
 
     nodes: int
     surface_nodes: int
@@ -60,9 +60,9 @@ class MeshSize:
 
 
 def bending(surface: Surface) -> float:
-    """How much the surface curves in all, metres: half of edge length times angle, summed.
+    """Total bending of the surface, metres: half of edge length times angle, summed.
 
-    On a smooth surface that is the integral of the mean curvature. Sharp edges do not count.
+    On a smooth surface this is the integral of the mean curvature. Sharp edges do not count.
     """
     triangles = surface.triangles
     i, j, k = (surface.vertices[triangles[:, corner]] for corner in range(3))
@@ -75,7 +75,7 @@ def bending(surface: Surface) -> float:
     paired = edge[first] == edge[second]
     first, second = first[paired], second[paired]
     cosine = np.einsum("ex,ex->e", normals[first // 3], normals[second // 3])
-    # Faces that look opposite ways do so by their winding, as a rule.
+    # Opposite normals are usually those of inconsistent winding.
     angle = np.arccos(np.clip(np.abs(cosine), 0.0, 1.0))
     along = surface.vertices[ends[first]] - surface.vertices[starts[first]]
     lengths = np.linalg.norm(along, axis=1)

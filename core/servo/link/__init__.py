@@ -1,4 +1,4 @@
-"""The serial link, version 1: messages to frames and back. `docs/link.md` is its definition."""
+"""Serial link, version 1, as defined in `docs/link.md`: messages to frames and back."""
 
 from .codec import Decoder, LinkErrors, encode
 from .frames import MAX_FRAME, MAX_PAYLOAD, LinkError, cobs_decode, cobs_encode, crc16, frame

@@ -1,4 +1,4 @@
-"""The codec of the link: messages to frames, and bytes as they arrive to messages."""
+"""Codec of the link: messages to frames, and received bytes to messages."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from .messages import Message, pack, unpack
 
 
 def encode(message: Message) -> bytes:
-    """The frame of a message, ready for the wire."""
+    """Frame of a message, ready for the wire."""
     return frame(pack(message))
 
 
 @dataclass
 class LinkErrors:
-    """What a decoder had to throw away, in frames."""
+    """Frames rejected by a decoder, by reason."""
 
     crc_errors: int = 0
     malformed: int = 0
@@ -25,15 +25,15 @@ class LinkErrors:
 
     @property
     def total(self) -> int:
-        """Frames thrown away for whatever reason."""
+        """All rejected frames."""
         return self.crc_errors + self.malformed + self.unknown
 
 
 class Decoder:
-    """Bytes as they arrive, in pieces of any size, to messages.
+    """Decoder of bytes, in pieces of any size, to messages.
 
-    Zero occurs on the wire only at the end of a frame, so damage costs the frame it is in (two when
-    the zero between them is hit) and the next one is read again.
+    Zero occurs on the wire only at the end of a frame, so damage costs one frame (two when the zero
+    between them is hit) and decoding resumes with the next.
     """
 
     def __init__(self) -> None:
@@ -42,7 +42,7 @@ class Decoder:
         self._too_long = False
 
     def feed(self, data: bytes) -> list[Message]:
-        """The messages completed by `data`, in order; broken frames are counted and left out."""
+        """Messages completed by `data`, in order; broken frames are counted and left out."""
         messages: list[Message] = []
         for payload in self.feed_payloads(data):
             try:
@@ -52,7 +52,7 @@ class Decoder:
         return messages
 
     def feed_payloads(self, data: bytes) -> list[bytes]:
-        """Like `feed`, but the payloads: their CRC was right, their meaning is not looked at."""
+        """Payloads completed by `data`, with checked CRC but unknown meaning."""
         payloads: list[bytes] = []
         *endings, rest = data.split(b"\0")
         for ending in endings:

@@ -12,7 +12,7 @@ MAX_PAYLOAD = MAX_FRAME - 4
 
 
 class LinkError(ValueError):
-    """Bytes that are not a message of this link, or a message that does not fit into bytes."""
+    """Invalid bytes, or a message that does not fit its fields."""
 
 
 def crc16(payload: bytes) -> int:
@@ -41,7 +41,7 @@ def cobs_decode(coded: bytes) -> bytes:
 
 
 def frame(payload: bytes) -> bytes:
-    """The bytes on the wire for one payload of 1 to 58 bytes."""
+    """Bytes on the wire for a payload of 1 to 58 bytes."""
     if not 1 <= len(payload) <= MAX_PAYLOAD:
         raise LinkError(f"a payload has 1 to {MAX_PAYLOAD} bytes, not {len(payload)}")
     return cobs_encode(payload + struct.pack("<H", crc16(payload))) + b"\0"

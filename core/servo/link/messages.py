@@ -29,14 +29,14 @@ QUATERNION_LENGTHS = (32440, 33094)
 
 
 class StateFlag(IntFlag):
-    """What a device says of itself."""
+    """Flags of a device in STATE."""
 
     READY = 1
     FAULT = 2
 
 
 class ForceFlag(IntFlag):
-    """What a host asks for: motors on, damping added."""
+    """Flags of a host in FORCE: motors on, damping added."""
 
     ENABLE = 1
     DAMP = 2
@@ -44,14 +44,14 @@ class ForceFlag(IntFlag):
 
 @dataclass(frozen=True)
 class HostHello:
-    """The host asks who is there."""
+    """HELLO of the host, a question."""
 
     protocol: int = PROTOCOL
 
 
 @dataclass(frozen=True)
 class DeviceHello:
-    """The device answers; forces in N, half extents of the workspace in m, rate of STATE in Hz."""
+    """HELLO of the device; force in N, half extents of the workspace in m, rate of STATE in Hz."""
 
     name: str
     axes: int
@@ -63,14 +63,14 @@ class DeviceHello:
 
 @dataclass(frozen=True)
 class OtherHello:
-    """A HELLO of another protocol: only its first two bytes are understood."""
+    """HELLO of another protocol, of which only the first two bytes are known."""
 
     protocol: int
 
 
 @dataclass(frozen=True)
 class State:
-    """Where the device is: device time in us, position in um."""
+    """STATE of the device: device time in us, position in um."""
 
     sequence: int
     device_time_us: int
@@ -81,7 +81,7 @@ class State:
 
 @dataclass(frozen=True)
 class Force:
-    """The force the device shall make, in mN."""
+    """FORCE for the device, in mN."""
 
     sequence: int
     force_mn: tuple[int, int, int]
@@ -90,7 +90,7 @@ class Force:
 
 @dataclass(frozen=True)
 class Fault:
-    """The device tells of something that went wrong; codes in `docs/link.md`."""
+    """FAULT of the device; codes in `docs/link.md`."""
 
     code: int
     detail: int = 0
@@ -98,7 +98,7 @@ class Fault:
 
 @dataclass(frozen=True)
 class Orientation:
-    """How the stylus is turned in the STATE of the same sequence, which follows: unit quaternion
+    """Rotation of the stylus in the STATE of the same sequence, which follows: unit quaternion
     w, x, y, z in steps of 1 / 32767, from the stylus' axes to the device's.
     """
 
@@ -116,9 +116,9 @@ Message = HostHello | DeviceHello | OtherHello | State | Force | Fault | Orienta
 
 
 def orientation(sequence: int, quaternion: tuple[float, float, float, float]) -> Orientation:
-    """The ORIENTATION that comes nearest to a unit quaternion w, x, y, z.
+    """ORIENTATION nearest to a unit quaternion w, x, y, z.
 
-    Raises LinkError when it is none: not finite, or its length not 1 within 1 %.
+    Raises LinkError if not finite, or not of length 1 within 1 %.
     """
     if not all(map(math.isfinite, quaternion)) or abs(math.hypot(*quaternion) - 1.0) > 0.01:
         raise LinkError(f"{quaternion} is no unit quaternion: divide it by its length")
@@ -127,7 +127,7 @@ def orientation(sequence: int, quaternion: tuple[float, float, float, float]) ->
 
 
 def pack(message: Message) -> bytes:
-    """The payload of a message; raises LinkError when a number does not fit its field."""
+    """Payload of a message; raises LinkError when a number does not fit its field."""
     try:
         match message:
             case HostHello():
@@ -156,7 +156,7 @@ def pack(message: Message) -> bytes:
 
 
 def unpack(payload: bytes) -> Message:
-    """The message in a payload whose CRC was right; raises LinkError for unknown type or length."""
+    """Message of a payload with checked CRC; raises LinkError for unknown type or length."""
     if len(payload) >= 2 and payload[0] == HELLO:
         return _unpack_hello(payload)
     match (payload[:1], len(payload)):
@@ -175,7 +175,7 @@ def unpack(payload: bytes) -> Message:
 
 
 def _pack_device_hello(hello: DeviceHello) -> bytes:
-    # Cut between characters, never inside one.
+    # Cut between characters.
     name = hello.name.encode()[:NAME_BYTES].decode(errors="ignore").encode()
     return _DEVICE_HELLO.pack(
         HELLO,
