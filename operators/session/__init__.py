@@ -1,1 +1,1 @@
-"""A running press."""
+"""Running press: its state machine, force loop and fingers."""

@@ -1,4 +1,4 @@
-"""Who moves which finger of a press: the pointer, an Empty of the scene, or a device."""
+"""Leads of a press's fingers: the pointer, an Empty of the scene, or a device."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .press_events import Source
 
 
 class Lead(Enum):
-    """What moves a finger."""
+    """Kind of thing that moves a finger."""
 
     POINTER = "pointer"
     EMPTY = "empty"
@@ -24,7 +24,7 @@ class Lead(Enum):
 
 @dataclass(frozen=True)
 class FingerLead:
-    """One finger's; ``empty`` leads it if ``lead`` says so."""
+    """Lead of a finger, with its ``empty`` for that kind."""
 
     lead: Lead
     empty: ObjectHandle | None = None
@@ -35,7 +35,7 @@ _LEAD_OF = {Source.POINTER: Lead.POINTER, Source.EMPTY: Lead.EMPTY, Source.DEVIC
 
 
 def leads_of(scene: bpy.types.Scene, source: Source) -> tuple[FingerLead, ...]:
-    """The fingers that the scene asks for, the first one's source first.
+    """Leads of all fingers that the scene chooses, the first finger's first.
 
     Raises
     ------
@@ -63,7 +63,7 @@ def leads_of(scene: bpy.types.Scene, source: Source) -> tuple[FingerLead, ...]:
 
 
 def second_port(scene: bpy.types.Scene) -> str:
-    """The second device's serial port.
+    """Serial port of the second device.
 
     Raises
     ------

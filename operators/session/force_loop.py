@@ -1,4 +1,4 @@
-"""The servo of one press: started, led, told of changes, watched, recorded and stopped."""
+"""Servo of a press: start, targets, settings, snapshots, recording, stop."""
 
 from __future__ import annotations
 
@@ -41,8 +41,8 @@ from .press_effects import MoveProbe, PlaceProbe, SwitchForce
 
 @dataclass(eq=False)
 class ForceLoop:
-    """A servo, and with it the simulated devices that lead it: the first finger's and the second's,
-    if they do. ``port`` is the first device's, empty for the pointer.
+    """Servo with the simulated devices of the first and the second finger, if any. ``port`` is the
+    first device's, empty for the pointer.
     """
 
     servo: Servo
@@ -64,7 +64,7 @@ class ForceLoop:
     def prepare(
         cls, drawn: DrawnBody, settings: LiveSettings, rate_hz: int, tip: FingerTip, fingers: int
     ) -> ForceLoop:
-        """A loop that does not run yet, for so many fingers, with the settings of now.
+        """Loop that does not run yet, for a number of fingers, with the present settings.
 
         Raises
         ------
@@ -78,7 +78,7 @@ class ForceLoop:
         return cls(servo, settings, Recorder(servo, rate_hz), drawn, touched, tip, felt)
 
     def give_tools(self, fingers: int) -> None:
-        """Give each of so many fingers the tool that was chosen; points stay as they are."""
+        """Give the chosen tool to a number of fingers; points need none."""
         if self.tip.tool is None:
             return
         tool = native_tool(self.drawn.body, self.touched, self.tip.tool)
@@ -87,14 +87,14 @@ class ForceLoop:
                 self.servo.set_tool(tool, finger=finger)
 
     def add_pointer(self, position: Point) -> None:
-        """Another finger, led by :meth:`lead` or the pointer, from ``position`` in body
-        coordinates; before the start.
+        """Add a finger led by :meth:`lead` or the pointer, from ``position`` in body coordinates;
+        before the start.
         """
         with servo_errors():
             self.servo.add(Pointer(position))
 
     def add_device(self, thing: bpy.types.Object, scene: bpy.types.Scene) -> None:
-        """Another finger, led by the device that the scene names as the second; before the start.
+        """Add a finger led by the scene's second device; before the start.
 
         Raises
         ------
@@ -115,7 +115,7 @@ class ForceLoop:
             self.servo.add(_device_at(port, frame, haply, chosen.second_haply_at_rest))
 
     def lead(self, finger: int, place: Point | None, turn: Turn | None) -> None:
-        """Where a finger shall be and how its tool is turned, if that is told and new."""
+        """Set a finger's target and its tool's rotation, where given and new."""
         before = self._led.get(finger, (None, None))
         with servo_errors():
             if turn is not None and turn != before[1]:
@@ -125,12 +125,12 @@ class ForceLoop:
         self._led[finger] = (place, turn)
 
     def start_pointer(self, position: Point) -> None:
-        """Let the pointer lead, from ``position`` in body coordinates."""
+        """Start with the pointer at ``position`` in body coordinates."""
         with servo_errors():
             self.servo.start(Pointer(position))
 
     def start_device(self, scene: bpy.types.Scene, drawn: DrawnBody) -> None:
-        """Let the chosen device lead, where the settings have it.
+        """Start with the chosen device, in its frame of the settings.
 
         Raises
         ------
@@ -146,13 +146,13 @@ class ForceLoop:
             self.port = self.simulated.port
         else:
             self.port = device_source.port_of(scene)
-        # A simulated one always begins at rest.
+        # A simulated one always begins in its rest pose.
         at_rest = chosen.haply_at_rest or self.simulated is not None
         with servo_errors():
             self.servo.start(_device_at(self.port, frame, haply, at_rest))
 
     def follow(self, settings: LiveSettings) -> None:
-        """Take over what has been changed.
+        """Apply changed settings.
 
         Raises
         ------
@@ -172,7 +172,7 @@ class ForceLoop:
         self.servo.set(replace(self.settings.servo, enabled=self._enabled, orientations=turns))
 
     def carry_out(self, effect: PlaceProbe | MoveProbe | SwitchForce) -> None:
-        """Do what the press wants of the servo."""
+        """Carry out an effect on the servo."""
         match effect:
             case PlaceProbe(point, finger, turn):
                 if turn is not None:
@@ -185,17 +185,17 @@ class ForceLoop:
                 self._set()
 
     def snapshot(self) -> Snapshot:
-        """The newest tick; counters and recording are looked at, too."""
+        """Latest tick; also refreshes counters and recording."""
         snapshot = self.servo.snapshot()
         self.figures.look(self.servo, time.monotonic())
         self.recorder.follow(snapshot.time)
-        # Tools feel the linear relation.
+        # The force law of tools is linear.
         felt = self.settings.servo.felt if self.tip.tool is None else "linear"
         self.felt.follow(felt, touched_nodes(self.drawn.body, snapshot))
         return snapshot
 
     def stop(self) -> None:
-        """Zero force, thread and simulated device ended; what was recorded is kept."""
+        """Stop thread and simulated devices with zero force; keep the recording."""
         try:
             self.servo.stop()
             recording.keep(self.recorder)
@@ -209,8 +209,8 @@ class ForceLoop:
 def _device_at(
     port: str, frame: device_source.DeviceFrame, haply_model: str | None, at_rest: bool
 ) -> LinkDevice | HaplyDevice:
-    """What is at a port: a 2DIY of a model, ``at_rest`` if its handle rests now, or a device that
-    speaks the link.
+    """Device at a port: a 2DIY of a model, ``at_rest`` if its handle is in the rest pose, or a
+    device that speaks the link.
     """
     if haply_model is None:
         return LinkDevice(
@@ -228,11 +228,11 @@ def _device_at(
 
 @contextmanager
 def servo_errors() -> Iterator[None]:
-    """What the servo refuses, as a sentence with a remedy."""
+    """Raise the servo's errors as PalpateError with a remedy."""
     try:
         yield
     except OSError as problem:
-        # It names its remedy itself.
+        # Has its own remedy.
         raise PalpateError("device: {problem}", problem=problem) from problem
     except (ValueError, OverflowError) as problem:
         raise PalpateError(

@@ -1,4 +1,4 @@
-"""The force loop with all its fingers, and those of them that Empties and objects lead."""
+"""Force loop with all fingers, and targets of those led by Empties and objects."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def start_loop(
     leads: Sequence[FingerLead],
     tip: FingerTip,
 ) -> ForceLoop:
-    """A running loop for these fingers, recorded from its start if the scene says so.
+    """Running loop for these fingers, recorded from its start if the scene chooses so.
 
     Raises
     ------
@@ -43,7 +43,7 @@ def start_loop(
                 loop.add_pointer(_start_of(lead, drawn))
         loop.give_tools(len(leads))
         if scene.palpate.record_from_start:
-            # All fingers are there: memory for each is asked for now.
+            # With all fingers added: memory is reserved for each.
             record(loop, scene, 0.0)
         if settings.device is not None:
             loop.start_device(scene, drawn)
@@ -56,7 +56,7 @@ def start_loop(
 
 
 def record(loop: ForceLoop, scene: bpy.types.Scene, now: float) -> None:
-    """Record from now (s, servo's time) on.
+    """Start recording at ``now`` (s, servo's time).
 
     Raises
     ------
@@ -70,9 +70,9 @@ def record(loop: ForceLoop, scene: bpy.types.Scene, now: float) -> None:
 def lead_fingers(
     loop: ForceLoop, leads: Sequence[FingerLead], scene: bpy.types.Scene, drawn: DrawnBody
 ) -> list[str]:
-    """Move fingers to where their Empties are now, and turn tools that the pointer does not turn.
+    """Move fingers to their Empties, and rotate tools not rotated by the pointer.
 
-    Returns what hinders, a sentence each.
+    Returns a sentence for each obstacle.
     """
     troubles: list[str] = []
     for finger, lead in enumerate(leads):
@@ -91,7 +91,7 @@ def lead_fingers(
 
 
 def _start_of(lead: FingerLead, drawn: DrawnBody) -> Point:
-    """Where a finger begins: at its Empty, or outside the body, where the pointer's waits."""
+    """Start of a finger: at its Empty, or outside the body for the pointer."""
     empty = lead.empty.find() if lead.empty is not None else None
     if empty is not None:
         return _place_of(empty, drawn)
@@ -111,7 +111,7 @@ def _turn_of(
     scene: bpy.types.Scene,
     drawn: DrawnBody,
 ) -> Turn | None:
-    """As an object or as the Empty that leads; None as it was. A device turns its own."""
+    """Rotation of an object or the leading Empty; None for no change. Devices have their own."""
     leader = tool_turn.guide_of(scene) if scene.palpate.tip_turn == "OBJECT" else None
     leader = leader or empty
     if loop.tip.tool is None or leader is None or lead.lead is Lead.DEVICE:

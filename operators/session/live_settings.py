@@ -1,4 +1,4 @@
-"""What may be changed while somebody presses, read from Blender."""
+"""Settings that can change during a press, read from Blender."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ..shape.felt_table import chosen_felt
 
 
 def coupling_of(scene: bpy.types.Scene) -> Coupling:
-    """Between body and motors, as chosen in the scene."""
+    """Virtual coupling, as chosen in the scene."""
     chosen = scene.palpate
     if not chosen.stable_contact:
         return Coupling(math.inf, 0.0, passivity_control=False)
@@ -28,13 +28,13 @@ def coupling_of(scene: bpy.types.Scene) -> Coupling:
 
 
 def contact_mode(scene: bpy.types.Scene) -> ContactMode:
-    """How the scene says that contacts are computed."""
+    """Contact mode, as chosen in the scene."""
     return "paper" if scene.palpate.contact_mode == "PAPER" else "consistent"
 
 
 @dataclass(frozen=True, eq=False)
 class LiveSettings:
-    """The servo's settings, and where the first finger's device is, None where it has none."""
+    """Settings of the servo, and the frame of the first finger's device, None without one."""
 
     servo: Settings
     device: DeviceFrame | None
@@ -43,9 +43,9 @@ class LiveSettings:
     def of(
         cls, thing: bpy.types.Object, scene: bpy.types.Scene, device: DeviceFrame | None
     ) -> LiveSettings:
-        """As set on the object and in the scene now.
+        """Present settings of object and scene.
 
-        Dynamic friction is at most the static one, also where a driver sets it above.
+        Dynamic friction is at most static friction, also where a driver sets it higher.
         """
         chosen = thing.palpate
         settings = Settings(

@@ -1,4 +1,4 @@
-"""What the pointer holds: the fingers it has set down, and which of them it leads now."""
+"""Fingers set down by the pointer, and the one that follows it now."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ from .press_session import PressSession
 
 Array = NDArray[np.float64]
 
-# The probe is set down this far above the surface, as a share of the body's size: from outside.
+# Height of a probe above the surface when set down, as a share of the body's size.
 SET_DOWN_HEIGHT = 1e-4
-# A handle is taken hold of within so many unscaled pixels.
+# Distance at which a handle is grabbed, unscaled pixels.
 GRAB_PIXELS = 24.0
 
 
 @dataclass(frozen=True, eq=False)
 class Held:
-    """A finger that was set down: where the pointer wants it, and the outward normal there."""
+    """Finger that was set down: its target, and the outward normal there."""
 
     target: Array
     normal: Array
@@ -37,7 +37,7 @@ class Held:
 
 @dataclass(eq=False)
 class PointerHand:
-    """The pointer's fingers by number: one for a press, two for a pinch."""
+    """Fingers of the pointer by number: one for a press, two for a pinch."""
 
     session: PressSession
     fingers: tuple[int, ...] = (0,)
@@ -47,11 +47,11 @@ class PointerHand:
 
     @property
     def leads(self) -> int | None:
-        """The finger that follows the pointer now, if one does."""
+        """Finger that follows the pointer now, if any."""
         return None if self._drag is None else self._finger
 
     def press(self, here: Viewport, event: bpy.types.Event) -> None:
-        """The button went down: on a handle, on the surface, or beside both."""
+        """Handle a pressed button: on a handle, on the surface, or beside both."""
         grabbed = self._handle_near(here)
         if grabbed is not None:
             held = self.held[grabbed]
@@ -75,7 +75,7 @@ class PointerHand:
             self._set_down(finger, turn)
 
     def follow(self, event: bpy.types.Event) -> None:
-        """The pointer moved, the wheel turned, or the button came up."""
+        """Handle pointer motion, wheel and released button."""
         if event.type == "LEFTMOUSE" and event.value == "RELEASE":
             self._drag = None
             self.session.post(Release())
@@ -95,7 +95,7 @@ class PointerHand:
         self.session.post(Move(_point(target), self._finger))
 
     def place_on_both_sides(self, region_3d: bpy.types.RegionView3D) -> None:
-        """Set two fingers down at the left and right of the body, as the view shows it."""
+        """Set two fingers down at the left and right of the body in the view."""
         drawn, axes = self.session.drawn, np.array(region_3d.view_matrix)[:3, :3]
         right = drawn.frame.turn_to_body(axes[0])
         nodes, triangles = drawn.body.mesh.nodes, drawn.body.mesh.surface_triangles
@@ -104,7 +104,7 @@ class PointerHand:
         for finger, side in zip(self.fingers, (-right, right), strict=False):
             hit = ray.first_hit(middle + 2.0 * drawn.size * side, -side, nodes, triangles)
             if hit is None:
-                # Nothing there, as in a ring: a click on the surface sets it down.
+                # No surface, as in a ring: a click sets it down.
                 continue
             corners = triangles[hit.triangle]
             normal = hit.alpha @ drawn.node_normals[corners]
@@ -115,7 +115,7 @@ class PointerHand:
             self.session.post(Release())
 
     def _at_rest(self, point: Array, normal: Array, view_axes: Array) -> tuple[Array, Turn | None]:
-        """Where a finger that just does not touch is, and how its tool is turned."""
+        """Position of a finger just out of contact, and rotation of its tool."""
         session = self.session
         tool = session.tip.tool
         if tool is None:
@@ -127,7 +127,7 @@ class PointerHand:
     def _begin(
         self, here: Viewport, event: bpy.types.Event, finger: int, start: Array, normal: Array
     ) -> bool:
-        """Take hold of a finger; False where the view shows no scale, behind the viewer."""
+        """Start to drag a finger; False behind the viewer, where there is no scale."""
         view = here.view_at(start, self.session.drawn.frame)
         if view is None:
             return False
@@ -147,14 +147,14 @@ class PointerHand:
         self.session.post(SetDown(_point(self.held[finger].target), finger, turn))
 
     def _free_finger(self, here: Viewport) -> int:
-        """The finger not set down yet, else the one that is nearest on the screen."""
+        """Finger not set down yet, else the nearest on the screen."""
         for finger in self.fingers:
             if finger not in self.held:
                 return finger
         return min(self.fingers, key=lambda finger: self._pixels_away(here, finger))
 
     def _handle_near(self, here: Viewport) -> int | None:
-        """Of a pinch the handle under the pointer. A press begins anew wherever it is set down."""
+        """Handle of a pinch under the pointer; none for a press, which begins anew anywhere."""
         if len(self.fingers) == 1 or not self.held:
             return None
         nearest = min(self.held, key=lambda finger: self._pixels_away(here, finger))

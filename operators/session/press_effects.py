@@ -1,4 +1,4 @@
-"""What a press does to servo, mesh and user."""
+"""Effects of a press on servo, mesh and user."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ class MoveProbe:
 
 @dataclass(frozen=True)
 class SwitchForce:
-    """Off: zero from the next tick on. On: the servo lets it rise slowly."""
+    """Switch the force off with the next tick, or on with a ramp."""
 
     on: bool
 
 
 @dataclass(frozen=True)
 class StopServo:
-    """Zero force, thread joined."""
+    """Stop the servo: zero force, thread joined."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ class DrawRest:
 
 @dataclass(frozen=True)
 class RemoveLiveShape:
-    """Leave the mesh as it was found, bit for bit."""
+    """Restore the mesh as it was found, bit for bit."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ class KeepShape:
 
 @dataclass(frozen=True)
 class Say:
-    """Tell the user."""
+    """Report to the user."""
 
     text: str
     warning: bool = False

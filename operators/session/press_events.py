@@ -1,4 +1,4 @@
-"""What may happen to a press."""
+"""Events of a press."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from ..tool.tool_pose import Point, Turn
 
 
 class Source(Enum):
-    """Who moves the probe."""
+    """Kind of thing that moves the probe."""
 
     POINTER = "pointer"
     DEVICE = "device"
@@ -18,7 +18,7 @@ class Source(Enum):
 
 @dataclass(frozen=True)
 class Start:
-    """``device`` if a device leads any of the fingers."""
+    """Start of the press; ``device`` if a device leads any finger."""
 
     source: Source
     device: bool = False
@@ -26,8 +26,8 @@ class Start:
 
 @dataclass(frozen=True)
 class SetDown:
-    """The pointer touches the surface here (body coordinates) with one of its fingers, whose tool
-    is turned so.
+    """The pointer sets one of its fingers down here (body coordinates), with this rotation of its
+    tool.
     """
 
     point: Point
@@ -37,12 +37,12 @@ class SetDown:
 
 @dataclass(frozen=True)
 class Grab:
-    """The pointer takes hold of a finger that was set down before; the finger stays where it is."""
+    """The pointer grabs a finger that was set down before; it does not move."""
 
 
 @dataclass(frozen=True)
 class Move:
-    """The pointer wants the finger here (body coordinates)."""
+    """The pointer moves the finger here (body coordinates)."""
 
     point: Point
     finger: int = 0
@@ -50,12 +50,12 @@ class Move:
 
 @dataclass(frozen=True)
 class Release:
-    """The pointer's button is up."""
+    """The pointer's button is released."""
 
 
 @dataclass(frozen=True)
 class Fault:
-    """The device is gone, stale or in fault; ``text`` says which and what to do."""
+    """The device is gone, stale or in fault; ``text`` has the reason and the remedy."""
 
     text: str
 
@@ -67,14 +67,14 @@ class Recovered:
 
 @dataclass(frozen=True)
 class LetGo:
-    """The user wants no force from the device, at once."""
+    """The user switches the device's force off, at once."""
 
     at: float
 
 
 @dataclass(frozen=True)
 class BringBack:
-    """The user wants the device's force again."""
+    """The user switches the device's force on again."""
 
     at: float
 
@@ -91,14 +91,14 @@ class SaveEnds:
 
 @dataclass(frozen=True)
 class Keep:
-    """The user wants the shape; ``dented`` if there is one, for the probe may be in the air."""
+    """The user keeps the shape; ``dented`` unless the probe is in the air."""
 
     dented: bool = True
 
 
 @dataclass(frozen=True)
 class Cancel:
-    """The user wants back what was there."""
+    """The user cancels the press."""
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
-"""The press that is going on: events in, effects carried out, one frame drawn at each tick.
+"""Session of the running press: handles events, carries out effects, draws a frame at each tick.
 
-Whatever Blender is about to do to the object, the session gives way first: the servo stops with
-zero force and the mesh is as it was found.
+Before anything else happens to the object, the session ends: the servo stops with zero force and
+the mesh is restored.
 """
 
 from __future__ import annotations
@@ -51,9 +51,9 @@ Array = NDArray[np.float64]
 
 @dataclass(eq=False)
 class PressSession:
-    """One press of one object. Make one with :func:`begin`; it is :func:`current` until it ends.
+    """Press of one object. Make one with :func:`begin`; it is :func:`current` until it ends.
 
-    ``leads`` says who moves which finger, ``tip`` what touches, ``seen`` what is drawn.
+    ``leads`` move the fingers, ``tip`` is their tool or point, ``seen`` the drawn body.
     """
 
     handle: ObjectHandle
@@ -71,11 +71,11 @@ class PressSession:
     _told: frozenset[str] = frozenset()
 
     def post(self, event: Event) -> None:
-        """Let an event happen: the only way in which a press changes its state."""
-        global _current  # noqa: PLW0603  one press at a time is a fact of the module
+        """Handle an event: the only way to change the state of a press."""
+        global _current  # noqa: PLW0603  one press at a time
         self.state, effects = transition(self.state, event)
         try:
-            # In order; should one fail, those behind it are still carried out.
+            # In order; if one fails, the rest is still carried out.
             with ExitStack() as waiting:
                 for effect in reversed(effects):
                     waiting.callback(self._apply, effect)
@@ -85,7 +85,7 @@ class PressSession:
                 _current = None if _current is self else _current
 
     def tick(self) -> bool:
-        """Follow object, settings and servo, and draw what is new; True if the view changed.
+        """Follow object, settings and servo, and draw changes; True if the view changed.
 
         Raises
         ------
@@ -108,12 +108,12 @@ class PressSession:
         return moved
 
     def switch_force(self) -> None:
-        """Let the device's force go at once, or let it rise again."""
+        """Switch the device's force off at once, or on with a ramp."""
         now = time.monotonic()
         self.post(LetGo(now) if self.state.force_on else BringBack(now))
 
     def start_recording(self) -> None:
-        """Record from here on.
+        """Start a recording.
 
         Raises
         ------
@@ -125,12 +125,12 @@ class PressSession:
 
     @property
     def scene(self) -> bpy.types.Scene:
-        """The scene in which the press began, or the one of now if that is gone."""
+        """Scene in which the press began, or the present one if that is gone."""
         return bpy.data.scenes.get(self.scene_name) or bpy.context.scene
 
     @cached_property
     def seen(self) -> SeenBody:
-        """The body as it is drawn."""
+        """Drawn body."""
         return SeenBody(self.drawn, self.tip)
 
     @property
@@ -140,7 +140,7 @@ class PressSession:
 
     @property
     def awaits_device(self) -> bool:
-        """Whether a device leads that has not said yet where it is."""
+        """Whether a device leads whose first STATE has not come yet."""
         waiting = self.snapshot is not None and self.snapshot.state == "waiting"
         return self.state.phase is Phase.FEELING and waiting
 
@@ -198,7 +198,7 @@ class PressSession:
             loop.stop()
 
     def _object_as_it_is(self) -> bpy.types.Object | None:
-        """The object, if the press may go on with it; else the press gives way."""
+        """The object, if the press can continue on it; else the press ends."""
         thing = self.handle.find()
         reason = ""
         if thing is None:
@@ -218,14 +218,14 @@ class PressSession:
         try:
             moved = self.drawn.moved_to(drawn_surface.frame_of(thing, self.scene))
         except PalpateError:
-            # Flattened to nothing: that is a change of scale too.
+            # A flattened object has changed its scale too.
             return False
         if moved is not None:
             self.drawn = self.seen.drawn = moved
         return moved is not None
 
     def _settings(self, thing: bpy.types.Object, before: DeviceFrame | None) -> LiveSettings:
-        """As they are now; a device stays where it was while its Empty says nothing of use."""
+        """Present settings; a device keeps its frame while its Empty is unusable."""
         scene, frame = self.scene, before
         if before is not None:
             try:
@@ -235,10 +235,10 @@ class PressSession:
         return LiveSettings.of(thing, scene, frame)
 
     def _tell_troubles(self, loop: ForceLoop) -> None:
-        """Say each trouble when it begins, not in every frame."""
+        """Report each problem once, when it begins."""
         shape, felt = self.seen.shape, loop.felt
         found = (*self._troubles, felt.problem, felt.notice, shape.problem, shape.notice)
-        # The same may be found for both fingers.
+        # Both fingers may have the same.
         texts = [text for text in dict.fromkeys(found) if text]
         self.said += [Say(text, warning=True) for text in texts if text not in self._told]
         self._told, self._troubles = frozenset(texts), []
@@ -247,7 +247,7 @@ class PressSession:
         if snapshot.fault:
             text = servo_words.fault_text(snapshot.fault)
             if snapshot.state == "stopped":
-                # Nothing brings it back.
+                # There is no recovery.
                 self.post(GiveWay(text))
             elif text != self.state.message:
                 self.post(Fault(text))
@@ -259,7 +259,7 @@ _current: PressSession | None = None
 
 
 def current() -> PressSession | None:
-    """The press that is going on, if one is."""
+    """Running press, if any."""
     return _current
 
 
@@ -272,7 +272,7 @@ def begin(
     ------
     PalpateError
         A press is going on; the object or its body does not allow it; the device does not; the
-        tool or the Empty that the scene asks for is not there.
+        tool or the Empty chosen in the scene is missing.
     """
     global _current  # noqa: PLW0603  see PressSession.post
     if _current is not None:
@@ -295,6 +295,6 @@ def begin(
 
 
 def give_way(reason: str) -> None:
-    """End the press that is going on, if one is, leaving the mesh clean."""
+    """End the running press, if any, and restore the mesh."""
     if _current is not None:
         _current.post(GiveWay(reason))

@@ -1,7 +1,7 @@
-"""What a press may do next, as one pure function: ``transition(state, event) -> (state, effects)``.
+"""State machine of a press, a pure function: ``transition(state, event) -> (state, effects)``.
 
-No Blender, no device, no clock: the session (:mod:`press_session`) turns what happens into events
-and carries out the effects, in order, in one place.
+No Blender, no device, no clock: the session (:mod:`press_session`) makes the events and carries out
+the effects, in order.
 """
 
 from __future__ import annotations
@@ -42,12 +42,12 @@ from .press_events import (
     Start,
 )
 
-# Somebody who strikes the key twice in alarm wants the force off, not on again.
+# Two strokes of the key within this time are an alarm: the force stays off.
 CALM_SECONDS = 0.6
 
 
 class Phase(Enum):
-    """Where a press stands."""
+    """Phase of a press."""
 
     IDLE = "idle"
     READY = "ready"  # pointer: nothing touched yet
@@ -60,14 +60,14 @@ class Phase(Enum):
 
 @dataclass(frozen=True)
 class PressState:
-    """A press between two events; ``withdrawn`` while the file is being written."""
+    """State of a press; ``withdrawn`` while the file is being written."""
 
     phase: Phase = Phase.IDLE
     source: Source = Source.POINTER
     has_device: bool = False
     withdrawn: bool = False
     message: str = ""
-    # The device's force, as the user wants it, and when it was last let go (s, any clock).
+    # Whether the user wants the device's force, and when it was last switched off (s, any clock).
     force_on: bool = True
     let_go_at: float = -math.inf
 
@@ -78,7 +78,7 @@ class PressState:
 
     @property
     def pressed(self) -> bool:
-        """Whether there is a shape that could be kept."""
+        """Whether there is a shape to keep."""
         return self.phase in (Phase.DRAGGING, Phase.HOLDING, Phase.FEELING)
 
 
@@ -86,7 +86,7 @@ Step = tuple[PressState, tuple[Effect, ...]]
 
 
 def transition(state: PressState, event: Event) -> Step:
-    """The state after ``event`` and what must be done, in order. Unfit events change nothing."""
+    """State after ``event``, and effects in order. Events that do not fit change nothing."""
     if isinstance(event, Start):
         return _start(state, event)
     if not state.active:
@@ -148,7 +148,7 @@ def _device(state: PressState, event: Fault | Recovered) -> Step:
 def _switch_force(state: PressState, event: LetGo | BringBack) -> Step:
     match event:
         case LetGo(at):
-            # Also when it is off already: what is asked for in alarm is done again.
+            # Also when it is off already, for safety.
             return replace(state, force_on=False, let_go_at=at), (SwitchForce(on=False),)
         case BringBack(at) if not state.force_on and at - state.let_go_at >= CALM_SECONDS:
             return replace(state, force_on=True), (SwitchForce(on=True),)

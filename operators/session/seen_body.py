@@ -1,4 +1,4 @@
-"""The body as a press shows it: its shape under the fingers, written into the live shape key."""
+"""Body as drawn by a press: its shape under the fingers, written into the live shape key."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ KEPT_EARLY = "It is kept as far as it was computed, {share} %"
 
 @dataclass(eq=False)
 class SeenBody:
-    """``displacements`` (n, 3) of the free surface nodes are those that are drawn, and ``linear``
-    what the force was computed with; None while nothing touches.
+    """Drawn body: ``displacements`` (n, 3) of the free surface nodes as drawn, and ``linear`` as
+    the force was computed with; None while nothing touches.
     """
 
     drawn: DrawnBody
@@ -40,26 +40,26 @@ class SeenBody:
 
     @cached_property
     def shape(self) -> DrawnShape:
-        """What is drawn of the body under its fingers."""
+        """Shape of the body under its fingers."""
         return DrawnShape(self.drawn.body, self.drawn.file)
 
     @cached_property
     def surface_samples(self) -> Array:
-        """Places (n, 3) spread over the surface at rest, as closely as the tool needs, metres."""
+        """Places (n, 3) spread over the rest surface, as densely as the tool needs, metres."""
         tool = self.tip.tool
         if tool is None:
             return self.drawn.surface_nodes
         return surface_for(self.drawn.body, tool).positions
 
     def nodes(self) -> Array:
-        """All nodes of the body as they are seen, (N, 3), body coordinates."""
+        """All nodes of the body as drawn, (N, 3), body coordinates."""
         nodes = self.drawn.body.mesh.nodes
         if self.displacements is None:
             return nodes
         return nodes + self.drawn.node_displacements(self.displacements)
 
     def draw(self, thing: bpy.types.Object, snapshot: Snapshot, young_modulus: float) -> None:
-        """Draw a tick, unless it is the one that is seen."""
+        """Draw a tick, unless it is already drawn."""
         self.shape.follow(chosen_shape(thing))
         fingers = tuple(
             (finger.touching, finger.nodes.tobytes(), finger.nodal_forces.tobytes())
@@ -76,19 +76,19 @@ class SeenBody:
             return
         met = self.shape.draw(self._loads, young_modulus)
         if not met.settled or self.shape.ready < 1.0:
-            # The same contact is drawn better in the next frame.
+            # Still incomplete: drawn again in the next frame.
             self.drawn_contact = ()
         self.displacements, self.linear = met.displacements, met.linear
         self._write(thing, met.displacements, snapshot)
 
     def draw_rest(self, thing: bpy.types.Object | None) -> None:
-        """Draw the body as nothing touches it."""
+        """Draw the rest shape."""
         self.displacements, self.linear, self.drawn_contact = None, None, ()
         if thing is not None:
             live_shape.write(thing.data, self.drawn.rest)
 
     def finish(self, thing: bpy.types.Object, snapshot: Snapshot | None) -> list[Say]:
-        """Draw what is to be kept, with what was still being computed as far as it is there."""
+        """Draw the shape to keep, as far as its tables are ready."""
         if not self._loads or self.drawn_contact:
             return []
         met = self.shape.finish(self._loads, self._modulus)
