@@ -4,5 +4,7 @@ pub mod counters;
 pub mod samples;
 pub mod settings;
 pub mod snapshot;
+pub mod standing;
 pub mod started;
+pub mod starting;
 pub mod thread;

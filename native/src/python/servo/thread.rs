@@ -1,8 +1,8 @@
 //! `Servo`: starts, leads and stops the native thread.
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 
-use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -10,152 +10,38 @@ use crate::body::surface;
 use crate::clock::timing::Timing;
 use crate::contact::cones::MAX_FINGERS;
 use crate::control::coupling::Coupling;
-use crate::device::{Device, DeviceFrame};
+use crate::device::Device;
 use crate::python::body::surface::Body;
 use crate::python::device::setups::{DeviceSetup, Lead};
 use crate::python::servo::counters::{finger_counters, stage_counters, timing_counters};
 use crate::python::servo::samples::{structured, structured_pieces};
 use crate::python::servo::settings::{Chosen, Given, options};
 use crate::python::servo::snapshot::Snapshot;
-use crate::python::servo::started::remember;
+use crate::python::servo::standing::Standing;
+use crate::python::servo::starting::{NOT_WHOLE, check_finger, locked};
 use crate::python::tool::{MadeTool, ToolContact, tip};
 use crate::python::vectors::{Triple, check_seconds, finite, positive};
+use crate::servo::Options;
 use crate::servo::finger::FingerSettings;
 use crate::servo::snapshot::{Published, Sample};
 use crate::servo::thread::Running;
-use crate::servo::{Options, Settings};
-
-/// Why there can be no more than one finger.
-const NOT_WHOLE: &str = "several fingers need the compliance of any two nodes, which this body has \
-    not kept; make it with Body(..., whole=True)";
-
-fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
 
 #[pyclass(frozen, module = "palpate_servo")]
 pub struct Servo {
-    body: Mutex<Arc<surface::Body>>,
-    options: Options,
-    glide_speed: f64,
-    record_samples: usize,
-    /// What the next start shall record.
-    armed_ticks: Mutex<usize>,
-    settings: Mutex<Standing>,
-    running: Mutex<Option<Arc<Running>>>,
+    pub(super) body: Mutex<Arc<surface::Body>>,
+    pub(super) options: Options,
+    pub(super) glide_speed: f64,
+    pub(super) record_samples: usize,
+    /// Ticks that the next start records.
+    pub(super) armed_ticks: Mutex<usize>,
+    pub(super) settings: Mutex<Standing>,
+    pub(super) running: Mutex<Option<Arc<Running>>>,
     /// Fingers 1, 2, ... of the next start.
-    others: Mutex<Vec<Box<dyn Device>>>,
-    /// By finger: its tool, on the body that it was made for.
-    tools: Mutex<[Option<MadeTool>; MAX_FINGERS]>,
-    /// Of pointers, by finger.
-    targets: Mutex<[Option<Lead>; MAX_FINGERS]>,
-}
-
-/// What holds now, of what was chosen and what the devices brought.
-#[derive(Clone, Copy)]
-struct Standing {
-    chosen: Chosen,
-    brought: [FingerSettings; MAX_FINGERS],
-    settings: Settings,
-}
-
-impl Standing {
-    fn new(chosen: Chosen, brought: [FingerSettings; MAX_FINGERS]) -> Self {
-        let before = Settings {
-            fingers: brought,
-            ..Settings::new(1.0)
-        };
-        let settings = chosen.on(&brought, &before);
-        Self {
-            chosen,
-            brought,
-            settings,
-        }
-    }
-
-    fn choose(&mut self, chosen: Chosen) -> Settings {
-        self.chosen = chosen;
-        self.settings = chosen.on(&self.brought, &self.settings);
-        self.settings
-    }
-
-    fn bring(&mut self, finger: usize, frame: DeviceFrame, coupling: Coupling) {
-        let brought = &mut self.brought[finger];
-        (brought.frame, brought.coupling) = (frame, coupling);
-        self.settings = self.chosen.on(&self.brought, &self.settings);
-    }
-}
-
-impl Servo {
-    fn current(&self) -> Option<Arc<Running>> {
-        locked(&self.running).clone()
-    }
-
-    /// While its thread lives.
-    fn alive(&self) -> Option<Arc<Running>> {
-        self.current().filter(|r| r.paced().is_running())
-    }
-
-    /// The device of a finger, open, with what it brings: its frame and coupling, or its targets.
-    fn opened(
-        &self,
-        py: Python<'_>,
-        finger: usize,
-        device: &DeviceSetup<'_>,
-    ) -> PyResult<Box<dyn Device>> {
-        let opened = device.open(py, self.glide_speed)?;
-        if let Some((frame, encoder_step)) = opened.mount {
-            let coupling = Coupling::for_encoders(self.options.rate_hz, encoder_step);
-            locked(&self.settings).bring(finger, frame, coupling);
-        }
-        locked(&self.targets)[finger] = opened.lead;
-        Ok(opened.device)
-    }
-
-    /// The number of the next finger but the first.
-    fn next_finger(&self) -> PyResult<usize> {
-        if self.alive().is_some() {
-            return Err(PyRuntimeError::new_err(
-                "the servo runs already; stop it, add the fingers, then start it again",
-            ));
-        }
-        if !locked(&self.body).is_whole() {
-            return Err(PyValueError::new_err(NOT_WHOLE));
-        }
-        let number = 1 + locked(&self.others).len();
-        if number < MAX_FINGERS {
-            Ok(number)
-        } else {
-            Err(PyValueError::new_err(format!(
-                "a servo has at most {MAX_FINGERS} fingers; start another one with its own body"
-            )))
-        }
-    }
-
-    /// Runs with this device as finger 0.
-    fn run(&self, py: Python<'_>, first: Box<dyn Device>) -> PyResult<()> {
-        let mut devices = vec![first];
-        devices.append(&mut locked(&self.others));
-        let settings = locked(&self.settings).settings;
-        let armed_ticks = *locked(&self.armed_ticks);
-        let tools = locked(&self.tools).clone();
-        let running = py.detach(|| {
-            Running::start_with_tips(
-                locked(&self.body).clone(),
-                devices,
-                tools.into_iter().map(tip).collect(),
-                self.options,
-                settings,
-                (self.record_samples, armed_ticks),
-            )
-            .map_err(no_thread)
-        })?;
-        *locked(&self.armed_ticks) = 0;
-        let running = Arc::new(running);
-        remember(&running);
-        *locked(&self.running) = Some(running);
-        Ok(())
-    }
+    pub(super) others: Mutex<Vec<Box<dyn Device>>>,
+    /// Tools by finger, each on the body that it was made for.
+    pub(super) tools: Mutex<[Option<MadeTool>; MAX_FINGERS]>,
+    /// Targets of pointers, by finger.
+    pub(super) targets: Mutex<[Option<Lead>; MAX_FINGERS]>,
 }
 
 #[pymethods]
@@ -406,20 +292,4 @@ impl Servo {
     ) {
         self.stop(py);
     }
-}
-
-fn check_finger(finger: usize) -> PyResult<()> {
-    if finger < MAX_FINGERS {
-        return Ok(());
-    }
-    Err(PyValueError::new_err(format!(
-        "finger is {finger}; a servo has fingers 0 to {}",
-        MAX_FINGERS - 1
-    )))
-}
-
-fn no_thread(error: std::io::Error) -> PyErr {
-    PyOSError::new_err(format!(
-        "the system gives the servo no thread ({error}); close other programs and start again"
-    ))
 }
