@@ -105,6 +105,6 @@ fn touch_stack() {
 }
 
 /// These locks are among callers only; the servo thread holds none.
-pub(super) fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+pub fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

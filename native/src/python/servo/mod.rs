@@ -1,6 +1,7 @@
 //! The running thread, its settings and what it tells.
 
 pub mod counters;
+pub mod refusals;
 pub mod samples;
 pub mod settings;
 pub mod snapshot;

@@ -1,42 +1,20 @@
 //! The start of a servo: devices opened, fingers counted, the thread begun.
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
 
-use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
 use crate::contact::cones::MAX_FINGERS;
 use crate::control::coupling::Coupling;
 use crate::device::Device;
 use crate::python::device::setups::DeviceSetup;
+use crate::python::servo::refusals::{NOT_WHOLE, no_thread};
 use crate::python::servo::started::remember;
 use crate::python::servo::thread::Servo;
 use crate::python::tool::tip;
+use crate::servo::paced::locked;
 use crate::servo::thread::Running;
-
-/// Refusal of more than one finger.
-pub(super) const NOT_WHOLE: &str = "several fingers need the compliance of any two nodes, which this body has \
-    not kept; make it with Body(..., whole=True)";
-
-pub(super) fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-pub(super) fn no_thread(error: std::io::Error) -> PyErr {
-    PyOSError::new_err(format!(
-        "the system gives the servo no thread ({error}); close other programs and start again"
-    ))
-}
-
-pub(super) fn check_finger(finger: usize) -> PyResult<()> {
-    if finger < MAX_FINGERS {
-        return Ok(());
-    }
-    Err(PyValueError::new_err(format!(
-        "finger is {finger}; a servo has fingers 0 to {}",
-        MAX_FINGERS - 1
-    )))
-}
 
 impl Servo {
     pub(super) fn current(&self) -> Option<Arc<Running>> {

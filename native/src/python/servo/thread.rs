@@ -14,15 +14,16 @@ use crate::device::Device;
 use crate::python::body::surface::Body;
 use crate::python::device::setups::{DeviceSetup, Lead};
 use crate::python::servo::counters::{finger_counters, stage_counters, timing_counters};
+use crate::python::servo::refusals::{NOT_WHOLE, check_finger};
 use crate::python::servo::samples::{structured, structured_pieces};
 use crate::python::servo::settings::{Chosen, Given, options};
 use crate::python::servo::snapshot::Snapshot;
 use crate::python::servo::standing::Standing;
-use crate::python::servo::starting::{NOT_WHOLE, check_finger, locked};
 use crate::python::tool::{MadeTool, ToolContact, tip};
 use crate::python::vectors::{Triple, check_seconds, finite, positive};
 use crate::servo::Options;
 use crate::servo::finger::FingerSettings;
+use crate::servo::paced::locked;
 use crate::servo::snapshot::{Published, Sample};
 use crate::servo::thread::Running;
 
