@@ -27,7 +27,7 @@ from .properties.soft_object import FORM_ITEMS, FORMULATION_ITEMS
 NAME = "palpate"
 EXIT_ERROR = 2
 
-# Options that are numbers: the property each sets, and the property's unit.
+# Numeric options: the property that each sets, and its unit.
 NUMBERS = {
     "young": ("young_modulus", 1.0),
     "poisson": ("poisson_ratio", 1.0),
@@ -42,18 +42,18 @@ FINGER_NUMBERS = {"radius": ("tip_radius", 1.0)}
 
 
 class _OneLineParser(argparse.ArgumentParser):
-    """A parser whose errors are one line."""
+    """Parser with one-line errors."""
 
     def error(self, message: str) -> NoReturn:
         self.exit(EXIT_ERROR, f"palpate: {message}; see 'blender -c palpate --help'\n")
 
 
 def run(words: list[str]) -> int:
-    """Run one command with its words; the exit status."""
+    """Run a command with its arguments; returns the exit status."""
     try:
         arguments = _parser().parse_args(_shielded(words))
     except SystemExit as end:
-        # Blender takes a status, and would report an exception as a fault of the extension.
+        # Blender expects a status, and would report an exception as a bug of the extension.
         return int(end.code or 0)
     try:
         figures = arguments.run(arguments)
@@ -78,7 +78,7 @@ def bake(arguments: argparse.Namespace) -> dict[str, object]:
     try:
         save(arguments.file)
     except PalpateError:
-        # The body of a scene that was not saved is nobody's.
+        # The body of an unsaved scene has no owner.
         body_store.take_back(before)
         raise
     for warning in report.warnings:
@@ -101,7 +101,7 @@ def bake(arguments: argparse.Namespace) -> dict[str, object]:
 
 
 def _error(baked: bpy.types.PropertyGroup) -> dict[str, object]:
-    """What compressing did to the body."""
+    """Error of the body's compression."""
     return {"column_error": baked.column_error / 100} if baked.baked_form == "compressed" else {}
 
 
@@ -134,7 +134,7 @@ def press(arguments: argparse.Namespace) -> dict[str, object]:
 
 
 def _choose(thing: bpy.types.Object, arguments: argparse.Namespace) -> None:
-    """Fill in what touches, how contact, shape and force are computed, as the options say."""
+    """Set tip, contact mode, shape and force law from the options."""
     for option, (name, unit) in FINGER_NUMBERS.items():
         value = getattr(arguments, option)
         if value is not None:
@@ -151,7 +151,7 @@ def _choose(thing: bpy.types.Object, arguments: argparse.Namespace) -> None:
 
 
 def _figures(finger: PressedFinger) -> dict[str, object]:
-    """What one finger did; a point on its triangle, a tool with its area and pressure."""
+    """Figures of a finger; a point with its triangle, a tool with area and pressure."""
     made = finger.made
     figures: dict[str, object] = {"force": list(finger.force), "depth": finger.depth}
     if made.touch is None:
@@ -165,7 +165,7 @@ def _figures(finger: PressedFinger) -> dict[str, object]:
 
 
 def _set_up(settings: bpy.types.PropertyGroup, arguments: argparse.Namespace) -> None:
-    """Fill in the panel with what the options say."""
+    """Set the panel's properties from the options."""
     if arguments.material:
         settings.material = arguments.material
     if arguments.pin_below is not None:
@@ -253,11 +253,11 @@ def _add_common(parser: argparse.ArgumentParser) -> None:
 def _within(
     settings: bpy.types.PropertyGroup, name: str, option: str, value: float, unit: float = 1.0
 ) -> float:
-    """The property's value for an option given in its ``unit``; refused where Blender would
-    silently clamp it.
+    """Value of a property for an option given in its ``unit``; refused where Blender would clamp
+    it silently.
     """
     allowed = settings.bl_rna.properties[name]
-    # The bounds are float32, and belong to the range.
+    # The bounds are float32, and inclusive.
     rounding = 1e-6
     lowest, highest = allowed.hard_min * (1 - rounding), allowed.hard_max * (1 + rounding)
     if not lowest <= value / unit <= highest:
@@ -269,7 +269,7 @@ def _within(
 
 
 def _shielded(words: list[str]) -> list[str]:
-    """Keep argparse from taking a number such as -5e-3 for an option: a blank in front helps."""
+    """Arguments with a blank before numbers such as -5e-3, which argparse takes for options."""
     return [f" {word}" if _is_negative_number(word) else word for word in words]
 
 
@@ -290,6 +290,6 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Take it out."""
+    """Remove the command."""
     while _commands:
         bpy.utils.unregister_cli_command(_commands.pop())

@@ -1,1 +1,1 @@
-"""The press and its operators."""
+"""Press and its operators."""

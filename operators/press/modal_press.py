@@ -1,4 +1,4 @@
-"""What Press and Pinch share while they run: events of the window in, a press that goes on."""
+"""Base of the modal operators Press and Pinch: from window events to a running press."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ EMPTY_STATUS = {
 
 
 class Pressing(Acting):
-    """An operator that presses the active object."""
+    """Operator that presses the active object."""
 
     @classmethod
     def refusal(cls, context: bpy.types.Context) -> str:
@@ -66,7 +66,7 @@ class Pressing(Acting):
 
 
 class ModalPress(Pressing):
-    """The running side of an operator that presses; mixed into Press and Pinch."""
+    """Modal part of a pressing operator; mixin of Press and Pinch."""
 
     _session: PressSession
     _hand: PointerHand
@@ -74,7 +74,7 @@ class ModalPress(Pressing):
     _status = ""
 
     def start(self, context: bpy.types.Context, source: Source, *, pinch: bool) -> set[str]:
-        """Begin to press the active object and have Blender send events."""
+        """Start to press the active object and to receive events."""
         thing = context.object
         if not thing.visible_get():
             self.report(
@@ -84,7 +84,7 @@ class ModalPress(Pressing):
                 ),
             )
             return {"CANCELLED"}
-        # A missing body file is computed again first, which may take a few seconds.
+        # A missing body file is recomputed first, which may take a few seconds.
         context.window.cursor_modal_set("WAIT")
         try:
             self._session = press_session.begin(thing, context.scene, source, pinch=pinch)
@@ -114,7 +114,7 @@ class ModalPress(Pressing):
             self.report({"ERROR"}, reported(problem))
             return {"CANCELLED"}
         except BaseException:
-            # A fault of ours must not leave a servo running and a live key in the mesh.
+            # A bug must not leave a running servo and a live key in the mesh.
             press_session.give_way("Pressing has ended because of an error")
             self._leave(context)
             raise
@@ -131,12 +131,12 @@ class ModalPress(Pressing):
         return {"FINISHED"}
 
     def cancel(self, context: bpy.types.Context) -> None:
-        """Blender ends the operator: another file, unregister, or exit."""
+        """End with the operator: another file, unregister, or exit."""
         press_session.give_way("")
         self._leave(context)
 
     def _handle(self, context: bpy.types.Context, event: bpy.types.Event) -> bool:
-        """Act on an event; True if Blender shall have it too."""
+        """Handle an event; True to pass it on to Blender."""
         session = self._session
         if event.type == "TIMER":
             if session.tick():
@@ -151,7 +151,7 @@ class ModalPress(Pressing):
         here = viewport.under_pointer(context.window, event.mouse_x, event.mouse_y)
         empties = session.state.source is Source.EMPTY
         dented = session.seen.displacements is not None
-        # Its right button opens menus as always while an Empty is moved by hand.
+        # The right button still opens menus while an Empty is moved by hand.
         last = _ending(event, over_view=here is not None and not empties, dented=dented)
         if last is not None:
             session.post(last)
@@ -192,13 +192,13 @@ class ModalPress(Pressing):
 
 
 def _is_blenders(event: bpy.types.Event) -> bool:
-    """What Blender tells itself (smooth view, playback, banners), and saving, opening, quitting."""
+    """Whether an event is Blender's own: smooth view, playback, banners, save, open, quit."""
     internal = event.type.startswith("TIMER") or event.type in {"NONE", "WINDOW_DEACTIVATE"}
     return internal or (event.type in FILE_KEYS and (event.ctrl or event.oskey))
 
 
 def _strikes_force_key(event: bpy.types.Event) -> bool:
-    """A first strike; a key that is held goes on striking."""
+    """Whether the force key is struck, not repeated by being held."""
     return event.type == "SPACE" and event.value == "PRESS" and not event.is_repeat
 
 
@@ -207,7 +207,7 @@ def _strikes_button(event: bpy.types.Event) -> bool:
 
 
 def _ending(event: bpy.types.Event, *, over_view: bool, dented: bool) -> Cancel | Keep | None:
-    """How an event ends the press, if it does."""
+    """End of the press by an event, if it is one."""
     if event.value != "PRESS":
         return None
     undoes = event.type == "Z" and (event.ctrl or event.oskey)

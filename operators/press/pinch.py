@@ -19,7 +19,7 @@ def _place(name: str, description: str) -> object:
 class PALPATE_OT_pinch(ModalPress, bpy.types.Operator):
     bl_idname = "palpate.pinch"
     bl_label = "Pinch"
-    # In Blender's own dictionary a pinch is what a sculpting brush does, and that one goes first.
+    # Blender's own dictionary, where a pinch is a sculpting brush, has precedence.
     bl_translation_context = "Palpate"
     bl_description = (
         "Squeeze the soft object between two fingers: drag each handle, the other stays where it "

@@ -61,7 +61,7 @@ class PALPATE_OT_press(ModalPress, bpy.types.Operator):
 
 
 def report(operator: bpy.types.Operator, pressed: Pressed) -> None:
-    """Say what a press without a window measured."""
+    """Report the measurements of a press without a window."""
     for remark in pressed.remarks:
         operator.report({"WARNING"}, reported(remark))
     figures = [

@@ -1,4 +1,4 @@
-"""Record: begin to record the press that is going on, or stop it."""
+"""Record: start or stop a recording of the running press."""
 
 import bpy
 

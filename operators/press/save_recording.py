@@ -1,4 +1,4 @@
-"""Save Recording: what was recorded, to CSV or npz; also while the press goes on."""
+"""Save Recording: to CSV or npz; also during the press."""
 
 from pathlib import Path
 
@@ -20,14 +20,14 @@ DEFAULT_NAME = "recording"
 
 
 def _recorder() -> Recorder | None:
-    """That of the press that is going on, if it records or has recorded."""
+    """Recorder of the running press, if it records or has recorded."""
     session = press_session.current()
     loop = session.loop if session is not None else None
     return loop.recorder if loop is not None and loop.recorder.wanted else None
 
 
 def recorded() -> Kept | None:
-    """What can be saved now."""
+    """Recording that can be saved now."""
     recorder = _recorder()
     return recording.last() if recorder is None else recorder.kept()
 
@@ -44,7 +44,7 @@ class PALPATE_OT_save_recording(Acting, bpy.types.Operator):
         name="Format", description="How the file is written", items=FORMAT_ITEMS, default=".csv"
     )
 
-    # Chosen in the file browser, so there is a window that must not stand still.
+    # With a file browser there is a window, which must not freeze.
     _in_window = False
 
     @classmethod
@@ -64,7 +64,7 @@ class PALPATE_OT_save_recording(Acting, bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def check(self, context: bpy.types.Context) -> bool:
-        """Let the name in the file browser follow the format."""
+        """Adapt the file browser's name to the format."""
         path = Path(self.filepath)
         if path.suffix.lower() == self.suffix or not path.name:
             return False

@@ -1,4 +1,4 @@
-"""Force Off and Force On: the device's motors let go at once, or take hold again slowly."""
+"""Force Off and Force On: motors off at once, or on with a ramp."""
 
 import bpy
 
