@@ -1,8 +1,9 @@
-"""Displacements as a power series in the force, u(s) = a_1 s + a_2 s^2 + ..., for loads s f.
+"""Displacements as a power series in the force, u(s) = u_0 + a_1 s + a_2 s^2 + ..., for loads s f.
 
 The internal force of a St. Venant-Kirchhoff solid is a cubic polynomial of the displacements, so
-every order costs one solve with the stiffness at rest: K a_1 = f, and K a_k = -(what the lower
-orders leave in order k). One factor serves all orders, all loads and both signs of each.
+every order costs one solve with the tangent stiffness at u_0, the state at rest or an equilibrium:
+K a_1 = f, and K a_k = -(what the lower orders leave in order k). One factor serves all orders and
+both signs, at rest all loads.
 
 References
 ----------
@@ -13,73 +14,107 @@ B. Cochelin: A path-following technique via an asymptotic-numerical method, Comp
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ...compliance.elimination.cholesky import CholeskyFactor
+from ..solid.by_component import Array, product, symmetric_part, transposed_product
 from ..solid.free_solid import FreeSolid
-from .domain_fields import DomainFields, Field, gram, product, put, symmetric
+from ..solid.gradients import Gradients
+from ..solid.strain_energy import EnergyTerm
 
 
-def series_terms(
-    body: FreeSolid, fields: Sequence[DomainFields], forces: NDArray[np.float64], order: int
-) -> list[NDArray[np.float64]]:
-    """a_1 ... a_order, (f, 3, k) each, of loads (f, 3, k) on the free nodes, at unit modulus.
+@dataclass(frozen=True, eq=False)
+class SeriesStart:
+    """Where series begin.
 
-    ``fields`` are those of the body's terms of strain energy, :meth:`DomainFields.of`.
+    Attributes
+    ----------
+    terms : of the body's strain energy.
+    factor : of the tangent stiffness there.
+    displacements : (f, 3), u_0; None at rest.
     """
-    terms, partial = [_solved(body, forces)], [_PartialSeries(field) for field in fields]
-    while len(terms) < order:
-        lower = np.zeros_like(forces)
-        for each in partial:
-            lower -= each.next_forces(terms[-1])
-        terms.append(_solved(body, lower))
-    return terms
 
+    terms: Sequence[EnergyTerm]
+    factor: CholeskyFactor
+    displacements: NDArray[np.float64] | None = None
 
-def _solved(body: FreeSolid, forces: NDArray[np.float64]) -> NDArray[np.float64]:
-    return body.factor.solve(forces.reshape(-1, forces.shape[2])).reshape(forces.shape)
+    @classmethod
+    def at_rest(cls, body: FreeSolid) -> SeriesStart:
+        """The body without loads.
+
+        Raises
+        ------
+        PalpateError
+            The pins do not hold it.
+        """
+        terms = [EnergyTerm.of(term, Gradients.of(term.gradients)) for term in body.solid.terms]
+        return cls(terms, body.factor)
+
+    def moved(self, body: FreeSolid, displacements: NDArray[np.float64]) -> SeriesStart:
+        """The same body in an equilibrium at displacements (f, 3).
+
+        Raises
+        ------
+        NotPositiveDefiniteError
+            It is not stable.
+        """
+        factor = body.elimination.factor(body.solid.tangent_blocks(displacements))
+        return SeriesStart(self.terms, factor, displacements)
+
+    def series(self, force: NDArray[np.float64], order: int) -> list[NDArray[np.float64]]:
+        """a_1 ... a_order, (f, 3) each, of a load (f, 3) that is added, at unit modulus."""
+        found = [self._solved(force)]
+        partial = [_PartialSeries(term, self.displacements) for term in self.terms]
+        while len(found) < order:
+            left = np.zeros_like(force)
+            for each in partial:
+                left += each.next_forces(found[-1])
+            found.append(self._solved(-left))
+        return found
+
+    def _solved(self, force: NDArray[np.float64]) -> NDArray[np.float64]:
+        return self.factor.solve(force.ravel()).reshape(force.shape)
 
 
 class _PartialSeries:
     """The orders of gradient and stress in the domains of one term, as far as they are known."""
 
-    def __init__(self, fields: DomainFields) -> None:
-        self._fields = fields
-        self._gradients: dict[int, list[Field]] = {}
-        self._stresses: dict[int, list[Field]] = {}
-        self._known: dict[int, Field] = {}
+    def __init__(self, term: EnergyTerm, start: NDArray[np.float64] | None) -> None:
+        self._term = term
+        self._start = None if start is None else term.gradients.of_displacements(start.T)
+        self._gradients: list[Array] = []
+        self._stresses: list[Array] = []
+        self._known: Array | None = None
 
     def next_forces(self, newest: NDArray[np.float64]) -> NDArray[np.float64]:
-        """What a_1 ... a_k, of which a_k is handed in, leave in order k + 1, (f, 3, loads)."""
-        first_stress = self._fields.no_stress(newest.shape[2])
-        for span, gradient in self._fields.gradients_of(newest):
-            put(first_stress, span, self._first_stress(span, gradient))
-        return self._fields.nodal_forces(first_stress)
-
-    def _first_stress(self, span: slice, gradient: Field) -> Field:
-        stress = self._fields.stress(symmetric(gradient), span)
-        if span.start in self._known:
-            stress += self._known[span.start]
-        gradients = self._gradients.setdefault(span.start, [])
-        stresses = self._stresses.setdefault(span.start, [])
-        gradients.append(gradient)
-        stresses.append(stress)
+        """What a_1 ... a_k, of which a_k is handed in, leave in order k + 1, (f, 3)."""
+        gradient = self._term.gradients.of_displacements(newest.T)
+        strain = gradient
+        if self._start is not None:
+            strain = gradient + transposed_product(self._start, gradient)
+        stress = self._term.second_stress(symmetric_part(strain))
+        if self._known is not None:
+            stress += self._known
+        self._gradients.append(gradient)
+        self._stresses.append(stress)
         # E and P of order k + 1, but for what is linear in a_(k + 1).
-        known = self._fields.stress(_square(gradients), span)
-        self._known[span.start] = known
-        first_stress: Field = known.copy()
-        for one, of_rest in zip(gradients, reversed(stresses), strict=True):
+        self._known = self._term.second_stress(_square(self._gradients))
+        first_stress = self._known.copy()
+        if self._start is not None:
+            first_stress += product(self._start, self._known)
+        for one, of_rest in zip(self._gradients, reversed(self._stresses), strict=True):
             first_stress += product(one, of_rest)
-        return first_stress
+        return self._term.gradients.nodal(first_stress).T
 
 
-def _square(gradients: Sequence[Field]) -> Field:
+def _square(gradients: Sequence[Array]) -> Array:
     """The order k + 1 of H^T H / 2, given the orders 1 to k of H."""
-    total = np.zeros_like(gradients[0])
-    count = len(gradients)
+    total, count = np.zeros_like(gradients[0]), len(gradients)
     for place in range(count // 2):
-        total += gram(gradients[place], gradients[count - 1 - place])
+        total += transposed_product(gradients[place], gradients[count - 1 - place])
     if count % 2:
-        total += 0.5 * gram(gradients[count // 2], gradients[count // 2])
-    return total
+        total += 0.5 * transposed_product(gradients[count // 2], gradients[count // 2])
+    return symmetric_part(total)

@@ -23,6 +23,8 @@ Array = NDArray[np.float64]
 
 # Below this share of the first term a term says nothing that the ones before it have not said.
 LEAST_NEW = 1e-14
+# Of a pole, imaginary over real part: below, it stands for one on the axis.
+NEAR_AXIS = 0.2
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,13 +57,31 @@ class RationalSum:
             changed = np.linalg.norm(last - before) / np.linalg.norm(last)
             return self.basis @ last, float(changed)
 
+    def gives_way(self, share: float) -> float:
+        """Where the sum has no end, in the direction of s and in multiples of it.
+
+        That is its first pole near the positive axis: a load beyond which a body gives way.
+        """
+        powers = self.terms * share ** np.arange(1.0, len(self.terms) + 1.0)
+        poles = np.roots(_denominator(powers)[::-1])
+        ahead = poles.real[(poles.real > 0.0) & (np.abs(poles.imag) <= NEAR_AXIS * poles.real)]
+        return float(ahead.min(initial=np.inf))
+
 
 def _summed(terms: Array) -> Array:
-    """The approximant of a_1 s ... a_n s^n, columns of an upper triangular (N, n).
+    """The approximant of a_1 s ... a_n s^n, columns of an upper triangular (N, n)."""
+    count = terms.shape[1]
+    sums = np.cumsum(_denominator(terms))
+    weights = np.append(sums[count - 2 :: -1][: count - 1], 0.0) / sums[count - 1]
+    total: Array = terms @ weights
+    return total
 
-    Its denominator 1 + d_1 + ... + d_(n-1), powers of s included, makes the product with the series
-    vanish in order n, first along the direction that a_(n-1) adds to those before it, then along
-    that of a_(n-2), and so on.
+
+def _denominator(terms: Array) -> Array:
+    """1, d_1, ... d_(n-1), powers of s included.
+
+    The product with the series vanishes in order n, first along the direction that a_(n-1) adds to
+    those before it, then along that of a_(n-2), and so on.
     """
     count = terms.shape[1]
     factors = np.zeros(count)
@@ -71,7 +91,4 @@ def _summed(terms: Array) -> Array:
         if abs(terms[row, row]) > LEAST_NEW * abs(terms[0, 0]):
             known = terms[row, count - order :] @ factors[:order][::-1]
             factors[order] = -known / terms[row, row]
-    sums = np.cumsum(factors)
-    weights = np.append(sums[count - 2 :: -1][: count - 1], 0.0) / sums[count - 1]
-    total: Array = terms @ weights
-    return total
+    return factors

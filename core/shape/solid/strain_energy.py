@@ -58,13 +58,17 @@ class EnergyTerm:
         gradient = self.gradients.of_displacements(displacements)
         strain = symmetric_part(gradient)
         strain += 0.5 * transposed_product(gradient, gradient)
-        stress = 2.0 * self.shear_modulus * strain
-        pressure = self.first_lame * (strain[0, 0] + strain[1, 1] + strain[2, 2])
-        on_diagonal = diagonal(stress)
-        on_diagonal += pressure
+        stress = self.second_stress(strain)
         energy = 0.5 * float(np.einsum("ijd,ijd->", stress, strain))
         stress += product(gradient, stress)
         return StressedTerm(energy + self._resist_collapse(gradient, stress), stress)
+
+    def second_stress(self, strain: Array) -> Array:
+        """S = lambda tr(E) I + 2 mu E of strains (3, 3, d), times the volumes; nothing is held."""
+        stress: Array = 2.0 * self.shear_modulus * strain
+        on_diagonal = diagonal(stress)
+        on_diagonal += self.first_lame * (strain[0, 0] + strain[1, 1] + strain[2, 2])
+        return stress
 
     def _resist_collapse(self, gradient: Array, stress: Array) -> float:
         """Add the stress of what keeps a domain from collapsing; returns its energy."""
