@@ -101,7 +101,6 @@ KNOWN = (
     "core/contact/tool/tool_law.py imports core/contact/complementarity.py",
     "core/contact/tool/tools.py is too long",
     # Being put into their rooms.
-    "cli/press/servo.py is too long",
     "native/src/python/servo/thread.rs is too long",
     "tests/cli/test_command_line.py is too long",
 )

@@ -9,7 +9,6 @@ import sys
 import time
 from collections.abc import Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,7 +19,6 @@ from ...core.body import body_file
 from ...core.body.soft_body import SoftBody
 from ...core.errors import PalpateError
 from ...core.machine.stop_signals import stopped_by_signals
-from ...core.servo.latency_timer import explain
 from ...core.servo.ports import PortError, check_port
 from ...core.servo.recording import check_recording_path, check_room, write_recording
 from ...core.servo.session import STATES, LinkDevice, native_body, servo_on
@@ -29,9 +27,9 @@ from ...core.stiffness.assembly import lame_parameters
 from ...simulated.hand.options import SimulatedOptions
 from ...simulated.simulated_process import SimulatedDevice
 from ..body.body_argument import add_body
-from ..body.figure_lines import as_lines
 from .felt_option import add_felt, softening_table
 from .haply import add_haply_options, connect_haply
+from .servo_report import Felt, for_people, servo_report
 
 if TYPE_CHECKING:
     from ...core.servo.session import FingerCounters, Servo, Snapshot
@@ -142,7 +140,7 @@ def run(arguments: argparse.Namespace) -> int:
                 report["recording"] = _write_recording(arguments.record, servo)
         finally:
             # A file that cannot be written shall not take the report with it.
-            print(json.dumps(report) if arguments.json else _for_people(report))
+            print(json.dumps(report) if arguments.json else for_people(report))
     return 0
 
 
@@ -265,54 +263,6 @@ def _await_greeting(servo: Servo, finger: int, port: str, stopped: Sequence[int]
         )
 
 
-@dataclass
-class _Felt:
-    """Extremes of the first finger in all ticks so far, SI units."""
-
-    samples: int = 0
-    touching: int = 0
-    contact_force: float = 0.0
-    output_force: float = 0.0
-    depth: float = 0.0
-
-    def take(self, samples: NDArray[np.void]) -> None:
-        samples = samples[samples["finger"] == 0]
-        if not len(samples):
-            return
-        contact, output, depth = (
-            np.linalg.norm(vectors, axis=1)
-            for vectors in (
-                samples["force"],
-                samples["output"],
-                samples["probe"] - samples["proxy"],
-            )
-        )
-        self.samples += len(samples)
-        self.touching += int(np.count_nonzero(contact))
-        self.contact_force = max(self.contact_force, float(contact.max()))
-        self.output_force = max(self.output_force, float(output.max()))
-        self.depth = max(self.depth, float(depth[contact > 0.0].max(initial=0.0)))
-
-
-def _for_people(report: dict[str, Any]) -> str:
-    """The report one figure a line, and the stages of the tick as a table."""
-    lines = as_lines({name: value for name, value in report.items() if name != "stages_us"})
-    columns = ("mean", "p99", "max")
-    rows = [f"{'tick, us':10}" + "".join(f"{column:>9}" for column in columns)]
-    for stage, times in report["stages_us"].items():
-        rows.append(f"{stage:10}" + "".join(f"{times[column]:9.2f}" for column in columns))
-    return "\n".join([lines, *rows])
-
-
-def _of_others(last: Snapshot, counters: Sequence[FingerCounters]) -> dict[str, Any]:
-    """State, faults and link of the fingers beside the first; nothing if there are none."""
-    others = [
-        {"last_state": finger.state, "last_fault": finger.fault, **counted}
-        for finger, counted in zip(last.fingers[1:], counters[1:], strict=False)
-    ]
-    return {"other_fingers": others} if others else {}
-
-
 def _ask_for(table: SofteningTable, snapshot: Snapshot) -> None:
     """What the touched places lack, and their neighbourhood."""
     nodes = np.concatenate([finger.nodes for finger in snapshot.fingers])
@@ -327,7 +277,7 @@ def _touch(
     stopped: Sequence[int],
     table: SofteningTable | None,
 ) -> dict[str, Any]:
-    felt = _Felt()
+    felt = Felt()
     begin = time.monotonic()
     while not stopped and time.monotonic() < begin + seconds and servo.running:
         time.sleep(LOOK_EVERY_SECONDS)
@@ -337,30 +287,8 @@ def _touch(
     last = servo.snapshot()
     servo.stop()
     felt.take(servo.samples())
-    counters = servo.counters()
     return {
-        **{name: counters[name] for name in ("rate_hz", "ticks", "missed", "late_ticks")},
-        "lateness_us": counters["lateness_us"],
-        **{
-            name: counters[name]
-            for name in (
-                *("late_over_10_us", "late_over_50_us", "late_over_200_us", "late_over_1000_us"),
-                *("longest_gap_us", "stages_us", "busy_us", "spun_us"),
-            )
-        },
-        "realtime": counters["realtime"],
-        "link": counters["link"],
-        "warning": explain(counters["link"], port) or "",
-        "faults": counters["faults"],
-        "samples_lost": counters["samples_lost"],
+        **servo_report(felt, last, servo.counters(), port),
         "seconds": time.monotonic() - begin,
         "interrupted": bool(stopped),
-        "last_state": last.state,
-        "last_fault": last.fault,
-        "felt": last.felt,
-        "touching_ticks": felt.touching,
-        **_of_others(last, counters["fingers"]),
-        "peak_contact_force_n": felt.contact_force,
-        "peak_output_force_n": felt.output_force,
-        "deepest_mm": felt.depth * 1e3,
     }

@@ -16,6 +16,7 @@ import pytest
 
 from palpate.cli.main import main
 from palpate.cli.press import servo as servo_command
+from palpate.cli.press.servo_report import for_people
 from palpate.core.bake.steps import BakeSettings, bake
 from palpate.core.body import body_file
 from palpate.core.files.npz_archive import read_arrays
@@ -121,7 +122,7 @@ def test_simulate_presses_from_above_and_reports(baked_file, capsys):
 
 def test_people_get_the_stages_of_the_tick_as_a_table():
     stages = {name: {"mean": 1.234, "p99": 2.0, "max": 34.5} for name in ("read", "write")}
-    text = servo_command._for_people({"ticks": 7, "stages_us": stages, "faults": {}})
+    text = for_people({"ticks": 7, "stages_us": stages, "faults": {}})
     assert text.splitlines() == [
         "ticks   7",
         "faults  none",
