@@ -30,7 +30,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "value", nargs="?", metavar="SHORE", help="Shore value, such as 00-30 or A20"
     )
     which.add_argument(
-        "--young", type=float, metavar="PA", help="Young's modulus, to be told as Shore values"
+        "--young", type=float, metavar="PA", help="Young's modulus, to convert to Shore values"
     )
     parser.add_argument(
         "--poisson",

@@ -67,8 +67,8 @@ class PressSession:
     snapshot: Snapshot | None = None
     kept_name: str = ""
     said: list[Say] = field(default_factory=list)
-    _troubles: list[str] = field(default_factory=list)
-    _told: frozenset[str] = frozenset()
+    _problems: list[str] = field(default_factory=list)
+    _reported: frozenset[str] = frozenset()
 
     def post(self, event: Event) -> None:
         """Handle an event: the only way to change the state of a press."""
@@ -97,12 +97,12 @@ class PressSession:
         if thing is None or loop is None:
             return True
         loop.follow(self._settings(thing, loop.settings.device))
-        self._troubles += lead_fingers(loop, self.leads, self.scene, self.drawn)
+        self._problems += lead_fingers(loop, self.leads, self.scene, self.drawn)
         snapshot = loop.snapshot()
         moved = self.snapshot is None or snapshot.tick != self.snapshot.tick
         self.snapshot = snapshot
         self._watch_faults(snapshot)
-        self._tell_troubles(loop)
+        self._report_problems(loop)
         if self.state.phase is not Phase.LOST and not self.state.withdrawn:
             self.seen.draw(thing, snapshot, loop.settings.servo.young_modulus)
         return moved
@@ -190,7 +190,7 @@ class PressSession:
             frame = device_source.device_frame(self.scene, self.drawn.frame, self.home)
         settings = LiveSettings.of(thing, self.scene, frame)
         self.loop = start_loop(thing, self.scene, self.drawn, settings, self.leads, self.tip)
-        self._troubles += lead_fingers(self.loop, self.leads, self.scene, self.drawn)
+        self._problems += lead_fingers(self.loop, self.leads, self.scene, self.drawn)
 
     def _stop_loop(self) -> None:
         loop, self.loop = self.loop, None
@@ -231,17 +231,17 @@ class PressSession:
             try:
                 frame = device_source.device_frame(scene, self.drawn.frame, self.home)
             except PalpateError as problem:
-                self._troubles.append(problem.sentence)
+                self._problems.append(problem.sentence)
         return LiveSettings.of(thing, scene, frame)
 
-    def _tell_troubles(self, loop: ForceLoop) -> None:
+    def _report_problems(self, loop: ForceLoop) -> None:
         """Report each problem once, when it begins."""
         shape, felt = self.seen.shape, loop.felt
-        found = (*self._troubles, felt.problem, felt.notice, shape.problem, shape.notice)
+        found = (*self._problems, felt.problem, felt.notice, shape.problem, shape.notice)
         # Both fingers may have the same.
         texts = [text for text in dict.fromkeys(found) if text]
-        self.said += [Say(text, warning=True) for text in texts if text not in self._told]
-        self._told, self._troubles = frozenset(texts), []
+        self.said += [Say(text, warning=True) for text in texts if text not in self._reported]
+        self._reported, self._problems = frozenset(texts), []
 
     def _watch_faults(self, snapshot: Snapshot) -> None:
         if snapshot.fault:

@@ -181,9 +181,9 @@ def loads_of(body: SoftBody, snapshot: Snapshot) -> list[FingerLoad]:
 
 
 def _close(made: Shape) -> None:
-    told = made.notice
+    earlier = made.notice
     made.close()
-    if made.notice != told:
+    if made.notice != earlier:
         # The press has ended, so there is no report; the table is computed again next time.
         print(f"palpate: {made.notice}")  # noqa: T201
 

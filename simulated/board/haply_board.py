@@ -32,18 +32,18 @@ class ByteFaults:
         self.flipped = 0
         self._options = options
         self._dice = random.Random(seed)  # noqa: S311 - simulation, not secrets
-        self._on_the_way: deque[tuple[float, bytes]] = deque()
+        self._in_flight: deque[tuple[float, bytes]] = deque()
 
     def put(self, data: bytes, now: float) -> None:
         """Send bytes at `now`."""
         if data:
-            self._on_the_way.append((now + self._options.delay, self._through(data)))
+            self._in_flight.append((now + self._options.delay, self._through(data)))
 
     def take(self, now: float) -> bytes:
         """Bytes that have arrived until `now`."""
         arrived = b""
-        while self._on_the_way and self._on_the_way[0][0] <= now:
-            arrived += self._on_the_way.popleft()[1]
+        while self._in_flight and self._in_flight[0][0] <= now:
+            arrived += self._in_flight.popleft()[1]
         return arrived
 
     def _through(self, data: bytes) -> bytes:

@@ -26,7 +26,7 @@ class SimulatedOptions:
     """
 
     name: str = field(
-        default="Simulated", metadata=_about("TEXT", "name told in HELLO, at most 16 bytes")
+        default="Simulated", metadata=_about("TEXT", "name sent in HELLO, at most 16 bytes")
     )
     rate_hz: int = field(
         default=1000, metadata=_about("HZ", "rate of the device's own loop and of STATE")
@@ -34,7 +34,7 @@ class SimulatedOptions:
     largest_force: float = field(default=3.0, metadata=_about("N", "largest force of the motors"))
     workspace: Vector = field(
         default=(0.1, 0.1, 0.1),
-        metadata=_about("XYZ", "half extents of the workspace told in HELLO"),
+        metadata=_about("XYZ", "half extents of the workspace sent in HELLO"),
     )
     resolution_um: int = field(
         default=1, metadata=_about("UM", "step of the encoders in micrometres")

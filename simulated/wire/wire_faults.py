@@ -35,7 +35,7 @@ class BadWire:
         self._noise = noise
         self._clean_bits = self._draw_clean_bits()
         self._begun = bytearray()
-        self._on_the_way: deque[tuple[float, bytes]] = deque()
+        self._in_flight: deque[tuple[float, bytes]] = deque()
 
     def put(self, data: bytes, now: float) -> None:
         """Send bytes at time `now`; a frame is complete with its closing zero."""
@@ -46,14 +46,14 @@ class BadWire:
             if self._random.random() < self._loss:
                 self.lost += 1
             else:
-                self._on_the_way.append((self._handed_over(now), self._flip(frame)))
+                self._in_flight.append((self._handed_over(now), self._flip(frame)))
         self._begun += rest
 
     def take(self, now: float) -> bytes:
         """Bytes that have arrived until `now`."""
         arrived = bytearray()
-        while self._on_the_way and self._on_the_way[0][0] <= now:
-            arrived += self._on_the_way.popleft()[1]
+        while self._in_flight and self._in_flight[0][0] <= now:
+            arrived += self._in_flight.popleft()[1]
         return bytes(arrived)
 
     def _handed_over(self, now: float) -> float:
@@ -62,7 +62,7 @@ class BadWire:
             arrives += self._jitter * self._random.random()
         if self._latency_timer > 0.0:
             arrives = math.ceil(arrives / self._latency_timer) * self._latency_timer
-        return max(arrives, self._on_the_way[-1][0]) if self._on_the_way else arrives
+        return max(arrives, self._in_flight[-1][0]) if self._in_flight else arrives
 
     def _flip(self, frame: bytes) -> bytes:
         bits = 8 * len(frame)
