@@ -1,4 +1,5 @@
-//! From a displaced contact point to forces.
+//! Forces of displaced contact points.
 
+pub mod cone;
 pub mod cones;
 pub mod touch;

@@ -22,7 +22,7 @@ use crate::device::reason;
 use crate::device::{Device, DeviceFrame, Fault, Probe, Reading};
 use crate::proxy::Proxy;
 use crate::servo::pressed_patch::PressedPatch;
-use crate::servo::snapshot::{Snapshot, Told};
+use crate::servo::snapshot::{FingerReport, Snapshot};
 use crate::servo::tip::{Tip, TipHolder, exchange_tips};
 use crate::servo::{Options, Settings};
 
@@ -111,7 +111,7 @@ pub struct Finger {
     reading: Reading,
     found: Findings,
     shot: Snapshot,
-    told: Told,
+    report: FingerReport,
 }
 
 impl Finger {
@@ -141,7 +141,7 @@ impl Finger {
             reading: Reading::Waiting(""),
             found: Findings::default(),
             shot: Snapshot::default(),
-            told: Told::default(),
+            report: FingerReport::default(),
         }
     }
 
@@ -196,8 +196,8 @@ impl Finger {
         }
         (self.shot.probe, self.shot.proxy) = (self.probe, self.probe);
         if let Some(proxy) = &self.proxy {
-            self.told.most_steps = self.told.most_steps.max(proxy.steps());
-            self.told.rescues = proxy.rescues();
+            self.report.most_steps = self.report.most_steps.max(proxy.steps());
+            self.report.rescues = proxy.rescues();
             self.found.inside = proxy.is_buried();
             if proxy.hold().is_some() {
                 self.shot.proxy = proxy.position();

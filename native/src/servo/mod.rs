@@ -206,7 +206,7 @@ impl Servo {
         let published = self.snapshots.input_buffer_mut();
         published.count = self.fingers.len();
         for (number, finger) in self.fingers.iter_mut().enumerate() {
-            published.told[number] = *finger.tell(young_modulus);
+            published.reports[number] = *finger.tell(young_modulus);
             let sample = finger.sample(number as u32);
             if self.samples.push(sample).is_err() {
                 self.samples_lost += 1;
@@ -224,8 +224,8 @@ impl Servo {
         let published = self.snapshots.input_buffer_mut();
         published.count = self.fingers.len();
         published.samples_lost = self.samples_lost;
-        for (told, finger) in published.told.iter_mut().zip(&mut self.fingers) {
-            *told = *finger.park(fault);
+        for (report, finger) in published.reports.iter_mut().zip(&mut self.fingers) {
+            *report = *finger.park(fault);
         }
         self.snapshots.publish();
     }

@@ -61,7 +61,7 @@ pub struct Snapshot {
 
 /// A finger's snapshot with its counters of the same tick.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Told {
+pub struct FingerReport {
     /// The tick.
     pub snapshot: Snapshot,
     /// The link.
@@ -78,7 +78,7 @@ pub struct Told {
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Published {
     /// Reports by finger; beyond `count` nothing.
-    pub told: [Told; MAX_FINGERS],
+    pub reports: [FingerReport; MAX_FINGERS],
     /// Fingers in use.
     pub count: usize,
     /// Samples not recorded because nobody emptied the ring.
@@ -92,20 +92,20 @@ impl Published {
             count,
             ..Self::default()
         };
-        for told in &mut published.told[..count] {
-            told.snapshot.reason = reason::NOT_STARTED;
+        for report in &mut published.reports[..count] {
+            report.snapshot.reason = reason::NOT_STARTED;
         }
         published
     }
 
     /// Reports of the fingers in use.
-    pub fn fingers(&self) -> &[Told] {
-        &self.told[..self.count]
+    pub fn fingers(&self) -> &[FingerReport] {
+        &self.reports[..self.count]
     }
 
     /// Report of finger 0, which is always there.
-    pub fn first(&self) -> &Told {
-        &self.told[0]
+    pub fn first(&self) -> &FingerReport {
+        &self.reports[0]
     }
 }
 

@@ -194,9 +194,9 @@ impl SteppedFingers {
             }
             stepped.ticks += 1;
             stepped.servo.tick(stepped.ticks as f64 * stepped.period);
-            for told in stepped.snapshots.read().fingers() {
-                forces.extend(told.snapshot.contact_force.to_array());
-                torques.extend(told.snapshot.torque.to_array());
+            for report in stepped.snapshots.read().fingers() {
+                forces.extend(report.snapshot.contact_force.to_array());
+                torques.extend(report.snapshot.torque.to_array());
             }
         }
         let shaped = |values| PyArray1::from_vec(py, values).reshape([ticks, fingers, 3]);
@@ -242,7 +242,7 @@ impl SteppedFingers {
         let stepped = &mut *self.stepped();
         let before = stepped.settings;
         stepped.settings = chosen.on(&before.fingers, &before);
-        // How tools are turned is told with them.
+        // How tools are turned is report with them.
         for (finger, before) in stepped.settings.fingers.iter_mut().zip(&before.fingers) {
             finger.orientation = before.orientation;
         }

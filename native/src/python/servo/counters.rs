@@ -6,7 +6,7 @@ use pyo3::types::PyDict;
 use crate::clock::durations::{BUCKETS, DurationReport, bucket_limit_ns};
 use crate::clock::timing::{LATE_LIMITS_NS, Timing};
 use crate::device::{Fault, LinkReport};
-use crate::servo::snapshot::Told;
+use crate::servo::snapshot::FingerReport;
 use crate::servo::stages::{Stage, Stages};
 
 fn us(ns: u64) -> f64 {
@@ -125,20 +125,24 @@ pub fn link_counters<'py>(py: Python<'py>, link: &LinkReport) -> PyResult<Bound<
 }
 
 /// Times each fault began.
-pub fn fault_counters<'py>(py: Python<'py>, told: &Told) -> PyResult<Bound<'py, PyDict>> {
+pub fn fault_counters<'py>(py: Python<'py>, report: &FingerReport) -> PyResult<Bound<'py, PyDict>> {
     let faults = PyDict::new(py);
-    for (fault, count) in Fault::ALL.iter().zip(told.faults) {
+    for (fault, count) in Fault::ALL.iter().zip(report.faults) {
         faults.set_item(fault.name(), count)?;
     }
     Ok(faults)
 }
 
 /// Counters of one finger.
-pub fn finger_counters(py: Python<'_>, counters: &Bound<'_, PyDict>, told: &Told) -> PyResult<()> {
-    counters.set_item("faults", fault_counters(py, told)?)?;
-    counters.set_item("link", link_counters(py, &told.link)?)?;
+pub fn finger_counters(
+    py: Python<'_>,
+    counters: &Bound<'_, PyDict>,
+    report: &FingerReport,
+) -> PyResult<()> {
+    counters.set_item("faults", fault_counters(py, report)?)?;
+    counters.set_item("link", link_counters(py, &report.link)?)?;
     let proxy = PyDict::new(py);
-    proxy.set_item("most_steps", told.most_steps)?;
-    proxy.set_item("rescues", told.rescues)?;
+    proxy.set_item("most_steps", report.most_steps)?;
+    proxy.set_item("rescues", report.rescues)?;
     counters.set_item("proxy", proxy)
 }

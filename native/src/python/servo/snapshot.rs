@@ -165,11 +165,11 @@ impl Snapshot {
         published: &Published,
         patches: &[PressedPatch],
     ) -> PyResult<Py<Self>> {
-        let told = published.fingers().iter().enumerate();
-        let fingers: Vec<_> = told
-            .map(|(finger, told)| FingerSnapshot {
-                shot: told.snapshot,
-                patch: patch_of(&told.snapshot, patches.get(finger)),
+        let report = published.fingers().iter().enumerate();
+        let fingers: Vec<_> = report
+            .map(|(finger, report)| FingerSnapshot {
+                shot: report.snapshot,
+                patch: patch_of(&report.snapshot, patches.get(finger)),
             })
             .collect();
         let first = fingers[0].clone();

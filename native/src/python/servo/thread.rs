@@ -256,9 +256,9 @@ impl Servo {
         counters.set_item("rate_hz", self.options.rate_hz)?;
         counters.set_item("samples_lost", published.samples_lost)?;
         finger_counters(py, &counters, published.first())?;
-        let fingers = published.fingers().iter().map(|told| {
+        let fingers = published.fingers().iter().map(|report| {
             let finger = PyDict::new(py);
-            finger_counters(py, &finger, told)?;
+            finger_counters(py, &finger, report)?;
             Ok(finger)
         });
         counters.set_item("fingers", fingers.collect::<PyResult<Vec<_>>>()?)?;

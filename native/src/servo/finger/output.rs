@@ -7,7 +7,7 @@ use crate::control::safety::Limits;
 use crate::control::state::{Standing, State, transition};
 use crate::device::reason;
 use crate::device::{Fault, Reading};
-use crate::servo::snapshot::{Sample, Told};
+use crate::servo::snapshot::{FingerReport, Sample};
 use crate::servo::tip::Tip;
 
 impl Finger {
@@ -38,7 +38,7 @@ impl Finger {
     }
 
     /// What the tick came to, for others to read.
-    pub fn tell(&mut self, young_modulus: f64) -> &Told {
+    pub fn tell(&mut self, young_modulus: f64) -> &FingerReport {
         if let (Some(patches), Tip::Tool(tool)) = (&mut self.patches, &self.tips.tip) {
             let tool = self.shot.touching.then_some(&**tool);
             patches
@@ -47,13 +47,13 @@ impl Finger {
             patches.publish();
         }
         if let Some(fault) = self.shot.fault
-            && self.told.snapshot.fault != Some(fault)
+            && self.report.snapshot.fault != Some(fault)
         {
-            self.told.faults[fault as usize] += 1;
+            self.report.faults[fault as usize] += 1;
         }
-        self.told.snapshot = self.shot;
-        self.told.link = self.device.report();
-        &self.told
+        self.report.snapshot = self.shot;
+        self.report.link = self.device.report();
+        &self.report
     }
 
     /// The tick in the recording.
@@ -73,19 +73,19 @@ impl Finger {
     }
 
     /// Leaves the device limp and says so.
-    pub fn park(&mut self, fault: Option<Fault>) -> &Told {
+    pub fn park(&mut self, fault: Option<Fault>) -> &FingerReport {
         self.device.park();
-        let shot = &mut self.told.snapshot;
+        let shot = &mut self.report.snapshot;
         shot.state = State::Stopped;
         shot.output_force = DVec3::ZERO;
         shot.reason = if fault.is_none() { reason::ASKED } else { "" };
         shot.limited = "";
         shot.fault = fault;
         if let Some(fault) = fault {
-            self.told.faults[fault as usize] += 1;
+            self.report.faults[fault as usize] += 1;
         }
-        self.told.link = self.device.report();
-        &self.told
+        self.report.link = self.device.report();
+        &self.report
     }
 }
 
