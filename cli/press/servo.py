@@ -139,7 +139,7 @@ def run(arguments: argparse.Namespace) -> int:
             if arguments.record is not None:
                 report["recording"] = _write_recording(arguments.record, servo)
         finally:
-            # A file that cannot be written shall not take the report with it.
+            # The report survives a file that cannot be written.
             print(json.dumps(report) if arguments.json else for_people(report))
     return 0
 
@@ -153,7 +153,7 @@ def _check_recording(path: Path, seconds: float) -> None:
 
 def _start_recording(servo: Servo, path: Path, seconds: float) -> None:
     most_bytes = servo.start_recording(seconds + HELLO_SECONDS)
-    # Now, for a disk that is full shows only when all has been felt.
+    # Checked before the session: a full disk would show only after it.
     check_room(path, most_bytes)
     sys.stderr.write(f"recording; takes up to {most_bytes / 1e6:.0f} MB of memory\n")
 
@@ -165,7 +165,7 @@ def _write_recording(path: Path, servo: Servo) -> dict[str, object]:
 
 
 def press_from_above(body: SoftBody, young_modulus: float) -> SimulatedOptions:
-    """A simulated hand that presses the body where it is highest, against the surface's normal.
+    """Simulated hand that presses the body at its highest place, against the normal.
 
     It goes in by a tenth of the body's height or until it takes `HAND_FORCE`, whichever is less.
     """
@@ -176,21 +176,21 @@ def press_from_above(body: SoftBody, young_modulus: float) -> SimulatedOptions:
     stiffness = young_modulus * float(normal @ blocks.mean(axis=0) @ normal)
     depth = min(0.1 * float(extents[2]), HAND_FORCE / stiffness)
     hand = SimulatedOptions()
-    # The hand reaches deeper than the device gets, for its spring gives way to the body's force.
+    # The hand's target is deeper than the device's: its spring yields to the body's force.
     reach = depth * (1.0 + stiffness / hand.hand_stiffness)
     height = 0.2 * float(extents.max())
     return SimulatedOptions(
         rest=_vector(at + height * normal),
         at=_vector(at),
         by=_vector(-reach * normal),
-        # Slow enough for any size of body: at most half a metre per second.
+        # At most half a metre per second for any size of body.
         approach=max(0.5, 4.0 * height),
         period=max(2.0, 8.0 * reach),
     )
 
 
 def _highest_place(body: SoftBody) -> tuple[int, NDArray[np.float64], NDArray[np.float64]]:
-    """The surface triangle to press from above: its index, its centre (m) and its normal."""
+    """Surface triangle to press from above: its index, its centre (m) and its normal."""
     mesh = body.mesh
     corners = mesh.nodes[mesh.surface_triangles]
     centres = corners.mean(axis=1)
@@ -198,8 +198,8 @@ def _highest_place(body: SoftBody) -> tuple[int, NDArray[np.float64], NDArray[np
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     pinned = np.isin(mesh.surface_triangles, body.fixed).any(axis=1)
     extents = np.ptp(mesh.nodes, axis=0)
-    # Free places that look up come before steep ones and those before pinned ones; of places as
-    # high as the highest, such as a flat top, the middle.
+    # Free upward places come before steep ones, those before pinned ones; of equally high places,
+    # such as a flat top, the middle.
     fit = ~pinned & (normals[:, 2] > 0.7)
     candidates = next(choice for choice in (fit, ~pinned, ~fit) if choice.any())
     high = candidates & (centres[:, 2] >= centres[candidates, 2].max() - 0.01 * extents[2])
@@ -264,7 +264,7 @@ def _await_greeting(servo: Servo, finger: int, port: str, stopped: Sequence[int]
 
 
 def _ask_for(table: SofteningTable, snapshot: Snapshot) -> None:
-    """What the touched places lack, and their neighbourhood."""
+    """Request the softenings of the touched places and their neighbourhood."""
     nodes = np.concatenate([finger.nodes for finger in snapshot.fingers])
     if len(nodes):
         table.around(table.body.mesh.surface_nodes[nodes])

@@ -1,4 +1,4 @@
-"""The report of `palpate servo`: what was felt, and how deadlines were kept."""
+"""Report of `palpate servo`: forces, depths and timing."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Felt:
     depth: float = 0.0
 
     def take(self, samples: NDArray[np.void]) -> None:
-        """Take in the samples of more ticks."""
+        """Add the samples of more ticks."""
         samples = samples[samples["finger"] == 0]
         if not len(samples):
             return
@@ -47,7 +47,7 @@ class Felt:
 
 
 def for_people(report: dict[str, Any]) -> str:
-    """The report one figure a line, and the stages of the tick as a table."""
+    """Report with one figure a line, and the stages of the tick as a table."""
     lines = as_lines({name: value for name, value in report.items() if name != "stages_us"})
     columns = ("mean", "p99", "max")
     rows = [f"{'tick, us':10}" + "".join(f"{column:>9}" for column in columns)]
@@ -57,7 +57,7 @@ def for_people(report: dict[str, Any]) -> str:
 
 
 def _of_others(last: Snapshot, counters: Sequence[FingerCounters]) -> dict[str, Any]:
-    """State, faults and link of the fingers beside the first; nothing if there are none."""
+    """State, faults and link of all fingers but the first; nothing if there are none."""
     others = [
         {"last_state": finger.state, "last_fault": finger.fault, **counted}
         for finger, counted in zip(last.fingers[1:], counters[1:], strict=False)
@@ -66,7 +66,7 @@ def _of_others(last: Snapshot, counters: Sequence[FingerCounters]) -> dict[str, 
 
 
 def servo_report(felt: Felt, last: Snapshot, counters: ServoCounters, port: str) -> dict[str, Any]:
-    """Figures by name, from the last snapshot and the counters after the end."""
+    """Figures by name, from the last snapshot and the final counters."""
     return {
         **{name: counters[name] for name in ("rate_hz", "ticks", "missed", "late_ticks")},
         "lateness_us": counters["lateness_us"],
