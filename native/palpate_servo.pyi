@@ -588,6 +588,8 @@ class SettledTool(TypedDict):
     """On the tool about its reference point, (3,), N m."""
     stiffness: NDArray[np.float64]
     """How the force resists a small move of the tool, (3, 3), N/m."""
+    exact: bool
+    """The equilibrium was found, of all points near: there are some 200 for all tools together."""
     free: bool
     """It did not lose the surface while in the body."""
     position: NDArray[np.float64]

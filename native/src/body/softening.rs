@@ -7,6 +7,8 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use glam::{DMat3, DVec3};
 
+use crate::algebra::series_share;
+
 /// This share of the linear relation stays at any depth: the force never stops growing.
 const LEAST_SHARE: f64 = 0.05;
 /// A change of what is felt while touching comes in over this time, s.
@@ -156,14 +158,13 @@ impl Relation {
         if compliance <= 0.0 {
             return u;
         }
-        let jacobian = |k: DMat3| DMat3::IDENTITY + k * compliance;
-        let mut v = jacobian(self.stiffness).inverse() * u;
+        let mut v = series_share(&self.stiffness, compliance) * u;
         for _ in 0..MOST_STEPS {
             let missing = u - v - self.force(v) * compliance;
             if missing.abs().max_element() <= CONVERGED * u.abs().max_element() {
                 break;
             }
-            v += jacobian(self.tangent(v)).inverse() * missing;
+            v += series_share(&self.tangent(v), compliance) * missing;
         }
         v
     }

@@ -6,6 +6,7 @@
 
 use glam::{DMat3, DVec3};
 
+use crate::algebra::series_share;
 use crate::control::passivity::{LAG_SECONDS, Passivity};
 
 /// Coupling of the body to a device with motors.
@@ -147,12 +148,7 @@ impl Coupler {
         dt: f64,
     ) -> Coupled {
         let compliance = series_compliance(&contact.stiffness, coupling.stiffness / scale);
-        // (K^-1 + cI)^-1 is K (I + cK)^-1: both displacement and force have the same share.
-        let share = if compliance > 0.0 {
-            (DMat3::IDENTITY + contact.stiffness * compliance).inverse()
-        } else {
-            DMat3::IDENTITY
-        };
+        let share = series_share(&contact.stiffness, compliance);
         let seen = Contact {
             stiffness: share * contact.stiffness,
             displacement: contact.displacement,

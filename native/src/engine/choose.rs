@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::joint::{AllLed, Beside, Ground, Joint};
+use crate::algebra::MOST_POINTS;
 use crate::body::closest::closest_point;
 use crate::tool::collider::{Collider, MOST_NEAR};
 use crate::tool::shape::Pose;
@@ -48,6 +49,10 @@ impl Joint {
             return true;
         };
         led.collider.carried = carried;
+        led.collider.marks.begin();
+        for slot in self.patch.slots().iter().filter(|slot| slot.tool == number) {
+            led.collider.marks.set(slot.point);
+        }
         self.offer(number, led.collider, &pose);
         self.let_in(number, led.collider, &pose, ground, beside)
     }
@@ -90,7 +95,7 @@ impl Joint {
         let (points, patch) = (surface.points(), &self.patch);
         let entering = &mut self.entering;
         let mut offer = |point: u32, moved: DVec3| {
-            if patch.has(number, point) {
+            if collider.marks.has(point) {
                 return;
             }
             let place = points[point as usize].position + moved;
@@ -218,7 +223,7 @@ impl Joint {
         if slots.iter().filter(|slot| slot.tool == number).count() + more > MOST_NEAR {
             return Err(Some(number));
         }
-        if slots.len() + more > self.most_points {
+        if slots.len() + more > MOST_POINTS {
             return Err(None);
         }
         Ok(())

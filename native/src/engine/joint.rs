@@ -61,8 +61,6 @@ pub struct Joint {
     /// What points enter, nearest first.
     pub(super) entering: Vec<(f64, u32)>,
     pub(super) effort: Effort,
-    /// Contact points that all tools may have.
-    pub(super) most_points: usize,
     /// Whose slots there are.
     eras: [Option<u64>; MAX_FINGERS],
     body: u32,
@@ -70,9 +68,8 @@ pub struct Joint {
     pub(super) kin: [[bool; MAX_FINGERS]; MAX_FINGERS],
 }
 
-impl Joint {
-    /// Nothing touches yet; so many contact points at most.
-    pub fn new(most_points: usize) -> Self {
+impl Default for Joint {
+    fn default() -> Self {
         Self {
             patch: Patch::new(),
             problem: Complementarity::default(),
@@ -81,13 +78,14 @@ impl Joint {
             chosen: Vec::with_capacity(MOST_POINTS),
             entering: Vec::with_capacity(super::choose::MOST_ENTERING + 1),
             effort: Effort::default(),
-            most_points: most_points.min(MOST_POINTS),
             eras: [None; MAX_FINGERS],
             body: 0,
             kin: [[false; MAX_FINGERS]; MAX_FINGERS],
         }
     }
+}
 
+impl Joint {
     /// One tick: all tools go towards their goals by at most one stride, and feel the body, each other
     /// and the points there.
     pub(super) fn tick(

@@ -3,8 +3,8 @@
 use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
 
+use super::Engine;
 use super::joint::{Ground, Led};
-use super::{Engine, TICK_POINTS};
 use crate::body::surface::Body;
 use crate::tool::collider::{Collider, Felt, NotANumber};
 use crate::tool::points::ToolSurface;
@@ -22,7 +22,7 @@ impl LoneTool {
     pub fn new(surface: Arc<ToolSurface>, tool: Tool) -> Self {
         Self {
             collider: Collider::new(surface, tool),
-            engine: Engine::new(TICK_POINTS),
+            engine: Engine::default(),
         }
     }
 

@@ -15,25 +15,14 @@ pub mod settling;
 use crate::fingers::several::{Answers, Presses, Reaction, Several};
 use joint::{AllLed, Beside, Ground, Joint};
 
-/// Contact points that all tools may have in a tick of 1 kHz: the exact solve of more takes too long.
-pub const TICK_POINTS: usize = 208;
-
 /// The contact of all fingers on a body, from tick to tick.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Engine {
     several: Several,
     joint: Joint,
 }
 
 impl Engine {
-    /// Nothing touches yet. Tools may have so many contact points.
-    pub fn new(most_points: usize) -> Self {
-        Self {
-            several: Several::default(),
-            joint: Joint::new(most_points),
-        }
-    }
-
     /// One tick: what becomes of the points, and each tool keeps what it felt. `None` where there are no
     /// points, on a body that does not keep its whole compliance, or where rounding has made nonsense
     /// of it.

@@ -6,7 +6,6 @@ use glam::{DMat3, DQuat, DVec3};
 
 use super::Engine;
 use super::joint::{AllLed, Ground, Led};
-use crate::algebra::MOST_POINTS;
 use crate::body::softening::{Felt, Softening};
 use crate::body::surface::Body;
 use crate::contact::cones::MAX_FINGERS;
@@ -99,14 +98,14 @@ impl Settling {
             mode,
             felt,
             rubs,
-            engine: Engine::new(MOST_POINTS),
+            engine: Engine::default(),
             touchers,
         }
     }
 
     /// Forgets all contact: the next goals are come to from outside.
     pub fn lift(&mut self) {
-        self.engine = Engine::new(MOST_POINTS);
+        self.engine = Engine::default();
         for toucher in &mut self.touchers {
             match toucher {
                 Toucher::Point(point) => *point = PointTouch::default(),

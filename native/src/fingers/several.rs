@@ -8,6 +8,7 @@
 
 use glam::{DMat3, DVec3};
 
+use crate::algebra::series_share;
 use crate::body::softening::Softening;
 use crate::body::surface::Body;
 use crate::contact::cones::{Blocks, Cone, MAX_FINGERS, Members, Vectors, mean, solve_distinct};
@@ -180,8 +181,7 @@ impl Several {
             let fading = mean(&alone[p][p]) * (1.0 / press.presence.max(LEAST_PRESENCE) - 1.0);
             between[p] = spring + fading;
             series[p][p] += DMat3::IDENTITY * between[p];
-            let share = (DMat3::IDENTITY + held[p] * spring).inverse();
-            answers[p].seen_stiffness = share * held[p];
+            answers[p].seen_stiffness = series_share(&held[p], spring) * held[p];
             answers[p].spring = spring;
             answers[p].felt_share = 1.0;
             asked[p] = press.displacement - tools.moved[p];

@@ -11,6 +11,7 @@
 
 use glam::{DMat3, DVec3};
 
+use crate::algebra::series_share;
 use crate::body::softening::{BLEND_SECONDS, Relation};
 use crate::contact::cones::{Blocks, Cone, MAX_FINGERS, Members, Vectors, solve_distinct};
 use crate::contact::touch::inverse_of_definite;
@@ -150,8 +151,7 @@ impl Softened {
                 force + relation.stiffness * sprung
             };
             answer.slip = own[p] + sprung + answer.by_others - press.displacement;
-            let share = (DMat3::IDENTITY + seen[p] * answer.spring).inverse();
-            answer.seen_stiffness = share * seen[p];
+            answer.seen_stiffness = series_share(&seen[p], answer.spring) * seen[p];
         }
         Some(())
     }

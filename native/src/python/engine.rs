@@ -173,6 +173,7 @@ impl ContactEngine {
         told.set_item("force", array(py, felt.force))?;
         told.set_item("torque", array(py, felt.torque))?;
         told.set_item("stiffness", square(py, felt.stiffness)?)?;
+        told.set_item("exact", felt.exact)?;
         told.set_item("free", tool.is_free())?;
         if let Some(pose) = tool.pose() {
             told.set_item("position", array(py, pose.position))?;

@@ -24,8 +24,8 @@ use crate::contact::cones::{MAX_FINGERS, Vectors};
 use crate::contact::touch::ContactMode;
 use crate::control::safety::Limits;
 use crate::device::{Device, Fault};
+use crate::engine::Engine;
 use crate::engine::joint::Ground;
-use crate::engine::{Engine, TICK_POINTS};
 use crate::proxy::Feel;
 use crate::servo::exchange::{Holder, exchange};
 use crate::servo::finger::{Finger, FingerSettings, Moment};
@@ -113,7 +113,7 @@ impl Servo {
             snapshots,
             samples,
             tape: None,
-            engine: Engine::new(TICK_POINTS),
+            engine: Engine::default(),
             tick: 0,
             ticked_at: None,
             samples_lost: 0,

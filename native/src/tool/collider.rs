@@ -62,8 +62,39 @@ pub struct Collider {
     /// Nodes that carry force, and which place each node of the body has among them.
     nodes: Vec<(u32, DVec3)>,
     place_of: Vec<u16>,
+    /// In which turn each contact point was last marked.
+    pub(crate) marks: Marks,
     /// Another one each time that it is lifted: what is remembered of it elsewhere is over.
     era: u64,
+}
+
+/// Marks on contact points, all taken off at once.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Marks {
+    turns: Vec<u32>,
+    turn: u32,
+}
+
+impl Marks {
+    fn new(points: usize) -> Self {
+        Self {
+            turns: vec![0; points],
+            turn: 0,
+        }
+    }
+
+    pub(crate) fn begin(&mut self) {
+        self.turn = self.turn.wrapping_add(1);
+    }
+
+    pub(crate) fn set(&mut self, point: u32) {
+        self.turns[point as usize] = self.turn;
+    }
+
+    #[inline]
+    pub(crate) fn has(&self, point: u32) -> bool {
+        self.turns[point as usize] == self.turn
+    }
 }
 
 /// Eras of all tools, each its own.
@@ -76,7 +107,7 @@ fn next_era() -> u64 {
 impl Collider {
     /// A tool that was not yet set down. Allocates all it ever needs.
     pub fn new(surface: Arc<ToolSurface>, tool: Tool) -> Self {
-        let nodes = surface.body().nodes.len();
+        let (nodes, points) = (surface.body().nodes.len(), surface.points().len());
         Self {
             surface,
             tool,
@@ -88,6 +119,7 @@ impl Collider {
             pressed: Vec::with_capacity(MOST_NEAR),
             nodes: Vec::with_capacity(MOST_NODES),
             place_of: vec![NOWHERE; nodes],
+            marks: Marks::new(points),
             era: next_era(),
         }
     }

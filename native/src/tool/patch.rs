@@ -139,11 +139,6 @@ impl Patch {
             .map(|number| &self.slots[number])
     }
 
-    #[inline]
-    pub(crate) fn has(&self, tool: u8, point: u32) -> bool {
-        self.numbers.of(tool, point).is_some()
-    }
-
     /// How a slot gives way to a force on another, m/N at unit modulus.
     #[inline]
     fn compliance(&self, i: usize, j: usize) -> DMat3 {
@@ -226,7 +221,7 @@ impl Patch {
         kin: &[bool; MAX_FINGERS],
     ) {
         let new = self.slots.len();
-        debug_assert!(new < MOST_POINTS && !self.has(tool, point));
+        debug_assert!(new < MOST_POINTS && self.slot(tool, point).is_none());
         let at = &surface.points()[point as usize];
         self.slots.push(Slot::new(tool, point, at));
         self.numbers.set(tool, point, new);

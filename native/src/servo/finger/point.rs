@@ -1,8 +1,9 @@
 //! A finger whose tip is a point: its contact alone and among others.
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
 use super::{Finger, FingerSettings};
+use crate::algebra::series_share;
 use crate::body::face::closest_on_face;
 use crate::body::softening::Softening;
 use crate::body::surface::Body;
@@ -109,7 +110,7 @@ impl Finger {
                 let moved = relation.behind_spring(spring * young_modulus, displacement);
                 let there = relation.tangent(moved) * young_modulus;
                 let seen = Contact {
-                    stiffness: (DMat3::IDENTITY + there * spring).inverse() * there,
+                    stiffness: series_share(&there, spring) * there,
                     displacement,
                     force: relation.force(moved) * -young_modulus,
                 };

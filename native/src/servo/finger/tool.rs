@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use super::{Finger, FingerSettings};
-use crate::control::coupling::{Contact, series_compliance};
+use crate::control::coupling::Contact;
 use crate::device::Fault;
 use crate::engine::joint::Led;
 use crate::proxy::Feel;
@@ -128,21 +128,12 @@ impl Finger {
         let touch = &mut self.tool_touch;
         touch.stiffness += (stiffness - touch.stiffness) * (dt / (STIFFNESS_SECONDS + dt));
         let scale = own.frame.scale;
-        let compliance = if touch.stiffness == DMat3::ZERO {
-            0.0
-        } else {
-            series_compliance(&touch.stiffness, own.coupling.stiffness / scale)
-        };
-        let share = if compliance > 0.0 {
-            (DMat3::IDENTITY + touch.stiffness * compliance).inverse()
-        } else {
-            DMat3::IDENTITY
-        };
-        let seen = Contact {
-            stiffness: share * touch.stiffness,
+        let contact = Contact {
+            stiffness: touch.stiffness,
             displacement: self.probe - touch.begin,
-            force: share * force,
+            force,
         };
-        self.coupler.drive(&seen, &own.coupling, scale, dt)
+        let coupled = self.coupler.couple(&contact, &own.coupling, scale, dt);
+        coupled.force
     }
 }
