@@ -155,9 +155,6 @@ impl Relation {
     /// Where the relation softens along the way, every step stays short of the answer and comes
     /// nearer; in any case the steps are bounded, and the energy they look for is convex.
     pub fn behind_spring(&self, compliance: f64, u: DVec3) -> DVec3 {
-        if compliance <= 0.0 {
-            return u;
-        }
         let mut v = series_share(&self.stiffness, compliance) * u;
         for _ in 0..MOST_STEPS {
             let missing = u - v - self.force(v) * compliance;
