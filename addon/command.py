@@ -12,6 +12,7 @@ from typing import NoReturn
 
 import bpy
 
+from ..core.contact.touches import ToolTouch
 from ..core.errors import PalpateError
 from ..core.shape.force_at_depth.felt_force import FELT_CHOICES
 from ..core.shape.shapes import FORMER_NAMES, SHAPES, shape_name
@@ -154,12 +155,12 @@ def _figures(finger: PressedFinger) -> dict[str, object]:
     """Figures of a finger; a point with its triangle, a tool with area and pressure."""
     made = finger.made
     figures: dict[str, object] = {"force": list(finger.force), "depth": finger.depth}
-    if made.touch is None:
+    if isinstance(made, ToolTouch):
         return {**figures, "area": made.area, "largest_pressure": made.largest_pressure}
     return {
-        "triangle": made.touch.triangle.tolist(),
-        "alpha": made.touch.alpha.tolist(),
-        "nodal_forces": made.touch.nodal_forces.tolist(),
+        "triangle": made.triangle.tolist(),
+        "alpha": made.alpha.tolist(),
+        "nodal_forces": made.nodal_forces.tolist(),
         **figures,
     }
 

@@ -130,7 +130,9 @@ def true_one(hare: Any) -> Pressed:
 
     meeting = palpate("core.shape.meeting")
     drawn = palpate("operators.object.drawn_body").open_body(hare, bpy.context.scene)
-    touch = drawn.body.touch_nearest(at=pressed_place(), by=BY)
+    touch = palpate("core.contact.single_press").touch_nearest(
+        drawn.body, at=pressed_place(), by=BY
+    )
     load = meeting.FingerLoad(touch.triangle, touch.nodal_forces)
     met = meeting.Meeting(drawn.body, Newton(drawn.body)).settle([load], drawn.body.young_modulus)
     if not met.settled:

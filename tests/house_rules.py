@@ -90,15 +90,9 @@ KNOWN = (
     "native/src/tool/",
     "native/src/python/tool.rs",
     "native/src/python/engine",
-    # One contact engine takes the place of these.
-    "core/body/soft_body.py imports core/contact/consistent_contact.py",
-    "core/body/soft_body.py imports core/contact/equations.py",
-    "core/body/soft_body.py imports core/contact/several_contacts.py",
-    "core/body/soft_body.py is too long",
     "core/contact/near_field/compliance_beneath.py is too long",
     "core/contact/near_field/contact_points.py is too long",
     "core/contact/near_field/regular_field.py is too long",
-    "core/contact/tool/tool_law.py imports core/contact/complementarity.py",
     "core/contact/tool/tools.py is too long",
     # Being put into their rooms.
     "native/src/python/servo/thread.rs is too long",

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.contact.tool.tools import Pose, Tool
+from ...core.contact.tool.pose import Pose
+from ...core.contact.tool.tools import Tool
 from ...core.servo.session import FingerSnapshot
-from ...operators.press.several_fingers import contact_area
 from ...operators.session.press_session import PressSession
 from ...operators.session.press_state import Phase
 
@@ -117,7 +117,7 @@ def _of_tool(session: PressSession, finger: FingerSnapshot, tool: Tool) -> Readi
         force_vector=frame.turn_to_world(force),
         turn=turn,
         patch=Patch(places, outward, pressures[carries], radii),
-        area=contact_area(pushes, pressures),
+        area=float((sizes / pressures[carries]).sum()),
         largest_pressure=float(pressures.max()),
     )
 

@@ -19,6 +19,7 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Callable
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,9 +28,10 @@ from scipy.spatial.transform import Rotation
 from palpate.core.body.soft_body import SoftBody
 from palpate.core.compliance.surface_compliance import surface_compliance
 from palpate.core.contact.near_field.compliance_beneath import near_correction
-from palpate.core.contact.tool.tool_contact import press_tool
-from palpate.core.contact.tool.tool_touch import ToolTouch
-from palpate.core.contact.tool.tools import Pose, Tool, plate, rod, sphere
+from palpate.core.contact.press import Press
+from palpate.core.contact.tool.pose import Pose
+from palpate.core.contact.tool.tools import Tool, plate, rod, sphere
+from palpate.core.contact.touches import ToolTouch
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.stiffness.assembly import assemble
 from palpate.tests.bodies.graded_block import (
@@ -144,16 +146,19 @@ def work_round(body: SoftBody, tool: Tool, path: Path) -> float:
     force has kinks.
     """
     ticks = [step / FIRST_STEPS for step in range(FIRST_STEPS + 1)]
-    touches = [press_tool(body, tool, path(0.0))]
-    for tick in ticks[1:]:
-        touches.append(press_tool(body, tool, path(tick), start=touches[-1]))
+    press = Press(body, [tool])
+
+    def at(tick: float) -> ToolTouch:
+        return cast("ToolTouch", press.to([path(tick)])[0])
+
+    touches = [at(tick) for tick in ticks]
     most = max(touch.energy for touch in touches)
     work = 0.0
     left = list(zip(ticks, touches, ticks[1:], touches[1:], strict=False))
     while left:
         start, before, end, after = left.pop()
         middle = 0.5 * (start + end)
-        between = press_tool(body, tool, path(middle), start=before)
+        between = at(middle)
         whole = _work(before, after)
         halves = _work(before, between) + _work(between, after)
         if abs(halves - whole) <= CHANGE_BY_HALVING * most or end - start < SHORTEST_STEP:

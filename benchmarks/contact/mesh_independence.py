@@ -30,8 +30,10 @@ from palpate.core.compliance.surface_compliance import surface_compliance
 from palpate.core.contact.near_field.compliance_beneath import NearCorrection, near_correction
 from palpate.core.contact.near_field.contact_points import ContactPoints, contact_points
 from palpate.core.contact.near_field.half_space import surface_displacement
-from palpate.core.contact.tool.tool_contact import press_tool
-from palpate.core.contact.tool.tools import Pose, Tool, sphere
+from palpate.core.contact.press import ContactSettings
+from palpate.core.contact.single_press import press_tool, touch_nearest
+from palpate.core.contact.tool.pose import Pose
+from palpate.core.contact.tool.tools import Tool, sphere
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.mesh.tet_mesh import TetMesh
 from palpate.core.stiffness.assembly import assemble
@@ -81,11 +83,9 @@ class Surroundings:
             self.body,
             self.tool,
             pose,
-            surface=self.points,
-            correction=self.correction if near else None,
+            spread=(self.points, self.correction if near else None),
         )
-        area = self.points.areas[touch.points].sum()
-        return float(touch.force @ normal), float(np.sqrt(area / np.pi))
+        return float(touch.force @ normal), float(np.sqrt(touch.area / np.pi))
 
 
 @dataclass(frozen=True, eq=False)
@@ -191,7 +191,9 @@ def paper_force(
     body: SoftBody, place: NDArray[np.float64], normal: NDArray[np.float64], depth: float
 ) -> float:
     """The paper's point load at the same place and depth, newton."""
-    return float(body.touch_nearest(place, -depth * normal, mode="paper").force @ normal)
+    return float(
+        touch_nearest(body, place, -depth * normal, ContactSettings(mode="paper")).force @ normal
+    )
 
 
 def texture(family: Family, radius: float, share: float) -> None:

@@ -33,11 +33,12 @@ from palpate.benchmarks.measuring.bodies import stored_body
 from palpate.benchmarks.measuring.shape.pressed_point import pressed_point
 from palpate.core.bake.steps import BakeSettings, bake
 from palpate.core.body.soft_body import SoftBody
+from palpate.core.contact.place import Place, nearest_place
+from palpate.core.contact.single_press import touch_at
 from palpate.core.mesh.paper_cube import paper_cube
-from palpate.core.shape.force_at_depth.felt_force import contact_relation
 from palpate.core.shape.force_at_depth.softening_table import SofteningTable
 from palpate.core.shape.solid.free_solid import FreeSolid
-from palpate.core.softness.place import Place, nearest_place, thickness
+from palpate.core.softness.parallel_rays import thickness
 from palpate.core.stiffness.pins import PinNodes
 
 BODIES = ("cube", "mouse-1.7k")
@@ -118,9 +119,15 @@ def _pressed(
     direction: NDArray[np.float64],
 ) -> tuple[list[Row], bool]:
     displacements = SHARES[:, None] * thickness(body, place) * direction
-    relation = contact_relation(body, softenings, place.triangle, place.alpha)
-    linear = displacements @ relation.stiffness
-    corrected = np.array([relation.force(u) for u in displacements])
+    linear, corrected = (
+        np.array(
+            [
+                -touch_at(body, place.triangle, place.alpha, u, softenings=table).force
+                for u in displacements
+            ]
+        )
+        for table in (None, softenings)
+    )
     work, most = corrected @ direction, linear @ direction
     is_sane = bool((np.diff(work) > 0).all() and (work > 0).all() and (work <= most).all())
     corners = body.mesh.surface_triangles[place.triangle]

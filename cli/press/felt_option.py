@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ...core.body.soft_body import SoftBody
-from ...core.contact.equations import ContactMode, Touch
 from ...core.errors import PalpateError
-from ...core.shape.force_at_depth.felt_fingers import corrected_touches
 from ...core.shape.force_at_depth.felt_force import FELT_CHOICES
 from ...core.shape.force_at_depth.softening_table import SofteningTable
 
@@ -48,20 +46,18 @@ def softening_table(body: SoftBody, body_file: Path) -> Iterator[SofteningTable]
             print(f"palpate: warning: {table.notice}", file=sys.stderr)
 
 
-def felt_forces(
-    arguments: argparse.Namespace,
-    body: SoftBody,
-    touches: Sequence[Touch],
-    young_modulus: float,
-    mode: ContactMode,
-) -> list[NDArray[np.float64]]:
-    """Forces on the fingers (3,), N, of touches by the linear relation, by the one asked for."""
+def softenings_for(
+    arguments: argparse.Namespace, body: SoftBody, places: ArrayLike
+) -> NDArray[np.float64] | None:
+    """What the force asked for needs at the surface points nearest to places (m, 3); None if it
+    needs nothing.
+    """
     if arguments.felt == "linear":
-        return [touch.force for touch in touches]
+        return None
+    nearest = body.closest_points.query(np.asarray(places, dtype=np.float64).reshape(-1, 3))
     with softening_table(body, arguments.body) as table:
-        table.wait_for(np.concatenate([touch.triangle for touch in touches]))
-        corrected = corrected_touches(body, table.values, touches, young_modulus, mode)
-    return [touch.force for touch in corrected]
+        table.wait_for(body.mesh.surface_triangles[nearest.triangle])
+        return table.values
 
 
 def refuse_with_tool(arguments: argparse.Namespace) -> None:

@@ -12,7 +12,11 @@ from numpy.typing import NDArray
 
 from ...core.body import body_file
 from ...core.body.soft_body import SoftBody
-from ...core.contact.equations import CONTACT_MODES, ContactMode, Touch
+from ...core.contact.equations import CONTACT_MODES
+from ...core.contact.place import compliance_between
+from ...core.contact.press import ContactSettings
+from ...core.contact.single_press import press_points
+from ...core.contact.touches import PointTouch, contact_displacement
 from ...core.errors import PalpateError
 from ...core.files.atomic_file import atomic_file
 from ...core.shape.meeting import FingerLoad, settled
@@ -20,7 +24,7 @@ from ...core.shape.shapes import FORMER_NAMES, SHAPES, shape, shape_name
 from ...core.stiffness.assembly import lame_parameters
 from ..body.body_argument import add_body
 from ..body.figure_lines import as_lines
-from .felt_option import add_felt, felt_forces, refuse_with_tool
+from .felt_option import add_felt, refuse_with_tool, softenings_for
 from .press_tool import pressed_tools, tool_figures, tool_summary
 from .tool_option import KINDS, tool_from
 
@@ -101,17 +105,14 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _press_points(arguments: argparse.Namespace, body: SoftBody, young_modulus: float) -> int:
-    mode: ContactMode = arguments.mode or "consistent"
-    touches = body.touch_several(arguments.at, arguments.by, young_modulus, mode)
+    settings = ContactSettings(young_modulus, mode=arguments.mode or "consistent")
+    softenings = softenings_for(arguments, body, arguments.at)
+    touches = press_points(body, arguments.at, arguments.by, settings, softenings=softenings)
     loads = [FingerLoad(touch.triangle, touch.nodal_forces) for touch in touches]
     displacements = _deformed(arguments, body, loads, young_modulus)
-    felt = felt_forces(arguments, body, touches, young_modulus, mode)
-    contacts = [
-        _contact_figures(body, touch, displacements) | {"force": force.tolist()}
-        for touch, force in zip(touches, felt, strict=True)
-    ]
+    contacts = [_contact_figures(body, touch, displacements) for touch in touches]
     common = _common_figures(arguments, displacements, young_modulus)
-    common |= {"mode": mode, "felt": arguments.felt}
+    common |= {"mode": settings.mode, "felt": arguments.felt}
     if len(contacts) == 1:
         figures = contacts[0] | common
         print(json.dumps(figures) if arguments.json else as_lines(figures))
@@ -132,9 +133,8 @@ def _press_tool(arguments: argparse.Namespace, body: SoftBody, young_modulus: fl
         raise PalpateError("--mode: it is about points; leave it out with --tool")
     refuse_with_tool(arguments)
     tool = tool_from(arguments.tool)
-    touches = pressed_tools(
-        body, tool, arguments.at, arguments.by, young_modulus, arguments.friction or 0.0
-    )
+    settings = ContactSettings(young_modulus, arguments.friction or 0.0)
+    touches = pressed_tools(body, tool, arguments.at, arguments.by, settings)
     loads = [FingerLoad(touch.nodes, touch.nodal_forces) for touch in touches]
     displacements = _deformed(arguments, body, loads, young_modulus)
     common = _common_figures(arguments, displacements, young_modulus)
@@ -184,7 +184,7 @@ def _common_figures(
 
 
 def _contact_figures(
-    body: SoftBody, touch: Touch, displacements: NDArray[np.float64]
+    body: SoftBody, touch: PointTouch, displacements: NDArray[np.float64]
 ) -> dict[str, object]:
     return {
         "triangle": touch.triangle.tolist(),
@@ -192,14 +192,14 @@ def _contact_figures(
         "point": touch.point.tolist(),
         "nodal_forces": touch.nodal_forces.tolist(),
         "force": touch.force.tolist(),
-        "contact_displacement": body.contact_displacement(touch, displacements).tolist(),
+        "contact_displacement": contact_displacement(body, touch, displacements).tolist(),
     }
 
 
 def _coupling(body: SoftBody, at: list[list[float]], young_modulus: float) -> NDArray[np.float64]:
     """C_pq / E, (m, m, 3, 3), m/N."""
     places = body.closest_points.query(np.array(at))
-    return body.contact_compliance(places.triangle, places.alpha) / young_modulus
+    return compliance_between(body, places.triangle, places.alpha) / young_modulus
 
 
 def _as_table(coupling: NDArray[np.float64]) -> str:

@@ -8,17 +8,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...core.body.soft_body import SoftBody
-from ...core.contact.tool.several_tools import press_tools
-from ...core.contact.tool.tool_contact import press_tool
-from ...core.contact.tool.tool_touch import ToolTouch
-from ...core.contact.tool.tools import Pose, Tool
+from ...core.contact.place import nearest_place
+from ...core.contact.press import ContactSettings
+from ...core.contact.single_press import press_tools, set_down
+from ...core.contact.tool.tools import Tool
+from ...core.contact.touches import ToolTouch
 from ...core.errors import PalpateError
 from ...core.mesh.coordinates import refuse_unusable
-from ...core.softness.force_depth import facing_pose
-from ...core.softness.place import nearest_place
-
-# Into how many parts the way of a tool with friction is divided.
-STEPS_WITH_FRICTION = 20
 
 
 def pressed_tools(
@@ -26,19 +22,18 @@ def pressed_tools(
     tool: Tool,
     at: Sequence[ArrayLike],
     by: Sequence[ArrayLike],
-    young_modulus: float,
-    friction: float,
-) -> list[ToolTouch]:
+    settings: ContactSettings,
+) -> tuple[ToolTouch, ...]:
     """Set tools of one kind down at the surface points nearest to ``at``, move them by ``by``.
 
-    The -z axis of each looks into the body there, against the smooth normal, and its foremost point
-    is on the surface. Then it is moved straight on, without turning. Lengths in metres.
+    The -z axis of each looks into the body there, against the smooth normal. Then it is moved
+    straight on, without turning. Lengths in metres.
 
     Raises
     ------
     PalpateError
-        Coordinates that are not three finite numbers, or not as many of one as of the other;
-        friction between several tools.
+        Coordinates that are not three finite numbers, or not as many of one as of the other; forces
+        that do not come to rest.
     """
     if len(at) != len(by):
         raise PalpateError(
@@ -49,25 +44,8 @@ def pressed_tools(
         if way.shape != (3,):
             raise PalpateError(f"--by: {way.tolist()} is no displacement; give three numbers")
         refuse_unusable("--by", way[None])
-    starts = [facing_pose(nearest_place(body, place), tool, 0.0) for place in at]
-    ends = [
-        Pose(start.position + way, start.rotation) for start, way in zip(starts, ways, strict=True)
-    ]
-    if len(starts) == 1:
-        # With friction it matters how the tool came: points stick where they are first pressed.
-        between = np.linspace(0.0, 1.0, 1 + (STEPS_WITH_FRICTION if friction else 1))
-        touch: ToolTouch | None = None
-        for share in between:
-            pose = Pose(starts[0].position + share * ways[0], starts[0].rotation)
-            touch = press_tool(
-                body, tool, pose, young_modulus=young_modulus, friction=friction, start=touch
-            )
-        return [touch] if touch is not None else []
-    if friction:
-        raise PalpateError("--friction: it is there for one tool; leave it out with several")
-    outsides = press_tools(body, [(tool, pose) for pose in starts], young_modulus=young_modulus)
-    together = [(tool, pose) for pose in ends]
-    return press_tools(body, together, young_modulus=young_modulus, start=outsides)
+    starts = [set_down(body, tool, nearest_place(body, place)) for place in at]
+    return press_tools(body, tool, starts, ways, settings)
 
 
 def tool_figures(touch: ToolTouch) -> dict[str, object]:
@@ -84,23 +62,22 @@ def tool_figures(touch: ToolTouch) -> dict[str, object]:
         "force": touch.force.tolist(),
         "torque": touch.torque.tolist(),
         "stiffness": touch.stiffness.tolist(),
-        "exact": touch.exact,
+        "exact": True,
     }
 
 
 def tool_summary(touch: ToolTouch) -> dict[str, object]:
     """The same, short enough to read."""
-    area = float(touch.surface.areas[touch.points].sum())
     return {
         "tool": touch.tool.name,
         "position": touch.pose.position.tolist(),
         "force": touch.force.tolist(),
         "torque": touch.torque.tolist(),
         "pressed_points": len(touch.points),
-        "pressed_area_m2": area,
-        "largest_pressure_pa": float(touch.pressures.max(initial=0.0)),
+        "pressed_area_m2": touch.area,
+        "largest_pressure_pa": touch.largest_pressure,
         "stiffness_along_force": _along(touch.stiffness, touch.force),
-        "exact": touch.exact,
+        "exact": True,
     }
 
 

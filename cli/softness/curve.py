@@ -11,9 +11,8 @@ from ...core.body.soft_body import SoftBody
 from ...core.files.atomic_file import atomic_file, refuse_missing_folder
 from ...core.softness.curve_picture import curve_svg
 from ...core.softness.force_depth import MILLIMETRES, ForceDepthCurve, force_depth_curve
-from ...core.softness.place import nearest_place
 from ..body.body_argument import add_body
-from ..press.felt_option import add_felt, refuse_with_tool, softening_table
+from ..press.felt_option import add_felt, refuse_with_tool, softenings_for
 from ..press.tool_option import KINDS, tool_from
 from .place_options import add_at, add_young, positive_length, refuse_suffix, young_modulus_of
 
@@ -95,11 +94,8 @@ def _curve(arguments: argparse.Namespace, body: SoftBody) -> ForceDepthCurve:
     softenings = None
     if arguments.tool != POINT:
         refuse_with_tool(arguments)
-    elif arguments.felt == "corrected":
-        with softening_table(body, arguments.body) as table:
-            place = nearest_place(body, arguments.at)
-            table.wait_for(body.mesh.surface_triangles[place.triangle])
-            softenings = table.values
+    else:
+        softenings = softenings_for(arguments, body, arguments.at)
     return force_depth_curve(
         body,
         arguments.at,

@@ -1,4 +1,4 @@
-"""A body ready to be touched: rest shape, pins, compliance; from a finger to a deformed shape."""
+"""A body ready to be touched: rest shape, pins, compliance; from forces to a deformed shape."""
 
 from __future__ import annotations
 
@@ -10,12 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..compliance.protocol import Compliance
-from ..contact.consistent_contact import consistent_forces
-from ..contact.equations import CONTACT_MODES, ContactMode, Touch, triangle_forces
-from ..contact.several_contacts import coupled_compliance, solve_contacts
 from ..errors import PalpateError
 from ..mesh.closest_point import ClosestPoints
-from ..mesh.coordinates import LARGEST_COORDINATE
 from ..mesh.tet_mesh import TetMesh
 from .body_key import body_key
 
@@ -101,24 +97,6 @@ class SoftBody:
         """The search for places on the rest surface; triangles count as in the mesh's surface."""
         return ClosestPoints(self.mesh.nodes, self.mesh.surface_triangles)
 
-    def touch_nearest(
-        self,
-        at: ArrayLike,
-        by: ArrayLike,
-        young_modulus: float | None = None,
-        mode: ContactMode = "consistent",
-    ) -> Touch:
-        """Touch at the surface point nearest to ``at`` (3,), displaced by ``by`` (3,), metres.
-
-        Raises
-        ------
-        PalpateError
-            Coordinates that are not three finite numbers, or an unknown mode.
-        """
-        place = self.closest_points.query(_point_checked("at", at))
-        by = _point_checked("by", by)
-        return self.touch(int(place.triangle[0]), place.alpha[0], by, young_modulus, mode)
-
     def modulus(self, young_modulus: float | None) -> float:
         """Young's modulus in pascal: the one that is given, or the body's own.
 
@@ -133,105 +111,6 @@ class SoftBody:
                 "Young's modulus is {modulus} Pa; give a positive number", modulus=modulus
             )
         return modulus
-
-    def touch(
-        self,
-        triangle: int,
-        alpha: ArrayLike,
-        displacement: ArrayLike,
-        young_modulus: float | None = None,
-        mode: ContactMode = "consistent",
-    ) -> Touch:
-        """Touch surface triangle number ``triangle`` at area coordinates ``alpha``.
-
-        In mode ``consistent`` the contact point moves by exactly the displacement (but for pinned
-        nodes, which do not move); in mode ``paper`` the forces are those of (11)-(14).
-
-        Raises
-        ------
-        PalpateError
-            An unknown mode.
-        """
-        weights = np.asarray(alpha, dtype=np.float64)
-        u = np.asarray(displacement, dtype=np.float64)
-        local = self.mesh.surface_local_triangles[triangle]
-        modulus = self.modulus(young_modulus)
-        if _mode_checked(mode) == "paper":
-            forces = triangle_forces(modulus * self.contact_blocks[local], weights, u)
-        else:
-            forces = modulus * consistent_forces(self.surface_blocks(local, local), weights, u)
-        return self._touch(triangle, weights, u, forces)
-
-    def touch_several(
-        self,
-        at: ArrayLike,
-        by: ArrayLike,
-        young_modulus: float | None = None,
-        mode: ContactMode = "consistent",
-    ) -> tuple[Touch, ...]:
-        """Touch with several fingers at once, each at the surface point nearest to its ``at``.
-
-        ``at`` and ``by`` are (m, 3), metres. In mode ``consistent`` the fingers feel each other
-        through the body (:mod:`.several_contacts`) and may only push; a finger that does not travel
-        stays where it is and pushes back along the inward normal. The paper has several contacts on
-        nodes alone (10), which is what ``consistent`` gives there; in mode ``paper`` every finger
-        is answered by (11)-(14) as if it were alone.
-
-        Raises
-        ------
-        PalpateError
-            Coordinates that are not rows of three finite numbers, as many of one as of the other,
-            or an unknown mode.
-        """
-        starts, travels = _pairs_checked(at, by)
-        places = self.closest_points.query(starts)
-        triangles = [int(number) for number in places.triangle]
-        if _mode_checked(mode) == "paper":
-            return tuple(
-                self.touch(triangle, alpha, u, young_modulus, mode)
-                for triangle, alpha, u in zip(triangles, places.alpha, travels, strict=True)
-            )
-        resting = ~travels.any(axis=1)
-        pushes = travels.copy()
-        pushes[resting] = -self._outward(np.array(triangles)[resting])
-        modulus = self.modulus(young_modulus)
-        compliance = self.contact_compliance(places.triangle, places.alpha)
-        forces = modulus * solve_contacts(compliance, travels, pushes)
-        return tuple(
-            self._touch(triangle, alpha, u, alpha[:, None] * force)
-            for triangle, alpha, u, force in zip(
-                triangles, places.alpha, travels, forces, strict=True
-            )
-        )
-
-    def contact_compliance(self, triangles: ArrayLike, alphas: ArrayLike) -> NDArray[np.float64]:
-        """C_pq at unit modulus, (m, m, 3, 3), between places on triangles (m,) with alphas (m, 3).
-
-        C_pq is how far place p moves per newton on place q; see
-        :func:`.several_contacts.coupled_compliance`.
-        """
-        local = self.mesh.surface_local_triangles[np.asarray(triangles, dtype=np.int64)]
-        count = len(local)
-        blocks = self.surface_blocks(local, local).reshape(count, 3, count, 3, 3, 3)
-        return coupled_compliance(blocks, alphas)
-
-    def _touch(
-        self,
-        triangle: int,
-        alpha: NDArray[np.float64],
-        displacement: NDArray[np.float64],
-        nodal_forces: NDArray[np.float64],
-    ) -> Touch:
-        corners = self.mesh.surface_triangles[triangle]
-        point = alpha @ self.mesh.nodes[corners]
-        return Touch(corners, alpha, point, displacement, nodal_forces)
-
-    def _outward(self, triangles: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Unit normals of surface triangles (k,), (k, 3)."""
-        i, j, k = self.mesh.nodes[self.mesh.surface_triangles[triangles]].transpose(1, 0, 2)
-        normals = np.cross(j - i, k - i)
-        unit: NDArray[np.float64] = normals / np.linalg.norm(normals, axis=1, keepdims=True)
-        return unit
 
     def deform(
         self,
@@ -249,15 +128,6 @@ class SoftBody:
             np.asarray(nodes).reshape(-1), np.asarray(nodal_forces).reshape(-1, 3)
         )
         return self.compliance.apply(forces / modulus, free)
-
-    def contact_displacement(
-        self, touch: Touch, displacements: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
-        """How far the touched point itself moves, (3,), given the displacements (n, 3)."""
-        free, corner = self.free_index(touch.triangle), np.arange(3)
-        held = free >= 0
-        moved: NDArray[np.float64] = touch.alpha[corner[held]] @ displacements[free[held]]
-        return moved
 
     def _on_free_nodes(
         self, nodes: NDArray[np.int64], forces: NDArray[np.float64]
@@ -284,41 +154,3 @@ class SoftBody:
         places = np.full(len(self.mesh.nodes), -1, dtype=np.int64)
         places[self.compliance.free_surface] = np.arange(self.compliance.node_count)
         return places
-
-
-def _point_checked(name: str, value: ArrayLike) -> NDArray[np.float64]:
-    point = np.asarray(value, dtype=np.float64)
-    if point.shape != (3,) or not (np.abs(point) <= LARGEST_COORDINATE).all():
-        raise PalpateError(
-            "--{name}: {point} is not a point; give three finite numbers in metres, none beyond "
-            "{most:g}",
-            name=name,
-            point=np.asarray(value).tolist(),
-            most=LARGEST_COORDINATE,
-        )
-    return point
-
-
-def _pairs_checked(at: ArrayLike, by: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    starts, travels = (
-        np.array([_point_checked(name, row) for row in np.asarray(value)]).reshape(-1, 3)
-        for name, value in (("at", at), ("by", by))
-    )
-    if len(starts) != len(travels) or not len(starts):
-        raise PalpateError(
-            "--at is given {starts} times and --by {travels} times; give one --by for every --at, "
-            "in the same order",
-            starts=len(starts),
-            travels=len(travels),
-        )
-    return starts, travels
-
-
-def _mode_checked(mode: str) -> str:
-    if mode not in CONTACT_MODES:
-        raise PalpateError(
-            "contact mode {mode} is unknown; give {known}",
-            mode=repr(mode),
-            known=" or ".join(CONTACT_MODES),
-        )
-    return mode

@@ -1,12 +1,23 @@
 """Touch: the force that would cause a given displacement. Equations (9) to (14) of the paper.
 
-:mod:`.consistent_contact` and :mod:`.several_contacts` continue them where the paper stops. This
-is the readable reference; the servo computes the same natively, a thousand times a second.
+Documentation, and what tests compare with: the native engine (:mod:`.press`) computes the same.
+
+Two things continue them where the paper stops. Its weights (11), (12) take each node of a triangle
+as if it were pulled alone, so that inside a triangle the contact point stays short of the finger.
+In the mode ``consistent`` the contact point is what is moved: it is the mean of its three nodes,
+weighted by the area coordinates a, and so is its force spread over them. Among all forces on the
+three nodes that move the contact point by exactly u these are the smallest in the sense of elastic
+energy::
+
+    C = sum_ab a_a a_b L_ab        F_a = a_a C^-1 u
+
+At a node this is (9); on an edge the third node has no part, so that the force is continuous over
+edges. Several contacts p, q feel each other by C_pq = sum_ab a_pa a_qb L_ab, on nodes (10).
+``docs/contact.md`` has the rest: fingers that may only push, and fingers on one place.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 import numpy as np
@@ -16,31 +27,6 @@ from numpy.typing import ArrayLike, NDArray
 # or the three nodes share it as in the paper (11), (12).
 ContactMode: TypeAlias = Literal["consistent", "paper"]
 CONTACT_MODES: tuple[ContactMode, ...] = ("consistent", "paper")
-
-
-@dataclass(frozen=True, eq=False)
-class Touch:
-    """One finger on one surface triangle.
-
-    Attributes
-    ----------
-    triangle : int64 (3,), node numbers i, j, k of the tetrahedral mesh.
-    alpha : float64 (3,), area coordinates of the contact point, sum 1.
-    point : float64 (3,), the contact point (god object) on the rest surface, metres.
-    displacement : float64 (3,), u: finger minus god object, metres.
-    nodal_forces : float64 (3, 3), F_i, F_j, F_k on the body, newton.
-    """
-
-    triangle: NDArray[np.int64]
-    alpha: NDArray[np.float64]
-    point: NDArray[np.float64]
-    displacement: NDArray[np.float64]
-    nodal_forces: NDArray[np.float64]
-
-    @property
-    def force(self) -> NDArray[np.float64]:
-        """Force felt by the finger, (3,), newton (14)."""
-        return felt_force(self.nodal_forces)
 
 
 def one_node_force(block: ArrayLike, displacement: ArrayLike) -> NDArray[np.float64]:
@@ -94,3 +80,39 @@ def felt_force(nodal_forces: ArrayLike) -> NDArray[np.float64]:
     """Force on the finger, F_f = -(F_i + F_j + F_k) (14). ``nodal_forces`` (3, 3) -> (3,)."""
     force: NDArray[np.float64] = 0.0 - np.asarray(nodal_forces, dtype=np.float64).sum(axis=0)
     return force
+
+
+def contact_compliance(blocks: ArrayLike, alpha: ArrayLike) -> NDArray[np.float64]:
+    """C (3, 3): how far the contact point moves per newton on it.
+
+    ``blocks`` (3, 3, 3, 3) are L_ab of the triangle's nodes, ``alpha`` (3,) area coordinates.
+    """
+    weights = np.asarray(alpha, dtype=np.float64)
+    local = np.asarray(blocks, dtype=np.float64)
+    compliance: NDArray[np.float64] = np.einsum("a,abij,b->ij", weights, local, weights)
+    return compliance
+
+
+def consistent_forces(
+    blocks: ArrayLike, alpha: ArrayLike, displacement: ArrayLike
+) -> NDArray[np.float64]:
+    """Nodal forces F_a = a_a C^-1 u, (3, 3), one row a node.
+
+    ``blocks`` (3, 3, 3, 3), ``alpha`` (3,), ``displacement`` u (3,); newton if the blocks are of
+    the body's real modulus, of one of 1 Pa otherwise.
+    """
+    force = np.linalg.solve(contact_compliance(blocks, alpha), np.asarray(displacement))
+    spread: NDArray[np.float64] = np.asarray(alpha, dtype=np.float64)[:, None] * force
+    return spread
+
+
+def coupled_compliance(blocks: ArrayLike, alphas: ArrayLike) -> NDArray[np.float64]:
+    """C_pq = sum_ab a_pa a_qb L_ab, (m, m, 3, 3), of m contact points.
+
+    ``blocks`` (m, 3, m, 3, 3, 3) holds L between node a of contact p and node b of contact q at
+    [p, a, q, b], ``alphas`` (m, 3) the area coordinates.
+    """
+    weights = np.asarray(alphas, dtype=np.float64)
+    between = np.asarray(blocks, dtype=np.float64)
+    compliance: NDArray[np.float64] = np.einsum("pa,paqbij,qb->pqij", weights, between, weights)
+    return compliance

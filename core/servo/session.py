@@ -15,13 +15,9 @@ from palpate_servo import (
     Pointer,
     Servo,
     Snapshot,
-    ToolContact,
-    ToolSurface,
     device_coupling,
     haply_encoder_step,
 )
-from palpate_servo import Compliance as NativeCompliance
-from palpate_servo import Tool as NativeTool
 
 if TYPE_CHECKING:
     # Types only, absent at run time.
@@ -29,13 +25,9 @@ if TYPE_CHECKING:
     from palpate_servo import LinkCounters as LinkCounters  # noqa: PLC0414
     from palpate_servo import ServoCounters as ServoCounters  # noqa: PLC0414
 
+from ..body.native_body import native_body, native_compliance
 from ..body.soft_body import SoftBody
-from ..compliance.compression.compressed_compliance import CompressedCompliance
-from ..compliance.dense import DenseCompliance
-from ..compliance.mapped import MappedCompliance
-from ..compliance.protocol import Compliance
-from ..contact.tool.tool_surface import correction_for, surface_for
-from ..contact.tool.tools import Tool
+from ..contact.tool.native_tool import native_tool
 from ..errors import PalpateError
 from .settings import Settings
 
@@ -57,66 +49,6 @@ __all__ = [
     "servo_on",
     "touched_nodes",
 ]
-
-
-def native_compliance(compliance: Compliance) -> NativeCompliance:
-    """The same compliance as native code reads it, in place; its arrays become read-only.
-
-    A table that lies in a file is read there, unchecked: what a touched point's displacement takes
-    from it is shown and recorded, while the force comes from contact blocks that were checked.
-
-    Raises
-    ------
-    PalpateError
-        A file that was cut short while in use.
-    """
-    match compliance:
-        case CompressedCompliance():
-            return NativeCompliance.compressed(compliance.arrays())
-        case MappedCompliance():
-            compliance.check_length()
-            return NativeCompliance.dense(compliance.mapped_table.array)
-        case DenseCompliance():
-            return NativeCompliance.dense(compliance.table)
-        case _:
-            raise TypeError(f"no native form of a {type(compliance).__name__}")
-
-
-def _in_memory(compliance: Compliance) -> NativeCompliance:
-    if isinstance(compliance, MappedCompliance):
-        return NativeCompliance.dense(np.array(compliance.table))
-    return native_compliance(compliance)
-
-
-def native_body(body: SoftBody, *, whole: bool = False) -> Body:
-    """The rest surface, contact blocks and compliance of a body as the native thread holds them.
-
-    The thread gets copies. Of the compliance it takes the blocks of all nodes and edges, a megabyte
-    at 20,000 nodes, so that no tick reads a file or waits for memory.
-
-    Several fingers and tools need the compliance of any two nodes. A ``whole`` body keeps it all; a
-    table that lies in a file is checked and read into memory once, here.
-
-    Raises
-    ------
-    PalpateError
-        A boundary on which a god object cannot walk, or a file that was cut short while in use.
-    """
-    try:
-        return Body(
-            body.mesh.nodes[body.mesh.surface_nodes],
-            body.mesh.surface_local_triangles,
-            body.contact_blocks,
-            _in_memory(body.compliance) if whole else native_compliance(body.compliance),
-            np.searchsorted(body.mesh.surface_nodes, body.compliance.free_surface),
-            whole=whole,
-        )
-    except ValueError as problem:
-        raise PalpateError(
-            "servo: the body's surface cannot be touched ({problem}); bake it again, with another "
-            "edge length if that does not help",
-            problem=problem,
-        ) from problem
 
 
 def servo_on(
@@ -186,39 +118,3 @@ def displacements_of(
     nodes = np.concatenate([finger.nodes for finger in touching])
     forces = np.concatenate([finger.nodal_forces for finger in touching])
     return body.deform(body.mesh.surface_nodes[nodes], forces, young_modulus)
-
-
-def native_tool(body: SoftBody, surface: Body, tool: Tool, *, friction: float = 0.0) -> ToolContact:
-    """A tool as the native thread holds it, with all the memory that it will ever need.
-
-    Takes some tenths of a second: contact points are spread and what the mesh is too coarse for is
-    told from the nodes around each node.
-
-    Parameters
-    ----------
-    surface : of ``native_body(body, whole=True)``, the one that the servo touches.
-    friction : coefficient of the contact when it is stepped alone; a servo's fingers have that of
-        its settings.
-
-    Raises
-    ------
-    PalpateError
-        A body without its whole compliance, a tool too small for the body, or friction below zero.
-    """
-    points, near = surface_for(body, tool), correction_for(body, tool)
-    try:
-        return ToolContact(
-            ToolSurface(
-                surface,
-                points.positions,
-                points.normals,
-                points.triangles,
-                points.alphas,
-                points.areas,
-                near.arrays(),
-            ),
-            NativeTool(tool.core, tool.radius),
-            friction=friction,
-        )
-    except ValueError as problem:
-        raise PalpateError("tool {name}: {problem}", name=tool.name, problem=problem) from problem

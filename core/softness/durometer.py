@@ -1,13 +1,6 @@
 """Virtual durometer: the standard's indenter pressed into a body until body and spring balance.
 
-The foot lies on the surface, the indenter stands out of it by p and pushes with the force that its
-spring has then; both are rigid, push along the device's axis only, and may not pull:
-
-    w = C f >= d,  f >= 0,  f (w - d) = 0
-
-with the depths d at which foot and indenter stand below the rest surface. The spring is linear, so
-that p goes into the same complementarity problem, as a compliance that all points of the indenter
-share. The body answers linearly, with the near field (:mod:`..near_field`), since an indenter is
+The body answers linearly, with the near field (:mod:`..contact.near_field`), since an indenter is
 smaller than the mesh.
 """
 
@@ -21,12 +14,12 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
 
 from ..body.soft_body import SoftBody
-from ..contact.complementarity import solve_complementarity
 from ..contact.near_field.compliance_beneath import near_correction, point_compliance
+from ..contact.place import Place
 from ..errors import PalpateError
 from ..sentence import Sentence
+from .durometer_balance import Balance, balanced
 from .durometer_points import Seat, set_on
-from .place import Place
 from .scales.durometer_type import MILLIMETRE, TYPES, DurometerType
 from .scales.indentation import indenter_force
 from .scales.shore import Shore
@@ -39,28 +32,6 @@ MOST_OVERHANG = 0.05
 # where the contact is wider than a share of the thickness (5 %: by about a point).
 MOST_EDGE = 0.25
 LEAST_CONTACT = 0.05
-
-# Relative tolerance of the load on the foot.
-LOAD_TOLERANCE = 1e-4
-MOST_STEPS = 60
-
-
-@dataclass(frozen=True, eq=False)
-class Balance:
-    """Equilibrium of a durometer and a body.
-
-    Attributes
-    ----------
-    reading : 0 to 100.
-    pushes : float64 (p,), forces of the points on the body along the axis, newton.
-    depth : of the indenter below the foot, metres.
-    foot_depth : of the foot below its first touch, metres.
-    """
-
-    reading: float
-    pushes: NDArray[np.float64]
-    depth: float
-    foot_depth: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,84 +140,6 @@ def block_reading(kind: DurometerType, young_modulus: float, poisson_ratio: floa
         return stiffness * indenter_force(kind, kind.depth(reading)) - kind.force(reading)
 
     return 0.0 if excess(0.0) < 0.0 else float(brentq(excess, 0.0, 100.0, xtol=1e-9))
-
-
-def balanced(
-    compliance: NDArray[np.float64], seat: Seat, kind: DurometerType, load: float | None
-) -> Balance:
-    """Balance on a body of ``compliance`` (p, p) along the axis, m/N.
-
-    With a load, the foot sinks until the sum of all forces is the load.
-
-    Raises
-    ------
-    PalpateError
-        The load is not reached within :data:`MOST_STEPS`.
-    """
-    laid_on = float(seat.heights[~seat.tip].min(initial=float(seat.heights[seat.tip].min())))
-    if load is None:
-        return _at_depth(compliance, seat, kind, laid_on, laid_on)
-    # The force is convex in the depth: Newton's steps from below hardly overshoot, and bisection
-    # limits them.
-    above, below = laid_on - kind.travel, np.inf
-    foot, found = laid_on, _at_depth(compliance, seat, kind, laid_on, laid_on)
-    for _ in range(MOST_STEPS):
-        missing = load - float(found.pushes.sum())
-        if abs(missing) <= LOAD_TOLERANCE * load:
-            return found
-        above, below = (foot, below) if missing > 0.0 else (above, foot)
-        pressed = np.flatnonzero(found.pushes > 0.0)
-        step = np.inf
-        if pressed.size:
-            sprung = _sprung(compliance, seat.tip, kind, found.depth)[np.ix_(pressed, pressed)]
-            step = missing / float(np.linalg.solve(sprung, np.ones(len(pressed))).sum())
-        foot += step
-        if not above < foot < below:
-            foot = 0.5 * (above + below) if np.isfinite(below) else above + kind.travel
-        found = _at_depth(compliance, seat, kind, foot, laid_on, found.pushes)
-    raise PalpateError(
-        "durometer: no depth was found at which the foot carries {load:g} N there; lay it on "
-        "without a load, or choose another place",
-        load=load,
-    )
-
-
-def _at_depth(
-    compliance: NDArray[np.float64],
-    seat: Seat,
-    kind: DurometerType,
-    foot: float,
-    laid_on: float,
-    start: NDArray[np.float64] | None = None,
-) -> Balance:
-    """Balance of the indenter while the foot stands ``foot`` metres below the place."""
-    tip = seat.tip
-    gaps = seat.heights - foot
-    gaps[tip] += kind.profile(seat.radii[tip])
-    # p = travel - (force - force_at_zero) * softness, as long as neither of its stops is reached.
-    softness = _spring_softness(kind)
-    standing = kind.travel + kind.force_at_zero * softness
-    sprung = compliance + softness * np.outer(tip, tip)
-    pushes = solve_complementarity(sprung, gaps - standing * tip, start).forces
-    depth = standing - softness * float(pushes[tip].sum())
-    if not 0.0 <= depth <= kind.travel:
-        depth = min(max(depth, 0.0), kind.travel)
-        pushes = solve_complementarity(compliance, gaps - depth * tip, start).forces
-    return Balance(100.0 * (1.0 - depth / kind.travel), pushes, depth, foot - laid_on)
-
-
-def _spring_softness(kind: DurometerType) -> float:
-    """Compliance of the spring, metres per newton."""
-    return kind.travel / (100.0 * kind.force_per_point)
-
-
-def _sprung(
-    compliance: NDArray[np.float64], tip: NDArray[np.bool_], kind: DurometerType, depth: float
-) -> NDArray[np.float64]:
-    """Compliance with that of the spring, unless the indenter is at a stop."""
-    if not 0.0 < depth < kind.travel:
-        return compliance
-    return compliance + _spring_softness(kind) * np.outer(tip, tip)
 
 
 def _warnings(

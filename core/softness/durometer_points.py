@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..body.soft_body import SoftBody
 from ..contact.near_field.contact_points import ContactPoints, smooth_corner_normals
-from .parallel_rays import Crossings, across, crossings
-from .place import Place, nearest_place, thickness
+from ..contact.place import Place, nearest_place
+from .parallel_rays import Crossings, across, crossings, thickness
 from .scales.durometer_type import DurometerType
 
 # Rings of points around the middle one under the indenter, and across the foot's width.

@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..body.soft_body import SoftBody
-from ..contact.tool.tool_contact import press_tool
-from ..contact.tool.tool_touch import ToolTouch
-from ..contact.tool.tools import Pose, Tool
+from ..contact.place import Place, nearest_place
+from ..contact.press import ContactSettings, PointGoal, Press
+from ..contact.single_press import touch_at
+from ..contact.tool.pose import Pose, facing
+from ..contact.tool.tools import Tool
 from ..errors import PalpateError
 from ..sentence import Sentence
-from ..shape.force_at_depth.felt_force import contact_relation
-from .parallel_rays import across
-from .place import Place, nearest_place, thickness
+from .parallel_rays import thickness
 
 COLUMNS = "depth_mm,force_n,stiffness_n_per_mm,contact_area_mm2"
 MILLIMETRES = 1e3
@@ -26,6 +26,9 @@ SHARE_OF_THICKNESS = 0.2
 SHARE_OF_TOOL = 0.25
 
 MOST_STEPS = 1000
+
+# Half of the way over which the slope of a bending curve is taken, as a share of the whole depth.
+DIFFERENCE = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,7 +97,7 @@ def force_depth_curve(
     steps : number of depths, without 0.
     young_modulus : pascal; the body's own unless given.
     softenings : (s, 4), for the corrected force of a point
-        (:mod:`..large_deformation.felt_force`); None for the linear one. A tool's is linear.
+        (:mod:`..shape.force_at_depth.felt_force`); None for the linear one. A tool's is linear.
 
     Raises
     ------
@@ -125,19 +128,21 @@ def force_depth_curve(
             size=1000.0 * size,
         )
     depths = np.linspace(0.0, end, steps + 1)
-    if tool is None and softenings is not None:
-        return _of_softening_point(body, place, depths, modulus, softenings)
+    settings = ContactSettings(young_modulus)
+    if tool is None and softenings is None:
+        return _of_point(body, place, depths, settings)
+    press = Press(body, [tool], settings, softenings=softenings)
     if tool is None:
-        return _of_point(body, place, depths, modulus)
-    return _of_tool(body, place, depths, modulus, tool)
+        return _of_softening_point(place, depths, press)
+    return _of_tool(place, depths, press, tool)
 
 
 def _of_point(
-    body: SoftBody, place: Place, depths: NDArray[np.float64], modulus: float
+    body: SoftBody, place: Place, depths: NDArray[np.float64], settings: ContactSettings
 ) -> ForceDepthCurve:
     """Curve of a point. A point contact is linear: one touch suffices."""
-    touch = body.touch(place.triangle, place.alpha, place.axis, modulus)
-    stiffness = -float(touch.force @ place.axis)
+    made = touch_at(body, place.triangle, place.alpha, place.axis, settings)
+    stiffness = -float(made.force @ place.axis)
     return ForceDepthCurve(
         "point",
         place,
@@ -148,33 +153,25 @@ def _of_point(
     )
 
 
-def _of_softening_point(
-    body: SoftBody,
-    place: Place,
-    depths: NDArray[np.float64],
-    modulus: float,
-    softenings: NDArray[np.float64],
-) -> ForceDepthCurve:
-    relation = contact_relation(body, softenings, place.triangle, place.alpha)
-    moved = depths[:, None] * place.axis
-    forces = np.array([relation.force(u) @ place.axis for u in moved])
-    stiffness = np.array([place.axis @ relation.tangent(u) @ place.axis for u in moved])
-    return ForceDepthCurve(
-        "point", place, depths, modulus * forces, modulus * stiffness, np.zeros(len(depths))
-    )
+def _of_softening_point(place: Place, depths: NDArray[np.float64], press: Press) -> ForceDepthCurve:
+    def force(depth: float) -> float:
+        (made,) = press.to([PointGoal(place.triangle, place.alpha, depth * place.axis)])
+        return 0.0 - float(made.force @ place.axis)
+
+    step = DIFFERENCE * float(depths[-1])
+    forces = np.array([force(depth) for depth in depths])
+    rise = [force(depth + step) - force(depth - step) for depth in depths]
+    stiffness = np.array(rise) / (2.0 * step)
+    return ForceDepthCurve("point", place, depths, forces, stiffness, np.zeros(len(depths)))
 
 
 def _of_tool(
-    body: SoftBody, place: Place, depths: NDArray[np.float64], modulus: float, tool: Tool
+    place: Place, depths: NDArray[np.float64], press: Press, tool: Tool
 ) -> ForceDepthCurve:
     """Curve of a tool, each depth started from the one before."""
-    touch: ToolTouch | None = None
-    forces, areas = np.zeros(len(depths)), np.zeros(len(depths))
-    for step, depth in enumerate(depths.tolist()):
-        pose = facing_pose(place, tool, depth)
-        touch = press_tool(body, tool, pose, young_modulus=modulus, start=touch)
-        forces[step] = 0.0 - float(touch.force @ place.axis)
-        areas[step] = float(touch.surface.areas[touch.points].sum())
+    touches = [press.to([facing_pose(place, tool, depth)])[0] for depth in depths]
+    forces = np.array([0.0 - float(made.force @ place.axis) for made in touches])
+    areas = np.array([made.area for made in touches])
     stiffness: NDArray[np.float64] = np.gradient(forces, depths)
     return ForceDepthCurve(tool.name, place, depths, forces, stiffness, areas)
 
@@ -184,6 +181,5 @@ def facing_pose(place: Place, tool: Tool, depth: float) -> Pose:
     metres below the rest surface.
     """
     foremost = float(-tool.core[:, 2].min()) + tool.radius
-    sideways = across(-place.axis)
-    rotation = np.column_stack([sideways[0], sideways[1], -place.axis])
+    rotation = facing(-place.axis, np.eye(3)[0])
     return Pose.at(place.position + (depth - foremost) * place.axis, rotation)

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..body.soft_body import SoftBody
+from ..contact.place import Place
 from ..mesh.tet_mesh import TetMesh
 
 # Pairs of line and triangle in one batch; bounds memory to some 100 MB.
@@ -94,3 +96,11 @@ def _in_triangles(
     alphas = np.stack([1.0 - b - c, b, c], axis=2)
     line, triangle = np.nonzero((alphas >= -EDGE_SLACK).all(axis=2))
     return line + first, triangle, alphas[line, triangle]
+
+
+def thickness(body: SoftBody, place: Place) -> float:
+    """How far it is through the body along the axis, metres."""
+    met = crossings(body.mesh, place.position[None], place.axis)
+    size = float(np.ptp(body.mesh.nodes, axis=0).max())
+    leaving = met.heights[~met.inward & (met.heights > 1e-9 * size)]
+    return float(leaving.min(initial=size))

@@ -67,15 +67,6 @@ class DrawnBody:
         mesh = self.body.mesh
         return ray.node_normals(mesh.nodes, mesh.surface_triangles)
 
-    def nearest(self, place: Array) -> tuple[Array, Array]:
-        """Point of the rest surface nearest to ``place`` (3,), and its outward unit normal, (3,)
-        each.
-        """
-        mesh, found = self.body.mesh, self.body.closest_points.query(place)
-        corners, alpha = mesh.surface_triangles[found.triangle[0]], found.alpha[0]
-        normal = alpha @ self.node_normals[corners]
-        return alpha @ mesh.nodes[corners], normal / np.linalg.norm(normal)
-
     @cached_property
     def rest_places(self) -> Array:
         """Drawn vertices at rest, (p, 3), metres, body coordinates."""

@@ -14,7 +14,9 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.contact.tool.tools import Pose
+from ...core.contact.press import ContactSettings, Press
+from ...core.contact.tool.pose import Pose
+from ...core.contact.touches import Touch
 from ...core.errors import PalpateError
 from ..object.drawn_body import DrawnBody, open_body
 from ..reporting.translated import reported
@@ -22,10 +24,8 @@ from ..scene.body_frame import BodyFrame
 from ..shape.drawn_shape import CompleteShape, complete_shape
 from ..tool import tool_turn
 from ..tool.finger_tip import chosen_tip
-from . import several_fingers
 from .modal_press import Pressing
-from .press_once import keep_shape
-from .several_fingers import FingerForce, ToolPress
+from .press_once import keep_shape, loads_of, pressing_tools
 
 Array = NDArray[np.float64]
 
@@ -38,7 +38,7 @@ class PressedFrame:
     """What one frame did: each finger's force (N), and the displacements (n, 3), None if free."""
 
     frame: int
-    fingers: tuple[FingerForce, ...]
+    fingers: tuple[Touch, ...]
     displacements: Array | None
 
 
@@ -95,7 +95,7 @@ class PALPATE_OT_press_frames(Pressing, bpy.types.Operator):
                     {"ERROR"}, reported("The tool touches nothing in this frame; choose another")
                 )
                 return {"CANCELLED"}
-            tools = several_fingers.pressing_tools(pressed[-1].fingers)
+            tools = pressing_tools(pressed[-1].fingers)
             name = keep_shape(thing, drawn, pressed[-1].displacements, tools)
             self.report({"INFO"}, reported("Kept as shape key '{key}'", key=name))
             return {"FINISHED"}
@@ -151,18 +151,15 @@ def press_frames(
             "Rod or Mesh"
         )
     guides = leading_objects(scene)
-    modulus, friction = thing.palpate.young_modulus, thing.palpate.static_friction
-    press: ToolPress | None = None
+    modulus = thing.palpate.young_modulus
+    settings = ContactSettings(modulus, thing.palpate.static_friction)
+    press = Press(drawn.body, [tip.tool] * len(guides), settings)
     for frame in frames:
         scene.frame_set(frame)
-        poses = [_pose(guide, scene, drawn.frame) for guide in guides]
-        if press is None:
-            press = ToolPress(drawn.body, tip.tool, modulus, friction, (None,) * len(poses))
-        press = press.to(poses)
-        touching = any(np.any(finger.nodal_forces) for finger in press.fingers)
-        loads = several_fingers.loads_of(press.fingers)
-        moved = shape.under(loads, modulus).displacements if touching else None
-        yield PressedFrame(frame, press.fingers, moved)
+        touches = press.to([_pose(guide, scene, drawn.frame) for guide in guides])
+        loads = loads_of(touches)
+        moved = shape.under(loads, modulus).displacements if loads else None
+        yield PressedFrame(frame, touches, moved)
 
 
 def leading_objects(scene: bpy.types.Scene) -> tuple[bpy.types.Object, ...]:
@@ -204,7 +201,7 @@ def keep_frames(thing: bpy.types.Object, drawn: DrawnBody, pressed: list[Pressed
             continue
         key = thing.shape_key_add(name=f"{FRAME_NAME} {here.frame}", from_mix=False)
         key.relative_key = thing.data.shape_keys.reference_key
-        tools = several_fingers.pressing_tools(here.fingers)
+        tools = pressing_tools(here.fingers)
         key.points.foreach_set("co", drawn.local_coordinates(here.displacements, tools))
         for other, value in ((number - 1, 0.0), (number, 1.0), (number + 1, 0.0)):
             if 0 <= other < len(pressed):

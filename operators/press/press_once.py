@@ -9,21 +9,21 @@ import bpy
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...core.contact.equations import Touch
+from ...core.contact.place import nearest_place
+from ...core.contact.press import ContactSettings
+from ...core.contact.single_press import press_points, press_tools, set_down
 from ...core.contact.tool.tool_dent import PressingTool
-from ...core.contact.tool.tool_surface import surface_for
-from ...core.contact.tool.tools import Pose, Tool
+from ...core.contact.tool.tools import Tool
+from ...core.contact.touches import PointTouch, ToolTouch, Touch
 from ...core.errors import PalpateError
+from ...core.shape.meeting import FingerLoad
 from ..object.drawn_body import DrawnBody, open_body
 from ..scene import live_shape
 from ..session.live_settings import contact_mode
 from ..shape.drawn_shape import complete_shape
-from ..shape.felt_table import felt_forces
+from ..shape.felt_table import softenings_for
 from ..tool import tool_turn
 from ..tool.finger_tip import chosen_tip
-from ..tool.tool_pose import resting_on
-from . import several_fingers
-from .several_fingers import FingerForce, ToolPress, pressing_tools
 
 Array = NDArray[np.float64]
 Vector = tuple[float, float, float]
@@ -33,7 +33,7 @@ Vector = tuple[float, float, float]
 class PressedFinger:
     """What one finger did; ``force`` (N, felt) in world axes, ``depth`` in metres."""
 
-    made: FingerForce
+    made: Touch
     force: Vector
     depth: float
 
@@ -50,9 +50,10 @@ class Pressed:
     remarks: tuple[str, ...] = ()
 
     @property
-    def touch(self) -> Touch | None:
+    def touch(self) -> PointTouch | None:
         """The first finger's contact if it is a point."""
-        return self.fingers[0].made.touch
+        made = self.fingers[0].made
+        return made if isinstance(made, PointTouch) else None
 
     @property
     def force(self) -> Vector:
@@ -104,18 +105,9 @@ def press_several(
     tip = chosen_tip(scene, thing)
     places = np.array([_point(frame.body_from_world(_point(at, "at")), "at") for at in ats])
     inward = np.array([frame.turn_to_body(_point(by, "by")) * frame.metres_per_unit for by in bys])
-    if tip.tool is None:
-        mode = contact_mode(scene)
-        touches = drawn.body.touch_several(places, inward, young_modulus, mode=mode)
-        felt = felt_forces(thing, drawn, touches, young_modulus, mode)
-        made = tuple(
-            several_fingers.of_point(touch, force)
-            for touch, force in zip(touches, felt, strict=True)
-        )
-    else:
-        made = _press_tools(drawn, thing, scene, tip.tool, places, inward)
+    made = _touches(thing, scene, drawn, tip.tool, places, inward)
     with complete_shape(thing, drawn) as shape:
-        displacements = shape.under(several_fingers.loads_of(made), young_modulus).displacements
+        displacements = shape.under(loads_of(made), young_modulus).displacements
     return Pressed(
         fingers=tuple(
             PressedFinger(one, world_vector(drawn, one.force), float(np.linalg.norm(way)))
@@ -147,32 +139,36 @@ def world_vector(drawn: DrawnBody, vector: Array) -> Vector:
     return (x, y, z)
 
 
-def _press_tools(
-    drawn: DrawnBody,
+def _touches(
     thing: bpy.types.Object,
     scene: bpy.types.Scene,
-    tool: Tool,
+    drawn: DrawnBody,
+    tool: Tool | None,
     places: Array,
     inward: Array,
-) -> tuple[FingerForce, ...]:
-    """Each tool set down at its place from outside, and led in."""
-    starts, surface = [], surface_for(drawn.body, tool).positions
-    for place in places:
-        point, normal = drawn.nearest(place)
-        rotation = tool_turn.rotation(scene, drawn.frame, normal)
-        starts.append(resting_on(tool, rotation, point, normal, surface))
-    ends = [
-        Pose(start.position + way, start.rotation)
-        for start, way in zip(starts, inward, strict=True)
-    ]
-    press = ToolPress(
-        drawn.body,
-        tool,
-        thing.palpate.young_modulus,
-        thing.palpate.static_friction,
-        (None,) * len(starts),
+) -> tuple[Touch, ...]:
+    """Points, or tools each set down at its place from outside and led in."""
+    body, chosen = drawn.body, thing.palpate
+    settings = ContactSettings(chosen.young_modulus, chosen.static_friction, contact_mode(scene))
+    if tool is None:
+        softenings = softenings_for(thing, drawn, places)
+        return press_points(body, places, inward, settings, softenings=softenings)
+    nearest = [nearest_place(body, place) for place in places]
+    turns = [tool_turn.rotation(scene, drawn.frame, -place.axis) for place in nearest]
+    starts = [set_down(body, tool, *one) for one in zip(nearest, turns, strict=True)]
+    return press_tools(body, tool, starts, inward, settings)
+
+
+def loads_of(touches: Sequence[Touch]) -> list[FingerLoad]:
+    """What the body bears, of all fingers that press."""
+    return [FingerLoad(one.nodes, one.nodal_forces) for one in touches if len(one.nodes)]
+
+
+def pressing_tools(touches: Sequence[Touch]) -> tuple[PressingTool, ...]:
+    """The tools among the fingers, for drawing."""
+    return tuple(
+        PressingTool(one.tool, one.pose, one.force) for one in touches if isinstance(one, ToolTouch)
     )
-    return press.to(starts).to(ends).fingers
 
 
 def _point(value: ArrayLike, name: str) -> Array:

@@ -33,7 +33,7 @@ from ..record.recording import Recorder
 from ..scene.package_preferences import preferences
 from ..shape.felt_table import FeltTable
 from ..tool.finger_tip import FingerTip
-from ..tool.tool_pose import Point, Turn
+from ..tool.tool_turn import Point, Turn
 from .finger_leads import second_port
 from .live_settings import LiveSettings
 from .press_effects import MoveProbe, PlaceProbe, SwitchForce

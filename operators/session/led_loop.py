@@ -13,7 +13,7 @@ from ..object.drawn_body import DrawnBody
 from ..record import recording_writer
 from ..tool import tool_turn
 from ..tool.finger_tip import FingerTip
-from ..tool.tool_pose import Point, Turn
+from ..tool.tool_turn import Point, Turn
 from .finger_leads import FingerLead, Lead
 from .force_loop import ForceLoop
 from .live_settings import LiveSettings

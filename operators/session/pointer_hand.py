@@ -10,12 +10,13 @@ from bpy_extras import view3d_utils
 from mathutils import Vector
 from numpy.typing import NDArray
 
+from ...core.contact.tool.pose import resting_on
 from ..scene import ray
 from ..scene.package_preferences import preferences
 from ..scene.probe_drag import ProbeDrag
 from ..scene.viewport import Viewport
 from ..tool import tool_turn
-from ..tool.tool_pose import Point, Turn, resting_on
+from ..tool.tool_turn import Point, Turn
 from .press_events import Grab, Move, Release, SetDown
 from .press_session import PressSession
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..tool.tool_pose import Point, Turn
+from ..tool.tool_turn import Point, Turn
 from .press_events import Source
 
 

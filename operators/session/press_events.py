@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
-from ..tool.tool_pose import Point, Turn
+from ..tool.tool_turn import Point, Turn
 
 
 class Source(Enum):

@@ -6,7 +6,6 @@ Only computed for that force law; until a place is known, its force is linear.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,10 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.body.soft_body import SoftBody
-from ...core.contact.equations import ContactMode, Touch
 from ...core.errors import PalpateError
 from ...core.servo.session import Body
-from ...core.shape.force_at_depth.felt_fingers import corrected_touches
 from ...core.shape.force_at_depth.felt_force import FeltName, felt_name
 from ...core.shape.force_at_depth.softening_table import SofteningTable
 from ..object.drawn_body import DrawnBody
@@ -84,29 +81,26 @@ class FeltTable:
             self._behind.submit(_close, table)
 
 
-def felt_forces(
-    thing: bpy.types.Object,
-    drawn: DrawnBody,
-    touches: Sequence[Touch],
-    young_modulus: float,
-    mode: ContactMode,
-) -> list[NDArray[np.float64]]:
-    """Forces (3,) that point fingers feel, N, by what the panel says; waits for what that needs.
+def softenings_for(
+    thing: bpy.types.Object, drawn: DrawnBody, places: NDArray[np.float64]
+) -> NDArray[np.float64] | None:
+    """What the force that the panel asks for needs at the surface points nearest to places (m, 3),
+    metres; waits for it. None for the linear force.
 
     Raises
     ------
     PalpateError
-        They cannot be found.
+        It cannot be computed.
     """
     if chosen_felt(thing) == "linear":
-        return [touch.force for touch in touches]
+        return None
+    triangles = drawn.body.closest_points.query(places).triangle
     table = SofteningTable(drawn.body, drawn.file)
     try:
-        table.wait_for(np.concatenate([touch.triangle for touch in touches]))
-        found = corrected_touches(drawn.body, table.values, touches, young_modulus, mode)
+        table.wait_for(drawn.body.mesh.surface_triangles[triangles])
+        return table.values
     finally:
         _close(table)
-    return [touch.force for touch in found]
 
 
 def _close(table: SofteningTable) -> None:

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import bpy
 
 from ...core.contact.tool import tools
+from ...core.contact.tool.pose import Pose
 from ...core.contact.tool.tool_dent import PressingTool
-from ...core.contact.tool.tools import Pose, Tool
+from ...core.contact.tool.tools import Tool
 from ...core.errors import PalpateError
 from ...core.servo.session import Snapshot
 from ..scene.drawn_surface import metres_per_unit

@@ -6,12 +6,15 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.contact.tool.pose import facing
 from ...core.errors import PalpateError
 from ..scene.body_frame import BodyFrame
 from ..scene.drawn_surface import metres_per_unit
-from .tool_pose import Turn, facing
 
 Array = NDArray[np.float64]
+Point = tuple[float, float, float]
+# Rows of a rotation matrix.
+Turn = tuple[Point, Point, Point]
 
 WORLD_X = np.array([1.0, 0.0, 0.0])
 

@@ -8,8 +8,9 @@ from palpate.core.body.soft_body import SoftBody
 from palpate.core.compliance.surface_compliance import surface_compliance
 from palpate.core.contact.near_field.compliance_beneath import near_correction
 from palpate.core.contact.near_field.contact_points import contact_points
-from palpate.core.contact.tool.tool_contact import press_tool
-from palpate.core.contact.tool.tools import Pose, sphere
+from palpate.core.contact.single_press import press_tool
+from palpate.core.contact.tool.pose import Pose
+from palpate.core.contact.tool.tools import sphere
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.mesh.tet_mesh import TetMesh
 from palpate.core.stiffness.assembly import assemble
@@ -43,15 +44,15 @@ def pressed(cells: int, *, fine: bool, moved: tuple[float, float] = (0.0, 0.0)) 
     mesh = TetMesh.checked(nodes, even.tets)
     compliance = surface_compliance(mesh, assemble(mesh, POISSON_RATIO), fixed)
     body = SoftBody(mesh, fixed, POISSON_RATIO, compliance, YOUNG_MODULUS)
-    surface = correction = None
+    spread = None
     if fine:
         every = contact_points(body, FINE_SPACING)
         middle = np.array([EDGE / 2, EDGE / 2, EDGE])
         surface = every.taken(np.linalg.norm(every.positions - middle, axis=1) < RADIUS)
-        correction = near_correction(body, surface)
+        spread = surface, near_correction(body, surface)
     forces = []
     for depth in DEPTHS:
         pose = Pose.at([EDGE / 2, EDGE / 2, EDGE + RADIUS - depth])
-        touch = press_tool(body, sphere(RADIUS), pose, surface=surface, correction=correction)
+        touch = press_tool(body, sphere(RADIUS), pose, spread=spread)
         forces.append(float(touch.force[2]))
     return forces

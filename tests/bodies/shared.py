@@ -8,6 +8,7 @@ from scipy.sparse.linalg import spsolve
 
 from palpate.core.body.soft_body import SoftBody
 from palpate.core.compliance.surface_compliance import surface_compliance
+from palpate.core.contact.equations import consistent_forces, triangle_forces
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.mesh.tet_mesh import TetMesh
 from palpate.core.stiffness.assembly import assemble
@@ -18,6 +19,14 @@ MESHES = Path(__file__).resolve().parents[1] / "meshes"
 def make_body(mesh, fixed, poisson_ratio, young_modulus, dtype=np.float32):
     compliance = surface_compliance(mesh, assemble(mesh, poisson_ratio), fixed, dtype=dtype)
     return SoftBody(mesh, np.unique(fixed), poisson_ratio, compliance, young_modulus)
+
+
+def nodal_forces_of(body, triangle, alpha, u, mode="consistent"):
+    """Forces (3, 3) of one contact on its triangle's nodes, by the equations of core.contact."""
+    local = body.mesh.surface_local_triangles[triangle]
+    if mode == "paper":
+        return triangle_forces(body.young_modulus * body.contact_blocks[local], alpha, u)
+    return body.young_modulus * consistent_forces(body.surface_blocks(local, local), alpha, u)
 
 
 @pytest.fixture(scope="session")

@@ -4,10 +4,10 @@ import json
 
 import numpy as np
 import pytest
+from referees.softened_points import corrected_forces
 
 from palpate.cli.main import main
 from palpate.core.body import body_file
-from palpate.core.shape.force_at_depth.felt_force import corrected_touch
 from palpate.core.shape.force_at_depth.softening_table import SofteningTable
 from palpate.core.shape.paper.table_file import table_path
 
@@ -44,8 +44,8 @@ def test_press_tells_the_corrected_force_and_draws_the_same(cube_file, capsys):
     place = body.closest_points.query(np.array([AT], dtype=float))
     by = np.array(BY, dtype=float)
     table.fill()
-    expected = corrected_touch(body, table.values, int(place.triangle[0]), place.alpha[0], by)
-    assert felt["force"] == pytest.approx(expected.force.tolist())
+    expected = corrected_forces(body, table.values, int(place.triangle[0]), place.alpha[0], by)
+    assert felt["force"] == pytest.approx((-expected.sum(axis=0)).tolist())
     assert 0 < felt["force"][2] < 0.9 * linear["force"][2]
     assert felt["nodal_forces"] == linear["nodal_forces"]
     assert felt["max_displacement"] == linear["max_displacement"]

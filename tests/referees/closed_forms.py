@@ -13,8 +13,9 @@ from palpate.core.body.soft_body import SoftBody
 from palpate.core.contact.near_field.compliance_beneath import NearCorrection, near_correction
 from palpate.core.contact.near_field.contact_points import ContactPoints
 from palpate.core.contact.near_field.regular_field import RegularField
-from palpate.core.contact.tool.tool_contact import press_tool
-from palpate.core.contact.tool.tools import Pose, Tool, sphere
+from palpate.core.contact.single_press import press_tool
+from palpate.core.contact.tool.pose import Pose
+from palpate.core.contact.tool.tools import Tool, sphere
 from palpate.tests.bodies.graded_block import YOUNG_MODULUS, points_around
 
 ELEMENT = 1e-3
@@ -40,7 +41,7 @@ def hertz(
     for elements in range(1, core):
         depth = (elements * ELEMENT) ** 2 / HERTZ_RADIUS
         pose = Pose.at([0.0, 0.0, HERTZ_RADIUS - depth])
-        touch = press_tool(body, tool, pose, surface=points, correction=correction)
+        touch = press_tool(body, tool, pose, spread=(points, correction))
         force = float(touch.force[2])
         # What the block gives way less than a half-space, as if it lay on rising ground.
         deep = depth - shift * force
@@ -76,7 +77,7 @@ def sphere_force(
     """
     depth = radius**2 / HERTZ_RADIUS
     pose = Pose.at([*middle, HERTZ_RADIUS - depth])
-    touch = press_tool(body, sphere(HERTZ_RADIUS), pose, surface=points, correction=correction)
+    touch = press_tool(body, sphere(HERTZ_RADIUS), pose, spread=(points, correction))
     force = float(touch.force[2])
     modulus = YOUNG_MODULUS / (1.0 - body.poisson_ratio**2)
     return force / (4.0 / 3.0 * modulus * np.sqrt(HERTZ_RADIUS) * (depth - shift * force) ** 1.5)
@@ -96,10 +97,8 @@ def punch(
     ends = [np.column_stack([ring, np.full(PUNCH_SIDES, z)]) for z in (rounding, 20 * ELEMENT)]
     tool = Tool("punch", np.vstack(ends), rounding)
     depth = 0.02 * ELEMENT
-    touch = press_tool(
-        body, tool, Pose.at([0.0, 0.0, -depth]), surface=points, correction=correction
-    )
-    radius = np.sqrt(points.areas[touch.points].sum() / np.pi)
+    touch = press_tool(body, tool, Pose.at([0.0, 0.0, -depth]), spread=(points, correction))
+    radius = np.sqrt(touch.area / np.pi)
     force = float(touch.force[2])
     modulus = YOUNG_MODULUS / (1.0 - body.poisson_ratio**2)
     return force / (2.0 * modulus * float(radius) * (depth - shift * force))

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from palpate.core.body.drawn_map import DrawnMap
 from palpate.core.body.soft_body import SoftBody
 from palpate.core.contact.equations import Touch
+from palpate.core.contact.single_press import touch_at
 
 PROJECT = Path(__file__).resolve().parents[3]
 DRAWN_VERTICES = 100_000
@@ -44,7 +45,7 @@ def random_loads(body: SoftBody, count: int) -> list[Load]:
     rng = np.random.default_rng(1999)
     free = np.isin(body.mesh.surface_triangles, body.compliance.free_surface).all(axis=1)
     touches: list[Touch] = [
-        body.touch(int(triangle), rng.dirichlet([1, 1, 1]), rng.normal(scale=0.003, size=3))
+        touch_at(body, int(triangle), rng.dirichlet([1, 1, 1]), rng.normal(scale=0.003, size=3))
         for triangle in rng.choice(np.flatnonzero(free), count)
     ]
     return [Load(touch.triangle, touch.nodal_forces) for touch in touches]

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .tool_law import distances_in_body
-from .tools import Pose, Tool
+from .pose import Pose
+from .tools import Tool
 
 # Over this share of the tool's inner radius to both sides of its surface, never more than it is
 # deep, the shift fades in, so that no edge is drawn around the contact.
@@ -45,7 +45,8 @@ def kept_out(
     near = np.flatnonzero(away < tool.reach + FADE * tool.inner_radius)
     if size == 0.0 or not near.size:
         return places
-    distances, outward = distances_in_body(tool, pose, places[near])
+    distances, normals_of_tool = tool.distance(pose.to_tool(places[near]))
+    outward = normals_of_tool @ pose.rotation.T
     low, high = PRESSED_SIDE
     share = np.clip((normals[near] @ pressing.force / size - low) / (high - low), 0.0, 1.0)
     deepest = -float(np.where(share > 0.0, distances, 0.0).min())

@@ -42,54 +42,6 @@ SHARPEST_ROUNDING = 0.1
 
 
 @dataclass(frozen=True, eq=False)
-class Pose:
-    """Where a tool is: ``position`` (3,) of its reference point in metres, body coordinates, and
-    ``rotation`` (3, 3), which takes directions of the tool to directions of the body.
-    """
-
-    position: NDArray[np.float64]
-    rotation: NDArray[np.float64]
-
-    @classmethod
-    def at(cls, position: ArrayLike, rotation: ArrayLike | None = None) -> Pose:
-        """A pose from numbers, checked; without ``rotation`` the tool's axes are the body's.
-
-        Raises
-        ------
-        PalpateError
-            A position that is not three finite numbers, a rotation that is none.
-        """
-        place = np.array(position, dtype=np.float64)
-        turn = np.eye(3) if rotation is None else np.array(rotation, dtype=np.float64)
-        if place.shape != (3,):
-            raise PalpateError(
-                "tool's pose: position has shape {shape}, expected (3,); give x, y, z",
-                shape=place.shape,
-            )
-        refuse_unusable(Sentence("tool's pose"), place[None])
-        if (
-            turn.shape != (3, 3)
-            or not np.allclose(turn @ turn.T, np.eye(3), atol=1e-6)
-            or np.linalg.det(turn) < 0
-        ):
-            raise PalpateError(
-                "tool's pose: rotation is not a rotation; give a (3, 3) matrix of orthogonal unit "
-                "columns, right-handed, without scale"
-            )
-        return cls(place, turn)
-
-    def to_tool(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Body coordinates (p, 3) as the tool's own."""
-        own: NDArray[np.float64] = (points - self.position) @ self.rotation
-        return own
-
-    def to_body(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        """The tool's own coordinates (p, 3) as the body's."""
-        moved: NDArray[np.float64] = points @ self.rotation.T + self.position
-        return moved
-
-
-@dataclass(frozen=True, eq=False)
 class Tool:
     """The convex hull of ``core`` (k, 3), metres in the tool's frame, grown by a ``radius``.
 

@@ -3,7 +3,7 @@
 //! The least of 1/2 F.C F - F.u with every F_p in a cone about its push: a strictly convex problem.
 //! Solved directly where all forces are in their cones, else in rounds of a semismooth Newton step
 //! and a sweep of projected block Gauss-Seidel that never raises the energy, from the forces of the
-//! tick before. Readable reference: `core/contact/several_contacts.py`.
+//! tick before.
 
 use glam::{DMat3, DVec3};
 

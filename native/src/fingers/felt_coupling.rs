@@ -1,5 +1,5 @@
-//! How much of the corrected force fingers get that hold each other through the body. Readable
-//! reference: `core/shape/force_at_depth/felt_coupling.py`.
+//! How much of the corrected force fingers get that hold each other through the body;
+//! `docs/large-deformation.md` has the formulas.
 
 use glam::DMat3;
 

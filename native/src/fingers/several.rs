@@ -1,5 +1,5 @@
 //! Several fingers on one body: each feels the others through it, equation (10) and its extension
-//! to places on triangles. Readable reference: `core/contact/several_contacts.py`; `docs/contact.md`.
+//! to places on triangles. See `docs/contact.md`.
 //!
 //! Contact point p moves by the forces on all, u_p = sum_q C_pq F_q / E with
 //! C_pq = sum_ab a_pa a_qb L_ab over the nodes of both triangles. A finger may only push: its force

@@ -5,7 +5,7 @@
 //! a sweep of projected Gauss-Seidel take turns (Moré and Toraldo 1991). The energy falls in every
 //! step, so nothing cycles, and where the bound on the work ends it early the forces are still a
 //! push, nearer the solution than at the start. The factor of the exact solves is kept up to date while
-//! points come and go. Readable reference: `core/contact/complementarity.py`.
+//! points come and go.
 
 use crate::algebra::cholesky::{Factor, dot};
 use crate::algebra::wide::widely;

@@ -5,8 +5,7 @@
 //! the point slips, and its anchor follows it. For given pushes the forces aside are those of least
 //! energy within their discs (Tresca's problem, convex), found by projected Gauss-Seidel from the
 //! forces before; pushes and forces aside take turns, once a linearisation (P. D. Panagiotopoulos,
-//! 1975). What a tick leaves to be found the next ones find; the discs hold at any moment. Readable
-//! reference: `core/contact/tool/tool_friction.py`.
+//! 1975). What a tick leaves to be found the next ones find; the discs hold at any moment.
 
 use glam::{DVec2, DVec3};
 

@@ -67,10 +67,11 @@ def test_discs_lie_across_the_pressure(palpate):
 
 def test_a_tool_is_as_deep_as_the_surface_is_in_it(palpate):
     tools, reading = part("core.contact.tool.tools"), part("addon.overlay.reading")
+    Pose = part("core.contact.tool.pose").Pose  # noqa: N806
     surface = np.array([[x, 0.0, 0.0] for x in np.linspace(-1.0, 1.0, 21)])
-    pose = tools.Pose(np.array([0.0, 0.0, 0.7]), np.eye(3))
+    pose = Pose(np.array([0.0, 0.0, 0.7]), np.eye(3))
     assert reading.depth_of(tools.sphere(1.0), pose, surface) == pytest.approx(0.3)
-    away = tools.Pose(np.array([0.0, 0.0, 9.0]), np.eye(3))
+    away = Pose(np.array([0.0, 0.0, 9.0]), np.eye(3))
     assert reading.depth_of(tools.sphere(1.0), away, surface) == 0.0
 
 

@@ -10,7 +10,10 @@ from skfem.models.elasticity import linear_elasticity
 
 from palpate.core.body.soft_body import SoftBody
 from palpate.core.compliance.surface_compliance import surface_compliance
-from palpate.core.contact.consistent_contact import consistent_forces, contact_compliance
+from palpate.core.contact.equations import consistent_forces, contact_compliance
+from palpate.core.contact.press import ContactSettings
+from palpate.core.contact.single_press import press_points, touch_at, touch_nearest
+from palpate.core.contact.touches import contact_displacement
 from palpate.core.errors import PalpateError
 from palpate.core.mesh.tet_mesh import TetMesh
 from palpate.core.stiffness.assembly import assemble
@@ -54,7 +57,7 @@ def test_one_contact_is_what_a_constrained_solve_of_the_whole_body_gives(body, r
     for triangle in rng.choice(free_triangles(body), 2):
         alpha = rng.dirichlet([1, 1, 1])
         force = held_by_lagrange(body, [triangle], [alpha], PRESS)[0]
-        touch = body.touch(triangle, alpha, PRESS)
+        touch = touch_at(body, triangle, alpha, PRESS)
         atol = 1e-4 * np.abs(force).max()
         np.testing.assert_allclose(-touch.force, force, rtol=0, atol=atol)
         np.testing.assert_allclose(touch.nodal_forces, alpha[:, None] * force, rtol=0, atol=atol)
@@ -65,25 +68,27 @@ def test_two_contacts_are_what_a_constrained_solve_of_the_whole_body_gives(body)
     middle = 0.5 * (low + high)
     at = np.array([[low[0], *middle[1:]], [high[0], *middle[1:]]])  # a pinch
     by = 0.05 * (high[0] - low[0]) * np.array([[1, 0.1, 0], [-0.8, 0, 0.1]])
-    touches = body.touch_several(at, by)
+    touches = press_points(body, at, by)
     places = body.closest_points.query(at)
     forces = held_by_lagrange(body, places.triangle, places.alpha, by)
     ours = np.array([-touch.force for touch in touches])
     np.testing.assert_allclose(ours, forces, rtol=0, atol=1e-4 * np.abs(forces).max())
-    alone = np.array([-body.touch_nearest(*one).force for one in zip(at, by, strict=True)])
+    alone = np.array([-touch_nearest(body, *one).force for one in zip(at, by, strict=True)])
     assert np.abs(alone - forces).max() > 0.02 * np.abs(forces).max()  # They do feel each other.
 
 
 def test_the_contact_point_moves_by_exactly_the_finger_everywhere(body, rng):
     for triangle in rng.choice(free_triangles(body), 30):
-        touch = body.touch(triangle, rng.dirichlet([1, 1, 1]), PRESS)
+        touch = touch_at(body, triangle, rng.dirichlet([1, 1, 1]), PRESS)
         moved = body.deform(touch.triangle, touch.nodal_forces)
-        np.testing.assert_allclose(body.contact_displacement(touch, moved), PRESS, rtol=1e-4)
+        np.testing.assert_allclose(contact_displacement(body, touch, moved), PRESS, rtol=1e-4)
 
 
 def test_in_paper_mode_it_does_not(body):
-    touch = body.touch(free_triangles(body)[3], [1 / 3, 1 / 3, 1 / 3], PRESS, mode="paper")
-    moved = body.contact_displacement(touch, body.deform(touch.triangle, touch.nodal_forces))
+    touch = touch_at(
+        body, free_triangles(body)[3], [1 / 3, 1 / 3, 1 / 3], PRESS, ContactSettings(mode="paper")
+    )
+    moved = contact_displacement(body, touch, body.deform(touch.triangle, touch.nodal_forces))
     assert np.linalg.norm(moved - PRESS) > 0.05 * np.linalg.norm(PRESS)
 
 
@@ -108,7 +113,7 @@ def test_work_on_a_closed_path_is_zero(body):
     alpha, triangle = np.array([0.5, 0.2, 0.3]), free_triangles(body)[4]
     t = np.linspace(0, 2 * np.pi, 41)
     u = 1e-3 * np.stack([np.sin(t), np.sin(2 * t), np.cos(t) - 2], axis=1)
-    forces = np.array([body.touch(triangle, alpha, one).force for one in u])
+    forces = np.array([touch_at(body, triangle, alpha, one).force for one in u])
     work = 0.5 * np.sum((forces[1:] + forces[:-1]) * np.diff(u, axis=0), axis=1)
     assert abs(work.sum()) < 1e-6 * np.abs(work).sum()
 
@@ -122,7 +127,7 @@ def test_a_turned_body_answers_with_turned_forces(cube_mesh, rng):
         turned = TetMesh.checked(mesh.nodes @ rotation.T + rotation[0], mesh.tets)
         compliance = surface_compliance(turned, assemble(turned, 0.4), fixed, dtype=np.float64)
         body = SoftBody(turned, fixed, 0.4, compliance, 1e4)
-        touch = body.touch(free_triangles(body)[9], [0.1, 0.6, 0.3], rotation @ PRESS)
+        touch = touch_at(body, free_triangles(body)[9], [0.1, 0.6, 0.3], rotation @ PRESS)
         forces.append(touch.force @ rotation)
     np.testing.assert_allclose(forces[1], forces[0], rtol=1e-9)
 
@@ -164,4 +169,4 @@ def test_forces_on_a_node_that_is_named_twice_are_summed(body, rng):
 
 def test_an_unknown_mode_is_refused(cube):
     with pytest.raises(PalpateError, match="'exact' is unknown; give consistent or paper"):
-        cube.touch(0, [1, 0, 0], PRESS, mode="exact")
+        touch_at(cube, 0, [1, 0, 0], PRESS, ContactSettings(mode="exact"))

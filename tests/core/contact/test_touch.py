@@ -2,6 +2,9 @@ import numpy as np
 import pytest
 
 from palpate.core.contact.equations import area_coordinates, one_node_force, two_node_forces
+from palpate.core.contact.press import ContactSettings
+from palpate.core.contact.single_press import press_points, touch_at, touch_nearest
+from palpate.core.contact.touches import contact_displacement
 from palpate.core.errors import PalpateError
 
 PRESS = np.array([0.001, -0.0005, -0.004])
@@ -14,7 +17,7 @@ def free_triangles(body):
 def test_a_press_on_a_node_gives_equation_9(body):
     triangle = free_triangles(body)[7]
     for corner in range(3):
-        touch = body.touch(triangle, np.eye(3)[corner], PRESS)
+        touch = touch_at(body, triangle, np.eye(3)[corner], PRESS)
         node = np.searchsorted(body.compliance.free_surface, touch.triangle[corner])
         expected = one_node_force(body.compliance.block(node, node) / body.young_modulus, PRESS)
         np.testing.assert_allclose(touch.nodal_forces[corner], expected, rtol=1e-9)
@@ -23,14 +26,14 @@ def test_a_press_on_a_node_gives_equation_9(body):
 
 
 def test_a_pressed_node_moves_by_exactly_the_finger(body):
-    touch = body.touch(free_triangles(body)[3], [1, 0, 0], PRESS)
+    touch = touch_at(body, free_triangles(body)[3], [1, 0, 0], PRESS)
     moved = body.deform(touch.triangle, touch.nodal_forces)
-    np.testing.assert_allclose(body.contact_displacement(touch, moved), PRESS, rtol=1e-6)
+    np.testing.assert_allclose(contact_displacement(body, touch, moved), PRESS, rtol=1e-6)
 
 
 def test_deformation_equals_a_sparse_solve_with_the_same_forces(body, rng, solved_displacements):
     for triangle in rng.choice(len(body.mesh.surface_triangles), 5):
-        touch = body.touch(triangle, rng.dirichlet([1, 1, 1]), PRESS)
+        touch = touch_at(body, triangle, rng.dirichlet([1, 1, 1]), PRESS)
         forces = np.zeros_like(body.mesh.nodes)
         forces[touch.triangle] = touch.nodal_forces
         expected = solved_displacements(body, forces)[body.compliance.free_surface]
@@ -60,21 +63,25 @@ def test_force_is_continuous_across_edges(body, rng):
             alpha = np.zeros(3)
             alpha[triangles[number] == a] = share
             alpha[triangles[number] == b] = 1 - share
-            forces.append(body.touch(number, alpha, PRESS).force)
+            forces.append(touch_at(body, number, alpha, PRESS).force)
         np.testing.assert_allclose(forces[0], forces[1], rtol=1e-12)
 
 
 def test_force_is_linear_in_depth_and_modulus(body):
     triangle, alpha = free_triangles(body)[5], [0.2, 0.3, 0.5]
-    once = body.touch(triangle, alpha, PRESS, 100.0).force
-    np.testing.assert_allclose(body.touch(triangle, alpha, 3 * PRESS, 100.0).force, 3 * once)
-    np.testing.assert_allclose(body.touch(triangle, alpha, PRESS, 700.0).force, 7 * once)
+    once = touch_at(body, triangle, alpha, PRESS, ContactSettings(100.0)).force
+    np.testing.assert_allclose(
+        touch_at(body, triangle, alpha, 3 * PRESS, ContactSettings(100.0)).force, 3 * once
+    )
+    np.testing.assert_allclose(
+        touch_at(body, triangle, alpha, PRESS, ContactSettings(700.0)).force, 7 * once
+    )
 
 
 def test_the_felt_force_resists_every_displacement(body, rng):
     for triangle in rng.choice(len(body.mesh.surface_triangles), 50):
         u = rng.normal(size=3) * 0.001
-        assert body.touch(triangle, rng.dirichlet([1, 1, 1]), u).force @ u < 0
+        assert touch_at(body, triangle, rng.dirichlet([1, 1, 1]), u).force @ u < 0
 
 
 def test_touching_is_reciprocal(body, rng):
@@ -92,13 +99,13 @@ def test_a_pinned_corner_feels_firm_and_stays_where_it_is(body):
     pinned = np.isin(body.mesh.surface_triangles, body.fixed)
     triangle = int(np.flatnonzero(pinned.any(axis=1))[0])
     corner = int(np.flatnonzero(pinned[triangle])[0])
-    touch = body.touch(triangle, np.eye(3)[corner], PRESS)
+    touch = touch_at(body, triangle, np.eye(3)[corner], PRESS)
     assert np.isfinite(touch.force).all()
     stiffest = 1 / np.linalg.eigvalsh(body.compliance.diagonal()).min()
     np.testing.assert_allclose(touch.force, -stiffest * body.young_modulus * PRESS)
     moved = body.deform(touch.triangle, touch.nodal_forces)
     assert not np.any(moved)
-    assert not np.any(body.contact_displacement(touch, moved))
+    assert not np.any(contact_displacement(body, touch, moved))
 
 
 def test_area_coordinates_rebuild_the_point(rng):
@@ -108,7 +115,7 @@ def test_area_coordinates_rebuild_the_point(rng):
 
 
 def test_touch_nearest_takes_the_closest_surface_point(cube):
-    touch = cube.touch_nearest([0.02, 0.03, 0.08], [0, 0, -0.005])
+    touch = touch_nearest(cube, [0.02, 0.03, 0.08], [0, 0, -0.005])
     np.testing.assert_allclose(touch.point, [0.02, 0.03, 0.05], atol=1e-12)
     assert touch.force[2] > 0
 
@@ -116,16 +123,16 @@ def test_touch_nearest_takes_the_closest_surface_point(cube):
 @pytest.mark.parametrize("at", [[0, 0], [0, 0, np.nan], [np.inf, 0, 0]])
 def test_a_place_that_is_no_point_is_refused(cube, at):
     with pytest.raises(PalpateError, match="--at"):
-        cube.touch_nearest(at, [0, 0, 0])
+        touch_nearest(cube, at, [0, 0, 0])
 
 
 @pytest.mark.parametrize("modulus", [0.0, -1.0, np.nan, np.inf])
 def test_a_modulus_that_is_none_is_refused(cube, modulus):
     at, by = [0.02, 0.03, 0.08], [0, 0, -0.005]
     with pytest.raises(PalpateError, match=f"modulus is {modulus} Pa"):
-        cube.touch_nearest(at, by, modulus)
+        touch_nearest(cube, at, by, ContactSettings(modulus))
     with pytest.raises(PalpateError, match=f"modulus is {modulus} Pa"):
-        cube.touch_several([at], [by], modulus)
+        press_points(cube, [at], [by], ContactSettings(modulus))
     with pytest.raises(PalpateError, match=f"modulus is {modulus} Pa"):
         cube.deform([0], [[0, 0, 1.0]], modulus)
     assert cube.modulus(None) == cube.young_modulus

@@ -6,6 +6,9 @@ import numpy as np
 import pytest
 
 from palpate.core.body.soft_body import SoftBody
+from palpate.core.contact.press import ContactSettings
+from palpate.core.contact.single_press import touch_nearest
+from palpate.core.contact.touches import contact_displacement
 from palpate.core.shape.meeting import FingerLoad, Meeting, settled
 from palpate.core.shape.shapes import LinearShape
 from palpate.core.shape.solid.free_solid import FreeSolid
@@ -50,7 +53,7 @@ def newton(body, nodes, forces):
 
 
 def touch(body, at, by):
-    made = body.touch_nearest(at, by, YOUNG)
+    made = touch_nearest(body, at, by, ContactSettings(YOUNG))
     return made, FingerLoad(made.triangle, made.nodal_forces)
 
 
@@ -67,7 +70,7 @@ def test_the_touched_place_goes_where_the_finger_goes(cube, law, press):
     way = np.linalg.norm(press[1])
 
     def missed(displacements):
-        return np.linalg.norm(cube.contact_displacement(made, displacements) - press[1]) / way
+        return np.linalg.norm(contact_displacement(cube, made, displacements) - press[1]) / way
 
     # Under the same force the shape is elsewhere, so that there is something to do.
     assert missed(alone) > 0.05

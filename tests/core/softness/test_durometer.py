@@ -10,7 +10,8 @@ from palpate.core.compliance.surface_compliance import surface_compliance
 from palpate.core.contact.near_field.half_space import own_displacement, surface_displacement
 from palpate.core.errors import PalpateError
 from palpate.core.mesh.tet_mesh import TetMesh
-from palpate.core.softness.durometer import balanced, block_reading, read_durometer
+from palpate.core.softness.durometer import block_reading, read_durometer
+from palpate.core.softness.durometer_balance import balanced
 from palpate.core.softness.durometer_points import Seat, rings
 from palpate.core.softness.scales.durometer_type import TYPE_00, TYPE_A, TYPES
 from palpate.core.softness.scales.indentation import indenter_force

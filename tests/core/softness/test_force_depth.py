@@ -7,12 +7,14 @@ from xml.etree import ElementTree as ET
 import numpy as np
 import pytest
 
-from palpate.core.contact.tool.tool_contact import press_tool
+from palpate.core.contact.place import nearest_place
+from palpate.core.contact.press import ContactSettings
+from palpate.core.contact.single_press import press_tool, touch_nearest
 from palpate.core.contact.tool.tools import plate, rod, sphere
 from palpate.core.errors import PalpateError
 from palpate.core.softness.curve_picture import curve_svg, ticks
 from palpate.core.softness.force_depth import facing_pose, force_depth_curve, usual_depth
-from palpate.core.softness.place import nearest_place, thickness
+from palpate.core.softness.parallel_rays import thickness
 
 MIDDLE = (0.041, 0.0385, 0.05)
 # Large ones: their contact points are few.
@@ -29,7 +31,7 @@ def test_a_place_looks_straight_into_the_body_and_through_it(coarse_block):
 
 def test_a_point_curve_is_the_touch_made_longer(coarse_block):
     curve = force_depth_curve(coarse_block, MIDDLE, 0.004, steps=4, young_modulus=5e4)
-    touch = coarse_block.touch_nearest(MIDDLE, (0, 0, -0.004), 5e4)
+    touch = touch_nearest(coarse_block, MIDDLE, (0, 0, -0.004), ContactSettings(5e4))
     assert curve.depths.tolist() == pytest.approx([0, 0.001, 0.002, 0.003, 0.004])
     assert curve.forces[-1] == pytest.approx(touch.force[2], rel=1e-9)
     np.testing.assert_allclose(curve.stiffness, curve.secant)

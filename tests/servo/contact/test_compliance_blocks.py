@@ -10,6 +10,8 @@ from palpate_servo import Body, Compliance, Pointer
 
 from palpate.core.bake.steps import BakeSettings, bake
 from palpate.core.body import body_file
+from palpate.core.contact.single_press import touch_at
+from palpate.core.contact.touches import contact_displacement
 from palpate.core.errors import BodyFileError
 from palpate.core.mesh.tet_mesh import TetMesh
 from palpate.core.servo.session import native_body, native_compliance, servo_on
@@ -59,12 +61,12 @@ def test_the_touched_point_moves_as_the_deformed_surface_does(body):
     native = native_body(body)
     precision = 1e-6  # deform sums in float32
     for triangle in rng.integers(0, len(body.mesh.surface_triangles), 300):
-        touch = body.touch(triangle, rng.dirichlet([1, 1, 1]), rng.normal(size=3) * 0.003)
+        touch = touch_at(body, triangle, rng.dirichlet([1, 1, 1]), rng.normal(size=3) * 0.003)
         moved = native.surface_displacement(
             triangle, touch.alpha, touch.nodal_forces, body.young_modulus
         )
         shape = body.deform(touch.triangle, touch.nodal_forces)
-        expected = body.contact_displacement(touch, shape)
+        expected = contact_displacement(body, touch, shape)
         assert np.abs(moved - expected).max() <= precision * np.abs(shape).max()
 
 
@@ -80,9 +82,9 @@ def test_snapshots_and_samples_tell_where_the_surface_is(body, eventually):
         eventually(lambda: np.allclose(servo.snapshot().probe, pressed))
         snapshot = servo.snapshot()
         samples = servo.samples()
-    touch = body.touch(snapshot.triangle_index, snapshot.alpha, snapshot.probe - snapshot.proxy)
+    touch = touch_at(body, snapshot.triangle_index, snapshot.alpha, snapshot.probe - snapshot.proxy)
     shape = body.deform(touch.triangle, snapshot.nodal_forces)
-    moved = body.contact_displacement(touch, shape)
+    moved = contact_displacement(body, touch, shape)
     np.testing.assert_allclose(snapshot.surface_point - snapshot.proxy, moved, atol=1e-8)
     assert np.linalg.norm(moved) > 1e-4
     touching = np.abs(samples["force"]).max(axis=1) > 0

@@ -4,15 +4,21 @@ import numpy as np
 import pytest
 from palpate_servo import Pointer
 from palpate_servo.harness import SteppedFingers
+from referees.softened_points import (
+    STRONG,
+    corrected_forces,
+    coupled,
+    couplings,
+    relation_at,
+    share_of,
+)
 
 from palpate.core.bake.steps import BakeSettings, bake
-from palpate.core.contact.several_contacts import told_apart
+from palpate.core.contact.place import compliance_between
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.mesh.tet_mesh import TetMesh
 from palpate.core.servo.session import native_body, servo_on
 from palpate.core.servo.settings import Settings
-from palpate.core.shape.force_at_depth.felt_coupling import STRONG, coupled, couplings, share_of
-from palpate.core.shape.force_at_depth.felt_force import contact_relation, corrected_touch
 from palpate.core.shape.force_at_depth.softening_table import SofteningTable
 from palpate.core.stiffness.pins import PinNodes
 
@@ -55,7 +61,7 @@ def test_native_forces_are_those_of_the_reference(baked, table, surface, mode):
     for _ in range(1000):
         triangle = int(rng.integers(len(baked.mesh.surface_triangles)))
         alpha, u = random_alpha(rng), rng.normal(size=3) * 10 ** rng.uniform(-5, -1)
-        expected = corrected_touch(baked, table.values, triangle, alpha, u, mode=mode).nodal_forces
+        expected = corrected_forces(baked, table.values, triangle, alpha, u, mode)
         nodal, force = surface.contact(triangle, alpha, u, baked.young_modulus, mode, "corrected")
         scale = np.abs(expected).max()
         assert np.abs(nodal - expected).max() <= 1e-9 * scale
@@ -79,8 +85,8 @@ def test_a_led_finger_feels_the_reference_and_the_snapshot_says_so(baked, table,
     for depth, force in zip(depths, forces, strict=True):
         u = shot.probe - shot.proxy
         u *= depth / depths[-1]
-        expected = corrected_touch(baked, table.values, shot.triangle_index, shot.alpha, u)
-        np.testing.assert_allclose(force, expected.force, rtol=1e-9, atol=1e-12)
+        expected = corrected_forces(baked, table.values, shot.triangle_index, shot.alpha, u)
+        np.testing.assert_allclose(force, -expected.sum(axis=0), rtol=1e-9, atol=1e-12)
     assert (np.diff(forces[:, 2]) > 0).all()
     linear, plain = pressed(surface, depths)
     assert forces[-1, 2] < 0.8 * linear[-1, 2]
@@ -150,14 +156,9 @@ def two_fingers(surface, places, **keywords):
 
 def coupled_relations(baked, table, shots):
     """The reference's compliance of the fingers, their relations and couplings."""
-    compliance = told_apart(
-        baked.contact_compliance(
-            [shot.triangle_index for shot in shots], [shot.alpha for shot in shots]
-        )
-    )
-    alone = [
-        contact_relation(baked, table.values, shot.triangle_index, shot.alpha) for shot in shots
-    ]
+    places = [shot.triangle_index for shot in shots], [shot.alpha for shot in shots]
+    compliance = compliance_between(baked, *places)
+    alone = [relation_at(baked, table.values, shot.triangle_index, shot.alpha) for shot in shots]
     strengths = couplings(compliance, alone)
     held = [coupled(one, strength) for one, strength in zip(alone, strengths, strict=True)]
     return compliance / baked.young_modulus, held, strengths

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 from palpate_servo import MAX_FINGERS, STATES, Body, LinkDevice, Pointer, Servo, harness
+from referees.push_cones import assert_least, yielded
 
 from palpate.core.bake.steps import BakeSettings, bake
-from palpate.core.contact import several_contacts
+from palpate.core.contact.single_press import press_points
 from palpate.core.contact.tool.tools import sphere
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.servo.session import displacements_of, native_body, native_tool
@@ -60,8 +61,10 @@ def pinched(whole, eventually):
 
 def test_two_pointers_press_as_the_reference_says(body, pinched):
     fingers = pinched.snapshot().fingers
-    touches = body.touch_several(
-        [finger.proxy for finger in fingers], [finger.probe - finger.proxy for finger in fingers]
+    touches = press_points(
+        body,
+        [finger.proxy for finger in fingers],
+        [finger.probe - finger.proxy for finger in fingers],
     )
     for finger, touch in zip(fingers, touches, strict=True):
         scale = np.abs(touch.force).max()
@@ -98,7 +101,7 @@ def test_switching_off_silences_every_finger(pinched, eventually):
     assert not any(finger.output_force.any() for finger in pinched.snapshot().fingers)
 
 
-def test_native_contacts_are_those_of_core_also_on_their_cones():
+def test_forces_are_least_also_on_their_cones():
     rng = np.random.default_rng(10)
     limited = 0
     for _ in range(300):
@@ -106,16 +109,14 @@ def test_native_contacts_are_those_of_core_also_on_their_cones():
         factors = rng.normal(size=(3 * count, 3 * count))
         matrix = factors @ factors.T + 0.2 * np.eye(3 * count)
         compliance = matrix.reshape(count, 3, count, 3).transpose(0, 2, 1, 3)
+        if min(yielded(compliance)) < 0.04:
+            continue  # Two on one place: they are told apart first.
         asked, pushes = rng.normal(size=(2, count, 3))
-        expected = several_contacts.solve_contacts(compliance, asked, pushes)
         found = np.zeros((count, 3))
         for _ in range(40):  # Ticks at rest: each goes on from the one before.
             found = harness.solve_contacts(compliance, asked, pushes, found)
-        scale = np.abs(expected).max()
-        np.testing.assert_allclose(found, expected, atol=1e-7 * max(scale, 1e-3))
-        limited += not np.allclose(
-            np.linalg.solve(matrix, asked.ravel()), expected.ravel(), atol=1e-6 * scale
-        )
+        kinds = assert_least(compliance, asked, pushes, found, 1e-7)
+        limited += set(kinds) != {"held"}
     assert limited > 100
     with pytest.raises(ValueError, match="not positive definite"):
         harness.solve_contacts(-compliance, asked, pushes)

@@ -1,41 +1,35 @@
-"""Several moving fingers by the numpy reference, their god objects those of the servo."""
-
-from dataclasses import replace
+"""Several moving fingers, tick by tick: when each touches, and what it presses."""
 
 import numpy as np
 import pytest
-from palpate_servo.harness import Proxy
+from bodies.shared import nodal_forces_of
+from palpate_servo.harness import Proxy, SteppedFingers
 
 from palpate.core.bake.steps import BakeSettings, bake
-from palpate.core.contact.pressing_fingers import fingers_at, press_fingers
+from palpate.core.contact.place import compliance_between
+from palpate.core.contact.single_press import touch_nearest
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.servo.session import native_body
+from palpate.core.servo.settings import Settings
 from palpate.core.stiffness.pins import PinNodes
 
 TOP, SIDE = 0.05, 0.05
+MODULUS = 10_000.0
 
 
 @pytest.fixture(scope="module")
 def cube():
     mesh, fixed = paper_cube()
-    return bake(mesh, BakeSettings(0.49, 10_000.0, PinNodes(fixed)))[0]
+    return bake(mesh, BakeSettings(0.49, MODULUS, PinNodes(fixed)))[0]
 
 
-def followed(body, path):
-    """Fingers after every tick of ``path`` (ticks, m, 3)."""
-    native = native_body(body)
-    god_objects = [Proxy(native) for _ in path[0]]
-    for one, probe in zip(god_objects, path[0], strict=True):
-        one.restart(probe)
-    fingers, ticks = fingers_at(body, path[0]), []
-    for probes in path:
-        fingers = press_fingers(body, god_objects, fingers, probes)
-        ticks.append(fingers)
-    return ticks
+def fingers_on(body, places):
+    return SteppedFingers(native_body(body, whole=True), places, Settings(MODULUS))
 
 
-def forces_of(ticks):
-    return np.array([[finger.force for finger in fingers] for fingers in ticks])
+def forces_along(body, path):
+    """Forces (ticks, m, 3) on fingers led along ``path`` (ticks, m, 3)."""
+    return fingers_on(body, path[0]).follow(path)[0]
 
 
 def beside(s, apart):
@@ -82,11 +76,10 @@ def test_contacts_come_and_go_without_a_jump(cube, name):
     """The largest change of force in a tick shrinks as the ticks become shorter."""
     largest = []
     for count in (100, 400):
-        ticks = followed(cube, PATHS[name](np.linspace(0, 1, count)))
-        forces = forces_of(ticks)
+        forces = forces_along(cube, PATHS[name](np.linspace(0, 1, count)))
         largest.append(np.linalg.norm(np.diff(forces, axis=0), axis=2).max())
-    touched = [[finger.touch is not None for finger in fingers] for fingers in ticks]
-    assert {tuple(one) for one in touched} >= {(False, False), (True, True)}
+    pressing = {tuple(one) for one in forces.any(axis=2).tolist()}
+    assert pressing >= {(False, False), (True, True)}
     assert largest[1] < 0.4 * largest[0]
     assert largest[1] < 0.1 * np.linalg.norm(forces, axis=2).max()
 
@@ -100,10 +93,10 @@ def test_a_contact_that_slides_ends_without_a_jump(cube):
         z = TOP + 0.001 - 0.005 * np.concatenate([down, 1 + 0 * s])
         still, y = np.full_like(z, 0.02), np.full_like(z, 0.024)
         path = np.stack([np.stack([still, y, z], 1), np.stack([moving, y, z], 1)], 1)
-        ticks = followed(cube, path)
-        assert ticks[20][1].touch is not None
-        assert ticks[-1][1].touch is None
-        largest.append(np.linalg.norm(np.diff(forces_of(ticks[20:]), axis=0), axis=2).max())
+        forces = forces_along(cube, path)
+        assert forces[20, 1].any()
+        assert not forces[-1, 1].any()
+        largest.append(np.linalg.norm(np.diff(forces[20:], axis=0), axis=2).max())
     assert largest[1] < 0.4 * largest[0]
 
 
@@ -112,55 +105,46 @@ def test_a_finger_is_met_where_the_other_has_moved_the_surface_to(cube):
     s = np.linspace(0, 1, 60)
     left = np.stack([0.008 * s - 0.001, 0 * s + 0.025, 0 * s + 0.03], axis=1)
     ahead = np.broadcast_to([SIDE + 1e-4, 0.025, 0.03], left.shape)
-    ticks = followed(cube, np.stack([left, ahead], axis=1))
-    first = next(tick for tick, (_, right) in enumerate(ticks) if right.touch is not None)
-    alone = forces_of(followed(cube, left[:, None]))[:, 0]
-    both = forces_of(ticks)
-    np.testing.assert_allclose(both[:first, 0], alone[:first], rtol=1e-12)
+    both = forces_along(cube, np.stack([left, ahead], axis=1))
+    alone = forces_along(cube, left[:, None])[:, 0]
+    first = int(both[:, 1].any(axis=1).argmax())
+    np.testing.assert_allclose(both[:first, 0], alone[:first], rtol=1e-9)
     assert first > 10
-    moved = [fingers[1].by_others[0] for fingers in ticks]
+    places = cube.closest_points.query(np.array([[0.0, 0.025, 0.03], [SIDE, 0.025, 0.03]]))
+    coupling = compliance_between(cube, places.triangle, places.alpha)[1, 0] / MODULUS
+    moved = [float((coupling @ -force)[0]) for force in alone]
     assert moved[first - 2] <= 1e-4 < moved[first - 1]
     assert np.linalg.norm(both[first, 1]) < 0.1 * np.linalg.norm(both[-1, 1])
-    assert both[-1, 1, 0] < 0
+    assert both[-1, 1, 0] > 0
 
 
 def test_the_surface_goes_where_both_fingers_are(cube):
-    ticks = followed(cube, pinching(np.linspace(0, 0.5, 100)))
-    touches = [finger.touch for finger in ticks[-1]]
-    nodes = np.concatenate([touch.triangle for touch in touches])
-    moved = cube.deform(nodes, np.concatenate([touch.nodal_forces for touch in touches]))
-    for touch, probe in zip(touches, pinching(np.array([0.5]))[0], strict=True):
-        surface = touch.point + cube.contact_displacement(touch, moved)
-        np.testing.assert_allclose(surface, probe, atol=1e-7)
+    fingers = fingers_on(cube, pinching(np.array([0.0]))[0])
+    fingers.follow(pinching(np.linspace(0, 0.5, 100)))
+    for shot in fingers.snapshot().fingers:
+        assert shot.touching
+        np.testing.assert_allclose(shot.surface_point, shot.probe, atol=1e-7)
 
 
 def test_one_finger_is_answered_as_it_always_was(cube):
     path = pinching(np.linspace(0, 1, 50))[:, :1]
-    native, ticks = native_body(cube), followed(cube, path)
-    proxy = Proxy(native)
+    proxy = Proxy(native_body(cube))
     proxy.restart(path[0, 0])
-    for (finger,), (probe,) in zip(ticks, path, strict=True):
+    for (force,), (probe,) in zip(forces_along(cube, path), path, strict=True):
         touching, at, triangle, alpha = proxy.move(probe)
-        assert touching == (finger.touch is not None)
+        assert touching == force.any()
         if touching:
-            alone = cube.touch(triangle, alpha, probe - at)
-            np.testing.assert_allclose(finger.touch.force, alone.force, rtol=1e-12)
+            alone = nodal_forces_of(cube, triangle, alpha, probe - at)
+            np.testing.assert_allclose(force, -alone.sum(axis=0), rtol=1e-9)
 
 
 def test_a_finger_that_is_lifted_leaves_nothing_behind(cube):
     """As when a fault silences it: the other goes on as if it were alone."""
-    ticks = followed(cube, pinching(np.linspace(0, 0.5, 100)))
-    left, right = ticks[-1]
-    lifted = replace(right, touch=None)
-    native = native_body(cube)
     path = pinching(np.linspace(0, 0.5, 100))
-    proxies = [Proxy(native), Proxy(native)]
-    for one, start in zip(proxies, path[0], strict=True):
-        one.restart(start)
-    proxies[0].follow_path(path[:, 0])
-    probes = np.array([path[-1, 0], [2 * SIDE, 0.025, 0.03]])
-    fingers = (left, lifted)
-    for _ in range(2):
-        fingers = press_fingers(cube, proxies, fingers, probes)
-    alone = cube.touch_nearest([0, 0.025, 0.03], probes[0] - [0, 0.025, 0.03])
-    np.testing.assert_allclose(fingers[0].touch.force, alone.force, rtol=1e-6)
+    fingers = fingers_on(cube, path[0])
+    fingers.follow(path)
+    away = np.array([2 * SIDE, 0.025, 0.03])
+    fingers.set_down(away, 1)
+    forces = fingers.follow(np.tile([path[-1, 0], away], (3, 1, 1)))[0]
+    alone = touch_nearest(cube, [0, 0.025, 0.03], path[-1, 0] - [0, 0.025, 0.03])
+    np.testing.assert_allclose(forces[-1, 0], alone.force, rtol=1e-6)

@@ -1,16 +1,18 @@
-"""Friction of the servo's tools against the numpy reference of core, and what it must never do."""
+"""Friction of the servo's tools: at rest that of the engine, and what it must never do."""
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from palpate.core.contact.tool.tool_contact import follow_tool, set_down
-from palpate.core.contact.tool.tools import Pose, rod, sphere
+from palpate.core.contact.press import ContactSettings, Press
+from palpate.core.contact.tool.pose import Pose
+from palpate.core.contact.tool.tools import rod, sphere
 from palpate.core.errors import PalpateError
 from palpate.core.servo.session import native_tool
 
 TOOLS = {"sphere": sphere(0.018), "rod": rod(0.014, 0.015)}
 FRICTION = 0.4
+TICKS_TO_REST = 100
 
 
 def above(body, tool):
@@ -37,17 +39,17 @@ def aside_and_push(contact):
 
 
 @pytest.mark.parametrize("name", list(TOOLS))
-def test_forces_are_those_of_the_reference_on_the_same_way(body, surface, name):
+def test_ticks_at_rest_are_the_engine_on_the_same_way(body, surface, name):
     tool = TOOLS[name]
     places = above(body, tool) + press_shear_unload()
     contact = native_tool(body, surface, tool, friction=FRICTION)
     contact.restart(places[0], np.eye(3))
-    touch = set_down(body, tool, Pose.at(places[0]), friction=FRICTION)
+    press = Press(body, [tool], ContactSettings(friction=FRICTION))
     forces, expected, torques, slid = [], [], [], 0.0
     for place in places:
-        touch = follow_tool(touch, Pose.at(place))
-        for _ in range(3):
-            contact.follow(touch.pose.position, touch.pose.rotation, body.young_modulus)
+        (touch,) = press.to([Pose.at(place)])
+        for _ in range(TICKS_TO_REST):
+            contact.follow(place, np.eye(3), body.young_modulus)
         assert contact.touching == touch.touching
         forces.append(contact.force)
         expected.append(touch.force)
@@ -56,8 +58,8 @@ def test_forces_are_those_of_the_reference_on_the_same_way(body, surface, name):
         slid = max(slid, np.linalg.norm(aside, axis=1).sum() / max(touch.pushes.sum(), 1e-12))
     assert slid > 0.9 * FRICTION
     scale = np.abs(expected).max()
-    np.testing.assert_allclose(forces, expected, atol=1e-4 * scale)
-    assert max(torques) < 1e-4 * scale * tool.reach
+    np.testing.assert_allclose(forces, expected, atol=1e-6 * scale)
+    assert max(torques) < 1e-6 * scale * tool.reach
 
 
 def test_the_cone_holds_on_any_way(body, surface):

@@ -17,6 +17,7 @@ import pytest
 from palpate.cli.main import main
 from palpate.core.bake.steps import BakeSettings, bake
 from palpate.core.body import body_file
+from palpate.core.contact.single_press import touch_nearest
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.servo.haply_models import DEFAULT_MODEL, haply_model
 from palpate.core.servo.session import (
@@ -164,7 +165,7 @@ def test_the_force_felt_is_that_of_a_press_in_the_plane(loop, cube, plane):
     assert math.dist(seen, report["position"]) <= farthest
 
     # The force: `palpate press` at that place, the part within the plane.
-    touch = cube.touch_nearest(at=shot.proxy, by=shot.probe - shot.proxy)
+    touch = touch_nearest(cube, at=shot.proxy, by=shot.probe - shot.proxy)
     assert shot.contact_force == pytest.approx(touch.force, rel=1e-6, abs=1e-9)
     wanted = rotation.T @ touch.force
     if plane == "leaning":

@@ -11,6 +11,7 @@ import pytest
 from palpate_servo import harness
 
 from palpate.core.bake.steps import BakeSettings, bake
+from palpate.core.contact.single_press import touch_nearest
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.servo.session import displacements_of, native_body, servo_on
 from palpate.core.servo.settings import Settings
@@ -127,7 +128,7 @@ def test_depth_force_and_stiffness_are_those_of_the_body(loop, cube, eventually)
     report = settled(device, eventually)
     probe = np.array(report["position"])
     top = np.array([probe[0], probe[1], 0.05])
-    expected = cube.touch_nearest(top, probe - top).force
+    expected = touch_nearest(cube, top, probe - top).force
     assert report["felt_force"][2] == pytest.approx(expected[2], rel=0.02)
 
 

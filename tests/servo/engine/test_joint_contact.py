@@ -8,7 +8,8 @@ from native_tip import native_tip
 from palpate_servo import ContactEngine
 from palpate_servo.harness import SteppedFingers
 
-from palpate.core.contact.tool.tools import Pose, plate, rod, sphere
+from palpate.core.contact.tool.pose import Pose
+from palpate.core.contact.tool.tools import plate, rod, sphere
 from palpate.core.servo.session import native_body, native_tool
 from palpate.core.servo.settings import Settings
 

@@ -6,7 +6,7 @@
 //! reach of the tool along n; here it is the greatest among the directions within the limit: the
 //! distance to the tool grown by a cone. A tool may touch parts that face different ways, so a point
 //! may besides be pushed near the direction that it faces itself, unless the tool has passed through
-//! a part. Readable reference: `core/contact/tool/tilt.py`.
+//! a part.
 
 use std::f64::consts::PI;
 

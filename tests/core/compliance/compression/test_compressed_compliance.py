@@ -8,6 +8,8 @@ from palpate_servo import Compliance
 from palpate.core.body.soft_body import SoftBody
 from palpate.core.compliance.compression.compress import compress
 from palpate.core.compliance.compression.compressed_compliance import CompressedCompliance
+from palpate.core.contact.press import ContactSettings
+from palpate.core.contact.single_press import touch_at
 from palpate.core.errors import PalpateError
 
 
@@ -94,10 +96,11 @@ def test_no_forces_move_nothing(compressed):
 
 def test_a_soft_body_feels_the_same_and_moves_nearly_the_same(compressed, mouse):
     body = SoftBody(mouse.mesh, mouse.fixed, mouse.poisson_ratio, compressed, mouse.young_modulus)
+    paper = ContactSettings(mode="paper")
     pressed = (50, [0.2, 0.3, 0.5], [0.001, 0, -0.003])
-    touch, ours = mouse.touch(*pressed), body.touch(*pressed)
+    touch, ours = touch_at(mouse, *pressed), touch_at(body, *pressed)
     np.testing.assert_allclose(ours.nodal_forces, touch.nodal_forces, rtol=1e-3)
-    touch, ours = mouse.touch(*pressed, mode="paper"), body.touch(*pressed, mode="paper")
+    touch, ours = touch_at(mouse, *pressed, paper), touch_at(body, *pressed, paper)
     np.testing.assert_array_equal(ours.nodal_forces, touch.nodal_forces)
     expected = mouse.deform(touch.triangle, touch.nodal_forces)
     moved = body.deform(ours.triangle, ours.nodal_forces)

@@ -8,8 +8,9 @@ from referees.closed_forms import hertz, punch, small_contacts
 
 from palpate.core.contact.near_field.compliance_beneath import near_correction
 from palpate.core.contact.near_field.regular_field import RegularField
-from palpate.core.contact.tool.tool_contact import press_tool
-from palpate.core.contact.tool.tools import Pose, sphere
+from palpate.core.contact.press import ContactSettings, Press
+from palpate.core.contact.tool.pose import Pose
+from palpate.core.contact.tool.tools import sphere
 
 ELEMENT = 1e-3
 CORE = 5
@@ -47,10 +48,9 @@ def test_a_sphere_that_is_pushed_aside_sticks_and_slips_as_cattaneo_and_mindlin_
     # x_slip = 3 mu P (2 - nu) / (16 a G); K. L. Johnson, Contact Mechanics (1985), 7.2.
     tool, friction, radius = sphere(0.1), 0.5, 4 * ELEMENT
     depth = radius**2 / 0.1
-    touch = None
+    press = Press(block, [tool], ContactSettings(friction=friction), spread=(points, None))
     for share in (-0.1, 0.3, 0.6, 0.8, 1.0):
-        pose = Pose.at([0.0, 0.0, 0.1 - share * depth])
-        touch = press_tool(block, tool, pose, friction=friction, start=touch, surface=points)
+        (touch,) = press.to([Pose.at([0.0, 0.0, 0.1 - share * depth])])
     normal_lift, side_lift = (lift(block, points, ELEMENT, axis) for axis in (2, 0))
     push = touch.force[2]
     contact_radius = np.sqrt(0.1 * (depth - normal_lift * push))
@@ -58,7 +58,7 @@ def test_a_sphere_that_is_pushed_aside_sticks_and_slips_as_cattaneo_and_mindlin_
     slips = 3 * friction * push * (2 - 0.45) / (16 * contact_radius * shear)
     for share in (0.15, 0.3, 0.45, 0.6, 0.75, 1.5):
         pose = Pose.at([share * slips, 0.0, 0.1 - depth])
-        touch = press_tool(block, tool, pose, friction=friction, start=touch)
+        (touch,) = press.to([pose])
         drag = -touch.force[0]
         moved = share * slips - side_lift * drag
         expected = friction * push * (1 - max(0.0, 1 - moved / slips) ** 1.5)

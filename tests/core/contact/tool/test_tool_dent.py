@@ -5,9 +5,10 @@ import pytest
 
 from palpate.core.body.drawn_map import DrawnMap
 from palpate.core.contact.near_field.contact_points import contact_points
-from palpate.core.contact.tool.tool_contact import press_tool
+from palpate.core.contact.single_press import press_tool
+from palpate.core.contact.tool.pose import Pose
 from palpate.core.contact.tool.tool_dent import FADE, PressingTool, kept_out
-from palpate.core.contact.tool.tools import Pose, plate, sphere
+from palpate.core.contact.tool.tools import plate, sphere
 
 RADIUS, DEPTH = 0.008, 0.002
 PUSHED = np.array([0.0, 0.0, 1.0])

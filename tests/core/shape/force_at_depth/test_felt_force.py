@@ -2,20 +2,17 @@
 
 import numpy as np
 import pytest
+from referees.softened_points import Relation
 from scipy.sparse.linalg import splu
 
 from palpate.core.body.soft_body import SoftBody
 from palpate.core.compliance.surface_compliance import surface_compliance
 from palpate.core.contact.near_field.contact_points import node_normals
+from palpate.core.contact.press import ContactSettings
+from palpate.core.contact.single_press import touch_at
 from palpate.core.errors import PalpateError
 from palpate.core.mesh.paper_cube import paper_cube
-from palpate.core.shape.force_at_depth.felt_force import (
-    LEAST_SHARE,
-    Relation,
-    contact_relation,
-    corrected_touch,
-    felt_name,
-)
+from palpate.core.shape.force_at_depth.felt_force import LEAST_SHARE, felt_name
 from palpate.core.shape.force_at_depth.softening import node_softening
 from palpate.core.shape.solid.free_solid import FreeSolid
 from palpate.core.stiffness.assembly import assemble
@@ -80,6 +77,15 @@ def newton_forces(solid, nodes, alpha, displacements):
     return np.array(found)
 
 
+def felt(body, softenings, triangle, alpha, displacements):
+    """Forces (k, 3) on the body at unit modulus under displacements (k, 3)."""
+    unit = ContactSettings(1.0)
+    touches = [
+        touch_at(body, triangle, alpha, u, unit, softenings=softenings) for u in displacements
+    ]
+    return -np.array([touch.force for touch in touches])
+
+
 def relations(count=200):
     """Relations of all kinds with displacements from shallow to absurd, on both sides of t = 0."""
     chance = np.random.default_rng(3)
@@ -139,7 +145,7 @@ def test_round_a_closed_path_no_work_is_done():
 def test_a_shallow_press_feels_the_linear_force(body, softenings):
     for depth in (1e-6, 1e-7):
         touch = (120, [0.2, 0.3, 0.5], [0.0, 0.3 * depth, -depth])
-        linear, found = body.touch(*touch), corrected_touch(body, softenings, *touch)
+        linear, found = (touch_at(body, *touch, softenings=table) for table in (None, softenings))
         gone = np.linalg.norm(found.force - linear.force) / np.linalg.norm(linear.force)
         assert 0 < gone < 100 * depth
 
@@ -152,14 +158,14 @@ def test_the_force_is_the_same_from_both_sides_of_an_edge(body, softenings, mode
     other = next(
         t for t, corners in enumerate(triangles) if t != first and np.isin(shared, corners).all()
     )
-    u = np.array([0.002, -0.003, -0.006])
+    u, settings = np.array([0.002, -0.003, -0.006]), ContactSettings(mode=mode)
     forces = []
     for triangle in (first, other):
         alpha = np.where(triangles[triangle] == shared[0], 0.3, 0.0)
         alpha[triangles[triangle] == shared[1]] = 0.7
-        forces.append(corrected_touch(body, softenings, triangle, alpha, u, mode=mode).force)
+        forces.append(touch_at(body, triangle, alpha, u, settings, softenings=softenings).force)
     assert np.allclose(*forces, rtol=1e-12)
-    linear = body.touch(first, [0.3, 0.7, 0.0], u, mode=mode).force
+    linear = touch_at(body, first, [0.3, 0.7, 0.0], u, settings).force
     assert np.linalg.norm(forces[0] - linear) > 0.05 * np.linalg.norm(linear)
 
 
@@ -175,8 +181,7 @@ def test_at_a_node_it_follows_the_solid_to_its_order(formulation):
     inward = -node_normals(body.mesh)[np.searchsorted(body.mesh.surface_nodes, node)]
     depths = np.array([0.00025, 0.0005])
     true = newton_forces(solid, [node], [1.0], depths[:, None] * inward)
-    relation = contact_relation(body, softenings, int(triangle), alpha)
-    missed = np.array([relation.force(d * inward) for d in depths]) - true
+    missed = felt(body, softenings, int(triangle), alpha, depths[:, None] * inward) - true
     along = np.abs(missed @ inward) / (true @ inward)
     across = np.linalg.norm(missed, axis=1) / np.linalg.norm(true, axis=1)
     assert along[1] < 5e-4
@@ -204,9 +209,8 @@ def test_deep_presses_are_nearer_to_the_solid_than_the_linear_force(body, solid,
     for triangle, alpha, direction in presses:
         asked = depths[:, None] * direction
         true = newton_forces(solid, body.mesh.surface_triangles[triangle], alpha, asked)
-        relation = contact_relation(body, softenings, triangle, alpha)
-        wrong = np.array([relation.force(u) for u in asked]) - true
-        linear = asked @ relation.stiffness - true
+        wrong = felt(body, softenings, triangle, alpha, asked) - true
+        linear = felt(body, None, triangle, alpha, asked) - true
         share = np.linalg.norm(wrong, axis=1) / np.linalg.norm(linear, axis=1)
         assert share.max() < 0.5
 

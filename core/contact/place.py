@@ -1,4 +1,4 @@
-"""Place on a body's rest surface, with the inward direction."""
+"""Places on a body's rest surface, their inward directions, and the compliance between them."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..body.soft_body import SoftBody
-from ..contact.near_field.contact_points import smooth_corner_normals
 from ..errors import PalpateError
 from ..mesh.coordinates import refuse_unusable
 from ..sentence import Sentence
-from .parallel_rays import crossings
+from .equations import coupled_compliance
+from .near_field.contact_points import smooth_corner_normals
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,9 +57,14 @@ def nearest_place(body: SoftBody, at: ArrayLike) -> Place:
     return Place(nearest.position[0], axis / np.linalg.norm(axis), triangle, alpha)
 
 
-def thickness(body: SoftBody, place: Place) -> float:
-    """Thickness of the body along the axis, metres."""
-    met = crossings(body.mesh, place.position[None], place.axis)
-    size = float(np.ptp(body.mesh.nodes, axis=0).max())
-    leaving = met.heights[~met.inward & (met.heights > 1e-9 * size)]
-    return float(leaving.min(initial=size))
+def compliance_between(
+    body: SoftBody, triangles: ArrayLike, alphas: ArrayLike
+) -> NDArray[np.float64]:
+    """C_pq at unit modulus, (m, m, 3, 3), between places on triangles (m,) with alphas (m, 3).
+
+    C_pq is how far place p moves per newton on place q; see :func:`.equations.coupled_compliance`.
+    """
+    local = body.mesh.surface_local_triangles[np.asarray(triangles, dtype=np.int64)]
+    count = len(local)
+    blocks = body.surface_blocks(local, local).reshape(count, 3, count, 3, 3, 3)
+    return coupled_compliance(blocks, alphas)

@@ -1,0 +1,198 @@
+"""Fingers pressed on a body without a clock: by the native engine, stepped until it is at rest.
+
+Scripts, the command line, frames of an animation and what measures softness press by this, and feel
+what the servo's fingers feel that have come to the same places.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeAlias, cast
+
+import numpy as np
+from numpy.typing import NDArray
+from palpate_servo import ContactEngine, ToolSurface
+
+from ..body.native_body import native_body
+from ..body.soft_body import SoftBody
+from ..errors import PalpateError
+from .equations import CONTACT_MODES, ContactMode
+from .near_field.compliance_beneath import NearCorrection
+from .near_field.contact_points import ContactPoints
+from .tool.native_tool import native_shape, native_surface
+from .tool.pose import Pose
+from .tool.tool_surface import surface_and_correction
+from .tool.tools import Tool
+from .touches import PointTouch, ToolTouch, Touch
+
+if TYPE_CHECKING:
+    # Types only: the module itself does not have them.
+    from palpate_servo import Body, SettledPoint, SettledTool
+    from palpate_servo import Tool as NativeTool
+
+Array = NDArray[np.float64]
+Spread: TypeAlias = tuple[ContactPoints, NearCorrection | None]
+"""Contact points, and what their compliance is besides the mesh's; None for the mesh's alone."""
+
+
+@dataclass(frozen=True)
+class ContactSettings:
+    """How fingers are answered.
+
+    Attributes
+    ----------
+    young_modulus : pascal; None for the body's own.
+    friction : coefficient of Coulomb friction between tools and body; points stick anyhow.
+    mode : of points. In ``consistent`` the contact point moves by exactly the finger's displacement
+        (but for pinned nodes, which do not move), fingers feel each other through the body and may
+        only push. In ``paper`` each is answered by (11)-(14) as if it were alone.
+    """
+
+    young_modulus: float | None = None
+    friction: float = 0.0
+    mode: ContactMode = "consistent"
+
+
+USUAL = ContactSettings()
+
+
+@dataclass(frozen=True, eq=False)
+class PointGoal:
+    """A point on surface triangle number ``triangle`` at area coordinates ``alpha`` (3,), which it
+    moves ``by`` (3,), metres. One that does not travel stays and pushes back along the normal.
+    """
+
+    triangle: int
+    alpha: Array
+    by: Array
+
+
+class Press:
+    """Fingers on one body, warm: each call goes on from where the last one came to."""
+
+    def __init__(
+        self,
+        body: SoftBody,
+        tips: Sequence[Tool | None],
+        settings: ContactSettings = USUAL,
+        *,
+        softenings: Array | None = None,
+        spread: Spread | None = None,
+    ) -> None:
+        """Fingers that touch nothing yet.
+
+        Parameters
+        ----------
+        tips : a tool for each finger, None for a point.
+        softenings : (s, 4), for the corrected force of points
+            (:mod:`..shape.force_at_depth.felt_force`), zero where unknown; None for the linear one.
+        spread : contact points for all tools, in place of those of :mod:`.tool.tool_surface`.
+
+        Raises
+        ------
+        PalpateError
+            Settings or a number of fingers that cannot be; a tool too small for the body.
+        """
+        self.body, self.tips = body, tuple(tips)
+        modulus = body.modulus(settings.young_modulus)
+        if settings.mode not in CONTACT_MODES:
+            raise PalpateError(
+                "contact mode {mode} is unknown; give {known}",
+                mode=repr(settings.mode),
+                known=" or ".join(CONTACT_MODES),
+            )
+        some_tool = any(tip is not None for tip in self.tips)
+        native = native_body(body, whole=some_tool or len(self.tips) > 1)
+        if softenings is not None:
+            known = np.flatnonzero(softenings.any(axis=1))
+            native.set_softenings(known, softenings[known])
+        try:
+            self._engine = ContactEngine(
+                native,
+                _native_tips(body, native, self.tips, spread),
+                young_modulus=modulus,
+                friction=settings.friction,
+                mode=settings.mode,
+                felt="linear" if softenings is None else "corrected",
+            )
+        except ValueError as problem:
+            raise PalpateError("press: {problem}", problem=problem) from problem
+
+    def to(self, goals: Sequence[PointGoal | Pose]) -> tuple[Touch, ...]:
+        """All fingers at their goals, one each, and everything at rest.
+
+        They go there together, straight, in strides so short that no tool jumps through a wall. The
+        first goals of tools are come to from outside, the way the body pushes the tool out.
+
+        Raises
+        ------
+        PalpateError
+            A goal that is none, or forces that do not come to rest.
+        """
+        targets = [
+            (goal.position, goal.rotation)
+            if isinstance(goal, Pose)
+            else (goal.triangle, goal.alpha, goal.by)
+            for goal in goals
+        ]
+        try:
+            settled = self._engine.settle(targets)
+        except (ValueError, RuntimeError) as problem:
+            raise PalpateError("press: {problem}", problem=problem) from problem
+        return tuple(_touch(self.body, *one) for one in zip(self.tips, goals, settled, strict=True))
+
+
+def _native_tips(
+    body: SoftBody,
+    native: Body,
+    tips: Sequence[Tool | None],
+    spread: Spread | None,
+) -> list[tuple[ToolSurface, NativeTool] | None]:
+    """Each tip's contact points and shape; those with the same points share them: so tools feel
+    each other's near field.
+    """
+    surfaces: dict[int, ToolSurface] = {}
+    native_tips: list[tuple[ToolSurface, NativeTool] | None] = [None] * len(tips)
+    for number, tool in enumerate(tips):
+        if tool is None:
+            continue
+        points, near = surface_and_correction(body, tool) if spread is None else spread
+        if id(points) not in surfaces:
+            surfaces[id(points)] = native_surface(native, points, near)
+        native_tips[number] = surfaces[id(points)], native_shape(tool)
+    return native_tips
+
+
+def _touch(
+    body: SoftBody, tip: Tool | None, goal: PointGoal | Pose, told: SettledPoint | SettledTool
+) -> Touch:
+    if tip is not None and isinstance(goal, Pose):
+        return _tool_touch(body, tip, goal, cast("SettledTool", told))
+    return _point_touch(body, cast("PointGoal", goal), cast("SettledPoint", told))
+
+
+def _point_touch(body: SoftBody, goal: PointGoal, told: SettledPoint) -> PointTouch:
+    corners = body.mesh.surface_triangles[goal.triangle]
+    point = goal.alpha @ body.mesh.nodes[corners]
+    return PointTouch(corners, goal.alpha, point, goal.by, told["force"], told["nodal_forces"])
+
+
+def _tool_touch(body: SoftBody, tool: Tool, pose: Pose, told: SettledTool) -> ToolTouch:
+    order = np.argsort(told["points"])
+    return ToolTouch(
+        tool=tool,
+        pose=pose,
+        force=told["force"],
+        torque=told["torque"],
+        stiffness=told["stiffness"],
+        points=told["points"][order],
+        places=told["places"][order],
+        displacements=told["displacements"][order],
+        normals=told["normals"][order],
+        forces=told["point_forces"][order],
+        pushes=told["pushes"][order],
+        areas=told["areas"][order],
+        nodes=body.mesh.surface_nodes[told["nodes"]],
+        nodal_forces=told["nodal_forces"],
+    )

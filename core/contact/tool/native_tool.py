@@ -1,0 +1,62 @@
+"""A tool and its contact points as native code holds them."""
+
+from __future__ import annotations
+
+from palpate_servo import Body, ToolContact, ToolSurface
+from palpate_servo import Tool as NativeTool
+
+from ...body.soft_body import SoftBody
+from ...errors import PalpateError
+from ..near_field.compliance_beneath import NearCorrection
+from ..near_field.contact_points import ContactPoints
+from .tool_surface import surface_and_correction
+from .tools import Tool
+
+
+def native_surface(native: Body, points: ContactPoints, near: NearCorrection | None) -> ToolSurface:
+    """Contact points on a whole native body; without ``near`` as the mesh's elements have it.
+
+    Raises
+    ------
+    ValueError
+        A body that is not whole, or points of another one.
+    """
+    return ToolSurface(
+        native,
+        points.positions,
+        points.normals,
+        points.triangles,
+        points.alphas,
+        points.areas,
+        None if near is None else near.arrays(),
+    )
+
+
+def native_shape(tool: Tool) -> NativeTool:
+    """The tool's shape alone."""
+    return NativeTool(tool.core, tool.radius)
+
+
+def native_tool(body: SoftBody, native: Body, tool: Tool, *, friction: float = 0.0) -> ToolContact:
+    """A tool as the native thread holds it, with all the memory that it will ever need.
+
+    Takes some tenths of a second: contact points are spread and what the mesh is too coarse for is
+    told from the nodes around each node.
+
+    Parameters
+    ----------
+    native : of ``native_body(body, whole=True)``, the one that the servo touches.
+    friction : coefficient of the contact when it is stepped alone; a servo's fingers have that of
+        its settings.
+
+    Raises
+    ------
+    PalpateError
+        A body without its whole compliance, a tool too small for the body, or friction below zero.
+    """
+    points, near = surface_and_correction(body, tool)
+    try:
+        surface = native_surface(native, points, near)
+        return ToolContact(surface, native_shape(tool), friction=friction)
+    except ValueError as problem:
+        raise PalpateError("tool {name}: {problem}", name=tool.name, problem=problem) from problem

@@ -1,0 +1,108 @@
+"""Where a tool is: turned to a surface, a view or an object, and set down from outside."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...errors import PalpateError
+from ...mesh.coordinates import refuse_unusable
+from ...sentence import Sentence
+from .tools import Tool
+
+Array = NDArray[np.float64]
+
+# Lifting off a curved surface comes to its end in a few steps; grazing it may take more.
+MOST_LIFTS = 64
+# A tool is set down this far above the surface, as a share of its size or the body's, whichever is
+# less.
+AIR = 1e-4
+
+
+@dataclass(frozen=True, eq=False)
+class Pose:
+    """Where a tool is: ``position`` (3,) of its reference point in metres, body coordinates, and
+    ``rotation`` (3, 3), which takes directions of the tool to directions of the body.
+    """
+
+    position: NDArray[np.float64]
+    rotation: NDArray[np.float64]
+
+    @classmethod
+    def at(cls, position: ArrayLike, rotation: ArrayLike | None = None) -> Pose:
+        """A pose from numbers, checked; without ``rotation`` the tool's axes are the body's.
+
+        Raises
+        ------
+        PalpateError
+            A position that is not three finite numbers, a rotation that is none.
+        """
+        place = np.array(position, dtype=np.float64)
+        turn = np.eye(3) if rotation is None else np.array(rotation, dtype=np.float64)
+        if place.shape != (3,):
+            raise PalpateError(
+                "tool's pose: position has shape {shape}, expected (3,); give x, y, z",
+                shape=place.shape,
+            )
+        refuse_unusable(Sentence("tool's pose"), place[None])
+        if (
+            turn.shape != (3, 3)
+            or not np.allclose(turn @ turn.T, np.eye(3), atol=1e-6)
+            or np.linalg.det(turn) < 0
+        ):
+            raise PalpateError(
+                "tool's pose: rotation is not a rotation; give a (3, 3) matrix of orthogonal unit "
+                "columns, right-handed, without scale"
+            )
+        return cls(place, turn)
+
+    def to_tool(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Body coordinates (p, 3) as the tool's own."""
+        own: NDArray[np.float64] = (points - self.position) @ self.rotation
+        return own
+
+    def to_body(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The tool's own coordinates (p, 3) as the body's."""
+        moved: NDArray[np.float64] = points @ self.rotation.T + self.position
+        return moved
+
+
+def facing(direction: Array, along: Array) -> Array:
+    """Rotation (3, 3), tool to body, of a tool that lies in the direction ``direction`` (3,) of
+    what it presses: its z axis. Its x axis follows ``along`` (3,) as far as it can.
+    """
+    z = direction / np.linalg.norm(direction)
+    x = along - (along @ z) * z
+    if np.linalg.norm(x) < 1e-6 * max(1.0, float(np.linalg.norm(along))):
+        # Any axis will do that is not along z.
+        x = np.eye(3)[np.argmin(np.abs(z))]
+        x = x - (x @ z) * z
+    x = x / np.linalg.norm(x)
+    rotation: Array = np.column_stack([x, np.cross(z, x), z])
+    return rotation
+
+
+def reach(tool: Tool, rotation: Array, direction: Array) -> float:
+    """How far the tool reaches beyond its reference point along ``direction`` (3,), unit, m."""
+    return float((tool.core @ rotation.T @ direction).max()) + tool.radius
+
+
+def resting_on(tool: Tool, rotation: Array, point: Array, normal: Array, surface: Array) -> Pose:
+    """The tool where it just does not touch a surface, above ``point`` (3,) on it.
+
+    ``normal`` (3,) is the outward unit normal there. A surface that rises beside the point, of
+    which places ``surface`` (n, 3) are known, keeps the tool further off. They should be those that
+    the tool will touch, or it may be set down in one of them and feel nothing.
+    """
+    air = AIR * min(tool.size, float(np.ptp(surface, axis=0).max(initial=0.0)))
+    position = point + (reach(tool, rotation, -normal) + air) * normal
+    near = surface[np.linalg.norm(surface - position, axis=1) < 2.0 * tool.reach]
+    for _ in range(MOST_LIFTS if len(near) else 0):
+        distance, _normals = tool.distance((near - position) @ rotation)
+        inside = -float(distance.min())
+        if inside < 0.0:
+            break
+        position = position + (inside + air) * normal
+    return Pose(position, rotation)

@@ -1,0 +1,122 @@
+"""What fingers and tools do to a body once they have come to rest."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..body.soft_body import SoftBody
+from .tool.pose import Pose
+from .tool.tools import Tool
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class PointTouch:
+    """A point finger on one surface triangle.
+
+    Attributes
+    ----------
+    triangle : int64 (3,), node numbers i, j, k of the tetrahedral mesh.
+    alpha : float64 (3,), area coordinates of the contact point, sum 1.
+    point : float64 (3,), the contact point (god object) on the rest surface, metres.
+    displacement : float64 (3,), u: finger minus god object, metres.
+    force : float64 (3,), felt by the finger, newton (14).
+    nodal_forces : float64 (3, 3), F_i, F_j, F_k on the body by the linear relation, newton: what
+        the body is drawn under.
+    """
+
+    triangle: NDArray[np.int64]
+    alpha: Array
+    point: Array
+    displacement: Array
+    force: Array
+    nodal_forces: Array
+
+    area = 0.0
+    largest_pressure = 0.0
+
+    @property
+    def nodes(self) -> NDArray[np.int64]:
+        """Nodes of the mesh that carry force, (3,)."""
+        return self.triangle
+
+
+@dataclass(frozen=True, eq=False)
+class ToolTouch:
+    """A rigid tool on a body, of whose contact points p are pressed.
+
+    Attributes
+    ----------
+    tool, pose : which, and where it is.
+    force : float64 (3,), that the tool feels, newton.
+    torque : float64 (3,), that it feels about its reference point, newton metres.
+    stiffness : float64 (3, 3), how the force resists a small move of the tool while the pressed
+        points and their normals stay, N/m, symmetric, positive semidefinite.
+    points : int64 (p,), numbers of the pressed contact points, ascending.
+    places : float64 (p, 3), where they are at rest, metres.
+    displacements : float64 (p, 3), how far they have gone, metres.
+    normals : float64 (p, 3), outward from the tool where they have gone to.
+    forces : float64 (p, 3), on the body there, newton.
+    pushes : float64 (p,), their part along the normals, all > 0.
+    areas : float64 (p,), the points' shares of the surface, square metres.
+    nodes : int64 (k,), nodes of the mesh that carry force.
+    nodal_forces : float64 (k, 3), forces on these, newton.
+    """
+
+    tool: Tool
+    pose: Pose
+    force: Array
+    torque: Array
+    stiffness: Array
+    points: NDArray[np.int64]
+    places: Array
+    displacements: Array
+    normals: Array
+    forces: Array
+    pushes: Array
+    areas: Array
+    nodes: NDArray[np.int64]
+    nodal_forces: Array
+
+    @property
+    def touching(self) -> bool:
+        """Whether any point is pressed."""
+        return bool(len(self.points))
+
+    @property
+    def pressures(self) -> Array:
+        """Push per share of the surface, (p,), pascal."""
+        pressures: Array = self.pushes / self.areas
+        return pressures
+
+    @property
+    def largest_pressure(self) -> float:
+        """Pascal; 0 without any contact."""
+        return float(self.pressures.max(initial=0.0))
+
+    @property
+    def area(self) -> float:
+        """The surface in contact, square metres."""
+        return float(self.areas.sum())
+
+    @property
+    def energy(self) -> float:
+        """Half the work of its forces on the places they move, joule: of all tools on a body
+        together, the elastic energy in it.
+        """
+        return 0.5 * float((self.forces * self.displacements).sum())
+
+
+Touch = PointTouch | ToolTouch
+
+
+def contact_displacement(body: SoftBody, touch: PointTouch, displacements: Array) -> Array:
+    """How far the touched point itself moves, (3,), if the free surface nodes move so, (n, 3)."""
+    free, corner = body.free_index(touch.triangle), np.arange(3)
+    held = free >= 0
+    moved: Array = touch.alpha[corner[held]] @ displacements[free[held]]
+    return moved
