@@ -1,4 +1,4 @@
-"""Bake as the operators and `blender -c palpate bake` do, and the figures of what came out."""
+"""Bakes of the demo, as by the operators, with figures of the result."""
 
 from typing import Any
 
@@ -7,12 +7,12 @@ from installed import palpate
 
 
 def make_soft(thing: bpy.types.Object) -> dict[str, Any]:
-    """What Make Soft does, fTetWild and all; figures as `palpate bake --json` prints them."""
+    """Bake as Make Soft does; figures as printed by `palpate bake --json`."""
     return _bake(thing, rebuild=False)
 
 
 def rebuild_body(thing: bpy.types.Object) -> dict[str, Any]:
-    """What Rebuild Body does: a bake of the tetrahedra that are stored in the .blend."""
+    """Bake as Rebuild Body does, from the tetrahedra in the .blend."""
     return _bake(thing, rebuild=True)
 
 

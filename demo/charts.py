@@ -1,4 +1,4 @@
-"""The demo's figures: force against depth, and pictures side by side."""
+"""Figures of the demo: force against depth, and pictures side by side."""
 
 from pathlib import Path
 from typing import Any
@@ -47,7 +47,7 @@ def readme_picture(
     samples: NDArray[np.void],
     press: dict[str, Any],
 ) -> Path:
-    """At rest, pressed, and the felt force: one picture for the README."""
+    """Picture for the README: at rest, pressed, and the force."""
     with mpl.rc_context(STYLE):
         figure = plt.figure(figsize=(13.5, 3.75), layout="constrained")
         left, middle, right = figure.subplots(1, 3, width_ratios=[1.5, 1.5, 1.15])
@@ -60,7 +60,7 @@ def readme_picture(
 
 
 def cube_picture(path: Path, pictures: list[Path], presses: list[dict[str, Any]]) -> Path:
-    """The cube at rest and under each press."""
+    """Picture of the cube at rest and under each press."""
     with mpl.rc_context(STYLE):
         figure = plt.figure(figsize=(12.5, 3.1), layout="constrained")
         axes = figure.subplots(1, len(pictures))
@@ -117,7 +117,7 @@ def _show(ax: Axes, picture: Path, title: str, crop: tuple[float, ...] = (0, 1, 
 
 
 def _arrow(ax: Axes, contact: dict[str, Any]) -> None:
-    """The felt force on a picture, beside the dent so that it does not hide it."""
+    """Draw the force on a picture, next to the dent."""
     height, width = ax.get_images()[0].get_array().shape[:2]
     probe, proxy = (
         np.array(contact["pixels"][name]) * (width, height) for name in ("probe", "proxy")

@@ -1,4 +1,4 @@
-"""Palpate as users have it: the package installed into Blender by Blender, in a home of its own."""
+"""Palpate as users have it: the package installed by Blender, in a separate home."""
 
 import importlib
 import os
@@ -31,5 +31,5 @@ def install(package: Path, home: Path) -> None:
 
 
 def palpate(module: str) -> ModuleType:
-    """A module of the installed extension, for instance `operators.session.press_session`."""
+    """Module of the installed extension, for instance `operators.session.press_session`."""
     return importlib.import_module(f"bl_ext.{REPOSITORY}.palpate.{module}")

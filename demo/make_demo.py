@@ -1,4 +1,4 @@
-"""The demo, step by step: Blender bakes, presses and photographs; then charts and the report.
+"""Steps of the demo: Blender bakes, presses and photographs; then charts and the report.
 
 python demo/make_demo.py --blender BLENDER_PYTHON --package ZIP [--output FOLDER] [--readme PNG]
 """
@@ -17,7 +17,7 @@ HERE = Path(__file__).resolve().parent
 
 
 def main() -> int:
-    """Run all steps; the exit status is that of the first one that fails."""
+    """Run all steps; returns the exit status of the first failure."""
     options = _options()
     output: Path = options.output
     output.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,4 @@
-"""Pictures of the scene through its own camera, and where a point of the world falls on them."""
+"""Pictures of the scene by its camera, and pixels of world points."""
 
 from pathlib import Path
 
@@ -17,7 +17,7 @@ def photograph(path: Path, percent: int = 100) -> Path:
 
 
 def pixel(point: list[float]) -> tuple[float, float]:
-    """Where a point in world coordinates falls, as shares of width and height from top left."""
+    """Position of a world point in the picture, as shares of width and height from top left."""
     scene = bpy.context.scene
     x, y, _ = world_to_camera_view(scene, scene.camera, Vector(point))
     return x, 1.0 - y

@@ -1,10 +1,10 @@
-"""All shapes side by side: an ear of large.blend, its tip taken to the same place in each of them.
+"""Picture of all shapes: an ear of large.blend, its tip moved to the same place in each.
 
 Run as BLENDER_PYTHON picture_shapes.py --package ZIP --output shapes.png, where BLENDER_PYTHON has
 the bpy module. The last picture is the truth, Newton's equilibrium with the touched place where it
 is in the others, and its outline is drawn over all of them. The paper's table takes a minute or two
-for the touched place, the truth about one. Prints for each shape the volume of the body and how far
-the drawn vertices are from the true ones.
+for the touched place, the truth about one. Prints for each shape the volume of the body and the
+distance of the drawn vertices from the true ones.
 """
 
 import argparse
@@ -19,8 +19,7 @@ HERE = Path(__file__).resolve().parent
 SCENES = HERE.parent / "sample_scenes"
 sys.path[:0] = [str(HERE), str(SCENES)]
 
-# World axes, metres: from below the tip of the left ear to the side and down, where an ear comes to
-# that is bent without being stretched.
+# World axes, metres: the tip of the left ear moves to the side and down, bent without stretching.
 BELOW, BY = 0.008, (0.004, 0.050, -0.022)
 SHAPES = ("LINEAR", "TABLE", "ROTATION_STRAIN")
 TRUTH = "Newton's Method"
@@ -30,7 +29,7 @@ OUTLINE = (1.0, 1.0, 1.0, 1.0)
 
 @dataclass(frozen=True)
 class Pressed:
-    """One picture: what it is called, the vertices (p, 3) in local units and their volume ratio."""
+    """Picture's name, vertices (p, 3) in local units and volume ratio."""
 
     title: str
     vertices: Any
@@ -59,7 +58,7 @@ def main() -> int:
 
 
 def opened(folder: Path) -> Any:
-    """The hare of a copy of large.blend, before a camera that has room for a bent ear."""
+    """Hare of a copy of large.blend, with room for a bent ear in the camera."""
     import bpy
 
     copy = folder / "large.blend"
@@ -72,7 +71,7 @@ def opened(folder: Path) -> Any:
 
 
 def turn_to_face(scene: Any) -> None:
-    """The camera before the hare's head and ears."""
+    """Place the camera in front of the hare's head and ears."""
     from mathutils import Vector
 
     camera = scene.camera
@@ -85,7 +84,7 @@ def turn_to_face(scene: Any) -> None:
 
 
 def pressed_place() -> Any:
-    """Where the finger is, world coordinates."""
+    """Place of the finger, world coordinates."""
     import hare_shape
     import numpy as np
 
@@ -93,7 +92,7 @@ def pressed_place() -> Any:
 
 
 def pressed(hare: Any, name: str) -> Pressed:
-    """The ear pulled aside in one of the shapes of the panel."""
+    """Ear pulled aside in one of the panel's shapes."""
     import bpy
 
     hare.palpate.shape = name
@@ -105,7 +104,7 @@ def pressed(hare: Any, name: str) -> Pressed:
 
 
 def true_one(hare: Any) -> Pressed:
-    """The same by Newton's method, which no panel offers: it takes a second or more for a frame."""
+    """Ear pulled aside by Newton's method, which takes a second or more a frame."""
     import bpy
     from installed import palpate
 
@@ -142,7 +141,7 @@ def true_one(hare: Any) -> Pressed:
 
 
 def taken(hare: Any, title: str) -> Pressed:
-    """The newest shape key, taken off again."""
+    """Take the latest shape key off again."""
     key = hare.data.shape_keys.key_blocks[-1]
     vertices, rest = places(key), places(hare.data.shape_keys.reference_key)
     hare.shape_key_remove(key)
@@ -159,7 +158,7 @@ def places(key: Any) -> Any:
 
 
 def triangles(thing: Any) -> Any:
-    """The drawn mesh in triangles (t, 3)."""
+    """Triangles (t, 3) of the drawn mesh."""
     import numpy as np
 
     thing.data.calc_loop_triangles()
@@ -169,7 +168,7 @@ def triangles(thing: Any) -> Any:
 
 
 def volume(thing: Any, vertices: Any) -> float:
-    """What the drawn mesh encloses with vertices (p, 3), cubic units."""
+    """Volume of the drawn mesh with vertices (p, 3), cubic units."""
     import numpy as np
 
     a, b, c = vertices[triangles(thing)].transpose(1, 0, 2)
@@ -177,7 +176,7 @@ def volume(thing: Any, vertices: Any) -> float:
 
 
 def distance(case: Pressed, other: Pressed | None, hare: Any = None) -> float:
-    """Between two shapes, or from rest: the root of the squares' sum over all vertices."""
+    """Distance of two shapes, or from rest: root of the sum of squares over all vertices."""
     import numpy as np
 
     origin = places(hare.data.shape_keys.reference_key) if other is None else other.vertices
@@ -218,7 +217,7 @@ def silhouette(hare: Any, case: Pressed) -> Any:
 
 
 def render(hare: Any, case: Pressed, off: float, picture: Path) -> None:
-    """A picture of one shape, named."""
+    """Render a picture of a shape, with its name."""
     from photographing import photograph
 
     shown = hare.shape_key_add(name="Shown", from_mix=False)
@@ -239,7 +238,7 @@ def render(hare: Any, case: Pressed, off: float, picture: Path) -> None:
 
 
 def written(text: str, height: float, size: float) -> Any:
-    """A line of text in front of the camera, so far above the middle of its picture."""
+    """Add a line of text in front of the camera, this far above the middle of its picture."""
     import bpy
 
     scene, curve = bpy.context.scene, bpy.data.curves.new("Text", "FONT")
@@ -257,7 +256,7 @@ def written(text: str, height: float, size: float) -> Any:
 
 
 def join(pictures: list[Path], outline: Any, output: Path) -> None:
-    """Put the pictures beside each other, an outline over each, into one file."""
+    """Join the pictures side by side, an outline over each, into one file."""
     import bpy
     import numpy as np
 

@@ -1,4 +1,4 @@
-"""The part of the demo that runs in Blender: bake, press, photograph. Writes raw.json, samples.npz.
+"""Part of the demo that runs in Blender: bake, press, photograph. Writes raw.json, samples.npz.
 
 Run by make_demo.py: BLENDER_PYTHON press_in_blender.py --package ZIP --output FOLDER, where
 BLENDER_PYTHON has the bpy module.
@@ -19,12 +19,12 @@ from installed import install  # noqa: E402
 
 
 def main() -> int:
-    """Do all of it."""
+    """Run this part."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--package", type=Path, required=True)
     parser.add_argument("--output", type=Path, required=True)
     options = parser.parse_args()
-    # A fresh home: nothing that an earlier demo left can help this one.
+    # A fresh home, without remains of an earlier demo.
     output = options.output.resolve()
     home = output / "blender"
     shutil.rmtree(home, ignore_errors=True)
@@ -39,7 +39,7 @@ def main() -> int:
 
 
 def open_scene(name: str, folder: Path) -> Any:
-    """Open a copy of a sample scene, so that the body file is put beside the copy."""
+    """Open a copy of a sample scene, with the body file next to the copy."""
     import bpy
 
     copy = folder / f"{name}.blend"
@@ -49,7 +49,7 @@ def open_scene(name: str, folder: Path) -> Any:
 
 
 def demo_cube(folder: Path) -> dict[str, Any]:
-    """The paper's cube: its own tetrahedra, pressed 5 mm on the top and on the side."""
+    """Press the paper's cube: its own tetrahedra, pressed 5 mm on the top and on the side."""
     import baking
     import bpy
     import numpy as np
@@ -86,7 +86,7 @@ def demo_cube(folder: Path) -> dict[str, Any]:
 
 
 def demo_mouse(folder: Path) -> dict[str, Any]:
-    """The plush mouse: Make Soft, then the device presses its back about 8 mm."""
+    """Press the plush mouse: Make Soft, then the device presses its back about 8 mm."""
     import baking
     import numpy as np
     import pressing
@@ -110,7 +110,7 @@ def demo_mouse(folder: Path) -> dict[str, Any]:
 
 
 def say(what: str) -> None:
-    """Tell whoever waits."""
+    """Print progress."""
     print(f"demo: {what}", flush=True)
 
 

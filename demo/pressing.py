@@ -1,4 +1,4 @@
-"""The device presses while Blender draws: hand script, frames at 60 Hz, what the servo recorded."""
+"""Press by the simulated device while Blender draws: hand script, frames at 60 Hz, samples."""
 
 import json
 import sys
@@ -16,21 +16,21 @@ Array = NDArray[np.float64]
 
 FRAME_RATE = 60
 SECONDS = 8.0
-# When the hand is how deep, as a share of the whole depth; the last value is held until the end.
+# Times and depths of the hand, as shares of the full depth; the last value is held until the end.
 PRESSES = [(0.6, -0.5), (1.0, 0.0), (2.2, 1.0), (2.6, 1.0), (3.6, -0.1), (4.4, 0.7), (5.2, 0.2),
            (6.4, 1.0)]  # fmt: skip
 
 
 @dataclass(frozen=True)
 class Place:
-    """Where to press: a point of the surface and the direction inwards, body coordinates."""
+    """Place to press: a point of the surface and the direction inwards, body coordinates."""
 
     point: Array
     inward: Array
 
 
 def place_near(thing: bpy.types.Object, near: Array) -> Place:
-    """The free surface node of the body nearest to `near`, and the surface's direction there."""
+    """Free surface node nearest to `near`, with the inward direction."""
     body = palpate("operators.object.body_store").load(thing)
     mesh = body.mesh
     free = body.compliance.free_surface
@@ -42,7 +42,7 @@ def place_near(thing: bpy.types.Object, near: Array) -> Place:
 
 
 def write_hand(path: Path, place: Place, depth: float) -> None:
-    """Keyframes of the simulated hand: presses of up to `depth` metres, the last one held."""
+    """Write keyframes of the simulated hand: presses of up to `depth` metres, the last one held."""
     start = place.point - 0.02 * place.inward
     keys = [[0.0, *start.tolist()]]
     keys += [[t, *(place.point + share * depth * place.inward).tolist()] for t, share in PRESSES]
@@ -52,7 +52,7 @@ def write_hand(path: Path, place: Place, depth: float) -> None:
 def press_with_device(
     thing: bpy.types.Object, place: Place, depth: float, folder: Path
 ) -> tuple[dict[str, Any], NDArray[np.void]]:
-    """Let the simulated device press for SECONDS, beside drawing; keep the last shape.
+    """Press by the simulated device for SECONDS while drawing; keep the last shape.
 
     Returns figures and the servo's samples of every tick.
     """

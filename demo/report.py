@@ -1,4 +1,4 @@
-"""What the demo measured, as report.json and as lines to read."""
+"""Measurements of the demo, as report.json and as readable lines."""
 
 from typing import Any
 
@@ -7,7 +7,7 @@ LINK = ("states", "forces", "lost", "crc_errors")
 
 
 def report(raw: dict[str, Any], pictures: list[str]) -> dict[str, Any]:
-    """The report from what the Blender part wrote."""
+    """Report from the Blender part's files."""
     servo = raw["servo"]
     return {
         "blender": raw["blender"],
@@ -24,7 +24,7 @@ def report(raw: dict[str, Any], pictures: list[str]) -> dict[str, Any]:
 
 
 def summary(made: dict[str, Any]) -> str:
-    """The report in a dozen lines."""
+    """Summary of the report in a dozen lines."""
     lines = {
         "Blender": made["blender"],
         "cube": _body(made["cube"]),

@@ -1,1 +1,1 @@
-"""What a user can do, one action a file, and what these actions share."""
+"""Operators, one a file, in rooms with what they share."""

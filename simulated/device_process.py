@@ -23,7 +23,7 @@ from .hand.quaternion import unit
 LATE_SECONDS = 200e-6
 PRIORITY = 1
 MOST_STEPS_AT_ONCE = 50
-"""After a longer hole the device's world has stood still for the rest, rather than jump."""
+"""Steps at most after a gap in time; for the rest the device stands still."""
 
 Board = SimulatedBoard | HaplyBoard
 

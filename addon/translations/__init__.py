@@ -16,7 +16,7 @@ CONTEXTS = ("*", "Operator", "Palpate")
 
 
 def words() -> dict[str, dict[str, dict[str, str]]]:
-    """What each language says, by context and English text; ``*`` is for all contexts."""
+    """Translations of each language, by context and English text; ``*`` is for all contexts."""
     packaged: dict[str, dict[str, dict[str, str]]] = (
         json.loads(PACKAGED.read_text(encoding="utf-8")) if PACKAGED.is_file() else {}
     )

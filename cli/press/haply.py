@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 ANSWER_SECONDS = 5.0
 LOOK_EVERY_SECONDS = 0.02
 STANDING = ((1.0, 0.0, 0.0), (0.0, 0.0, -1.0), (0.0, 1.0, 0.0))
-"""The device's plane stands upright in the body: its x stays, its y becomes z."""
+"""Rotation of the device's plane, upright in the body: x stays, y becomes z."""
 
 
 def add_haply_options(

@@ -39,7 +39,7 @@ HELLO_SECONDS = 5.0
 LOOK_EVERY_SECONDS = 0.02
 LONGEST_RECORDING_SECONDS = 3600.0
 HAND_FORCE = 1.5
-"""What the simulated hand presses with at most, N: half of what its device can give."""
+"""Largest force of the simulated hand, N: half of its device's."""
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

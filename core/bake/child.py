@@ -65,7 +65,7 @@ def run(folder: Path) -> dict[str, object]:
 
 
 def out_of_memory() -> str:
-    """What to tell when there is no memory left to bake with."""
+    """Error for a bake that ran out of memory."""
     from ..sentence import Sentence
 
     return Sentence(

@@ -26,7 +26,7 @@ class HaplyModel:
     rest_degrees: Pair
     resolutions: Pair
     centre: complex
-    """Middle of the workspace in the arm's axes, m."""
+    """Centre of the workspace in the arm's axes, m."""
 
     def device_position(self, handle: complex) -> Vector:
         """Position in the servo's axes (right, away, up) from the arm's (left, to the user)."""
@@ -94,7 +94,7 @@ HAPLY_MODELS = {
         0.01 + 0.07j,
     ),
 }
-"""By the names that the servo knows them by."""
+"""Models by the servo's names."""
 DEFAULT_MODEL = "2diy-3.1"
 
 HAPI_USB_IDS = frozenset(
@@ -103,7 +103,7 @@ HAPI_USB_IDS = frozenset(
     for vendor in ("2341", "2a03")
     for product in ("003e", "804d", "804e", "804f")
 )
-"""VID:PID of what may be a hAPI board."""
+"""VID:PID of possible hAPI boards."""
 
 
 def haply_model(name: str) -> HaplyModel:

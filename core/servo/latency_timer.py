@@ -23,11 +23,11 @@ _ASYNC_LOW_LATENCY = 1 << 13
 _DRIVER = Path("/sys/bus/usb-serial/devices")
 
 FEWEST_BURSTS = 10
-"""Fewer may be an accident."""
+"""Least number of bursts that is no accident."""
 BURST_SECONDS = 3.5e-3
-"""A shorter pause is ordinary jitter."""
+"""Shortest pause that is no ordinary jitter."""
 BURST_STATES = 3
-"""Fewer at once may come together by chance."""
+"""Least number of STATE at once that is no accident."""
 
 
 def ask_for_low_latency(descriptor: int) -> bool:

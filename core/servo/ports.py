@@ -23,10 +23,10 @@ from .latency_timer import ask_for_low_latency, explain_readings
 
 BAUD = 115200
 ANSWER_SECONDS = 2.5
-"""Boards that restart when their port is opened need up to two seconds before they listen."""
+"""Wait for HELLO: boards that restart when opened need up to two seconds."""
 HELLO_EVERY_SECONDS = 0.1
 LISTEN_SECONDS = 0.4
-"""So long STATE is watched: 25 bursts of an adapter with its timer as delivered."""
+"""Time to watch STATE: 25 bursts of an adapter with its default timer."""
 
 # Linux: whether another process has exclusive access; unnamed in Python 3.11.
 _TIOCGEXCL = 0x80045440
@@ -68,9 +68,9 @@ class Port:
     tells_orientation: bool = False
     """Whether an ORIENTATION was heard."""
     reason: str = ""
-    """Why there is no answer."""
+    """Reason why there is no answer."""
     warning: str = ""
-    """What keeps the device from being felt as it should, and what helps."""
+    """Problem of the connection, with its remedy."""
 
 
 def list_ports(extra: Sequence[str] = (), seconds: float = ANSWER_SECONDS) -> list[Port]:
@@ -128,7 +128,7 @@ def say_hello(path: str, seconds: float = ANSWER_SECONDS) -> link.DeviceHello:
 
 
 Heard = list[tuple[float, list[link.Message]]]
-"""When it was read, s, and what: nothing where nothing was there."""
+"""Time of a reading, s, and its messages."""
 
 
 def _ask(path: str, seconds: float, listen_seconds: float) -> tuple[link.DeviceHello, Heard]:

@@ -44,7 +44,7 @@ DTYPE = np.dtype(
         ("finger", "=u4"),
     ]
 )
-"""That of `palpate_servo.Servo.samples()` and `recording()`."""
+"""Type of `palpate_servo.Servo.samples()` and `recording()`."""
 CSV_HEADER = ",".join(
     [
         "tick",
@@ -54,9 +54,9 @@ CSV_HEADER = ",".join(
     ]
 )
 FINGER_COLUMN = ",finger"
-"""The last column of a recording of more than one finger."""
+"""Last column of a recording of more than one finger."""
 CSV_GROWTH = 3.0
-"""A line of CSV takes at most so many times the bytes of its tick in memory."""
+"""Largest ratio of a CSV line's bytes to those of its tick in memory."""
 _ROWS_AT_ONCE = 10_000
 _CSV_FIELDS = [("tick", "=u8"), ("numbers", "=f8", (16,)), ("state", "U32")]
 

@@ -23,7 +23,7 @@ PWM_PINS = 14
 ANALOG_PINS = 5
 PWM_STEPS = 1023
 TORQUE_AT_FULL_DUTY = 0.156
-"""N m; the number in the firmware. The torque of the motors themselves is not in it."""
+"""N m, the firmware's number, whatever the motors' own torque."""
 RESET, SETUP, TORQUES = 0, 1, 2
 NOTHING_READ = 0xFF
 
@@ -37,10 +37,10 @@ class Port:
     motor_sense: int = 0
     encoder_sense: int = 0
     duty: int = 0
-    """PWM steps, with the sign of the direction."""
+    """PWM steps, signed by the direction."""
     resolution: float = 0.0
     count_at_zero: int = 0
-    """What is added to the encoder's own count, in its sense."""
+    """Offset of the encoder's own count, in its sense."""
 
 
 @dataclass

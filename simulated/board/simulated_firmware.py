@@ -25,20 +25,20 @@ class FirmwareCounters:
     states: int = 0
     hellos: int = 0
     forces: int = 0
-    """Valid FORCE, whether enabled or not."""
+    """Valid FORCE messages, enabled or not."""
     lost: int = 0
     """Gaps in the sequence of FORCE."""
     duplicates: int = 0
     out_of_order: int = 0
     unexpected: int = 0
-    """Right frames that a host has no business to send, or FORCE before any HELLO."""
+    """Valid frames that no host may send, or FORCE before any HELLO."""
     clamped: int = 0
     limp: int = 0
-    """How often the watchdog ran out after the host had been driving."""
+    """Number of times the watchdog ran out while a host was driving."""
     limp_after: float = 0.0
-    """From the last valid FORCE to letting go, the last time, s."""
+    """Latest time from the last valid FORCE to going limp, s."""
     limp_look: float = 0.0
-    """How long the board had not looked before that, s: as much over 20 ms `limp_after` may be."""
+    """Time the board had not looked before that, s: tolerance of `limp_after` above 20 ms."""
     largest_force: float = 0.0
 
 

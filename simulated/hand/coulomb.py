@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 _TERMS = 20
 _MOST_PER_PIECE = 0.7
-"""Length of a piece times its fastest rate: the series has then converged to the last digit."""
+"""Length of a piece times its fastest rate at which the series converges to the last digit."""
 _MOST_REVERSALS = 8
 _BISECTIONS = 60
 _MOST_PIECES = 50
@@ -24,7 +24,7 @@ GAUSS = (
     (0.5, 8.0 / 18.0),
     (0.5 + math.sqrt(0.15), 5.0 / 18.0),
 )
-"""Gauss and Legendre's places and weights on [0, 1], exact to the fifth power."""
+"""Gauss-Legendre places and weights on [0, 1], exact to the fifth power."""
 
 
 @dataclass(frozen=True)

@@ -94,13 +94,13 @@ class EnergyBooks:
     """
 
     motor: float = 0.0
-    """Work of the felt force on the device."""
+    """Work of the motors' force on the device."""
     hand: float = 0.0
     """Work of the hand's spring and damper on the device."""
     viscous: float = 0.0
-    """Taken by the device's damping and brake."""
+    """Dissipated by the device's damping and brake."""
     coulomb: float = 0.0
-    """Taken by Coulomb friction."""
+    """Dissipated by Coulomb friction."""
 
 
 @dataclass(frozen=True)
@@ -155,7 +155,7 @@ class Plant:
         self.velocity = ZERO
         self.target = position
         self.hand_force = ZERO
-        """What the hand pushed with at the end of the last step."""
+        """Force of the hand at the end of the last step."""
         self.energy = EnergyBooks()
         self._free, self._braked = (
             _Axis.of(impedance, step_seconds, more) for more in (0.0, brake)

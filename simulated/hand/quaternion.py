@@ -7,8 +7,8 @@ import math
 Quaternion = tuple[float, float, float, float]
 UPRIGHT: Quaternion = (1.0, 0.0, 0.0, 0.0)
 
-_NEARLY_THE_SAME = 1.0 - 1e-9
-"""Cosine of half the angle from which on an arc is as good as its chord."""
+_NEARLY_EQUAL = 1.0 - 1e-9
+"""Cosine of half the angle below which an arc equals its chord."""
 
 
 def unit(quaternion: Quaternion) -> Quaternion:
@@ -36,7 +36,7 @@ def between(a: Quaternion, b: Quaternion, s: float) -> Quaternion:
     cosine = sum(p * q for p, q in zip(a, b, strict=True))
     sign = math.copysign(1.0, cosine)
     cosine = abs(cosine)
-    if cosine > _NEARLY_THE_SAME:
+    if cosine > _NEARLY_EQUAL:
         from_a, from_b = 1.0 - s, s
     else:
         angle = math.acos(cosine)

@@ -16,7 +16,7 @@ if sys.platform != "win32":
 
 RELEASE_AFTER_SECONDS = 0.5
 BACKLOG_BYTES = 256
-"""Frames that the host does not read are dropped beyond this, as a board's small buffer would."""
+"""Unread bytes beyond which frames are dropped, as by a board's small buffer."""
 
 
 def require_pseudo_terminals() -> None:

@@ -19,9 +19,9 @@ class LinkErrors:
 
     crc_errors: int = 0
     malformed: int = 0
-    """No COBS, too short for a type and a CRC, or too long."""
+    """Frames with invalid COBS, too short for a type and a CRC, or too long."""
     unknown: int = 0
-    """Right CRC, but no message of this version."""
+    """Frames with a right CRC, but no message of this version."""
 
     @property
     def total(self) -> int:

@@ -6,7 +6,7 @@ import binascii
 import struct
 
 MAX_FRAME = 62
-"""Longest frame on the wire in bytes, the closing zero counted."""
+"""Longest frame on the wire in bytes, with the closing zero."""
 MAX_PAYLOAD = MAX_FRAME - 4
 """Longest payload in bytes: a frame adds the COBS code, two of CRC and the zero."""
 

@@ -23,9 +23,9 @@ _ORIENTATION = struct.Struct("<BH4h")
 
 NAME_BYTES = 16
 QUATERNION_UNIT = 32767
-"""What 1 is in an ORIENTATION."""
+"""Value of 1 in an ORIENTATION."""
 QUATERNION_LENGTHS = (32440, 33094)
-"""Shortest and longest quaternion that is believed, in its own steps: 1 % around a unit's."""
+"""Shortest and longest valid quaternion, in steps: 1 % around a unit's."""
 
 
 class StateFlag(IntFlag):
