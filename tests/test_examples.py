@@ -16,6 +16,7 @@ ENTRY_POINTS = (
     "core.compliance.surface_compliance:surface_compliance",
     "core.bake.steps:bake",
     "core.body.body_file:save",
+    "core.contact.single_press:touch_nearest",
     "core.shape.shapes:shape",
     "core.softness.durometer:read_durometer",
     "core.softness.scales.shore:young_from_shore",

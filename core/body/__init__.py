@@ -1,1 +1,1 @@
-"""The soft body, its key and its file."""
+"""Soft body, its key and its file."""

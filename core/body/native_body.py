@@ -1,4 +1,4 @@
-"""A soft body as native code holds it."""
+"""Native form of a soft body."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from .soft_body import SoftBody
 
 
 def native_compliance(compliance: Compliance) -> NativeCompliance:
-    """The same compliance as native code reads it, in place; its arrays become read-only.
+    """Native compliance over the same arrays, which become read-only.
 
-    A table that lies in a file is read there, unchecked: what a touched point's displacement takes
-    from it is shown and recorded, while the force comes from contact blocks that were checked.
+    A mapped table is read unchecked: only the displacement of the touched point depends on it, for
+    display and recording, while the force comes from checked contact blocks.
 
     Raises
     ------
     PalpateError
-        A file that was cut short while in use.
+        A file that was truncated while in use.
     """
     match compliance:
         case CompressedCompliance():
@@ -44,18 +44,16 @@ def _in_memory(compliance: Compliance) -> NativeCompliance:
 
 
 def native_body(body: SoftBody, *, whole: bool = False) -> Body:
-    """The rest surface, contact blocks and compliance of a body as native code holds them.
+    """Native rest surface, contact blocks and compliance of a body, copied.
 
-    It gets copies. Of the compliance it takes the blocks of all nodes and edges, a megabyte at
-    20,000 nodes, so that no tick reads a file or waits for memory.
-
-    Several fingers and tools need the compliance of any two nodes. A ``whole`` body keeps it all; a
-    table that lies in a file is checked and read into memory once, here.
+    Of the compliance it keeps the blocks of all nodes and edges, a megabyte at 20,000 nodes, so
+    that no tick reads a file or waits for memory. A ``whole`` body, for several fingers and tools,
+    keeps all of it; a mapped table is checked and read into memory here.
 
     Raises
     ------
     PalpateError
-        A boundary on which a god object cannot walk, or a file that was cut short while in use.
+        A boundary on which a god object cannot walk, or a file that was truncated while in use.
     """
     try:
         return Body(

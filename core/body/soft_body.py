@@ -1,4 +1,4 @@
-"""A body ready to be touched: rest shape, pins, compliance; from forces to a deformed shape."""
+"""Soft body: rest shape, pins, compliance; deformed shapes from forces."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from .body_key import body_key
 
 @dataclass(frozen=True, eq=False)
 class SoftBody:
-    """Everything a touch needs.
+    """Body with all that a touch needs.
 
     Attributes
     ----------
     mesh : the tetrahedra at rest.
     fixed : int64, numbers of the pinned nodes, ascending.
-    poisson_ratio : the one the compliance was computed with.
+    poisson_ratio : of the compliance.
     compliance : of the free surface nodes, at unit modulus.
-    young_modulus : pascal; what a touch uses unless told otherwise. Not baked in.
-    formulation : of the stiffness the compliance comes from; see :mod:`.formulation`.
+    young_modulus : pascal; the default of a touch. Not baked in.
+    formulation : of the stiffness; see :mod:`..stiffness.formulation`.
     young_scale : float64 (M,), factor of Young's modulus per tetrahedron; None where all are 1.
     """
 

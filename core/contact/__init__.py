@@ -1,1 +1,1 @@
-"""What a touch is: equations (9) to (14)."""
+"""Contact: points and tools pressed on a body, equations (9) to (14)."""

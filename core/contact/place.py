@@ -17,7 +17,9 @@ from .near_field.contact_points import smooth_corner_normals
 
 @dataclass(frozen=True, eq=False)
 class Place:
-    """Attributes
+    """Place on a body's rest surface.
+
+    Attributes
     ----------
     position : float64 (3,), metres.
     axis : float64 (3,), unit vector into the body, against the smooth normal.

@@ -1,7 +1,7 @@
-"""Fingers pressed on a body without a clock: by the native engine, stepped until it is at rest.
+"""Press of fingers on a body without a clock: by the native engine, stepped until it settles.
 
-Scripts, the command line, frames of an animation and what measures softness press by this, and feel
-what the servo's fingers feel that have come to the same places.
+Used by scripts, command line, animations and softness measurements; forces are those of the servo's
+fingers at the same places.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from .tool.tools import Tool
 from .touches import PointTouch, ToolTouch, Touch
 
 if TYPE_CHECKING:
-    # Types only: the module itself does not have them.
+    # Types only, absent at run time.
     from palpate_servo import Body, SettledPoint, SettledTool
     from palpate_servo import Tool as NativeTool
 
@@ -38,15 +38,15 @@ Spread: TypeAlias = tuple[ContactPoints, NearCorrection | None]
 
 @dataclass(frozen=True)
 class ContactSettings:
-    """How fingers are answered.
+    """Settings of a contact.
 
     Attributes
     ----------
     young_modulus : pascal; None for the body's own.
-    friction : coefficient of Coulomb friction between tools and body; points stick anyhow.
+    friction : coefficient of Coulomb friction between tools and body; points always stick.
     mode : of points. In ``consistent`` the contact point moves by exactly the finger's displacement
-        (but for pinned nodes, which do not move), fingers feel each other through the body and may
-        only push. In ``paper`` each is answered by (11)-(14) as if it were alone.
+        (but for pinned nodes, which do not move), fingers act on each other through the body and
+        only push. In ``paper`` the force of each is that of (11)-(14) for one alone.
     """
 
     young_modulus: float | None = None
@@ -59,8 +59,8 @@ USUAL = ContactSettings()
 
 @dataclass(frozen=True, eq=False)
 class PointGoal:
-    """A point on surface triangle number ``triangle`` at area coordinates ``alpha`` (3,), which it
-    moves ``by`` (3,), metres. One that does not travel stays and pushes back along the normal.
+    """Goal of a point: to move surface triangle number ``triangle`` at area coordinates ``alpha``
+    (3,) ``by`` (3,), metres. For zero it holds the place against the normal.
     """
 
     triangle: int
@@ -69,7 +69,7 @@ class PointGoal:
 
 
 class Press:
-    """Fingers on one body, warm: each call goes on from where the last one came to."""
+    """Fingers on one body, with warm start: each call continues from the state of the last."""
 
     def __init__(
         self,
@@ -80,7 +80,7 @@ class Press:
         softenings: Array | None = None,
         spread: Spread | None = None,
     ) -> None:
-        """Fingers that touch nothing yet.
+        """Fingers without contact.
 
         Parameters
         ----------
@@ -92,7 +92,7 @@ class Press:
         Raises
         ------
         PalpateError
-            Settings or a number of fingers that cannot be; a tool too small for the body.
+            Invalid settings or number of fingers; a tool too small for the body.
         """
         self.body, self.tips = body, tuple(tips)
         modulus = body.modulus(settings.young_modulus)
@@ -120,15 +120,15 @@ class Press:
             raise PalpateError("press: {problem}", problem=problem) from problem
 
     def to(self, goals: Sequence[PointGoal | Pose]) -> tuple[Touch, ...]:
-        """All fingers at their goals, one each, and everything at rest.
+        """Settled contact of all fingers at their goals, one each.
 
-        They go there together, straight, in strides so short that no tool jumps through a wall. The
-        first goals of tools are come to from outside, the way the body pushes the tool out.
+        They move together, straight, in strides so short that no tool passes through a wall. First
+        goals of tools are approached from outside, against the direction of the body's push.
 
         Raises
         ------
         PalpateError
-            A goal that is none, or forces that do not come to rest.
+            An invalid goal, or forces that do not settle.
         """
         targets = [
             (goal.position, goal.rotation)
@@ -149,8 +149,8 @@ def _native_tips(
     tips: Sequence[Tool | None],
     spread: Spread | None,
 ) -> list[tuple[ToolSurface, NativeTool] | None]:
-    """Each tip's contact points and shape; those with the same points share them: so tools feel
-    each other's near field.
+    """Contact points and shape of each tip. Equal points are shared, so that tools have a common
+    near field.
     """
     surfaces: dict[int, ToolSurface] = {}
     native_tips: list[tuple[ToolSurface, NativeTool] | None] = [None] * len(tips)

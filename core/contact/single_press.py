@@ -1,4 +1,4 @@
-"""Presses of one call: points by the nearest place, tools by where they are set down."""
+"""Presses by a single call: points at the nearest place, tools set down and moved."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from .touches import PointTouch, ToolTouch
 
 Array = NDArray[np.float64]
 
-# With friction the way matters: a straight one is gone in so many steps, each until all rests.
+# With friction the path matters: a straight one is divided into so many settled steps.
 STEPS_WITH_FRICTION = 20
 
 
@@ -53,6 +53,15 @@ def touch_nearest(
     softenings: Array | None = None,
 ) -> PointTouch:
     """Touch at the surface point nearest to ``at`` (3,), moved ``by`` (3,), metres.
+
+    >>> from palpate.core.bake.settings import BakeSettings
+    >>> from palpate.core.bake.steps import bake
+    >>> from palpate.core.mesh.paper_cube import paper_cube
+    >>> body, _ = bake(paper_cube()[0], BakeSettings(poisson_ratio=0.45, young_modulus=1e5))
+    >>> touch = touch_nearest(body, at=(0.025, 0.025, 0.05), by=(0.0, 0.0, -0.002))
+    >>> drawn = body.deform(touch.nodes, touch.nodal_forces)
+    >>> bool(touch.force[2] > 0.0), drawn.shape
+    (True, (73, 3))
 
     Raises
     ------
@@ -97,7 +106,7 @@ def press_tool(
     *,
     spread: Spread | None = None,
 ) -> ToolTouch:
-    """Press one tool, come to its pose from outside, the way the body pushes it out.
+    """Press one tool at a pose, approached from outside.
 
     ``spread``: contact points in place of the usual ones; see :class:`Press`.
 
@@ -111,10 +120,10 @@ def press_tool(
 
 
 def set_down(body: SoftBody, tool: Tool, place: Place, rotation: Array | None = None) -> Pose:
-    """The tool where it just does not touch the body, its -z side over a place.
+    """Pose of a tool just out of contact, its -z side over a place.
 
-    Unless ``rotation`` (3, 3) turns it, that side lies on the surface there, and the tool's x axis
-    goes along the body's as far as it can.
+    Without ``rotation`` (3, 3) that side is tangential to the surface, and the tool's x axis as
+    close as possible to the body's.
     """
     turn = facing(-place.axis, np.eye(3)[0]) if rotation is None else rotation
     points, _ = surface_and_correction(body, tool)

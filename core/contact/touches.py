@@ -1,4 +1,4 @@
-"""What fingers and tools do to a body once they have come to rest."""
+"""Touches: settled forces of points and tools on a body."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class PointTouch:
-    """A point finger on one surface triangle.
+    """Touch of a point on a surface triangle.
 
     Attributes
     ----------
@@ -24,9 +24,9 @@ class PointTouch:
     alpha : float64 (3,), area coordinates of the contact point, sum 1.
     point : float64 (3,), the contact point (god object) on the rest surface, metres.
     displacement : float64 (3,), u: finger minus god object, metres.
-    force : float64 (3,), felt by the finger, newton (14).
-    nodal_forces : float64 (3, 3), F_i, F_j, F_k on the body by the linear relation, newton: what
-        the body is drawn under.
+    force : float64 (3,), on the finger, newton (14).
+    nodal_forces : float64 (3, 3), F_i, F_j, F_k on the body by the linear force law, newton,
+        for drawing.
     """
 
     triangle: NDArray[np.int64]
@@ -47,21 +47,21 @@ class PointTouch:
 
 @dataclass(frozen=True, eq=False)
 class ToolTouch:
-    """A rigid tool on a body, of whose contact points p are pressed.
+    """Touch of a rigid tool that presses p contact points.
 
     Attributes
     ----------
-    tool, pose : which, and where it is.
-    force : float64 (3,), that the tool feels, newton.
-    torque : float64 (3,), that it feels about its reference point, newton metres.
-    stiffness : float64 (3, 3), how the force resists a small move of the tool while the pressed
-        points and their normals stay, N/m, symmetric, positive semidefinite.
+    tool, pose : of the touch.
+    force : float64 (3,), on the tool, newton.
+    torque : float64 (3,), on the tool about its reference point, newton metres.
+    stiffness : float64 (3, 3), tangent of the force for a fixed contact patch, N/m, symmetric,
+        positive semidefinite.
     points : int64 (p,), numbers of the pressed contact points, ascending.
-    places : float64 (p, 3), where they are at rest, metres.
-    displacements : float64 (p, 3), how far they have gone, metres.
-    normals : float64 (p, 3), outward from the tool where they have gone to.
+    places : float64 (p, 3), of these at rest, metres.
+    displacements : float64 (p, 3), metres.
+    normals : float64 (p, 3), outward from the tool at the displaced points.
     forces : float64 (p, 3), on the body there, newton.
-    pushes : float64 (p,), their part along the normals, all > 0.
+    pushes : float64 (p,), normal components of the forces, all > 0.
     areas : float64 (p,), the points' shares of the surface, square metres.
     nodes : int64 (k,), nodes of the mesh that carry force.
     nodal_forces : float64 (k, 3), forces on these, newton.
@@ -89,7 +89,7 @@ class ToolTouch:
 
     @property
     def pressures(self) -> Array:
-        """Push per share of the surface, (p,), pascal."""
+        """Normal pressure at the pressed points, (p,), pascal."""
         pressures: Array = self.pushes / self.areas
         return pressures
 
@@ -100,7 +100,7 @@ class ToolTouch:
 
     @property
     def area(self) -> float:
-        """The surface in contact, square metres."""
+        """Contact area, square metres."""
         return float(self.areas.sum())
 
     @property
@@ -115,7 +115,7 @@ Touch = PointTouch | ToolTouch
 
 
 def contact_displacement(body: SoftBody, touch: PointTouch, displacements: Array) -> Array:
-    """How far the touched point itself moves, (3,), if the free surface nodes move so, (n, 3)."""
+    """Displacement (3,) of the touched point, from those of the free surface nodes (n, 3)."""
     free, corner = body.free_index(touch.triangle), np.arange(3)
     held = free >= 0
     moved: Array = touch.alpha[corner[held]] @ displacements[free[held]]

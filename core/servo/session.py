@@ -74,12 +74,12 @@ def servo_on(
 
     Parameters
     ----------
-    surface : see :func:`native_body`. For the felt force ``corrected`` it needs its softenings: let
-        a :class:`..shape.force_at_depth.softening_table.SofteningTable` tell them.
+    surface : see :func:`native_body`. For the force law ``corrected`` it needs softenings, from a
+        :class:`..shape.force_at_depth.softening_table.SofteningTable`.
     settings : to begin with.
     rate_hz : 100 to 8000.
-    max_force : newton; the clamp on what any device is told.
-    record_seconds : how long samples are kept until somebody takes them.
+    max_force : newton; the clamp on the force of any device.
+    record_seconds : length of samples kept until they are read.
 
     Raises
     ------
@@ -99,7 +99,7 @@ def servo_on(
 
 
 def touched_nodes(body: SoftBody, snapshot: Snapshot) -> NDArray[np.int64]:
-    """Node numbers of the mesh that fingers of a snapshot press, (k,)."""
+    """Node numbers (k,) of the mesh pressed by the fingers of a snapshot."""
     nodes = [finger.nodes for finger in snapshot.fingers]
     pressed: NDArray[np.int64] = np.concatenate([np.zeros(0, dtype=np.int64), *nodes])
     return body.mesh.surface_nodes[pressed]
@@ -108,7 +108,7 @@ def touched_nodes(body: SoftBody, snapshot: Snapshot) -> NDArray[np.int64]:
 def displacements_of(
     body: SoftBody, snapshot: Snapshot, young_modulus: float | None = None
 ) -> NDArray[np.float64] | None:
-    """Displacements (n, 3) of the free surface nodes that all fingers of a snapshot ask for.
+    """Displacements (n, 3) of the free surface nodes under all fingers of a snapshot.
 
     None while none of them touches.
     """

@@ -1,1 +1,1 @@
-"""Tools with a shape."""
+"""Rigid tools, their poses and contact points."""

@@ -1,4 +1,4 @@
-"""A tool and its contact points as native code holds them."""
+"""Native form of a tool and its contact points."""
 
 from __future__ import annotations
 
@@ -33,15 +33,14 @@ def native_surface(native: Body, points: ContactPoints, near: NearCorrection | N
 
 
 def native_shape(tool: Tool) -> NativeTool:
-    """The tool's shape alone."""
+    """Native shape of a tool."""
     return NativeTool(tool.core, tool.radius)
 
 
 def native_tool(body: SoftBody, native: Body, tool: Tool, *, friction: float = 0.0) -> ToolContact:
-    """A tool as the native thread holds it, with all the memory that it will ever need.
+    """Native contact of a tool, with all the memory that it will ever need.
 
-    Takes some tenths of a second: contact points are spread and what the mesh is too coarse for is
-    told from the nodes around each node.
+    Takes some tenths of a second, to spread contact points and to estimate the near field.
 
     Parameters
     ----------

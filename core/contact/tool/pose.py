@@ -1,4 +1,4 @@
-"""Where a tool is: turned to a surface, a view or an object, and set down from outside."""
+"""Poses of tools: facing a surface, a view or an object, and set down from outside."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from .tools import Tool
 
 Array = NDArray[np.float64]
 
-# Lifting off a curved surface comes to its end in a few steps; grazing it may take more.
+# Steps to lift a tool off a curved surface: a few, more where it grazes.
 MOST_LIFTS = 64
-# A tool is set down this far above the surface, as a share of its size or the body's, whichever is
-# less.
+# Height of a tool above the surface when set down, as a share of its size or the body's, whichever
+# is less.
 AIR = 1e-4
 
 
 @dataclass(frozen=True, eq=False)
 class Pose:
-    """Where a tool is: ``position`` (3,) of its reference point in metres, body coordinates, and
-    ``rotation`` (3, 3), which takes directions of the tool to directions of the body.
+    """Pose of a tool: ``position`` (3,) of its reference point in metres, body coordinates, and
+    ``rotation`` (3, 3), tool to body.
     """
 
     position: NDArray[np.float64]
@@ -32,12 +32,12 @@ class Pose:
 
     @classmethod
     def at(cls, position: ArrayLike, rotation: ArrayLike | None = None) -> Pose:
-        """A pose from numbers, checked; without ``rotation`` the tool's axes are the body's.
+        """Pose from numbers, checked; without ``rotation`` the tool's axes are the body's.
 
         Raises
         ------
         PalpateError
-            A position that is not three finite numbers, a rotation that is none.
+            A position that is not three finite numbers, an invalid rotation.
         """
         place = np.array(position, dtype=np.float64)
         turn = np.eye(3) if rotation is None else np.array(rotation, dtype=np.float64)
@@ -59,12 +59,12 @@ class Pose:
         return cls(place, turn)
 
     def to_tool(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Body coordinates (p, 3) as the tool's own."""
+        """Body coordinates (p, 3) in the tool's frame."""
         own: NDArray[np.float64] = (points - self.position) @ self.rotation
         return own
 
     def to_body(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        """The tool's own coordinates (p, 3) as the body's."""
+        """Coordinates (p, 3) of the tool's frame in the body's."""
         moved: NDArray[np.float64] = points @ self.rotation.T + self.position
         return moved
 
@@ -85,16 +85,16 @@ def facing(direction: Array, along: Array) -> Array:
 
 
 def reach(tool: Tool, rotation: Array, direction: Array) -> float:
-    """How far the tool reaches beyond its reference point along ``direction`` (3,), unit, m."""
+    """Extent of the tool from its reference point along ``direction`` (3,), unit, m."""
     return float((tool.core @ rotation.T @ direction).max()) + tool.radius
 
 
 def resting_on(tool: Tool, rotation: Array, point: Array, normal: Array, surface: Array) -> Pose:
-    """The tool where it just does not touch a surface, above ``point`` (3,) on it.
+    """Pose of a tool just out of contact with a surface, above ``point`` (3,) on it.
 
-    ``normal`` (3,) is the outward unit normal there. A surface that rises beside the point, of
-    which places ``surface`` (n, 3) are known, keeps the tool further off. They should be those that
-    the tool will touch, or it may be set down in one of them and feel nothing.
+    ``normal`` (3,) is the outward unit normal there. Places ``surface`` (n, 3) of a
+    rising surface keep the tool further off. They should be those that the tool will touch, or it
+    may be set down inside one of them, without force.
     """
     air = AIR * min(tool.size, float(np.ptp(surface, axis=0).max(initial=0.0)))
     position = point + (reach(tool, rotation, -normal) + air) * normal

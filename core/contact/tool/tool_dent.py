@@ -1,8 +1,8 @@
-"""The surface that is drawn, kept out of the tools that press it.
+"""Drawn surface, kept out of the tools that press it.
 
-A tool feels a near field that the finite elements do not have (:mod:`.near_field`), so their shape
-under the same forces stays short of the tool, and on a coarse body the tool would be seen inside.
-In the contact the surface lies on the tool: there its place is known, without any elements.
+The near field (:mod:`..near_field`) is not in the finite elements, so their shape under the same
+forces is short of the tool, which would be seen inside a coarse body. But in contact the surface
+lies on the tool, so its place is known there.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from .pose import Pose
 from .tools import Tool
 
-# Over this share of the tool's inner radius to both sides of its surface, never more than it is
-# deep, the shift fades in, so that no edge is drawn around the contact.
+# Share of the tool's inner radius, on both sides of its surface and at most its depth, over which
+# the shift fades in, so that no edge is drawn around the contact.
 FADE = 0.25
 
 # A surface whose normal has a smaller product than the first with the force on the tool is not the
@@ -26,7 +26,7 @@ PRESSED_SIDE = (-0.2, 0.2)
 
 @dataclass(frozen=True, eq=False)
 class PressingTool:
-    """A ``tool`` at a ``pose``, on which the body exerts ``force`` (3,), newton, body axes."""
+    """Tool at a ``pose``, on which the body exerts ``force`` (3,), newton, body axes."""
 
     tool: Tool
     pose: Pose
@@ -57,7 +57,7 @@ def kept_out(
 
 
 def _soft_depth(distances: NDArray[np.float64], fade: float) -> NDArray[np.float64]:
-    """How far each place is moved out: its depth, with a parabola across the tool's surface."""
+    """Shift of each place: its depth, with a parabola across the tool's surface."""
     if fade <= 0.0:
         return np.maximum(-distances, 0.0)
     soft = (fade - distances) ** 2 / (4.0 * fade)

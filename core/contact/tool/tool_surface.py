@@ -1,4 +1,4 @@
-"""The contact points of a body for a tool, spread once for all its touches."""
+"""Contact points of a body for a tool, spread once for all its touches."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _surfaces: WeakKeyDictionary[SoftBody, dict[float, tuple[ContactPoints, NearCorr
 
 
 def surface_for(body: SoftBody, tool: Tool) -> ContactPoints:
-    """The contact points of a body for a tool; kept as long as the body lives."""
+    """Contact points of a body for a tool; cached with the body."""
     return surface_and_correction(body, tool)[0]
 
 
