@@ -3,66 +3,49 @@
 import bpy
 
 from ..operators.scene.package_preferences import PACKAGE
+from .properties.kinds import choice, number, span, text
 from .properties.scene import SOURCE_ITEMS
+
+
+def colour(name: str, default: tuple[float, float, float, float]) -> object:
+    """Colour of something in the view, with its opacity."""
+    return bpy.props.FloatVectorProperty(
+        name=name, subtype="COLOR", size=4, min=0.0, max=1.0, default=default
+    )
 
 
 class PalpatePreferences(bpy.types.AddonPreferences):
     bl_idname = PACKAGE
 
-    default_source: bpy.props.EnumProperty(
-        name="Press With",
-        description="What new files press with",
-        items=SOURCE_ITEMS,
-        default="POINTER",
+    default_source: choice("Press With", "What new files press with", SOURCE_ITEMS, "POINTER")
+    max_force: number(
+        "Largest Force",
+        "A device never gives more than this, in newtons, nor more than it says itself",
+        3.0,
+        span(0.1, 40.0, precision=1, step=10),
     )
-    max_force: bpy.props.FloatProperty(
-        name="Largest Force",
-        description="A device never gives more than this, in newtons, nor more than it says itself",
-        default=3.0,
-        min=0.1,
-        max=40.0,
-        precision=1,
-        step=10,
+    sensitivity: number(
+        "Pointer Sensitivity",
+        "How deep a drag presses: 1 follows the pointer",
+        1.0,
+        span(0.05, 5.0, precision=2, step=5),
     )
-    sensitivity: bpy.props.FloatProperty(
-        name="Pointer Sensitivity",
-        description="How deep a drag presses: 1 follows the pointer",
-        default=1.0,
-        min=0.05,
-        max=5.0,
-        precision=2,
-        step=5,
-    )
-    body_folder: bpy.props.StringProperty(
-        name="Body Folder",
-        description="Where bodies of files not yet saved are kept. "
-        "Empty: the extension's own user folder",
+    body_folder: text(
+        "Body Folder",
+        "Where bodies of files not yet saved are kept. Empty: the extension's own user folder",
         subtype="DIR_PATH",
     )
-    probe_color: bpy.props.FloatVectorProperty(
-        name="Probe", subtype="COLOR", size=4, min=0.0, max=1.0, default=(1.0, 0.55, 0.1, 1.0)
+    probe_color: colour("Probe", (1.0, 0.55, 0.1, 1.0))
+    contact_color: colour("Contact", (0.15, 0.75, 1.0, 1.0))
+    force_color: colour("Force", (0.95, 0.2, 0.35, 1.0))
+    probe_pixels: number(
+        "Probe Size", "Radius of the probe on the screen", 9.0, span(3.0, 40.0, subtype="PIXEL")
     )
-    contact_color: bpy.props.FloatVectorProperty(
-        name="Contact", subtype="COLOR", size=4, min=0.0, max=1.0, default=(0.15, 0.75, 1.0, 1.0)
-    )
-    force_color: bpy.props.FloatVectorProperty(
-        name="Force", subtype="COLOR", size=4, min=0.0, max=1.0, default=(0.95, 0.2, 0.35, 1.0)
-    )
-    probe_pixels: bpy.props.FloatProperty(
-        name="Probe Size",
-        description="Radius of the probe on the screen",
-        default=9.0,
-        min=3.0,
-        max=40.0,
-        subtype="PIXEL",
-    )
-    arrow_pixels: bpy.props.FloatProperty(
-        name="Arrow Length",
-        description="Length of the arrow for large forces; half of it at 0.3 N",
-        default=160.0,
-        min=20.0,
-        max=600.0,
-        subtype="PIXEL",
+    arrow_pixels: number(
+        "Arrow Length",
+        "Length of the arrow for large forces; half of it at 0.3 N",
+        160.0,
+        span(20.0, 600.0, subtype="PIXEL"),
     )
 
     def draw(self, context: bpy.types.Context) -> None:

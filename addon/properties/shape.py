@@ -1,9 +1,8 @@
 """Properties of an object for large deformation: drawn shape and force law."""
 
-import bpy
-
 from ...core.shape.force_at_depth.felt_force import EXPLANATIONS as FELT_EXPLANATIONS
 from ...core.shape.shapes import EXPLANATIONS, SERIES_IS_PAPER
+from .kinds import choice
 
 # Files hold the numbers of these items: give no number twice.
 SHAPE_ITEMS = [
@@ -22,15 +21,10 @@ FELT_ITEMS = [
 class ShapeProperties:
     """Part of ``object.palpate`` for large deformation."""
 
-    shape: bpy.props.EnumProperty(
-        name="Shape",
-        description="How the deformed shape is computed. Can be changed while you press",
-        items=[*SHAPE_ITEMS, FORMER_ITEM],
-        default="LINEAR",
+    shape: choice(
+        "Shape",
+        "How the deformed shape is computed. Can be changed while you press",
+        [*SHAPE_ITEMS, FORMER_ITEM],
+        "LINEAR",
     )
-    felt: bpy.props.EnumProperty(
-        name="Felt Force",
-        description="How the force follows from large depths",
-        items=FELT_ITEMS,
-        default="LINEAR",
-    )
+    felt: choice("Felt Force", "How the force follows from large depths", FELT_ITEMS, "LINEAR")

@@ -6,6 +6,7 @@ from collections.abc import Callable
 import bpy
 
 from ...core.softness.scales.materials import MATERIALS
+from .kinds import choice, number, result, span, switch, text
 from .scene import PalpateScene
 from .shape import ShapeProperties
 
@@ -25,6 +26,7 @@ MATERIAL_ITEMS = [
     ),
     (CUSTOM, "Custom", "Young's modulus and Poisson's ratio as set below", CUSTOM_NUMBER),
 ]
+FRICTIONS = span(0.0, 5.0, soft_max=1.5, precision=2, step=5)
 PIN_ITEMS = [
     ("BELOW", "Below Height", "Everything in the lowest part of the object, as it stands"),
     ("GROUP", "Vertex Group", "Vertices with a weight of 0.5 or more"),
@@ -84,175 +86,129 @@ class PalpateObject(ShapeProperties, bpy.types.PropertyGroup):
     region, young_scale.
     """
 
-    material: bpy.props.EnumProperty(
-        name="Material",
-        description="A usual soft material, as a start",
-        items=MATERIAL_ITEMS,
-        default="PLUSH",
+    material: choice(
+        "Material",
+        "A usual soft material, as a start",
+        MATERIAL_ITEMS,
+        "PLUSH",
         update=_take_material,
     )
-    young_modulus: bpy.props.FloatProperty(
-        name="Young's Modulus",
-        description="Stiffness in pascal. Takes effect at once, without a new bake",
-        default=1000.0,
-        min=1.0,
-        max=1e9,
-        soft_max=1e6,
-        precision=0,
-        step=10000,
+    young_modulus: number(
+        "Young's Modulus",
+        "Stiffness in pascal. Takes effect at once, without a new bake",
+        1000.0,
+        span(1.0, 1e9, soft_max=1e6, precision=0, step=10000),
         update=_leave_material("young_modulus"),
     )
-    poisson_ratio: bpy.props.FloatProperty(
-        name="Poisson's Ratio",
-        description="How much it bulges sideways: 0 like cork, near 0.5 like rubber or water. "
+    poisson_ratio: number(
+        "Poisson's Ratio",
+        "How much it bulges sideways: 0 like cork, near 0.5 like rubber or water. "
         "Needs Rebuild Body",
-        default=0.3,
-        min=0.0,
-        max=0.499,
-        precision=3,
-        step=1,
+        0.3,
+        span(0.0, 0.499, precision=3, step=1),
         update=_leave_material("poisson_ratio"),
     )
-    pin_mode: bpy.props.EnumProperty(
-        name="Pin", description="Which part never moves", items=PIN_ITEMS, default="BELOW"
+    pin_mode: choice("Pin", "Which part never moves", PIN_ITEMS, "BELOW")
+    pin_fraction: number(
+        "Height",
+        "Share of the object's height in world Z below which it is pinned",
+        0.1,
+        span(0.0, 0.95, subtype="FACTOR"),
     )
-    pin_fraction: bpy.props.FloatProperty(
-        name="Height",
-        description="Share of the object's height in world Z below which it is pinned",
-        default=0.1,
-        min=0.0,
-        max=0.95,
-        subtype="FACTOR",
-    )
-    pin_group: bpy.props.StringProperty(
-        name="Group", description="Vertex group that is pinned", default="Pinned"
-    )
-    stiff_group: bpy.props.StringProperty(
-        name="Group",
-        description="Vertex group that is stiffer or softer than the material. A closed shell "
+    pin_group: text("Group", "Vertex group that is pinned", "Pinned")
+    stiff_group: text(
+        "Group",
+        "Vertex group that is stiffer or softer than the material. A closed shell "
         "inside the mesh makes all that it encloses stiff: bone in flesh. Needs Rebuild Body",
     )
-    stiff_factor: bpy.props.FloatProperty(
-        name="Times as Stiff",
-        description="Factor on Young's modulus where the group's weight is 1; halfway painted "
+    stiff_factor: number(
+        "Times as Stiff",
+        "Factor on Young's modulus where the group's weight is 1; halfway painted "
         "weights feel halfway",
-        default=100.0,
-        min=0.001,
-        max=100_000.0,
-        soft_min=0.01,
-        soft_max=10_000.0,
-        precision=2,
-        step=1000,
+        100.0,
+        span(0.001, 100_000.0, soft_min=0.01, soft_max=10_000.0, precision=2, step=1000),
     )
-    formulation: bpy.props.EnumProperty(
-        name="Formulation",
-        description="How tetrahedra resist. Needs Rebuild Body",
-        items=FORMULATION_ITEMS,
-        default="AUTO",
+    formulation: choice(
+        "Formulation", "How tetrahedra resist. Needs Rebuild Body", FORMULATION_ITEMS, "AUTO"
     )
-    form: bpy.props.EnumProperty(
-        name="Compliance",
-        description="How the computed response is kept. Needs Rebuild Body",
-        items=FORM_ITEMS,
-        default="AUTO",
+    form: choice(
+        "Compliance", "How the computed response is kept. Needs Rebuild Body", FORM_ITEMS, "AUTO"
     )
-    compression_tolerance: bpy.props.FloatProperty(
-        name="Largest Error",
-        description="By how much compressing may change the shape under any touch. The force "
+    compression_tolerance: number(
+        "Largest Error",
+        "By how much compressing may change the shape under any touch. The force "
         "that is felt stays exact",
-        default=0.1,
-        min=0.001,
-        max=5.0,
-        precision=2,
-        step=1,
-        subtype="PERCENTAGE",
+        0.1,
+        span(0.001, 5.0, precision=2, step=1, subtype="PERCENTAGE"),
     )
-    shading: bpy.props.BoolProperty(
-        name="Smooth Facets",
-        description="Feel the smooth surface that the facets stand for, instead of their edges",
-        default=True,
+    shading: switch(
+        "Smooth Facets",
+        "Feel the smooth surface that the facets stand for, instead of their edges",
+        on=True,
     )
-    static_friction: bpy.props.FloatProperty(
-        name="Static Friction",
-        description="How well the surface holds a resting finger: sideways force over pressing "
+    static_friction: number(
+        "Static Friction",
+        "How well the surface holds a resting finger: sideways force over pressing "
         "force. 0 is slippery, felt is about 0.5, rubber 1",
-        default=0.0,
-        min=0.0,
-        max=5.0,
-        soft_max=1.5,
-        precision=2,
-        step=5,
+        0.0,
+        FRICTIONS,
         update=_keep_order("static_friction"),
     )
-    dynamic_friction: bpy.props.FloatProperty(
-        name="Dynamic Friction",
-        description="The same while the finger slides; never more than the static one",
-        default=0.0,
-        min=0.0,
-        max=5.0,
-        soft_max=1.5,
-        precision=2,
-        step=5,
+    dynamic_friction: number(
+        "Dynamic Friction",
+        "The same while the finger slides; never more than the static one",
+        0.0,
+        FRICTIONS,
         update=_keep_order("dynamic_friction"),
     )
-    edge_length: bpy.props.FloatProperty(
-        name="Edge Length",
-        description="Wanted edge length of the tetrahedra, as a share of the object's diagonal. "
+    edge_length: number(
+        "Edge Length",
+        "Wanted edge length of the tetrahedra, as a share of the object's diagonal. "
         "Half the length: about eight times the nodes",
-        default=0.05,
-        min=0.005,
-        max=0.5,
-        precision=3,
-        step=0.5,
+        0.05,
+        span(0.005, 0.5, precision=3, step=0.5),
     )
-    epsilon: bpy.props.FloatProperty(
-        name="Tolerance",
-        description="How far the body may stray from the mesh, as a share of the diagonal. "
+    epsilon: number(
+        "Tolerance",
+        "How far the body may stray from the mesh, as a share of the diagonal. "
         "Smaller takes longer",
-        default=0.003,
-        min=0.0001,
-        max=0.05,
-        precision=4,
-        step=0.01,
+        0.003,
+        span(0.0001, 0.05, precision=4, step=0.01),
     )
-    decimate_above: bpy.props.IntProperty(
-        name="Simplify Above",
-        description="Denser meshes are simplified to this many triangles before the bake. "
+    decimate_above: number(
+        "Simplify Above",
+        "Denser meshes are simplified to this many triangles before the bake. "
         "What you see stays as dense as it is",
-        default=6000,
-        min=200,
-        max=1_000_000,
+        6000,
+        span(200, 1_000_000),
     )
-    time_limit: bpy.props.FloatProperty(
-        name="Time Limit",
-        description="Give up filling with tetrahedra after this many seconds",
-        default=600.0,
-        min=5.0,
-        soft_max=3600.0,
-        precision=0,
-        step=1000,
+    time_limit: number(
+        "Time Limit",
+        "Give up filling with tetrahedra after this many seconds",
+        600.0,
+        span(5.0, soft_max=3600.0, precision=0, step=1000),
     )
 
     # Results of the last bake, written by the operators only.
-    body_key: bpy.props.StringProperty(name="Body Key", options={"HIDDEN"})
-    body_file: bpy.props.StringProperty(name="Body File", options={"HIDDEN"})
-    fingerprint: bpy.props.StringProperty(name="Fingerprint", options={"HIDDEN"})
+    body_key: result("", name="Body Key")
+    body_file: result("", name="Body File")
+    fingerprint: result("", name="Fingerprint")
     # 0 if unknown.
-    baked_edge_length: bpy.props.FloatProperty(options={"HIDDEN"})
-    baked_epsilon: bpy.props.FloatProperty(options={"HIDDEN"})
-    baked_poisson_ratio: bpy.props.FloatProperty(precision=3, options={"HIDDEN"})
+    baked_edge_length: result(0.0)
+    baked_epsilon: result(0.0)
+    baked_poisson_ratio: result(0.0, precision=3)
     # Of bodies in files from before there was a choice.
-    baked_formulation: bpy.props.StringProperty(default="linear", options={"HIDDEN"})
-    baked_form: bpy.props.StringProperty(default="dense", options={"HIDDEN"})
+    baked_formulation: result("linear")
+    baked_form: result("dense")
     # Of a compressed body, in percent: what was allowed, and what it is.
-    baked_tolerance: bpy.props.FloatProperty(default=0.1, options={"HIDDEN"})
-    column_error: bpy.props.FloatProperty(options={"HIDDEN"})
-    node_count: bpy.props.IntProperty(options={"HIDDEN"})
-    tet_count: bpy.props.IntProperty(options={"HIDDEN"})
-    free_surface_count: bpy.props.IntProperty(options={"HIDDEN"})
-    compliance_megabytes: bpy.props.FloatProperty(options={"HIDDEN"})
-    bake_seconds: bpy.props.FloatProperty(options={"HIDDEN"})
-    bake_warnings: bpy.props.StringProperty(options={"HIDDEN"})
+    baked_tolerance: result(0.1)
+    column_error: result(0.0)
+    node_count: result(0)
+    tet_count: result(0)
+    free_surface_count: result(0)
+    compliance_megabytes: result(0.0)
+    bake_seconds: result(0.0)
+    bake_warnings: result("")
 
 
 classes = (PalpateObject, PalpateScene)

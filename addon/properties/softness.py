@@ -10,11 +10,20 @@ from ...core.errors import PalpateError
 from ...core.softness.ramp import ramp
 from ...core.softness.scales.relations import RELATIONS, USUAL
 from ...core.softness.scales.shore import Shore, shore_from_young, young_from_shore
+from .kinds import choice, number, result, span
 
 # Files hold the numbers of these items: add new ones at the end only.
 SCALE_ITEMS = [
     ("00", "Shore 00", "For gels, soft silicones and foams: a ball on a light spring"),
     ("A", "Shore A", "For rubbers: a blunt cone on a stronger spring"),
+]
+PLACE_ITEMS = [
+    ("CURSOR", "3D Cursor", "The surface point nearest to the 3D cursor"),
+    (
+        "VERTICES",
+        "Selected Vertices",
+        "The surface point nearest to the middle of the vertices selected in Edit Mode",
+    ),
 ]
 LEGEND_STEPS = 5
 
@@ -68,12 +77,7 @@ def legend_colour(step: int) -> bpy.props.FloatVectorProperty:
 class PalpateSoftness(bpy.types.PropertyGroup):
     """``object.palpate_softness``."""
 
-    shore_scale: bpy.props.EnumProperty(
-        name="Scale",
-        description="Which durometer the Shore value is of",
-        items=SCALE_ITEMS,
-        default="00",
-    )
+    shore_scale: choice("Scale", "Which durometer the Shore value is of", SCALE_ITEMS, "00")
     shore: bpy.props.FloatProperty(
         name="Shore",
         description="Softness as data sheets tell it, from 10 to 90: what a durometer reads on a "
@@ -85,28 +89,17 @@ class PalpateSoftness(bpy.types.PropertyGroup):
         get=_read_shore,
         set=_set_shore,
     )
-    place: bpy.props.EnumProperty(
-        name="Measured At",
-        description="Where durometer and curve press, unless you click a place",
-        items=[
-            ("CURSOR", "3D Cursor", "The surface point nearest to the 3D cursor"),
-            (
-                "VERTICES",
-                "Selected Vertices",
-                "The surface point nearest to the middle of the vertices selected in Edit Mode",
-            ),
-        ],
-        default="CURSOR",
+    place: choice(
+        "Measured At",
+        "Where durometer and curve press, unless you click a place",
+        PLACE_ITEMS,
+        "CURSOR",
     )
-    finger_radius: bpy.props.FloatProperty(
-        name="Fingertip Radius",
-        description="How large what presses is, for curve and map; 0 for a point",
-        default=0.005,
-        min=0.0,
-        soft_max=0.05,
-        precision=4,
-        step=0.1,
-        subtype="DISTANCE",
+    finger_radius: number(
+        "Fingertip Radius",
+        "How large what presses is, for curve and map; 0 for a point",
+        0.005,
+        span(0.0, soft_max=0.05, precision=4, step=0.1, subtype="DISTANCE"),
     )
     colours_0: legend_colour(0)
     colours_1: legend_colour(1)
@@ -115,17 +108,17 @@ class PalpateSoftness(bpy.types.PropertyGroup):
     colours_4: legend_colour(4)
 
     # Latest results, written by the operators only; lengths in mm, stiffness in N/mm.
-    read_scale: bpy.props.StringProperty(options={"HIDDEN"})
-    read_value: bpy.props.FloatProperty(options={"HIDDEN"})
-    read_block: bpy.props.FloatProperty(options={"HIDDEN"})
-    read_warnings: bpy.props.StringProperty(options={"HIDDEN"})
-    curve_text: bpy.props.StringProperty(options={"HIDDEN"})
-    curve_depth: bpy.props.FloatProperty(options={"HIDDEN"})
-    curve_force: bpy.props.FloatProperty(options={"HIDDEN"})
-    curve_stiffness: bpy.props.FloatProperty(options={"HIDDEN"})
-    map_low: bpy.props.FloatProperty(options={"HIDDEN"})
-    map_high: bpy.props.FloatProperty(options={"HIDDEN"})
-    shown_before: bpy.props.StringProperty(options={"HIDDEN"})
+    read_scale: result("")
+    read_value: result(0.0)
+    read_block: result(0.0)
+    read_warnings: result("")
+    curve_text: result("")
+    curve_depth: result(0.0)
+    curve_force: result(0.0)
+    curve_stiffness: result(0.0)
+    map_low: result(0.0)
+    map_high: result(0.0)
+    shown_before: result("")
 
 
 classes = (PalpateSoftness,)
