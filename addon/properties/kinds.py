@@ -42,7 +42,7 @@ def switch(name: str, description: str, *, on: bool = False) -> object:
 
 
 def choice(
-    name: str, description: str, items: Sequence[tuple], default: str, **more: object
+    name: str, description: str, items: Sequence[tuple[object, ...]], default: str, **more: object
 ) -> object:
     """One of several items."""
     return bpy.props.EnumProperty(

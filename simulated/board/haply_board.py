@@ -7,8 +7,6 @@ arm's geometry. The firmware is `haply_firmware.py`.
 from __future__ import annotations
 
 import math
-import random
-from collections import deque
 from dataclasses import replace
 from pathlib import Path
 
@@ -19,44 +17,31 @@ from ..hand.options import SimulatedOptions
 from ..hand.plant import Plant, Vector
 from ..hand.quaternion import Quaternion
 from ..wire.pseudo_terminal import PseudoTerminal
+from ..wire.wire_faults import BadWire
 from .haply_firmware import PORTS, HaplyCounters, HaplyFirmware
 
 RELEASE_AFTER_SECONDS = 0.25
 
 
-class ByteFaults:
-    """Faults of one direction of an unframed line: lost bytes, flipped bits, delay."""
-
-    def __init__(self, options: SimulatedOptions, seed: int) -> None:
-        self.lost = 0
-        self.flipped = 0
-        self._options = options
-        self._dice = random.Random(seed)  # noqa: S311 - simulation, not secrets
-        self._in_flight: deque[tuple[float, bytes]] = deque()
+class ByteFaults(BadWire):
+    """One direction of an unframed line: single bytes are lost, with flipped bits and a delay."""
 
     def put(self, data: bytes, now: float) -> None:
         """Send bytes at `now`."""
         if data:
-            self._in_flight.append((now + self._options.delay, self._through(data)))
-
-    def take(self, now: float) -> bytes:
-        """Bytes that have arrived until `now`."""
-        arrived = b""
-        while self._in_flight and self._in_flight[0][0] <= now:
-            arrived += self._in_flight.popleft()[1]
-        return arrived
+            self._in_flight.append((now + self._delay, self._through(data)))
 
     def _through(self, data: bytes) -> bytes:
-        loss, noise = self._options.loss, 1.0 - (1.0 - self._options.noise) ** 8
-        if not (loss or noise):
+        noise = 1.0 - (1.0 - self._noise) ** 8
+        if not (self._loss or noise):
             return data
         passed = bytearray()
         for byte in data:
-            if self._dice.random() < loss:
+            if self._random.random() < self._loss:
                 self.lost += 1
-            elif self._dice.random() < noise:
+            elif self._random.random() < noise:
                 self.flipped += 1
-                passed.append(byte ^ 1 << self._dice.randrange(8))
+                passed.append(byte ^ 1 << self._random.randrange(8))
             else:
                 passed.append(byte)
         return bytes(passed)
@@ -76,7 +61,6 @@ class HaplyBoard:
         self.model = haply_model(model)
         if options.rest == SimulatedOptions().rest:
             options = replace(options, rest=self.model.rest)
-        self._options = options
         self._schedule = HandSchedule(options)
         if self._schedule.turned(0.0) is not None:
             raise PalpateError("simulated 2DIY: it cannot tell how it is turned; omit --turning")
@@ -86,8 +70,10 @@ class HaplyBoard:
         self._degrees = self.model.angles(start) or self.model.rest_degrees
         self._force: Vector = (0.0, 0.0, 0.0)
         self._largest_force = 0.0
-        self._to_device = ByteFaults(options, 2 * options.seed)
-        self._to_host = ByteFaults(options, 2 * options.seed + 1)
+        self._to_device, self._to_host = (
+            ByteFaults(options.loss, options.noise, options.delay, 2 * options.seed + way)
+            for way in (0, 1)
+        )
         self.firmware = HaplyFirmware(self._counts)
         self.terminal = PseudoTerminal(
             Path(options.link) if options.link else None, RELEASE_AFTER_SECONDS

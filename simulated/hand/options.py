@@ -1,4 +1,5 @@
 """Options of the simulated device, for command line and code."""
+# ruff: noqa: RUF009 - _option gives a field, not a value
 
 from __future__ import annotations
 
@@ -14,8 +15,9 @@ from .hand_script import HandScript, TurnScript, press_script, read_script, tilt
 from .plant import Impedance, Vector
 
 
-def _about(unit: str, text: str) -> dict[str, str]:
-    return {"unit": unit, "help": text}
+def _option(default: Any, unit: str, text: str) -> Any:
+    """Field of the options, with what its help says."""
+    return field(default=default, metadata={"unit": unit, "help": text})
 
 
 @dataclass(frozen=True)
@@ -25,111 +27,57 @@ class SimulatedOptions:
     Times count from the first HELLO, before which the hand waits at `rest`.
     """
 
-    name: str = field(
-        default="Simulated", metadata=_about("TEXT", "name sent in HELLO, at most 16 bytes")
+    name: str = _option("Simulated", "TEXT", "name told in HELLO, at most 16 bytes")
+    rate_hz: int = _option(1000, "HZ", "rate of the device's own loop and of STATE")
+    largest_force: float = _option(3.0, "N", "largest force of the motors")
+    workspace: Vector = _option(
+        (0.1, 0.1, 0.1), "XYZ", "half extents of the workspace told in HELLO"
     )
-    rate_hz: int = field(
-        default=1000, metadata=_about("HZ", "rate of the device's own loop and of STATE")
+    resolution_um: int = _option(1, "UM", "step of the encoders in micrometres")
+    mass: float = _option(0.1, "KG", "moving mass")
+    damping: float = _option(0.5, "NS/M", "viscous friction")
+    coulomb: float = _option(0.0, "N", "Coulomb friction of each axis; below it the axis sticks")
+    force_step: float = _option(
+        0.0, "N", "step of the motors' force, as of their current (0: none)"
     )
-    largest_force: float = field(default=3.0, metadata=_about("N", "largest force of the motors"))
-    workspace: Vector = field(
-        default=(0.1, 0.1, 0.1),
-        metadata=_about("XYZ", "half extents of the workspace sent in HELLO"),
+    brake: float = _option(20.0, "NS/M", "damping added while the host asks for it")
+    hand_stiffness: float = _option(500.0, "N/M", "spring between the hand and the device")
+    hand_damping: float = _option(10.0, "NS/M", "damper between the hand and the device")
+    rest: Vector = _option((0.0, 0.0, 0.03), "XYZ", "where the hand waits for the host")
+    at: Vector | None = _option(None, "XYZ", "where a press begins (default: where the hand rests)")
+    by: Vector = _option((0.0, 0.0, 0.0), "XYZ", "how far a press goes from there")
+    approach: float = _option(1.0, "S", "time from rest to the beginning of the first press")
+    period: float = _option(2.0, "S", "time of one press, in and out")
+    hold: float = _option(0.0, "S", "of which the hand stays at the deepest point; inf: for good")
+    script: str = _option(
+        "", "FILE", "keyframes of the hand instead, CSV t,x,y,z[,qw,qx,qy,qz] or JSON"
     )
-    resolution_um: int = field(
-        default=1, metadata=_about("UM", "step of the encoders in micrometres")
+    turning: float | None = _option(
+        None,
+        "DEG",
+        "tell an orientation; the hand tilts the stylus by so much and back (0: upright)",
     )
-    mass: float = field(default=0.1, metadata=_about("KG", "moving mass"))
-    damping: float = field(default=0.5, metadata=_about("NS/M", "viscous friction"))
-    coulomb: float = field(
-        default=0.0, metadata=_about("N", "Coulomb friction of each axis; below it the axis sticks")
+    turning_axis: Vector = _option((1.0, 0.0, 0.0), "XYZ", "axis of this, in the device's axes")
+    turning_period: float = _option(4.0, "S", "time of one tilt, there and back")
+    loss: float = _option(0.0, "FRACTION", "of the frames vanishes, both ways")
+    noise: float = _option(0.0, "FRACTION", "of the bits flips, both ways")
+    delay: float = _option(0.0, "S", "on the way, each way")
+    latency_timer: float = _option(
+        0.0, "S", "bytes to the host are held back so long, as FTDI's adapters do"
     )
-    force_step: float = field(
-        default=0.0,
-        metadata=_about("N", "step of the motors' force, as of their current (0: none)"),
-    )
-    brake: float = field(
-        default=20.0, metadata=_about("NS/M", "damping added while the host asks for it")
-    )
-    hand_stiffness: float = field(
-        default=500.0, metadata=_about("N/M", "spring between the hand and the device")
-    )
-    hand_damping: float = field(
-        default=10.0, metadata=_about("NS/M", "damper between the hand and the device")
-    )
-    rest: Vector = field(
-        default=(0.0, 0.0, 0.03), metadata=_about("XYZ", "where the hand waits for the host")
-    )
-    at: Vector | None = field(
-        default=None, metadata=_about("XYZ", "where a press begins (default: where the hand rests)")
-    )
-    by: Vector = field(
-        default=(0.0, 0.0, 0.0), metadata=_about("XYZ", "how far a press goes from there")
-    )
-    approach: float = field(
-        default=1.0, metadata=_about("S", "time from rest to the beginning of the first press")
-    )
-    period: float = field(default=2.0, metadata=_about("S", "time of one press, in and out"))
-    hold: float = field(
-        default=0.0,
-        metadata=_about("S", "of which the hand stays at the deepest point; inf: for good"),
-    )
-    script: str = field(
-        default="",
-        metadata=_about("FILE", "keyframes of the hand instead, CSV t,x,y,z[,qw,qx,qy,qz] or JSON"),
-    )
-    turning: float | None = field(
-        default=None,
-        metadata=_about(
-            "DEG", "tell an orientation; the hand tilts the stylus by so much and back (0: upright)"
-        ),
-    )
-    turning_axis: Vector = field(
-        default=(1.0, 0.0, 0.0), metadata=_about("XYZ", "axis of this, in the device's axes")
-    )
-    turning_period: float = field(
-        default=4.0, metadata=_about("S", "time of one tilt, there and back")
-    )
-    loss: float = field(
-        default=0.0, metadata=_about("FRACTION", "of the frames vanishes, both ways")
-    )
-    noise: float = field(default=0.0, metadata=_about("FRACTION", "of the bits flips, both ways"))
-    delay: float = field(default=0.0, metadata=_about("S", "on the way, each way"))
-    latency_timer: float = field(
-        default=0.0,
-        metadata=_about("S", "bytes to the host are held back so long, as FTDI's adapters do"),
-    )
-    jitter: float = field(
-        default=0.0, metadata=_about("S", "at most, by chance on top of the delay, each way")
-    )
-    seed: int = field(default=1, metadata=_about("N", "of loss, noise and jitter"))
-    unplug_at: float | None = field(
-        default=None, metadata=_about("S", "when the plug is pulled (needs a link to return)")
-    )
-    unplug_for: float = field(
-        default=math.inf, metadata=_about("S", "until it is plugged in again")
-    )
-    button_at: float | None = field(
-        default=None, metadata=_about("S", "when the button is pressed")
-    )
-    button_for: float = field(default=0.2, metadata=_about("S", "until it is released"))
-    link: str = field(
-        default="", metadata=_about("PATH", "symbolic link that always leads to the port")
-    )
+    jitter: float = _option(0.0, "S", "at most, by chance on top of the delay, each way")
+    seed: int = _option(1, "N", "of loss, noise and jitter")
+    unplug_at: float | None = _option(None, "S", "when the plug is pulled (needs a link to return)")
+    unplug_for: float = _option(math.inf, "S", "until it is plugged in again")
+    button_at: float | None = _option(None, "S", "when the button is pressed")
+    button_for: float = _option(0.2, "S", "until it is released")
+    link: str = _option("", "PATH", "symbolic link that always leads to the port")
 
     def __post_init__(self) -> None:
         positive = ("rate_hz", "largest_force", "resolution_um", "mass")
         not_negative = (
-            "damping",
-            "coulomb",
-            "force_step",
-            "brake",
-            "hand_stiffness",
-            "hand_damping",
-            "delay",
-            "jitter",
-            "latency_timer",
-            "unplug_for",
+            *("damping", "coulomb", "force_step", "brake", "hand_stiffness", "hand_damping"),
+            *("delay", "jitter", "latency_timer", "unplug_for"),
         )
         for name in positive:
             if not (0 < getattr(self, name) < math.inf):
@@ -211,11 +159,12 @@ def add_simulated_options(parser: argparse.ArgumentParser) -> None:
 
 def simulated_options(arguments: argparse.Namespace) -> SimulatedOptions:
     """Options read by a parser with `add_simulated_options`; raises PalpateError."""
-    values: dict[str, Any] = {
+    given: dict[str, Any] = {
         option.name: getattr(arguments, option.name) for option in fields(SimulatedOptions)
     }
-    for name, value in values.items():
-        values[name] = tuple(value) if isinstance(value, list) else value
+    values: dict[str, Any] = {
+        name: tuple(one) if isinstance(one, list) else one for name, one in given.items()
+    }
     return SimulatedOptions(**values)
 
 
