@@ -30,7 +30,8 @@ CALLS = {"Sentence", "reported", "shown", "Material", "_by_shore", "_smooth_on",
 TABLES = {"EXPLANATIONS", "STAGES", "STEP_TEXTS"}
 # Read by whoever types commands, in English.
 COMMANDS = (
-    *("addon/command.py", "core/mesh/read_mesh.py", "core/servo/haply_models.py"),
+    *("addon/command.py", "addon/blend_file.py", "core/mesh/read_mesh.py"),
+    "core/servo/haply_models.py",
     *("simulated/board", "simulated/hand", "simulated/device_process.py"),
 )
 LIKE_WORDS = re.compile(r"[A-Z][a-z]|[A-Z0-9]+ [A-Za-z]|\{\w")
