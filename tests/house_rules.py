@@ -96,5 +96,4 @@ KNOWN = (
     "core/contact/tool/tools.py is too long",
     # Being put into their rooms.
     "native/src/python/servo/thread.rs is too long",
-    "tests/cli/test_command_line.py is too long",
 )

@@ -1,58 +1,35 @@
 """Shore values, presets, durometer, curves and maps on the command line."""
 
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
 import trimesh
 
-from palpate.cli.main import main
 from palpate.core.body import body_file
 
 
-def palpate(capsys, *words):
-    status = main([str(word) for word in words])
-    printed = capsys.readouterr()
-    return status, printed.out, printed.err
-
-
-def test_a_shore_value_is_told_as_young_modulus_by_every_relation(capsys):
-    status, printed, _ = palpate(capsys, "shore", "00-30", "--json")
-    figures = json.loads(printed)
-    assert status == 0
+def test_a_shore_value_is_told_as_young_modulus_by_every_relation(figures_of):
+    figures = figures_of("shore", "00-30")
     assert figures["young_modulus"] == figures["young_by_mix"] == pytest.approx(103_400, rel=1e-3)
     assert figures["young_by_ball"] == pytest.approx(121_400, rel=1e-3)
 
 
-def test_young_modulus_is_told_on_the_scales_that_reach_it(capsys):
-    _, soft, _ = palpate(capsys, "shore", "--young", "60e3", "--json")
-    assert set(json.loads(soft)) == {"young_modulus", "shore_00"}
-    _, firm, _ = palpate(capsys, "shore", "--young", "1.142e6", "--json")
-    assert json.loads(firm)["shore_a"] == pytest.approx(30, abs=0.1)
+def test_young_modulus_is_told_on_the_scales_that_reach_it(figures_of):
+    assert set(figures_of("shore", "--young", "60e3")) == {"young_modulus", "shore_00"}
+    assert figures_of("shore", "--young", "1.142e6")["shore_a"] == pytest.approx(30, abs=0.1)
 
 
 @pytest.mark.parametrize(("young", "nearest"), [(1000, "00-10 to 00-90"), (1e9, "A 10 to A 90")])
-def test_what_no_scale_reaches_is_refused_in_one_line(capsys, young, nearest):
-    status, printed, said = palpate(capsys, "shore", "--young", young)
-    assert (status, printed) == (2, "")
-    assert len(said.splitlines()) == 1
-    assert nearest in said
+def test_what_no_scale_reaches_is_refused_in_one_line(refusal, young, nearest):
+    assert nearest in refusal("shore", "--young", young)
 
 
-def test_every_material_is_listed_with_its_source(capsys):
-    _, printed, _ = palpate(capsys, "materials")
+def test_every_material_is_listed_with_its_source(palpate, figures_of):
+    _, printed, _ = palpate("materials")
     assert "ecoflex-30" in printed
     assert "51 kPa" in printed
-    _, printed, _ = palpate(capsys, "materials", "--json")
-    assert json.loads(printed)["DRAGON_SKIN_10"]["shore"] == "A 10"
-
-
-@pytest.fixture
-def tets(tmp_path, cube_mesh) -> Path:
-    mesh, fixed = cube_mesh
-    np.savez(tmp_path / "cube-tets.npz", X=mesh.nodes, T=mesh.tets, fixed=fixed)
-    return tmp_path / "cube-tets.npz"
+    assert figures_of("materials")["DRAGON_SKIN_10"]["shore"] == "A 10"
 
 
 @pytest.mark.parametrize(
@@ -64,9 +41,9 @@ def tets(tmp_path, cube_mesh) -> Path:
         (["--shore", "A20", "--poisson", 0.49], 741_600, 0.49),
     ],
 )
-def test_a_bake_takes_presets_and_shore_values(tets, tmp_path, capsys, options, young, ratio):
+def test_a_bake_takes_presets_and_shore_values(tets, tmp_path, palpate, options, young, ratio):
     out = tmp_path / "cube.npz"
-    assert palpate(capsys, "bake", tets, "-o", out, *options)[0] == 0
+    assert palpate("bake", tets, "-o", out, *options)[0] == 0
     body = body_file.load(out)
     assert body.young_modulus == pytest.approx(young, rel=1e-3)
     assert body.poisson_ratio == ratio
@@ -80,31 +57,17 @@ def test_a_bake_takes_presets_and_shore_values(tets, tmp_path, capsys, options, 
         (["--shore", "A3"], "from 10 to 90"),
     ],
 )
-def test_what_cannot_be_a_material_is_refused(tets, tmp_path, capsys, options, reason):
+def test_what_cannot_be_a_material_is_refused(tets, tmp_path, refusal, options, reason):
     out = tmp_path / "cube.npz"
-    try:
-        status, _, said = palpate(capsys, "bake", tets, "-o", out, *options)
-    except SystemExit as end:
-        status, said = end.code, capsys.readouterr().err
-    assert status == 2
-    assert reason in said
+    assert reason in refusal("bake", tets, "-o", out, *options)
     assert not out.exists()
-
-
-@pytest.fixture(scope="module")
-def cube_file(tmp_path_factory, cube) -> Path:
-    path = tmp_path_factory.mktemp("cube") / "cube.npz"
-    body_file.save(cube, path)
-    return path
 
 
 TOP = ["--at", 0.024, 0.026, 0.05]
 
 
-def test_a_durometer_is_read(cube_file, capsys):
-    status, printed, said = palpate(
-        capsys, "durometer", cube_file, *TOP, "--shore", "00-50", "--json"
-    )
+def test_a_durometer_is_read(cube_file, palpate):
+    status, printed, said = palpate("durometer", cube_file, *TOP, "--shore", "00-50", "--json")
     figures = json.loads(printed)
     assert (status, said) == (0, "")
     # Geometry reads three points less than Hertz there; the cube's pinned base, a little more.
@@ -113,34 +76,22 @@ def test_a_durometer_is_read(cube_file, capsys):
     assert figures["place"] == pytest.approx(TOP[1:])
 
 
-def test_a_stand_presses_harder_and_doubts_are_told(cube_file, capsys):
-    words = [cube_file, *TOP, "--young", 20_000, "--json"]
-    _, light, _ = palpate(capsys, "durometer", *words)
-    _, stand, said = palpate(capsys, "durometer", *words, "--stand")
-    assert json.loads(stand)["value"] > json.loads(light)["value"]
-    total = json.loads(stand)["foot_force_n"] + json.loads(stand)["indenter_force_n"]
+def test_a_stand_presses_harder_and_doubts_are_told(cube_file, palpate, figures_of):
+    words = ["durometer", cube_file, *TOP, "--young", 20_000]
+    light = figures_of(*words)
+    _, printed, said = palpate(*words, "--stand", "--json")
+    stand = json.loads(printed)
+    assert stand["value"] > light["value"]
+    total = stand["foot_force_n"] + stand["indenter_force_n"]
     assert total == pytest.approx(0.4 * 9.81, rel=1e-3)
     assert "warning" in said
 
 
-def test_a_curve_becomes_table_and_picture(cube_file, tmp_path, capsys):
+def test_a_curve_becomes_table_and_picture(cube_file, tmp_path, figures_of):
     table, picture = tmp_path / "curve.csv", tmp_path / "curve.svg"
-    words = [
-        "--tool",
-        "sphere:0.016",
-        "--depth",
-        0.002,
-        "--steps",
-        4,
-        "--csv",
-        table,
-        "--picture",
-        picture,
-        "--json",
-    ]
-    status, printed, _ = palpate(capsys, "curve", cube_file, *TOP, *words)
-    figures = json.loads(printed)
-    assert status == 0
+    words = ["--tool", "sphere:0.016", "--depth", 0.002, "--steps", 4]
+    words += ["--csv", table, "--picture", picture]
+    figures = figures_of("curve", cube_file, *TOP, *words)
     assert figures["tool"] == "sphere:0.016"
     assert len(table.read_text().splitlines()) == 6
     assert picture.read_text().startswith("<svg")
@@ -149,20 +100,19 @@ def test_a_curve_becomes_table_and_picture(cube_file, tmp_path, capsys):
     )
 
 
-def test_a_point_curve_ends_with_its_stiffness(cube_file, capsys):
-    _, printed, _ = palpate(capsys, "curve", cube_file, *TOP, "--tool", "point", "--steps", 2)
+def test_a_point_curve_ends_with_its_stiffness(cube_file, palpate):
+    _, printed, _ = palpate("curve", cube_file, *TOP, "--tool", "point", "--steps", 2)
     assert printed.splitlines()[0].startswith("depth_mm,force_n")
     assert "N/mm over" in printed.splitlines()[-1]
 
 
-def test_a_map_is_written_as_numbers_and_as_colours(cube_file, cube, tmp_path, capsys):
+def test_a_map_is_written_as_numbers_and_as_colours(cube_file, cube, tmp_path, palpate, figures_of):
     numbers, colours = tmp_path / "map.npy", tmp_path / "map.ply"
-    _, printed, _ = palpate(capsys, "softness", cube_file, "-o", numbers, "--json")
-    figures = json.loads(printed)
+    figures = figures_of("softness", cube_file, "-o", numbers)
     values = np.load(numbers)
     assert len(values) == len(cube.mesh.surface_nodes)
     assert figures["softest_n_per_mm"] == pytest.approx(values.min() / 1000)
-    assert palpate(capsys, "softness", cube_file, "-o", colours)[0] == 0
+    assert palpate("softness", cube_file, "-o", colours)[0] == 0
     assert trimesh.load(colours).volume == pytest.approx(0.05**3, rel=1e-5)
 
 
@@ -180,11 +130,8 @@ def test_a_map_is_written_as_numbers_and_as_colours(cube_file, cube, tmp_path, c
     ],
 )
 def test_what_these_commands_cannot_do_is_refused_in_one_line(
-    cube_file, capsys, monkeypatch, tmp_path, words, reason
+    cube_file, refusal, monkeypatch, tmp_path, words, reason
 ):
     monkeypatch.chdir(tmp_path)
-    status, _, said = palpate(capsys, words[0], cube_file, *words[1:])
-    assert status == 2
-    assert len(said.splitlines()) == 1
-    assert reason in said
+    assert reason in refusal(words[0], cube_file, *words[1:])
     assert not list(tmp_path.iterdir())

@@ -2,7 +2,6 @@
 
 import contextlib
 import json
-import os
 import subprocess
 import sys
 
@@ -10,7 +9,6 @@ import numpy as np
 import pytest
 from palpate_servo import Body, LinkDevice, Servo
 
-from palpate.core.servo import link
 from palpate.core.servo.settings import Settings
 
 # Corners, triangles and stiffness of a cube of 50 mm: 100 N/m at 10 kPa everywhere.
@@ -200,25 +198,6 @@ def test_a_host_that_is_killed_leaves_the_board_limp(board, servo, eventually):
     eventually(lambda: board.report()["force"][2] > 0.3, board.report)
 
 
-def test_damaged_forces_are_counted_and_change_nothing(board, eventually):
-    line = os.open(board.port, os.O_RDWR | os.O_NOCTTY)
-    try:
-        os.write(line, link.encode(link.HostHello()))
-        eventually(lambda: board.report()["mode"] == "limp", board.report)
-        damaged = bytearray(link.encode(link.Force(1, (0, 0, 1000))))
-        damaged[1] ^= 0x10
-        os.write(line, bytes(damaged))
-        os.write(line, b"\x09\x01\0" + b"\x33" * 100 + b"\0" + link.frame(b"\x09\x09"))
-        eventually(lambda: board.report()["unknown"] == 1, board.report)
-        report = board.report()
-        assert (report["crc_errors"], report["malformed"], report["forces"]) == (1, 2, 0)
-        assert (report["mode"], report["strongest"]) == ("limp", 0.0)
-        os.write(line, link.encode(link.Force(2, (0, 0, 1000))))
-        eventually(lambda: board.report()["forces"] == 1, board.report)
-    finally:
-        os.close(line)
-
-
 def test_damage_in_the_middle_of_a_press_is_counted_and_survived(press, board, eventually):
     board.tell("hit 40")
     eventually(lambda: board.report()["crc_errors"] + board.report()["malformed"] > 0, board.report)
@@ -226,47 +205,6 @@ def test_damage_in_the_middle_of_a_press_is_counted_and_survived(press, board, e
     eventually(lambda: board.report()["forces"] > forces + 20, board.report)
     eventually(lambda: board.report()["force"][2] > 0.3, board.report)
     assert board.report()["strongest"] <= 3.0 + 1e-6
-
-
-def test_a_board_of_another_protocol_gets_no_force(body, start_board, eventually):
-    board = start_board("--protocol", "2")
-    with Servo(body, Settings(10_000.0)) as servo:
-        servo.start(LinkDevice(board.port))
-        eventually(lambda: servo.snapshot().fault == "wrong protocol", servo.snapshot)
-        eventually(lambda: servo.counters()["link"]["last_fault"] == (2, 1), servo.counters)
-        assert servo.counters()["link"]["device"]["protocol"] == 2
-    report = board.report()
-    assert (report["mode"], report["states"], report["forces"]) == ("waiting", 0, 0)
-
-
-def test_a_fault_of_the_board_silences_and_passes(press, board, servo, eventually):
-    told = servo.counters()["link"]["device_faults"]
-    board.tell("fail 130 7")
-    eventually(lambda: servo.snapshot().fault == "device fault", servo.snapshot)
-    eventually(lambda: servo.counters()["link"]["device_faults"] > told, servo.counters)
-    assert not servo.snapshot().output_force.any()
-    report = board.report()
-    assert (report["mode"], report["force"]) == ("failed", [0.0, 0.0, 0.0])
-    board.tell("recover")
-    eventually(lambda: board.report()["force"][2] > 0.3, board.report)
-
-
-def test_a_board_that_is_not_ready_or_whose_button_is_held_gets_no_force(
-    press, board, servo, eventually
-):
-    for before, state, after in (
-        ("ready 0", "waiting", "ready 1"),
-        ("buttons 1", "disabled", "buttons 0"),
-    ):
-        board.tell(before)
-        eventually(state_is(servo, state), servo.snapshot)
-        # It still hears the host: what has gone is the force, not the line.
-        eventually(
-            lambda: (board.report()["mode"], board.report()["enabled"]) == ("driven", False),
-            board.report,
-        )
-        board.tell(after)
-        eventually(lambda: board.report()["force"][2] > 0.3, board.report)
 
 
 def test_a_board_that_falls_silent_is_stale_and_greeted_again(press, board, servo, eventually):

@@ -1,10 +1,11 @@
-"""The rules of the device's side of the link in C++, with its clock in the test's hand."""
+"""The rules of the device's side of the link, in C++ and simulated, by the test's clock."""
 
 import random
 import re
 from pathlib import Path
 
 import pytest
+from link_devices import Device, Simulated, decoded
 
 from palpate.core.servo import link
 from palpate.simulated.board.simulated_firmware import Firmware
@@ -14,56 +15,28 @@ ENABLE, DAMP = link.ForceFlag.ENABLE, link.ForceFlag.DAMP
 PROSE = Path(__file__).resolve().parents[2] / "docs/link.md"
 
 
-class Device:
-    """The checker's device, by messages instead of lines."""
-
-    def __init__(self, checker):
-        self.ask = checker.ask
-
-    def new(self, hello):
-        name = hello.name.encode().ljust(16, b"\0").hex()
-        x, y, z = hello.half_extents
-        self.ask(
-            f"device {hello.protocol} {name} {hello.axes} {hello.largest_force} {x} {y} {z} "
-            f"{hello.rate_hz}"
-        )
-
-    def hear(self, message, now_us):
-        data = message if isinstance(message, bytes) else link.encode(message)
-        return decoded(self.ask(f"hear {now_us} {data.hex()}"))
-
-    def drive(self, now_us):
-        """Mode, enabled, damp, force in N; and what the device says meanwhile."""
-        mode, enabled, damp, x, y, z, said = self.ask(f"drive {now_us}").split()
-        force = tuple(map(float, (x, y, z)))
-        return (mode, enabled == "1", damp == "1", force), decoded(said)
-
-    def force(self, now_us):
-        return self.drive(now_us)[0][3]
-
-    def state(self, now_us, position=(0, 0, 0), buttons=0, ready=1):
-        x, y, z = position
-        return decoded(self.ask(f"state {now_us} {x} {y} {z} {buttons} {ready}"))
-
-    def orientation(self, *unit):
-        return decoded(self.ask("orientation " + " ".join(map(repr, unit))))
-
-    def counters(self):
-        words = self.ask("counters").split()
-        return dict(zip(words[::2], map(int, words[1::2]), strict=True))
-
-
-def decoded(text):
-    return [] if text == "-" else link.Decoder().feed(bytes.fromhex(text))
-
-
 def force(sequence, z_mn=1000, flags=ENABLE):
     return link.Force(sequence, (0, 0, z_mn), flags)
 
 
 @pytest.fixture
-def device(checker):
-    device = Device(checker)
+def board(checker):
+    board = Device(checker)
+    board.new(HELLO)
+    return board
+
+
+@pytest.fixture
+def greeted_board(board):
+    assert board.hear(link.HostHello(), 0) == [HELLO]
+    return board
+
+
+@pytest.fixture(params=["C++", "simulated"])
+def device(request):
+    if request.param == "C++":
+        return request.getfixturevalue("board")
+    device = Simulated()
     device.new(HELLO)
     return device
 
@@ -89,7 +62,6 @@ def test_every_hello_is_answered_and_the_stream_begins(device):
     ready = link.StateFlag.READY
     assert device.state(250_000, (1, -2, 3), 1) == [link.State(0, 250_000, (1, -2, 3), 1, ready)]
     assert device.state(500_000, (4, 5, 6)) == [link.State(1, 500_000, (4, 5, 6), 0, ready)]
-    assert device.state(600_000, ready=0)[0].flags == 0
 
 
 def test_an_orientation_bears_the_number_of_the_state_to_come(device):
@@ -105,17 +77,21 @@ def test_an_orientation_bears_the_number_of_the_state_to_come(device):
 
 
 @pytest.mark.parametrize("part", [float("nan"), float("inf"), 0.0, 0.985, 1.015, -1e30])
-def test_what_is_no_rotation_is_not_told(greeted, part):
-    assert greeted.ask(f"orientation 0 {part!r} 0 0") == "-"
+def test_what_is_no_rotation_is_not_told(greeted_board, part):
+    assert greeted_board.ask(f"orientation 0 {part!r} 0 0") == "-"
 
 
-def test_the_board_rounds_orientations_as_this_side_does(greeted):
+def test_a_board_that_is_not_ready_says_so(greeted_board):
+    assert greeted_board.state(600_000, ready=0)[0].flags == 0
+
+
+def test_the_board_rounds_orientations_as_this_side_does(greeted_board):
     dice = random.Random(3)  # noqa: S311 - no secret
     for _ in range(100):
         turn = [dice.gauss(0.0, 1.0) for _ in range(4)]
         length = sum(part**2 for part in turn) ** 0.5
         turn = tuple(part / length for part in turn)
-        (told,) = greeted.orientation(*turn)
+        (told,) = greeted_board.orientation(*turn)
         ours = link.orientation(0, turn)
         # The board's arithmetic is of single precision.
         parts = zip(told.quaternion, ours.quaternion, strict=True)
@@ -157,18 +133,18 @@ def test_twenty_milliseconds_of_silence_make_it_limp_and_it_says_so_once(greeted
 
     greeted.hear(force(0, flags=ENABLE | DAMP), at(0))
     assert greeted.drive(at(19_999)) == (("driven", True, True, (0.0, 0.0, 1.0)), [])
-    assert greeted.drive(at(20_000)) == (LIMP, [link.Fault(1, 1)])
+    assert greeted.drive(at(greeted.silence_us)) == (LIMP, [link.Fault(1, 1)])
     assert greeted.drive(at(30_000)) == (LIMP, [])
     greeted.hear(force(700), at(31_000))
     assert greeted.force(at(31_000)) == (0.0, 0.0, 1.0)
-    assert greeted.drive(at(51_000))[1] == [link.Fault(1, 2)]
+    assert greeted.drive(at(31_000 + greeted.silence_us))[1] == [link.Fault(1, 2)]
     assert greeted.counters()["lost"] == 0
 
 
-def test_a_force_after_silence_that_nobody_noticed_still_finds_the_watchdog(greeted):
-    greeted.hear(force(500), 0)
-    assert greeted.hear(force(3), 30_000) == [link.Fault(1, 1)]
-    assert greeted.force(30_000) == (0.0, 0.0, 1.0)
+def test_a_force_after_silence_that_nobody_noticed_still_finds_the_watchdog(greeted_board):
+    greeted_board.hear(force(500), 0)
+    assert greeted_board.hear(force(3), 30_000) == [link.Fault(1, 1)]
+    assert greeted_board.force(30_000) == (0.0, 0.0, 1.0)
 
 
 def test_damaged_forces_do_not_keep_it_going(greeted):
@@ -179,7 +155,7 @@ def test_damaged_forces_do_not_keep_it_going(greeted):
         damaged[place] ^= 0x40
         greeted.hear(bytes(damaged), 15_000)
     assert greeted.force(15_000) == (0.0, 0.0, 1.0)
-    assert greeted.drive(20_000) == (LIMP, [link.Fault(1, 1)])
+    assert greeted.drive(greeted.silence_us) == (LIMP, [link.Fault(1, 1)])
     seen = greeted.counters()
     assert seen["crc_errors"] + seen["malformed"] == len(whole) - 1
     assert seen["crc_errors"] > 5
@@ -191,7 +167,7 @@ def test_repeated_and_late_forces_are_counted_and_do_not_keep_it_going(greeted):
         greeted.hear(force(sequence, 900), 15_000)
     assert greeted.force(15_000) == (0.0, 0.0, 0.5)
     assert (greeted.counters()["duplicates"], greeted.counters()["late"]) == (1, 2)
-    assert greeted.drive(20_000)[0] == LIMP
+    assert greeted.drive(greeted.silence_us)[0] == LIMP
 
 
 def test_the_furthest_ahead_is_in_order_with_all_between_lost(greeted):
@@ -242,40 +218,40 @@ def test_hello_in_between_begins_a_new_session(greeted):
     assert greeted.force(2000) == (0.0, 0.0, 1.0)
 
 
-def test_a_fault_of_its_own_is_told_once_shown_always_and_gives_no_force(greeted):
-    greeted.hear(force(0, flags=ENABLE | DAMP), 0)
-    assert decoded(greeted.ask("fail 130 77")) == [link.Fault(130, 77)]
-    assert greeted.ask("fail 130 78") == "-"
-    assert greeted.state(0)[0].flags == link.StateFlag.FAULT
-    greeted.hear(force(1, flags=ENABLE | DAMP), 0)
-    assert greeted.drive(0) == (("failed", False, False, (0.0, 0.0, 0.0)), [])
-    greeted.ask("recover")
-    assert greeted.state(0)[0].flags == link.StateFlag.READY
+def test_a_fault_of_its_own_is_told_once_shown_always_and_gives_no_force(greeted_board):
+    greeted_board.hear(force(0, flags=ENABLE | DAMP), 0)
+    assert decoded(greeted_board.ask("fail 130 77")) == [link.Fault(130, 77)]
+    assert greeted_board.ask("fail 130 78") == "-"
+    assert greeted_board.state(0)[0].flags == link.StateFlag.FAULT
+    greeted_board.hear(force(1, flags=ENABLE | DAMP), 0)
+    assert greeted_board.drive(0) == (("failed", False, False, (0.0, 0.0, 0.0)), [])
+    greeted_board.ask("recover")
+    assert greeted_board.state(0)[0].flags == link.StateFlag.READY
     # Not at once and in full: the force from before is void, the next one is obeyed.
-    assert greeted.force(0) == (0.0, 0.0, 0.0)
-    greeted.hear(force(2, 300), 0)
-    assert greeted.force(0) == pytest.approx((0.0, 0.0, 0.3))
+    assert greeted_board.force(0) == (0.0, 0.0, 0.0)
+    greeted_board.hear(force(2, 300), 0)
+    assert greeted_board.force(0) == pytest.approx((0.0, 0.0, 0.3))
 
 
-def test_a_fault_from_before_hello_is_told_after_it(device):
-    assert device.ask("fail 128 1") == "-"
-    assert device.hear(link.HostHello(), 0) == [HELLO, link.Fault(128, 1)]
+def test_a_fault_from_before_hello_is_told_after_it(board):
+    assert board.ask("fail 128 1") == "-"
+    assert board.hear(link.HostHello(), 0) == [HELLO, link.Fault(128, 1)]
 
 
 def test_started_again_it_waits_for_hello(greeted):
     greeted.hear(force(0), 0)
     greeted.hear(b"\5half", 0)
-    greeted.ask("restart")
+    greeted.restart()
     assert greeted.state(0) == []
     assert greeted.hear(link.HostHello(), 0) == [HELLO]
     assert greeted.drive(0)[0] == LIMP
 
 
-def test_sound_frames_that_a_host_does_not_send_are_counted(greeted):
+def test_sound_frames_that_a_host_does_not_send_are_counted(greeted_board):
     for message in (link.State(0, 0, (0, 0, 0)), link.Fault(1, 2), HELLO):
-        assert greeted.hear(message, 0) == []
-    assert greeted.hear(link.frame(b"\x03\0\0"), 0) == []
-    assert greeted.counters()["unknown"] == 4
+        assert greeted_board.hear(message, 0) == []
+    assert greeted_board.hear(link.frame(b"\x03\0\0"), 0) == []
+    assert greeted_board.counters()["unknown"] == 4
 
 
 def test_the_conversation_in_the_documentation_is_so_to_the_byte(checker):

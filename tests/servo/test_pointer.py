@@ -53,15 +53,6 @@ def test_pressing_gives_the_formulas_force_and_leaving_gives_none(cube, servo, e
     assert not shot.nodal_forces.any()
 
 
-def test_youngs_modulus_changes_the_force_in_proportion(servo, eventually):
-    servo.start(Pointer(ABOVE))
-    servo.set_target(PRESSED)
-    eventually(at(servo, PRESSED))
-    soft = servo.snapshot().contact_force
-    servo.set(Settings(3 * MODULUS))
-    eventually(lambda: np.allclose(servo.snapshot().contact_force, 3 * soft, rtol=1e-12))
-
-
 def test_the_probe_glides_and_never_jumps(cube, eventually):
     with Servo(cube.native, Settings(MODULUS), glide_speed=0.2) as servo:
         servo.start(Pointer(ABOVE))
@@ -105,43 +96,6 @@ def test_set_down_inside_nothing_is_felt_until_it_was_outside(servo, eventually)
         servo.set_target(place)
         eventually(at(servo, place))
         assert servo.snapshot().state == state
-
-
-def test_switching_off_silences_at_once_and_on_ramps(cube, eventually):
-    with Servo(cube.native, Settings(MODULUS), ramp_seconds=0.2) as servo:
-        servo.start(Pointer(ABOVE))
-        servo.set_target(PRESSED)
-        eventually(at(servo, PRESSED))
-        eventually(
-            lambda: np.allclose(servo.snapshot().output_force, servo.snapshot().contact_force)
-        )
-        servo.set(Settings(MODULUS, enabled=False))
-        eventually(lambda: servo.snapshot().state == "disabled")
-        assert not servo.snapshot().output_force.any()
-        assert servo.snapshot().contact_force.any()
-        servo.samples()
-        servo.set(Settings(MODULUS))
-        eventually(
-            lambda: np.allclose(servo.snapshot().output_force, servo.snapshot().contact_force)
-        )
-        samples = servo.samples()
-    off = samples["state"] == STATES.index("disabled")
-    assert not samples["output"][off].any()
-    force = np.linalg.norm(samples["output"][~off], axis=1)
-    full = np.linalg.norm(samples["force"][~off], axis=1)
-    assert force[0] <= 0.0051 * full[0]
-    assert np.all(np.diff(force) <= 0.0051 * full[1:])
-
-
-def test_the_force_is_clamped_with_its_direction(cube, eventually):
-    with Servo(cube.native, Settings(MODULUS), max_force=0.1, ramp_seconds=0) as servo:
-        servo.start(Pointer(ABOVE))
-        servo.set_target(PRESSED)
-        eventually(at(servo, PRESSED))
-        shot = servo.snapshot()
-    strength = np.linalg.norm(shot.contact_force)
-    assert strength > 0.2
-    np.testing.assert_allclose(shot.output_force, shot.contact_force * (0.1 / strength))
 
 
 def test_snapshots_are_never_torn(cube):
@@ -264,42 +218,6 @@ def test_leaving_the_interpreter_with_a_running_servo_does_not_hang():
         check=False,
     )
     assert (done.returncode, done.stdout, done.stderr) == (0, "leaving\n", "")
-
-
-def test_python_that_keeps_the_interpreter_costs_no_ticks(servo, eventually, record_property):
-    """Beside a bare native thread in the same run: whatever the machine does hits both."""
-    servo.start(Pointer(ABOVE))
-    bare = BareTimer(1000)
-    eventually(lambda: servo.snapshot().state == "free")
-    start, bare_start = servo.counters(), bare.counters()
-    interval = sys.getswitchinterval()
-    sys.setswitchinterval(10)
-    try:
-        # For about two seconds, and with no turn for anybody who waits for the interpreter.
-        number = 3**200_000
-        while servo.counters()["ticks"] + servo.counters()["missed"] < start["ticks"] + 2000:
-            _ = number * number
-    finally:
-        sys.setswitchinterval(interval)
-    ends, bare_ends = servo.counters(), bare.stop()
-
-    def lost(after, before):
-        return after["missed"] - before["missed"]
-
-    def late(after, before):
-        return after["late_over_1000_us"] - before["late_over_1000_us"]
-
-    figures = {
-        "servo": (ends["ticks"] - start["ticks"], lost(ends, start), late(ends, start)),
-        "bare": (
-            bare_ends["ticks"] - bare_start["ticks"],
-            lost(bare_ends, bare_start),
-            late(bare_ends, bare_start),
-        ),
-    }
-    record_property("ticks, missed, later than 1 ms", figures)
-    # The margin is 5 % of the ticks: with the interpreter's lock in the loop nearly all were lost.
-    assert figures["servo"][1] <= figures["bare"][1] + 100, figures
 
 
 def test_a_bare_timer_counts_what_it_did():

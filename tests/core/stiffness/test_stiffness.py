@@ -26,31 +26,6 @@ def test_stiffness_equals_an_independent_assembly(name, poisson_ratio, young_mod
     assert abs(ours - theirs).max() <= 1e-12 * abs(theirs).max()
 
 
-def test_stiffness_is_symmetric_and_positive(mouse_mesh, rng):
-    mesh, _ = mouse_mesh
-    K = assemble(mesh, 0.3)
-    assert abs(K - K.T).max() <= 1e-14 * abs(K).max()
-    u = rng.normal(size=(20, K.shape[0]))
-    assert (np.einsum("ij,ij->i", u, (K @ u.T).T) > 0).all()
-
-
-def test_rigid_motion_gives_no_force(body):
-    K = assemble(body.mesh, body.poisson_ratio)
-    x = body.mesh.nodes
-    for motion in (*np.eye(3), *(np.cross(axis, x) for axis in np.eye(3))):
-        u = np.broadcast_to(motion, x.shape).ravel()
-        assert np.abs(K @ u).max() < 1e-12 * abs(K).max() * np.abs(u).max()
-
-
-def test_a_uniform_strain_gives_no_inner_force(mouse_mesh, rng):
-    """Patch test: linear displacements are exact, so interior nodes stay in balance."""
-    mesh, _ = mouse_mesh
-    K = assemble(mesh, 0.3)
-    force = (K @ (mesh.nodes @ rng.normal(size=(3, 3))).ravel()).reshape(-1, 3)
-    interior = np.setdiff1d(np.arange(len(mesh.nodes)), mesh.surface_nodes)
-    assert np.abs(force[interior]).max() < 1e-12 * np.abs(force[mesh.surface_nodes]).max()
-
-
 def test_shape_functions_sum_to_one_everywhere(mouse_mesh):
     gradients = shape_gradients(mouse_mesh[0])
     assert np.abs(gradients.sum(axis=1)).max() < 1e-9 * np.abs(gradients).max()
@@ -64,12 +39,6 @@ def test_shape_functions_sum_to_one_everywhere(mouse_mesh):
 def test_impossible_materials_are_refused(cube_mesh, young_modulus, poisson_ratio, said):
     with pytest.raises(PalpateError, match=said):
         assemble(cube_mesh[0], poisson_ratio, young_modulus)
-
-
-def test_a_factor_on_every_tetrahedron_is_a_factor_on_the_modulus(mouse_mesh):
-    mesh, _ = mouse_mesh
-    scaled = assemble(mesh, 0.3, young_scale=np.full(len(mesh.tets), 8.0))
-    assert abs(scaled - assemble(mesh, 0.3, 8.0)).max() <= 1e-14 * abs(scaled).max()
 
 
 def test_tetrahedra_of_different_moduli_add_up(mouse_mesh, rng):

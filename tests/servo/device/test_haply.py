@@ -15,10 +15,7 @@ import numpy as np
 import pytest
 
 from palpate.cli.main import main
-from palpate.core.bake.steps import BakeSettings, bake
-from palpate.core.body import body_file
 from palpate.core.contact.single_press import touch_nearest
-from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.servo.haply_models import DEFAULT_MODEL, haply_model
 from palpate.core.servo.session import (
     HaplyDevice,
@@ -28,7 +25,6 @@ from palpate.core.servo.session import (
     servo_on,
 )
 from palpate.core.servo.settings import Coupling, Settings
-from palpate.core.stiffness.pins import PinNodes
 from palpate.simulated.board.haply_firmware import PWM_STEPS, TORQUE_AT_FULL_DUTY
 from palpate.simulated.hand.options import SimulatedOptions
 from palpate.simulated.simulated_process import SimulatedDevice
@@ -51,14 +47,8 @@ TORQUE_ROUNDING = 0.016
 """What torques lose in bytes that are no commands, at most."""
 
 
-@pytest.fixture(scope="module")
-def cube():
-    mesh, fixed = paper_cube()
-    return bake(mesh, BakeSettings(0.49, 10_000.0, PinNodes(fixed)))[0]
-
-
 @pytest.fixture
-def loop(cube):
+def loop(cube, eventually):
     """Start a 2DIY whose hand waits in the rest pose above the cube, and a servo that has it."""
     started = []
 
@@ -69,7 +59,7 @@ def loop(cube):
         servo = servo_on(native_body(cube), Settings(cube.young_modulus, coupling=coupling))
         started.append(servo)
         servo.start(HaplyDevice(device.port, rotation=PLANES[plane], translation=TOP))
-        eventually(lambda: servo.snapshot().state == "free", servo)
+        eventually(lambda: servo.snapshot().state == "free", servo.snapshot)
         return device, servo
 
     yield start
@@ -77,35 +67,16 @@ def loop(cube):
         one.stop()
 
 
-def eventually(condition, servo=None, seconds=20.0):
-    deadline = time.monotonic() + seconds
-    while not (value := condition()):
-        shot = servo and servo.snapshot()
-        what = shot and (shot.state, shot.fault, shot.reason, shot.probe, servo.counters()["link"])
-        assert time.monotonic() < deadline, f"this did not happen: {what}"
-        time.sleep(0.005)
-    return value
+@pytest.fixture
+def press(eventually):
+    def go(device, servo):
+        device.move_hand(DEEP, 0.3)
+        eventually(
+            lambda: np.linalg.norm(servo.snapshot().output_force) > 0.3,
+            lambda: (servo.snapshot(), servo.counters()["link"]),
+        )
 
-
-def press(device, servo):
-    device.move_hand(DEEP, 0.3)
-    eventually(lambda: np.linalg.norm(servo.snapshot().output_force) > 0.3, servo)
-
-
-def settled(device):
-    """The device's report once the hand is there and nothing has moved for 20 reports."""
-    resting = []
-
-    def still():
-        report = device.report()
-        if report["target"] != pytest.approx(DEEP) or (
-            resting and math.dist(report["position"], resting[-1]["position"]) > 1e-7
-        ):
-            resting.clear()
-        resting.append(report)
-        return resting[-1] if len(resting) > 20 else None
-
-    return eventually(still)
+    return go
 
 
 def corners(degrees):
@@ -118,7 +89,7 @@ def corners(degrees):
         )
 
 
-def test_coarse_encoders_soften_the_coupling_unless_another_was_chosen(cube):
+def test_coarse_encoders_soften_the_coupling_unless_another_was_chosen(cube, eventually):
     """On a body of some 10,000 N/m, by what is felt at rest for each metre pressed."""
     limit = device_coupling(encoder_step=haply_encoder_step(DEFAULT_MODEL))["stiffness"]
     own = device_coupling()
@@ -127,10 +98,10 @@ def test_coarse_encoders_soften_the_coupling_unless_another_was_chosen(cube):
         settings = Settings(1e6, coupling=chosen and Coupling(**chosen))
         with device, servo_on(native_body(cube), settings) as servo:
             servo.start(HaplyDevice(device.port, rotation=PLANES["upright"], translation=TOP))
-            eventually(lambda: servo.snapshot().state == "free", servo)
+            eventually(lambda: servo.snapshot().state == "free", servo.snapshot)
             device.move_hand(SHALLOW, 0.3)
-            eventually(lambda: np.linalg.norm(servo.snapshot().output_force) > 0.15, servo)
-            felt = eventually(lambda: resting_stiffness(servo), servo)
+            eventually(lambda: np.linalg.norm(servo.snapshot().output_force) > 0.15, servo.snapshot)
+            felt = eventually(lambda: resting_stiffness(servo), servo.snapshot)
         assert felt == pytest.approx(stiffest, rel=0.3)
         assert felt <= stiffest * 1.001
 
@@ -147,10 +118,10 @@ def resting_stiffness(servo):
 
 
 @pytest.mark.parametrize("plane", PLANES)
-def test_the_force_felt_is_that_of_a_press_in_the_plane(loop, cube, plane):
+def test_the_force_felt_is_that_of_a_press_in_the_plane(loop, cube, plane, press, settled):
     device, servo = loop(plane)
     press(device, servo)
-    report = settled(device)
+    report = settled(device, DEEP, 1e-7)
     shot = servo.snapshot()
     rotation = np.array(PLANES[plane])
     truth = tuple(math.radians(angle) for angle in report["angles"])
@@ -193,55 +164,55 @@ def test_the_force_felt_is_that_of_a_press_in_the_plane(loop, cube, plane):
     assert by_torques + by_angles < 0.12 * np.linalg.norm(wanted[:2])
 
 
-def test_stopping_leaves_no_torque_and_the_board_keeps_its_angles(loop):
+def test_stopping_leaves_no_torque_and_the_board_keeps_its_angles(loop, press, settled, eventually):
     device, servo = loop()
     press(device, servo)
-    before = settled(device)["position"]
+    before = settled(device, DEEP, 1e-7)["position"]
     servo.stop()
     assert device.report()["torques"] == [0.0, 0.0]
     # The handle is nowhere near its rest pose now; the board still knows.
     servo.start(HaplyDevice(device.port, rotation=PLANES["upright"], translation=TOP))
-    eventually(lambda: servo.snapshot().state in {"free", "touching"}, servo)
+    eventually(lambda: servo.snapshot().state in {"free", "touching"}, servo.snapshot)
     assert device.report()["setups"] == 1
     here = servo.snapshot().probe - TOP
     assert abs(here[2] - before[1]) < 0.005
 
 
-def test_a_pulled_plug_is_told_and_ends_in_a_new_start_at_rest(loop):
+def test_a_pulled_plug_is_told_and_ends_in_a_new_start_at_rest(loop, press, eventually):
     device, servo = loop()
     press(device, servo)
     device.unplug()
-    eventually(lambda: servo.snapshot().fault == "unplugged", servo)
+    eventually(lambda: servo.snapshot().fault == "unplugged", servo.snapshot)
     assert not servo.snapshot().output_force.any()
     device.plug_in()
-    eventually(lambda: "put the handle in its rest pose" in servo.snapshot().reason, servo)
+    eventually(lambda: "put the handle in its rest pose" in servo.snapshot().reason, servo.snapshot)
     assert device.report()["torques"] == [0.0, 0.0]
     device.move_hand(MODEL.rest, 0.2)
     eventually(lambda: math.dist(device.report()["position"], MODEL.rest) < 1e-4)
     servo.stop()
     servo.start(HaplyDevice(device.port, rotation=PLANES["upright"], translation=TOP))
-    eventually(lambda: servo.snapshot().state == "free", servo)
+    eventually(lambda: servo.snapshot().state == "free", servo.snapshot)
     press(device, servo)
 
 
-def test_a_board_that_hangs_is_stale_until_it_goes_on(loop):
+def test_a_board_that_hangs_is_stale_until_it_goes_on(loop, press, eventually):
     device, servo = loop()
     press(device, servo)
     os.kill(device.pid, signal.SIGSTOP)
     try:
-        eventually(lambda: servo.snapshot().fault == "stale", servo)
+        eventually(lambda: servo.snapshot().fault == "stale", servo.snapshot)
         assert not servo.snapshot().output_force.any()
     finally:
         os.kill(device.pid, signal.SIGCONT)
-    eventually(lambda: np.linalg.norm(servo.snapshot().output_force) > 0.3, servo)
+    eventually(lambda: np.linalg.norm(servo.snapshot().output_force) > 0.3, servo.snapshot)
     assert device.report()["setups"] == 1
 
 
-def test_a_board_that_is_killed_is_gone(loop):
+def test_a_board_that_is_killed_is_gone(loop, press, eventually):
     device, servo = loop()
     press(device, servo)
     os.kill(device.pid, signal.SIGKILL)
-    eventually(lambda: servo.snapshot().state == "fault", servo)
+    eventually(lambda: servo.snapshot().state == "fault", servo.snapshot)
     assert not servo.snapshot().output_force.any()
 
 
@@ -278,13 +249,11 @@ def test_what_makes_no_sense_is_refused_before_any_port_is_opened(cube):
     assert not servo.running
 
 
-def test_the_command_touches_with_a_2diy(cube, tmp_path, capsys):
-    body = tmp_path / "cube.npz"
-    body_file.save(cube, body)
+def test_the_command_touches_with_a_2diy(baked_file, capsys):
     # The command puts the workspace's middle on the middle of the top.
     hand = SimulatedOptions(by=(0.0, -0.075, 0.0), approach=0.2, period=1.0)
     with SimulatedDevice(hand, haply=DEFAULT_MODEL) as device:
-        line = ["servo", str(body), "--haply", device.port, "--seconds", "1.5", "--json"]
+        line = ["servo", baked_file, "--haply", device.port, "--seconds", "1.5", "--json"]
         assert main(line) == 0
         assert device.report()["torques"] == [0.0, 0.0]
     report = json.loads(capsys.readouterr().out)
@@ -293,12 +262,10 @@ def test_the_command_touches_with_a_2diy(cube, tmp_path, capsys):
     assert report["peak_output_force_n"] > 0.3
 
 
-def test_the_command_names_a_port_where_no_board_answers(cube, tmp_path, capsys, monkeypatch):
-    body = tmp_path / "cube.npz"
-    body_file.save(cube, body)
+def test_the_command_names_a_port_where_no_board_answers(baked_file, capsys, monkeypatch):
     monkeypatch.setattr("palpate.cli.press.haply.ANSWER_SECONDS", 0.3)
     with SimulatedDevice() as device:
-        assert main(["servo", str(body), "--haply", device.port]) != 0
+        assert main(["servo", baked_file, "--haply", device.port]) != 0
     error = capsys.readouterr().err
     assert device.port in error
     assert "no answer from a hAPI board" in error

@@ -74,20 +74,6 @@ def test_what_is_none_by_the_vectors_is_refused_by_the_servo_too(servo, vector):
     np.testing.assert_array_equal(servo.snapshot().orientation, np.eye(3))
 
 
-def test_the_frame_turns_the_stylus_from_the_left(servo):
-    servo.set(
-        Settings(
-            YOUNG_MODULUS,
-            frames=[SimpleNamespace(rotation=QUARTER, translation=(0.1, 0.0, 0.0), scale=2.0)],
-        )
-    )
-    tilted = about((1.0, 0.0, 0.0), 0.5)
-    servo.tick(link.encode(link.orientation(0, tilted)) + state(0))
-    seen = servo.snapshot().orientation
-    np.testing.assert_allclose(seen, QUARTER @ rotation(tilted), atol=1e-4)
-    assert not np.allclose(seen, rotation(tilted) @ QUARTER, atol=0.1)
-
-
 @pytest.fixture
 def turning(eventually):
     """A device whose hand turns the stylus, and a servo that has found it."""
@@ -124,15 +110,6 @@ def test_each_state_of_a_turning_device_has_its_orientation(turning, eventually)
     assert servo.counters()["link"]["orientations"] == servo.counters()["link"]["states"]
 
 
-def test_lost_orientations_are_counted_and_do_no_harm(turning, eventually):
-    """A frame in ten is lost, so that 20 ms without any have a chance of 1 in 10^20 a tick."""
-    _, servo = turning(turning=0.0, loss=0.1)
-    eventually(lambda: orientations(servo)[3] > 30 and orientations(servo)[1] > 30)
-    servo.stop()
-    counters = servo.counters()["link"]
-    assert counters["orientations"] + counters["orientations_lost"] <= counters["states"]
-
-
 def test_how_the_hand_holds_the_stylus_arrives_in_the_body(turning, eventually):
     """The frame turns it as it turns the place, and the tool may be fixed to it at a turn."""
     device, servo = turning(turning=0.0)
@@ -146,13 +123,3 @@ def test_how_the_hand_holds_the_stylus_arrives_in_the_body(turning, eventually):
     (finger,) = servo.snapshot().fingers
     np.testing.assert_allclose(finger.orientation, expected, atol=1e-4)
     np.testing.assert_allclose(finger.probe, QUARTER @ np.array(ABOVE), atol=2e-5)
-
-
-def test_a_stylus_that_is_turned_for_the_first_time_is_set_down_anew(turning, eventually):
-    device, servo = turning()
-    assert orientations(servo) == [0] * 5
-    device.turn_hand(about((0.0, 0.0, 1.0), math.pi / 2), 0.3)
-    eventually(lambda: servo.snapshot().state == "ramping" or orientations(servo)[0] > 100)
-    eventually(lambda: servo.snapshot().state == "free" and orientations(servo)[0] > 100)
-    assert servo.counters()["faults"]["too fast"] == 0
-    assert orientations(servo)[1:] == [0, 0, 0, 0]

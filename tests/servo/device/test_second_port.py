@@ -6,21 +6,9 @@ import numpy as np
 import pytest
 
 from palpate.cli.main import main
-from palpate.core.bake.steps import BakeSettings, bake
-from palpate.core.body import body_file
-from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.servo.recording import FINGER_COLUMN, read_recording
-from palpate.core.stiffness.pins import PinNodes
 from palpate.simulated.hand.options import SimulatedOptions
 from palpate.simulated.simulated_process import SimulatedDevice
-
-
-@pytest.fixture(scope="module")
-def baked_file(tmp_path_factory):
-    mesh, fixed = paper_cube()
-    path = tmp_path_factory.mktemp("body") / "cube.npz"
-    body_file.save(bake(mesh, BakeSettings(0.49, 10_000.0, PinNodes(fixed)))[0], path)
-    return str(path)
 
 
 def pressing(x, way):

@@ -7,7 +7,6 @@ import os
 import signal
 import subprocess
 import sys
-import tty
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -17,46 +16,20 @@ import pytest
 from palpate.cli.main import main
 from palpate.cli.press import servo as servo_command
 from palpate.cli.press.servo_report import for_people
-from palpate.core.bake.steps import BakeSettings, bake
-from palpate.core.body import body_file
 from palpate.core.files.npz_archive import read_arrays
-from palpate.core.mesh.paper_cube import paper_cube
-from palpate.core.servo import link, ports
+from palpate.core.servo import ports
 from palpate.core.servo.recording import read_recording
 from palpate.core.shape.paper.table_file import table_path
-from palpate.core.stiffness.pins import PinNodes
 from palpate.simulated.hand.options import SimulatedOptions
 from palpate.simulated.simulated_process import SimulatedDevice
 
 ABOVE, DEEP = (0.026, 0.024, 0.06), (0.026, 0.024, 0.044)
 
 
-@pytest.fixture(scope="module")
-def cube():
-    mesh, fixed = paper_cube()
-    return bake(mesh, BakeSettings(0.49, 10_000.0, PinNodes(fixed)))[0]
-
-
-@pytest.fixture(scope="module")
-def baked_file(cube, tmp_path_factory):
-    path = tmp_path_factory.mktemp("body") / "cube.npz"
-    body_file.save(cube, path)
-    return str(path)
-
-
 @pytest.fixture
 def device():
     with SimulatedDevice(SimulatedOptions(rest=ABOVE)) as device:
         yield device
-
-
-@pytest.fixture
-def silent_port():
-    device_end, host_end = os.openpty()
-    tty.setraw(host_end)
-    yield os.ttyname(host_end)
-    os.close(device_end)
-    os.close(host_end)
 
 
 @contextmanager
@@ -204,35 +177,14 @@ def test_a_file_is_no_port(baked_file, capsys):
     assert "not a serial port" in refused(capsys, baked_file, "--port", baked_file)
 
 
-def test_a_port_without_an_answer_is_an_error(baked_file, capsys, monkeypatch, silent_port):
+def test_a_port_without_an_answer_is_an_error(baked_file, capsys, monkeypatch, terminal):
     monkeypatch.setattr(servo_command, "HELLO_SECONDS", 0.5)
-    assert "does not answer HELLO" in refused(capsys, baked_file, "--port", silent_port)
+    assert "does not answer HELLO" in refused(capsys, baked_file, "--port", terminal[1])
 
 
-def test_a_device_of_another_protocol_is_an_error(baked_file, capsys):
-    """Any program on a pseudo-terminal can be the device; this one comes from the future."""
-    device_end, host_end = os.openpty()
-    tty.setraw(host_end)
-    answer = link.frame(b"\x01\x02Later" + bytes(11) + bytes([3]) + bytes(16) + b"\xe8\x03")
-    child = subprocess.Popen(
-        [sys.executable, "-c", FOREIGN, str(device_end), answer.hex()], pass_fds=[device_end]
-    )
-    try:
-        error = refused(capsys, baked_file, "--port", os.ttyname(host_end))
-        assert "another version of the link" in error
-    finally:
-        child.kill()
-        child.wait()
-        os.close(device_end)
-        os.close(host_end)
-
-
-FOREIGN = """
-import os, sys
-end, answer = int(sys.argv[1]), bytes.fromhex(sys.argv[2])
-while os.read(end, 100):
-    os.write(end, answer)
-"""
+def test_a_device_of_another_protocol_is_an_error(baked_file, capsys, foreign_device):
+    error = refused(capsys, baked_file, "--port", foreign_device)
+    assert "another version of the link" in error
 
 
 @pytest.mark.parametrize("seconds", ["0", "-1", "nan", "inf"])

@@ -1,21 +1,20 @@
 """The native servo and the simulated device, each with its own codec: the loop really closes."""
 
 import ctypes
-import math
+import fcntl
 import sys
 import time
+from pathlib import Path
 
 import numpy as np
 import palpate_servo
 import pytest
 from palpate_servo import harness
 
-from palpate.core.bake.steps import BakeSettings, bake
 from palpate.core.contact.single_press import touch_nearest
-from palpate.core.mesh.paper_cube import paper_cube
+from palpate.core.servo import ports
 from palpate.core.servo.session import displacements_of, native_body, servo_on
 from palpate.core.servo.settings import Settings
-from palpate.core.stiffness.pins import PinNodes
 from palpate.simulated.hand.options import SimulatedOptions
 from palpate.simulated.simulated_process import SimulatedDevice
 
@@ -23,12 +22,6 @@ from palpate.simulated.simulated_process import SimulatedDevice
 ABOVE = (0.026, 0.024, 0.06)
 DEEP = (0.026, 0.024, 0.04)
 HAND_STIFFNESS = 500.0
-
-
-@pytest.fixture(scope="module")
-def cube():
-    mesh, fixed = paper_cube()
-    return bake(mesh, BakeSettings(0.49, 10_000.0, PinNodes(fixed)))[0]
 
 
 @pytest.fixture
@@ -52,28 +45,16 @@ def loop(cube, eventually):
         one.stop()
 
 
-def press(device, servo, eventually):
-    device.move_hand(DEEP, 0.3)
-    eventually(lambda: np.linalg.norm(servo.snapshot().output_force) > 0.3)
+@pytest.fixture
+def press(eventually):
+    def go(device, servo):
+        device.move_hand(DEEP, 0.3)
+        eventually(lambda: np.linalg.norm(servo.snapshot().output_force) > 0.3)
+
+    return go
 
 
-def settled(device, eventually):
-    """The device's report once the hand is there and nothing has moved for 20 reports."""
-    resting = []
-
-    def still():
-        report = device.report()
-        if report["target"] != pytest.approx(DEEP) or (
-            resting and math.dist(report["position"], resting[-1]["position"]) > 1e-6
-        ):
-            resting.clear()
-        resting.append(report)
-        return resting[-1] if len(resting) > 20 else None
-
-    return eventually(still)
-
-
-def undisturbed(device, servo, eventually):
+def undisturbed(device, servo, settled, eventually):
     """The settled device's report and the servo's snapshot of the same time.
 
     A machine that is busy elsewhere may hold up either of them for more than 20 ms. Then the device
@@ -82,7 +63,7 @@ def undisturbed(device, servo, eventually):
 
     def at_rest():
         before = servo.counters()["faults"]
-        report = settled(device, eventually)
+        report = settled(device, DEEP)
         snapshot = servo.snapshot()
         is_whole = snapshot.state == "touching" and not snapshot.limited
         if is_whole and servo.counters()["faults"] == before:
@@ -92,11 +73,11 @@ def undisturbed(device, servo, eventually):
     return eventually(at_rest)
 
 
-def test_the_felt_force_pushes_the_hand_back_until_both_agree(loop, cube, eventually):
+def test_the_felt_force_pushes_the_hand_back_until_both_agree(loop, settled, cube, eventually):
     device, servo = loop()
     servo.set(Settings(cube.young_modulus, enabled=False))
     device.move_hand(DEEP, 0.3)
-    alone = settled(device, eventually)
+    alone = settled(device, DEEP)
     assert alone["felt_force"] == [0.0, 0.0, 0.0]
     assert alone["position"] == pytest.approx(DEEP, abs=1e-5)
 
@@ -109,7 +90,7 @@ def test_the_felt_force_pushes_the_hand_back_until_both_agree(loop, cube, eventu
             and np.linalg.norm(servo.snapshot().contact_force) > 0.3
         )
     )
-    report, snapshot = undisturbed(device, servo, eventually)
+    report, snapshot = undisturbed(device, servo, settled, eventually)
     force, hand = np.array(report["felt_force"]), np.array(report["hand_force"])
     assert force[2] > 0.5
     np.testing.assert_allclose(hand, -force, atol=0.01)
@@ -121,24 +102,24 @@ def test_the_felt_force_pushes_the_hand_back_until_both_agree(loop, cube, eventu
     assert report["work_of_felt_force"] > 0.0
 
 
-def test_depth_force_and_stiffness_are_those_of_the_body(loop, cube, eventually):
+def test_depth_force_and_stiffness_are_those_of_the_body(loop, settled, press, cube, eventually):
     device, servo = loop()
-    press(device, servo, eventually)
+    press(device, servo)
     eventually(lambda: np.allclose(servo.snapshot().output_force, servo.snapshot().contact_force))
-    report = settled(device, eventually)
+    report = settled(device, DEEP)
     probe = np.array(report["position"])
     top = np.array([probe[0], probe[1], 0.05])
     expected = touch_nearest(cube, top, probe - top).force
     assert report["felt_force"][2] == pytest.approx(expected[2], rel=0.02)
 
 
-def test_softer_material_gives_way_while_the_servo_runs(loop, eventually):
+def test_softer_material_gives_way_while_the_servo_runs(loop, settled, press, eventually):
     device, servo = loop()
-    press(device, servo, eventually)
-    firm = settled(device, eventually)
+    press(device, servo)
+    firm = settled(device, DEEP)
     servo.set(Settings(2_000.0))
     eventually(lambda: device.report()["felt_force"][2] < 0.5 * firm["felt_force"][2])
-    soft = settled(device, eventually)
+    soft = settled(device, DEEP)
     assert soft["position"][2] < firm["position"][2] - 2e-4
 
 
@@ -181,9 +162,9 @@ def test_noise_is_caught_at_both_ends_and_never_felt(loop, eventually):
     assert report["bits_flipped_on_purpose"] > 40
 
 
-def test_unplugging_while_pressing_gives_zero_and_a_fault_and_replugging_works(loop, eventually):
+def test_unplugging_gives_zero_and_a_fault_and_replugging_works(loop, press, eventually):
     device, servo = loop()
-    press(device, servo, eventually)
+    press(device, servo)
     device.unplug()
     snapshot = eventually(lambda: (s := servo.snapshot()).fault == "unplugged" and s)
     assert snapshot.state == "fault"
@@ -195,15 +176,15 @@ def test_unplugging_while_pressing_gives_zero_and_a_fault_and_replugging_works(l
 
     device.plug_in()
     eventually(lambda: servo.snapshot().state == "free")
-    press(device, servo, eventually)
+    press(device, servo)
     counters = servo.counters()
     assert counters["faults"]["unplugged"] == 1
     assert counters["link"]["reopened"] == 1
 
 
-def test_the_devices_button_silences_it_at_once(loop, eventually):
+def test_the_devices_button_silences_it_at_once(loop, press, eventually):
     device, servo = loop()
-    press(device, servo, eventually)
+    press(device, servo)
     device.press_buttons(1)
     snapshot = eventually(lambda: (s := servo.snapshot()).buttons == 1 and s)
     assert snapshot.state == "disabled"
@@ -213,22 +194,22 @@ def test_the_devices_button_silences_it_at_once(loop, eventually):
     eventually(lambda: np.linalg.norm(servo.snapshot().output_force) > 0.3)
 
 
-def test_the_device_is_left_without_force_when_the_servo_stops(loop, eventually):
+def test_the_device_is_left_without_force_when_the_servo_stops(loop, press, eventually):
     device, servo = loop()
-    press(device, servo, eventually)
+    press(device, servo)
     servo.stop()
     report = eventually(lambda: (r := device.report())["felt_force"] == [0.0, 0.0, 0.0] and r)
     assert report["largest_force"] > 0.3
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="asks the C library to keep the interpreter")
-def test_a_press_with_deformation_and_a_busy_interpreter_loses_no_ticks(loop, cube, eventually):
+def test_a_press_with_deformation_and_a_busy_interpreter_loses_no_ticks(loop, press, cube):
     """Device presses, the shape follows at 60 Hz, then Python is kept for 2 s without a break.
 
     What the machine itself does to a native thread is seen beside, by one that only sleeps.
     """
     device, servo = loop()
-    press(device, servo, eventually)
+    press(device, servo)
     keep_interpreter = ctypes.PyDLL(None).usleep  # PyDLL: the interpreter's lock stays held
     bare = harness.BareTimer(1000)
     try:
@@ -251,3 +232,26 @@ def test_a_press_with_deformation_and_a_busy_interpreter_loses_no_ticks(loop, cu
     # With the lock in the loop, all 2,000 ticks of the busy time would be lost.
     assert figures[0] <= figures[1] + 500, figures
     assert servo.snapshot().touching
+
+
+def test_a_port_that_is_not_there_is_said_so(cube, tmp_path):
+    servo, nowhere = servo_on(native_body(cube), Settings(1.0)), str(tmp_path / "nowhere")
+    with pytest.raises(OSError, match="nowhere"):
+        servo.start(palpate_servo.LinkDevice(nowhere))
+    with pytest.raises(ValueError, match="orthonormal"):
+        servo.start(palpate_servo.LinkDevice(nowhere, rotation=np.ones((3, 3))))
+    assert not servo.running
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="asks the Linux kernel for the mode")
+def test_a_stopped_servo_gives_the_terminal_back(cube, terminal):
+    """Else an ordinary user could not press again while the device keeps its end open."""
+    servo = servo_on(native_body(cube), Settings(1.0))
+    with Path(terminal[1]).open("rb+", buffering=0) as port:
+        for act, is_exclusive in (
+            (lambda: servo.start(palpate_servo.LinkDevice(terminal[1])), 1),
+            (servo.stop, 0),
+        ):
+            act()
+            mode = fcntl.ioctl(port, ports._TIOCGEXCL, bytes(4))
+            assert mode == bytes([is_exclusive, 0, 0, 0])

@@ -2,11 +2,10 @@
 
 import numpy as np
 import pytest
+from bodies.bare_body import bare_body
 from referees.newton_entries import largest_carried, unit_load
 from referees.nonlinear_reference import NonlinearReference
 
-from palpate.core.body.soft_body import SoftBody
-from palpate.core.compliance.dense import DenseCompliance
 from palpate.core.errors import CancelledError
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.shape.paper import paper_entries
@@ -18,9 +17,7 @@ from palpate.core.shape.solid.newton import NoEquilibrium, equilibrium
 @pytest.fixture(scope="module")
 def cube():
     mesh, fixed = paper_cube(cells=2)
-    nodes = np.setdiff1d(mesh.surface_nodes, fixed)
-    none = DenseCompliance(nodes, np.empty((len(nodes), 3, 0)))
-    return FreeSolid.of(SoftBody(mesh, fixed, 0.45, none, 1.0)), mesh
+    return FreeSolid.of(bare_body(mesh, fixed, 0.45)), mesh
 
 
 @pytest.fixture(scope="module")

@@ -4,11 +4,9 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from bodies.bare_body import bare_body, beam_mesh
 
-from palpate.core.body.soft_body import SoftBody
-from palpate.core.compliance.dense import DenseCompliance
 from palpate.core.mesh.paper_cube import paper_cube
-from palpate.core.mesh.tet_mesh import TetMesh
 from palpate.core.shape.rotation_strain.relaxation import step_length
 from palpate.core.shape.rotation_strain.rotation_strain_shape import frame_plan, relaxation
 from palpate.core.shape.solid.free_solid import FreeSolid
@@ -20,14 +18,8 @@ LENGTH = 5.0
 
 def beam(poisson_ratio=0.3, formulation="linear", young_scale=None):
     """The paper's cube drawn out to a beam of 5 x 1 x 1 m, clamped at x = 0."""
-    mesh, _ = paper_cube(1.0, 4)
-    stretched = TetMesh.checked(mesh.nodes * [LENGTH, 1.0, 1.0], mesh.tets)
-    fixed = np.flatnonzero(stretched.nodes[:, 0] == 0.0)
-    nodes = np.setdiff1d(stretched.surface_nodes, fixed)
-    none = DenseCompliance(nodes, np.empty((len(nodes), 3, 0)))
-    return FreeSolid.of(
-        SoftBody(stretched, fixed, poisson_ratio, none, 1.0, formulation, young_scale)
-    )
+    mesh, fixed = beam_mesh(4, LENGTH, 0)
+    return FreeSolid.of(bare_body(mesh, fixed, poisson_ratio, formulation, young_scale))
 
 
 def end_load(solid, share, direction=(0.0, 0.0, 1.0)):

@@ -4,12 +4,10 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from bodies.bare_body import bare_body, beam_mesh
 
-from palpate.core.body.soft_body import SoftBody
-from palpate.core.compliance.dense import DenseCompliance
 from palpate.core.errors import PalpateError
 from palpate.core.mesh.paper_cube import paper_cube
-from palpate.core.mesh.tet_mesh import TetMesh
 from palpate.core.shape.rotation_strain.lattice import lattice_of
 from palpate.core.shape.rotation_strain.two_levels import TwoLevels
 from palpate.core.shape.solid.free_solid import FreeSolid
@@ -18,18 +16,9 @@ from palpate.core.shape.solid.newton import equilibrium
 LENGTH = 5.0
 
 
-def body_of(mesh, fixed, poisson_ratio=0.3, formulation="linear", young_scale=None):
-    nodes = np.setdiff1d(mesh.surface_nodes, fixed)
-    none = DenseCompliance(nodes, np.empty((len(nodes), 3, 0)))
-    return SoftBody(mesh, fixed, poisson_ratio, none, 1.0, formulation, young_scale)
-
-
 def beam_body(cells=8, **material):
     """A beam of 5 x 1 x 1 m, clamped at x = 0, its tetrahedra finer than the lattices below."""
-    mesh, _ = paper_cube(1.0, cells)
-    stretched = TetMesh.checked(mesh.nodes * [LENGTH, 1.0, 1.0], mesh.tets)
-    fixed = np.flatnonzero(stretched.nodes[:, 0] == 0.0)
-    return body_of(stretched, fixed, **material)
+    return bare_body(*beam_mesh(cells, LENGTH, 0), **material)
 
 
 class Case:
@@ -92,7 +81,7 @@ def test_bends_come_near_the_true_one(beam, end_load):
 )
 def test_presses_come_near_the_true_one(poisson_ratio, formulation, share):
     mesh, fixed = paper_cube(1.0, 6)
-    cube = Case(body_of(mesh, fixed, poisson_ratio, formulation), 120)
+    cube = Case(bare_body(mesh, fixed, poisson_ratio, formulation), 120)
     middle = np.linalg.norm(cube.positions - [0.5, 0.5, 1.0], axis=1) < 0.4
     forces = cube.loaded(middle, [0.0, 0.0, -1.0], 0.05)
     truth = cube.truth(forces)
@@ -178,4 +167,4 @@ def test_absurd_forces_give_numbers(beam, direction):
 def test_a_body_that_its_pins_do_not_hold_is_refused():
     mesh, _ = paper_cube(1.0, 4)
     with pytest.raises(PalpateError, match="pin"):
-        TwoLevels.of(body_of(mesh, np.array([0, 1])), 50)
+        TwoLevels.of(bare_body(mesh, np.array([0, 1])), 50)

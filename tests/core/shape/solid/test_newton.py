@@ -2,9 +2,8 @@
 
 import numpy as np
 import pytest
+from bodies.bare_body import bare_body, beam_mesh
 
-from palpate.core.body.soft_body import SoftBody
-from palpate.core.compliance.dense import DenseCompliance
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.mesh.tet_mesh import TetMesh
 from palpate.core.shape.solid.free_solid import FreeSolid
@@ -16,9 +15,7 @@ def free_cube(poisson_ratio=0.3, formulation="linear", turn=None, cells=3):
     mesh, fixed = paper_cube(cells=cells)
     if turn is not None:
         mesh = TetMesh.checked(mesh.nodes @ turn.T, mesh.tets)
-    nodes = np.setdiff1d(mesh.surface_nodes, fixed)
-    none = DenseCompliance(nodes, np.empty((len(nodes), 3, 0)))
-    return FreeSolid.of(SoftBody(mesh, fixed, poisson_ratio, none, 1.0, formulation))
+    return FreeSolid.of(bare_body(mesh, fixed, poisson_ratio, formulation))
 
 
 @pytest.fixture(scope="module")
@@ -142,11 +139,7 @@ def test_without_a_load_the_body_rests(cube):
 
 def beam(cells, length, poisson_ratio):
     """A beam of 1 m square, held at one end."""
-    mesh, fixed = paper_cube(1.0, cells)
-    mesh = TetMesh.checked(mesh.nodes * [1.0, 1.0, length], mesh.tets)
-    nodes = np.setdiff1d(mesh.surface_nodes, fixed)
-    none = DenseCompliance(nodes, np.empty((len(nodes), 3, 0)))
-    return FreeSolid.of(SoftBody(mesh, fixed, poisson_ratio, none, 1.0))
+    return FreeSolid.of(bare_body(*beam_mesh(cells, length, 2), poisson_ratio))
 
 
 def at_the_end(body, axis, linear_displacement):

@@ -2,11 +2,10 @@
 
 import numpy as np
 import pytest
+from bodies.bare_body import bare_body
 from bodies.large_loads import carried, large_loads
 from referees.nonlinear_reference import NonlinearReference
 
-from palpate.core.body.soft_body import SoftBody
-from palpate.core.compliance.dense import DenseCompliance
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.shape.solid.free_solid import FreeSolid
 
@@ -14,9 +13,7 @@ from palpate.core.shape.solid.free_solid import FreeSolid
 @pytest.fixture(scope="module")
 def cube():
     mesh, fixed = paper_cube(cells=3)
-    nodes = np.setdiff1d(mesh.surface_nodes, fixed)
-    none = DenseCompliance(nodes, np.empty((len(nodes), 3, 0)))
-    return FreeSolid.of(SoftBody(mesh, fixed, 0.4, none, 1.0)), mesh
+    return FreeSolid.of(bare_body(mesh, fixed, 0.4)), mesh
 
 
 @pytest.mark.parametrize("load", ["press on the end", "bend", "twist", "pull, spread"])
