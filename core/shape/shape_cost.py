@@ -72,7 +72,8 @@ def _paper(size: BodySize) -> ShapeCost:
         _linear_seconds(size) + 1e-3,
         _factor_seconds(size) + 18 * entry,
         6 * size.free_surface_nodes * entry,
-        _factor_bytes(size) + 3500.0 * size.tets + min(table, MOST_BYTES),
+        # A second factor for equilibria under load.
+        2 * _factor_bytes(size) + 2500.0 * size.tets + min(table, MOST_BYTES),
     )
 
 
