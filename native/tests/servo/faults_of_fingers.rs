@@ -35,7 +35,10 @@ fn a_fault_of_one_lifts_its_contact_alone() {
     }
     // But for how the surface is held across the push, which depends on the way that led there.
     assert!(last.distance(both[0].contact_force) < 0.1 * change);
-    assert_eq!(table.published().reports[1].faults[Fault::Stale as usize], 1);
+    assert_eq!(
+        table.published().reports[1].faults[Fault::Stale as usize],
+        1
+    );
     assert_eq!(table.published().reports[0].faults, [0; Fault::ALL.len()]);
 }
 

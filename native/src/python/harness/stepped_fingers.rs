@@ -242,7 +242,7 @@ impl SteppedFingers {
         let stepped = &mut *self.stepped();
         let before = stepped.settings;
         stepped.settings = chosen.on(&before.fingers, &before);
-        // How tools are turned is report with them.
+        // A tool's rotation is set with the tool.
         for (finger, before) in stepped.settings.fingers.iter_mut().zip(&before.fingers) {
             finger.orientation = before.orientation;
         }

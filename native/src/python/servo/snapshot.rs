@@ -165,8 +165,8 @@ impl Snapshot {
         published: &Published,
         patches: &[PressedPatch],
     ) -> PyResult<Py<Self>> {
-        let report = published.fingers().iter().enumerate();
-        let fingers: Vec<_> = report
+        let reports = published.fingers().iter().enumerate();
+        let fingers: Vec<_> = reports
             .map(|(finger, report)| FingerSnapshot {
                 shot: report.snapshot,
                 patch: patch_of(&report.snapshot, patches.get(finger)),
