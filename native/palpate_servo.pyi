@@ -441,31 +441,6 @@ class ToolSurface:
     def spacing(self) -> float:
         """How far points usually are apart, m."""
 
-class PathCosts(TypedDict):
-    """Of each tick of a tool (t,)."""
-
-    taken: NDArray[np.float64]
-    """CPU time, s."""
-    computing: NDArray[np.float64]
-    """The least CPU time of the same tick, where it was gone through again; else as taken, s."""
-    copied: NDArray[np.bool_]
-    """The state was copied just before, for going through again: the caches were full of that."""
-    control: NDArray[np.float64]
-    """CPU time of each round of the fixed work (t / 4,), s."""
-    exact: NDArray[np.bool_]
-    pressed: NDArray[np.int64]
-    linearisations: NDArray[np.int64]
-    near: NDArray[np.int64]
-    """Contact points that were looked at; chosen: those that might have carried force."""
-    chosen: NDArray[np.int64]
-    entered: NDArray[np.int64]
-    left: NDArray[np.int64]
-    fetched: NDArray[np.int64]
-    """Blocks of the compliance that were not at hand."""
-    decompositions: NDArray[np.int64]
-    multiplications: NDArray[np.int64]
-    """About; the bound on a tick's work counts the same."""
-
 @final
 class ToolContact:
     """A tool on a body alone, tick by tick; as the servo's fingers have it."""
@@ -483,22 +458,6 @@ class ToolContact:
         """One tick: go towards a pose by at most one stride, and feel the body (Pa) there.
 
         ValueError for a pose that is none, or where the forces came out as no numbers.
-        """
-
-    def time_path(
-        self,
-        positions: ArrayLike,
-        rotations: ArrayLike,
-        young_modulus: float,
-        *,
-        replay_over: float | None = None,
-        control: float = 0.0,
-    ) -> PathCosts:
-        """Follow poses (t, 3), (t, 3, 3), one a tick, and tell what each cost. For benchmarks.
-
-        replay_over: ticks that took longer, s, are gone through again from a state kept before,
-        until they do not, ten times at most; RuntimeError where one comes out different. control:
-        about as long, s, a loop of fixed work takes after every fourth tick.
         """
 
     @property

@@ -63,7 +63,7 @@ fingers
 engine
 servo
 harness
-python/vectors.rs python/servo/settings.rs python/body python/device python/tool.rs python/servo
+python/vectors.rs python/servo/settings.rs python/body python/device python/tool python/servo
 python/harness python
 lib.rs
 """.split()  # noqa: SIM905 - a level of the house is a line
@@ -81,14 +81,12 @@ KNOWN = (
     "fingers/",
     "servo/",
     "tool/",
-    "python/tool.rs",
     "python/engine",
     "native/src/contact/",
     "native/src/engine/",
     "native/src/fingers/",
     "native/src/servo/",
     "native/src/tool/",
-    "native/src/python/tool.rs",
     "native/src/python/engine",
     "core/contact/near_field/compliance_beneath.py is too long",
     "core/contact/near_field/contact_points.py is too long",

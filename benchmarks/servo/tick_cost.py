@@ -41,7 +41,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 from palpate_servo import Body
-from palpate_servo.harness import tick_costs
+from palpate_servo.harness import tick_costs, tool_costs
 
 from palpate.core.bake.steps import BakeSettings, bake
 from palpate.core.body.soft_body import SoftBody
@@ -52,7 +52,7 @@ from palpate.core.stiffness.pins import PinNodes
 
 if TYPE_CHECKING:
     # Types only: the module itself does not have them.
-    from palpate_servo import ContactMode, PathCosts
+    from palpate_servo import ContactMode
 
 TOP = 0.05
 # With friction and without together a tool makes over 100,000.
@@ -155,17 +155,17 @@ def print_points(body: Body, ticks: int) -> bool:
     return consistent - paper <= CONSISTENT_CLAIM and coupling <= COUPLING_CLAIM
 
 
-def tool_costs(
+def slide_costs(
     body: SoftBody, surface: Body, slide: Slide, friction: float, ticks: int
-) -> PathCosts:
+) -> dict[str, NDArray[np.generic]]:
     """What every tick of a tool took."""
     contact = native_tool(body, surface, slide.tool, friction=friction)
     path = slide.path(ticks)
     way_in = np.linspace(path[0] + [0.0, 0.0, 0.03], path[0], 500)
     upright = np.tile(np.eye(3), (max(ticks, len(way_in)), 1, 1))
-    contact.time_path(way_in, upright[: len(way_in)], body.young_modulus)
-    return contact.time_path(
-        path, upright[:ticks], body.young_modulus, replay_over=REPLAYED, control=CONTROL
+    tool_costs(contact, way_in, upright[: len(way_in)], body.young_modulus)
+    return tool_costs(
+        contact, path, upright[:ticks], body.young_modulus, replay_over=REPLAYED, control=CONTROL
     )
 
 
@@ -188,7 +188,7 @@ def ticks_to_settle(body: SoftBody, surface: Body, slide: Slide) -> int:
     return int(np.flatnonzero(off).max(initial=-1)) + 1
 
 
-def expected_by_control(costs: PathCosts) -> float:
+def expected_by_control(costs: dict[str, NDArray[np.generic]]) -> float:
     """Long ticks that the machine alone makes expect: as many, per second of the control, as its
     rounds were longer by what a usual tick lacks to a long one.
     """
@@ -215,7 +215,7 @@ def print_tools(body: SoftBody, surface: Body, ticks: int, only: str | None) -> 
             continue
         over = 0
         for friction in FRICTIONS:
-            costs = tool_costs(body, surface, slide, friction, ticks)
+            costs = slide_costs(body, surface, slide, friction, ticks)
             over += int((costs["computing"] > LONGEST).sum())
             print_costs(slide, friction, costs)
             holds &= friction > 0.0 or fingertip_holds(slide, costs, ticks)
@@ -228,7 +228,7 @@ def print_tools(body: SoftBody, surface: Body, ticks: int, only: str | None) -> 
     return holds
 
 
-def print_costs(slide: Slide, friction: float, costs: PathCosts) -> None:
+def print_costs(slide: Slide, friction: float, costs: dict[str, NDArray[np.generic]]) -> None:
     """One row."""
     computing, pressed = 1e6 * costs["computing"], costs["pressed"]
     taken = 1e6 * costs["taken"][~costs["copied"]]
@@ -244,7 +244,7 @@ def print_costs(slide: Slide, friction: float, costs: PathCosts) -> None:
     )
 
 
-def fingertip_holds(slide: Slide, costs: PathCosts, ticks: int) -> bool:
+def fingertip_holds(slide: Slide, costs: dict[str, NDArray[np.generic]], ticks: int) -> bool:
     """Prints the fingertips' medians at so many points beside what is claimed of them."""
     holds = True
     for count, claim in FINGERTIP_CLAIMS.items():

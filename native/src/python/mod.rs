@@ -7,7 +7,6 @@ mod engine;
 mod harness;
 mod servo;
 mod tool;
-mod tool_cost;
 mod vectors;
 
 use pyo3::prelude::*;
@@ -30,9 +29,9 @@ fn palpate_servo(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<servo::thread::Servo>()?;
     module.add_class::<servo::snapshot::Snapshot>()?;
     module.add_class::<servo::snapshot::FingerSnapshot>()?;
-    module.add_class::<tool::Tool>()?;
-    module.add_class::<tool::ToolSurface>()?;
-    module.add_class::<tool::ToolContact>()?;
+    module.add_class::<tool::shape::Tool>()?;
+    module.add_class::<tool::surface::ToolSurface>()?;
+    module.add_class::<tool::contact::ToolContact>()?;
     module.add_class::<engine::ContactEngine>()?;
     module.add_function(wrap_pyfunction!(device::coupling::device_coupling, module)?)?;
     module.add_function(wrap_pyfunction!(device::haply::haply_encoder_step, module)?)?;

@@ -6,7 +6,7 @@ from bodies.inner_corner import inner_corner
 from bodies.soft_block import soft_block
 from palpate_servo import Tool as NativeTool
 from palpate_servo import ToolContact, ToolSurface
-from palpate_servo.harness import SteppedFingers, tick_costs
+from palpate_servo.harness import SteppedFingers, tick_costs, tool_costs
 from scipy.spatial.transform import Rotation
 
 from palpate.core.contact.press import Press
@@ -169,7 +169,7 @@ def test_costs_are_told_for_every_tick(body, surface):
     with pytest.raises(ValueError, match="6 fingers"):
         tick_costs(surface, np.zeros((6, 5, 3)), young_modulus=1e4)
     contact = native_tool(body, surface, TOOLS["sphere"])
-    told = contact.time_path(path[0], np.tile(np.eye(3), (5, 1, 1)), 1e4)
+    told = tool_costs(contact, path[0], np.tile(np.eye(3), (5, 1, 1)), 1e4)
     assert told["taken"].shape == told["pressed"].shape == (5,)
 
 
@@ -178,9 +178,9 @@ def test_a_tick_that_is_replayed_comes_out_the_same_and_no_longer(body, surface)
     contact, other = (native_tool(body, surface, tool, friction=0.3) for _ in range(2))
     places = place_on(body) + [0.0, 0.0, 1.0] * np.linspace(0.02, 0.014, 450)[:, None]
     turns = np.tile(np.eye(3), (450, 1, 1))
-    once = contact.time_path(places, turns, 1e4)
+    once = tool_costs(contact, places, turns, 1e4)
     # Every tick is longer than nothing: all are replayed. One that differed would be an error.
-    again = other.time_path(places, turns, 1e4, replay_over=0.0, control=1e-6)
+    again = tool_costs(other, places, turns, 1e4, replay_over=0.0, control=1e-6)
     np.testing.assert_array_equal(once["multiplications"], again["multiplications"])
     np.testing.assert_array_equal(contact.force, other.force)
     assert again["pressed"].max() > 0

@@ -9,6 +9,7 @@ mod several;
 mod stepped;
 mod stepped_fingers;
 mod tick_cost;
+mod tool_cost;
 
 use pyo3::prelude::*;
 
@@ -29,6 +30,7 @@ pub fn register(parent: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(frames::encode_frame, &module)?)?;
     module.add_function(wrap_pyfunction!(several::solve_contacts, &module)?)?;
     module.add_function(wrap_pyfunction!(tick_cost::tick_costs, &module)?)?;
+    module.add_function(wrap_pyfunction!(tool_cost::tool_costs, &module)?)?;
     parent.add("harness", &module)?;
     py.import("sys")?.getattr("modules")?.set_item(NAME, module)
 }

@@ -15,7 +15,7 @@ use crate::device::{Device, DeviceFrame, LinkReport, Probe, Reading};
 use crate::python::body::surface::Body;
 use crate::python::servo::settings::{Chosen, Given};
 use crate::python::servo::snapshot::Snapshot;
-use crate::python::tool::{ToolContact, tip};
+use crate::python::tool::contact::{ToolContact, tip};
 use crate::python::vectors::{Rows, Triple, finite, rotation as turn};
 use crate::servo::pressed_patch::PressedPatch;
 use crate::servo::snapshot::Published;

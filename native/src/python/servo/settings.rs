@@ -109,6 +109,7 @@ impl Chosen {
     ///
     /// # Errors
     /// As [`Self::checked`], but for the modulus.
+    #[cfg(feature = "harness")]
     pub fn with_any_modulus(given: &Given) -> PyResult<Self> {
         Self::with_modulus(given, given.young_modulus)
     }

@@ -19,7 +19,7 @@ use crate::python::servo::samples::{structured, structured_pieces};
 use crate::python::servo::settings::{Chosen, Given, options};
 use crate::python::servo::snapshot::Snapshot;
 use crate::python::servo::standing::Standing;
-use crate::python::tool::{MadeTool, ToolContact, tip};
+use crate::python::tool::contact::{MadeTool, ToolContact, tip};
 use crate::python::vectors::{Triple, check_seconds, finite, positive};
 use crate::servo::Options;
 use crate::servo::finger::FingerSettings;

@@ -1,4 +1,4 @@
-//! CPU time of a tool's ticks: once as they come, and again where one took long.
+//! `tool_costs`: CPU time of a tool's ticks, once as they come, and again where one took long.
 //!
 //! A processor that is shared (a virtual one, too) charges a thread with time that it did not have.
 //! A tick computes the same from the same state, so one that took long is led there again from a
@@ -15,8 +15,13 @@ use pyo3::types::PyDict;
 
 use crate::clock::cpu_time::thread_seconds;
 use crate::engine::lone::LoneTool;
+use crate::python::tool::arrays::{matrices, vectors};
+use crate::python::tool::contact::ToolContact;
+use crate::python::vectors::positive;
 use crate::tool::collider::Felt;
 use crate::tool::shape::Pose;
+use numpy::{AllowTypeChange, PyArrayLike2, PyArrayLike3};
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
 
 /// Ticks between two states that are kept.
 const STRETCH: usize = 200;
@@ -32,17 +37,17 @@ const CALIBRATIONS: usize = 50;
 
 /// Timing of a path.
 #[derive(Debug, Clone, Copy)]
-pub struct Timing {
-    pub young_modulus: f64,
+struct Timing {
+    young_modulus: f64,
     /// Ticks that took longer are replayed, s.
-    pub replay_over: f64,
+    replay_over: f64,
     /// Time that a round of the control is to take, s; none where zero.
-    pub control: f64,
+    control: f64,
 }
 
 /// Times, s, and counts of every tick; times of the control.
 #[derive(Debug, Default)]
-pub struct Costs {
+struct Costs {
     taken: Vec<f64>,
     computing: Vec<f64>,
     control: Vec<f64>,
@@ -56,7 +61,7 @@ impl Timing {
     ///
     /// # Errors
     /// Forces that are no numbers, or a replay that came out different.
-    pub fn of_path(&self, tool: &mut LoneTool, poses: &[Pose]) -> Result<Costs, String> {
+    fn of_path(&self, tool: &mut LoneTool, poses: &[Pose]) -> Result<Costs, String> {
         let control = Control::lasting(self.control);
         let mut costs = Costs::default();
         let replays = self.replay_over.is_finite();
@@ -176,7 +181,7 @@ impl Control {
 }
 
 impl Costs {
-    pub fn into_dict(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+    fn into_dict(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         let dict = PyDict::new(py);
         dict.set_item("taken", PyArray1::from_vec(py, self.taken))?;
         dict.set_item("computing", PyArray1::from_vec(py, self.computing))?;
@@ -202,4 +207,41 @@ impl Costs {
         count("multiplications", |felt| felt.effort.multiplications)?;
         Ok(dict)
     }
+}
+
+/// CPU time and counts of each tick of a tool that follows poses (t, 3), (t, 3, 3).
+///
+/// Ticks that took longer than `replay_over`, s, are gone through again from a state kept before, ten
+/// times at most; RuntimeError where one comes out different. After every fourth tick a loop of fixed
+/// work takes about `control`, s. Names of the counts are those of the tick's effort.
+#[pyfunction]
+#[pyo3(signature = (contact, positions, rotations, young_modulus, *, replay_over=None, control=0.0))]
+pub fn tool_costs<'py>(
+    contact: &mut ToolContact,
+    py: Python<'py>,
+    positions: PyArrayLike2<'_, f64, AllowTypeChange>,
+    rotations: PyArrayLike3<'_, f64, AllowTypeChange>,
+    young_modulus: f64,
+    replay_over: Option<f64>,
+    control: f64,
+) -> PyResult<Bound<'py, PyDict>> {
+    contact.young_modulus = positive("young_modulus", young_modulus)?;
+    let positions = vectors("positions", &positions)?;
+    let rotations = matrices("rotations", &rotations)?;
+    if positions.len() != rotations.len() {
+        return Err(PyValueError::new_err(
+            "rotations must be as many as positions",
+        ));
+    }
+    let poses: Vec<Pose> = (positions.into_iter().zip(rotations))
+        .map(|(position, rotation)| Pose { position, rotation })
+        .collect();
+    let timing = Timing {
+        young_modulus,
+        replay_over: replay_over.unwrap_or(f64::INFINITY),
+        control,
+    };
+    let inner = &mut contact.inner;
+    let costs = py.detach(|| timing.of_path(inner, &poses));
+    costs.map_err(PyRuntimeError::new_err)?.into_dict(py)
 }

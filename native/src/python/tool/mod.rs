@@ -1,0 +1,7 @@
+//! Tools from numpy arrays, and their contact.
+
+pub mod arrays;
+pub mod contact;
+mod near_field;
+pub mod shape;
+pub mod surface;
