@@ -1,1 +1,1 @@
-"""How a place gives way, closer than the mesh can tell."""
+"""Near field: compliance of places below the resolution of the mesh."""

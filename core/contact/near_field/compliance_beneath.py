@@ -1,9 +1,8 @@
-"""What a force at one place of a surface moves another place by, below the fineness of the mesh.
+"""Compliance between places of a surface, below the resolution of the mesh.
 
-Finite elements cannot resolve what is smaller than they are: how far a node gives way under its own
-force depends on the mesh (about as one over its edges), and between nodes all is as smooth as the
-elements. But close to a force every smooth surface gives way as a half-space does, H, and what the
-body adds to that is smooth. So
+A node's displacement under its own force depends on the mesh (about as one over its edges), and
+between nodes it is as smooth as the elements. But close to a force every smooth surface behaves as
+a half-space, H, and the rest is smooth. So
 
     C(x, y) = H(x - y) + sum_ab alpha_a(x) alpha_b(y) (L_ab - H_ab)
 
@@ -74,14 +73,13 @@ PAIRS_TOGETHER = 50_000
 
 @dataclass(frozen=True, eq=False)
 class NearCorrection:
-    """What is to be added to plain finite elements between contact points of a body.
+    """Correction of finite elements between contact points of a body.
 
-    Nothing is kept pair by pair: a tool touches a few dozen points, bodies have pairs by the
-    million.
+    Pairs are not stored: a tool touches a few dozen points, bodies have millions of pairs.
 
     Attributes
     ----------
-    field : what is known at the surface's nodes.
+    field : at the surface's nodes.
     points : the P contact points.
     shares : float64 (P,), 0 where plain finite elements stay, else up to 1.
     softness : float64 (P,), 1 over the factor of Young's modulus around each point.
@@ -96,7 +94,7 @@ class NearCorrection:
     _last: _Known = dataclasses.field(default_factory=lambda: _Known(), repr=False)  # noqa: PLW0108  defined below
 
     def between(self, i: NDArray[np.int64], j: NDArray[np.int64]) -> NDArray[np.float64]:
-        """The part for points ``i`` (k,) seen and ``j`` (l,) loaded, (k, l, 3, 3).
+        """Correction for points ``i`` (k,) seen and ``j`` (l,) loaded, (k, l, 3, 3).
 
         The block of (j, i) is the transpose of (i, j)'s. Of all pairs of the same points the last
         are kept: along a path most are those of the step before.
@@ -119,7 +117,7 @@ class NearCorrection:
         return blocks.copy()
 
     def arrays(self) -> dict[str, object]:
-        """All of it as the native thread takes it; the thread reckons the pairs by itself."""
+        """Arrays for the native thread, which computes the pairs itself."""
         field = self.field
         never, wholly, _, outer = BELIEVED[field.body.formulation]
         return {
@@ -155,7 +153,7 @@ class NearCorrection:
 
 @dataclass(eq=False)
 class _Known:
-    """Blocks (k, k, 3, 3) between ``points`` (k,), ascending, that were asked for last."""
+    """Latest blocks (k, k, 3, 3) between ``points`` (k,), ascending."""
 
     points: NDArray[np.int64] = dataclasses.field(default_factory=lambda: np.empty(0, np.int64))
     blocks: NDArray[np.float64] = dataclasses.field(default_factory=lambda: np.empty((0, 0, 3, 3)))
@@ -164,8 +162,8 @@ class _Known:
 def near_correction(
     body: SoftBody, points: ContactPoints, field: RegularField | None = None
 ) -> NearCorrection:
-    """The correction for the contact points of a body; what is between them is reckoned when it is
-    asked for. The body's ``field``, where it is at hand, is not looked for again.
+    """Correction for the contact points of a body, computed for pairs on demand. The body's
+    ``field`` is computed unless given.
     """
     field = RegularField.of(body) if field is None else field
     triangles = body.mesh.surface_local_triangles[points.triangles]
@@ -201,7 +199,7 @@ def _corrections(
 def _replaced(
     field: RegularField, points: ContactPoints, i: NDArray[np.int64], j: NDArray[np.int64]
 ) -> NDArray[np.float64]:
-    """What finite elements have in place of the half-space, taken off, (k, 3, 3)."""
+    """Finite elements' part in place of the half-space, negative, (k, 3, 3)."""
     table, place = _table_of(field, points.triangles[i], points.triangles[j])
     weights = points.alphas[i][:, :, None] * points.alphas[j][:, None, :]
     taken = np.zeros((len(i), 9))
@@ -215,7 +213,7 @@ def _replaced(
 def _own(
     field: RegularField, points: ContactPoints, softness: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """The half-space's part of how each point gives way to its own force, (P, 3, 3)."""
+    """Half-space part of each point's own compliance, (P, 3, 3)."""
     nu = field.body.poisson_ratio
     alone = IN_CONTACT * softness * _sharpness(field.body, points)
     moved = alone[:, None, None] * own_displacement(points.areas, points.normals, nu)
@@ -231,7 +229,7 @@ def _lifted(
     own: NDArray[np.float64],
     pinned: NDArray[np.float64],
 ) -> NDArray[np.float64]:
-    """What is to be added to ``own`` (P, 3, 3) so that no point is held by more than all of it."""
+    """Addition to ``own`` (P, 3, 3) that keeps every point's own compliance above its minimum."""
     body, count = field.body, len(points)
     # Far fewer triangles than points lie on them.
     used, place = np.unique(points.triangles, return_inverse=True)
@@ -252,7 +250,7 @@ def _lifted(
 
 
 def _sharpness(body: SoftBody, points: ContactPoints) -> NDArray[np.float64]:
-    """How much more than a half-space a point gives way on an edge or a tip, (P,), 1 and more.
+    """Compliance on an edge or a tip relative to a half-space, (P,), 1 and more.
 
     The power of what there is around it to hold it that a cube's edge and tip come out as finite
     elements have them, 2.5 and 6. A surface that is only made of flat triangles is not sharp.
@@ -267,8 +265,8 @@ def _sharpness(body: SoftBody, points: ContactPoints) -> NDArray[np.float64]:
 def _table_of(
     field: RegularField, first: NDArray[np.int64], second: NDArray[np.int64]
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """A table of blocks (q, 3, 3), and where those between the corners of triangles ``first`` (k,)
-    and ``second`` (k,) stand in it, (k, 3, 3).
+    """Table of blocks (q, 3, 3), and the places in it of those between the corners of triangles
+    ``first`` (k,) and ``second`` (k,), (k, 3, 3).
     """
     triangles, nodes = field.body.mesh.surface_local_triangles, len(field.normals)
     # Far fewer than the pairs of points: these first, then the nodes of each of these.
@@ -281,7 +279,7 @@ def _table_of(
 def _node_table(
     field: RegularField, a: NDArray[np.int64], b: NDArray[np.int64]
 ) -> NDArray[np.float64]:
-    """What stands in L for the half-space, for pairs of nodes, (k, 3, 3)."""
+    """Half-space part of L, for pairs of nodes, (k, 3, 3)."""
     places = field.places
     apart = np.linalg.norm(places[a] - places[b], axis=1) / (
         0.5 * (field.edges[a] + field.edges[b])
@@ -325,7 +323,7 @@ def point_compliance(
 def _weights(
     body: SoftBody, points: ContactPoints, chosen: NDArray[np.int64]
 ) -> tuple[NDArray[np.int64], csr_array]:
-    """The surface-local nodes (m,) that carry the chosen points (k,), and their weights (k, m)."""
+    """Surface-local nodes (m,) of the chosen points (k,), and their weights (k, m)."""
     corners = body.mesh.surface_local_triangles[points.triangles[chosen]]
     nodes, place = np.unique(corners, return_inverse=True)
     rows = np.repeat(np.arange(len(chosen)), 3)

@@ -1,9 +1,8 @@
-"""Places fixed on a body's surface where a rigid tool may touch it.
+"""Contact points: fixed places on a body's surface where a rigid tool may touch it.
 
-A tool meets the body in these points only. They stay where they are on the body whatever the tool
-does, so the force is the slope of an elastic energy and does not jump. They are spread evenly: on a
-coarse mesh also between its nodes, on a fine one on some of its nodes, so that what a tool feels
-does not follow the fineness of the mesh.
+A tool meets the body in these points only. They are fixed on the body, so the force is the gradient
+of an elastic energy and does not jump. They are spread evenly, on a coarse mesh also between its
+nodes, on a fine one on some of its nodes, so that the force does not depend on the mesh.
 """
 
 from __future__ import annotations
@@ -50,7 +49,7 @@ NEAREST_ASKED = 6
 
 @dataclass(frozen=True, eq=False)
 class ContactPoints:
-    """P places on the rest surface.
+    """Contact points on the rest surface, P of them.
 
     Attributes
     ----------
@@ -71,7 +70,7 @@ class ContactPoints:
         return len(self.positions)
 
     def taken(self, chosen: NDArray[np.int64] | NDArray[np.bool_]) -> ContactPoints:
-        """Only the ``chosen`` points, by number or mask (P,); areas stay what they were."""
+        """The ``chosen`` points, by number or mask (P,), with their areas."""
         return ContactPoints(
             self.positions[chosen],
             self.normals[chosen],
@@ -129,7 +128,7 @@ def contact_points(body: SoftBody, spacing: float) -> ContactPoints:
 
 
 def spacing_on(body: SoftBody, spacing: float) -> float:
-    """The spacing asked for, as far as the body allows it, metres.
+    """Spacing within the bounds of the body, metres.
 
     No closer than :data:`MOST_ON_BODY` points lie: so a tool may be small for its body, down to
     where it would fall between the points. No wider than :data:`LARGEST_SHARE` says: so it may be
@@ -164,7 +163,7 @@ def smooth_corner_normals(mesh: TetMesh) -> NDArray[np.float64]:
 
 @dataclass(frozen=True, eq=False)
 class _Places:
-    """Where points lie: ``triangles`` (p,), ``alphas`` (p, 3), ``others`` (p,) the triangle on the
+    """Places of points: ``triangles`` (p,), ``alphas`` (p, 3), ``others`` (p,) the triangle on the
     far side of an edge (elsewhere the same), ``is_node`` (p,).
     """
 
@@ -239,7 +238,7 @@ def _inner_lattice(parts: int) -> NDArray[np.float64]:
 
 
 def _parts(lengths: NDArray[np.float64], spacing: float) -> NDArray[np.int64]:
-    """Into how many parts a length is cut so that they come nearest to the spacing, as a ratio."""
+    """Number of parts of a length that come nearest to the spacing, as a ratio."""
     exact = 0.5 * (np.sqrt(1.0 + 4.0 * (lengths / spacing) ** 2) - 1.0)
     return np.maximum(np.ceil(exact - 1e-9), 1).astype(np.int64)
 
@@ -250,7 +249,7 @@ def _spread(
     is_node: NDArray[np.bool_],
     spacing: float,
 ) -> NDArray[np.int64]:
-    """Which points to keep so that none on the same side of the body are too close, ascending.
+    """Points to keep so that none on the same side of the body are too close, ascending.
 
     Each point in turn is kept unless one before it is close: nodes first.
     """
@@ -277,7 +276,7 @@ def _shares(
     normals: NDArray[np.float64],
     spacing: float,
 ) -> NDArray[np.float64]:
-    """The part of the surface that is nearer to each point than to the others, (P,), by sampling.
+    """Area of the surface nearest to each point, (P,), by sampling.
 
     Points that look the other way, as those beyond a thin wall, take nothing from this side.
     """
@@ -356,7 +355,7 @@ def _face_areas(mesh: TetMesh) -> NDArray[np.float64]:
 
 
 def surface_area(mesh: TetMesh) -> float:
-    """The whole surface of a body, square metres."""
+    """Surface area of a body, square metres."""
     return float(_face_areas(mesh).sum())
 
 

@@ -1,4 +1,4 @@
-"""What lies across a body from each node of its surface, where the body is thin there."""
+"""Opposite side of a body at each node of its surface, where the body is thin."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ SLACK = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class FarSide:
-    """The place across the body from each of its s surface nodes.
+    """Place across the body from each of its s surface nodes.
 
     Attributes
     ----------
@@ -67,7 +67,7 @@ def far_side(mesh: TetMesh, edges: NDArray[np.float64], reach: tuple[float, floa
 
 @dataclass(frozen=True, eq=False)
 class _Rays:
-    """From ``places`` (r, 3) along unit ``directions`` (r, 3), ``lengths`` (r,) metres far."""
+    """Rays from ``places`` (r, 3) along unit ``directions`` (r, 3), ``lengths`` (r,) metres far."""
 
     places: NDArray[np.float64]
     directions: NDArray[np.float64]
@@ -75,7 +75,7 @@ class _Rays:
 
 
 def _thinness(depths: NDArray[np.float64], reach: tuple[float, float]) -> NDArray[np.float64]:
-    """1 where thin, 0 where not, for depths (k,) in shares of the farther reach."""
+    """Thinness, 1 to 0, for depths (k,) in shares of the farther reach."""
     thinness: NDArray[np.float64] = np.clip((1.0 - depths) / (1.0 - reach[0] / reach[1]), 0.0, 1.0)
     return thinness
 
@@ -125,8 +125,8 @@ def _near_pairs(
 def _crossings(
     corners: NDArray[np.float64], places: NDArray[np.float64], directions: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """How far rays (k,) run to the planes of triangles (k, 3, 3), metres, and the area coordinates
-    (k, 3) there. No ray may run along its plane.
+    """Distances of rays (k,) to the planes of triangles (k, 3, 3), metres, and area coordinates
+    (k, 3) there. No ray may be parallel to its plane.
 
     T. Möller and B. Trumbore, J. Graphics Tools 2 (1997), 21.
     """

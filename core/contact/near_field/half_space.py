@@ -1,4 +1,4 @@
-"""What a force on the surface of an elastic half-space moves its surface by, in closed form.
+"""Surface displacement of an elastic half-space under a force on it, in closed form.
 
 Boussinesq (1885) for the force along the normal, Cerruti (1882) for forces along the surface, both
 in K. L. Johnson, *Contact Mechanics* (1985), sections 3.2 and 3.6. Young's modulus is 1 Pa.

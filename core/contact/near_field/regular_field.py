@@ -1,4 +1,4 @@
-"""How a body's surface gives way beyond what a half-space would, at each node and around it.
+"""Compliance of a body's surface beyond that of a half-space, at each node and around it.
 
 Finite elements are not accurate for a node under its own force, nor for its next neighbours. But
 the difference between the body and a half-space is smooth there: so it is told from a ring of nodes
@@ -55,17 +55,17 @@ MOST_SHORT = 0.1
 # Below this share of what it could be at most, the determinant of a ring tells nothing.
 LEAST_SPREAD = 0.02
 
-# A ring of fewer neighbours than this says nothing.
+# Neighbours of a ring at least.
 FEWEST_IN_RING = 2.0
 
 
 @dataclass(frozen=True, eq=False)
 class RegularField:
-    """What there is to know of a body at its surface nodes.
+    """Regular field of a body at its surface nodes.
 
     Attributes
     ----------
-    body : which.
+    body : of the field.
     normals : float64 (s, 3), outward unit normals at the surface nodes.
     edges : float64 (s,), mean length of the surface's edges at each node, metres.
     regular : float64 (s, 3, 3), how far a node gives way beyond a half-space, m / N at 1 Pa.
@@ -90,7 +90,7 @@ class RegularField:
 
     @classmethod
     def of(cls, body: SoftBody) -> RegularField:
-        """Look at the rings around all surface nodes."""
+        """Regular field from the rings around all surface nodes."""
         mesh = body.mesh
         normals, edges, softness = node_normals(mesh), mean_edges(body), surface_softness(body)
         places = mesh.nodes[mesh.surface_nodes]
@@ -119,7 +119,7 @@ class RegularField:
         return cls(body, normals, edges, regular, slope, excess, softness, trusted, far)
 
     def between(self, a: NDArray[np.int64], b: NDArray[np.int64]) -> NDArray[np.float64]:
-        """The regular part for nodes near each other, (k, 3, 3): the mean of what both rings tell.
+        """Regular part for nodes near each other, (k, 3, 3): the mean of both rings' estimates.
 
         Displacement of surface-local nodes ``a`` (k,) per force on ``b`` (k,).
         """
@@ -132,7 +132,7 @@ class RegularField:
         return mean
 
     def short(self, a: NDArray[np.int64], b: NDArray[np.int64]) -> NDArray[np.float64]:
-        """What finite elements add to the coupling between nodes that are not too near, (k, 3, 3).
+        """Finite elements' error of the coupling between nodes that are not too near, (k, 3, 3).
 
         Displacement of surface-local nodes ``a`` (k,) per force on ``b`` (k,).
         """
@@ -148,7 +148,7 @@ class RegularField:
 
     @property
     def places(self) -> NDArray[np.float64]:
-        """Where the surface nodes lie, (s, 3), metres."""
+        """Positions of the surface nodes, (s, 3), metres."""
         places: NDArray[np.float64] = self.body.mesh.nodes[self.body.mesh.surface_nodes]
         return places
 
@@ -156,7 +156,7 @@ class RegularField:
 def _seen_across(
     body: SoftBody, far: FarSide, a: NDArray[np.int64], b: NDArray[np.int64]
 ) -> NDArray[np.float64]:
-    """How far the places across from nodes ``a`` (k,) move per force on nodes ``b`` (k,),
+    """Displacement of the places across from nodes ``a`` (k,) per force on nodes ``b`` (k,),
     (k, 3, 3); nothing where the body is thick.
     """
     moved = np.zeros((len(a), 3, 3))
@@ -168,8 +168,9 @@ def _seen_across(
 
 
 def _coupling(offsets: NDArray[np.float64], normals: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The tensor of the coupling, e n^T - n e^T, (k, 3, 3): at ``offsets`` (k, 3) from the force,
-    with ``normals`` (k, 3) of any length.
+    """Tensor of the normal-tangential coupling, e n^T - n e^T, (k, 3, 3).
+
+    At ``offsets`` (k, 3) from the force, with ``normals`` (k, 3) of any length.
     """
     along = offsets / np.linalg.norm(offsets, axis=1, keepdims=True)
     normal = _unit_normals(normals)
@@ -186,7 +187,7 @@ def _excess(
     weight: NDArray[np.float64],
     edges: NDArray[np.float64],
 ) -> NDArray[np.float64]:
-    """What finite elements add to the coupling at each node, times the distance squared, (s,).
+    """Finite elements' error of the coupling at each node, times the distance squared, (s,).
 
     Least squares over the samples of its ring (as in :func:`_fitted`) with two terms: one that
     grows with the distance, as a smooth field has it, and one that falls with its square.
@@ -221,7 +222,7 @@ def _fitted(
     weight: NDArray[np.float64],
     edges: NDArray[np.float64],
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]:
-    """Value (s, 3, 3) and slope (s, 3, 3, 3) at each node of what its ring tells, and where known.
+    """Value (s, 3, 3) and slope (s, 3, 3, 3) at each node from its ring, and where known.
 
     Least squares over the samples ``beyond`` (k, 3, 3) of ``node`` (k,) at ``offsets`` (k, 3).
     """
@@ -284,7 +285,7 @@ def surface_softness(body: SoftBody) -> NDArray[np.float64]:
 def facing(
     first: NDArray[np.float64], second: NDArray[np.float64], limits: tuple[float, float]
 ) -> NDArray[np.float64]:
-    """How far two normals (k, 3) are of one side or surface, (k,), 0 to 1."""
+    """Degree to which two normals (k, 3) belong to one side or surface, (k,), 0 to 1."""
     alike = np.einsum("kx,kx->k", first, second)
     share: NDArray[np.float64] = np.clip((alike - limits[0]) / (limits[1] - limits[0]), 0.0, 1.0)
     return share

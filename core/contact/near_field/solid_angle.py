@@ -1,4 +1,4 @@
-"""How much of a body lies around places on its surface: a half where it is flat."""
+"""Solid angle of a body around places on its surface: half a sphere where it is flat."""
 
 from __future__ import annotations
 

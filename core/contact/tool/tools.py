@@ -21,29 +21,28 @@ from ...mesh.closest_point import closest_area_coordinates
 from ...mesh.coordinates import refuse_unusable
 from ...sentence import Sentence
 
-# Distances to a hull of more corners take too long in the servo's tick.
+# Corners at most: distances to larger hulls take too long in the servo's tick.
 MOST_CORE_POINTS = 64
 
 # Core points closer to one plane (line, point) than this share of their extent lie in it.
 FLATNESS = 1e-6
 
-# How far apart contact points are, as a share of a sphere's radius, that of a rod (more of which is
-# in contact), and a flat tool's width.
+# Spacing of contact points, as a share of the radius of a sphere, of a rod (more of which is in
+# contact), and of a flat tool's width.
 SPACING_PER_RADIUS = 0.2
 SPACING_PER_ROD_RADIUS = 0.25
 SPACING_PER_WIDTH = 0.125
 
-# Share of its inner radius that a tool goes in one tick at most, so that it jumps over no wall.
+# Largest motion in a tick, as a share of the inner radius, so that no tool passes through a wall.
 STRIDE_PER_INNER_RADIUS = 0.25
 
-# Rounding of the edges where none is asked for, as a share of the inner radius. A sharp edge has no
-# normal; what rests on it would be pushed now this way, now that.
+# Default rounding of the edges, as a share of the inner radius: a sharp edge has no normal.
 SHARPEST_ROUNDING = 0.1
 
 
 @dataclass(frozen=True, eq=False)
 class Tool:
-    """The convex hull of ``core`` (k, 3), metres in the tool's frame, grown by a ``radius``.
+    """Rigid tool: the convex hull of ``core`` (k, 3), metres in its frame, grown by a ``radius``.
 
     Made by :func:`sphere`, :func:`rod`, :func:`plate` and :func:`convex`, or directly.
 
@@ -114,7 +113,7 @@ class Tool:
 
     @cached_property
     def inner_radius(self) -> float:
-        """Metres from the middle of the core points to the tool's surface."""
+        """Distance from the middle of the core points to the tool's surface, metres."""
         if not len(self.planes):
             return self.radius
         middle = self.core.mean(axis=0)
@@ -129,12 +128,12 @@ class Tool:
 
     @property
     def size(self) -> float:
-        """The tool's width in metres: the middle one of its three extents."""
+        """Width of the tool, metres: the middle one of its three extents."""
         return float(self.extents[1])
 
     @property
     def spacing(self) -> float:
-        """How far apart the contact points on a body should be for this tool, metres."""
+        """Spacing of contact points on a body for this tool, metres."""
         if len(self.planes) or _span(self.core)[0] == 2:
             return SPACING_PER_WIDTH * self.size
         round_share = SPACING_PER_RADIUS if len(self.core) == 1 else SPACING_PER_ROD_RADIUS
@@ -142,12 +141,12 @@ class Tool:
 
     @property
     def stride(self) -> float:
-        """How far the tool moves in one tick at most, metres."""
+        """Largest motion of the tool in one tick, metres."""
         return STRIDE_PER_INNER_RADIUS * self.inner_radius
 
     @cached_property
     def reach(self) -> float:
-        """Metres from the reference point to the farthest point of the tool."""
+        """Distance from the reference point to the tool's farthest point, metres."""
         return float(np.linalg.norm(self.core, axis=1).max()) + self.radius
 
     def distance(
@@ -187,18 +186,18 @@ class Tool:
 
     @cached_property
     def _normal_of_flat_core(self) -> NDArray[np.float64]:
-        """What a point within a core without volume is pushed along: across it, towards -z."""
+        """Direction of push within a core without volume: across it, towards -z."""
         across = _span(self.core)[1][:, 2]
         return across if across[2] < 0 else -across
 
 
 def sphere(radius: float, name: str = "sphere") -> Tool:
-    """A fingertip: a ball about its reference point."""
+    """Sphere about its reference point: a fingertip."""
     return Tool(name, np.zeros((1, 3)), radius)
 
 
 def rod(radius: float, length: float, name: str = "rod") -> Tool:
-    """A round-ended rod (capsule) along x, its axis ``length`` metres long without the ends."""
+    """Round-ended rod (capsule) along x, its axis ``length`` metres long without the ends."""
     _refuse_no_length(name, Sentence("length"), length)
     return Tool(name, np.array([[-0.5, 0.0, 0.0], [0.5, 0.0, 0.0]]) * length, radius)
 
@@ -210,7 +209,7 @@ def plate(
     thickness: float | None = None,
     name: str = "plate",
 ) -> Tool:
-    """A plate of ``width`` along x and ``depth`` along y, over all, which works with its -z face.
+    """Plate of ``width`` along x and ``depth`` along y, over all, which works with its -z face.
 
     The middle of that face is the reference point, the plate lies in z >= 0. ``rounding`` is the
     radius of its edges (default: a twentieth of the smaller side); ``thickness`` defaults to half
@@ -243,7 +242,7 @@ def plate(
 
 
 def convex(vertices: ArrayLike, rounding: float = 0.0, name: str = "convex mesh") -> Tool:
-    """The convex hull of ``vertices`` (v, 3), metres, about their own origin, its edges rounded.
+    """Convex hull of ``vertices`` (v, 3), metres, about their own origin, its edges rounded.
 
     Edges are rounded within the hull, by ``rounding`` or at least a tenth of the inner radius. More
     corners than a tool may have are simplified to those that stand out in well-spread directions.
@@ -304,7 +303,7 @@ def convex(vertices: ArrayLike, rounding: float = 0.0, name: str = "convex mesh"
 
 
 def _outstanding(corners: NDArray[np.float64], most: int) -> NDArray[np.float64]:
-    """Of ``corners`` (v, 3) at most ``most``: the farthest in directions spread over the sphere."""
+    """At most ``most`` of ``corners`` (v, 3): the farthest in directions spread over a sphere."""
     if len(corners) <= most:
         return corners
     # Directions along a spiral of equal areas (Fibonacci lattice).
@@ -319,7 +318,7 @@ def _outstanding(corners: NDArray[np.float64], most: int) -> NDArray[np.float64]
 
 
 def _span(points: NDArray[np.float64]) -> tuple[int, NDArray[np.float64]]:
-    """How many dimensions points (k, 3) span, and their principal axes as columns, widest first."""
+    """Dimensions spanned by points (k, 3), and their principal axes as columns, widest first."""
     _, _, axes = np.linalg.svd(points - points.mean(axis=0), full_matrices=True)
     lengths = np.ptp(points @ axes.T, axis=0)
     dimension = int((lengths > FLATNESS * max(float(lengths.max()), np.finfo(float).tiny)).sum())
