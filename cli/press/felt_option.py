@@ -49,8 +49,8 @@ def softening_table(body: SoftBody, body_file: Path) -> Iterator[SofteningTable]
 def softenings_for(
     arguments: argparse.Namespace, body: SoftBody, places: ArrayLike
 ) -> NDArray[np.float64] | None:
-    """What the force asked for needs at the surface points nearest to places (m, 3); None if it
-    needs nothing.
+    """Softenings at the surface points nearest to places (m, 3) for the chosen force law; None if
+    not needed.
     """
     if arguments.felt == "linear":
         return None

@@ -49,7 +49,7 @@ def pressed_tools(
 
 
 def tool_figures(touch: ToolTouch) -> dict[str, object]:
-    """What a touch by a tool comes to, as plain values; SI units."""
+    """Figures of a tool's touch, as plain values; SI units."""
     return {
         "tool": touch.tool.name,
         "position": touch.pose.position.tolist(),

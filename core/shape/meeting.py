@@ -46,7 +46,7 @@ MOST_STEPS = 60
 
 @dataclass(frozen=True, eq=False)
 class FingerLoad:
-    """What one finger does by the linear relation: forces (k, 3), N, on nodes (k,) of the mesh."""
+    """Load of one finger by the linear force law: forces (k, 3), N, on nodes (k,) of the mesh."""
 
     nodes: NDArray[np.int64]
     forces: Array
@@ -173,7 +173,7 @@ class Meeting:
         return self.shape.displacements(*_joined(changed), 1.0)
 
     def _places(self, loads: Sequence[FingerLoad], displacements: Array) -> Array:
-        """How far the middle of each load moves, (m, 3)."""
+        """Displacement of the middle of each load, (m, 3)."""
         ways = np.zeros((len(loads), 3))
         for number, load in enumerate(loads):
             free = self.body.free_index(load.nodes)

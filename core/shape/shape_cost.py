@@ -1,4 +1,4 @@
-"""What a shape costs, predicted from a body's size, before anything is computed."""
+"""Cost of a shape, predicted from a body's size."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def _paper(size: BodySize) -> ShapeCost:
 
 
 def _grown(size: BodySize, exponent: float) -> float:
-    """How many times as much as for the body that was measured."""
+    """Cost relative to that of the measured body."""
     return math.pow(size.nodes / MEASURED_NODES, exponent)
 
 

@@ -34,7 +34,7 @@ SERIES_IS_PAPER = Sentence(
 
 
 class Shape(Protocol):
-    """How a body looks under forces on its nodes."""
+    """Deformed shape of a body under forces on its nodes."""
 
     @property
     def ready(self) -> float:
@@ -104,7 +104,7 @@ class LinearShape:
         nodal_forces: NDArray[np.float64],
         young_modulus: float | None = None,
     ) -> NDArray[np.float64]:
-        """As :meth:`SoftBody.deform`."""
+        """Linear displacements, as :meth:`SoftBody.deform`."""
         return self.body.deform(nodes, nodal_forces, young_modulus)
 
     def wait_for(self, nodes: NDArray[np.int64]) -> None:

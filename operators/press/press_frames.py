@@ -35,7 +35,7 @@ MOST_FRAMES = 2000
 
 @dataclass(frozen=True, eq=False)
 class PressedFrame:
-    """What one frame did: each finger's force (N), and the displacements (n, 3), None if free."""
+    """Result of a frame: each finger's force (N), and the displacements (n, 3), None if free."""
 
     frame: int
     fingers: tuple[Touch, ...]
@@ -163,7 +163,7 @@ def press_frames(
 
 
 def leading_objects(scene: bpy.types.Scene) -> tuple[bpy.types.Object, ...]:
-    """What leads the tools through an animation: the mesh that presses, or the fingers' Empties.
+    """Objects that lead the tools through an animation: the pressing mesh, or the fingers' Empties.
 
     Raises
     ------
@@ -214,7 +214,7 @@ def keep_frames(thing: bpy.types.Object, drawn: DrawnBody, pressed: list[Pressed
 
 
 def _remove_frames(thing: bpy.types.Object) -> None:
-    """What an earlier press along an animation left."""
+    """Remove the remains of an earlier press along an animation."""
     keys = thing.data.shape_keys
     for key in [key for key in keys.key_blocks if key.name.startswith(f"{FRAME_NAME} ")]:
         path = f'key_blocks["{key.name}"].value'

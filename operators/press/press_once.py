@@ -31,7 +31,7 @@ Vector = tuple[float, float, float]
 
 @dataclass(frozen=True, eq=False)
 class PressedFinger:
-    """What one finger did; ``force`` (N, felt) in world axes, ``depth`` in metres."""
+    """Result of one finger; ``force`` (N, on the finger) in world axes, ``depth`` in metres."""
 
     made: Touch
     force: Vector
@@ -40,7 +40,7 @@ class PressedFinger:
 
 @dataclass(frozen=True, eq=False)
 class Pressed:
-    """What one press did; vectors in world axes, SI units. ``remarks`` tell of a changed tool and
+    """Result of a press; vectors in world axes, SI units. ``remarks`` report a changed tool and
     of files that could not be used or written.
     """
 
@@ -160,7 +160,7 @@ def _touches(
 
 
 def loads_of(touches: Sequence[Touch]) -> list[FingerLoad]:
-    """What the body bears, of all fingers that press."""
+    """Loads of all pressing fingers on the body."""
     return [FingerLoad(one.nodes, one.nodal_forces) for one in touches if len(one.nodes)]
 
 

@@ -1,4 +1,4 @@
-"""How the scene says that a tool is turned, in the body's axes."""
+"""Rotation of a tool chosen in the scene, in the body's axes."""
 
 from __future__ import annotations
 

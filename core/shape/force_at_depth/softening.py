@@ -1,4 +1,4 @@
-"""How nodes soften under a press: b and w of :mod:`.felt_force`, from the solid's power series.
+"""Softening of nodes under a press: b and w of :mod:`.felt_force`, from the solid's power series.
 
 Among all displacements of the body that move a node by u and leave every other free node without
 force, the energy is W(u). Its terms of order two to four are those of the linear field a = G u (the

@@ -68,7 +68,7 @@ class SofteningTable:
 
     @property
     def values(self) -> NDArray[np.float64]:
-        """Of every node of ``mesh.surface_nodes`` b and w, (s, 4); zero where unknown. A copy."""
+        """Softenings b and w of ``mesh.surface_nodes``, (s, 4), a copy; zero where unknown."""
         with self._lock:
             return self._values.copy()
 

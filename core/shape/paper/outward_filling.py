@@ -56,7 +56,7 @@ class OutwardFilling:
 
     @property
     def problem(self) -> BaseException | None:
-        """What ended the thread, if anything did."""
+        """Error that ended the thread, if any."""
         return self._problem
 
     def around(self, places: NDArray[np.int64]) -> None:

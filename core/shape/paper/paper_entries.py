@@ -83,13 +83,13 @@ class EntryFinder:
 
     @cached_property
     def at_rest(self) -> SeriesStart:
-        """Where the series begin."""
+        """Start of the series."""
         return SeriesStart.at_rest(self.body)
 
     def entries(
         self, freedom: int, wanted: float, may_go_on: Callable[[], None] = unwatched
     ) -> PaperEntries:
-        """Of surface freedom ``3 * (place in free_surface) + axis``, for F0 = ``wanted``.
+        """Entries of surface freedom ``3 * (place in free_surface) + axis``, for F0 = ``wanted``.
 
         ``wanted`` is in newton per pascal of Young's modulus. ``may_go_on`` is called now and then;
         it may raise to cancel.

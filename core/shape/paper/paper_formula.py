@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True, eq=False)
 class PaperColumns:
-    """What (16) needs of the loaded freedoms.
+    """Columns of the loaded freedoms for (16).
 
     Attributes
     ----------

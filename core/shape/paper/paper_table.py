@@ -81,7 +81,7 @@ class PaperTable:
             raise CancelledError("the table of (16) is not filled further; choose it again")
 
     def columns(self, nodes: NDArray[np.int64]) -> PaperColumns:
-        """What (16) needs of filled nodes (k,): 3k freedoms."""
+        """Columns of filled nodes (k,) for (16): 3k freedoms."""
         return PaperColumns(
             self.body.compliance.columns(nodes).T,
             np.concatenate([self.positive[node] for node in nodes.tolist()]),

@@ -28,7 +28,7 @@ from ..solid.strain_energy import EnergyTerm
 
 @dataclass(frozen=True, eq=False)
 class SeriesStart:
-    """Where series begin.
+    """Start of power series.
 
     Attributes
     ----------
@@ -90,7 +90,7 @@ class _PartialSeries:
         self._known: Array | None = None
 
     def next_forces(self, newest: NDArray[np.float64]) -> NDArray[np.float64]:
-        """What a_1 ... a_k, of which a_k is handed in, leave in order k + 1, (f, 3)."""
+        """Residual of a_1 ... a_k, of which a_k is given, in order k + 1, (f, 3)."""
         gradient = self._term.gradients.of_displacements(newest.T)
         strain = gradient
         if self._start is not None:

@@ -58,7 +58,7 @@ class RationalSum:
             return self.basis @ last, float(changed)
 
     def gives_way(self, share: float) -> float:
-        """Where the sum has no end, in the direction of s and in multiples of it.
+        """Pole of the sum, in the direction of s and in multiples of it.
 
         That is its first pole near the positive axis: a load beyond which a body gives way.
         """

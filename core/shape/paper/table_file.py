@@ -31,7 +31,7 @@ class TableFileError(PalpateError):
 
 
 def table_path(body_file: Path, kind: str) -> Path:
-    """Where the table of a body is kept: beside the body's file, under its name."""
+    """Path of a body's table: next to the body file, under its name."""
     return body_file.with_name(f"{body_file.stem}.{kind}{body_file.suffix}")
 
 

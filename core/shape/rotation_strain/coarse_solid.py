@@ -64,7 +64,7 @@ class CoarseSolid:
         poisson_ratio: float,
         young_scale: NDArray[np.float64] | None = None,
     ) -> CoarseSolid:
-        """Of a body's tetrahedra and pins.
+        """Coarse solid of a body's tetrahedra and pins.
 
         Parameters
         ----------
@@ -172,7 +172,7 @@ def spring_of_each(
 
 
 def _unseen(lattice: Lattice, stiffness: NDArray[np.float64]) -> csr_array:
-    """What holds the four trilinear displacements of a cube that are not linear, csr (c, c)."""
+    """Stiffness of a cube's four trilinear displacements that are not linear, csr (c, c)."""
     x, y, z = (2.0 * CORNERS - 1.0).T
     modes = np.stack([x * y, y * z, z * x, x * y * z]) / 8
     count = len(stiffness)

@@ -121,7 +121,7 @@ def lattice_of(mesh: TetMesh, most_nodes: int) -> Lattice:
 
 
 def _occupied_corners(mesh: TetMesh, edge: float) -> int:
-    """How many nodes a lattice of this edge would have at least, counted quickly."""
+    """Lower bound, quickly counted, of the nodes of a lattice of this edge."""
     middles = mesh.nodes[mesh.tets].mean(axis=1)
     cubes, _, counts = _cubes(mesh, middles, edge)
     once = np.unique(np.ravel_multi_index(tuple(cubes.T), tuple(counts)))
@@ -141,7 +141,7 @@ def _cubes(
 
 
 def _bonds(mesh: TetMesh, samples: TetSamples) -> NDArray[np.int64]:
-    """What a sample hangs together with others by, (q, 5): its tetrahedron's nodes, and itself."""
+    """Bonds of each sample, (q, 5): its tetrahedron's nodes, and itself."""
     whole = samples.tets[:, None] + len(mesh.nodes)
     return np.hstack([mesh.tets[samples.tets], whole])
 
@@ -192,7 +192,7 @@ def _node_parts(
     sample_parts: NDArray[np.int64],
     middles: NDArray[np.float64],
 ) -> NDArray[np.int64]:
-    """Of the parts that a node's tetrahedra are in, the one whose middle is nearest, (N,)."""
+    """Part of each node, (N,): of those of its tetrahedra, the one with the nearest middle."""
     parts, nodes = _parts_and_bonds(bonds[:, :4], sample_parts)
     off = np.abs(positions[nodes] - middles[parts]).max(axis=1)
     order = np.lexsort((parts, off, nodes))

@@ -60,7 +60,7 @@ def by_component(factor: CholeskyFactor) -> Solve:
 
 @dataclass(frozen=True, eq=False)
 class Load:
-    """What pulls at the nodes.
+    """Load on the nodes.
 
     Attributes
     ----------
@@ -78,7 +78,7 @@ class Load:
         return self.dead if self.turning is None else self.dead + self.turning
 
     def work(self, place: Warped, linear: Array) -> float:
-        """Of the whole load, joule."""
+        """Work of the full load, joule."""
         dead = dot(self.dead, place.displacements)
         return dead if self.turning is None else dead + dot(self.turning, linear)
 
@@ -102,7 +102,7 @@ class Relaxation:
     def of(
         cls, terms: Sequence[StrainTerm], solve: Solve, springs: Springs | None = None
     ) -> Relaxation:
-        """Of the terms of a solid on its free nodes, the first of which has shear; ready for use.
+        """Relaxation of the terms of a solid on its free nodes, the first of which has shear.
 
         Parameters
         ----------
@@ -123,7 +123,7 @@ class Relaxation:
         return self.relaxed_from(self.solve(forces), Load(forces), steps)
 
     def relaxed_from(self, linear: Array, load: Load, steps: int) -> Array:
-        """As :meth:`relaxed`, under a load whose linear displacement (3, f) is known."""
+        """Relaxed shape under a load whose linear displacement (3, f) is known."""
         total = load.total
         if not steps or not total.any():
             return self.coordinates.warp(linear).displacements
@@ -202,7 +202,7 @@ class _Place:
 
 @dataclass(frozen=True, eq=False)
 class _Change:
-    """By how much a step changed the place and the gradient, and the work of the two."""
+    """Change of place and gradient by a step, and the work of the two."""
 
     place: Array
     gradient: Array
@@ -210,7 +210,7 @@ class _Change:
 
     @classmethod
     def damped(cls, share: float, direction: Array, before: Array, after: Array) -> _Change:
-        """Of a step of ``share`` of a direction, -H times the gradient ``before``."""
+        """Change by a step of ``share`` of a direction, -H times the gradient ``before``."""
         place = share * direction
         gradient = after - before
         # H^-1 times the step is known without H: it is -share times the gradient.

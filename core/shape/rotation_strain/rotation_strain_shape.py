@@ -21,7 +21,7 @@ from .two_levels import TwoLevels
 
 @dataclass(frozen=True)
 class FramePlan:
-    """What is done in every frame.
+    """Plan of the work in every frame.
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ PLAN_OF_LARGE = FramePlan(2, 1000)
 
 
 def frame_plan(free_nodes: int) -> FramePlan:
-    """What a frame has time for, for this many free nodes."""
+    """Work that a frame has time for, by number of free nodes."""
     return next((plan for largest, plan in PLANS if free_nodes <= largest), PLAN_OF_LARGE)
 
 
@@ -137,7 +137,7 @@ class _Made(Protocol):
     def displacements(
         self, nodes: NDArray[np.int64], forces: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """Of the free surface, (n, 3), under forces (k, 3) on nodes (k,), at unit modulus."""
+        """Displacements (n, 3) under forces (k, 3) on nodes (k,), at unit modulus."""
         ...
 
 
@@ -171,5 +171,5 @@ class _OnLattice:
 
 
 def relaxation(solid: FreeSolid) -> Relaxation:
-    """What is needed to relax a body's shape, ready to be used."""
+    """Relaxation of a body's shape."""
     return Relaxation.of(solid.solid.terms, by_component(solid.factor))

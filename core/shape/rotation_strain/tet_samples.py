@@ -47,7 +47,7 @@ class TetSamples:
 
     @classmethod
     def of(cls, mesh: TetMesh, length: float) -> TetSamples:
-        """Of a body; edges longer than ``length`` are cut in halves, up to :data:`MOST_CUTS`."""
+        """Samples of a body; longer edges than ``length`` are halved, up to :data:`MOST_CUTS`."""
         corners = mesh.nodes[mesh.tets]
         longest = np.linalg.norm(corners[:, EDGES[:, 0]] - corners[:, EDGES[:, 1]], axis=2)
         halvings = np.ceil(np.log2(np.maximum(longest.max(axis=1) / length, 1.0)))

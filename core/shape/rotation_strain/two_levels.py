@@ -39,7 +39,7 @@ STIFFER = (0.25, 4.0)
 
 @dataclass(frozen=True, eq=False)
 class TwoLevels:
-    """What corrects linear displacements of a body's free surface.
+    """Two-level correction of linear displacements of a body's free surface.
 
     Attributes
     ----------
@@ -103,7 +103,7 @@ class TwoLevels:
 
 
 def _stiffer(held: Array, load: Array, moved: Array) -> float:
-    """By how much a lattice is stiffer than its body: the work of what holds it over the load's."""
+    """Stiffness of a lattice relative to its body: work of its constraints over the load's."""
     least, most = STIFFER
     own, all_work = (float(np.einsum("ic,ic->", forces, moved)) for forces in (load, held))
     if all_work >= most * own:

@@ -98,7 +98,7 @@ class FreeSolid:
 
     @cached_property
     def elimination(self) -> RepeatedElimination:
-        """How tangents are factored; all have one pattern."""
+        """Symbolic factorization of the tangents, which have one pattern."""
         pattern = self.solid.pattern
         return RepeatedElimination.of(pattern.rows, pattern.columns, self.positions)
 

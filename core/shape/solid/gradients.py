@@ -34,7 +34,7 @@ class Gradients:
 
     @property
     def domain_count(self) -> int:
-        """How many domains there are, d."""
+        """Number of domains, d."""
         return int(self.forward.shape[0]) // 3
 
     def of_displacements(self, displacements: Array) -> Array:

@@ -1,4 +1,4 @@
-"""How far a body may move along a way before one of its elements is turned inside out."""
+"""Largest step along a direction before an element is inverted."""
 
 from __future__ import annotations
 

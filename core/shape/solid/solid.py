@@ -147,7 +147,7 @@ class Solid:
 
     @cached_property
     def pattern(self) -> TangentPattern:
-        """Where the blocks of every tangent stand."""
+        """Pattern of every tangent."""
         rows, columns = (
             np.concatenate([getattr(term.pairs, side) for term in self.terms])
             for side in ("rows", "columns")

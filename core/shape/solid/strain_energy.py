@@ -41,7 +41,7 @@ class StressedTerm:
 
 @dataclass(frozen=True, eq=False)
 class EnergyTerm:
-    """As :class:`.solid.StrainTerm`, held below J0; moduli times volumes, (d,)."""
+    """Energy term as :class:`.solid.StrainTerm`, held below J0; moduli times volumes, (d,)."""
 
     gradients: Gradients
     first_lame: NDArray[np.float64]

@@ -1,4 +1,4 @@
-"""Where the blocks of a solid's tangent stiffness stand, found once for all displacements."""
+"""Sparsity pattern of a solid's tangent stiffness, the same for all displacements."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class NodePairs:
 
     @classmethod
     def of(cls, gradients: csr_array) -> NodePairs:
-        """Of csr (3D, N), as in :class:`.solid.StrainTerm`."""
+        """Pairs of nodes of csr (3D, N), as in :class:`.solid.StrainTerm`."""
         blocks = gradients.tobsr((3, 1))
         blocks.sort_indices()
         counts = np.diff(blocks.indptr).astype(np.int64)
@@ -51,7 +51,7 @@ class NodePairs:
 
 @dataclass(frozen=True, eq=False)
 class TangentPattern:
-    """Where the 3x3 blocks of a symmetric matrix stand, found once for many matrices.
+    """Pattern of 3x3 blocks of a symmetric matrix, found once for many matrices.
 
     Attributes
     ----------
