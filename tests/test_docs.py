@@ -8,6 +8,7 @@ from __future__ import annotations
 import argparse
 import ast
 import importlib
+import importlib.util
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -25,6 +26,9 @@ PAGES = sorted(
         *(REPOSITORY / "firmware").glob("*.md"),
     ]
 )
+# Benchmarks have each other and the tests, too.
+OURS = ("palpate.core", "palpate.cli", "palpate.simulated", "palpate_servo")
+BENCHMARKS = sorted((REPOSITORY / "benchmarks").rglob("*.py"))
 FOLDERS = (
     "addon|benchmarks|cli|core|demo|docs|firmware|native|operators|release|sample_scenes|simulated|"
     "tests"
@@ -164,16 +168,32 @@ def test_an_option_that_does_not_exist_is_noticed():
     assert not wrong_options("palpate press B.npz --at 0 0 0")
 
 
+def missing_imports(source: str) -> list[str]:
+    """Names that Python imports from the product and that are not there."""
+    missing = []
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith(OURS):
+            module = importlib.import_module(str(node.module))
+            missing += [
+                f"{node.module}.{alias.name}"
+                for alias in node.names
+                if not hasattr(module, alias.name)
+                and not importlib.util.find_spec(f"{node.module}.{alias.name}")
+            ]
+    return missing
+
+
 @pytest.mark.parametrize("page", PAGES, ids=name_of)
 def test_every_example_in_python_imports_what_exists(page):
     text = page.read_text(encoding="utf-8")
     for source in re.findall(r"```python\n(.*?)```", text, re.DOTALL):
-        for node in ast.walk(ast.parse(source)):
-            if isinstance(node, ast.ImportFrom) and node.module and not node.level:
-                module = importlib.import_module(node.module)
-                for alias in node.names:
-                    if not hasattr(module, alias.name):
-                        importlib.import_module(f"{node.module}.{alias.name}")
+        assert not missing_imports(source)
+
+
+@pytest.mark.parametrize("script", BENCHMARKS, ids=name_of)
+def test_every_benchmark_imports_what_exists(script):
+    """They run for minutes, seldom; what they need of the product must not go unnoticed."""
+    assert not missing_imports(script.read_text(encoding="utf-8"))
 
 
 @pytest.mark.parametrize("page", PAGES, ids=name_of)

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from palpate.core.body.drawn_map import DrawnMap
 from palpate.core.body.soft_body import SoftBody
-from palpate.core.contact.equations import Touch
 from palpate.core.contact.single_press import touch_at
 
 PROJECT = Path(__file__).resolve().parents[3]
@@ -44,7 +43,7 @@ def random_loads(body: SoftBody, count: int) -> list[Load]:
     """Touches of random free triangles by 3 mm, as forces on their nodes."""
     rng = np.random.default_rng(1999)
     free = np.isin(body.mesh.surface_triangles, body.compliance.free_surface).all(axis=1)
-    touches: list[Touch] = [
+    touches = [
         touch_at(body, int(triangle), rng.dirichlet([1, 1, 1]), rng.normal(scale=0.003, size=3))
         for triangle in rng.choice(np.flatnonzero(free), count)
     ]
