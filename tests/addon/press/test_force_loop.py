@@ -24,8 +24,6 @@ from soft_scene import (
     wait,
 )
 
-from palpate.core.servo.settings import Settings
-
 
 def said(session):
     return part("operators.device.servo_words").standing(session.snapshot)
@@ -319,7 +317,7 @@ def test_a_port_that_cannot_be_opened_has_one_remedy(palpate):
         [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]],
         np.tile(np.eye(3), (4, 1, 1)),
     )
-    servo = palpate_servo.Servo(body, Settings(1000.0))
+    servo = palpate_servo.Servo(body, part("core.servo.settings").Settings(1000.0))
     error = part("core.errors").PalpateError
     with (
         pytest.raises(error, match=r"^device: /no/such/port: cannot be opened \([^;]*\); [^;]*$"),
