@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::joint::{AllLed, Beside, Ground, Joint};
+use super::joint::{AllLed, Beside, Ground, Joint, Led, MOST_ENTERING};
 use crate::algebra::MOST_POINTS;
 use crate::body::closest::closest_point;
 use crate::tool::collider::{Collider, MOST_NEAR};
@@ -12,8 +12,6 @@ use crate::tool::shape::Pose;
 pub(super) const MARGIN: f64 = 1.0;
 /// Points beyond this many margins, at rest and now, are forgotten.
 const FORGOTTEN: f64 = 1.5;
-/// Points that may enter in one tick.
-pub(super) const MOST_ENTERING: usize = 24;
 /// Once so many blocks of the compliance had to be fetched in a tick, further points wait.
 const MOST_FETCHED: usize = 256;
 /// Points that may enter in one tick times those that are looked at, whose response to each of them
@@ -177,7 +175,7 @@ impl Joint {
         pose: &Pose,
     ) -> DVec3 {
         let others = |other: usize| other != usize::from(number);
-        let acts = |(other, led): (usize, &Option<super::joint::Led<'_>>)| {
+        let acts = |(other, led): (usize, &Option<Led<'_>>)| {
             others(other)
                 && (led.as_ref()).is_some_and(|led| !led.collider.nodal_forces().is_empty())
         };

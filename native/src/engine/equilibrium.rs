@@ -6,7 +6,8 @@ use super::choose::MARGIN;
 use super::joint::{AllLed, Beside, Ground, Joint, Led};
 use crate::algebra::MOST_POINTS;
 use crate::contact::cones::MAX_FINGERS;
-use crate::tool::friction::{AllPosed, across};
+use crate::tool::coefficients::AllPosed;
+use crate::tool::friction::across;
 use crate::tool::shape::tilt::Hold;
 
 /// Linearisations in one tick.
@@ -116,7 +117,7 @@ impl Joint {
             return 0.0;
         };
         let watched = WATCHED * MARGIN * collider.surface().spacing();
-        let own = |slot: &&crate::tool::patch::Slot| slot.tool == number;
+        let own = |slot: &&crate::tool::slot::Slot| slot.tool == number;
         let pushes = self.patch.slots().iter().filter(own);
         let hold = Hold::of(pushes.map(|slot| (slot.push * slot.normal, slot.at.normal)));
         let hold = hold.map(|hold| hold.seen_from(&pose.rotation));

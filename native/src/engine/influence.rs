@@ -9,43 +9,19 @@
 use glam::{DMat3, DVec3};
 
 use super::joint::{Beside, Ground, Joint};
+use crate::algebra::MOST_POINTS;
 use crate::algebra::cholesky::dot;
-use crate::algebra::{MOST_POINTS, room};
 use crate::body::surface::Body;
 use crate::contact::cones::MAX_FINGERS;
 use crate::contact::touch::{contact_compliance, inverse_of_definite};
 use crate::control::coupling::largest_eigenvalue;
-use crate::fingers::several::{Press, Reaction, numbered};
-use crate::tool::blocks::Recent;
+use crate::fingers::press::{Press, Reaction, numbered};
 
 /// Of what a point gives way alone tools take this share at most: on one place with a tool it would
 /// else not give way at all, and have no end of force. What they do to each other is reduced for that.
 const MOST_TAKEN: f64 = 0.98;
 /// Turns of points and tools in one linearisation.
 const MOST_TURNS: usize = 4;
-
-/// Memory for it.
-#[derive(Debug, Clone)]
-pub(super) struct Influence {
-    recent: Recent,
-    /// Of each slot: how far a force at each point moves it, m/N at unit modulus.
-    by_slot: Vec<[DMat3; MAX_FINGERS]>,
-    /// How far what they and a tool do to each other is reduced, of each point.
-    reduced: [f64; MAX_FINGERS],
-    /// A column for each axis of each point, and one for the gaps.
-    columns: Vec<f64>,
-}
-
-impl Influence {
-    pub(super) fn new() -> Self {
-        Self {
-            recent: Recent::new(),
-            by_slot: vec![[DMat3::ZERO; MAX_FINGERS]; MOST_POINTS],
-            reduced: [1.0; MAX_FINGERS],
-            columns: room((3 * MAX_FINGERS + 1) * MOST_POINTS),
-        }
-    }
-}
 
 impl Joint {
     /// Moves all slots by what the points do where they are now, with the forces of the last tick.

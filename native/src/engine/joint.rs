@@ -5,15 +5,20 @@ use glam::DVec3;
 use crate::algebra::MOST_POINTS;
 use crate::body::surface::Body;
 use crate::contact::cones::MAX_FINGERS;
-use crate::fingers::several::{Answers, Presses, Several};
+use crate::fingers::press::{Answers, Presses};
+use crate::fingers::several::Several;
+use crate::tool::coefficients::AllPosed;
 use crate::tool::collider::{Collider, Felt};
 use crate::tool::complementarity::Complementarity;
 use crate::tool::effort::Effort;
-use crate::tool::friction::{AllPosed, Rubbing, take_anchors};
+use crate::tool::friction::{Rubbing, take_anchors};
 use crate::tool::patch::Patch;
 use crate::tool::shape::Pose;
 
-use super::influence::Influence;
+use super::responses::Influence;
+
+/// Points of a tool that may enter in one tick.
+pub(super) const MOST_ENTERING: usize = 24;
 
 /// A tool and where it is to go in a tick.
 pub struct Led<'a> {
@@ -76,7 +81,7 @@ impl Default for Joint {
             rubbing: Rubbing::new(),
             influence: Influence::new(),
             chosen: Vec::with_capacity(MOST_POINTS),
-            entering: Vec::with_capacity(super::choose::MOST_ENTERING + 1),
+            entering: Vec::with_capacity(MOST_ENTERING + 1),
             effort: Effort::default(),
             eras: [None; MAX_FINGERS],
             body: 0,

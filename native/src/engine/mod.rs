@@ -7,12 +7,15 @@
 mod choose;
 mod equilibrium;
 mod feel;
+pub mod goals;
 mod influence;
 pub mod joint;
 pub mod lone;
+mod responses;
 pub mod settling;
 
-use crate::fingers::several::{Answers, Presses, Reaction, Several};
+use crate::fingers::press::{Answers, Presses, Reaction};
+use crate::fingers::several::Several;
 use joint::{AllLed, Beside, Ground, Joint};
 
 /// The contact of all fingers on a body, from tick to tick.

@@ -5,7 +5,7 @@ use glam::DMat3;
 
 use crate::body::softening::{Relation, Softening};
 use crate::contact::cones::{Blocks, MAX_FINGERS, Members};
-use crate::fingers::several::numbered;
+use crate::fingers::press::numbered;
 
 /// Couplings between which the share of the correction goes from all to nothing.
 const WEAK: f64 = 0.35;

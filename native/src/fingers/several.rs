@@ -9,13 +9,12 @@
 use glam::{DMat3, DVec3};
 
 use crate::algebra::series_share;
-use crate::body::softening::Softening;
 use crate::body::surface::Body;
 use crate::contact::cones::{Blocks, Cone, MAX_FINGERS, Members, Vectors, mean, solve_distinct};
 use crate::contact::touch::{contact_compliance, inverse_of_definite};
 use crate::control::coupling::series_compliance;
+use crate::fingers::press::{Answer, Answers, Presses, Reaction, numbered};
 use crate::fingers::softened::{Pressing, Softened};
-use crate::proxy::Hold;
 
 /// Where the others hold a finger, it still finds this share of the compliance it finds alone.
 const DISTINCT: f64 = 0.02;
@@ -24,95 +23,6 @@ const DISTINCT: f64 = 0.02;
 const TELLING_SHIFT: f64 = 1e-3;
 /// Present by less, a finger does not act on the others.
 const LEAST_PRESENCE: f64 = 1e-3;
-
-/// A finger on the body, or near it where the others move the surface.
-#[derive(Debug, Clone, Copy)]
-pub struct Press {
-    /// Where on the surface.
-    pub hold: Hold,
-    /// It touches; otherwise only what the others do there is asked for.
-    pub touches: bool,
-    /// How far it asks the contact point to move from rest, m.
-    pub displacement: DVec3,
-    /// The part of that which it adds to what the others do, m.
-    pub push: DVec3,
-    /// Of all that its device may see, over Young's modulus; infinite for no such limit.
-    pub most_stiffness: f64,
-    /// From 0 to 1 after it was lifted by a fault: how much it acts on the others.
-    pub presence: f64,
-    /// How the place departs from the linear relation.
-    pub softening: Softening,
-}
-
-/// Those that are there, by number.
-pub type Presses = [Option<Press>; MAX_FINGERS];
-
-/// How tools answer to the points' forces: they move each by some way and, per force on each, by more.
-#[derive(Debug, Clone, Copy)]
-pub struct Reaction {
-    /// Without the points' forces, m.
-    pub moved: Vectors,
-    /// m/N at unit modulus; symmetric, never positive: tools that hold the body make it firmer.
-    pub by: Blocks,
-}
-
-impl Default for Reaction {
-    fn default() -> Self {
-        Self {
-            moved: [DVec3::ZERO; MAX_FINGERS],
-            by: [[DMat3::ZERO; MAX_FINGERS]; MAX_FINGERS],
-        }
-    }
-}
-
-impl Reaction {
-    /// Where what a point and the tools do to each other is reduced to such shares.
-    pub fn reduce(&mut self, shares: &[f64; MAX_FINGERS]) {
-        for (p, &share) in shares.iter().enumerate() {
-            self.moved[p] *= share;
-            for (q, &other) in shares.iter().enumerate() {
-                self.by[p][q] *= share * other;
-            }
-        }
-    }
-
-    /// The compliance of points between tools that answer so.
-    fn on(&self, alone: &Blocks) -> Blocks {
-        let mut blocks = *alone;
-        for (row, by) in blocks.iter_mut().zip(&self.by) {
-            for (block, by) in row.iter_mut().zip(by) {
-                *block += *by;
-            }
-        }
-        blocks
-    }
-}
-
-/// What becomes of all presses.
-pub type Answers = [Answer; MAX_FINGERS];
-
-/// What becomes of a press; times Young's modulus for N and N/m.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Answer {
-    /// On the body, as the device and the other fingers feel it.
-    pub force: DVec3,
-    /// On the body, were there nothing but the body between it and this finger.
-    pub contact_force: DVec3,
-    /// How far the others move the contact point, m.
-    pub by_others: DVec3,
-    /// As `force` and `by_others`, were all relations linear: so the linear body is drawn, in which
-    /// every contact point is where its finger has it.
-    pub drawn: (DVec3, DVec3),
-    /// How far the surface goes beyond what the finger asks, m: zero unless its force is on its cone.
-    pub slip: DVec3,
-    /// Of the contact point while the others hold theirs, in series with what keeps the device from
-    /// seeing it whole: the most that any device sees.
-    pub seen_stiffness: DMat3,
-    /// Compliance of that which keeps the device from seeing it whole.
-    pub spring: f64,
-    /// How much of the place's softening is in the force, 0 to 1.
-    pub felt_share: f64,
-}
 
 /// L between the nodes of two triangles, kept until one of them changes.
 #[derive(Debug, Clone, Copy)]
@@ -259,15 +169,6 @@ impl Several {
         }
         Some(compliance)
     }
-}
-
-/// Those that are there, by number.
-pub(crate) fn numbered<T: Copy>(
-    some: &[Option<T>; MAX_FINGERS],
-) -> impl Iterator<Item = (usize, T)> + '_ {
-    some.iter()
-        .enumerate()
-        .filter_map(|(number, one)| one.map(|one| (number, one)))
 }
 
 fn blocks_between(body: &Body, [p, q]: [u32; 2]) -> Option<[[DMat3; 3]; 3]> {

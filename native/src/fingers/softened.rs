@@ -16,7 +16,7 @@ use crate::body::softening::{BLEND_SECONDS, Relation};
 use crate::contact::cones::{Blocks, Cone, MAX_FINGERS, Members, Vectors, solve_distinct};
 use crate::contact::touch::inverse_of_definite;
 use crate::fingers::felt_coupling::{Held, couplings};
-use crate::fingers::several::{Answers, Presses, Reaction, numbered};
+use crate::fingers::press::{Answers, Presses, Reaction, numbered};
 
 /// Rounds in one tick; two or three are enough from the tick before.
 const MOST_ROUNDS: usize = 8;

@@ -10,7 +10,8 @@ use pyo3::types::{PyDict, PyTuple};
 
 use crate::body::surface;
 use crate::contact::cones::MAX_FINGERS;
-use crate::engine::settling::{Goal, PointTouch, Settling, Toucher, Unsettled};
+use crate::engine::goals::{Goal, PointTouch, Toucher, Unsettled};
+use crate::engine::settling::Settling;
 use crate::proxy::Hold;
 use crate::python::body::surface::Body;
 use crate::python::servo::settings::{contact_mode, felt_choice};
@@ -18,9 +19,9 @@ use crate::python::tool::arrays::pose;
 use crate::python::tool::shape::Tool;
 use crate::python::tool::surface::ToolSurface;
 use crate::python::vectors::{array, finite, positive, rows, square, table};
+use crate::tool::coefficients::Friction;
 use crate::tool::collider::Collider;
-use crate::tool::friction::Friction;
-use crate::tool::patch::Slot;
+use crate::tool::slot::Slot;
 
 #[pyclass(module = "palpate_servo")]
 pub struct ContactEngine {

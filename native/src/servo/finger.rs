@@ -11,67 +11,26 @@ mod tool;
 use glam::{DMat3, DVec3};
 use triple_buffer::Input;
 
-use tool::ToolTouch;
-
 use crate::body::softening::Blend;
 use crate::body::surface::Body;
-use crate::control::coupling::{Coupler, Coupling};
+use crate::control::coupling::Coupler;
 use crate::control::safety::Safety;
 use crate::control::state::{Findings, Standing};
 use crate::device::reason;
-use crate::device::{Device, DeviceFrame, Fault, Probe, Reading};
+use crate::device::{Device, Fault, Probe, Reading};
 use crate::proxy::Proxy;
 use crate::servo::pressed_patch::PressedPatch;
+use crate::servo::settings::{FingerSettings, Moment, Options, Settings};
 use crate::servo::snapshot::{FingerReport, Snapshot};
 use crate::servo::tip::{Tip, TipHolder, exchange_tips};
-use crate::servo::{Options, Settings};
 
-/// What may change of one finger while the servo runs.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FingerSettings {
-    /// Device to body.
-    pub frame: DeviceFrame,
-    /// Between body and motors.
-    pub coupling: Coupling,
-    /// How a tool is attached to the device: turns its directions to those of the device's stylus.
-    pub orientation: DMat3,
-}
-
-impl Default for FingerSettings {
-    fn default() -> Self {
-        Self {
-            frame: DeviceFrame::default(),
-            coupling: Coupling::default(),
-            orientation: DMat3::IDENTITY,
-        }
-    }
-}
-
-impl FingerSettings {
-    /// Maps the device elsewhere: the probe jumps then, and is set down anew.
-    pub fn move_device(&mut self, frame: DeviceFrame) {
-        self.frame = DeviceFrame {
-            epoch: self.frame.epoch.wrapping_add(1),
-            ..frame
-        };
-    }
-}
-
-/// What a tick is for all fingers.
-#[derive(Debug, Clone, Copy)]
-pub struct Moment {
-    /// Counts from 1.
-    pub tick: u64,
-    /// Since the start, s.
-    pub now: f64,
-    /// Nominal period, s.
-    pub dt: f64,
-    /// Since the last tick, s; 0 in the first.
-    pub gap: f64,
-    /// Counts the exchanges of the body.
-    pub body: u32,
-    /// The body is another one since this tick.
-    pub body_replaced: bool,
+/// What the coupling remembers of a tool's touch.
+#[derive(Debug, Clone, Copy, Default)]
+struct ToolTouch {
+    /// Where the probe was when it last did not touch, m.
+    begin: DVec3,
+    /// Smoothed, N/m.
+    stiffness: DMat3,
 }
 
 /// A finger.

@@ -6,6 +6,7 @@ pub mod finger;
 pub mod paced;
 pub mod pressed_patch;
 pub mod recorder;
+pub mod settings;
 pub mod snapshot;
 pub mod stages;
 pub mod thread;
@@ -18,59 +19,18 @@ use glam::DVec3;
 use rtrb::Producer;
 use triple_buffer::{Input, Output};
 
-use crate::body::softening::Felt;
 use crate::body::surface::Body;
 use crate::contact::cones::{MAX_FINGERS, Vectors};
 use crate::contact::touch::ContactMode;
-use crate::control::safety::Limits;
 use crate::device::{Device, Fault};
 use crate::engine::Engine;
 use crate::engine::joint::Ground;
-use crate::proxy::Feel;
 use crate::servo::exchange::{Holder, exchange};
-use crate::servo::finger::{Finger, FingerSettings, Moment};
+use crate::servo::finger::Finger;
 use crate::servo::recorder::Tape;
+use crate::servo::settings::{Moment, Options, Settings};
 use crate::servo::snapshot::{Published, Sample};
 use crate::servo::stages::{Stage, Stages};
-
-/// What may change while the servo runs.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settings {
-    /// Pa.
-    pub young_modulus: f64,
-    /// False: zero force at once.
-    pub enabled: bool,
-    /// Shading, friction and how a contact becomes a force.
-    pub feel: Feel,
-    /// Which relation between displacement and force is felt.
-    pub felt: Felt,
-    /// Of each finger by number; those that are not there have theirs, too.
-    pub fingers: [FingerSettings; MAX_FINGERS],
-}
-
-impl Settings {
-    /// Whatever was not asked for is as plain as it can be.
-    pub fn new(young_modulus: f64) -> Self {
-        Self {
-            young_modulus,
-            enabled: true,
-            feel: Feel::default(),
-            felt: Felt::default(),
-            fingers: [FingerSettings::default(); MAX_FINGERS],
-        }
-    }
-}
-
-/// What is fixed when the servo starts.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Options {
-    /// Ticks a second.
-    pub rate_hz: u32,
-    /// Force limits; a device's own limit is applied too.
-    pub limits: Limits,
-    /// Fastest device motion under force, m/s.
-    pub max_speed: f64,
-}
 
 /// The loop's body and memory.
 pub struct Servo {

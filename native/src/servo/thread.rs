@@ -11,14 +11,15 @@ use crate::body::surface::Body;
 use crate::clock::suspension::Suspension;
 use crate::clock::timing::Waking;
 use crate::device::{Device, Fault};
+use crate::servo::Servo;
 use crate::servo::exchange::{Hand, exchange};
 use crate::servo::paced::{Paced, locked};
 use crate::servo::pressed_patch::PressedPatch;
 use crate::servo::recorder::{RING_SECONDS, Recorder, touched_ring};
+use crate::servo::settings::{Options, Settings};
 use crate::servo::snapshot::{Published, Sample};
 use crate::servo::stages::Stages;
 use crate::servo::tip::{Tip, TipHand, exchange_tips};
-use crate::servo::{Options, Servo, Settings};
 
 /// Longest wait of an exchange of the body for the thread.
 const EXCHANGE_SECONDS: Duration = Duration::from_millis(200);

@@ -1,15 +1,19 @@
 //! A rigid tool on a body: where it is, and what it felt in the last tick.
 
+mod marks;
+
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use glam::{DMat3, DQuat, DVec3};
 
+use super::coefficients::{Friction, Posed};
+use marks::Marks;
+
 use super::effort::Effort;
-use super::friction::{Friction, Posed};
-use super::patch::Slot;
 use super::points::ToolSurface;
 use super::shape::{Pose, Tool};
+use super::slot::Slot;
 use crate::body::closest::closest_point;
 
 /// Contact points that a tool can have near it at once.
@@ -66,35 +70,6 @@ pub struct Collider {
     pub(crate) marks: Marks,
     /// Another one each time that it is lifted: what is remembered of it elsewhere is over.
     era: u64,
-}
-
-/// Marks on contact points, all taken off at once.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Marks {
-    turns: Vec<u32>,
-    turn: u32,
-}
-
-impl Marks {
-    fn new(points: usize) -> Self {
-        Self {
-            turns: vec![0; points],
-            turn: 0,
-        }
-    }
-
-    pub(crate) fn begin(&mut self) {
-        self.turn = self.turn.wrapping_add(1);
-    }
-
-    pub(crate) fn set(&mut self, point: u32) {
-        self.turns[point as usize] = self.turn;
-    }
-
-    #[inline]
-    pub(crate) fn has(&self, point: u32) -> bool {
-        self.turns[point as usize] == self.turn
-    }
 }
 
 /// Eras of all tools, each its own.

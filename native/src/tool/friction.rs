@@ -9,12 +9,11 @@
 
 use glam::{DVec2, DVec3};
 
-use super::patch::{Patch, Slot};
-use super::shape::Pose;
+use super::coefficients::{AllPosed, Posed};
+use super::patch::Patch;
 use crate::algebra::cholesky::dot;
 use crate::algebra::wide::widely;
 use crate::algebra::{MOST_POINTS, room};
-use crate::contact::cones::MAX_FINGERS;
 
 /// Sweeps in one linearisation. From the tick before a few are enough.
 const MOST_SWEEPS: usize = 16;
@@ -29,59 +28,6 @@ const MOST_UNKNOWNS: usize = 2 * MOST_POINTS;
 /// From one row of the matrix to the next. Were that 320 numbers, a column would lie in an eighth of
 /// the sets of a processor's first cache; as an odd number of its lines it lies in all.
 const ROW: usize = MOST_UNKNOWNS + 8;
-
-/// Coefficients of friction; zero for none.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Friction {
-    /// While a point sticks.
-    pub sticking: f64,
-    /// While it slips, at most the other.
-    pub slipping: f64,
-}
-
-impl Friction {
-    /// The same whether points stick or slip.
-    pub fn of(coefficient: f64) -> Self {
-        Self {
-            sticking: coefficient,
-            slipping: coefficient,
-        }
-    }
-
-    /// Whether there is none at all.
-    #[inline]
-    pub fn is_none(&self) -> bool {
-        *self == Self::default()
-    }
-
-    /// Whether both are coefficients.
-    #[inline]
-    pub fn is_sound(&self) -> bool {
-        self.sticking.is_finite() && self.slipping >= 0.0 && self.slipping <= self.sticking
-    }
-
-    /// The most that a point bears aside; nothing in the first tick, when it has no anchor yet.
-    #[inline]
-    fn limit(&self, slot: &Slot) -> f64 {
-        let coefficient = if slot.slips {
-            self.slipping
-        } else {
-            self.sticking
-        };
-        slot.anchor.map_or(0.0, |_| coefficient * slot.push)
-    }
-}
-
-/// A tool in one tick, as friction has to know it.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Posed {
-    pub pose: Pose,
-    pub friction: Friction,
-    pub reach: f64,
-}
-
-/// All tools in one tick, by number.
-pub(crate) type AllPosed = [Option<Posed>; MAX_FINGERS];
 
 /// The forces aside of one linearisation and the memory to find them in.
 #[derive(Debug, Clone)]

@@ -6,6 +6,7 @@
 //! `core/contact/near_field/contact_points.py`.
 
 pub(crate) mod blocks;
+pub mod coefficients;
 pub mod collider;
 pub mod complementarity;
 pub mod effort;
@@ -14,4 +15,4 @@ pub mod near_field;
 pub mod patch;
 pub mod points;
 pub mod shape;
-mod slot_numbers;
+pub mod slot;

@@ -1,87 +1,24 @@
 //! The contact points near all tools on a body, and how each gives way to a force on each other.
 
+mod response;
+mod slot_numbers;
+
 use std::ops::Range;
 
 use glam::{DMat3, DVec3};
 
+use slot_numbers::SlotNumbers;
+
 use super::blocks::{Blocks, Recent};
-use super::near_field::NearField;
-use super::points::{Point, ToolSurface};
-use super::slot_numbers::SlotNumbers;
+use super::points::ToolSurface;
+use super::slot::Slot;
 use crate::algebra::wide::widely;
 use crate::algebra::{MOST_POINTS, room};
-use crate::body::surface::Body;
 use crate::contact::cones::MAX_FINGERS;
 
 /// Numbers of a column: how all slots give way to a force on one, an entry of the blocks after the
 /// other, row by row, each for all slots.
 const COLUMN: usize = 9 * MOST_POINTS;
-
-/// A contact point near a tool; where two tools share one, each has a slot for it.
-#[derive(Debug, Clone, Copy)]
-pub struct Slot {
-    /// Number of the tool.
-    pub tool: u8,
-    /// Number of the contact point.
-    pub point: u32,
-    /// What is fixed there.
-    pub at: Point,
-    /// Force on the body, N at unit modulus.
-    pub force: DVec3,
-    /// The part of it along the normal, N at unit modulus.
-    pub push: f64,
-    /// The part of it across, by friction, N at unit modulus.
-    pub aside: DVec3,
-    /// Where on the tool the point stuck, in the tool's frame; nowhere before its second tick.
-    pub anchor: Option<DVec3>,
-    /// It slipped in the last tick.
-    pub slips: bool,
-    /// Displacement, m.
-    pub moved: DVec3,
-    /// The part of it that points cause, m.
-    pub offset: DVec3,
-    /// The same before the points' forces were found anew, m.
-    pub(crate) before: DVec3,
-    /// Compliance between it and the tool along the normal, m/N at unit modulus.
-    pub spring: f64,
-    /// Outward from the tool where the point has gone to.
-    pub normal: DVec3,
-    /// Signed distance from the tool there, m.
-    pub distance: f64,
-    /// Distance and normal where the point is now, of the tool as it is, in the tool's frame.
-    pub(crate) free: (f64, DVec3),
-    /// The same as pushes are held, in the body's frame: what the next linearisation begins with.
-    pub(crate) seen: (f64, DVec3),
-    /// Of the distances now and, where it was asked for, at rest the lesser, m.
-    pub(crate) nearest: f64,
-    /// How far the point moves along an axis under a force along it, at most, m/N at unit modulus.
-    pub(crate) gives: f64,
-}
-
-impl Slot {
-    fn new(tool: u8, point: u32, at: &Point) -> Self {
-        Self {
-            tool,
-            point,
-            at: *at,
-            force: DVec3::ZERO,
-            push: 0.0,
-            aside: DVec3::ZERO,
-            anchor: None,
-            slips: false,
-            moved: DVec3::ZERO,
-            offset: DVec3::ZERO,
-            before: DVec3::ZERO,
-            spring: 0.0,
-            normal: DVec3::ZERO,
-            distance: 0.0,
-            free: (0.0, DVec3::ZERO),
-            seen: (0.0, DVec3::ZERO),
-            nearest: 0.0,
-            gives: 0.0,
-        }
-    }
-}
 
 /// Slots in use and the compliance between them.
 #[derive(Debug, Clone)]
@@ -236,55 +173,6 @@ impl Patch {
         let own = self.compliance(new, new);
         let gives = [own.x_axis.x, own.y_axis.y, own.z_axis.z];
         self.slots[new].gives = gives.into_iter().fold(0.0, f64::max);
-    }
-
-    /// Displacement of the point that enters, the first, per force on another.
-    fn response(
-        &mut self,
-        body: &Body,
-        near: Option<&NearField>,
-        [(point, p), (other, q)]: [(u32, &Point); 2],
-    ) -> DMat3 {
-        let Some(near) = near else {
-            return self.resolved(body, p, q);
-        };
-        if point == other {
-            let whole = self.resolved(body, p, q) + near.points[point as usize].own;
-            return (whole + whole.transpose()) * 0.5;
-        }
-        let normals = [p.normal, q.normal];
-        let share = near.share(point, other, normals);
-        let mut sum = DMat3::ZERO;
-        if share < 1.0 {
-            sum += self.resolved(body, p, q) * (1.0 - share);
-        }
-        if share > 0.0 {
-            let offset = p.position - q.position;
-            let half_space = near.between_points(point, other, offset, normals);
-            sum += (self.beyond(body, near, p, q) + half_space) * share;
-        }
-        sum
-    }
-
-    /// What the finite elements have between the point that enters and another.
-    fn resolved(&mut self, body: &Body, entered: &Point, other: &Point) -> DMat3 {
-        let (blocks, kept) = (&mut self.blocks, &mut self.of_nodes[0]);
-        let mut found = |node: u32| kept.of(node, || entered.mean(|a| blocks.get(body, a, node)));
-        other.mean(&mut found)
-    }
-
-    /// What the body does beyond a half-space between the point that enters and another.
-    fn beyond(&mut self, body: &Body, near: &NearField, entered: &Point, other: &Point) -> DMat3 {
-        let (blocks, kept) = (&mut self.beyond, &mut self.of_nodes[1]);
-        let resolved = |a: u32, b: u32| body.block(a, b).unwrap_or(DMat3::ZERO);
-        let mut block = |a: u32, b: u32| {
-            blocks.kept(a, b, |a, b| {
-                let offset = body.nodes[a as usize] - body.nodes[b as usize];
-                near.beyond(a, b, offset, resolved)
-            })
-        };
-        let mut found = |node: u32| kept.of(node, || entered.mean(|a| block(a, node)));
-        other.mean(&mut found)
     }
 
     /// How far the forces on some slots move one, m.

@@ -4,6 +4,7 @@
 //! normal are exact: outside the core by the closest point of the hull, inside it by the nearest face
 //! (Ericson 2005, 5.1). Readable reference: `core/contact/tool/tools.py`.
 
+mod circle;
 pub mod hull;
 pub mod tilt;
 

@@ -21,9 +21,9 @@ use palpate_servo::device::link::LinkDevice;
 use palpate_servo::device::link::codec::{MAX_FRAME, encode};
 use palpate_servo::device::serial::port::SerialPort;
 use palpate_servo::device::{Device, DeviceFrame, LinkReport, Probe, Reading};
+use palpate_servo::servo::settings::{Options, Settings};
 use palpate_servo::servo::stages::Stage;
 use palpate_servo::servo::thread::Running;
-use palpate_servo::servo::{Options, Settings};
 use system_calls::{Counter, Watch};
 
 const OPTIONS: Options = Options {

@@ -6,8 +6,8 @@ use palpate_servo::body::softening::{Felt, Relation, Softening};
 use palpate_servo::contact::touch::{ContactMode, contact_stiffness};
 use palpate_servo::control::coupling::Coupling;
 use palpate_servo::device::{DeviceFrame, Probe, Reading};
-use palpate_servo::servo::Settings;
-use palpate_servo::servo::finger::FingerSettings;
+use palpate_servo::servo::settings::FingerSettings;
+use palpate_servo::servo::settings::Settings;
 use palpate_servo::servo::snapshot::Snapshot;
 
 const SOFT: Coupling = Coupling {

@@ -8,9 +8,10 @@ use palpate_servo::contact::cones::MAX_FINGERS;
 use palpate_servo::contact::touch::{ContactMode, touch};
 use palpate_servo::control::coupling::Coupling;
 use palpate_servo::device::{Probe, Reading};
-use palpate_servo::fingers::several::{Press, Reaction, Several};
+use palpate_servo::fingers::press::{Press, Reaction};
+use palpate_servo::fingers::several::Several;
 use palpate_servo::proxy::Hold;
-use palpate_servo::servo::finger::FingerSettings;
+use palpate_servo::servo::settings::FingerSettings;
 use palpate_servo::servo::snapshot::{Published, Snapshot, State};
 
 pub const TOP: f64 = 0.05;

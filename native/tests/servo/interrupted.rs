@@ -6,7 +6,7 @@ use crate::scripted::{ABOVE, DT, OPTIONS, PRESSED, Scripted, Table, probe, setti
 use glam::DVec3;
 use palpate_servo::device::reason;
 use palpate_servo::device::{Fault, Probe, Reading};
-use palpate_servo::servo::Settings;
+use palpate_servo::servo::settings::Settings;
 use palpate_servo::servo::snapshot::{Published, State};
 use palpate_servo::servo::thread::Running;
 use triple_buffer::triple_buffer;

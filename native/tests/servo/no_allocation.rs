@@ -13,11 +13,12 @@ use palpate_servo::control::safety::Limits;
 use palpate_servo::device::link::LinkDevice;
 use palpate_servo::device::pointer::{Pointer, Target};
 use palpate_servo::device::{Device, DeviceFrame, Fault, LinkReport, Probe, Reading};
+use palpate_servo::servo::Servo;
 use palpate_servo::servo::exchange::exchange;
 use palpate_servo::servo::recorder::Recorder;
+use palpate_servo::servo::settings::{Options, Settings};
 use palpate_servo::servo::snapshot::{Published, State};
 use palpate_servo::servo::stages::Stage;
-use palpate_servo::servo::{Options, Servo, Settings};
 use rtrb::RingBuffer;
 use triple_buffer::triple_buffer;
 

@@ -5,10 +5,11 @@ use std::time::Duration;
 use glam::DVec3;
 use palpate_servo::control::safety::Limits;
 use palpate_servo::device::pointer::{Pointer, Target};
+use palpate_servo::servo::Servo;
 use palpate_servo::servo::recorder::{RING_SECONDS, Recorder, Tape};
+use palpate_servo::servo::settings::{Options, Settings};
 use palpate_servo::servo::snapshot::{Published, Sample, State};
 use palpate_servo::servo::thread::Running;
-use palpate_servo::servo::{Options, Servo, Settings};
 use rtrb::RingBuffer;
 use triple_buffer::triple_buffer;
 

@@ -7,10 +7,11 @@ use glam::{DMat3, DVec3};
 use palpate_servo::body::surface::Body;
 use palpate_servo::control::safety::Limits;
 use palpate_servo::device::{Device, DeviceFrame, Fault, LinkReport, Probe, Reading};
+use palpate_servo::servo::Servo;
 use palpate_servo::servo::exchange::{Hand, exchange};
-use palpate_servo::servo::finger::FingerSettings;
+use palpate_servo::servo::settings::FingerSettings;
+use palpate_servo::servo::settings::{Options, Settings};
 use palpate_servo::servo::snapshot::{Published, Sample, Snapshot, State};
-use palpate_servo::servo::{Options, Servo, Settings};
 use rtrb::{Consumer, RingBuffer};
 use triple_buffer::{Input, Output, triple_buffer};
 

@@ -9,10 +9,10 @@ use palpate_servo::control::safety::Limits;
 use palpate_servo::device::reason;
 use palpate_servo::device::{DeviceFrame, Fault, Probe, Reading};
 use palpate_servo::proxy::Feel;
-use palpate_servo::servo::finger::FingerSettings;
+use palpate_servo::servo::settings::FingerSettings;
+use palpate_servo::servo::settings::{Options, Settings};
 use palpate_servo::servo::snapshot::State;
 use palpate_servo::servo::thread::Running;
-use palpate_servo::servo::{Options, Settings};
 
 #[test]
 fn numbers_of_the_probe_that_are_none_give_no_force() {

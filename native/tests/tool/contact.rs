@@ -8,8 +8,8 @@ use crate::on_cube::{
 };
 use glam::{DMat3, DVec3};
 use palpate_servo::engine::lone::LoneTool;
+use palpate_servo::tool::coefficients::Friction;
 use palpate_servo::tool::collider::{MOST_NEAR, NotANumber};
-use palpate_servo::tool::friction::Friction;
 use palpate_servo::tool::near_field::NearField;
 use palpate_servo::tool::points::{Point, ToolSurface};
 use palpate_servo::tool::shape::{Pose, Tool};

@@ -2,8 +2,8 @@
 
 use crate::on_cube::{MODULUS, TOP, at, force, on_cube, sphere};
 use palpate_servo::engine::lone::LoneTool;
+use palpate_servo::tool::coefficients::Friction;
 use palpate_servo::tool::collider::NotANumber;
-use palpate_servo::tool::friction::Friction;
 
 pub fn rubbing(sticking: f64, slipping: f64) -> Friction {
     Friction { sticking, slipping }

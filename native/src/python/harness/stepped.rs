@@ -14,9 +14,10 @@ use crate::python::body::surface::Body;
 use crate::python::servo::counters::{fault_counters, link_counters};
 use crate::python::servo::settings::{Chosen, Given, options};
 use crate::python::servo::snapshot::Snapshot;
+use crate::servo::Servo;
 use crate::servo::exchange::{Hand, exchange};
+use crate::servo::settings::Settings;
 use crate::servo::snapshot::Published;
-use crate::servo::{Servo, Settings};
 
 /// Bytes on the line in either direction.
 #[derive(Debug, Default)]

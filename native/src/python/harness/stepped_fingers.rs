@@ -17,10 +17,11 @@ use crate::python::servo::settings::{Chosen, Given};
 use crate::python::servo::snapshot::Snapshot;
 use crate::python::tool::contact::{ToolContact, tip};
 use crate::python::vectors::{Rows, Triple, finite, rotation as turn};
+use crate::servo::Servo;
 use crate::servo::pressed_patch::PressedPatch;
+use crate::servo::settings::{Options, Settings};
 use crate::servo::snapshot::Published;
 use crate::servo::tip::{Tip, TipHand, exchange_tips};
-use crate::servo::{Options, Servo, Settings};
 
 /// Forces and torques (ticks, m, 3).
 type Felt<'py> = (Bound<'py, PyArray3<f64>>, Bound<'py, PyArray3<f64>>);

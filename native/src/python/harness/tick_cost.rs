@@ -16,8 +16,9 @@ use crate::device::{Device, DeviceFrame, LinkReport, Probe, Reading};
 use crate::python::body::surface::Body;
 use crate::python::servo::settings::contact_mode;
 use crate::python::vectors::{Vector, positive};
+use crate::servo::Servo;
+use crate::servo::settings::{Options, Settings};
 use crate::servo::snapshot::Published;
-use crate::servo::{Options, Servo, Settings};
 
 /// A device without motors that is where its script says.
 struct Scripted {

@@ -14,8 +14,8 @@ use crate::proxy::Feel;
 use crate::python::vectors::{
     Rows, Triple, check_rate, check_seconds, finite, is_orthonormal, matrix, positive, rotation,
 };
-use crate::servo::finger::FingerSettings;
-use crate::servo::{Options, Settings};
+use crate::servo::settings::FingerSettings;
+use crate::servo::settings::{Options, Settings};
 
 /// What stays as it is while a servo runs.
 pub fn options(

@@ -4,8 +4,8 @@ use crate::contact::cones::MAX_FINGERS;
 use crate::control::coupling::Coupling;
 use crate::device::DeviceFrame;
 use crate::python::servo::settings::Chosen;
-use crate::servo::Settings;
-use crate::servo::finger::FingerSettings;
+use crate::servo::settings::FingerSettings;
+use crate::servo::settings::Settings;
 
 /// The settings in force.
 #[derive(Clone, Copy)]

@@ -21,9 +21,9 @@ use crate::python::servo::snapshot::Snapshot;
 use crate::python::servo::standing::Standing;
 use crate::python::tool::contact::{MadeTool, ToolContact, tip};
 use crate::python::vectors::{Triple, check_seconds, finite, positive};
-use crate::servo::Options;
-use crate::servo::finger::FingerSettings;
 use crate::servo::paced::locked;
+use crate::servo::settings::FingerSettings;
+use crate::servo::settings::Options;
 use crate::servo::snapshot::{Published, Sample};
 use crate::servo::thread::Running;
 

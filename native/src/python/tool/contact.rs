@@ -10,8 +10,8 @@ use crate::body::surface;
 use crate::engine::lone::LoneTool;
 use crate::python::vectors::{Matrix, Rows, Triple, Vector, array, positive, square, table};
 use crate::servo::tip::Tip;
+use crate::tool::coefficients::Friction;
 use crate::tool::collider::Collider;
-use crate::tool::friction::Friction;
 use crate::tool::points::{self};
 use crate::tool::shape::{self};
 
@@ -55,7 +55,7 @@ impl ToolContact {
         }
     }
 
-    fn pressed(&self) -> impl Iterator<Item = &crate::tool::patch::Slot> {
+    fn pressed(&self) -> impl Iterator<Item = &crate::tool::slot::Slot> {
         self.inner.pressed().iter()
     }
 }
@@ -170,7 +170,7 @@ impl ToolContact {
     #[getter]
     fn pressures<'py>(&self, py: Python<'py>) -> Vector<'py> {
         let pressure =
-            |slot: &crate::tool::patch::Slot| slot.push * self.young_modulus / slot.at.area;
+            |slot: &crate::tool::slot::Slot| slot.push * self.young_modulus / slot.at.area;
         PyArray1::from_iter(py, self.pressed().map(pressure))
     }
 

@@ -1,8 +1,9 @@
 //! What is wrong with a finger in a tick, as far as the clock and the device tell.
 
-use super::{Finger, Moment};
+use super::Finger;
 use crate::control::state::Findings;
 use crate::device::{Fault, Probe, Reading};
+use crate::servo::settings::Moment;
 
 /// Two ticks further apart than this were interrupted: the device has gone limp meanwhile, s.
 const SUSPENDED_SECONDS: f64 = 0.02;

@@ -2,11 +2,12 @@
 
 use glam::DVec3;
 
-use super::{Finger, FingerSettings};
+use super::Finger;
 use crate::control::safety::Limits;
 use crate::control::state::{Standing, State, transition};
 use crate::device::reason;
 use crate::device::{Fault, Reading};
+use crate::servo::settings::FingerSettings;
 use crate::servo::snapshot::{FingerReport, Sample};
 use crate::servo::tip::Tip;
 

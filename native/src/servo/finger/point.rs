@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Finger, FingerSettings};
+use super::Finger;
 use crate::algebra::series_share;
 use crate::body::face::closest_on_face;
 use crate::body::softening::Softening;
@@ -10,9 +10,10 @@ use crate::body::surface::Body;
 use crate::contact::touch::{contact_relation, softened_touch, surface_displacement, touch};
 use crate::control::coupling::{Contact, Coupled, series_compliance};
 use crate::device::Fault;
-use crate::fingers::several::{Answer, Press};
+use crate::fingers::press::{Answer, Press};
 use crate::proxy::Proxy;
-use crate::servo::Settings;
+use crate::servo::settings::FingerSettings;
+use crate::servo::settings::Settings;
 
 impl Finger {
     /// The finger as the others see it: on the surface, or where it is nearest to that.

@@ -2,28 +2,20 @@
 
 use glam::{DMat3, DVec3};
 
-use super::{Finger, FingerSettings};
+use super::{Finger, ToolTouch};
 use crate::control::coupling::Contact;
 use crate::device::Fault;
 use crate::engine::joint::Led;
 use crate::proxy::Feel;
+use crate::servo::settings::FingerSettings;
 use crate::servo::tip::Tip;
+use crate::tool::coefficients::Friction;
 use crate::tool::collider::Collider;
-use crate::tool::friction::Friction;
 use crate::tool::shape::Pose;
 
 /// The coupling sees a tool's stiffness smoothed over this time, s: it jumps where a point comes to
 /// bear, which the force must not.
 const STIFFNESS_SECONDS: f64 = 0.01;
-
-/// What the coupling remembers of a tool's touch.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct ToolTouch {
-    /// Where the probe was when it last did not touch, m.
-    begin: DVec3,
-    /// Smoothed, N/m.
-    stiffness: DMat3,
-}
 
 impl Finger {
     /// The tool, if it has one.

@@ -1,0 +1,97 @@
+//! What a servo is set to, and what a tick is.
+
+use glam::DMat3;
+
+use crate::body::softening::Felt;
+use crate::contact::cones::MAX_FINGERS;
+use crate::control::coupling::Coupling;
+use crate::control::safety::Limits;
+use crate::device::DeviceFrame;
+use crate::proxy::Feel;
+
+/// What may change while the servo runs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// Pa.
+    pub young_modulus: f64,
+    /// False: zero force at once.
+    pub enabled: bool,
+    /// Shading, friction and how a contact becomes a force.
+    pub feel: Feel,
+    /// Which relation between displacement and force is felt.
+    pub felt: Felt,
+    /// Of each finger by number; those that are not there have theirs, too.
+    pub fingers: [FingerSettings; MAX_FINGERS],
+}
+
+impl Settings {
+    /// Whatever was not asked for is as plain as it can be.
+    pub fn new(young_modulus: f64) -> Self {
+        Self {
+            young_modulus,
+            enabled: true,
+            feel: Feel::default(),
+            felt: Felt::default(),
+            fingers: [FingerSettings::default(); MAX_FINGERS],
+        }
+    }
+}
+
+/// What is fixed when the servo starts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Options {
+    /// Ticks a second.
+    pub rate_hz: u32,
+    /// Force limits; a device's own limit is applied too.
+    pub limits: Limits,
+    /// Fastest device motion under force, m/s.
+    pub max_speed: f64,
+}
+
+/// What may change of one finger while the servo runs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FingerSettings {
+    /// Device to body.
+    pub frame: DeviceFrame,
+    /// Between body and motors.
+    pub coupling: Coupling,
+    /// How a tool is attached to the device: turns its directions to those of the device's stylus.
+    pub orientation: DMat3,
+}
+
+impl Default for FingerSettings {
+    fn default() -> Self {
+        Self {
+            frame: DeviceFrame::default(),
+            coupling: Coupling::default(),
+            orientation: DMat3::IDENTITY,
+        }
+    }
+}
+
+impl FingerSettings {
+    /// Maps the device elsewhere: the probe jumps then, and is set down anew.
+    pub fn move_device(&mut self, frame: DeviceFrame) {
+        self.frame = DeviceFrame {
+            epoch: self.frame.epoch.wrapping_add(1),
+            ..frame
+        };
+    }
+}
+
+/// What a tick is for all fingers.
+#[derive(Debug, Clone, Copy)]
+pub struct Moment {
+    /// Counts from 1.
+    pub tick: u64,
+    /// Since the start, s.
+    pub now: f64,
+    /// Nominal period, s.
+    pub dt: f64,
+    /// Since the last tick, s; 0 in the first.
+    pub gap: f64,
+    /// Counts the exchanges of the body.
+    pub body: u32,
+    /// The body is another one since this tick.
+    pub body_replaced: bool,
+}

@@ -1,0 +1,60 @@
+//! How a point that enters gives way to forces on another: the finite elements, and below their fineness
+//! the near field.
+
+use glam::DMat3;
+
+use super::Patch;
+use crate::body::surface::Body;
+use crate::tool::near_field::NearField;
+use crate::tool::points::Point;
+
+impl Patch {
+    /// Displacement of the point that enters, the first, per force on another.
+    pub(super) fn response(
+        &mut self,
+        body: &Body,
+        near: Option<&NearField>,
+        [(point, p), (other, q)]: [(u32, &Point); 2],
+    ) -> DMat3 {
+        let Some(near) = near else {
+            return self.resolved(body, p, q);
+        };
+        if point == other {
+            let whole = self.resolved(body, p, q) + near.points[point as usize].own;
+            return (whole + whole.transpose()) * 0.5;
+        }
+        let normals = [p.normal, q.normal];
+        let share = near.share(point, other, normals);
+        let mut sum = DMat3::ZERO;
+        if share < 1.0 {
+            sum += self.resolved(body, p, q) * (1.0 - share);
+        }
+        if share > 0.0 {
+            let offset = p.position - q.position;
+            let half_space = near.between_points(point, other, offset, normals);
+            sum += (self.beyond(body, near, p, q) + half_space) * share;
+        }
+        sum
+    }
+
+    /// What the finite elements have between the point that enters and another.
+    fn resolved(&mut self, body: &Body, entered: &Point, other: &Point) -> DMat3 {
+        let (blocks, kept) = (&mut self.blocks, &mut self.of_nodes[0]);
+        let mut found = |node: u32| kept.of(node, || entered.mean(|a| blocks.get(body, a, node)));
+        other.mean(&mut found)
+    }
+
+    /// What the body does beyond a half-space between the point that enters and another.
+    fn beyond(&mut self, body: &Body, near: &NearField, entered: &Point, other: &Point) -> DMat3 {
+        let (blocks, kept) = (&mut self.beyond, &mut self.of_nodes[1]);
+        let resolved = |a: u32, b: u32| body.block(a, b).unwrap_or(DMat3::ZERO);
+        let mut block = |a: u32, b: u32| {
+            blocks.kept(a, b, |a, b| {
+                let offset = body.nodes[a as usize] - body.nodes[b as usize];
+                near.beyond(a, b, offset, resolved)
+            })
+        };
+        let mut found = |node: u32| kept.of(node, || entered.mean(|a| block(a, node)));
+        other.mean(&mut found)
+    }
+}
