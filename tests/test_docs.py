@@ -27,7 +27,7 @@ PAGES = sorted(
     ]
 )
 # Benchmarks have each other and the tests, too.
-OURS = ("palpate.core", "palpate.cli", "palpate.simulated", "palpate_servo")
+OURS = ("palpate.core", "palpate.cli", "palpate.simulated")
 BENCHMARKS = sorted((REPOSITORY / "benchmarks").rglob("*.py"))
 FOLDERS = (
     "addon|benchmarks|cli|core|demo|docs|firmware|native|operators|release|sample_scenes|simulated|"

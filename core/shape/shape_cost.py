@@ -66,7 +66,7 @@ def _rotation_strain(size: BodySize) -> ShapeCost:
 
 def _paper(size: BodySize) -> ShapeCost:
     # The mean for one sign; easy ones take a fifth of it, those that Newton's method ends thrice.
-    entry = 0.08 * _grown(size, 1.5)
+    entry = 0.1 * _grown(size, 1.5)
     table = 2 * _dense_bytes(size)
     return ShapeCost(
         _linear_seconds(size) + 1e-3,
