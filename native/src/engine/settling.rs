@@ -16,6 +16,8 @@ use crate::proxy::Hold;
 
 /// Forces have settled when they change by less than this share of the largest one in a tick.
 const SETTLED: f64 = 1e-11;
+/// Rounding of a coordinate, as a share of the body's size, with room for what it makes of a force.
+const ROUNDING: f64 = 1e-14;
 /// In so many ticks one after the other.
 const QUIET_TICKS: usize = 3;
 /// Ticks that a place is given to settle.
@@ -170,7 +172,7 @@ impl Settling {
         self.take(goals, answers.as_ref());
         let largest = (before.iter().enumerate())
             .map(|(number, before)| self.force(number).length().max(before.length()))
-            .fold(0.0, f64::max);
+            .fold(self.rounding() / SETTLED, f64::max);
         let mut most = (0, 0.0);
         for (number, before) in before.iter().enumerate() {
             let force = self.force(number);
@@ -183,6 +185,12 @@ impl Settling {
             }
         }
         Ok(most)
+    }
+
+    /// A force of this size, N, is what coordinates are rounded by: a tool that grazes the body feels it
+    /// or does not.
+    fn rounding(&self) -> f64 {
+        ROUNDING * self.young_modulus * self.body.size() * self.body.size()
     }
 
     fn force(&self, number: usize) -> DVec3 {

@@ -274,3 +274,11 @@ def test_a_tool_much_larger_than_the_body_presses_like_a_wide_plate(cube):
     flat = press_tool(cube, plate(0.08, 0.08), Pose.at([0.025, 0.025, TOP - 0.001]))
     huge = press_tool(cube, sphere(20.0), Pose.at([0.025, 0.025, TOP + 20.0 - 0.001]))
     assert huge.force[2] == pytest.approx(flat.force[2], rel=0.05)
+
+
+@pytest.mark.parametrize("air", [0.0, 1e-18, -1e-18, 1e-16, -1e-16])
+def test_a_tool_that_grazes_the_surface_comes_to_rest(cube, air):
+    """Whether it touches is a matter of rounding there."""
+    at = cube.mesh.nodes[:, 2].max() + 0.014 + air
+    touch = Press(cube, [sphere(0.014)]).to([Pose.at([0.025, 0.025, at])])[0]
+    assert np.linalg.norm(touch.force) < 1e-10
