@@ -79,6 +79,4 @@ KNOWN = (
     "core/contact/near_field/contact_points.py is too long",
     "core/contact/near_field/regular_field.py is too long",
     "core/contact/tool/tools.py is too long",
-    # Being put into their rooms.
-    "native/src/python/servo/thread.rs is too long",
 )

@@ -8,7 +8,7 @@ use crate::algebra::MOST_POINTS;
 use crate::contact::cones::MAX_FINGERS;
 use crate::tool::coefficients::AllPosed;
 use crate::tool::friction::across;
-use crate::tool::shape::tilt::Hold;
+use crate::tool::shape::tilt::TiltLimit;
 
 /// Linearisations in one tick.
 const MOST_LINEARISATIONS: usize = 6;
@@ -119,7 +119,7 @@ impl Joint {
         let watched = WATCHED * MARGIN * collider.surface().spacing();
         let own = |slot: &&crate::tool::slot::Slot| slot.tool == number;
         let pushes = self.patch.slots().iter().filter(own);
-        let hold = Hold::of(pushes.map(|slot| (slot.push * slot.normal, slot.at.normal)));
+        let hold = TiltLimit::of(pushes.map(|slot| (slot.push * slot.normal, slot.at.normal)));
         let hold = hold.map(|hold| hold.seen_from(&pose.rotation));
         let (mut gap, mut turned, mut gives) = (0.0_f64, 0.0, 0.0_f64);
         for slot in self.patch.slots_mut().iter_mut() {

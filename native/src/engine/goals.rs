@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DQuat, DVec3};
 
-use crate::proxy::Hold;
+use crate::proxy::SurfacePoint;
 use crate::tool::collider::Collider;
 use crate::tool::shape::Pose;
 
@@ -10,7 +10,7 @@ use crate::tool::shape::Pose;
 #[derive(Debug, Clone, Copy)]
 pub enum Goal {
     /// A point on a place of the surface, by how far it moves that from rest, m.
-    Point(Hold, DVec3),
+    Point(SurfacePoint, DVec3),
     /// A tool.
     Tool(Pose),
 }
@@ -28,7 +28,7 @@ pub enum Toucher {
 #[derive(Debug, Clone, Copy, Default)]
 pub struct PointTouch {
     /// Where it touches, and how far it is from there, m; none before the first goal.
-    pub at: Option<(Hold, DVec3)>,
+    pub at: Option<(SurfacePoint, DVec3)>,
     /// Felt, N.
     pub force: DVec3,
     /// On the nodes of its triangle, by the linear relation, N.

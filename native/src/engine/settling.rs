@@ -12,7 +12,7 @@ use crate::body::surface::Body;
 use crate::contact::cones::MAX_FINGERS;
 use crate::contact::touch::{ContactMode, softened_touch, touch};
 use crate::fingers::press::{Answers, Press, Presses};
-use crate::proxy::Hold;
+use crate::proxy::SurfacePoint;
 
 /// Forces have settled when they change by less than this share of the largest one in a tick.
 const SETTLED: f64 = 1e-11;
@@ -239,7 +239,7 @@ impl Settling {
     }
 
     /// The force felt by a point that is alone, and those on the nodes by the linear relation, N.
-    fn alone(&self, hold: &Hold, displacement: DVec3) -> (DVec3, [DVec3; 3]) {
+    fn alone(&self, hold: &SurfacePoint, displacement: DVec3) -> (DVec3, [DVec3; 3]) {
         let (body, modulus) = (&self.body, self.young_modulus);
         let linear = touch(
             body,
@@ -258,7 +258,7 @@ impl Settling {
         (softened.force, linear.nodal_forces)
     }
 
-    fn softenings(&self, hold: &Hold) -> [Softening; 3] {
+    fn softenings(&self, hold: &SurfacePoint) -> [Softening; 3] {
         let of = |node| match self.felt {
             Felt::Corrected => self.body.softenings.of(node).unwrap_or_default(),
             Felt::Linear => Softening::default(),
@@ -267,7 +267,7 @@ impl Settling {
     }
 
     /// A point as the others see it. One that does not travel rests, and pushes back inwards.
-    fn press(&self, hold: Hold, displacement: DVec3) -> Press {
+    fn press(&self, hold: SurfacePoint, displacement: DVec3) -> Press {
         let push = if displacement == DVec3::ZERO {
             -self.body.face(hold.triangle).normal
         } else {

@@ -4,13 +4,13 @@ use glam::{DMat3, DVec3};
 
 use crate::body::softening::Softening;
 use crate::contact::cones::{Blocks, MAX_FINGERS, Vectors};
-use crate::proxy::Hold;
+use crate::proxy::SurfacePoint;
 
 /// A finger on the body, or near it where the others move the surface.
 #[derive(Debug, Clone, Copy)]
 pub struct Press {
     /// Where on the surface.
-    pub hold: Hold,
+    pub hold: SurfacePoint,
     /// It touches; otherwise only what the others do there is asked for.
     pub touches: bool,
     /// How far it asks the contact point to move from rest, m.

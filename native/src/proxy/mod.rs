@@ -22,4 +22,4 @@ mod walk;
 
 pub use feel::Feel;
 pub use god_object::Proxy;
-pub use place::{SurfacePoint, SurfacePoint as Hold};
+pub use place::SurfacePoint;

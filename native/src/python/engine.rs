@@ -12,7 +12,7 @@ use crate::body::surface;
 use crate::contact::cones::MAX_FINGERS;
 use crate::engine::goals::{Goal, PointTouch, Toucher, Unsettled};
 use crate::engine::settling::Settling;
-use crate::proxy::Hold;
+use crate::proxy::SurfacePoint;
 use crate::python::body::surface::Body;
 use crate::python::servo::settings::{contact_mode, felt_choice};
 use crate::python::tool::arrays::pose;
@@ -142,7 +142,10 @@ impl ContactEngine {
             )));
         }
         let alpha = finite("alpha", alpha)?.to_array();
-        Ok(Goal::Point(Hold { triangle, alpha }, finite("by", by)?))
+        Ok(Goal::Point(
+            SurfacePoint { triangle, alpha },
+            finite("by", by)?,
+        ))
     }
 
     fn told<'py>(&self, py: Python<'py>, toucher: &Toucher) -> PyResult<Bound<'py, PyDict>> {

@@ -10,7 +10,7 @@ use palpate_servo::control::coupling::Coupling;
 use palpate_servo::device::{Probe, Reading};
 use palpate_servo::fingers::press::{Press, Reaction};
 use palpate_servo::fingers::several::Several;
-use palpate_servo::proxy::Hold;
+use palpate_servo::proxy::SurfacePoint;
 use palpate_servo::servo::settings::FingerSettings;
 use palpate_servo::servo::snapshot::{Published, Snapshot, State};
 
@@ -51,7 +51,7 @@ pub fn settled(readings: &[Reading]) -> (Table, Vec<Snapshot>) {
 #[test]
 pub fn two_fingers_on_nodes_press_as_equation_10_says() {
     let body = crate::bodies::elastic_cube();
-    let on_node = |triangle: u32| Hold {
+    let on_node = |triangle: u32| SurfacePoint {
         triangle,
         alpha: [1.0, 0.0, 0.0],
     };
@@ -168,7 +168,7 @@ pub fn fingers_come_go_and_pass_each_other_without_a_jump() {
     }
 }
 
-pub fn press(hold: Hold, displacement: DVec3) -> Option<Press> {
+pub fn press(hold: SurfacePoint, displacement: DVec3) -> Option<Press> {
     Some(Press {
         hold,
         touches: true,
@@ -185,7 +185,7 @@ pub fn what_one_does_to_the_other_the_other_does_to_the_one() {
     let body = crate::bodies::elastic_cube();
     let mut dice = crate::bodies::Dice::new(11);
     for _ in 0..50 {
-        let mut hold = || Hold {
+        let mut hold = || SurfacePoint {
             triangle: dice.below(body.triangles.len()) as u32,
             alpha: [0.5, 0.2, 0.3],
         };
@@ -221,7 +221,7 @@ pub fn fingers_on_one_place_share_what_one_would_feel() {
     let body = crate::bodies::elastic_cube();
     let alone = {
         let mut presses = [None; MAX_FINGERS];
-        let hold = Hold {
+        let hold = SurfacePoint {
             triangle: 100,
             alpha: [0.3, 0.3, 0.4],
         };
@@ -241,7 +241,7 @@ pub fn fingers_on_one_place_share_what_one_would_feel() {
             for (k, one) in presses.iter_mut().take(count).enumerate() {
                 let alpha = if k == 0 { [0.3, 0.3, 0.4] } else { alpha };
                 *one = press(
-                    Hold {
+                    SurfacePoint {
                         triangle: 100,
                         alpha,
                     },

@@ -31,16 +31,16 @@ struct Cone {
     sine: f64,
 }
 
-/// The directions that pushes are held within.
+/// Limit of the tilt: the directions that pushes are held within.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Hold {
+pub struct TiltLimit {
     /// Near what all pushes are held.
     common: Cone,
     /// Of the cone about what a point faces itself, if a push may be there instead.
     own: Option<(f64, f64)>,
 }
 
-impl Hold {
+impl TiltLimit {
     /// From pushes (along the tool's normals) and the outward normals of the body where they push.
     /// Only what goes into the body counts: the far side of a thin part is pushed outwards, and the
     /// part would else be felt turned round. Of none, nowhere.
