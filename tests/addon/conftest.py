@@ -92,3 +92,12 @@ def sessions(palpate: ModuleType) -> Iterator[ModuleType]:
     module = importlib.import_module(f"{MODULE}.operators.session.press_session")
     yield module
     module.give_way("")
+
+
+@pytest.fixture
+def silent_port() -> Iterator[str]:
+    """A port with nobody behind it."""
+    device_end, host_end = os.openpty()
+    yield os.ttyname(host_end)
+    os.close(device_end)
+    os.close(host_end)

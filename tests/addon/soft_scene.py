@@ -20,6 +20,7 @@ MODULE = "bl_ext.user_default.palpate"
 COARSE = 0.2
 # The middle of a soft cube's top, and a place 5 mm inside.
 TOP, DEEP = (0.0, 0.0, 0.02501), (0.0, 0.0, 0.02)
+BESIDE, DEPTH = (0.002, 0.001, 0.02501), 0.004
 
 
 def part(name: str) -> ModuleType:
@@ -113,6 +114,47 @@ def wait(session: Any, condition: Callable[[], bool], seconds: float = 20.0) -> 
             return
         assert time.monotonic() < end, "waited in vain"
         time.sleep(0.005)
+
+
+def begin_pressed(sessions: ModuleType, states: ModuleType, thing: bpy.types.Object) -> Any:
+    """A running press 4 mm into the cube's top, beside its middle, drawn and let go."""
+    session = begin(sessions, states, thing)
+    x, y, z = BESIDE
+    session.post(states.SetDown(BESIDE))
+    session.post(states.Move((x, y, z - DEPTH)))
+    session.post(states.Release())
+    wait(session, lambda: session.seen.displacements is not None and depth(session) > 0.99 * DEPTH)
+    return session
+
+
+def depth(session: Any) -> float:
+    """How deep the first finger is, metres."""
+    finger = session.snapshot.fingers[0]
+    return float(np.linalg.norm(finger.probe - finger.proxy))
+
+
+def empty(name: str = "Empty", at: tuple[float, ...] = (0.0, 0.0, 0.1)) -> bpy.types.Object:
+    """An Empty at a place."""
+    thing = bpy.data.objects.new(name, None)
+    bpy.context.collection.objects.link(thing)
+    thing.location = at
+    bpy.context.view_layer.update()
+    return thing
+
+
+def status(thing: bpy.types.Object) -> Any:
+    """How an object's body fits it now."""
+    return part("operators.object.soft_object").body_status(thing, bpy.context.scene)
+
+
+def locate(thing: bpy.types.Object) -> Any:
+    """The path of an object's body file, None where it is missing."""
+    return part("operators.object.body_store").locate(thing)
+
+
+def body_of(thing: bpy.types.Object) -> Any:
+    """The body in an object's body file."""
+    return part("operators.object.body_store").load(thing)
 
 
 def error_of(operator: Any, **arguments: Any) -> str:

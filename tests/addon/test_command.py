@@ -6,12 +6,7 @@ import json
 
 import bpy
 import pytest
-from soft_scene import cube, part
-
-
-@pytest.fixture
-def command(palpate):
-    return part("addon.command").run
+from soft_scene import body_of, cube, part
 
 
 @pytest.fixture
@@ -24,17 +19,34 @@ def scene(palpate, tmp_path):
     return path
 
 
-def test_bake_saves_a_file_that_can_be_pressed(command, scene, capfd):
-    assert command(["bake", str(scene), "--object", "Prop", "--edge-length", "0.2", "--json"]) == 0
-    figures = json.loads(capfd.readouterr().out.splitlines()[-1])
+@pytest.fixture
+def command(scene):
+    """Run a line in which {scene} stands for the scene's path."""
+    return lambda line: part("addon.command").run(
+        [word.format(scene=scene) for word in line.split()]
+    )
+
+
+@pytest.fixture
+def figures_of(command, capfd):
+    """Run a line that succeeds and return its figures."""
+
+    def run(line):
+        assert command(f"{line} --json") == 0
+        return json.loads(capfd.readouterr().out.splitlines()[-1])
+
+    return run
+
+
+PRESS = "press {scene} --object Prop --at 0 0 0.025 --by 0 0 -5e-3"
+
+
+def test_bake_saves_a_file_that_can_be_pressed(figures_of, scene):
+    figures = figures_of("bake {scene} --object Prop --edge-length 0.2")
     assert figures["nodes"] > figures["free_surface_nodes"] > 0
     assert len(list((scene.parent / "palpate").iterdir())) == 1
-    words = ["press", str(scene), "--object", "Prop", "--at", "0", "0", "0.025"]
-    words += ["--by", "0", "0", "-5e-3", "--json"]
-    assert command([*words, "--shape", "rotation-strain", "--felt", "corrected"]) == 0
-    softer = json.loads(capfd.readouterr().out.splitlines()[-1])
-    assert command([*words, "--keep"]) == 0
-    pressed = json.loads(capfd.readouterr().out.splitlines()[-1])
+    softer = figures_of(f"{PRESS} --shape rotation-strain --felt corrected")
+    pressed = figures_of(f"{PRESS} --keep")
     assert 0 < softer["force"][2] < pressed["force"][2]
     assert (softer["shape"], pressed["shape"]) == ("rotation-strain", "linear")
     assert softer["max_displacement"] != pressed["max_displacement"]
@@ -43,25 +55,23 @@ def test_bake_saves_a_file_that_can_be_pressed(command, scene, capfd):
     assert keys == ["Basis", pressed["shape_key"]]
 
 
-def test_form_formulation_and_stiff_region_are_chosen_by_options(command, scene, capfd):
+def test_form_formulation_and_stiff_region_are_chosen_by_options(figures_of, scene):
     bpy.ops.wm.open_mainfile(filepath=str(scene))
     prop = bpy.data.objects["Prop"]
     prop.vertex_groups.new(name="Hard").add(range(8), 1.0, "REPLACE")
     bpy.ops.wm.save_mainfile()
-    words = ["bake", str(scene), "--object", "Prop", "--edge-length", "0.1", "--json"]
-    words += ["--formulation", "smoothed", "--form", "compressed", "--tolerance", "0.02"]
-    assert command([*words, "--stiff-group", "Hard", "--stiff-factor", "5"]) == 0
-    figures = json.loads(capfd.readouterr().out.splitlines()[-1])
+    figures = figures_of(
+        "bake {scene} --object Prop --edge-length 0.1 --formulation smoothed --form compressed"
+        " --tolerance 0.02 --stiff-group Hard --stiff-factor 5"
+    )
     assert (figures["formulation"], figures["form"]) == ("smoothed", "compressed")
     assert 0 < figures["column_error"] <= 0.02
     baked = bpy.data.objects["Prop"].palpate
     assert baked.baked_formulation == "smoothed"
     assert baked.column_error <= 2.0
-    scale = part("operators.object.body_store").load(bpy.data.objects["Prop"]).young_scale
+    scale = body_of(bpy.data.objects["Prop"]).young_scale
     assert scale.max() == pytest.approx(5.0, rel=1e-5)
-    words = ["press", str(scene), "--object", "Prop", "--at", "0", "0", "0.025"]
-    assert command([*words, "--by", "0", "0", "-5e-3", "--json"]) == 0
-    assert json.loads(capfd.readouterr().out.splitlines()[-1])["force"][2] > 0
+    assert figures_of(PRESS)["force"][2] > 0
 
 
 def test_a_bake_whose_scene_cannot_be_saved_leaves_no_body(command, scene, capfd):
@@ -69,7 +79,7 @@ def test_a_bake_whose_scene_cannot_be_saved_leaves_no_body(command, scene, capfd
     (scene.parent / f"{scene.name}@").mkdir()
     before = sorted(scene.parent.iterdir())
     content = scene.read_bytes()
-    assert command(["bake", str(scene), "--object", "Prop", "--edge-length", "0.2"]) == 2
+    assert command("bake {scene} --object Prop --edge-length 0.2") == 2
     assert "cannot save" in capfd.readouterr().err
     assert scene.read_bytes() == content
     assert sorted(scene.parent.iterdir()) == before
@@ -84,27 +94,24 @@ def test_the_ends_of_a_range_belong_to_it(palpate, tolerance, percent):
 
 
 @pytest.mark.parametrize(
-    ("words", "reason"),
+    ("line", "reason"),
     [
-        (["bake", "/nowhere.blend", "--object", "Prop"], "no such file"),
-        (["bake", "{scene}", "--object", "Nobody"], "Prop"),
-        (["bake", "{scene}", "--object", "Prop", "--poisson", "0.7"], "out of range"),
-        (["bake", "{scene}", "--object", "Prop", "--tolerance", "0.5"], "to 0.05"),
-        (["bake", "{scene}", "--object", "Prop", "--form", "tiny"], "compressed"),
-        (["bake", "{scene}", "--object", "Prop", "--stiff-factor", "5"], "--stiff-group"),
-        (["bake", "{scene}", "--object", "Prop", "--stiff-group", "None"], "vertex group"),
-        (["bake", "{scene}", "--object", "Prop", "--pin-group", "None"], "vertex group"),
-        (
-            ["press", "{scene}", "--object", "Prop", "--at", "0", "0", "0", "--by", "0", "0", "1"],
-            "not soft",
-        ),
-        (["press", "{scene}", "--object", "Prop"], "--at"),
-        (["squeeze"], "squeeze"),
+        ("bake /nowhere.blend --object Prop", "no such file"),
+        ("bake {scene} --object Nobody", "Prop"),
+        ("bake {scene} --object Prop --poisson 0.7", "out of range"),
+        ("bake {scene} --object Prop --tolerance 0.5", "to 0.05"),
+        ("bake {scene} --object Prop --form tiny", "compressed"),
+        ("bake {scene} --object Prop --stiff-factor 5", "--stiff-group"),
+        ("bake {scene} --object Prop --stiff-group None", "vertex group"),
+        ("bake {scene} --object Prop --pin-group None", "vertex group"),
+        ("press {scene} --object Prop --at 0 0 0 --by 0 0 1", "not soft"),
+        ("press {scene} --object Prop", "--at"),
+        ("squeeze", "squeeze"),
     ],
 )
-def test_errors_are_one_line_and_leave_nothing(command, scene, capfd, words, reason):
+def test_errors_are_one_line_and_leave_nothing(command, scene, capfd, line, reason):
     before = scene.read_bytes()
-    assert command([word.format(scene=scene) for word in words]) == 2
+    assert command(line) == 2
     lines = [line for line in capfd.readouterr().err.splitlines() if line.startswith("palpate: ")]
     assert len(lines) == 1
     assert reason in lines[0]

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import threading
+from functools import partial
 from itertools import pairwise
 
 import bpy
 import pytest
 from recorded_layout import NARROW_WIDTH, USUAL_WIDTH, drawn
-from soft_scene import cube, part, soft_cube, wait
+from soft_scene import begin_pressed, cube, part, soft_cube, wait
 
-TOP = (0.002, 0.001, 0.02501)
 SHAPES = {
     "LINEAR": "linear",
     "TABLE": "paper",
@@ -26,22 +26,8 @@ def panel(palpate):
 
 
 @pytest.fixture
-def press(palpate):
-    sessions, states = (
-        part("operators.session.press_session"),
-        part("operators.session.press_state"),
-    )
-
-    def begin(thing):
-        session = sessions.begin(thing, bpy.context.scene, states.Source.POINTER)
-        session.post(states.SetDown(TOP))
-        session.post(states.Move((TOP[0], TOP[1], TOP[2] - 0.004)))
-        session.post(states.Release())
-        wait(session, lambda: session.seen.displacements is not None)
-        return session
-
-    yield begin
-    sessions.give_way("")
+def press(sessions, states):
+    return partial(begin_pressed, sessions, states)
 
 
 def as_large(thing):

@@ -8,7 +8,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 import pytest
-from soft_scene import key_names, part, select
+from soft_scene import body_of, key_names, part, select, status
 
 SCENES = Path(__file__).resolve().parents[2] / "sample_scenes"
 MATERIALS = {"cube": "PAPER_CUBE", "mouse": "PLUSH", "drumstick": "JELLY", "large": "PLUSH"}
@@ -34,10 +34,10 @@ def force(thing, at):
 @pytest.mark.parametrize("name", MATERIALS)
 def test_a_sample_scene_only_lacks_its_body_file(palpate, tmp_path, name):
     thing = opened(name, tmp_path)
-    status = part("operators.object.soft_object").body_status(thing, bpy.context.scene)
-    assert status.fit.name == "FILE_MISSING"
-    assert status.changed == ()
-    assert status.pins.fit.name == "SAME"
+    found = status(thing)
+    assert found.fit.name == "FILE_MISSING"
+    assert found.changed == ()
+    assert found.pins.fit.name == "SAME"
     assert thing.palpate.material == MATERIALS[name]
 
 
@@ -64,8 +64,8 @@ def pinch_file(palpate, tmp_path):
 @pytest.mark.parametrize("name", ["Nodes", "Triangles"])
 def test_the_pinched_cubes_open_ready_and_undented(pinch_file, name):
     thing = select(bpy.data.objects[name])
-    status = part("operators.object.soft_object").body_status(thing, pinch_file)
-    assert status.fit.name == "FILE_MISSING"
+    found = status(thing)
+    assert found.fit.name == "FILE_MISSING"
     assert thing.data.shape_keys.key_blocks["Pinched"].value == 0.0
 
 
@@ -79,7 +79,7 @@ def test_the_cube_of_figure_5_is_pinched_as_the_paper_s_equation_10_says(pinch_f
     pressed = part("operators.press.press_once").press_several(
         thing, pinch_file, list(middle - 0.025 * np.sign(ways)), list(ways), keep=False
     )
-    body = part("operators.object.body_store").load(thing)
+    body = body_of(thing)
     nodes = [
         int(np.argmin(np.linalg.norm(body.mesh.nodes - p, axis=1)))
         for p in ((-0.025, 0.0, 0.025), (0.025, 0.0, 0.025))

@@ -111,7 +111,7 @@ def test_bad_input_gets_one_line_status_2_and_no_file(
     Path("empty.obj").write_text("# nothing\n")
     Path("plane.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
     before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
-    assert said in refusal(*line.format(body=cube_file).split(" "))
+    assert said in refusal(*(word.format(body=cube_file) for word in line.split(" ")))
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
 
 

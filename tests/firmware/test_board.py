@@ -2,22 +2,15 @@
 
 import contextlib
 import json
-import subprocess
-import sys
 
 import numpy as np
 import pytest
-from palpate_servo import Body, LinkDevice, Servo
+from fault_injection.processes import Host
+from fault_injection.servo_host import cube
+from palpate_servo import LinkDevice, Servo
 
 from palpate.core.servo.settings import Settings
 
-# Corners, triangles and stiffness of a cube of 50 mm: 100 N/m at 10 kPa everywhere.
-SQUARES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-CUBE = (
-    [[x, y, z] for x in (0.0, 0.05) for y in (0.0, 0.05) for z in (0.0, 0.05)],
-    [half for a, b, c, d in SQUARES for half in ((a, b, c), (a, c, d))],
-    [[[0.01, 0.0, 0.0], [0.0, 0.01, 0.0], [0.0, 0.0, 0.01]]] * 8,
-)
 ABOVE = (0.026, 0.024, 0.06)
 DEEP = (0.026, 0.024, 0.044)
 
@@ -60,7 +53,7 @@ def board(start_board):
 
 @pytest.fixture(scope="module")
 def body():
-    return Body(*map(np.array, CUBE))
+    return cube()
 
 
 @pytest.fixture
@@ -161,17 +154,6 @@ def test_a_board_that_hears_nothing_goes_limp_and_says_so(press, board, servo, e
     assert servo.counters()["faults"]["device fault"] >= 1
 
 
-HOST = """
-import json, sys, time
-import numpy as np
-from palpate_servo import Body, LinkDevice, Servo
-from palpate.core.servo.settings import Settings
-servo = Servo(Body(*map(np.array, json.loads(sys.argv[2]))), Settings(1e4))
-servo.start(LinkDevice(sys.argv[1]))
-time.sleep(60)
-"""
-
-
 def test_a_host_that_is_killed_leaves_the_board_limp(board, servo, eventually):
     def starts():
         # The killed host's lock on the port lasts until the board has noticed.
@@ -179,13 +161,10 @@ def test_a_host_that_is_killed_leaves_the_board_limp(board, servo, eventually):
             servo.start(LinkDevice(board.port))
         return servo.running
 
-    with subprocess.Popen([sys.executable, "-c", HOST, board.port, json.dumps(CUBE)]) as host:
-        try:
-            eventually(lambda: board.report()["enabled"], board.report)
-            board.move(DEEP, 300)
-            eventually(lambda: board.report()["force"][2] > 0.3, board.report)
-        finally:
-            host.kill()
+    with Host(board.port):
+        eventually(lambda: board.report()["enabled"], board.report)
+        board.move(DEEP, 300)
+        eventually(lambda: board.report()["force"][2] > 0.3, board.report)
     eventually(lambda: board.report()["mode"] == "limp", board.report)
     report = board.report()
     assert report["force"] == [0.0, 0.0, 0.0]

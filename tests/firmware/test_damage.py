@@ -61,13 +61,3 @@ def test_python_reads_a_share_of_it_frame_by_frame_as_the_others_do(checker_prog
             link.unpack(payload)
         except link.LinkError:
             continue
-
-
-def test_in_pieces_of_any_size_the_same_is_read(checker_program):
-    stream = output(checker_program, "write-damage", 13, 30_000)
-    whole = link.Decoder().feed_payloads(stream)
-    for step in (1, 2, 7, 61, 62, 63, 4096):
-        python, native = link.Decoder(), harness.Decoder()
-        pieces = [stream[i : i + step] for i in range(0, len(stream), step)]
-        assert [p for piece in pieces for p in python.feed_payloads(piece)] == whole
-        assert [p for piece in pieces for p in native.feed(piece)] == whole

@@ -78,6 +78,12 @@ def type_key(stage: Stage, kind: str, **modifiers: bool) -> Wait:
     yield from stage.key(kind, **modifiers)
 
 
+def end_press(stage: Stage) -> Wait:
+    """Give a press up by Escape."""
+    yield from type_key(stage, "ESC")
+    yield from stage.until(lambda: press_session.current() is None, "the end of the press")
+
+
 def over_the_view(stage: Stage) -> Pixel:
     region = stage.region("WINDOW")
     return (region.x + region.width / 3, region.y + region.height / 3)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 import random
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from .contact_loop import DevicePlant
@@ -27,9 +27,7 @@ class PlantRange:
     coulomb_per_step: float = 1500.0
     """A device with coarse encoders has friction that goes with them, N/m."""
 
-    def _plant(
-        self, values: tuple[float, float, float, float, float, float], jitter: float, rate_hz: int
-    ) -> DevicePlant:
+    def _plant(self, values: Iterable[float], jitter: float, rate_hz: int) -> DevicePlant:
         mass, damping, coulomb, encoder_step, force_step, delay = values
         rubbing = max(coulomb, self.coulomb_per_step * encoder_step)
         # The random part of the delay is inside the range, not beside it.
@@ -58,11 +56,8 @@ class PlantRange:
     def corners(self) -> Iterator[DevicePlant]:
         """All 128, without jitter."""
         for values in itertools.product(*self._intervals):
-            mass, damping, coulomb, encoder_step, force_step, delay = values
             for rate_hz in self.rate_hz:
-                yield self._plant(
-                    (mass, damping, coulomb, encoder_step, force_step, delay), 0.0, rate_hz
-                )
+                yield self._plant(values, 0.0, rate_hz)
 
     def drawn(self, count: int, seed: int) -> Iterator[DevicePlant]:
         """Plants from inside, evenly over the logarithm, half of them with some jitter."""
@@ -75,9 +70,8 @@ class PlantRange:
             return math.exp(dice.uniform(math.log(low), math.log(high)))
 
         for number in range(count):
-            mass, damping, coulomb, encoder_step, force_step, delay = map(within, self._intervals)
             yield self._plant(
-                (mass, damping, coulomb, encoder_step, force_step, delay),
+                [within(interval) for interval in self._intervals],
                 0.5 * dice.random() * (number % 2),
                 round(within((float(self.rate_hz[0]), float(self.rate_hz[1])))),
             )

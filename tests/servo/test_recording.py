@@ -1,8 +1,5 @@
 """Recording every tick beside everything else that is asked of the servo."""
 
-import threading
-import time
-
 import numpy as np
 import pytest
 from palpate_servo import STATES, Pointer, Servo
@@ -77,37 +74,6 @@ def test_it_begins_and_ends_while_the_servo_runs(servo, eventually):
     ticks = servo.counters()["ticks"]
     eventually(lambda: servo.counters()["ticks"] > ticks + 20)
     assert same(servo.recording(), recording)
-
-
-def test_it_ends_by_itself_after_the_time_asked_for(servo, eventually):
-    servo.start_recording(0.05)
-    servo.start(Pointer(ABOVE))
-    eventually(lambda: not servo.is_recording)
-    eventually(lambda: servo.counters()["ticks"] > 80)
-    assert servo.recording()["tick"].tolist() == list(range(1, 51))
-    assert servo.recording_lost == 0
-
-
-def test_a_busy_interpreter_costs_no_tick(servo):
-    """For longer than the ring of `samples()` lasts here, nothing else of Python gets a turn."""
-    over = threading.Event()
-
-    def hog():
-        while not over.is_set():
-            sum(range(10_000))
-
-    hogs = [threading.Thread(target=hog) for _ in range(3)]
-    servo.start_recording()
-    servo.start(Pointer(ABOVE))
-    for thread in hogs:
-        thread.start()
-    time.sleep(0.5)
-    over.set()
-    for thread in hogs:
-        thread.join()
-    servo.stop()
-    assert is_whole(servo.recording()["tick"], first=1)
-    assert servo.recording_lost == 0
 
 
 def test_a_new_start_records_nothing_unless_asked(servo, eventually):

@@ -8,15 +8,18 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 import pytest
-from soft_scene import cube, error_of, key_names, part, press_down, select, soft_cube
-
-
-def status(thing):
-    return part("operators.object.soft_object").body_status(thing, bpy.context.scene)
-
-
-def locate(thing):
-    return part("operators.object.body_store").locate(thing)
+from soft_scene import (
+    body_of,
+    cube,
+    error_of,
+    key_names,
+    locate,
+    part,
+    press_down,
+    select,
+    soft_cube,
+    status,
+)
 
 
 @pytest.fixture
@@ -183,7 +186,7 @@ def test_pins_and_ratio_changed_later_are_said_and_taken_over_without_tetrahedra
     assert status(saved).changed == ()
     assert np.array_equal(np.array(saved.palpate["tets"]), tets)
     assert saved.palpate.body_key != key
-    body = part("operators.object.body_store").load(saved)
+    body = body_of(saved)
     assert body.poisson_ratio == 0.35
     assert body.mesh.nodes[body.fixed, 2].max() > -0.025 + 0.2 * 0.05
 

@@ -10,9 +10,11 @@ import numpy as np
 import pytest
 from mathutils import Matrix
 from soft_scene import (
+    body_of,
     cube,
     error_of,
     key_coordinates,
+    locate,
     mesh_object,
     mesh_state,
     part,
@@ -20,10 +22,6 @@ from soft_scene import (
     select,
     soft_cube,
 )
-
-
-def body_of(thing):
-    return part("operators.object.body_store").load(thing)
 
 
 def test_a_cube_gets_a_body_of_its_own_size_pinned_at_the_bottom(palpate):
@@ -256,7 +254,7 @@ def test_opening_another_file_ends_the_bake(palpate):
 def test_remove_softness_takes_the_body_and_leaves_the_shapes(palpate):
     thing = soft_cube()
     press_down(thing)
-    path = part("operators.object.body_store").locate(thing)
+    path = locate(thing)
     assert path.is_file()
     assert bpy.ops.palpate.remove_softness() == {"FINISHED"}
     assert not path.exists()

@@ -6,15 +6,7 @@ import bmesh
 import bpy
 import numpy as np
 import pytest
-from soft_scene import cube, error_of, part, press_down, select, soft_cube
-
-
-def status(thing):
-    return part("operators.object.soft_object").body_status(thing, bpy.context.scene)
-
-
-def body_of(thing):
-    return part("operators.object.body_store").load(thing)
+from soft_scene import body_of, cube, error_of, locate, part, press_down, select, soft_cube, status
 
 
 def boned_cube(factor=1000.0):
@@ -56,10 +48,10 @@ def test_a_stiff_region_is_baked_in_and_embedded(palpate):
     assert np.abs(middles).max() < 0.013
     key = thing.palpate.body_key
     assert np.array_equal(np.array(thing.palpate["young_scale"]), body.young_scale)
-    part("operators.object.body_store").locate(thing).unlink()
+    locate(thing).unlink()
     press_down(thing)
     assert thing.palpate.body_key == key, "Press restored another body"
-    part("operators.object.body_store").locate(thing).unlink()
+    locate(thing).unlink()
     assert bpy.ops.palpate.rebuild_body() == {"FINISHED"}
     assert thing.palpate.body_key == key, "Rebuild Body made another body"
     assert np.array_equal(body_of(thing).young_scale, body.young_scale)
@@ -107,7 +99,7 @@ def test_a_compressed_body_is_pressed_and_restored(compressed):
     assert status(compressed).changed == ()
     press_down(compressed)
     key = compressed.palpate.body_key
-    part("operators.object.body_store").locate(compressed).unlink()
+    locate(compressed).unlink()
     press_down(compressed)
     assert body_of(compressed).compliance.form == "compressed"
     assert compressed.palpate.body_key == key

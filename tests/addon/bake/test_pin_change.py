@@ -5,19 +5,21 @@ from __future__ import annotations
 import bpy
 import numpy as np
 import pytest
-from soft_scene import cube, error_of, key_coordinates, part, press_down, select, soft_cube
-
-
-def status(thing):
-    return part("operators.object.soft_object").body_status(thing, bpy.context.scene)
+from soft_scene import (
+    body_of,
+    cube,
+    error_of,
+    key_coordinates,
+    locate,
+    press_down,
+    select,
+    soft_cube,
+    status,
+)
 
 
 def fit(thing):
     return status(thing).pins.fit.name
-
-
-def body_of(thing):
-    return part("operators.object.body_store").load(thing)
 
 
 @pytest.fixture
@@ -35,7 +37,7 @@ def test_more_pins_take_effect_without_a_bake_as_a_bake_would_have_them(soft):
     assert len(body.fixed) > len(old.fixed)
     assert body.mesh.nodes[body.fixed, 2].max() > -0.025 + 0.3 * 0.05
     key, table = soft.palpate.body_key, body.compliance.columns(np.arange(20))
-    part("operators.object.body_store").locate(soft).unlink()
+    locate(soft).unlink()
     assert bpy.ops.palpate.rebuild_body() == {"FINISHED"}
     assert soft.palpate.body_key == key
     baked = body_of(soft).compliance.columns(np.arange(20))

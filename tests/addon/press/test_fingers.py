@@ -6,13 +6,13 @@ import bpy
 import numpy as np
 import pytest
 from soft_scene import (
+    empty,
     error_of,
     key_coordinates,
     key_names,
     mesh_object,
     mesh_state,
     part,
-    press_down,
     select,
     soft_cube,
 )
@@ -38,14 +38,6 @@ def pressed(thing, ats, bys, *, keep=False):
 
 def forces(thing, ats, bys):
     return [np.array(finger.force) for finger in pressed(thing, ats, bys).fingers]
-
-
-def empty(name="Empty", at=(0.0, 0.0, 0.1)):
-    thing = bpy.data.objects.new(name, None)
-    bpy.context.collection.objects.link(thing)
-    thing.location = at
-    bpy.context.view_layer.update()
-    return thing
 
 
 def ball(radius=0.02, at=(0.0, 0.0, 0.1), name="Ball"):
@@ -314,9 +306,3 @@ def test_who_leads_is_refused_in_words_where_nobody_does(chosen):
     chosen.port = chosen.second_port = "/dev/ttyACM0"
     with pytest.raises(refused, match="both fingers use"):
         leads.leads_of(scene, source.DEVICE)
-
-
-def test_a_press_with_a_point_is_as_before(chosen):
-    thing = soft_cube()
-    press_down(thing)
-    assert key_names(thing) == ["Basis", "Press 1"]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import threading
 import time
 from types import SimpleNamespace
@@ -10,6 +9,7 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 import pytest
+from recorded_layout import RecordedLayout
 from soft_scene import (
     DEEP,
     begin,
@@ -56,33 +56,20 @@ def test_force_off_is_zero_at_once_and_force_on_rises_from_nothing(sessions, sta
     wait(session, lambda: np.linalg.norm(session.snapshot.output_force) > 0.005)
 
 
-class Said:
-    """A layout that only notes what is written in it."""
-
-    def __init__(self):
-        self.lines = []
-
-    def column(self, **_):
-        return self
-
-    def label(self, *, text, **_):
-        self.lines.append(text)
-
-
 def test_an_adapter_that_holds_bytes_back_is_explained_in_the_panel(sessions, states, monkeypatch):
     panel = part("addon.panels.loop")
     session = begin(sessions, states, soft_cube())
     session.tick()
     scaled = SimpleNamespace(system=SimpleNamespace(ui_scale=1.0))
     context = SimpleNamespace(region=SimpleNamespace(width=260), preferences=scaled)
-    layout = Said()
+    layout = RecordedLayout()
     panel.draw_adapter_warning(layout, context)
-    assert layout.lines == []
+    assert layout.written.lines == []
     link = {"bursts": 50, "burst_states": 800, "states": 800, "burst_ms": 16.0}
     link["state_interval_us"] = {"device": 1000.0}
     monkeypatch.setitem(session.loop.figures.counters, "link", link)
     panel.draw_adapter_warning(layout, context)
-    assert "62.5 Hz" in " ".join(layout.lines)
+    assert "62.5 Hz" in layout.written.text
 
 
 def test_the_coupling_is_the_default_of_the_rate_until_own_values_are_chosen(palpate):
@@ -276,27 +263,22 @@ def test_an_empty_turns_the_plane_of_a_haply(palpate):
     assert part("addon.overlay.workspace").outline(bpy.context, None) == []
 
 
-def test_a_flattened_device_frame_is_said_and_the_press_goes_on(sessions, states):
+def test_a_flattened_device_frame_is_said_and_the_press_goes_on(sessions, states, silent_port):
     thing, scene = soft_cube(), bpy.context.scene
     bpy.ops.object.empty_add(location=(0.0, 0.0, 0.3))
     empty = scene.palpate.device_frame = bpy.context.object
-    controller, terminal = os.openpty()
-    try:
-        scene.palpate.source, scene.palpate.port = "SERIAL", os.ttyname(terminal)
-        session = begin(sessions, states, thing, "DEVICE")
-        empty.scale = (0.0, 1.0, 1.0)
-        bpy.context.view_layer.update()
-        for _ in range(3):
-            session.tick()
-        assert sessions.current() is session
-        assert [empty.name in said.text for said in session.said] == [True]
-        sessions.give_way("")
-        with pytest.raises(part("core.errors").PalpateError, match=empty.name):
-            begin(sessions, states, thing, "DEVICE")
-        assert key_names(thing) == []
-    finally:
-        os.close(controller)
-        os.close(terminal)
+    scene.palpate.source, scene.palpate.port = "SERIAL", silent_port
+    session = begin(sessions, states, thing, "DEVICE")
+    empty.scale = (0.0, 1.0, 1.0)
+    bpy.context.view_layer.update()
+    for _ in range(3):
+        session.tick()
+    assert sessions.current() is session
+    assert [empty.name in said.text for said in session.said] == [True]
+    sessions.give_way("")
+    with pytest.raises(part("core.errors").PalpateError, match=empty.name):
+        begin(sessions, states, thing, "DEVICE")
+    assert key_names(thing) == []
 
 
 @pytest.mark.parametrize("problem", [ValueError, RuntimeError, OverflowError])

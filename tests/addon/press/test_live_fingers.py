@@ -5,7 +5,7 @@ from __future__ import annotations
 import bpy
 import numpy as np
 import pytest
-from soft_scene import begin, key_names, mesh_state, part, soft_cube, wait
+from soft_scene import begin, empty, key_names, locate, mesh_state, part, soft_cube, wait
 
 LEFT, RIGHT = (-0.02501, 0.0, 0.01), (0.02501, 0.0, 0.01)
 LEFT_IN, RIGHT_IN = (-0.022, 0.0, 0.01), (0.022, 0.0, 0.01)
@@ -17,14 +17,6 @@ def arrived(session, *places):
         finger.touching and np.allclose(finger.probe, place)
         for finger, place in zip(fingers, places, strict=True)
     )
-
-
-def empty(name, at):
-    thing = bpy.data.objects.new(name, None)
-    bpy.context.collection.objects.link(thing)
-    thing.location = at
-    bpy.context.view_layer.update()
-    return thing
 
 
 def test_a_pinch_is_felt_by_both_and_agrees_with_the_one_without_a_clock(sessions, states):
@@ -182,7 +174,7 @@ def test_the_next_press_does_not_read_the_body_again_unless_its_file_changed(ses
     bodies = []
     for touch_file in (False, False, True):
         if touch_file:
-            part("operators.object.body_store").locate(thing).touch()
+            locate(thing).touch()
         session = begin(sessions, states, thing)
         bodies.append(session.drawn.body)
         session.post(states.Cancel())

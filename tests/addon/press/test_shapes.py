@@ -9,9 +9,21 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 import pytest
-from soft_scene import key_coordinates, key_names, mesh_state, part, press_down, soft_cube, wait
+from soft_scene import (
+    BESIDE,
+    DEPTH,
+    begin_pressed,
+    depth,
+    key_coordinates,
+    key_names,
+    locate,
+    mesh_state,
+    part,
+    press_down,
+    soft_cube,
+    wait,
+)
 
-TOP, DEPTH = (0.002, 0.001, 0.02501), 0.004
 NAMES = {
     "LINEAR": "linear",
     "TABLE": "paper",
@@ -44,22 +56,8 @@ class Narrower:
         self.closed.set()
 
 
-def begin_pressed(sessions, states, thing):
-    session = sessions.begin(thing, bpy.context.scene, states.Source.POINTER)
-    session.post(states.SetDown(TOP))
-    session.post(states.Move((TOP[0], TOP[1], TOP[2] - DEPTH)))
-    session.post(states.Release())
-    wait(session, lambda: session.seen.displacements is not None and depth(session) > 0.99 * DEPTH)
-    return session
-
-
-def depth(session):
-    finger = session.snapshot.fingers[0]
-    return np.linalg.norm(finger.probe - finger.proxy)
-
-
 def drawn_depth(thing, key="Palpate live"):
-    return TOP[2] - key_coordinates(thing, key)[:, 2].max()
+    return BESIDE[2] - key_coordinates(thing, key)[:, 2].max()
 
 
 def test_the_panel_offers_every_shape_with_its_sentence(palpate, shapes):
@@ -79,7 +77,7 @@ def test_scripts_that_name_the_former_series_get_paper_and_are_told(palpate, sha
     once, keys = part("operators.press.press_once").press_once, {}
     for name in ("TABLE", "SERIES"):
         thing.palpate.shape = name
-        pressed = once(thing, bpy.context.scene, TOP, (0.0, 0.0, -DEPTH), keep=True)
+        pressed = once(thing, bpy.context.scene, BESIDE, (0.0, 0.0, -DEPTH), keep=True)
         assert pressed.remarks == ((shapes.SERIES_IS_PAPER,) if name == "SERIES" else ())
         keys[name] = key_coordinates(thing, pressed.shape_key)
     np.testing.assert_array_equal(keys["SERIES"], keys["TABLE"])
@@ -157,7 +155,7 @@ def test_until_it_is_made_and_filled_the_linear_shape_is_drawn(
     assert drawn_depth(thing) == pytest.approx(linear, abs=1e-6)
     said = [line.text for line in part("addon.overlay.hud")._shape_lines(session)]
     assert said == ["Shape 37 %"]
-    assert made[0].file == part("operators.object.body_store").locate(thing)
+    assert made[0].file == locate(thing)
     made[0].ready = 1.0
     wait(session, lambda: session.seen.displacements is not session.seen.linear)
     assert not part("addon.overlay.hud")._shape_lines(session)
@@ -269,7 +267,7 @@ def test_pressure_is_drawn_on_the_shape_that_is_seen(palpate):
 def test_the_corrected_force_is_felt_where_it_is_known_and_switched_live(sessions, states):
     thing = soft_cube()
     once = part("operators.press.press_once").press_once
-    at, by = TOP, (0.0, 0.0, -DEPTH)
+    at, by = BESIDE, (0.0, 0.0, -DEPTH)
     linear = once(thing, bpy.context.scene, at, by, keep=False)
     thing.palpate.felt = "CORRECTED"
     corrected = once(thing, bpy.context.scene, at, by, keep=False)

@@ -12,20 +12,6 @@ from palpate.core.body.body_file import BodyFileError, body_key
 from palpate.core.files.atomic_file import UnwritableError
 
 
-@pytest.fixture
-def file(cube, tmp_path):
-    path = tmp_path / "cube.npz"
-    body_file.save(cube, path)
-    return path
-
-
-def rewrite(path, **changes):
-    """The same file with some arrays changed (or dropped, given None)."""
-    with np.load(path, allow_pickle=False) as stored:
-        arrays = {**stored, **changes}
-    np.savez(path, **{name: value for name, value in arrays.items() if value is not None})
-
-
 def test_a_body_comes_back_as_it_was(cube, file):
     body = body_file.load(file)
     np.testing.assert_array_equal(body.mesh.nodes, cube.mesh.nodes)
@@ -57,56 +43,6 @@ def test_the_key_follows_all_that_the_compliance_depends_on_and_nothing_else(cub
     assert body_key(mouse.mesh, cube.fixed, 0.49) != key
 
 
-@pytest.mark.parametrize("share", [0.0, 0.1, 0.5, 0.9, 0.999])
-def test_a_file_cut_short_is_refused_by_name(file, share):
-    content = file.read_bytes()
-    file.write_bytes(content[: int(share * len(content))])
-    with pytest.raises(BodyFileError, match=r"cube\.npz.*bake again"):
-        body_file.load(file)
-
-
-def test_a_flipped_bit_anywhere_is_never_stale_data(cube, file, rng):
-    content = bytearray(file.read_bytes())
-    for place in rng.integers(0, len(content), 60):
-        damaged = bytearray(content)
-        damaged[place] ^= 0x10
-        file.write_bytes(damaged)
-        try:
-            body = body_file.load(file)
-        except BodyFileError:
-            continue
-        # A bit in the padding or the date of the archive changes nothing that is read.
-        np.testing.assert_array_equal(body.compliance.table, cube.compliance.table)
-        np.testing.assert_array_equal(body.mesh.nodes, cube.mesh.nodes)
-
-
-def test_a_flipped_bit_in_the_archives_own_headers_is_damage_or_nothing(cube, file):
-    content = file.read_bytes()
-    headers = [place for place in range(len(content) - 31) if content.startswith(b"PK", place)]
-    for place in (start + offset for start in headers for offset in (4, 6, 8, 31)):
-        damaged = bytearray(content)
-        damaged[place] ^= 0x21
-        file.write_bytes(damaged)
-        try:
-            body = body_file.load(file)
-        except BodyFileError:
-            continue
-        np.testing.assert_array_equal(body.compliance.table, cube.compliance.table)
-
-
-def test_a_single_array_under_the_name_of_an_archive_is_refused(tmp_path):
-    with (tmp_path / "single.npz").open("wb") as stream:
-        np.save(stream, np.eye(3))
-    with pytest.raises(BodyFileError, match=r"single\.npz.*npz archive"):
-        body_file.load(tmp_path / "single.npz")
-
-
-def test_a_version_that_is_no_number_is_another_version(file):
-    rewrite(file, version=np.array(["x", "y"]))
-    with pytest.raises(BodyFileError, match="version"):
-        body_file.load(file)
-
-
 def test_the_file_that_a_link_leads_to_is_replaced(cube, file, tmp_path):
     link = tmp_path / "link.npz"
     link.symlink_to(file)
@@ -125,7 +61,7 @@ def test_what_is_no_ordinary_file_is_never_replaced(cube, tmp_path):
     assert pipe.is_fifo()
 
 
-def test_changed_arrays_fail_the_checksum(cube, file):
+def test_changed_arrays_fail_the_checksum(cube, file, rewrite):
     rewrite(file, compliance=2 * cube.compliance.table)
     with pytest.raises(BodyFileError, match="checksum"):
         body_file.load(file)
@@ -140,45 +76,47 @@ def test_a_foreign_compliance_with_a_right_checksum_is_refused(file, cube):
 
 
 @pytest.mark.parametrize("name", ["checksum", "key", "compliance", "fixed"])
-def test_a_missing_array_is_named(file, name):
+def test_a_missing_array_is_named(file, rewrite, name):
     rewrite(file, **{name: None})
     with pytest.raises(BodyFileError, match=name):
         body_file.load(file)
 
 
-@pytest.mark.parametrize("version", [0, 1, 3, 99])
-def test_other_versions_are_told_apart(file, version):
-    rewrite(file, version=np.int64(version))
-    with pytest.raises(BodyFileError, match=f"version {version}.*bake again"):
+@pytest.mark.parametrize("version", [0, 1, 3, 99, ["x", "y"]])
+def test_other_versions_are_told_apart(file, rewrite, version):
+    rewrite(file, version=np.array(version))
+    told = "version" if isinstance(version, list) else f"version {version}.*bake again"
+    with pytest.raises(BodyFileError, match=told):
         body_file.load(file)
 
 
-@pytest.mark.parametrize(
-    "content", [b"", b"not an archive", b"PK\x03\x04broken"], ids=["empty", "text", "zip head"]
-)
-def test_foreign_files_are_refused(tmp_path, content):
-    path = tmp_path / "other.npz"
-    path.write_bytes(content)
-    with pytest.raises(BodyFileError, match=r"other\.npz"):
-        body_file.load(path)
+def single_array(path):
+    with path.open("wb") as stream:
+        np.save(stream, np.eye(3))
 
 
-def test_other_archives_are_refused(tmp_path):
-    path = tmp_path / "mesh.npz"
-    np.savez(path, X=np.eye(3))
-    with pytest.raises(BodyFileError, match="not a Palpate body"):
-        body_file.load(path)
+def letter(path):
     with zipfile.ZipFile(path, "w") as archive:
         archive.writestr("letter.txt", "hello")
-    with pytest.raises(BodyFileError, match="not a Palpate body"):
-        body_file.load(path)
 
 
-def test_a_pickle_is_never_opened(tmp_path):
-    path = tmp_path / "evil.npz"
-    np.savez(path, format=np.array([{"a": 1}], dtype=object))
-    with pytest.raises(BodyFileError):
-        body_file.load(path)
+FOREIGN = {
+    "empty": (lambda path: path.write_bytes(b""), r"other\.npz"),
+    "text": (lambda path: path.write_bytes(b"not an archive"), r"other\.npz"),
+    "zip head": (lambda path: path.write_bytes(b"PK\x03\x04broken"), r"other\.npz"),
+    "array": (single_array, r"other\.npz.*npz archive"),
+    "mesh": (lambda path: np.savez(path, X=np.eye(3)), "not a Palpate body"),
+    "letter": (letter, "not a Palpate body"),
+    "pickle": (lambda path: np.savez(path, format=np.array([{"a": 1}], dtype=object)), "."),
+}
+
+
+@pytest.mark.parametrize("kind", FOREIGN)
+def test_foreign_files_are_refused(tmp_path, kind):
+    write, told = FOREIGN[kind]
+    write(tmp_path / "other.npz")
+    with pytest.raises(BodyFileError, match=told):
+        body_file.load(tmp_path / "other.npz")
 
 
 def test_a_missing_file_says_so(tmp_path):

@@ -9,7 +9,7 @@ from functools import partial
 from pathlib import Path
 
 import bpy
-from mouse_scene import depth, drag_in, mouse, open_mouse, start_press, type_key
+from mouse_scene import depth, drag_in, end_press, mouse, open_mouse, start_press, type_key
 from shown import all_panels_open, replaced
 from stage import Stage, Wait
 
@@ -91,8 +91,7 @@ def a_compressed_body_is_pressed_like_any_other(stage: Stage) -> Wait:
     yield from drag_in(stage)
     assert depth() > 0.005
     yield from stage.picture("pressed")
-    yield from type_key(stage, "ESC")
-    yield from stage.until(lambda: press_session.current() is None, "the end of the press")
+    yield from end_press(stage)
 
 
 def escape_ends_the_bake_and_its_process_while_the_stiffness_is_inverted(stage: Stage) -> Wait:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bpy
 import numpy as np
-from mouse_scene import over_the_view, own_copy, type_key
+from mouse_scene import end_press, over_the_view, own_copy, type_key
 from stage import Pixel, Stage, Wait
 
 from bl_ext.user_default.palpate.addon.overlay.reading import Reading, readings
@@ -31,8 +31,7 @@ def a_fingertip_led_by_the_mouse_shows_its_patch_and_force(stage: Stage) -> Wait
     assert figures.force_vector[2] > 0.5 * figures.force > 0.0
     stage.note(newton=figures.force, kilopascal=figures.largest_pressure / 1000)
     yield from stage.event("LEFTMOUSE", "RELEASE", stage.mouse)
-    yield from type_key(stage, "ESC")
-    yield from stage.until(lambda: press_session.current() is None, "the end of the press")
+    yield from end_press(stage)
     assert _coordinates("Mouse") == before
     assert bpy.data.objects["Mouse"].data.shape_keys is None
 
@@ -46,8 +45,7 @@ def a_plate_and_a_mesh_are_chosen_in_the_panel_and_press(stage: Stage) -> Wait:
     yield from stage.drag([(x, y), (x + 6, y - 28)], steps=3)
     yield from stage.until(lambda: _figures()[0].area > 1e-5, "the plate's contact")
     yield from stage.picture("plate")
-    yield from type_key(stage, "ESC")
-    yield from stage.until(lambda: press_session.current() is None, "the end of the press")
+    yield from end_press(stage)
     chosen.tip = "MESH"
     yield from stage.picture("no-tool")
     with stage.view():
@@ -59,8 +57,7 @@ def a_plate_and_a_mesh_are_chosen_in_the_panel_and_press(stage: Stage) -> Wait:
     bpy.data.objects.remove(bpy.data.objects["Finger Skin"])
     yield from stage.picture("mesh-deleted")
     assert press_session.current() is not None
-    yield from type_key(stage, "ESC")
-    yield from stage.until(lambda: press_session.current() is None, "the end of the press")
+    yield from end_press(stage)
 
 
 def two_handles_pinch_and_escape_restores_every_bit(stage: Stage) -> Wait:
@@ -84,8 +81,7 @@ def two_handles_pinch_and_escape_restores_every_bit(stage: Stage) -> Wait:
     yield from stage.drag([(x, y), (x + 20, y)], steps=3)
     yield from stage.until(lambda: _figures()[1].depth < right.depth, "the way back of one")
     assert abs(_figures()[0].depth - held) < 1e-6
-    yield from type_key(stage, "ESC")
-    yield from stage.until(lambda: press_session.current() is None, "the end of the pinch")
+    yield from end_press(stage)
     assert _coordinates("Nodes") == before
     assert bpy.data.objects["Nodes"].data.shape_keys.key_blocks.keys() == ["Basis", "Pinched"]
 

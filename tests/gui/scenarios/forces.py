@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bpy
 import numpy as np
-from mouse_scene import depth, open_mouse, start_press, type_key
+from mouse_scene import depth, end_press, open_mouse, start_press, type_key
 from shown import all_panels_open
 from stage import Stage, Wait
 
@@ -28,8 +28,7 @@ def space_lets_the_device_go_and_what_it_did_is_saved(stage: Stage) -> Wait:
         yield CALM_SECONDS
         yield from type_key(stage, "SPACE")
         yield from stage.until(lambda: _state() in {"ramping", "free", "touching"}, "its return")
-        yield from type_key(stage, "ESC")
-        yield from stage.until(lambda: press_session.current() is None, "the end of the press")
+        yield from end_press(stage)
     path = stage.output / "recording.npz"
     assert bpy.ops.palpate.save_recording(filepath=str(path)) == {"FINISHED"}
     samples = read_recording(path).samples

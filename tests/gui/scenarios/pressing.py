@@ -10,6 +10,7 @@ from mouse_scene import (
     BACK,
     depth,
     drag_in,
+    end_press,
     mouse,
     open_mouse,
     own_copy,
@@ -50,26 +51,15 @@ def dragging_dents_the_surface_and_enter_keeps_the_shape(stage: Stage) -> Wait:
     yield from stage.until(lambda: shape_keys() == ["Basis", "Press 1"], "the redo")
 
 
-def escape_restores_every_bit(stage: Stage) -> Wait:
+def escape_and_right_click_restore_every_bit(stage: Stage) -> Wait:
     yield from open_mouse(stage)
     before = _coordinates()
-    yield from start_press(stage)
-    yield from drag_in(stage)
-    yield from type_key(stage, "ESC")
-    yield from stage.until(lambda: press_session.current() is None, "the end of the press")
-    assert shape_keys() == []
-    assert _coordinates() == before
-
-
-def right_click_restores_every_bit(stage: Stage) -> Wait:
-    yield from open_mouse(stage)
-    before = _coordinates()
-    yield from start_press(stage)
-    yield from drag_in(stage)
-    yield from stage.click(stage.pixel(BACK), "RIGHTMOUSE")
-    yield from stage.until(lambda: press_session.current() is None, "the end of the press")
-    assert shape_keys() == []
-    assert _coordinates() == before
+    for leave in (end_press, _right_click):
+        yield from start_press(stage)
+        yield from drag_in(stage)
+        yield from leave(stage)
+        assert shape_keys() == []
+        assert _coordinates() == before
 
 
 def the_wheel_goes_deeper_while_the_button_is_held(stage: Stage) -> Wait:
@@ -104,8 +94,7 @@ def the_view_turns_while_a_dent_is_held_and_another_touch_starts_elsewhere(stage
     yield from stage.drag([stage.pixel(BACK), stage.pixel((0.0, -0.02, 0.03))], release=False)
     yield from stage.until(lambda: phase() is Phase.DRAGGING, "the next touch")
     yield from stage.event("LEFTMOUSE", "RELEASE", stage.mouse)
-    yield from type_key(stage, "ESC")
-    yield from stage.until(lambda: press_session.current() is None, "the end of the press")
+    yield from end_press(stage)
 
 
 def numpad_turns_the_view_and_ctrl_s_saves_while_a_dent_is_held(stage: Stage) -> Wait:
@@ -140,8 +129,7 @@ def a_probe_led_outward_keeps_no_shape(stage: Stage) -> Wait:
     yield 0.3
     assert press_session.current() is not None
     assert "no shape" in press_session.current().state.message
-    yield from type_key(stage, "ESC")
-    yield from stage.until(lambda: press_session.current() is None, "the end of the press")
+    yield from end_press(stage)
     assert shape_keys() == []
 
 
@@ -185,8 +173,7 @@ def the_figures_fit_a_narrow_view(stage: Stage) -> Wait:
         yield from stage.picture("narrow")
     assert min(drawn) < 0.4 * max(drawn)
     assert max(beyond) <= 0
-    yield from type_key(stage, "ESC")
-    yield from stage.until(lambda: press_session.current() is None, "the end of the press")
+    yield from end_press(stage)
 
 
 def a_hidden_object_is_refused_with_a_remedy(stage: Stage) -> Wait:
@@ -195,26 +182,6 @@ def a_hidden_object_is_refused_with_a_remedy(stage: Stage) -> Wait:
     assert "show it" in _refusal(stage)
     assert press_session.current() is None
     yield
-
-
-def the_modulus_slider_is_felt_while_pressing(stage: Stage) -> Wait:
-    yield from open_mouse(stage)
-    yield from start_press(stage)
-    yield from drag_in(stage)
-    soft = _force()
-    mouse().palpate.young_modulus *= 2
-    yield from stage.until(lambda: np.isclose(_force(), 2 * soft, rtol=0.01), "twice the force")
-    yield from type_key(stage, "ESC")
-
-
-def deleting_the_object_while_pressing_ends_the_press(stage: Stage) -> Wait:
-    yield from open_mouse(stage)
-    yield from start_press(stage)
-    yield from drag_in(stage)
-    servo = press_session.current().loop.servo
-    bpy.data.objects.remove(mouse())
-    yield from stage.until(lambda: press_session.current() is None, "the end of the press")
-    assert not servo.running
 
 
 def opening_another_file_while_pressing_ends_the_press(stage: Stage) -> Wait:
@@ -227,30 +194,6 @@ def opening_another_file_while_pressing_ends_the_press(stage: Stage) -> Wait:
     assert press_session.current() is None
     assert not servo.running
     assert shape_keys() == []
-
-
-def the_simulated_device_presses_is_unplugged_and_comes_back(stage: Stage) -> Wait:
-    yield from open_mouse(stage)
-    before = _coordinates()
-    bpy.context.scene.palpate.source = "SIMULATED"
-    yield from start_press(stage)
-    yield from stage.until(lambda: depth() > 0.008, "the device's press")
-    yield from stage.picture("device")
-    session = press_session.current()
-    session.loop.simulated.unplug()
-    yield from stage.until(lambda: phase() is Phase.LOST, "the message")
-    yield 0.3
-    assert not np.any(session.snapshot.output_force)
-    assert _key_bytes("Palpate live") == _key_bytes("Basis")
-    yield from stage.picture("unplugged")
-    session.loop.simulated.plug_in()
-    yield from stage.until(lambda: phase() is Phase.FEELING, "the device's return")
-    yield from stage.until(lambda: depth() > 0.008, "its next press")
-    child = session.loop.simulated.pid
-    yield from type_key(stage, "ESC")
-    yield from stage.until(lambda: press_session.current() is None, "the end of the press")
-    assert _coordinates() == before
-    assert not Path(f"/proc/{child}").exists()
 
 
 def make_soft_shows_progress_and_escape_leaves_nothing(stage: Stage) -> Wait:
@@ -317,23 +260,13 @@ def switching_the_extension_off_while_pressing_leaves_a_clean_mesh(stage: Stage)
     assert _coordinates() == before
 
 
-def an_edited_mesh_is_said_in_the_panel(stage: Stage) -> Wait:
-    yield from open_mouse(stage)
-    with stage.view():
-        bpy.ops.object.mode_set(mode="EDIT")
-        bpy.ops.mesh.select_all(action="SELECT")
-        bpy.ops.mesh.poke()
-        bpy.ops.object.mode_set(mode="OBJECT")
-    yield from stage.picture("panel")
-    assert "Make Soft" in _refusal(stage)
+def _right_click(stage: Stage) -> Wait:
+    yield from stage.click(stage.pixel(BACK), "RIGHTMOUSE")
+    yield from stage.until(lambda: press_session.current() is None, "the end of the press")
 
 
 def _width(area: bpy.types.Area) -> int:
     return int(area.width)
-
-
-def _force() -> float:
-    return float(np.linalg.norm(press_session.current().snapshot.contact_force))
 
 
 def _refusal(stage: Stage) -> str:
@@ -350,13 +283,6 @@ def _coordinates() -> bytes:
     mesh = mouse().data
     flat = np.empty(3 * len(mesh.vertices), dtype=np.float32)
     mesh.attributes["position"].data.foreach_get("vector", flat)
-    return flat.tobytes()
-
-
-def _key_bytes(name: str) -> bytes:
-    points = mouse().data.shape_keys.key_blocks[name].points
-    flat = np.empty(3 * len(points), dtype=np.float32)
-    points.foreach_get("co", flat)
     return flat.tobytes()
 
 

@@ -133,17 +133,6 @@ def test_ctrl_c_zeroes_the_force_and_still_reports(baked_file, device, eventuall
     assert device.report()["felt_force"] == [0.0, 0.0, 0.0]
 
 
-def test_a_killed_host_leaves_the_device_limp(baked_file, device, eventually):
-    with host(baked_file, device.port) as process:
-        eventually(lambda: device.report()["forces"] > 100)
-        device.move_hand(DEEP, 0.2)
-        eventually(lambda: driven(device))
-        process.kill()
-    report = eventually(lambda: (r := device.report())["limp"] and r)
-    assert report["felt_force"] == [0.0, 0.0, 0.0]
-    assert report["limp_count"] >= 1
-
-
 def test_a_killed_host_does_not_keep_the_port_from_the_next_one(baked_file, device, eventually):
     for _ in range(2):
         before = device.report()["forces"]

@@ -1,10 +1,9 @@
 """Steps towards equilibrium: against Newton's answer, and as a function of the forces."""
 
-from itertools import pairwise
-
 import numpy as np
 import pytest
 from bodies.bare_body import bare_body, beam_mesh
+from referees.jumps import jump_left
 
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.shape.rotation_strain.relaxation import step_length
@@ -93,18 +92,7 @@ def test_it_depends_continuously_on_the_forces(steps):
         def shape(share, forces=forces):
             return relaxing.relaxed(np.ascontiguousarray((share * forces).T), steps)
 
-        def largest_jump(shares, shape=shape):
-            shapes = [shape(share) for share in shares]
-            jumps = [np.abs(b - a).max() for a, b in pairwise(shapes)]
-            worst = int(np.argmax(jumps))
-            return jumps[worst], shares[worst : worst + 2]
-
-        jump, ends = largest_jump(np.linspace(0.0, 1.5, 61))
-        # However near one looks where it changes most, what is left of the change becomes small.
-        near = jump
-        for _ in range(4):
-            near, ends = largest_jump(np.linspace(*ends, 13))
-        assert near < 0.02 * jump
+        assert jump_left(shape, np.linspace(0.0, 1.5, 61), looks=4) < 0.02
 
 
 def test_no_force_leaves_the_body_at_rest():

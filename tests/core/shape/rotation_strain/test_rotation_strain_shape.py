@@ -30,38 +30,52 @@ def test_it_comes_near_the_true_shape(cube):
     assert error < 0.1 * np.linalg.norm(cube.deform(nodes, forces) - truth)
 
 
-def test_it_is_linear_until_it_is_prepared_and_ends_when_closed(cube, monkeypatch):
-    goes_on = threading.Event()
-    made = FreeSolid.of(cube)
+whole_or_on_a_lattice = pytest.mark.parametrize(
+    ("part", "arguments"), [("FreeSolid", ()), ("TwoLevels", (FramePlan(1, 30),))]
+)
 
-    def held_up(_):
+
+@whole_or_on_a_lattice
+def test_it_is_linear_until_it_is_prepared_and_ends_when_closed(cube, monkeypatch, part, arguments):
+    goes_on, kind = threading.Event(), getattr(rotation_strain_shape, part)
+    made = kind.of
+
+    def held_up(*given):
         assert goes_on.wait(10)
-        return made
+        return made(*given)
 
-    monkeypatch.setattr(rotation_strain_shape.FreeSolid, "of", held_up)
-    shape = RotationStrainShape(cube)
+    monkeypatch.setattr(kind, "of", held_up)
+    kept, closed = (RotationStrainShape(cube, *arguments) for _ in range(2))
     nodes, forces = bend(cube)
-    assert shape.ready == 0.0
-    np.testing.assert_array_equal(shape.displacements(nodes, forces), cube.deform(nodes, forces))
-    shape.close()
+    linear = cube.deform(nodes, forces)
+    for shape in (kept, closed):
+        assert shape.ready == 0.0 or arguments
+        assert shape.ready < 1.0
+        np.testing.assert_array_equal(shape.displacements(nodes, forces), linear)
+    closed.close()
     goes_on.set()
+    kept.wait_for(nodes)
+    assert kept.ready == 1.0
+    assert np.abs(kept.displacements(nodes, forces) - linear).max() > 0.0
     with pytest.raises(PalpateError, match="closed before it was prepared; make a new one"):
-        shape.wait_for(nodes)
-    assert shape.ready < 1.0
-    np.testing.assert_array_equal(shape.displacements(nodes, forces), cube.deform(nodes, forces))
+        closed.wait_for(nodes)
+    assert closed.ready < 1.0
+    np.testing.assert_array_equal(closed.displacements(nodes, forces), linear)
 
 
-def test_what_fails_in_the_background_is_told(cube, monkeypatch):
-    def fails(_):
+@whole_or_on_a_lattice
+def test_what_fails_in_the_background_is_told(cube, monkeypatch, part, arguments):
+    def fails(*_):
         raise ZeroDivisionError
 
-    monkeypatch.setattr(rotation_strain_shape.FreeSolid, "of", fails)
-    shape = RotationStrainShape(cube)
+    monkeypatch.setattr(getattr(rotation_strain_shape, part), "of", fails)
+    shape = RotationStrainShape(cube, *arguments)
     nodes, forces = bend(cube)
     with pytest.raises(ZeroDivisionError):
         shape.wait_for(nodes)
     with pytest.raises(ZeroDivisionError):
         shape.displacements(nodes, forces)
+    assert shape.ready < 1.0
 
 
 def test_on_a_lattice_it_is_a_function_of_the_forces_over_the_modulus(cube):
@@ -82,42 +96,3 @@ def test_on_a_lattice_it_is_a_function_of_the_forces_over_the_modulus(cube):
     # What is on pinned nodes moves nothing.
     pinned = np.append(nodes, cube.fixed[0]), np.vstack([forces, [[1.0, 2.0, 3.0]]])
     np.testing.assert_allclose(shape.displacements(*pinned), first, rtol=1e-12, atol=1e-15)
-
-
-def test_a_lattice_is_prepared_in_the_background_too(cube, monkeypatch):
-    goes_on = threading.Event()
-    whole = rotation_strain_shape.TwoLevels.of
-
-    def held_up(*arguments):
-        assert goes_on.wait(10)
-        return whole(*arguments)
-
-    monkeypatch.setattr(rotation_strain_shape.TwoLevels, "of", held_up)
-    kept, closed = (RotationStrainShape(cube, FramePlan(1, 30)) for _ in range(2))
-    nodes, forces = bend(cube)
-    linear = cube.deform(nodes, forces)
-    for shape in (kept, closed):
-        assert shape.ready < 1.0
-        np.testing.assert_array_equal(shape.displacements(nodes, forces), linear)
-    closed.close()
-    goes_on.set()
-    kept.wait_for(nodes)
-    assert kept.ready == 1.0
-    assert np.abs(kept.displacements(nodes, forces) - linear).max() > 0.0
-    with pytest.raises(PalpateError, match="closed"):
-        closed.wait_for(nodes)
-    assert closed.ready < 1.0
-
-
-def test_what_fails_for_a_lattice_is_told(cube, monkeypatch):
-    def fails(*_):
-        raise ZeroDivisionError
-
-    monkeypatch.setattr(rotation_strain_shape.TwoLevels, "of", fails)
-    shape = RotationStrainShape(cube, FramePlan(1, 30))
-    nodes, forces = bend(cube)
-    with pytest.raises(ZeroDivisionError):
-        shape.wait_for(nodes)
-    with pytest.raises(ZeroDivisionError):
-        shape.displacements(nodes, forces)
-    assert shape.ready < 1.0

@@ -1,10 +1,9 @@
 """Large bodies corrected on a lattice: against Newton's answer, and as a function of the forces."""
 
-from itertools import pairwise
-
 import numpy as np
 import pytest
 from bodies.bare_body import bare_body, beam_mesh
+from referees.jumps import jump_left
 
 from palpate.core.errors import PalpateError
 from palpate.core.mesh.paper_cube import paper_cube
@@ -142,18 +141,10 @@ def test_it_depends_continuously_on_the_forces(beam, end_load):
     )
     for way in ways:
 
-        def largest_jump(shares, way=way):
-            shapes = [beam.corrected(way(share)) for share in shares]
-            jumps = [np.abs(b - a).max() for a, b in pairwise(shapes)]
-            worst = int(np.argmax(jumps))
-            return jumps[worst], shares[worst : worst + 2]
+        def shape(share, way=way):
+            return beam.corrected(way(share))
 
-        jump, ends = largest_jump(np.linspace(0.0, 1.0, 31))
-        # However near one looks where it changes most, what is left of the change becomes small.
-        near = jump
-        for _ in range(3):
-            near, ends = largest_jump(np.linspace(*ends, 13))
-        assert near < 0.02 * jump
+        assert jump_left(shape, np.linspace(0.0, 1.0, 31), looks=3) < 0.02
 
 
 @pytest.mark.parametrize("direction", [(0.0, 0.0, 1.0), (-1.0, 0.0, 0.0)])
