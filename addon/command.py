@@ -39,8 +39,6 @@ NUMBERS = {
     "tolerance": ("compression_tolerance", 0.01),
 }
 
-FINGER_NUMBERS = {"radius": ("tip_radius", 1.0)}
-
 
 class _OneLineParser(argparse.ArgumentParser):
     """Parser with one-line errors."""
@@ -52,7 +50,7 @@ class _OneLineParser(argparse.ArgumentParser):
 def run(words: list[str]) -> int:
     """Run a command with its arguments; returns the exit status."""
     try:
-        arguments = _parser().parse_args(_shielded(words))
+        arguments = _parser().parse_args([_shielded(word) for word in words])
     except SystemExit as end:
         # Blender expects a status, and would report an exception as a bug of the extension.
         return int(end.code or 0)
@@ -136,11 +134,9 @@ def press(arguments: argparse.Namespace) -> dict[str, object]:
 
 def _choose(thing: bpy.types.Object, arguments: argparse.Namespace) -> None:
     """Set tip, contact mode, shape and force law from the options."""
-    for option, (name, unit) in FINGER_NUMBERS.items():
-        value = getattr(arguments, option)
-        if value is not None:
-            chosen = bpy.context.scene.palpate
-            setattr(chosen, name, _within(chosen, name, option, value, unit))
+    chosen = bpy.context.scene.palpate
+    if arguments.radius is not None:
+        chosen.tip_radius = _within(chosen, "tip_radius", "radius", arguments.radius)
     if arguments.felt is not None:
         thing.palpate.felt = arguments.felt.upper()
     if arguments.shape is not None:
@@ -148,7 +144,7 @@ def _choose(thing: bpy.types.Object, arguments: argparse.Namespace) -> None:
         thing.palpate.shape = asked.upper().replace("-", "_")
     for option, name in (("mode", "contact_mode"), ("tip", "tip")):
         if getattr(arguments, option) is not None:
-            setattr(bpy.context.scene.palpate, name, getattr(arguments, option).upper())
+            setattr(chosen, name, getattr(arguments, option).upper())
 
 
 def _figures(finger: PressedFinger) -> dict[str, object]:
@@ -213,24 +209,18 @@ def _parser() -> argparse.ArgumentParser:
     one.set_defaults(run=bake)
     two = commands.add_parser("press", help="press an object once and print the force")
     _add_common(two)
-    two.add_argument(
-        "--at",
-        type=float,
-        nargs=3,
-        action="append",
-        required=True,
-        metavar=("X", "Y", "Z"),
-        help="the surface point nearest to this is touched, world coordinates; once a finger",
-    )
-    two.add_argument(
-        "--by",
-        type=float,
-        nargs=3,
-        action="append",
-        required=True,
-        metavar=("DX", "DY", "DZ"),
-        help="how far it is moved, world axes; once a finger",
-    )
+    for name, axes, text in (
+        (
+            "--at",
+            ("X", "Y", "Z"),
+            "the surface point nearest to this is touched, world coordinates",
+        ),
+        ("--by", ("DX", "DY", "DZ"), "how far it is moved, world axes"),
+    ):
+        told = f"{text}; once a finger"
+        two.add_argument(
+            name, type=float, nargs=3, action="append", required=True, metavar=axes, help=told
+        )
     modes = [name.lower() for name, *_ in MODE_ITEMS]
     two.add_argument("--mode", choices=modes, help="how the contact is computed")
     tips = [name.lower() for name, *_ in TIP_ITEMS]
@@ -269,17 +259,13 @@ def _within(
     return value / unit
 
 
-def _shielded(words: list[str]) -> list[str]:
-    """Arguments with a blank before numbers such as -5e-3, which argparse takes for options."""
-    return [f" {word}" if _is_negative_number(word) else word for word in words]
-
-
-def _is_negative_number(word: str) -> bool:
+def _shielded(word: str) -> str:
+    """Argument with a blank before a number such as -5e-3, which argparse takes for an option."""
     try:
         float(word)
     except ValueError:
-        return False
-    return word.startswith("-")
+        return word
+    return f" {word}" if word.startswith("-") else word
 
 
 _commands: list[object] = []

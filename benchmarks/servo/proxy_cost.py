@@ -38,7 +38,8 @@ import numpy as np
 from numpy.typing import NDArray
 from palpate_servo import Body
 from palpate_servo.harness import Proxy
-from scipy.spatial import ConvexHull
+
+from palpate.tests.bodies.golden_sphere import golden_sphere
 
 PEER = "PALPATE_PROXY_PEER"
 RADIUS = 0.025
@@ -91,24 +92,9 @@ RUBBING = Feel("friction", static_friction=0.4, dynamic_friction=0.3)
 BOTH = Feel("shading, friction", shading=True, static_friction=0.4, dynamic_friction=0.3)
 
 
-def hull(name: str, nodes: Floats) -> Shape:
-    """The convex hull of points on a surface around the origin, turned outwards."""
-    triangles = ConvexHull(nodes).simplices.astype(np.int64)
-    a, b, c = nodes[triangles].swapaxes(0, 1)
-    inwards = np.einsum("ij,ij->i", np.cross(b - a, c - a), a + b + c) < 0
-    triangles[inwards] = triangles[inwards][:, [0, 2, 1]]
-    return Shape(name, nodes, triangles)
-
-
 def sphere(triangle_count: int) -> Shape:
-    """Nodes spread evenly by the golden angle: exactly so many triangles, if even."""
-    count = triangle_count // 2 + 2
-    place = np.arange(count) + 0.5
-    height = 1 - 2 * place / count
-    azimuth = np.pi * (1 + 5**0.5) * place
-    across = np.sqrt(1 - height**2)
-    nodes = RADIUS * np.column_stack([across * np.cos(azimuth), across * np.sin(azimuth), height])
-    return hull("sphere", nodes)
+    """A sphere around the origin of exactly so many triangles, if even."""
+    return Shape("sphere", *golden_sphere(triangle_count // 2 + 2, RADIUS))
 
 
 def cube(cells: int = 4, edge: float = 0.05) -> Shape:

@@ -25,35 +25,17 @@ from palpate_servo.harness import BareTimer
 from scipy.stats import binom
 
 from palpate.core.servo.settings import Settings
+from palpate.tests.bodies.golden_sphere import golden_sphere
 
 RADIUS = 0.025
 MOST = 1.2
 """How many times the bare thread's late ticks and p99.9 lateness the servo's may be."""
 
 
-def ball(halvings: int = 3) -> Body:
-    """An octahedron halved into 8 * 4^halvings triangles, blown up to a ball."""
-    corners = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]]
-    nodes = [np.array(corner, float) for corner in corners]
-    triangles = [
-        [0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5],
-    ]  # fmt: skip
-    for _ in range(halvings):
-        middles: dict[tuple[int, int], int] = {}
-        finer = []
-        for triangle in triangles:
-            between = []
-            for i, j in zip(triangle, triangle[1:] + triangle[:1], strict=True):
-                pair = (min(i, j), max(i, j))
-                if pair not in middles:
-                    middles[pair] = len(nodes)
-                    nodes.append(nodes[i] + nodes[j])
-                between.append(middles[pair])
-            (a, b, c), (ab, bc, ca) = triangle, between
-            finer += [[a, ab, ca], [b, bc, ab], [c, ca, bc], [ab, bc, ca]]
-        triangles = finer
-        nodes = [node / np.linalg.norm(node) for node in nodes]
-    return Body(np.array(nodes) * RADIUS, triangles, np.tile(np.eye(3) * 0.1, (len(nodes), 1, 1)))
+def ball() -> Body:
+    """A ball of 512 triangles on a bed of springs."""
+    nodes, triangles = golden_sphere(258, RADIUS)
+    return Body(nodes, triangles, np.tile(np.eye(3) * 0.1, (len(nodes), 1, 1)))
 
 
 def lead(servo: Servo, seconds: float) -> None:

@@ -7,12 +7,11 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from ..errors import PalpateError
 from ..sentence import Sentence
 from .coordinates import refuse_unusable
+from .tet_mesh import pieces
 
 # Vertices closer than this share of the diagonal are one: seams that only look open are closed.
 WELD_TOLERANCE = 1e-6
@@ -97,15 +96,7 @@ class Surface:
     def piece_count(self) -> int:
         """Number of parts that share no vertex."""
         used, corners = np.unique(self.triangles, return_inverse=True)
-        corners = corners.reshape(-1, 3)
-        links = coo_array(
-            (
-                np.ones(2 * len(corners), dtype=np.int8),
-                (np.repeat(corners[:, 0], 2), corners[:, 1:].ravel()),
-            ),
-            shape=(len(used), len(used)),
-        )
-        return int(connected_components(links, directed=False)[0])
+        return int(pieces(corners.reshape(-1, 3), len(used)).max()) + 1
 
     def coinciding(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """One vertex of each place, (P,), and for every vertex the number of its place, (V,)."""

@@ -7,11 +7,10 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from .decimate import decimate
 from .surface import Surface
+from .tet_mesh import pieces
 from .winding_volume import is_inside
 
 # Triangles of a part at most for deciding inside or outside.
@@ -96,15 +95,7 @@ def nested_parts(surface: Surface) -> NestedParts:
 def surface_parts(surface: Surface) -> list[SurfacePart]:
     """All parts, the smallest first. Coinciding vertices are connected: seams do not separate."""
     corners = surface.coinciding()[1][surface.triangles]
-    count = int(corners.max()) + 1
-    links = coo_array(
-        (
-            np.ones(2 * len(corners), dtype=np.int8),
-            (np.repeat(corners[:, 0], 2), corners[:, 1:].ravel()),
-        ),
-        shape=(count, count),
-    )
-    label = connected_components(links, directed=False)[1][corners[:, 0]]
+    label = pieces(corners, int(corners.max()) + 1)[corners[:, 0]]
     order = np.argsort(label, kind="stable")
     starts = np.flatnonzero(np.diff(label[order])) + 1
     parts = [

@@ -111,12 +111,7 @@ class TetMesh:
     @cached_property
     def node_components(self) -> NDArray[np.int64]:
         """Number of the connected piece of each node, (N,)."""
-        first = np.repeat(self.tets[:, 0], 3)
-        links = coo_array(
-            (np.ones(first.size, dtype=np.int8), (first, self.tets[:, 1:].ravel())),
-            shape=(len(self.nodes), len(self.nodes)),
-        )
-        return connected_components(links, directed=False)[1].astype(np.int64)
+        return pieces(self.tets, len(self.nodes))
 
     @property
     def component_count(self) -> int:
@@ -130,6 +125,18 @@ def signed_volumes(nodes: NDArray[np.float64], tets: NDArray[np.int64]) -> NDArr
     a, b, c = (nodes[tets[:, corner]] - origin for corner in (1, 2, 3))
     volumes: NDArray[np.float64] = np.einsum("ij,ij->i", np.cross(a, b), c) / 6.0
     return volumes
+
+
+def pieces(corners: NDArray[np.int64], count: int) -> NDArray[np.int64]:
+    """Number of the connected piece of each of ``count`` nodes, (count,), from the node numbers of
+    pairs, triangles or tetrahedra, (k, 2 to 4); nodes of none are pieces of their own.
+    """
+    others = corners[:, 1:]
+    first = np.repeat(corners[:, 0], others.shape[1])
+    links = coo_array(
+        (np.ones(first.size, dtype=np.int8), (first, others.ravel())), shape=(count, count)
+    )
+    return connected_components(links, directed=False)[1].astype(np.int64)
 
 
 def _nodes_checked(nodes: ArrayLike) -> NDArray[np.float64]:

@@ -10,13 +10,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from ..errors import PalpateError
 from .closest_point import ClosestPoints
 from .surface import Surface
-from .tet_mesh import OUTWARD_FACES, TetMesh, signed_volumes
+from .tet_mesh import OUTWARD_FACES, TetMesh, pieces, signed_volumes
 from .winding_volume import enclosed_volume, is_inside, sampled_volume
 
 # Face-connected pieces below this share of the volume are debris of the envelope, not parts.
@@ -137,5 +135,4 @@ def _face_connected_pieces(tets: NDArray[np.int64]) -> NDArray[np.int64]:
     order = np.lexsort(faces.T)
     same = (faces[order][1:] == faces[order][:-1]).all(axis=1)
     left, right = owner[order][:-1][same], owner[order][1:][same]
-    links = coo_array((np.ones(len(left), dtype=np.int8), (left, right)), shape=(len(tets),) * 2)
-    return connected_components(links, directed=False)[1].astype(np.int64)
+    return pieces(np.column_stack([left, right]), len(tets))

@@ -22,6 +22,7 @@ from ..scene.drawn_surface import DrawnSurface
 from ..scene.fingerprint import Fingerprint, changed_body
 from ..scene.object_handle import ObjectHandle
 from ..session import press_session
+from . import bake_prediction
 
 SECONDS_BETWEEN_POLLS = 0.05
 
@@ -207,17 +208,10 @@ def settings_of(thing: bpy.types.Object, drawn: DrawnSurface) -> BakeSettings:
         A vertex group that is missing or empty.
     """
     chosen = thing.palpate
-    return BakeSettings(
-        poisson_ratio=round(chosen.poisson_ratio, 6),
+    return replace(
+        bake_prediction.settings_of(thing, pin_group.pins(thing, drawn)),
         young_modulus=chosen.young_modulus,
-        pins=pin_group.pins(thing, drawn),
-        edge_length=chosen.edge_length,
-        epsilon=chosen.epsilon,
-        decimate_above=chosen.decimate_above,
         time_limit=chosen.time_limit,
-        formulation=chosen.formulation.lower(),
-        form=chosen.form.lower(),
-        tolerance=chosen.compression_tolerance / 100,
         stiffness=stiff_region.stiff_region(thing),
     )
 

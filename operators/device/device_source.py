@@ -36,14 +36,6 @@ class DeviceFrame:
     translation: Array
     scale: float
 
-    def same_as(self, other: DeviceFrame) -> bool:
-        """Whether both maps are equal."""
-        return (
-            self.scale == other.scale
-            and np.array_equal(self.rotation, other.rotation)
-            and np.array_equal(self.translation, other.translation)
-        )
-
     def device_from_body(self, points: Array) -> Array:
         """Points (..., 3) of the body in the device's coordinates."""
         device: Array = (points - self.translation) @ self.rotation / self.scale
@@ -82,15 +74,9 @@ def device_frame(scene: bpy.types.Scene, body: BodyFrame, home: DeviceFrame) -> 
         The Empty is flattened to nothing.
     """
     chosen = scene.palpate
-    empty = chosen.device_frame
-    if empty is None:
+    if chosen.device_frame is None:
         return replace(home, scale=chosen.device_scale)
-    try:
-        return frame_of_matrix(np.array(empty.matrix_world), body, chosen.device_scale)
-    except PalpateError as problem:
-        raise PalpateError(
-            "Device Frame {name}: {problem}", name=empty.name, problem=problem
-        ) from problem
+    return _frame_of_empty(chosen.device_frame, body, chosen.device_scale)
 
 
 def second_frame(thing: bpy.types.Object, scene: bpy.types.Scene, body: BodyFrame) -> DeviceFrame:
@@ -102,11 +88,15 @@ def second_frame(thing: bpy.types.Object, scene: bpy.types.Scene, body: BodyFram
     PalpateError
         The Empty is flattened to nothing.
     """
-    empty, scale = scene.palpate.second_frame, scene.palpate.device_scale
-    if empty is None and scene.palpate.second == "HAPLY":
+    chosen, scale = scene.palpate, scene.palpate.device_scale
+    if chosen.second_frame is not None:
+        return _frame_of_empty(chosen.second_frame, body, scale)
+    if chosen.second == "HAPLY":
         return frame_of_matrix(upright_plane(thing), body, scale)
-    if empty is None:
-        return DeviceFrame(np.eye(3), np.zeros(3), scale)
+    return DeviceFrame(np.eye(3), np.zeros(3), scale)
+
+
+def _frame_of_empty(empty: bpy.types.Object, body: BodyFrame, scale: float) -> DeviceFrame:
     try:
         return frame_of_matrix(np.array(empty.matrix_world), body, scale)
     except PalpateError as problem:

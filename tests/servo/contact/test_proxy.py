@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from palpate_servo import Body
 from palpate_servo.harness import Proxy
-from scipy.spatial import ConvexHull
+
+from palpate.tests.bodies.golden_sphere import golden_sphere
 
 MOUSE = Path(__file__).resolve().parents[2] / "meshes" / "mouse-1.7k.npz"
 FACES_OF_A_TET = np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])
@@ -145,20 +146,6 @@ def test_a_position_that_is_not_finite_is_refused(cube):
     proxy = Proxy(cube.native)
     with pytest.raises(ValueError, match="not finite"):
         proxy.move([0.0, np.nan, 0.0])
-
-
-def golden_sphere(count, radius):
-    """Nodes by the golden angle and their hull, outwards: 2 (count - 2) triangles."""
-    place = np.arange(count) + 0.5
-    height = 1 - 2 * place / count
-    azimuth = np.pi * (1 + 5**0.5) * place
-    across = np.sqrt(1 - height**2)
-    nodes = radius * np.stack([across * np.cos(azimuth), across * np.sin(azimuth), height], axis=1)
-    triangles = ConvexHull(nodes).simplices.astype(np.int64)
-    a, b, c = nodes[triangles].swapaxes(0, 1)
-    inwards = np.einsum("ij,ij->i", np.cross(b - a, c - a), a + b + c) < 0
-    triangles[inwards] = triangles[inwards][:, [0, 2, 1]]
-    return nodes, triangles
 
 
 def great_circles(count, step):
