@@ -12,7 +12,7 @@ from ..operators.object import body_store, kept_body
 from ..operators.scene import live_shape
 from ..operators.scene.package_preferences import preferences
 from ..operators.session import press_session
-from ..operators.session.press_events import SaveBegins, SaveEnds
+from ..operators.session.press_events import Moment
 from . import known_status
 
 # Body files before a save that may change the .blend's folder.
@@ -57,7 +57,7 @@ def _after_undo(*_: object) -> None:
 def _before_save(*_: object) -> None:
     session = press_session.current()
     if session is not None:
-        session.post(SaveBegins())
+        session.post(Moment.SAVE_BEGINS)
     _found_before_save.clear()
     for thing in bpy.data.objects:
         path = body_store.locate(thing)
@@ -87,7 +87,7 @@ def _after_failed_save(*_: object) -> None:
     known_status.forget()
     session = press_session.current()
     if session is not None:
-        session.post(SaveEnds())
+        session.post(Moment.SAVE_ENDS)
 
 
 @persistent

@@ -13,7 +13,7 @@ from ..scene import viewport
 from ..scene.viewport import Viewport, redraw_views
 from ..session import press_session
 from ..session.pointer_hand import PointerHand
-from ..session.press_events import Cancel, Keep, Source
+from ..session.press_events import Keep, Moment, Source
 from ..session.press_session import PressSession
 from ..session.press_state import Phase
 
@@ -206,11 +206,11 @@ def _strikes_button(event: bpy.types.Event) -> bool:
     return event.type == "LEFTMOUSE" and event.value == "PRESS"
 
 
-def _ending(event: bpy.types.Event, *, over_view: bool, dented: bool) -> Cancel | Keep | None:
+def _ending(event: bpy.types.Event, *, over_view: bool, dented: bool) -> Moment | Keep | None:
     """End of the press by an event, if it is one."""
     if event.value != "PRESS":
         return None
     undoes = event.type == "Z" and (event.ctrl or event.oskey)
     if event.type == "ESC" or undoes or (event.type == "RIGHTMOUSE" and over_view):
-        return Cancel()
+        return Moment.CANCEL
     return Keep(dented) if event.type in {"RET", "NUMPAD_ENTER"} else None

@@ -17,7 +17,7 @@ from ..scene.probe_drag import ProbeDrag
 from ..scene.viewport import Viewport
 from ..tool import tool_turn
 from ..tool.tool_turn import Point, Turn
-from .press_events import Grab, Move, Release, SetDown
+from .press_events import Moment, Move, SetDown
 from .press_session import PressSession
 
 Array = NDArray[np.float64]
@@ -57,7 +57,7 @@ class PointerHand:
         if grabbed is not None:
             held = self.held[grabbed]
             if self._begin(here, event, grabbed, held.target, held.normal):
-                self.session.post(Grab())
+                self.session.post(Moment.GRAB)
             return
         drawn = self.session.drawn
         triangles = drawn.body.mesh.surface_triangles
@@ -79,7 +79,7 @@ class PointerHand:
         """Handle pointer motion, wheel and released button."""
         if event.type == "LEFTMOUSE" and event.value == "RELEASE":
             self._drag = None
-            self.session.post(Release())
+            self.session.post(Moment.RELEASE)
             return
         if self._drag is None:
             return
@@ -113,7 +113,7 @@ class PointerHand:
             start, turn = self._at_rest(hit.alpha @ nodes[corners], normal, axes)
             self.held[finger] = Held(start, normal)
             self._set_down(finger, turn)
-            self.session.post(Release())
+            self.session.post(Moment.RELEASE)
 
     def _at_rest(self, point: Array, normal: Array, view_axes: Array) -> tuple[Array, Turn | None]:
         """Position of a finger just out of contact, and rotation of its tool."""

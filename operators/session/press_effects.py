@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import Enum
 
 from ..tool.tool_turn import Point, Turn
 from .press_events import Source
@@ -36,31 +37,6 @@ class SwitchForce:
 
 
 @dataclass(frozen=True)
-class StopServo:
-    """Stop the servo: zero force, thread joined."""
-
-
-@dataclass(frozen=True)
-class HangLiveShape:
-    """Add the live shape key."""
-
-
-@dataclass(frozen=True)
-class DrawRest:
-    """Write the rest shape into the live shape key."""
-
-
-@dataclass(frozen=True)
-class RemoveLiveShape:
-    """Restore the mesh as it was found, bit for bit."""
-
-
-@dataclass(frozen=True)
-class KeepShape:
-    """Turn the live shape key into a kept one."""
-
-
-@dataclass(frozen=True)
 class Say:
     """Report to the user."""
 
@@ -68,15 +44,14 @@ class Say:
     warning: bool = False
 
 
-Effect = (
-    StartServo
-    | PlaceProbe
-    | MoveProbe
-    | SwitchForce
-    | StopServo
-    | HangLiveShape
-    | DrawRest
-    | RemoveLiveShape
-    | KeepShape
-    | Say
-)
+class Act(Enum):
+    """Effect that needs no more words."""
+
+    STOP_SERVO = "stop the servo: zero force, thread joined"
+    HANG_LIVE_SHAPE = "add the live shape key"
+    DRAW_REST = "write the rest shape into the live shape key"
+    REMOVE_LIVE_SHAPE = "restore the mesh as it was found, bit for bit"
+    KEEP_SHAPE = "turn the live shape key into a kept one"
+
+
+Effect = StartServo | PlaceProbe | MoveProbe | SwitchForce | Say | Act

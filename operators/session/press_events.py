@@ -36,11 +36,6 @@ class SetDown:
 
 
 @dataclass(frozen=True)
-class Grab:
-    """The pointer grabs a finger that was set down before; it does not move."""
-
-
-@dataclass(frozen=True)
 class Move:
     """The pointer moves the finger here (body coordinates)."""
 
@@ -49,20 +44,10 @@ class Move:
 
 
 @dataclass(frozen=True)
-class Release:
-    """The pointer's button is released."""
-
-
-@dataclass(frozen=True)
 class Fault:
     """The device is gone, stale or in fault; ``text`` has the reason and the remedy."""
 
     text: str
-
-
-@dataclass(frozen=True)
-class Recovered:
-    """The device answers again."""
 
 
 @dataclass(frozen=True)
@@ -80,25 +65,10 @@ class BringBack:
 
 
 @dataclass(frozen=True)
-class SaveBegins:
-    """Blender is about to write the file."""
-
-
-@dataclass(frozen=True)
-class SaveEnds:
-    """Blender has written the file, or failed to."""
-
-
-@dataclass(frozen=True)
 class Keep:
     """The user keeps the shape; ``dented`` unless the probe is in the air."""
 
     dented: bool = True
-
-
-@dataclass(frozen=True)
-class Cancel:
-    """The user cancels the press."""
 
 
 @dataclass(frozen=True)
@@ -108,19 +78,15 @@ class GiveWay:
     reason: str
 
 
-Event = (
-    Start
-    | SetDown
-    | Grab
-    | Move
-    | Release
-    | Fault
-    | Recovered
-    | LetGo
-    | BringBack
-    | SaveBegins
-    | SaveEnds
-    | Keep
-    | Cancel
-    | GiveWay
-)
+class Moment(Enum):
+    """Event that needs no more words."""
+
+    GRAB = "the pointer grabs a finger that was set down before; it does not move"
+    RELEASE = "the pointer's button is released"
+    RECOVERED = "the device answers again"
+    SAVE_BEGINS = "the file is about to be written"
+    SAVE_ENDS = "the file was written, or could not be"
+    CANCEL = "the user cancels the press"
+
+
+Event = Start | SetDown | Move | Fault | LetGo | BringBack | Keep | GiveWay | Moment

@@ -29,20 +29,8 @@ from .finger_leads import BOTH_POINTER, FingerLead, Lead, leads_of
 from .force_loop import ForceLoop
 from .led_loop import lead_fingers, record, start_loop
 from .live_settings import LiveSettings
-from .press_effects import (
-    DrawRest,
-    Effect,
-    HangLiveShape,
-    KeepShape,
-    MoveProbe,
-    PlaceProbe,
-    RemoveLiveShape,
-    Say,
-    StartServo,
-    StopServo,
-    SwitchForce,
-)
-from .press_events import BringBack, Event, Fault, GiveWay, LetGo, Recovered, Source, Start
+from .press_effects import Act, Effect, MoveProbe, PlaceProbe, Say, StartServo, SwitchForce
+from .press_events import BringBack, Event, Fault, GiveWay, LetGo, Moment, Source, Start
 from .press_state import Phase, PressState, transition
 from .seen_body import SeenBody
 
@@ -146,21 +134,21 @@ class PressSession:
 
     def _apply(self, effect: Effect) -> None:
         match effect:
-            case HangLiveShape():
+            case Act.HANG_LIVE_SHAPE:
                 self._with_object(live_shape.hang)
                 self.seen.drawn_contact = ()
             case StartServo(source):
                 self._start_loop(source)
             case PlaceProbe() | MoveProbe() | SwitchForce():
                 self._running.carry_out(effect)
-            case DrawRest():
+            case Act.DRAW_REST:
                 self.seen.draw_rest(self.handle.find())
-            case StopServo():
+            case Act.STOP_SERVO:
                 self._stop_loop()
-            case RemoveLiveShape():
+            case Act.REMOVE_LIVE_SHAPE:
                 self._with_object(live_shape.leave_edit_mode)
                 self._with_object(live_shape.remove)
-            case KeepShape():
+            case Act.KEEP_SHAPE:
                 self._with_object(self._keep)
             case Say():
                 self.said.append(effect)
@@ -252,7 +240,7 @@ class PressSession:
             elif text != self.state.message:
                 self.post(Fault(text))
         elif self.state.phase is Phase.LOST:
-            self.post(Recovered())
+            self.post(Moment.RECOVERED)
 
 
 _current: PressSession | None = None

@@ -10,33 +10,16 @@ import math
 from dataclasses import dataclass, replace
 from enum import Enum
 
-from .press_effects import (
-    DrawRest,
-    Effect,
-    HangLiveShape,
-    KeepShape,
-    MoveProbe,
-    PlaceProbe,
-    RemoveLiveShape,
-    Say,
-    StartServo,
-    StopServo,
-    SwitchForce,
-)
+from .press_effects import Act, Effect, MoveProbe, PlaceProbe, Say, StartServo, SwitchForce
 from .press_events import (
     BringBack,
-    Cancel,
     Event,
     Fault,
     GiveWay,
-    Grab,
     Keep,
     LetGo,
+    Moment,
     Move,
-    Recovered,
-    Release,
-    SaveBegins,
-    SaveEnds,
     SetDown,
     Source,
     Start,
@@ -94,17 +77,17 @@ def transition(state: PressState, event: Event) -> Step:
     match event:
         case GiveWay(reason):
             return _end(state, reason)
-        case Cancel():
+        case Moment.CANCEL:
             return _end(state, "")
         case Keep(dented):
             return _keep(state, dented=dented)
-        case SaveBegins() | SaveEnds():
+        case Moment.SAVE_BEGINS | Moment.SAVE_ENDS:
             return _save(state, event)
-        case Fault() | Recovered() if state.source is Source.DEVICE:
+        case Fault() | Moment.RECOVERED if state.source is Source.DEVICE:
             return _device(state, event)
         case LetGo() | BringBack() if state.has_device:
             return _switch_force(state, event)
-        case SetDown() | Grab() | Move() | Release() if state.source is Source.POINTER:
+        case SetDown() | Moment.GRAB | Move() | Moment.RELEASE if state.source is Source.POINTER:
             return _pointer(state, event)
     return state, ()
 
@@ -115,31 +98,31 @@ def _start(state: PressState, event: Start) -> Step:
     phase = Phase.READY if event.source is Source.POINTER else Phase.FEELING
     has_device = event.device or event.source is Source.DEVICE
     begun = PressState(phase, event.source, has_device=has_device)
-    return begun, (HangLiveShape(), StartServo(event.source))
+    return begun, (Act.HANG_LIVE_SHAPE, StartServo(event.source))
 
 
-def _pointer(state: PressState, event: SetDown | Grab | Move | Release) -> Step:
+def _pointer(state: PressState, event: SetDown | Move | Moment) -> Step:
     match state.phase, event:
         case ((Phase.READY | Phase.HOLDING), SetDown(point, finger, turn)):
             dragging = replace(state, phase=Phase.DRAGGING, message="")
             return dragging, (PlaceProbe(point, finger, turn),)
-        case ((Phase.READY | Phase.HOLDING), Grab()):
+        case ((Phase.READY | Phase.HOLDING), Moment.GRAB):
             return replace(state, phase=Phase.DRAGGING, message=""), ()
         case Phase.DRAGGING, Move(point, finger):
             return state, (MoveProbe(point, finger),)
-        case Phase.DRAGGING, Release():
+        case Phase.DRAGGING, Moment.RELEASE:
             return replace(state, phase=Phase.HOLDING), ()
     return state, ()
 
 
-def _device(state: PressState, event: Fault | Recovered) -> Step:
+def _device(state: PressState, event: Fault | Moment) -> Step:
     match state.phase, event:
         case Phase.FEELING, Fault(text):
             lost = replace(state, phase=Phase.LOST, message=text)
-            return lost, (() if state.withdrawn else (DrawRest(),)) + (Say(text, warning=True),)
+            return lost, (() if state.withdrawn else (Act.DRAW_REST,)) + (Say(text, warning=True),)
         case Phase.LOST, Fault(text):
             return replace(state, message=text), ()
-        case Phase.LOST, Recovered():
+        case Phase.LOST, Moment.RECOVERED:
             text = "The device is back"
             return replace(state, phase=Phase.FEELING, message=""), (Say(text),)
     return state, ()
@@ -155,11 +138,11 @@ def _switch_force(state: PressState, event: LetGo | BringBack) -> Step:
     return state, ()
 
 
-def _save(state: PressState, event: SaveBegins | SaveEnds) -> Step:
-    begins = isinstance(event, SaveBegins)
+def _save(state: PressState, event: Moment) -> Step:
+    begins = event is Moment.SAVE_BEGINS
     if state.withdrawn == begins:
         return state, ()
-    effect = RemoveLiveShape() if begins else HangLiveShape()
+    effect = Act.REMOVE_LIVE_SHAPE if begins else Act.HANG_LIVE_SHAPE
     return replace(state, withdrawn=begins), (effect,)
 
 
@@ -167,13 +150,13 @@ def _keep(state: PressState, *, dented: bool) -> Step:
     if state.withdrawn or not (state.pressed and dented):
         text = "Nothing is pressed yet, so there is no shape to keep"
         return replace(state, message=text), (Say(text),)
-    return replace(state, phase=Phase.ENDED, message=""), (StopServo(), KeepShape())
+    return replace(state, phase=Phase.ENDED, message=""), (Act.STOP_SERVO, Act.KEEP_SHAPE)
 
 
 def _end(state: PressState, reason: str) -> Step:
-    effects: tuple[Effect, ...] = (StopServo(),)
+    effects: tuple[Effect, ...] = (Act.STOP_SERVO,)
     if not state.withdrawn:
-        effects += (RemoveLiveShape(),)
+        effects += (Act.REMOVE_LIVE_SHAPE,)
     if reason:
         effects += (Say(reason, warning=True),)
     return replace(state, phase=Phase.ENDED, withdrawn=False, message=reason), effects

@@ -122,7 +122,7 @@ def begin_pressed(sessions: ModuleType, states: ModuleType, thing: bpy.types.Obj
     x, y, z = BESIDE
     session.post(states.SetDown(BESIDE))
     session.post(states.Move((x, y, z - DEPTH)))
-    session.post(states.Release())
+    session.post(states.Moment.RELEASE)
     wait(session, lambda: session.seen.displacements is not None and depth(session) > 0.99 * DEPTH)
     return session
 

@@ -146,7 +146,7 @@ def test_a_recording_misses_no_tick_while_blender_is_busy_and_outlives_the_press
     session.tick()
     assert session.loop.recorder.going_on
     assert session.loop.recorder.seconds > 0.3
-    session.post(states.Cancel())
+    session.post(states.Moment.CANCEL)
     assert sessions.current() is None
     for name in ("felt.csv", "felt.npz"):
         path = tmp_path / name
@@ -191,7 +191,7 @@ def test_a_recording_that_cannot_be_written_is_refused_with_a_remedy(sessions, s
     bpy.context.scene.palpate.record_from_start = True
     session = begin(sessions, states, soft_cube())
     session.tick()
-    session.post(states.Cancel())
+    session.post(states.Moment.CANCEL)
     assert ".csv" in error_of(bpy.ops.palpate.save_recording, filepath=str(tmp_path / "a.txt"))
     nowhere = tmp_path / "nowhere" / "a.csv"
     assert "folder" in error_of(bpy.ops.palpate.save_recording, filepath=str(nowhere))
@@ -222,7 +222,7 @@ def test_a_long_recording_is_written_while_the_press_goes_on(
         writer.unregister()
     assert len(part("core.servo.recording").read_recording(path).samples) > 50
     assert writer.latest().problem == ""
-    session.post(states.Cancel())
+    session.post(states.Moment.CANCEL)
     monkeypatch.undo()
     (tmp_path / "taken.csv").mkdir()
     with pytest.raises(part("core.errors").PalpateError, match="folder"):
@@ -246,7 +246,7 @@ def test_a_haply_presses_in_the_upright_plane_through_the_top(sessions, states):
     ends = np.array(lines).reshape(-1, 3)
     assert len(lines) == 4
     assert np.allclose(np.ptp(ends, axis=0), [0.12, 0.0, 0.07], atol=1e-6)
-    session.post(states.Cancel())
+    session.post(states.Moment.CANCEL)
     assert mesh_state(thing) == before
 
 

@@ -32,7 +32,7 @@ def test_a_pinch_is_felt_by_both_and_agrees_with_the_one_without_a_clock(session
     session = begin(sessions, states, thing, pinch=True)
     session.post(states.SetDown(LEFT, 0))
     session.post(states.Move(LEFT_IN, 0))
-    session.post(states.Release())
+    session.post(states.Moment.RELEASE)
     session.post(states.SetDown(RIGHT, 1))
     session.post(states.Move(RIGHT_IN, 1))
     wait(session, lambda: arrived(session, LEFT_IN, RIGHT_IN))
@@ -40,7 +40,7 @@ def test_a_pinch_is_felt_by_both_and_agrees_with_the_one_without_a_clock(session
     for seen, told in zip(figures, once.fingers, strict=True):
         assert np.allclose(seen.force_vector, told.force, rtol=0.05, atol=0.02 * seen.force)
         assert seen.depth == pytest.approx(0.003, abs=1e-4)
-    session.post(states.Cancel())
+    session.post(states.Moment.CANCEL)
     assert mesh_state(thing) == before
 
 
@@ -74,7 +74,7 @@ def test_a_simulated_device_presses_beside_the_pointer(sessions, states):
     wait(session, lambda: session.snapshot.fingers[0].touching, 20.0)
     wait(session, lambda: session.snapshot.fingers[1].touching, 20.0)
     device = session.loop.second_simulated
-    session.post(states.Cancel())
+    session.post(states.Moment.CANCEL)
     assert sessions.current() is None
     assert not device.running
 
@@ -101,7 +101,7 @@ def test_a_haply_presses_beside_the_pointer(sessions, states):
         second = session.snapshot.fingers[1]
         assert abs(second.probe[1]) < 1e-6
         assert second.proxy[2] == pytest.approx(0.025, abs=1e-3)
-        session.post(states.Cancel())
+        session.post(states.Moment.CANCEL)
 
 
 def test_the_mode_is_felt_while_pressing(sessions, states):
@@ -147,7 +147,7 @@ def test_a_fingertip_is_felt_as_without_a_clock_and_its_patch_is_seen(sessions, 
     distance = np.linalg.norm(patch.places - np.array(pressed), axis=1)
     assert np.abs(distance - 0.02).max() < 2e-3
     assert (patch.normals[:, 2] > 0.5).all()
-    session.post(states.Cancel())
+    session.post(states.Moment.CANCEL)
     assert mesh_state(thing) == before
 
 
@@ -177,6 +177,6 @@ def test_the_next_press_does_not_read_the_body_again_unless_its_file_changed(ses
             locate(thing).touch()
         session = begin(sessions, states, thing)
         bodies.append(session.drawn.body)
-        session.post(states.Cancel())
+        session.post(states.Moment.CANCEL)
     assert bodies[0] is bodies[1]
     assert bodies[2] is not bodies[1]

@@ -76,7 +76,7 @@ def test_cancel_restores_every_bit(sessions, states, with_keys):
     press_in(session, states)
     live = key_coordinates(thing, "Palpate live")
     assert np.abs(live - key_coordinates(thing, "Basis")).max() > 1e-4
-    session.post(states.Cancel())
+    session.post(states.Moment.CANCEL)
     assert mesh_state(thing) == before
     assert sessions.current() is None
 
@@ -91,7 +91,7 @@ def test_keep_leaves_one_new_key_and_all_else(sessions, states, with_keys):
     session = begin(sessions, states, thing)
     press_in(session, states)
     seen = key_coordinates(thing, "Palpate live")
-    session.post(states.Release())
+    session.post(states.Moment.RELEASE)
     session.post(states.Keep())
     after = mesh_state(thing)
     assert np.array_equal(key_coordinates(thing, "Press 1"), seen)
@@ -147,7 +147,7 @@ def test_a_renamed_object_is_pressed_on(sessions, states):
     session = begin(sessions, states, thing)
     thing.name = "Another name"
     press_in(session, states)
-    session.post(states.Cancel())
+    session.post(states.Moment.CANCEL)
     assert key_names(thing) == []
 
 
@@ -174,7 +174,7 @@ def test_a_save_while_pressing_writes_no_live_shape_and_the_press_goes_on(
     assert sessions.current() is session
     session.tick()
     assert key_names(thing) == ["Basis", "Palpate live"]
-    session.post(states.Cancel())
+    session.post(states.Moment.CANCEL)
     bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "saved.blend"))
     assert key_names(bpy.data.objects[name]) == []
 
@@ -274,7 +274,7 @@ def test_a_servo_that_fails_to_stop_does_not_leave_the_live_key(sessions, states
 
     session.loop.servo = Failing()
     with pytest.raises(RuntimeError, match="it did not stop"):
-        session.post(states.Cancel())
+        session.post(states.Moment.CANCEL)
     assert mesh_state(thing) == before
     assert sessions.current() is None
 
@@ -295,7 +295,7 @@ def test_the_simulated_device_presses_is_unplugged_and_comes_back(sessions, stat
     wait(session, lambda: session.state.phase is states.Phase.FEELING)
     wait(session, lambda: session.snapshot.touching)
     child = session.loop.simulated._process
-    session.post(states.Cancel())
+    session.post(states.Moment.CANCEL)
     assert child.poll() is not None
     assert mesh_state(thing) == before
 

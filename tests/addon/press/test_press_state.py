@@ -30,32 +30,32 @@ def test_a_pointer_press_goes_from_touch_to_kept_shape(ps):
         ps.Start(ps.Source.POINTER),
         ps.SetDown(POINT),
         ps.Move((0.0, 0.0, 0.09)),
-        ps.Release(),
+        ps.Moment.RELEASE,
         ps.Keep(),
     )
     assert state.phase is ps.Phase.ENDED
     assert effects == [
-        ps.HangLiveShape(),
+        ps.Act.HANG_LIVE_SHAPE,
         ps.StartServo(ps.Source.POINTER),
         ps.PlaceProbe(POINT),
         ps.MoveProbe((0.0, 0.0, 0.09)),
-        ps.StopServo(),
-        ps.KeepShape(),
+        ps.Act.STOP_SERVO,
+        ps.Act.KEEP_SHAPE,
     ]
 
 
 def test_a_probe_in_the_air_leaves_no_shape_to_keep(ps):
-    touched = (ps.Start(ps.Source.POINTER), ps.SetDown(POINT), ps.Release())
+    touched = (ps.Start(ps.Source.POINTER), ps.SetDown(POINT), ps.Moment.RELEASE)
     state, effects = play(ps, *touched, ps.Keep(dented=False))
     assert state.phase is ps.Phase.HOLDING
     assert "no shape" in state.message
-    assert ps.KeepShape() not in effects
+    assert ps.Act.KEEP_SHAPE not in effects
 
 
 def test_nothing_pressed_cannot_be_kept(ps):
     state, effects = play(ps, ps.Start(ps.Source.POINTER), ps.Keep())
     assert state.phase is ps.Phase.READY
-    assert ps.KeepShape() not in effects
+    assert ps.Act.KEEP_SHAPE not in effects
 
 
 def test_moving_without_the_button_does_not_move_the_probe(ps):
@@ -66,16 +66,16 @@ def test_moving_without_the_button_does_not_move_the_probe(ps):
 def test_a_device_that_goes_away_leaves_the_rest_shape_and_comes_back(ps):
     state, effects = play(ps, ps.Start(ps.Source.DEVICE), ps.Fault("gone"))
     assert state.phase is ps.Phase.LOST
-    assert ps.DrawRest() in effects
+    assert ps.Act.DRAW_REST in effects
     assert ps.Say("gone", warning=True) in effects
-    state, _ = ps.transition(state, ps.Recovered())
+    state, _ = ps.transition(state, ps.Moment.RECOVERED)
     assert state.phase is ps.Phase.FEELING
 
 
 def test_a_lost_device_has_no_shape_to_keep(ps):
     state, effects = play(ps, ps.Start(ps.Source.DEVICE), ps.Fault("gone"), ps.Keep())
     assert state.phase is ps.Phase.LOST
-    assert ps.KeepShape() not in effects
+    assert ps.Act.KEEP_SHAPE not in effects
 
 
 def test_the_force_is_let_go_at_once_and_comes_back_only_after_a_calm_moment(ps):
@@ -92,7 +92,7 @@ def test_the_force_is_let_go_at_once_and_comes_back_only_after_a_calm_moment(ps)
 
 
 def test_the_force_can_be_let_go_while_the_device_is_away_and_stays_off_when_it_returns(ps):
-    walk = (ps.Fault("gone"), ps.LetGo(1.0), ps.Recovered())
+    walk = (ps.Fault("gone"), ps.LetGo(1.0), ps.Moment.RECOVERED)
     state, effects = play(ps, ps.Start(ps.Source.DEVICE), *walk)
     assert not state.force_on
     assert effects.count(ps.SwitchForce(on=False)) == 1
@@ -107,10 +107,14 @@ def test_a_pointer_has_no_force_to_let_go(ps):
 
 def test_a_save_sees_no_live_shape_and_the_press_goes_on(ps):
     state, effects = play(
-        ps, ps.Start(ps.Source.POINTER), ps.SetDown(POINT), ps.SaveBegins(), ps.SaveEnds()
+        ps,
+        ps.Start(ps.Source.POINTER),
+        ps.SetDown(POINT),
+        ps.Moment.SAVE_BEGINS,
+        ps.Moment.SAVE_ENDS,
     )
     assert state.phase is ps.Phase.DRAGGING
-    assert effects[-2:] == [ps.RemoveLiveShape(), ps.HangLiveShape()]
+    assert effects[-2:] == [ps.Act.REMOVE_LIVE_SHAPE, ps.Act.HANG_LIVE_SHAPE]
 
 
 def test_whatever_happened_giving_way_stops_the_servo_and_cleans_the_mesh(ps):
@@ -118,27 +122,27 @@ def test_whatever_happened_giving_way_stops_the_servo_and_cleans_the_mesh(ps):
     events = [
         ps.SetDown(POINT),
         ps.Move(POINT),
-        ps.Release(),
+        ps.Moment.RELEASE,
         ps.Fault("gone"),
-        ps.Recovered(),
+        ps.Moment.RECOVERED,
         ps.LetGo(0.0),
-        ps.SaveBegins(),
-        ps.SaveEnds(),
+        ps.Moment.SAVE_BEGINS,
+        ps.Moment.SAVE_ENDS,
         ps.Keep(),
-        ps.Cancel(),
+        ps.Moment.CANCEL,
     ]
     for source in ps.Source:
         for walk in itertools.product(events, repeat=3):
             state, effects = play(ps, ps.Start(source), *walk, ps.GiveWay("end"))
             assert state.phase is ps.Phase.ENDED
-            assert effects.count(ps.StopServo()) == 1
-            hung = effects.count(ps.HangLiveShape())
-            removed = effects.count(ps.RemoveLiveShape()) + effects.count(ps.KeepShape())
+            assert effects.count(ps.Act.STOP_SERVO) == 1
+            hung = effects.count(ps.Act.HANG_LIVE_SHAPE)
+            removed = effects.count(ps.Act.REMOVE_LIVE_SHAPE) + effects.count(ps.Act.KEEP_SHAPE)
             assert hung == removed, f"{source}, {walk}"
 
 
 def test_after_the_end_nothing_has_an_effect(ps):
-    state, _ = play(ps, ps.Start(ps.Source.POINTER), ps.Cancel())
+    state, _ = play(ps, ps.Start(ps.Source.POINTER), ps.Moment.CANCEL)
     for event in (ps.Start(ps.Source.POINTER), ps.SetDown(POINT), ps.Keep(), ps.GiveWay("")):
         assert ps.transition(state, event) == (state, ())
 
@@ -149,11 +153,11 @@ def test_a_pinch_leads_each_finger_and_takes_hold_of_it_again(ps):
         ps,
         ps.Start(ps.Source.POINTER),
         ps.SetDown(POINT, 0),
-        ps.Release(),
+        ps.Moment.RELEASE,
         ps.SetDown(other, 1),
         ps.Move(POINT, 1),
-        ps.Release(),
-        ps.Grab(),
+        ps.Moment.RELEASE,
+        ps.Moment.GRAB,
         ps.Move(other, 0),
     )
     assert state.phase is ps.Phase.DRAGGING
@@ -166,7 +170,7 @@ def test_a_pinch_leads_each_finger_and_takes_hold_of_it_again(ps):
 
 
 def test_nothing_can_be_grabbed_that_the_pointer_does_not_lead(ps):
-    state, effects = play(ps, ps.Start(ps.Source.EMPTY), ps.Grab(), ps.SetDown(POINT))
+    state, effects = play(ps, ps.Start(ps.Source.EMPTY), ps.Moment.GRAB, ps.SetDown(POINT))
     assert state.phase is ps.Phase.FEELING
     assert ps.PlaceProbe(POINT) not in effects
 

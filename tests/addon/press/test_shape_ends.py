@@ -41,7 +41,7 @@ def test_every_shape_leaves_the_mesh_as_it_was(sessions, states, name, way):
     assert not session.seen.shape.problem
     assert mesh_state(thing) != before
     if way == "escape":
-        session.post(states.Cancel())
+        session.post(states.Moment.CANCEL)
     else:
         part("addon.handlers")._before_undo()
     assert sessions.current() is None

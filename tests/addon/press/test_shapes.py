@@ -129,7 +129,7 @@ def test_a_shape_is_switched_while_pressing_and_nothing_is_lost(sessions, states
     np.testing.assert_array_equal(session.seen.linear, linear)
     thing.palpate.shape = "LINEAR"
     wait(session, lambda: np.array_equal(session.seen.displacements, linear))
-    session.post(states.Cancel())
+    session.post(states.Moment.CANCEL)
     thing.palpate.shape = "LINEAR"
     assert mesh_state(thing) == before
 
@@ -214,7 +214,7 @@ def test_the_end_of_a_press_ends_the_work_behind_it(sessions, states, shapes, mo
     session = begin_pressed(sessions, states, thing)
     wait(session, lambda: session.seen.shape.ready == 1.0 and bool(made))
     if way == "cancel":
-        session.post(states.Cancel())
+        session.post(states.Moment.CANCEL)
     elif way == "deletion":
         bpy.data.objects.remove(thing)
         session.tick()
@@ -237,7 +237,7 @@ def test_a_shape_still_being_made_is_closed_when_it_is_there(sessions, states, s
     monkeypatch.setitem(shapes.MAKERS, "paper", slowly)
     thing.palpate.shape = "TABLE"
     session = begin_pressed(sessions, states, thing)
-    session.post(states.Cancel())
+    session.post(states.Moment.CANCEL)
     allowed.set()
     end = time.monotonic() + 5.0
     while not made and time.monotonic() < end:
