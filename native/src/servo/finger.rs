@@ -3,11 +3,13 @@
 //! The servo leads all fingers through the stages of a tick, one stage after the other; what happens
 //! between them lies in [`crate::fingers::several`].
 
+mod among;
 mod inspection;
 mod output;
 mod point;
 mod tool;
 
+use among::Among;
 use glam::{DMat3, DVec3};
 use triple_buffer::Input;
 
@@ -46,16 +48,7 @@ pub struct Finger {
     tool_touch: ToolTouch,
     proxy: Option<Proxy>,
     probe: DVec3,
-    /// How far the others moved the surface where it touches or will touch in the last tick, m.
-    by_others: DVec3,
-    /// How far it is moved back from its place before the proxy sees it, m: onto the rest surface.
-    moved_back: DVec3,
-    /// Unit vector of its push on the body, zero while it has none.
-    push_direction: DVec3,
-    /// Set down anew: what the others do there is not known yet.
-    is_fresh: bool,
-    /// That is known since the last tick: it decides on which side the finger was set down.
-    set_down_again: bool,
+    among: Among,
     /// From 0 to 1 after a fault: how much it acts on the others.
     presence: f64,
     frame_epoch: u32,
@@ -84,11 +77,7 @@ impl Finger {
             tool_touch: ToolTouch::default(),
             proxy: None,
             probe: DVec3::ZERO,
-            by_others: DVec3::ZERO,
-            moved_back: DVec3::ZERO,
-            push_direction: DVec3::ZERO,
-            is_fresh: true,
-            set_down_again: false,
+            among: Among::fresh(),
             presence: 1.0,
             frame_epoch: settings.frame.epoch,
             coupler: Coupler::default(),
@@ -190,8 +179,7 @@ impl Finger {
         let lifted =
             probe.restart || jumped || lost_its_place || moment.body_replaced || self.tip_changed;
         if lifted {
-            self.forget_others();
-            (self.is_fresh, self.set_down_again) = (true, false);
+            self.among = Among::fresh();
         }
         if self.has_tool() {
             if lifted && self.tip_fits {
@@ -199,14 +187,9 @@ impl Finger {
             }
             return;
         }
-        let lifted = lifted || std::mem::take(&mut self.set_down_again);
-        let n = self.push_direction;
-        self.moved_back = if n == DVec3::ZERO {
-            self.by_others
-        } else {
-            self.moved_back + n * n.dot(self.by_others - self.moved_back)
-        };
-        let seen = self.probe - self.moved_back;
+        let lifted = lifted || std::mem::take(&mut self.among.set_down_again);
+        self.among = self.among.carried();
+        let seen = self.probe - self.among.moved_back;
         match &mut self.proxy {
             Some(proxy) if !lifted => proxy.follow(body, seen, &settings.feel, moment.dt),
             Some(proxy) => proxy.restart(body, seen),
@@ -245,7 +228,7 @@ impl Finger {
 
     /// Whether it has to reckon with what others do or did.
     pub fn is_moved(&self) -> bool {
-        self.by_others != DVec3::ZERO || self.moved_back != DVec3::ZERO
+        self.among.is_moved()
     }
 
     fn has_motors(&self) -> bool {

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::Finger;
+use super::among::Among;
 use crate::algebra::series_share;
 use crate::body::face::closest_on_face;
 use crate::body::softening::Softening;
@@ -41,7 +42,7 @@ impl Finger {
                 hold,
                 touches: true,
                 displacement,
-                push: displacement - self.moved_back,
+                push: displacement - self.among.moved_back,
                 most_stiffness: limit,
                 presence: self.presence,
                 softening: Softening::mixed(&blended.softenings, hold.alpha),
@@ -51,7 +52,7 @@ impl Finger {
             return None;
         }
         let mut hold = proxy.nearest();
-        let seen = self.probe - self.moved_back;
+        let seen = self.probe - self.among.moved_back;
         hold.alpha = closest_on_face(body.face(hold.triangle), seen).0;
         Some(Press {
             hold,
@@ -178,33 +179,15 @@ impl Finger {
 
     /// Forgets what the others do.
     pub fn forget_others(&mut self) {
-        self.by_others = DVec3::ZERO;
-        self.moved_back = DVec3::ZERO;
-        self.push_direction = DVec3::ZERO;
-        self.is_fresh = false;
+        self.among = Among::default();
     }
 
     /// Notes what the others do at its place, and which way it pushes itself.
     fn reckon_with(&mut self, answer: &Answer) {
-        if self.found.blind {
-            return;
-        }
-        self.by_others = answer.by_others;
-        if !self.by_others.is_finite() {
-            self.forget_others();
-        }
-        self.set_down_again |= self.is_fresh && self.is_moved() && !self.touches();
-        self.is_fresh = false;
-        if !self.acts() {
-            self.push_direction = DVec3::ZERO;
-            return;
-        }
-        let push = self.shot.probe - self.moved_back - self.shot.proxy;
-        let n = push.try_normalize().unwrap_or(self.push_direction);
-        self.push_direction = n;
-        let slipped = self.moved_back + answer.slip - n * n.dot(answer.slip);
-        if slipped.is_finite() {
-            self.moved_back = slipped;
+        if !self.found.blind {
+            let pressed = self.shot.probe - self.shot.proxy;
+            let displacement = self.acts().then_some(pressed);
+            self.among = self.among.after(answer, self.touches(), displacement);
         }
     }
 
