@@ -52,6 +52,7 @@ class Settings:
     ----------
     young_modulus : pascal.
     enabled : False for no force from the next tick on; back on, the force ramps up.
+    max_force : newton, the most that any device is told; None for what the servo began with.
     shading : force shading, from normals interpolated over the facets.
     static_friction, dynamic_friction : 0 <= dynamic <= static.
     mode : contact mode.
@@ -66,6 +67,7 @@ class Settings:
 
     young_modulus: float
     enabled: bool = True
+    max_force: float | None = None
     shading: bool = False
     static_friction: float = 0.0
     dynamic_friction: float = 0.0

@@ -30,7 +30,6 @@ from ..device.loop_figures import LoopFigures
 from ..object.drawn_body import DrawnBody
 from ..record import recording
 from ..record.recording import Recorder
-from ..scene.package_preferences import preferences
 from ..shape.felt_table import FeltTable
 from ..tool.finger_tip import FingerTip
 from ..tool.tool_turn import Point, Turn
@@ -72,8 +71,7 @@ class ForceLoop:
             A body that cannot be touched, or a setting that the servo refuses.
         """
         touched = native_body(drawn.body, whole=fingers > 1 or tip.tool is not None)
-        limit = preferences().max_force
-        servo = servo_on(touched, settings.servo, rate_hz=rate_hz, max_force=limit)
+        servo = servo_on(touched, settings.servo, rate_hz=rate_hz)
         felt = FeltTable(drawn.body, touched, drawn.file)
         return cls(servo, settings, Recorder(servo, rate_hz), drawn, touched, tip, felt)
 

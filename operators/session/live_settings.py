@@ -11,6 +11,7 @@ from ...core.contact.equations import ContactMode
 from ...core.servo.session import device_coupling, haply_encoder_step
 from ...core.servo.settings import Coupling, Settings
 from ..device.device_source import DeviceFrame, is_planar
+from ..scene.package_preferences import preferences
 from ..shape.felt_table import chosen_felt
 
 
@@ -50,6 +51,7 @@ class LiveSettings:
         chosen = thing.palpate
         settings = Settings(
             young_modulus=chosen.young_modulus,
+            max_force=preferences().max_force,
             shading=chosen.shading,
             static_friction=chosen.static_friction,
             dynamic_friction=min(chosen.dynamic_friction, chosen.static_friction),

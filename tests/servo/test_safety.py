@@ -71,6 +71,21 @@ def test_a_broken_rule_is_printed(capsys):
     assert "FAILED: never called 'another name' (1)" in capsys.readouterr().out
 
 
+def test_the_force_limit_may_be_changed_while_a_body_is_touched(eventually):
+    with Servo(cube(), Settings(1e4), ramp_seconds=0.01) as servo:
+        servo.start(Pointer(ABOVE))
+        eventually(lambda: servo.snapshot().state == "free", servo.snapshot)
+        servo.set_target(DEEP)
+        eventually(lambda: np.allclose(servo.snapshot().probe, DEEP), servo.snapshot)
+        whole = servo.snapshot().contact_force[2]
+        for limit, given in ((0.5 * whole, 0.5 * whole), (None, whole), (2.0 * whole, whole)):
+            servo.set(Settings(1e4, max_force=limit))
+            reached = lambda given=given: np.isclose(servo.snapshot().output_force[2], given)  # noqa: E731
+            eventually(reached, servo.snapshot)
+        with pytest.raises(ValueError, match="max_force"):
+            servo.set(Settings(1e4, max_force=0.0))
+
+
 def test_a_body_replaced_while_it_is_touched_is_silent_named_and_ramps(eventually):
     with Servo(cube(), Settings(1e4), ramp_seconds=0.1) as servo:
         servo.start(Pointer(ABOVE))

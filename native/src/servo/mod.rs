@@ -116,9 +116,11 @@ impl Servo {
         let wanted = self.feel(&body, &moment, &settings);
         self.stages.end_of(Stage::Contact, &mut since);
 
+        let mut limits = self.options.limits;
+        limits.max_force = settings.max_force.unwrap_or(limits.max_force);
         let fingers = self.fingers.iter_mut().zip(&settings.fingers);
         for ((finger, own), wanted) in fingers.zip(wanted) {
-            finger.send(wanted, &self.options.limits, own, moment.dt);
+            finger.send(wanted, &limits, own, moment.dt);
         }
         self.stages.end_of(Stage::Write, &mut since);
         self.publish(settings.young_modulus);

@@ -16,6 +16,8 @@ pub struct Settings {
     pub young_modulus: f64,
     /// False: zero force at once.
     pub enabled: bool,
+    /// The most that any device is told, N; without one, what the servo began with.
+    pub max_force: Option<f64>,
     /// Shading, friction and how a contact becomes a force.
     pub feel: Feel,
     /// Which relation between displacement and force is felt.
@@ -30,6 +32,7 @@ impl Settings {
         Self {
             young_modulus,
             enabled: true,
+            max_force: None,
             feel: Feel::default(),
             felt: Felt::default(),
             fingers: [FingerSettings::default(); MAX_FINGERS],

@@ -63,6 +63,7 @@ pub fn felt_choice(name: &str) -> PyResult<Felt> {
 pub struct Given {
     young_modulus: f64,
     enabled: bool,
+    max_force: Option<f64>,
     shading: bool,
     static_friction: f64,
     dynamic_friction: f64,
@@ -124,6 +125,9 @@ impl Chosen {
         }
         let mut settings = Settings {
             enabled: given.enabled,
+            max_force: (given.max_force)
+                .map(|force| positive("max_force", force))
+                .transpose()?,
             feel: Feel {
                 mode: contact_mode(&given.mode)?,
                 ..feel(given.shading, given.static_friction, given.dynamic_friction)?
