@@ -77,6 +77,4 @@ MOST_LINES_OF_TESTS = 400
 KNOWN = (
     "core/contact/near_field/compliance_beneath.py is too long",
     "core/contact/near_field/contact_points.py is too long",
-    "core/contact/near_field/regular_field.py is too long",
-    "core/contact/tool/tools.py is too long",
 )

@@ -38,7 +38,8 @@ from palpate.benchmarks.measuring.contact.jumps import RATES, Jump, jump_of
 from palpate.benchmarks.measuring.contact.smooth_places import Facets, Place
 from palpate.core.bake.steps import BakeSettings, bake
 from palpate.core.body.soft_body import SoftBody
-from palpate.core.contact.tool.tools import Tool, convex, plate, rod, sphere
+from palpate.core.contact.tool.convex_tool import convex
+from palpate.core.contact.tool.tools import Tool, plate, rod, sphere
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.mesh.tet_mesh import TetMesh
 from palpate.core.servo.session import native_body, native_tool

@@ -45,7 +45,8 @@ from palpate_servo.harness import tick_costs, tool_costs
 
 from palpate.core.bake.steps import BakeSettings, bake
 from palpate.core.body.soft_body import SoftBody
-from palpate.core.contact.tool.tools import Tool, convex, plate, rod, sphere
+from palpate.core.contact.tool.convex_tool import convex
+from palpate.core.contact.tool.tools import Tool, plate, rod, sphere
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.servo.session import native_body, native_tool
 from palpate.core.stiffness.pins import PinNodes

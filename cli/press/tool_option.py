@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from ...core.contact.tool.tools import Tool, convex, plate, rod, sphere
+from ...core.contact.tool.convex_tool import convex
+from ...core.contact.tool.tools import Tool, plate, rod, sphere
 from ...core.errors import PalpateError
 from ...core.mesh.read_mesh import read_surface
 

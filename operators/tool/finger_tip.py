@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import bpy
 
 from ...core.contact.tool import tools
+from ...core.contact.tool.convex_tool import convex
 from ...core.contact.tool.pose import Pose
 from ...core.contact.tool.tool_dent import PressingTool
 from ...core.contact.tool.tools import Tool
@@ -64,4 +65,4 @@ def _of_object(thing: bpy.types.Object | None, scene: bpy.types.Scene) -> Finger
     if thing is None or thing.name not in scene.objects:
         raise PalpateError("tool: no mesh object is chosen; pick one under Finger")
     shape = hull.hull_of(thing, scene)
-    return FingerTip(tools.convex(shape.corners), shape.remark)
+    return FingerTip(convex(shape.corners), shape.remark)

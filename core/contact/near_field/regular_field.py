@@ -28,6 +28,7 @@ from ...stiffness.formulation import LINEAR, SMOOTHED
 from .contact_points import node_normals
 from .far_side import FarSide, far_side
 from .half_space import surface_displacement
+from .surface_nodes import mean_edges, surface_softness
 
 # Distances in mean edge lengths of two nodes: within the first finite elements are not believed at
 # all, from the second on wholly; the ring lies between the third and the fourth. Smoothed elements
@@ -256,30 +257,6 @@ def _within(
     a, b = np.divmod(codes, len(places))
     near = np.linalg.norm(places[a] - places[b], axis=1) <= 0.5 * (reach[a] + reach[b])
     return a[near], b[near]
-
-
-def mean_edges(body: SoftBody) -> NDArray[np.float64]:
-    """Mean length of the surface edges at each surface node, (s,), metres."""
-    mesh = body.mesh
-    triangles, places = mesh.surface_local_triangles, mesh.nodes[mesh.surface_nodes]
-    ahead = np.roll(triangles, -1, axis=1)
-    lengths = np.linalg.norm(places[triangles] - places[ahead], axis=2).ravel()
-    # Every edge of a closed surface is met twice, once from either side.
-    count = np.bincount(triangles.ravel(), minlength=len(places))
-    mean: NDArray[np.float64] = np.bincount(triangles.ravel(), lengths, len(places)) / count
-    return mean
-
-
-def surface_softness(body: SoftBody) -> NDArray[np.float64]:
-    """1 over the factor of Young's modulus at each surface node, (s,): mean of its tetrahedra."""
-    mesh = body.mesh
-    if body.young_scale is None:
-        return np.ones(len(mesh.surface_nodes))
-    weight = np.repeat(mesh.tet_volumes, 4)
-    stiff = np.bincount(mesh.tets.ravel(), weight * np.repeat(body.young_scale, 4))
-    volume = np.bincount(mesh.tets.ravel(), weight)
-    softness: NDArray[np.float64] = (volume / stiff)[mesh.surface_nodes]
-    return softness
 
 
 def facing(

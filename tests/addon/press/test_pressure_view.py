@@ -10,7 +10,9 @@ TOOLS = {
     "sphere": lambda tools: tools.sphere(0.01),
     "rod": lambda tools: tools.rod(0.004, 0.03),
     "plate": lambda tools: tools.plate(0.02, 0.03),
-    "mesh": lambda tools: tools.convex(np.random.default_rng(1).normal(size=(30, 3))),
+    "mesh": lambda _: part("core.contact.tool.convex_tool").convex(
+        np.random.default_rng(1).normal(size=(30, 3))
+    ),
 }
 
 

@@ -10,9 +10,10 @@ from palpate_servo.harness import SteppedFingers, tick_costs, tool_costs
 from scipy.spatial.transform import Rotation
 
 from palpate.core.contact.press import Press
+from palpate.core.contact.tool.convex_tool import convex
 from palpate.core.contact.tool.pose import Pose
 from palpate.core.contact.tool.tool_surface import correction_for, surface_for
-from palpate.core.contact.tool.tools import convex, plate, rod, sphere
+from palpate.core.contact.tool.tools import plate, rod, sphere
 from palpate.core.errors import PalpateError
 from palpate.core.servo.session import native_body, native_tool
 from palpate.core.servo.settings import Settings

@@ -5,7 +5,7 @@ import pytest
 from bodies.soft_block import soft_block
 
 from palpate.core.contact.near_field.far_side import far_side
-from palpate.core.contact.near_field.regular_field import mean_edges
+from palpate.core.contact.near_field.surface_nodes import mean_edges
 
 SIZE = np.array([0.06, 0.012, 0.04])
 

@@ -7,9 +7,10 @@ from scipy.spatial.transform import Rotation
 from palpate.core.contact.near_field.compliance_beneath import point_compliance
 from palpate.core.contact.press import ContactSettings, Press
 from palpate.core.contact.single_press import press_tool
+from palpate.core.contact.tool.convex_tool import convex
 from palpate.core.contact.tool.pose import Pose
 from palpate.core.contact.tool.tool_surface import correction_for, surface_for
-from palpate.core.contact.tool.tools import convex, plate, rod, sphere
+from palpate.core.contact.tool.tools import plate, rod, sphere
 from palpate.core.errors import PalpateError
 
 TOP = 0.05

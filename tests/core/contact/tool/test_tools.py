@@ -6,8 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import minimize
 
+from palpate.core.contact.tool.convex_tool import convex
 from palpate.core.contact.tool.pose import Pose
-from palpate.core.contact.tool.tools import Tool, convex, plate, rod, sphere
+from palpate.core.contact.tool.tools import Tool, plate, rod, sphere
 from palpate.core.errors import PalpateError
 
 CUBE = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * 0.01
