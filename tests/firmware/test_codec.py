@@ -1,18 +1,17 @@
 """The firmware's codec: the shared vectors both ways, and the other codecs on the same bytes."""
 
-import json
 import re
 import struct
 import subprocess
 from pathlib import Path
 
 import pytest
+from link_vectors import VECTORS
 from palpate_servo import harness
 
 from palpate.core.servo import link
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-VECTORS = json.loads((REPOSITORY / "tests/vectors/link.json").read_text(encoding="utf-8"))
 
 
 def hexed(data):

@@ -1,18 +1,13 @@
 """Two codecs that know nothing of each other, Python's and Rust's, on the same bytes."""
 
-import json
-from pathlib import Path
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from link_vectors import VECTORS
 from palpate_servo import harness
 
 from palpate.core.servo import link
 
-VECTORS = json.loads(
-    (Path(__file__).resolve().parents[2] / "vectors" / "link.json").read_text(encoding="utf-8")
-)
 payloads = st.binary(min_size=1, max_size=link.MAX_PAYLOAD)
 
 

@@ -1,18 +1,13 @@
 """The Python codec of the link: what goes in comes out, and nothing else does."""
 
-import json
 import math
-from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from link_vectors import VECTORS
 
 from palpate.core.servo import link
-
-VECTORS = json.loads(
-    (Path(__file__).resolve().parents[2] / "vectors" / "link.json").read_text(encoding="utf-8")
-)
 
 
 def named(vectors):

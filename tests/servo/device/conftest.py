@@ -1,6 +1,7 @@
 """The paper's cube, baked, for devices to touch; and how long a hand takes to come to rest."""
 
 import math
+from contextlib import ExitStack
 
 import pytest
 from terminals import foreign_device, terminal  # noqa: F401
@@ -39,3 +40,10 @@ def settled(eventually):
         return eventually(still)
 
     return wait
+
+
+@pytest.fixture
+def started():
+    """Keeps devices and servos until the test ends: `started(SimulatedDevice(...))`."""
+    with ExitStack() as running:
+        yield running.enter_context

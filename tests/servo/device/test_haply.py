@@ -48,23 +48,19 @@ TORQUE_ROUNDING = 0.016
 
 
 @pytest.fixture
-def loop(cube, eventually):
+def loop(cube, started, eventually):
     """Start a 2DIY whose hand waits in the rest pose above the cube, and a servo that has it."""
-    started = []
 
     def start(plane="upright", **options):
-        device = SimulatedDevice(SimulatedOptions(**options), haply=DEFAULT_MODEL)
-        started.append(device)
+        device = started(SimulatedDevice(SimulatedOptions(**options), haply=DEFAULT_MODEL))
         coupling = Coupling(math.inf, 0.0, passivity_control=False)
-        servo = servo_on(native_body(cube), Settings(cube.young_modulus, coupling=coupling))
-        started.append(servo)
+        settings = Settings(cube.young_modulus, coupling=coupling)
+        servo = started(servo_on(native_body(cube), settings))
         servo.start(HaplyDevice(device.port, rotation=PLANES[plane], translation=TOP))
         eventually(lambda: servo.snapshot().state == "free", servo.snapshot)
         return device, servo
 
-    yield start
-    for one in reversed(started):
-        one.stop()
+    return start
 
 
 @pytest.fixture

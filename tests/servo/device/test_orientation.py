@@ -1,14 +1,13 @@
 """How a device's stylus is turned, from the hand that turns it to the servo's thread."""
 
-import json
 import math
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import palpate_servo
 import pytest
 from fault_injection.servo_host import ABOVE, YOUNG_MODULUS, cube
+from link_vectors import VECTORS
 from palpate_servo import harness
 
 from palpate.core.servo import link
@@ -17,9 +16,6 @@ from palpate.simulated.hand.options import SimulatedOptions
 from palpate.simulated.hand.quaternion import about
 from palpate.simulated.simulated_process import SimulatedDevice
 
-VECTORS = json.loads(
-    (Path(__file__).resolve().parents[2] / "vectors" / "link.json").read_text(encoding="utf-8")
-)
 TOLD = [vector for vector in VECTORS["messages"] if vector["type"] == "orientation"]
 HELLO = link.DeviceHello("Turning", 3, 3.0, (0.1, 0.1, 0.1), 1000)
 
@@ -75,22 +71,17 @@ def test_what_is_none_by_the_vectors_is_refused_by_the_servo_too(servo, vector):
 
 
 @pytest.fixture
-def turning(eventually):
+def turning(started, eventually):
     """A device whose hand turns the stylus, and a servo that has found it."""
-    started = []
 
     def start(**options):
-        device = SimulatedDevice(SimulatedOptions(rest=ABOVE, **options))
-        started.append(device)
-        servo = palpate_servo.Servo(cube(), Settings(YOUNG_MODULUS))
-        started.append(servo)
+        device = started(SimulatedDevice(SimulatedOptions(rest=ABOVE, **options)))
+        servo = started(palpate_servo.Servo(cube(), Settings(YOUNG_MODULUS)))
         servo.start(palpate_servo.LinkDevice(device.port))
         eventually(lambda: servo.snapshot().state == "free")
         return device, servo
 
-    yield start
-    for one in reversed(started):
-        one.stop()
+    return start
 
 
 def test_each_state_of_a_turning_device_has_its_orientation(turning, eventually):

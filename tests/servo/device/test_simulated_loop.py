@@ -25,24 +25,18 @@ HAND_STIFFNESS = 500.0
 
 
 @pytest.fixture
-def loop(cube, eventually):
+def loop(cube, started, eventually):
     """Start a device with a hand that waits above the cube, and a servo that has found it."""
-    started = []
 
     def start(**options):
-        device = SimulatedDevice(
-            SimulatedOptions(rest=ABOVE, hand_stiffness=HAND_STIFFNESS, **options)
-        )
-        started.append(device)
-        servo = servo_on(native_body(cube), Settings(cube.young_modulus))
-        started.append(servo)
+        hand = SimulatedOptions(rest=ABOVE, hand_stiffness=HAND_STIFFNESS, **options)
+        device = started(SimulatedDevice(hand))
+        servo = started(servo_on(native_body(cube), Settings(cube.young_modulus)))
         servo.start(palpate_servo.LinkDevice(device.port))
         eventually(lambda: servo.snapshot().state == "free")
         return device, servo
 
-    yield start
-    for one in reversed(started):
-        one.stop()
+    return start
 
 
 @pytest.fixture
