@@ -63,11 +63,6 @@ class Pose:
         own: NDArray[np.float64] = (points - self.position) @ self.rotation
         return own
 
-    def to_body(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Coordinates (p, 3) of the tool's frame in the body's."""
-        moved: NDArray[np.float64] = points @ self.rotation.T + self.position
-        return moved
-
 
 def facing(direction: Array, along: Array) -> Array:
     """Rotation (3, 3), tool to body, of a tool that lies in the direction ``direction`` (3,) of
