@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import minimize, nnls
 
-from palpate.core.contact.near_field.compliance_beneath import point_compliance
+from palpate.core.contact.near_field.point_compliance import point_compliance
 from palpate.core.contact.tool.tool_surface import correction_for, surface_for
 
 # Points within this share of a tool's radius of it at rest may be touched.

@@ -12,7 +12,7 @@ from ..errors import PalpateError
 from ..mesh.coordinates import refuse_unusable
 from ..sentence import Sentence
 from .equations import coupled_compliance
-from .near_field.contact_points import smooth_corner_normals
+from .near_field.surface_shape import smooth_corner_normals
 
 
 @dataclass(frozen=True, eq=False)

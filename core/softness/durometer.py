@@ -14,7 +14,8 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
 
 from ..body.soft_body import SoftBody
-from ..contact.near_field.compliance_beneath import near_correction, point_compliance
+from ..contact.near_field.compliance_beneath import near_correction
+from ..contact.near_field.point_compliance import point_compliance
 from ..contact.place import Place
 from ..errors import PalpateError
 from ..sentence import Sentence

@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..body.soft_body import SoftBody
-from ..contact.near_field.contact_points import ContactPoints, smooth_corner_normals
+from ..contact.near_field.contact_points import ContactPoints
+from ..contact.near_field.surface_shape import smooth_corner_normals
 from ..contact.place import Place, nearest_place
 from .parallel_rays import Crossings, across, crossings, thickness
 from .scales.durometer_type import DurometerType

@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 
 from ..body.soft_body import SoftBody
 from ..contact.near_field.compliance_beneath import IN_CONTACT, near_correction
-from ..contact.near_field.contact_points import ContactPoints, node_normals
+from ..contact.near_field.contact_points import ContactPoints
 from ..contact.near_field.half_space import OWN_CELL
+from ..contact.near_field.surface_shape import node_normals
 from ..errors import PalpateError
 
 # Pad of a lightly resting fingertip.

@@ -11,23 +11,19 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
 from scipy.spatial import cKDTree
 
 from ...body.soft_body import SoftBody
 from ...errors import PalpateError
 from ...mesh.tet_mesh import TetMesh
-
-# Faces that meet at a larger angle make a crease: the normals of one do not turn towards the other.
-CREASE_ANGLE = np.radians(40.0)
+from .surface_shape import edge_lengths, node_normals, smooth_corner_normals, surface_area, unit
+from .surface_shares import surface_shares
 
 # Shares of the spacing. Nodes that all triangles meet in are thinned out to the first; points of
 # the lattices, which are 0.6 to 1.4 apart where triangles are not slender, to the second.
 CLOSEST_NODES = 0.75
 CLOSEST_OTHERS = 0.55
 
-# How finely the surface is sampled to share it out among the points, in shares of the spacing.
-SAMPLE_SPACING = 0.4
 
 # How many points there are on the square of the spacing.
 POINTS_PER_SPACING_SQUARED = 1.3
@@ -42,9 +38,6 @@ WIDEST = 2.5
 # Points are no farther apart than this share of the root of the whole surface, however large the
 # tool: some 500 on any body.
 LARGEST_SHARE = 0.05
-
-# A patch of the surface goes to the nearest of so many points whose normal does not look away.
-NEAREST_ASKED = 6
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,7 +108,7 @@ def contact_points(body: SoftBody, spacing: float) -> ContactPoints:
     corners = mesh.nodes[mesh.surface_triangles[everything.triangles]]
     positions = np.einsum("pc,pcx->px", everything.alphas, corners)
     kept = _spread(positions, normals, everything.is_node, spacing)
-    areas = _shares(mesh, corner_normals, positions[kept], normals[kept], spacing)
+    areas = surface_shares(mesh, corner_normals, positions[kept], normals[kept], spacing)
     # A point none of the surface is nearest to is no place of its own.
     kept, areas = kept[areas > 0], areas[areas > 0]
     return ContactPoints(
@@ -138,27 +131,6 @@ def spacing_on(body: SoftBody, spacing: float) -> float:
     allowed = root * float(np.sqrt(POINTS_PER_SPACING_SQUARED / MOST_ON_BODY))
     asked = min(spacing, LARGEST_SHARE * root)
     return min(max(asked, 1.01 * allowed), WIDEST * asked)
-
-
-def smooth_corner_normals(mesh: TetMesh) -> NDArray[np.float64]:
-    """Outward unit normals at the corners of all surface triangles, (S, 3, 3).
-
-    At each corner the mean of the faces around that node, weighted by their angles there (Thürmer
-    and Wüthrich 1998), without those beyond a crease.
-    """
-    triangles, faces = mesh.surface_local_triangles, _face_normals(mesh)
-    angles = _corner_angles(mesh).reshape(-1)
-    count = triangles.size
-    at_node = coo_array(
-        (np.ones(count), (np.arange(count), triangles.reshape(-1))),
-        shape=(count, len(mesh.surface_nodes)),
-    ).tocsr()
-    meeting = (at_node @ at_node.T).tocoo()
-    own, other = meeting.row, meeting.col
-    smooth = np.einsum("mx,mx->m", faces[own // 3], faces[other // 3]) > np.cos(CREASE_ANGLE)
-    own, other = own[smooth], other[smooth]
-    mean = coo_array((angles[other], (own, other // 3)), shape=(count, len(triangles))).tocsr()
-    return unit((mean @ faces).reshape(-1, 3, 3))
 
 
 @dataclass(frozen=True, eq=False)
@@ -202,7 +174,7 @@ def _on_edges(mesh: TetMesh, spacing: float) -> _Places:
     far_side[edge] = np.arange(len(ends)) // 3
     later = np.arange(len(ends)) != first[edge]
     far_side[edge[later]] = np.flatnonzero(later) // 3
-    parts = _parts(_edge_lengths(mesh).reshape(-1)[first], spacing)
+    parts = _parts(edge_lengths(mesh).reshape(-1)[first], spacing)
     which = np.repeat(np.arange(len(first)), parts - 1)
     step = 1 + np.arange(len(which)) - np.repeat(np.cumsum(parts - 1) - (parts - 1), parts - 1)
     share = step / parts[which]
@@ -216,7 +188,7 @@ def _on_edges(mesh: TetMesh, spacing: float) -> _Places:
 
 def _inside(mesh: TetMesh, spacing: float) -> _Places:
     """A regular lattice within each triangle, without its edges."""
-    mean_square = (_edge_lengths(mesh) ** 2).mean(axis=1)
+    mean_square = (edge_lengths(mesh) ** 2).mean(axis=1)
     parts = _parts(np.sqrt(mean_square), spacing)
     triangles, alphas = [np.empty(0, dtype=np.int64)], [np.empty((0, 3))]
     for count in np.unique(parts[parts > 2]).tolist():
@@ -269,50 +241,6 @@ def _spread(
     return np.flatnonzero(kept)
 
 
-def _shares(
-    mesh: TetMesh,
-    corner_normals: NDArray[np.float64],
-    positions: NDArray[np.float64],
-    normals: NDArray[np.float64],
-    spacing: float,
-) -> NDArray[np.float64]:
-    """Area of the surface nearest to each point, (P,), by sampling.
-
-    Points that look the other way, as those beyond a thin wall, take nothing from this side.
-    """
-    longest = _edge_lengths(mesh).max(axis=1)
-    cuts = np.maximum(np.ceil(longest / (SAMPLE_SPACING * spacing)), 2).astype(np.int64)
-    areas = _face_areas(mesh)
-    tree, shares = cKDTree(positions), np.zeros(len(positions))
-    corners = mesh.nodes[mesh.surface_triangles]
-    asked = min(NEAREST_ASKED, len(positions))
-    for count in np.unique(cuts).tolist():
-        centres = _sub_centres(count)
-        members = np.flatnonzero(cuts == count)
-        places = (centres @ corners[members]).reshape(-1, 3)
-        outward = (centres @ corner_normals[members]).reshape(-1, 3)
-        chosen = np.asarray(tree.query(places, workers=-1)[1], dtype=np.int64)
-        away = np.einsum("qx,qx->q", normals[chosen], outward) <= 0
-        if away.any():
-            _, nearest = tree.query(places[away], asked)
-            nearest = nearest.reshape(-1, asked)
-            facing = np.einsum("qkx,qx->qk", normals[nearest], outward[away]) > 0
-            chosen[away] = nearest[np.arange(len(nearest)), np.argmax(facing, axis=1)]
-        area = np.repeat(areas[members] / len(centres), len(centres))
-        shares += np.bincount(chosen, area, len(positions))
-    return shares
-
-
-def _sub_centres(parts: int) -> NDArray[np.float64]:
-    """Area coordinates (parts^2, 3) of the centres of a triangle's equal parts."""
-    i, j = (index.ravel() for index in np.indices((parts, parts)))
-    upright = i + j < parts
-    # Below the diagonal stand those of the lattice's upright parts, beyond it the turned ones.
-    b = np.where(upright, i + 1 / 3, parts - i - 1 / 3)
-    c = np.where(upright, j + 1 / 3, parts - j - 1 / 3)
-    return np.column_stack([parts - b - c, b, c]) / parts
-
-
 def _normals(
     mesh: TetMesh, corner_normals: NDArray[np.float64], places: _Places
 ) -> NDArray[np.float64]:
@@ -328,59 +256,3 @@ def _normals(
     at_node = np.flatnonzero(places.is_node)
     here[at_node] = node_normals(mesh)
     return unit(here)
-
-
-def node_normals(mesh: TetMesh) -> NDArray[np.float64]:
-    """Angle-weighted mean normals of all faces around each surface node, (s, 3)."""
-    weighted = _corner_angles(mesh)[:, :, None] * _face_normals(mesh)[:, None, :]
-    mean = np.zeros((len(mesh.surface_nodes), 3))
-    np.add.at(mean, mesh.surface_local_triangles.reshape(-1), weighted.reshape(-1, 3))
-    return unit(mean)
-
-
-def face_vectors(mesh: TetMesh) -> NDArray[np.float64]:
-    """Outward normals of the surface's triangles (S, 3), twice their areas long."""
-    i, j, k = (mesh.nodes[mesh.surface_triangles[:, corner]] for corner in range(3))
-    vectors: NDArray[np.float64] = np.cross(j - i, k - i)
-    return vectors
-
-
-def _face_normals(mesh: TetMesh) -> NDArray[np.float64]:
-    return unit(face_vectors(mesh))
-
-
-def _face_areas(mesh: TetMesh) -> NDArray[np.float64]:
-    areas: NDArray[np.float64] = 0.5 * np.linalg.norm(face_vectors(mesh), axis=1)
-    return areas
-
-
-def surface_area(mesh: TetMesh) -> float:
-    """Surface area of a body, square metres."""
-    return float(_face_areas(mesh).sum())
-
-
-def _edge_lengths(mesh: TetMesh) -> NDArray[np.float64]:
-    """Length (S, 3) of the edges from each corner to the next."""
-    corners = mesh.nodes[mesh.surface_triangles]
-    lengths: NDArray[np.float64] = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
-    return lengths
-
-
-def _corner_angles(mesh: TetMesh) -> NDArray[np.float64]:
-    """Angle (S, 3) of each triangle at each corner, radians."""
-    corners = mesh.nodes[mesh.surface_triangles]
-    ahead = unit(np.roll(corners, -1, axis=1) - corners)
-    back = unit(np.roll(corners, 1, axis=1) - corners)
-    angles: NDArray[np.float64] = np.arccos(
-        np.clip(np.einsum("tcx,tcx->tc", ahead, back), -1.0, 1.0)
-    )
-    return angles
-
-
-def unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Vectors (..., 3) of length 1; those of no length stay so."""
-    lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    shortened: NDArray[np.float64] = np.divide(
-        vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0
-    )
-    return shortened

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from ...mesh.tet_mesh import TetMesh
-from .contact_points import face_vectors, unit
+from .surface_shape import face_vectors, unit
 
 # A ray leaves the body at a face whose normal has at least this product with its direction.
 LEAVING = 0.2

@@ -25,10 +25,10 @@ from scipy.spatial import cKDTree
 from ...body.pair_blocks import pair_blocks
 from ...body.soft_body import SoftBody
 from ...stiffness.formulation import LINEAR, SMOOTHED
-from .contact_points import node_normals
 from .far_side import FarSide, far_side
 from .half_space import surface_displacement
 from .surface_nodes import mean_edges, surface_softness
+from .surface_shape import node_normals
 
 # Distances in mean edge lengths of two nodes: within the first finite elements are not believed at
 # all, from the second on wholly; the ring lies between the third and the fourth. Smoothed elements

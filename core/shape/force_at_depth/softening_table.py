@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...body.soft_body import SoftBody
-from ...contact.near_field.contact_points import node_normals
+from ...contact.near_field.surface_shape import node_normals
 from ...errors import PalpateError
 from ...progress import Progress, unwatched
 from ..paper.outward_filling import OutwardFilling

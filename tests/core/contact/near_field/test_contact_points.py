@@ -4,14 +4,10 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from palpate.core.contact.near_field.compliance_beneath import point_compliance
-from palpate.core.contact.near_field.contact_points import (
-    MOST_ON_BODY,
-    _shares,
-    contact_points,
-    smooth_corner_normals,
-    spacing_on,
-)
+from palpate.core.contact.near_field.contact_points import MOST_ON_BODY, contact_points, spacing_on
+from palpate.core.contact.near_field.point_compliance import point_compliance
+from palpate.core.contact.near_field.surface_shape import smooth_corner_normals
+from palpate.core.contact.near_field.surface_shares import surface_shares
 from palpate.core.errors import PalpateError
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.mesh.tet_mesh import TetMesh
@@ -163,7 +159,7 @@ def test_the_sides_of_a_thin_plate_take_nothing_from_each_other():
     plate = TetMesh.checked(mesh.nodes * [1.0, 1.0, 0.02], mesh.tets)
     places = np.array([[0.5, 0.5, 0.02], [0.2, 0.2, 0.0], [0.8, 0.2, 0.0], [0.5, 0.8, 0.0]])
     normals = np.array([[0.0, 0.0, 1.0], *3 * [[0.0, 0.0, -1.0]]])
-    shares = _shares(plate, smooth_corner_normals(plate), places, normals, 0.5)
+    shares = surface_shares(plate, smooth_corner_normals(plate), places, normals, 0.5)
     assert shares.sum() == pytest.approx(surface_area(plate))
     assert 1.0 - 1e-9 < shares[0] < 1.0 + 4 * 0.02
     assert shares[1:].sum() > 1.0 - 1e-9

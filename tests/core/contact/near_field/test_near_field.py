@@ -7,9 +7,10 @@ import pytest
 
 from palpate.core.body.soft_body import SoftBody
 from palpate.core.compliance.surface_compliance import surface_compliance
-from palpate.core.contact.near_field.compliance_beneath import near_correction, point_compliance
+from palpate.core.contact.near_field.compliance_beneath import near_correction
 from palpate.core.contact.near_field.contact_points import ContactPoints, contact_points
 from palpate.core.contact.near_field.half_space import surface_displacement
+from palpate.core.contact.near_field.point_compliance import point_compliance
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.mesh.tet_mesh import TetMesh
 from palpate.core.stiffness.assembly import assemble

@@ -4,7 +4,7 @@ from bodies.inner_corner import inner_corner
 from bodies.soft_block import soft_block
 from scipy.spatial.transform import Rotation
 
-from palpate.core.contact.near_field.compliance_beneath import point_compliance
+from palpate.core.contact.near_field.point_compliance import point_compliance
 from palpate.core.contact.press import ContactSettings, Press
 from palpate.core.contact.single_press import press_tool
 from palpate.core.contact.tool.convex_tool import convex

@@ -7,7 +7,7 @@ from scipy.sparse.linalg import splu
 
 from palpate.core.body.soft_body import SoftBody
 from palpate.core.compliance.surface_compliance import surface_compliance
-from palpate.core.contact.near_field.contact_points import node_normals
+from palpate.core.contact.near_field.surface_shape import node_normals
 from palpate.core.contact.press import ContactSettings
 from palpate.core.contact.single_press import touch_at
 from palpate.core.errors import PalpateError
