@@ -184,6 +184,26 @@ def a_hidden_object_is_refused_with_a_remedy(stage: Stage) -> Wait:
     yield
 
 
+def the_modulus_slider_is_felt_while_pressing(stage: Stage) -> Wait:
+    yield from open_mouse(stage)
+    yield from start_press(stage)
+    yield from drag_in(stage)
+    soft = _force()
+    mouse().palpate.young_modulus *= 2
+    yield from stage.until(lambda: np.isclose(_force(), 2 * soft, rtol=0.01), "twice the force")
+    yield from type_key(stage, "ESC")
+
+
+def deleting_the_object_while_pressing_ends_the_press(stage: Stage) -> Wait:
+    yield from open_mouse(stage)
+    yield from start_press(stage)
+    yield from drag_in(stage)
+    servo = press_session.current().loop.servo
+    bpy.data.objects.remove(mouse())
+    yield from stage.until(lambda: press_session.current() is None, "the end of the press")
+    assert not servo.running
+
+
 def opening_another_file_while_pressing_ends_the_press(stage: Stage) -> Wait:
     yield from open_mouse(stage)
     yield from start_press(stage)
@@ -194,6 +214,29 @@ def opening_another_file_while_pressing_ends_the_press(stage: Stage) -> Wait:
     assert press_session.current() is None
     assert not servo.running
     assert shape_keys() == []
+
+
+def the_simulated_device_presses_is_unplugged_and_comes_back(stage: Stage) -> Wait:
+    yield from open_mouse(stage)
+    before = _coordinates()
+    bpy.context.scene.palpate.source = "SIMULATED"
+    yield from start_press(stage)
+    yield from stage.until(lambda: depth() > 0.008, "the device's press")
+    yield from stage.picture("device")
+    session = press_session.current()
+    session.loop.simulated.unplug()
+    yield from stage.until(lambda: phase() is Phase.LOST, "the message")
+    yield 0.3
+    assert not np.any(session.snapshot.output_force)
+    assert _key_bytes("Palpate live") == _key_bytes("Basis")
+    yield from stage.picture("unplugged")
+    session.loop.simulated.plug_in()
+    yield from stage.until(lambda: phase() is Phase.FEELING, "the device's return")
+    yield from stage.until(lambda: depth() > 0.008, "its next press")
+    child = session.loop.simulated.pid
+    yield from end_press(stage)
+    assert _coordinates() == before
+    assert not Path(f"/proc/{child}").exists()
 
 
 def make_soft_shows_progress_and_escape_leaves_nothing(stage: Stage) -> Wait:
@@ -260,6 +303,17 @@ def switching_the_extension_off_while_pressing_leaves_a_clean_mesh(stage: Stage)
     assert _coordinates() == before
 
 
+def an_edited_mesh_is_said_in_the_panel(stage: Stage) -> Wait:
+    yield from open_mouse(stage)
+    with stage.view():
+        bpy.ops.object.mode_set(mode="EDIT")
+        bpy.ops.mesh.select_all(action="SELECT")
+        bpy.ops.mesh.poke()
+        bpy.ops.object.mode_set(mode="OBJECT")
+    yield from stage.picture("panel")
+    assert "Make Soft" in _refusal(stage)
+
+
 def _right_click(stage: Stage) -> Wait:
     yield from stage.click(stage.pixel(BACK), "RIGHTMOUSE")
     yield from stage.until(lambda: press_session.current() is None, "the end of the press")
@@ -290,3 +344,14 @@ def _files() -> set[str]:
     """Body files beside the .blend and in the user's folder."""
     folders = {body_store.folder_for_new_files(), body_store._unsaved_folder()}
     return {str(path) for folder in folders if folder.is_dir() for path in folder.iterdir()}
+
+
+def _force() -> float:
+    return float(np.linalg.norm(press_session.current().snapshot.contact_force))
+
+
+def _key_bytes(name: str) -> bytes:
+    points = mouse().data.shape_keys.key_blocks[name].points
+    flat = np.empty(3 * len(points), dtype=np.float32)
+    points.foreach_get("co", flat)
+    return flat.tobytes()
