@@ -12,7 +12,7 @@ use crate::tool::shape::tilt::TiltLimit;
 
 /// Linearisations in one tick.
 const MOST_LINEARISATIONS: usize = 6;
-/// Multiplications that a tick takes for each tool, about, before it leaves the rest to the next.
+/// Multiplications that a tick takes for all tools, about, before it leaves the rest to the next.
 const MOST_WORK: usize = 500_000;
 /// The same with friction.
 const MOST_WORK_RUBBING: usize = 700_000;
@@ -34,15 +34,14 @@ impl Joint {
         posed: &AllPosed,
         beside: &mut Beside<'_>,
     ) -> (usize, bool) {
-        let tools = posed.iter().flatten().count().max(1);
         let rubs = posed.iter().flatten().any(|tool| !tool.friction.is_none());
-        let most_work = tools * if rubs { MOST_WORK_RUBBING } else { MOST_WORK };
+        let most_work = if rubs { MOST_WORK_RUBBING } else { MOST_WORK };
         self.see(led);
         for made in 1..=MOST_LINEARISATIONS {
             self.linearise(led, rubs);
             let before = self.effort.multiplications;
             // Forces aside take their share: pushes get no more with friction than without.
-            let left = most_work.saturating_sub(before).min(tools * MOST_WORK);
+            let left = most_work.saturating_sub(before).min(MOST_WORK);
             self.problem.solve(left);
             let solved = self.problem.work();
             let meets = self.meet_points(ground, beside, left);

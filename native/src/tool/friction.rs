@@ -88,7 +88,7 @@ impl Rubbing {
             return true;
         }
         let sweep = 4 * rubbed * rubbed;
-        let sweeps = (MOST_WORK * tools.iter().flatten().count() / sweep).clamp(1, MOST_SWEEPS);
+        let sweeps = (MOST_WORK / sweep).clamp(1, MOST_SWEEPS);
         let present = || tools.iter().flatten();
         let reach = present().fold(f64::INFINITY, |least, tool| least.min(tool.reach));
         let (rubbing, least) = (&mut *self, CONVERGED * reach);
