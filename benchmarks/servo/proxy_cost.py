@@ -39,6 +39,7 @@ from numpy.typing import NDArray
 from palpate_servo import Body
 from palpate_servo.harness import Proxy
 
+from palpate.core.mesh.paper_cube import paper_cube
 from palpate.tests.bodies.golden_sphere import golden_sphere
 
 PEER = "PALPATE_PROXY_PEER"
@@ -97,24 +98,10 @@ def sphere(triangle_count: int) -> Shape:
     return Shape("sphere", *golden_sphere(triangle_count // 2 + 2, RADIUS))
 
 
-def cube(cells: int = 4, edge: float = 0.05) -> Shape:
-    """A cube around the origin whose sides are cut into cells x cells squares of two triangles."""
-    numbers: dict[tuple[int, ...], int] = {}
-    triangles = []
-    for axis in range(3):
-        for far in (False, True):
-            u, v = (axis + 1) % 3, (axis + 2) % 3
-            for i, j in np.ndindex(cells, cells):
-                square = []
-                for di, dj in ((0, 0), (1, 0), (1, 1), (0, 1)):
-                    corner = [0, 0, 0]
-                    corner[axis] = cells * far
-                    corner[u], corner[v] = i + di, j + dj
-                    square.append(numbers.setdefault(tuple(corner), len(numbers)))
-                a, b, c, d = square if far else square[::-1]
-                triangles += [[a, b, c], [a, c, d]]
-    nodes = (np.array(list(numbers), dtype=np.float64) / cells - 0.5) * edge
-    return Shape("cube", nodes, np.array(triangles))
+def cube() -> Shape:
+    """The paper's cube around the origin."""
+    mesh, _ = paper_cube()
+    return Shape("cube", mesh.nodes[mesh.surface_nodes] - 0.025, mesh.surface_local_triangles)
 
 
 def around(radius: float, ticks: int = TICKS) -> Floats:

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
+from bodies.shared import mouse_mesh  # noqa: F401
 from palpate_servo import Body
 
 from palpate.core.bake.steps import BakeSettings, bake
 from palpate.core.mesh.paper_cube import paper_cube
-from palpate.core.mesh.tet_mesh import TetMesh
 from palpate.core.servo.session import native_body
 from palpate.core.stiffness.pins import PinNodes
 
@@ -22,7 +21,6 @@ if TYPE_CHECKING:
     from palpate.core.body.soft_body import SoftBody
 
 YOUNG_MODULUS = 10_000.0
-MOUSE = Path(__file__).resolve().parents[1] / "meshes" / "mouse-1.7k.npz"
 
 
 @dataclass(frozen=True)
@@ -53,13 +51,19 @@ def cube_body() -> SoftBody:
     return bake(mesh, BakeSettings(0.49, 10_000.0, PinNodes(fixed)))[0]
 
 
+@pytest.fixture(scope="session")
+def whole(cube_body: SoftBody) -> Body:
+    """The baked cube as native code holds it, with its whole compliance."""
+    return native_body(cube_body, whole=True)
+
+
 @pytest.fixture(scope="session", params=["cube", "mouse"])
-def body(request: pytest.FixtureRequest, cube_body: SoftBody) -> SoftBody:
+def body(request: pytest.FixtureRequest) -> SoftBody:
     """A baked body for tools; its contact points and near field are made once for all tests."""
     if request.param == "cube":
-        return cube_body
-    with np.load(MOUSE) as file:
-        mesh, fixed = TetMesh.checked(file["X"], file["T"]), file["fixed"]
+        baked: SoftBody = request.getfixturevalue("cube_body")
+        return baked
+    mesh, fixed = request.getfixturevalue("mouse_mesh")
     return bake(mesh, BakeSettings(0.3, 1_000.0, PinNodes(fixed)))[0]
 
 

@@ -109,15 +109,6 @@ def test_no_other_forces_on_the_three_nodes_do_it_with_less_energy(body, rng):
             assert np.einsum("ai,abij,bj", other, L, other) > before
 
 
-def test_work_on_a_closed_path_is_zero(body):
-    alpha, triangle = np.array([0.5, 0.2, 0.3]), free_triangles(body)[4]
-    t = np.linspace(0, 2 * np.pi, 41)
-    u = 1e-3 * np.stack([np.sin(t), np.sin(2 * t), np.cos(t) - 2], axis=1)
-    forces = np.array([touch_at(body, triangle, alpha, one).force for one in u])
-    work = 0.5 * np.sum((forces[1:] + forces[:-1]) * np.diff(u, axis=0), axis=1)
-    assert abs(work.sum()) < 1e-6 * np.abs(work).sum()
-
-
 def test_a_turned_body_answers_with_turned_forces(cube_mesh, rng):
     mesh, fixed = cube_mesh
     turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]

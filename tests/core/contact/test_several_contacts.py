@@ -103,16 +103,6 @@ def test_two_fingers_on_nodes_give_equation_10(body):
     np.testing.assert_allclose(forces_of(body, nodes[[i, j]], by), expected, rtol=1e-6)
 
 
-def test_two_contacts_are_reciprocal(body, rng):
-    """Betti: what the forces of one press do along another is what those of the other do."""
-    for _ in range(20):
-        C = compliance_between(body, *random_places(body, rng, 2, together=False))
-        u, v = rng.normal(size=(2, 2, 3))
-        matrix = as_matrix(C)
-        under_u, under_v = (np.linalg.solve(matrix, one.ravel()) for one in (u, v))
-        assert under_u @ v.ravel() == pytest.approx(under_v @ u.ravel(), rel=1e-6)
-
-
 def test_the_answer_meets_the_conditions_of_the_convex_problem(any_body, rng):
     """In the cones; what is left over in the dual cones; one across the other."""
     kinds = []

@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from bodies.shared import nodal_forces_of
 
 from palpate.core.contact.equations import area_coordinates, one_node_force, two_node_forces
 from palpate.core.contact.press import ContactSettings
@@ -23,6 +24,17 @@ def test_a_press_on_a_node_gives_equation_9(body):
         np.testing.assert_allclose(touch.nodal_forces[corner], expected, rtol=1e-9)
         np.testing.assert_allclose(touch.force, -expected, rtol=1e-9)
         assert not np.any(np.delete(touch.nodal_forces, corner, axis=0))
+
+
+@pytest.mark.parametrize("mode", ["consistent", "paper"])
+def test_a_press_anywhere_is_what_the_equations_say(body, rng, mode):
+    for triangle in rng.choice(free_triangles(body), 50):
+        alpha, by = rng.dirichlet([1, 1, 1]), 2e-3 * rng.normal(size=3)
+        touch = touch_at(body, triangle, alpha, by, ContactSettings(mode=mode))
+        expected = nodal_forces_of(body, triangle, alpha, by, mode)
+        scale = np.abs(expected).max()
+        np.testing.assert_allclose(touch.nodal_forces, expected, atol=1e-9 * scale)
+        np.testing.assert_allclose(touch.force, -expected.sum(axis=0), atol=1e-9 * scale)
 
 
 def test_a_pressed_node_moves_by_exactly_the_finger(body):
@@ -50,7 +62,8 @@ def test_two_nodes_held_at_once_move_by_exactly_both_displacements(body):
     np.testing.assert_allclose(moved[[i, j]], [u_i, u_j], rtol=1e-6)
 
 
-def test_force_is_continuous_across_edges(body, rng):
+@pytest.mark.parametrize("mode", ["consistent", "paper"])
+def test_force_is_continuous_across_edges(body, rng, mode):
     triangles = body.mesh.surface_triangles
     owner = {}
     for number, corners in enumerate(triangles):
@@ -63,7 +76,7 @@ def test_force_is_continuous_across_edges(body, rng):
             alpha = np.zeros(3)
             alpha[triangles[number] == a] = share
             alpha[triangles[number] == b] = 1 - share
-            forces.append(touch_at(body, number, alpha, PRESS).force)
+            forces.append(touch_at(body, number, alpha, PRESS, ContactSettings(mode=mode)).force)
         np.testing.assert_allclose(forces[0], forces[1], rtol=1e-12)
 
 

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from bodies.shared import nodal_forces_of
 from palpate_servo import Pointer
-from palpate_servo.harness import Proxy
 
 from palpate.core.errors import PalpateError
 from palpate.core.servo.session import displacements_of, native_body, servo_on
@@ -34,27 +33,6 @@ def test_native_force_equals_the_reference_at_random_presses(body, mode):
         scale = np.abs(expected).max()
         assert np.abs(nodal_forces - expected).max() <= 1e-9 * scale
         assert np.abs(force + expected.sum(axis=0)).max() <= 1e-9 * scale
-
-
-def test_a_probe_pushed_in_feels_what_the_reference_says_there(body):
-    rng = np.random.default_rng(2)
-    native = native_body(body)
-    free = ~np.isin(body.mesh.surface_triangles, body.fixed).any(axis=1)
-    for triangle in rng.choice(np.flatnonzero(free), 50):
-        corners = body.mesh.nodes[body.mesh.surface_triangles[triangle]]
-        normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])
-        normal /= np.linalg.norm(normal)
-        centre = corners.mean(axis=0)
-        proxy = Proxy(native)
-        proxy.restart(centre + 1e-4 * normal)
-        finger = centre - 1e-5 * normal
-        touching, position, touched, alpha = proxy.move(finger)
-        assert touching
-        assert touched == triangle
-        np.testing.assert_allclose(position, centre, atol=1e-12)
-        _, force = native.contact(touched, alpha, finger - position, body.young_modulus)
-        expected = nodal_forces_of(body, triangle, np.full(3, 1 / 3), -1e-5 * normal)
-        np.testing.assert_allclose(force, -expected.sum(axis=0), rtol=1e-6)
 
 
 @pytest.mark.parametrize("mode", ["paper", "consistent"])

@@ -128,26 +128,7 @@ def test_the_choice_changes_live_without_a_jump(surface):
     assert back[-1] == before
 
 
-def test_round_a_closed_path_a_held_finger_does_no_work(surface):
-    # Friction holds the contact point, so that the finger may go anywhere.
-    fingers = SteppedFingers(
-        surface,
-        [TOP + 0.01 * UP],
-        Settings(1e4, static_friction=1e6, dynamic_friction=1e6, felt="corrected"),
-    )
-    angle = np.linspace(0, 2 * np.pi, 4001)[:, None]
-    circle = np.hstack([0.004 * np.sin(angle), 0.003 * np.cos(angle), 0.003 * np.sin(2 * angle)])
-    start = TOP - 0.006 * UP + circle[0]
-    down = np.linspace(TOP + 0.01 * UP, TOP - 0.001 * UP, 100)
-    fingers.follow(np.concatenate([down, np.linspace(down[-1], start, 100)])[:, None])
-    path = TOP - 0.006 * UP + circle
-    forces = fingers.follow(path[:, None])[0][:, 0]
-    assert fingers.snapshot().sticking
-    parts = 0.5 * (forces[1:] + forces[:-1]) * np.diff(path, axis=0)
-    assert abs(parts.sum()) < 1e-6 * np.abs(parts).sum()
-
-
-def two_fingers(surface, places, **keywords):
+def led_to(surface, places, **keywords):
     fingers = SteppedFingers(surface, np.asarray(places) + 0.01 * UP, Settings(1e4, **keywords))
     down = np.linspace(0.01, 0.0005, 50)[:, None, None] * UP
     fingers.follow(np.asarray(places) + down)
@@ -167,7 +148,7 @@ def coupled_relations(baked, table, shots):
 def test_several_fingers_each_soften_their_own_place(baked, table, surface):
     places = np.array([[0.01, 0.02, EDGE], [0.036, 0.027, EDGE]])
     depths = np.array([0.008, 0.005])
-    fingers = two_fingers(surface, places, felt="corrected")
+    fingers = led_to(surface, places, felt="corrected")
     way = np.linspace(-0.0005, 1, 400)[:, None, None] * depths[:, None] * -UP
     forces = fingers.follow(np.concatenate([places + way, np.tile(places + way[-1], (20, 1, 1))]))[
         0
@@ -190,15 +171,15 @@ def test_several_fingers_each_soften_their_own_place(baked, table, surface):
         np.testing.assert_allclose(shot.surface_point, shot.probe, atol=1e-6)
 
 
-def test_several_held_fingers_do_no_work_round_a_closed_path(surface):
-    places = np.array([[0.015, 0.02, EDGE], [0.032, 0.027, EDGE]])
-    fingers = two_fingers(
-        surface, places, felt="corrected", static_friction=1e6, dynamic_friction=1e6
-    )
+@pytest.mark.parametrize(("count", "wide"), [(1, 0.004), (2, 0.0015)])
+def test_held_fingers_do_no_work_round_a_closed_path(surface, count, wide):
+    # Friction holds the contact points, so that fingers may go anywhere.
+    places = np.array([[0.015, 0.02, EDGE], [0.032, 0.027, EDGE]])[:count]
+    fingers = led_to(surface, places, felt="corrected", static_friction=1e6, dynamic_friction=1e6)
     angle = np.linspace(0, 2 * np.pi, 8001)[:, None, None]
-    # Both press, deeper than what the other one does to them, at other phases.
-    phases = np.array([[0.0, 1.0, 2.0], [0.7, 0.2, 1.5]])
-    path = places - 0.006 * UP + 0.0015 * np.sin(angle + phases)
+    # All press, deeper than what the others do to them, at other phases.
+    phases = np.array([[0.0, 1.0, 2.0], [0.7, 0.2, 1.5]])[:count]
+    path = places - 0.006 * UP + wide * np.sin(angle + phases)
     fingers.follow(np.linspace(places + 0.0005 * UP, places - 0.0001 * UP, 20))
     fingers.follow(np.linspace(places - 0.0001 * UP, path[0], 300))
     forces = fingers.follow(path)[0]

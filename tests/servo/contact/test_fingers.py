@@ -5,30 +5,16 @@ import pytest
 from palpate_servo import MAX_FINGERS, STATES, Body, LinkDevice, Pointer, Servo, harness
 from referees.push_cones import assert_least, yielded
 
-from palpate.core.bake.steps import BakeSettings, bake
 from palpate.core.contact.single_press import press_points
 from palpate.core.contact.tool.tools import sphere
-from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.servo.session import displacements_of, native_body, native_tool
 from palpate.core.servo.settings import Settings
-from palpate.core.stiffness.pins import PinNodes
 from palpate.simulated.hand.options import SimulatedOptions
 from palpate.simulated.simulated_process import SimulatedDevice
 
 MODULUS = 10_000.0
 EDGE = 0.05
 LEFT, RIGHT = np.array([-0.003, 0.025, 0.025]), np.array([EDGE + 0.003, 0.025, 0.025])
-
-
-@pytest.fixture(scope="module")
-def body():
-    mesh, fixed = paper_cube()
-    return bake(mesh, BakeSettings(0.49, MODULUS, PinNodes(fixed)))[0]
-
-
-@pytest.fixture(scope="module")
-def whole(body):
-    return native_body(body, whole=True)
 
 
 def pinch(servo, depth):
@@ -59,10 +45,10 @@ def pinched(whole, eventually):
         yield servo
 
 
-def test_two_pointers_press_as_the_reference_says(body, pinched):
+def test_two_pointers_press_as_the_reference_says(cube_body, pinched):
     fingers = pinched.snapshot().fingers
     touches = press_points(
-        body,
+        cube_body,
         [finger.proxy for finger in fingers],
         [finger.probe - finger.proxy for finger in fingers],
     )
@@ -74,11 +60,11 @@ def test_two_pointers_press_as_the_reference_says(body, pinched):
     assert fingers[1].contact_force[0] > 0.01
 
 
-def test_displacements_are_those_of_all_fingers(body, pinched):
+def test_displacements_are_those_of_all_fingers(cube_body, pinched):
     snapshot = pinched.snapshot()
-    moved = displacements_of(body, snapshot)
+    moved = displacements_of(cube_body, snapshot)
     for finger in snapshot.fingers:
-        free = body.free_index(body.mesh.surface_nodes[finger.triangle])
+        free = cube_body.free_index(cube_body.mesh.surface_nodes[finger.triangle])
         np.testing.assert_allclose(
             finger.alpha @ moved[free], finger.probe - finger.proxy, atol=2e-6
         )
@@ -122,13 +108,13 @@ def test_forces_are_least_also_on_their_cones():
         harness.solve_contacts(-compliance, asked, pushes)
 
 
-def test_another_body_must_be_a_whole_one(body, whole, pinched):
+def test_another_body_must_be_a_whole_one(cube_body, whole, pinched):
     with pytest.raises(ValueError, match="whole=True"):
-        pinched.set_body(native_body(body), Settings(MODULUS))
+        pinched.set_body(native_body(cube_body), Settings(MODULUS))
     pinched.set_body(whole, Settings(MODULUS))
 
 
-def test_fingers_are_refused_with_the_reason(body, whole, cube):
+def test_fingers_are_refused_with_the_reason(cube_body, whole, cube):
     assert isinstance(cube.native, Body)
     with pytest.raises(ValueError, match="whole=True"):
         Servo(cube.native, Settings(MODULUS)).add(Pointer(LEFT))
@@ -162,8 +148,8 @@ def test_modes_are_refused_by_name(whole):
         servo.set(Settings(MODULUS, mode=""))
 
 
-def test_a_tool_is_felt_and_shown_and_taken_off_again(body, whole, eventually):
-    tool = native_tool(body, whole, sphere(0.008))
+def test_a_tool_is_felt_and_shown_and_taken_off_again(cube_body, whole, eventually):
+    tool = native_tool(cube_body, whole, sphere(0.008))
     above = np.array([0.025, 0.025, EDGE + 0.01])
     with Servo(whole, Settings(MODULUS)) as servo:
         servo.set_tool(tool)
@@ -178,7 +164,7 @@ def test_a_tool_is_felt_and_shown_and_taken_off_again(body, whole, eventually):
             np.testing.assert_allclose(-forces.sum(axis=0), finger.contact_force, atol=1e-9)
         distance = np.linalg.norm(finger.points - finger.proxy, axis=1)
         np.testing.assert_allclose(distance, 0.008, atol=1e-6)
-        moved = displacements_of(body, servo.snapshot())
+        moved = displacements_of(cube_body, servo.snapshot())
         assert moved is not None
         assert moved[:, 2].min() < -0.001
         servo.set_tool(None)
@@ -187,7 +173,7 @@ def test_a_tool_is_felt_and_shown_and_taken_off_again(body, whole, eventually):
         servo.set_target([0.025, 0.025, EDGE - 0.002])
         eventually(lambda: servo.snapshot().triangle_index >= 0)
     with pytest.raises(ValueError, match="another body"):
-        Servo(native_body(body, whole=True), Settings(MODULUS)).set_tool(tool)
+        Servo(native_body(cube_body, whole=True), Settings(MODULUS)).set_tool(tool)
 
 
 def hand(way, side):
@@ -202,7 +188,7 @@ def hand(way, side):
 
 
 def test_two_devices_on_pseudo_terminals_press_one_body_and_feel_each_other(
-    body, whole, eventually
+    cube_body, whole, eventually
 ):
     left, right = hand(1.0, 0.0), hand(-1.0, EDGE)
     with (

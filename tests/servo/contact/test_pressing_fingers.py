@@ -5,31 +5,21 @@ import pytest
 from bodies.shared import nodal_forces_of
 from palpate_servo.harness import Proxy, SteppedFingers
 
-from palpate.core.bake.steps import BakeSettings, bake
 from palpate.core.contact.place import compliance_between
 from palpate.core.contact.single_press import touch_nearest
-from palpate.core.mesh.paper_cube import paper_cube
-from palpate.core.servo.session import native_body
 from palpate.core.servo.settings import Settings
-from palpate.core.stiffness.pins import PinNodes
 
 TOP, SIDE = 0.05, 0.05
 MODULUS = 10_000.0
 
 
-@pytest.fixture(scope="module")
-def cube():
-    mesh, fixed = paper_cube()
-    return bake(mesh, BakeSettings(0.49, MODULUS, PinNodes(fixed)))[0]
+def fingers_on(whole, places):
+    return SteppedFingers(whole, places, Settings(MODULUS))
 
 
-def fingers_on(body, places):
-    return SteppedFingers(native_body(body, whole=True), places, Settings(MODULUS))
-
-
-def forces_along(body, path):
+def forces_along(whole, path):
     """Forces (ticks, m, 3) on fingers led along ``path`` (ticks, m, 3)."""
-    return fingers_on(body, path[0]).follow(path)[0]
+    return fingers_on(whole, path[0]).follow(path)[0]
 
 
 def beside(s, apart):
@@ -72,11 +62,11 @@ PATHS = {
 
 
 @pytest.mark.parametrize("name", PATHS)
-def test_contacts_come_and_go_without_a_jump(cube, name):
+def test_contacts_come_and_go_without_a_jump(whole, name):
     """The largest change of force in a tick shrinks as the ticks become shorter."""
     largest = []
     for count in (100, 400):
-        forces = forces_along(cube, PATHS[name](np.linspace(0, 1, count)))
+        forces = forces_along(whole, PATHS[name](np.linspace(0, 1, count)))
         largest.append(np.linalg.norm(np.diff(forces, axis=0), axis=2).max())
     pressing = {tuple(one) for one in forces.any(axis=2).tolist()}
     assert pressing >= {(False, False), (True, True)}
@@ -84,7 +74,7 @@ def test_contacts_come_and_go_without_a_jump(cube, name):
     assert largest[1] < 0.1 * np.linalg.norm(forces, axis=2).max()
 
 
-def test_a_contact_that_slides_ends_without_a_jump(cube):
+def test_a_contact_that_slides_ends_without_a_jump(whole):
     """Drawn towards the other, a finger leans sideways on its cone until the surface leaves it."""
     largest = []
     for count in (100, 400):
@@ -93,58 +83,52 @@ def test_a_contact_that_slides_ends_without_a_jump(cube):
         z = TOP + 0.001 - 0.005 * np.concatenate([down, 1 + 0 * s])
         still, y = np.full_like(z, 0.02), np.full_like(z, 0.024)
         path = np.stack([np.stack([still, y, z], 1), np.stack([moving, y, z], 1)], 1)
-        forces = forces_along(cube, path)
+        forces = forces_along(whole, path)
         assert forces[20, 1].any()
         assert not forces[-1, 1].any()
         largest.append(np.linalg.norm(np.diff(forces[20:], axis=0), axis=2).max())
     assert largest[1] < 0.4 * largest[0]
 
 
-def test_a_finger_is_met_where_the_other_has_moved_the_surface_to(cube):
+def test_a_finger_is_met_where_the_other_has_moved_the_surface_to(cube_body, whole):
     """Pushed from the left, the right side comes out, and touches before its place at rest."""
     s = np.linspace(0, 1, 60)
     left = np.stack([0.008 * s - 0.001, 0 * s + 0.025, 0 * s + 0.03], axis=1)
     ahead = np.broadcast_to([SIDE + 1e-4, 0.025, 0.03], left.shape)
-    both = forces_along(cube, np.stack([left, ahead], axis=1))
-    alone = forces_along(cube, left[:, None])[:, 0]
+    both = forces_along(whole, np.stack([left, ahead], axis=1))
+    alone = forces_along(whole, left[:, None])[:, 0]
     first = int(both[:, 1].any(axis=1).argmax())
     np.testing.assert_allclose(both[:first, 0], alone[:first], rtol=1e-9)
     assert first > 10
-    places = cube.closest_points.query(np.array([[0.0, 0.025, 0.03], [SIDE, 0.025, 0.03]]))
-    coupling = compliance_between(cube, places.triangle, places.alpha)[1, 0] / MODULUS
+    places = cube_body.closest_points.query(np.array([[0.0, 0.025, 0.03], [SIDE, 0.025, 0.03]]))
+    coupling = compliance_between(cube_body, places.triangle, places.alpha)[1, 0] / MODULUS
     moved = [float((coupling @ -force)[0]) for force in alone]
     assert moved[first - 2] <= 1e-4 < moved[first - 1]
     assert np.linalg.norm(both[first, 1]) < 0.1 * np.linalg.norm(both[-1, 1])
     assert both[-1, 1, 0] > 0
 
 
-def test_the_surface_goes_where_both_fingers_are(cube):
-    fingers = fingers_on(cube, pinching(np.array([0.0]))[0])
-    fingers.follow(pinching(np.linspace(0, 0.5, 100)))
-    for shot in fingers.snapshot().fingers:
-        assert shot.touching
-        np.testing.assert_allclose(shot.surface_point, shot.probe, atol=1e-7)
-
-
-def test_one_finger_is_answered_as_it_always_was(cube):
+def test_one_finger_is_answered_as_it_always_was(cube_body, whole):
     path = pinching(np.linspace(0, 1, 50))[:, :1]
-    proxy = Proxy(native_body(cube))
+    proxy = Proxy(whole)
     proxy.restart(path[0, 0])
-    for (force,), (probe,) in zip(forces_along(cube, path), path, strict=True):
+    forces, torques = fingers_on(whole, path[0]).follow(path)
+    assert not torques.any()
+    for (force,), (probe,) in zip(forces, path, strict=True):
         touching, at, triangle, alpha = proxy.move(probe)
         assert touching == force.any()
         if touching:
-            alone = nodal_forces_of(cube, triangle, alpha, probe - at)
+            alone = nodal_forces_of(cube_body, triangle, alpha, probe - at)
             np.testing.assert_allclose(force, -alone.sum(axis=0), rtol=1e-9)
 
 
-def test_a_finger_that_is_lifted_leaves_nothing_behind(cube):
+def test_a_finger_that_is_lifted_leaves_nothing_behind(cube_body, whole):
     """As when a fault silences it: the other goes on as if it were alone."""
     path = pinching(np.linspace(0, 0.5, 100))
-    fingers = fingers_on(cube, path[0])
+    fingers = fingers_on(whole, path[0])
     fingers.follow(path)
     away = np.array([2 * SIDE, 0.025, 0.03])
     fingers.set_down(away, 1)
     forces = fingers.follow(np.tile([path[-1, 0], away], (3, 1, 1)))[0]
-    alone = touch_nearest(cube, [0, 0.025, 0.03], path[-1, 0] - [0, 0.025, 0.03])
+    alone = touch_nearest(cube_body, [0, 0.025, 0.03], path[-1, 0] - [0, 0.025, 0.03])
     np.testing.assert_allclose(forces[-1, 0], alone.force, rtol=1e-6)

@@ -227,31 +227,6 @@ def test_in_an_inner_corner_it_comes_to_rest_where_the_engine_does(tool):
     assert aside[1] > aside[0] + 0.05
 
 
-def test_two_fingers_that_squeeze_a_thin_strip_feel_what_the_engine_says():
-    """12 mm thick, of two elements, by 2 mm from either side."""
-    strip, tool = soft_block((0.06, 0.012, 0.04), (8, 2, 5)), sphere(0.008)
-    native = native_body(strip, whole=True)
-
-    def places(depth):
-        sides = (depth - tool.radius, 0.012 + tool.radius - depth)
-        return np.array([[0.029, y, 0.02] for y in sides])
-
-    fingers = SteppedFingers(native, places(-0.001), Settings(strip.young_modulus))
-    for finger in (0, 1):
-        fingers.set_tool(native_tool(strip, native, tool), np.eye(3), finger)
-    pressing = np.array([places(depth) for depth in np.linspace(-0.001, 0.002, 150)])
-    fingers.follow(pressing)
-    forces, _ = fingers.follow(np.repeat(pressing[-1:], 200, axis=0))
-    press = Press(strip, [tool, tool])
-    for depth in (-0.001, 0.002):
-        touches = press.to([Pose.at(place) for place in places(depth)])
-    expected = np.array([touch.force for touch in touches])
-    np.testing.assert_allclose(forces[-1], expected, atol=1e-4 * np.abs(expected).max())
-    np.testing.assert_allclose(forces[-50:], forces[-50:-49].repeat(50, 0), atol=1e-4)
-    for finger, force in zip(fingers.snapshot().fingers, forces[-1], strict=True):
-        np.testing.assert_allclose(finger.point_forces.sum(axis=0), -force, atol=1e-9)
-
-
 def test_a_surface_that_another_finger_has_bulged_is_met_where_it_has_gone():
     """One pushes a strip 3 mm aside, the other comes from beyond: no step, and the engine's."""
     strip, tool = soft_block((0.06, 0.008, 0.04), (8, 2, 6)), sphere(0.012)

@@ -23,11 +23,6 @@ PRESSES = {
 }
 
 
-@pytest.fixture(scope="module")
-def native(cube_body):
-    return native_body(cube_body, whole=True)
-
-
 def pressed(body, native, tools, places, held=()):
     """Forces on tools at places and on held points, N, all of them at once."""
     tips = [native_tip(body, native, tool) for tool in tools] + [None] * len(held)
@@ -38,22 +33,22 @@ def pressed(body, native, tools, places, held=()):
 
 
 @pytest.mark.parametrize("name", list(PRESSES))
-def test_tools_find_the_least_energy(cube_body, native, name):
+def test_tools_find_the_least_energy(cube_body, whole, name):
     places = PRESSES[name]
     expected, _ = least_energy(cube_body, [(TIP, Pose.at(place)) for place in places])
-    found = pressed(cube_body, native, [TIP] * len(places), places)
+    found = pressed(cube_body, whole, [TIP] * len(places), places)
     np.testing.assert_allclose(found, expected, atol=1e-6 * np.abs(expected).max())
 
 
-def test_a_tool_and_a_point_find_the_least_energy_together(cube_body, native):
+def test_a_tool_and_a_point_find_the_least_energy_together(cube_body, whole):
     place = cube_body.closest_points.query(np.array([[0.04, 0.04, TOP]]))
     held = Held(int(place.triangle[0]), place.alpha[0], np.array([0.001, 0.0, -0.002]))
     at = [*MIDDLE, TOP + 0.0095]
     on_tool, on_point = least_energy(cube_body, [(TIP, Pose.at(at))], [held])
-    found = pressed(cube_body, native, [TIP], [at], [held])
+    found = pressed(cube_body, whole, [TIP], [at], [held])
     expected = np.vstack([on_tool, on_point])
     np.testing.assert_allclose(found, expected, atol=1e-6 * np.abs(expected).max())
-    alone = pressed(cube_body, native, [TIP], [at])
+    alone = pressed(cube_body, whole, [TIP], [at])
     assert np.linalg.norm(found[0] - alone[0]) > 0.05 * np.linalg.norm(alone)
 
 
@@ -61,21 +56,21 @@ def test_a_tool_and_a_point_find_the_least_energy_together(cube_body, native):
     "tool", [sphere(0.004), sphere(0.008), rod(0.006, 0.012), plate(0.016, 0.016)]
 )
 @pytest.mark.parametrize("depth", [0.0005, 0.002])
-def test_two_tools_on_one_place_are_felt_as_one(cube_body, native, tool, depth):
+def test_two_tools_on_one_place_are_felt_as_one(cube_body, whole, tool, depth):
     at = np.array([*MIDDLE, TOP - float(tool.core[:, 2].min()) + tool.radius - depth])
-    one = pressed(cube_body, native, [tool], [at])[0]
-    two = pressed(cube_body, native, [tool, tool], [at, at])
+    one = pressed(cube_body, whole, [tool], [at])[0]
+    two = pressed(cube_body, whole, [tool, tool], [at, at])
     np.testing.assert_allclose(two.sum(axis=0), one, atol=0.01 * np.linalg.norm(one))
     np.testing.assert_allclose(two[0], two[1], atol=1e-6 * np.linalg.norm(one))
     # A hair's breadth deeper carries a little more, not all.
-    deeper = pressed(cube_body, native, [tool, tool], [at, at - [0.0, 0.0, 1e-4 * depth]])
+    deeper = pressed(cube_body, whole, [tool, tool], [at, at - [0.0, 0.0, 1e-4 * depth]])
     assert 0.5 * one[2] < deeper[1, 2] < 0.55 * one[2]
 
 
-def test_overlapping_tools_are_felt_as_their_common_shape(cube_body, native):
+def test_overlapping_tools_are_felt_as_their_common_shape(cube_body, whole):
     places = [[*MIDDLE, TOP + 0.0095], [MIDDLE[0] + 0.004, MIDDLE[1], TOP + 0.0098]]
     expected, _ = least_energy(cube_body, [(TIP, Pose.at(place)) for place in places])
-    found = pressed(cube_body, native, [TIP, TIP], places).sum(axis=0)
+    found = pressed(cube_body, whole, [TIP, TIP], places).sum(axis=0)
     expected = expected.sum(axis=0)
     np.testing.assert_allclose(found, expected, atol=0.005 * np.linalg.norm(expected))
 

@@ -127,21 +127,6 @@ def test_the_energy_is_convex_wherever_it_is_looked_at():
         assert np.linalg.eigvalsh(rest)[0] > -1e-12 * np.abs(relation.stiffness).max()
 
 
-def test_round_a_closed_path_no_work_is_done():
-    nodes, weights = np.polynomial.legendre.leggauss(12)
-    chance = np.random.default_rng(5)
-    for relation, _ in relations(20):
-        corners = 0.02 * chance.standard_normal((5, 3))
-        work = size = 0.0
-        for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
-            for first in np.linspace(0, 1, 20, endpoint=False):
-                for place, weight in zip(nodes, weights, strict=True):
-                    at = start + (first + 0.025 * (place + 1)) * (end - start)
-                    part = 0.025 * weight * relation.force(at) @ (end - start)
-                    work, size = work + part, size + abs(part)
-        assert abs(work) < 1e-9 * size
-
-
 def test_a_shallow_press_feels_the_linear_force(body, softenings):
     for depth in (1e-6, 1e-7):
         touch = (120, [0.2, 0.3, 0.5], [0.0, 0.3 * depth, -depth])
