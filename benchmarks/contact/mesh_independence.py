@@ -26,7 +26,6 @@ from scipy.sparse.linalg import cg
 
 from palpate.benchmarks.measuring.refined import coarse_ball, refined
 from palpate.core.body.soft_body import SoftBody
-from palpate.core.compliance.surface_compliance import surface_compliance
 from palpate.core.contact.near_field.compliance_beneath import NearCorrection, near_correction
 from palpate.core.contact.near_field.contact_points import ContactPoints, contact_points
 from palpate.core.contact.near_field.half_space import surface_displacement
@@ -35,10 +34,10 @@ from palpate.core.contact.single_press import press_tool, touch_nearest
 from palpate.core.contact.tool.pose import Pose
 from palpate.core.contact.tool.tools import Tool, sphere
 from palpate.core.mesh.paper_cube import paper_cube
-from palpate.core.mesh.tet_mesh import TetMesh
 from palpate.core.stiffness.assembly import assemble
+from palpate.tests.bodies.baked_body import baked_body
 
-POISSON_RATIO = 0.3
+POISSON_RATIO, YOUNG_MODULUS = 0.3, 1000.0
 EDGE = 0.05
 BALL = 0.03
 CELLS = 4
@@ -100,15 +99,12 @@ class Family:
     element: float
 
 
-def soft(mesh: TetMesh, fixed: NDArray[np.int64]) -> SoftBody:
-    """A body of 1 kPa."""
-    compliance = surface_compliance(mesh, assemble(mesh, POISSON_RATIO), fixed)
-    return SoftBody(mesh, np.unique(fixed), POISSON_RATIO, compliance, 1000.0)
-
-
 def block() -> Family:
     """The paper's cube, touched in its top no nearer to the rim than one coarse element."""
-    bodies = tuple(soft(*paper_cube(EDGE, CELLS * times)) for times in (1, 2, 4))
+    bodies = tuple(
+        baked_body(*paper_cube(EDGE, CELLS * times), POISSON_RATIO, YOUNG_MODULUS)
+        for times in (1, 2, 4)
+    )
     element = EDGE / CELLS
     centre, rng = np.array([EDGE / 2, EDGE / 2]), np.random.default_rng(5)
     known = {
@@ -135,7 +131,7 @@ def ball() -> Family:
     stages = [coarse_ball(BALL, CELLS)]
     for _ in range(2):
         stages.append(refined(*stages[-1]))
-    bodies = tuple(soft(*stage) for stage in stages)
+    bodies = tuple(baked_body(*stage, POISSON_RATIO, YOUNG_MODULUS) for stage in stages)
     coarse, rng = stages[0][0], np.random.default_rng(6)
     triangles = coarse.surface_triangles
     corners = coarse.nodes[triangles]

@@ -24,12 +24,11 @@ import numpy as np
 from palpate.benchmarks.measuring.bodies import stored_body
 from palpate.benchmarks.measuring.shape.figure_4 import draw_figure_4
 from palpate.core.body.soft_body import SoftBody
-from palpate.core.compliance.surface_compliance import surface_compliance
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.shape.paper.paper_entries import SIGNS, EntryFinder, usual_largest_force
 from palpate.core.shape.paper.paper_table import PaperTable
 from palpate.core.shape.solid.free_solid import FreeSolid
-from palpate.core.stiffness.assembly import assemble
+from palpate.tests.bodies.baked_body import baked_body
 from palpate.tests.referees.newton_entries import largest_carried
 
 YOUNG_MODULUS = 10_000.0
@@ -62,8 +61,7 @@ def body(name: str) -> SoftBody:
     else:
         stored, poisson_ratio = stored_body("mouse-1.7k"), 0.3
         mesh, fixed = stored.mesh, stored.fixed
-    compliance = surface_compliance(mesh, assemble(mesh, poisson_ratio), fixed)
-    return SoftBody(mesh, fixed, poisson_ratio, compliance, YOUNG_MODULUS)
+    return baked_body(mesh, fixed, poisson_ratio, YOUNG_MODULUS)
 
 
 def compared(name: str, made: SoftBody, sample: int) -> bool:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from palpate.core.body.soft_body import SoftBody
-from palpate.core.compliance.surface_compliance import surface_compliance
 from palpate.core.contact.near_field.compliance_beneath import near_correction
 from palpate.core.contact.near_field.contact_points import contact_points
 from palpate.core.contact.single_press import press_tool
@@ -13,7 +11,8 @@ from palpate.core.contact.tool.pose import Pose
 from palpate.core.contact.tool.tools import sphere
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.mesh.tet_mesh import TetMesh
-from palpate.core.stiffness.assembly import assemble
+
+from .baked_body import baked_body
 
 EDGE, RADIUS = 0.05, 0.014
 YOUNG_MODULUS, POISSON_RATIO = 10_000.0, 0.3
@@ -42,8 +41,7 @@ def pressed(cells: int, *, fine: bool, moved: tuple[float, float] = (0.0, 0.0)) 
     for axis, way in enumerate(moved):
         nodes[:, axis] += 4 * way * nodes[:, axis] * (EDGE - nodes[:, axis]) / EDGE**2
     mesh = TetMesh.checked(nodes, even.tets)
-    compliance = surface_compliance(mesh, assemble(mesh, POISSON_RATIO), fixed)
-    body = SoftBody(mesh, fixed, POISSON_RATIO, compliance, YOUNG_MODULUS)
+    body = baked_body(mesh, fixed, POISSON_RATIO, YOUNG_MODULUS)
     spread = None
     if fine:
         every = contact_points(body, FINE_SPACING)

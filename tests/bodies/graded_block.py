@@ -7,11 +7,11 @@ from numpy.typing import NDArray
 
 from palpate.core.body.pair_blocks import pair_blocks
 from palpate.core.body.soft_body import SoftBody
-from palpate.core.compliance.surface_compliance import surface_compliance
 from palpate.core.contact.near_field.contact_points import ContactPoints
 from palpate.core.mesh.paper_cube import FIVE_TETS, MIRRORED_TETS
 from palpate.core.mesh.tet_mesh import TetMesh
-from palpate.core.stiffness.assembly import assemble
+
+from .baked_body import baked_body
 
 # From cell to cell, outside the fine core: four times gently, then quickly to where the body ends.
 GROWTH = (1.4, 1.4, 1.4, 1.4, 2.0, 2.0, 2.0, 2.0, 2.0)
@@ -33,8 +33,7 @@ def graded_block(element: float, core: int, poisson_ratio: float) -> SoftBody:
     mesh = _tetrahedra(across, across, down)
     held = (mesh.nodes[:, 2] == down[0]) | (np.abs(mesh.nodes[:, :2]) == far[-1]).any(axis=1)
     fixed = np.flatnonzero(held)
-    compliance = surface_compliance(mesh, assemble(mesh, poisson_ratio), fixed, dtype=np.float64)
-    return SoftBody(mesh, fixed, poisson_ratio, compliance, YOUNG_MODULUS)
+    return baked_body(mesh, fixed, poisson_ratio, YOUNG_MODULUS, dtype=np.float64)
 
 
 def nodes_as_points(body: SoftBody, within: float) -> ContactPoints:

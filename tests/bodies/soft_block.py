@@ -7,9 +7,9 @@ import itertools
 import numpy as np
 
 from palpate.core.body.soft_body import SoftBody
-from palpate.core.compliance.surface_compliance import surface_compliance
 from palpate.core.mesh.tet_mesh import TetMesh
-from palpate.core.stiffness.assembly import assemble
+
+from .baked_body import baked_body
 
 
 def soft_block(
@@ -36,6 +36,4 @@ def soft_block(
         tets.append(np.ravel_multi_index(tuple(steps), tuple((parts + 1).tolist())))
     mesh = TetMesh.checked(nodes, np.concatenate(tets))
     fixed = np.flatnonzero(at[:, 2] == 0)
-    stiffness = assemble(mesh, poisson_ratio, formulation="smoothed")
-    compliance = surface_compliance(mesh, stiffness, fixed)
-    return SoftBody(mesh, fixed, poisson_ratio, compliance, 100_000.0, "smoothed")
+    return baked_body(mesh, fixed, poisson_ratio, 100_000.0, "smoothed")

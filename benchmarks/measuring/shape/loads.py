@@ -11,10 +11,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from palpate.core.body.soft_body import SoftBody
-from palpate.core.compliance.surface_compliance import surface_compliance
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.mesh.tet_mesh import TetMesh
-from palpate.core.stiffness.assembly import assemble
+from palpate.tests.bodies.baked_body import baked_body
 
 from ..bodies import PROJECT, stored_body
 from ..refined import refined
@@ -139,13 +138,13 @@ def farthest(body: SoftBody, axis: int) -> NDArray[np.float64]:
 def cube_body() -> SoftBody:
     """The paper's cube of a material that hardly changes its volume, with smoothed strains."""
     mesh, fixed = paper_cube(CUBE_EDGE)
-    return _body(mesh, fixed, 0.49, 10_000.0, "smoothed")
+    return baked_body(mesh, fixed, 0.49, 10_000.0, "smoothed")
 
 
 @cache
 def beam_body() -> SoftBody:
     """A beam along x with a square section, clamped at x = 0."""
-    return _body(*_beam_tets(BEAM_CELLS), 0.3, 10_000.0)
+    return baked_body(*_beam_tets(BEAM_CELLS), 0.3, 10_000.0)
 
 
 def _beam_tets(cells: int) -> tuple[TetMesh, NDArray[np.int64]]:
@@ -159,13 +158,13 @@ def _beam_tets(cells: int) -> tuple[TetMesh, NDArray[np.int64]]:
 def mouse_body() -> SoftBody:
     """The plush mouse of 1.7k nodes."""
     mouse = stored_body("mouse-1.7k")
-    return _body(mouse.mesh, mouse.fixed, 0.3, 1000.0)
+    return baked_body(mouse.mesh, mouse.fixed, 0.3, 1000.0)
 
 
 @cache
 def hare_body() -> SoftBody:
     """The plush hare with long ears, from the sample scenes."""
-    return _body(*hare_tets(), 0.3, 1000.0)
+    return baked_body(*hare_tets(), 0.3, 1000.0)
 
 
 def hare_tets() -> tuple[TetMesh, NDArray[np.int64]]:
@@ -190,16 +189,3 @@ def large_mouse() -> SolvedBody:
 def large_beam() -> SolvedBody:
     """The beam of :func:`beam_body` with 12,000 nodes."""
     return SolvedBody.of(*_beam_tets(LARGE_BEAM_CELLS), 0.3, 10_000.0)
-
-
-def _body(
-    mesh: TetMesh,
-    fixed: NDArray[np.int64],
-    poisson_ratio: float,
-    young_modulus: float,
-    formulation: str = "linear",
-) -> SoftBody:
-    compliance = surface_compliance(
-        mesh, assemble(mesh, poisson_ratio, formulation=formulation), fixed
-    )
-    return SoftBody(mesh, fixed, poisson_ratio, compliance, young_modulus, formulation)

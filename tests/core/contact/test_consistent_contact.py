@@ -3,26 +3,21 @@
 import numpy as np
 import pytest
 import skfem
+from bodies.baked_body import baked_body
+from bodies.shared import free_triangles
 from scipy.sparse import bmat, coo_array
 from scipy.sparse.linalg import spsolve
 from skfem.models.elasticity import lame_parameters as referee_lame
 from skfem.models.elasticity import linear_elasticity
 
-from palpate.core.body.soft_body import SoftBody
-from palpate.core.compliance.surface_compliance import surface_compliance
 from palpate.core.contact.equations import consistent_forces, contact_compliance
 from palpate.core.contact.press import ContactSettings
 from palpate.core.contact.single_press import press_points, touch_at, touch_nearest
 from palpate.core.contact.touches import contact_displacement
 from palpate.core.errors import PalpateError
 from palpate.core.mesh.tet_mesh import TetMesh
-from palpate.core.stiffness.assembly import assemble
 
 PRESS = np.array([0.001, -0.0005, -0.004])
-
-
-def free_triangles(body):
-    return np.flatnonzero(~np.isin(body.mesh.surface_triangles, body.fixed).any(axis=1))
 
 
 def held_by_lagrange(body, triangles, alphas, displacements):
@@ -116,8 +111,7 @@ def test_a_turned_body_answers_with_turned_forces(cube_mesh, rng):
     forces = []
     for rotation in (np.eye(3), turn):
         turned = TetMesh.checked(mesh.nodes @ rotation.T + rotation[0], mesh.tets)
-        compliance = surface_compliance(turned, assemble(turned, 0.4), fixed, dtype=np.float64)
-        body = SoftBody(turned, fixed, 0.4, compliance, 1e4)
+        body = baked_body(turned, fixed, 0.4, dtype=np.float64)
         touch = touch_at(body, free_triangles(body)[9], [0.1, 0.6, 0.3], rotation @ PRESS)
         forces.append(touch.force @ rotation)
     np.testing.assert_allclose(forces[1], forces[0], rtol=1e-9)

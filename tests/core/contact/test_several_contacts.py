@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from bodies.baked_body import baked_body
+from bodies.shared import free_triangles
 from palpate_servo.harness import solve_contacts
 from referees.push_cones import assert_least, yielded
 
-from palpate.core.body.soft_body import SoftBody
-from palpate.core.compliance.surface_compliance import surface_compliance
 from palpate.core.contact.equations import two_node_forces
 from palpate.core.contact.place import compliance_between
 from palpate.core.contact.press import ContactSettings, PointGoal, Press
@@ -14,7 +14,6 @@ from palpate.core.contact.single_press import press_points, touch_at, touch_near
 from palpate.core.errors import PalpateError
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.mesh.tet_mesh import TetMesh
-from palpate.core.stiffness.assembly import assemble
 
 TOP = 0.05
 DOWN = np.array([0, 0, -0.004])
@@ -27,17 +26,12 @@ def slivers():
     """The paper's cube flattened to a sheet: every tetrahedron is a sliver."""
     mesh, fixed = paper_cube()
     flat = TetMesh.checked(mesh.nodes * [1, 1, 0.01], mesh.tets)
-    compliance = surface_compliance(flat, assemble(flat, 0.3), fixed)
-    return SoftBody(flat, fixed, 0.3, compliance, 1e4)
+    return baked_body(flat, fixed)
 
 
 @pytest.fixture(params=["cube", "mouse", "slivers"])
 def any_body(request):
     return request.getfixturevalue(request.param)
-
-
-def free_triangles(body):
-    return np.flatnonzero(~np.isin(body.mesh.surface_triangles, body.fixed).any(axis=1))
 
 
 def forces_of(body, at, by):

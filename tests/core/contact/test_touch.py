@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from bodies.shared import nodal_forces_of
+from bodies.shared import free_triangles, nodal_forces_of
 
 from palpate.core.contact.equations import area_coordinates, one_node_force, two_node_forces
 from palpate.core.contact.press import ContactSettings
@@ -9,10 +9,6 @@ from palpate.core.contact.touches import contact_displacement
 from palpate.core.errors import PalpateError
 
 PRESS = np.array([0.001, -0.0005, -0.004])
-
-
-def free_triangles(body):
-    return np.flatnonzero(~np.isin(body.mesh.surface_triangles, body.fixed).any(axis=1))
 
 
 def test_a_press_on_a_node_gives_equation_9(body):

@@ -4,31 +4,27 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from bodies.baked_body import baked_body
 
-from palpate.core.body.soft_body import SoftBody
-from palpate.core.compliance.surface_compliance import surface_compliance
 from palpate.core.contact.near_field.compliance_beneath import near_correction
 from palpate.core.contact.near_field.contact_points import ContactPoints, contact_points
 from palpate.core.contact.near_field.half_space import surface_displacement
 from palpate.core.contact.near_field.point_compliance import point_compliance
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.mesh.tet_mesh import TetMesh
-from palpate.core.stiffness.assembly import assemble
 
 EDGE = 0.05
 TOP = np.array([0.025, 0.025, EDGE])
+
+
+def body_of(mesh, fixed, nu, formulation="linear", young_scale=None):
+    return baked_body(mesh, fixed, nu, 1.0, formulation, young_scale, np.float64)
 
 
 def cube_of(cells, nu=0.3, formulation="linear", scale=1.0, turn=None):
     mesh, fixed = paper_cube(EDGE, cells)
     nodes = scale * mesh.nodes @ (np.eye(3) if turn is None else turn).T
     return body_of(TetMesh.checked(nodes, mesh.tets), fixed, nu, formulation)
-
-
-def body_of(mesh, fixed, nu, formulation="linear", young_scale=None):
-    stiffness = assemble(mesh, nu, formulation=formulation, young_scale=young_scale)
-    compliance = surface_compliance(mesh, stiffness, fixed, dtype=np.float64)
-    return SoftBody(mesh, np.unique(fixed), nu, compliance, 1.0, formulation, young_scale)
 
 
 def patch(points, place, radius):

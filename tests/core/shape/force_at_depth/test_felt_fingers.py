@@ -2,26 +2,22 @@
 
 import numpy as np
 import pytest
+from bodies.baked_body import baked_body
 from bodies.soft_block import soft_block
 from referees.softened_points import STRONG, WEAK, coupled, couplings, relation_at
 
-from palpate.core.body.soft_body import SoftBody
-from palpate.core.compliance.surface_compliance import surface_compliance
 from palpate.core.contact.place import compliance_between
 from palpate.core.contact.single_press import press_points, touch_nearest
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.mesh.tet_mesh import TetMesh
 from palpate.core.shape.force_at_depth.softening_table import SofteningTable
-from palpate.core.stiffness.assembly import assemble
 
 AT = np.array([[0.015, 0.02, 0.05], [0.032, 0.027, 0.05]])
 
 
 @pytest.fixture(scope="module")
 def body():
-    mesh, fixed = paper_cube()
-    compliance = surface_compliance(mesh, assemble(mesh, 0.3), fixed, dtype=np.float64)
-    return SoftBody(mesh, fixed, 0.3, compliance, 1e4)
+    return baked_body(*paper_cube(), dtype=np.float64)
 
 
 @pytest.fixture(scope="module")
@@ -84,8 +80,7 @@ def arm():
     cube, _ = paper_cube(1.0)
     mesh = TetMesh.checked(cube.nodes * [0.08, 0.02, 0.02], cube.tets)
     fixed = np.flatnonzero(mesh.nodes[:, 0] < 1e-6)
-    compliance = surface_compliance(mesh, assemble(mesh, 0.3), fixed, dtype=np.float64)
-    body = SoftBody(mesh, fixed, 0.3, compliance, 1e4)
+    body = baked_body(mesh, fixed, dtype=np.float64)
     table = SofteningTable(body)
     table.fill()
     return body, table.values
@@ -135,8 +130,7 @@ def ell():
     used, numbered = np.unique(kept, return_inverse=True)
     mesh = TetMesh.checked(block.nodes[used], numbered.reshape(-1, 4))
     fixed = np.flatnonzero(mesh.nodes[:, 2] > 0.079)
-    stiffness = assemble(mesh, 0.45, formulation="smoothed")
-    body = SoftBody(mesh, fixed, 0.45, surface_compliance(mesh, stiffness, fixed), 5e3, "smoothed")
+    body = baked_body(mesh, fixed, 0.45, 5e3, "smoothed")
     table = SofteningTable(body)
     table.fill()
     return body, table.values

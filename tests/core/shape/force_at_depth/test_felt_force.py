@@ -2,11 +2,10 @@
 
 import numpy as np
 import pytest
+from bodies.baked_body import baked_body
 from referees.softened_points import Relation
 from scipy.sparse.linalg import splu
 
-from palpate.core.body.soft_body import SoftBody
-from palpate.core.compliance.surface_compliance import surface_compliance
 from palpate.core.contact.near_field.surface_shape import node_normals
 from palpate.core.contact.press import ContactSettings
 from palpate.core.contact.single_press import touch_at
@@ -15,16 +14,12 @@ from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.shape.force_at_depth.felt_force import LEAST_SHARE, felt_name
 from palpate.core.shape.force_at_depth.softening import node_softening
 from palpate.core.shape.solid.free_solid import FreeSolid
-from palpate.core.stiffness.assembly import assemble
 
 EDGE = 0.05
 
 
 def cube(formulation="linear"):
-    mesh, fixed = paper_cube(EDGE)
-    stiffness = assemble(mesh, 0.3, formulation=formulation)
-    compliance = surface_compliance(mesh, stiffness, fixed, dtype=np.float64)
-    return SoftBody(mesh, fixed, 0.3, compliance, 1e4, formulation)
+    return baked_body(*paper_cube(EDGE), formulation=formulation, dtype=np.float64)
 
 
 def softenings_of(body, solid):

@@ -4,22 +4,19 @@ import time
 
 import numpy as np
 import pytest
+from bodies.baked_body import baked_body
 
 from palpate.core.body.soft_body import SoftBody
-from palpate.core.compliance.surface_compliance import surface_compliance
 from palpate.core.errors import PalpateError
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.shape.force_at_depth import softening_table
 from palpate.core.shape.force_at_depth.softening_table import SofteningTable
 from palpate.core.shape.paper.table_file import table_path
-from palpate.core.stiffness.assembly import assemble
 
 
 @pytest.fixture(scope="module")
 def body():
-    mesh, fixed = paper_cube(cells=3)
-    compliance = surface_compliance(mesh, assemble(mesh, 0.3), fixed, dtype=np.float64)
-    return SoftBody(mesh, fixed, 0.3, compliance, 1e4)
+    return baked_body(*paper_cube(cells=3), dtype=np.float64)
 
 
 def until(condition):

@@ -2,9 +2,8 @@
 
 import numpy as np
 import pytest
+from bodies.baked_body import baked_body
 
-from palpate.core.body.soft_body import SoftBody
-from palpate.core.compliance.surface_compliance import surface_compliance
 from palpate.core.errors import CancelledError
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.shape.paper.paper_shape import PaperShape
@@ -12,16 +11,13 @@ from palpate.core.shape.paper.paper_table import KIND, PaperTable
 from palpate.core.shape.paper.table_file import TableFileError, table_path
 from palpate.core.shape.solid.free_solid import FreeSolid
 from palpate.core.shape.solid.newton import equilibrium
-from palpate.core.stiffness.assembly import assemble
 
 MODULUS = 5_000.0
 
 
 @pytest.fixture(scope="module")
 def cube():
-    mesh, fixed = paper_cube(cells=2)
-    compliance = surface_compliance(mesh, assemble(mesh, 0.3), fixed)
-    return SoftBody(mesh, fixed, 0.3, compliance, MODULUS)
+    return baked_body(*paper_cube(cells=2), young_modulus=MODULUS)
 
 
 @pytest.fixture(scope="module")

@@ -2,28 +2,20 @@
 
 import numpy as np
 import pytest
+from bodies.baked_body import baked_body
 
-from palpate.core.body.soft_body import SoftBody
-from palpate.core.compliance.surface_compliance import surface_compliance
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.shape.paper.power_series import SeriesStart
 from palpate.core.shape.solid.free_solid import FreeSolid
 from palpate.core.shape.solid.newton import equilibrium
-from palpate.core.stiffness.assembly import assemble
 
 # About 0.02 N on every node of the paper's cube (10 kPa), for a body of 1 Pa.
 FORCE = 2e-6
 
 
-def small_body(formulation):
-    mesh, fixed = paper_cube(cells=3)
-    compliance = surface_compliance(mesh, assemble(mesh, 0.3, formulation=formulation), fixed)
-    return SoftBody(mesh, fixed, 0.3, compliance, 1e4, formulation)
-
-
 @pytest.fixture(scope="module", params=["linear", "smoothed"])
 def solid(request):
-    return FreeSolid.of(small_body(request.param))
+    return FreeSolid.of(baked_body(*paper_cube(cells=3), formulation=request.param))
 
 
 @pytest.fixture(scope="module")

@@ -4,14 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from bodies.baked_body import baked_body
 
-from palpate.core.body.soft_body import SoftBody
-from palpate.core.compliance.surface_compliance import surface_compliance
 from palpate.core.errors import PalpateError
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.shape.solid.free_solid import FreeSolid
 from palpate.core.shape.solid.solid import solid
-from palpate.core.stiffness.assembly import assemble
 from palpate.core.stiffness.freedoms import freedoms
 
 
@@ -19,9 +17,7 @@ from palpate.core.stiffness.freedoms import freedoms
 def body(request):
     mesh, fixed = paper_cube(cells=3)
     scale = np.where(mesh.nodes[mesh.tets].mean(axis=1)[:, 0] > 0.02, 3.0, 1.0)
-    stiffness = assemble(mesh, 0.3, formulation=request.param, young_scale=scale)
-    compliance = surface_compliance(mesh, stiffness, fixed, dtype=np.float64)
-    return SoftBody(mesh, fixed, 0.3, compliance, 1e4, request.param, scale)
+    return baked_body(mesh, fixed, formulation=request.param, young_scale=scale, dtype=np.float64)
 
 
 def test_free_nodes_feel_what_the_whole_body_does(body):
