@@ -30,7 +30,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from palpate.benchmarks.measuring.bodies import stored_body
-from palpate.benchmarks.measuring.shape.pressed_point import pressed_point
 from palpate.core.bake.steps import BakeSettings, bake
 from palpate.core.body.soft_body import SoftBody
 from palpate.core.contact.place import Place, nearest_place
@@ -40,6 +39,7 @@ from palpate.core.shape.force_at_depth.softening_table import SofteningTable
 from palpate.core.shape.solid.free_solid import FreeSolid
 from palpate.core.softness.parallel_rays import thickness
 from palpate.core.stiffness.pins import PinNodes
+from palpate.tests.referees.pressed_point import pressed_point
 
 BODIES = ("cube", "mouse-1.7k")
 SHARES = np.array([0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3])

@@ -21,6 +21,13 @@ def free_triangles(body):
     return np.flatnonzero(~np.isin(body.mesh.surface_triangles, body.fixed).any(axis=1))
 
 
+def highest_place(body):
+    """The highest node about over the body's middle, (3,)."""
+    nodes = body.mesh.nodes[body.mesh.surface_nodes]
+    aside = np.linalg.norm((nodes - nodes.mean(axis=0))[:, :2], axis=1)
+    return nodes[np.where(aside < aside.min() + 0.01, nodes[:, 2], -np.inf).argmax()]
+
+
 def nodal_forces_of(body, triangle, alpha, u, mode="consistent"):
     """Forces (3, 3) of one contact on its triangle's nodes, by the equations of core.contact."""
     local = body.mesh.surface_local_triangles[triangle]

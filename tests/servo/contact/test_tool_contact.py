@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from bodies.inner_corner import inner_corner
+from bodies.shared import highest_place
 from bodies.soft_block import soft_block
 from palpate_servo import Tool as NativeTool
 from palpate_servo import ToolContact, ToolSurface
@@ -30,19 +31,12 @@ UP = np.array([0.0, 0.0, 1.0])
 TICKS_TO_SETTLE = 200
 
 
-def place_on(body):
-    """The highest node about over the body's middle."""
-    nodes = body.mesh.nodes[body.mesh.surface_nodes]
-    aside = np.linalg.norm((nodes - nodes.mean(axis=0))[:, :2], axis=1)
-    return nodes[np.where(aside < aside.min() + 0.01, nodes[:, 2], -np.inf).argmax()]
-
-
 def path_over(body, tool):
     """Poses down onto the body, 3 mm deep, and along it, turning; less than a stride apart.
 
     Of a plate that deep the edges may come to rest in several ways: which, the way there decides.
     """
-    middle = place_on(body)
+    middle = highest_place(body)
     above = -float(tool.core[:, 2].min() - tool.radius)
     for tick in np.arange(0.0, 6.5, 0.5):
         along = np.array([0.004 * np.sin(tick / 3), 0.004 * np.cos(tick / 4) - 0.002, 0.0])
@@ -89,7 +83,7 @@ def test_ticks_come_to_rest_where_the_engine_does(body, surface, name):
 
 def test_a_tool_set_down_inside_feels_nothing_until_it_was_outside(body, surface):
     tool = TOOLS["sphere"]
-    contact, top = native_tool(body, surface, tool), place_on(body)
+    contact, top = native_tool(body, surface, tool), highest_place(body)
     contact.restart(top - [0.0, 0.0, 0.02], np.eye(3))
     assert not contact.free
     for height in np.linspace(-0.02, 0.03, 60):
@@ -104,7 +98,7 @@ def test_a_tool_set_down_inside_feels_nothing_until_it_was_outside(body, surface
 
 def test_a_tool_goes_at_most_one_stride_a_tick_and_does_not_jump_through_the_body(body, surface):
     tool = TOOLS["sphere"]
-    contact, top = native_tool(body, surface, tool), place_on(body)
+    contact, top = native_tool(body, surface, tool), highest_place(body)
     contact.restart(top + 1.2 * tool.radius * UP, np.eye(3))
     for _ in range(4):
         before = contact.position
@@ -177,7 +171,7 @@ def test_costs_are_told_for_every_tick(body, surface):
 def test_a_tick_that_is_replayed_comes_out_the_same_and_no_longer(body, surface):
     tool = TOOLS["sphere"]
     contact, other = (native_tool(body, surface, tool, friction=0.3) for _ in range(2))
-    places = place_on(body) + [0.0, 0.0, 1.0] * np.linspace(0.02, 0.014, 450)[:, None]
+    places = highest_place(body) + [0.0, 0.0, 1.0] * np.linspace(0.02, 0.014, 450)[:, None]
     turns = np.tile(np.eye(3), (450, 1, 1))
     once = tool_costs(contact, places, turns, 1e4)
     # Every tick is longer than nothing: all are replayed. One that differed would be an error.

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from bodies.shared import highest_place
 from scipy.spatial.transform import Rotation
 
 from palpate.core.contact.press import ContactSettings, Press
@@ -17,10 +18,7 @@ TICKS_TO_REST = 100
 
 def above(body, tool):
     """Where a tool just touches the highest node about over the body's middle."""
-    nodes = body.mesh.nodes[body.mesh.surface_nodes]
-    aside = np.linalg.norm((nodes - nodes.mean(axis=0))[:, :2], axis=1)
-    highest = np.where(aside < aside.min() + 0.01, nodes[:, 2], -np.inf).argmax()
-    return nodes[highest] + np.array([0.0, 0.0, tool.radius])
+    return highest_place(body) + np.array([0.0, 0.0, tool.radius])
 
 
 def press_shear_unload():

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from bodies.baked_body import baked_body
+from referees.pressed_point import pressed_point
 from referees.softened_points import Relation
-from scipy.sparse.linalg import splu
 
 from palpate.core.contact.near_field.surface_shape import node_normals
 from palpate.core.contact.press import ContactSettings
@@ -45,31 +45,10 @@ def softenings(body, solid):
 
 
 def newton_forces(solid, nodes, alpha, displacements):
-    """Forces (k, 3) at unit modulus that move a contact point by displacements (k, 3) in turn.
-
-    The contact point is the mean of ``nodes``, weighted by ``alpha``; the forces are the
-    multipliers of its constraint.
-    """
-    size = 3 * solid.node_count
-    places = np.searchsorted(solid.free, nodes)
-    seen = np.zeros((size, 3))
-    for place, weight in zip(places, alpha, strict=True):
-        seen[3 * place : 3 * place + 3] += weight * np.eye(3)
-    u, force, found = np.zeros((solid.node_count, 3)), np.zeros(3), []
-    for wanted in displacements:
-        for _ in range(30):
-            tangent = splu(solid.tangent(u).tocsc())
-            held = tangent.solve(seen)
-            free = tangent.solve(seen @ force - solid.forces(u).ravel())
-            more = np.linalg.solve(seen.T @ held, wanted - seen.T @ (u.ravel() + free))
-            step = free + held @ more
-            u, force = u + step.reshape(-1, 3), force + more
-            if np.abs(step).max() < 1e-12 * np.abs(u).max():
-                break
-        else:
-            raise AssertionError(f"Newton does not reach {wanted}")
-        found.append(force.copy())
-    return np.array(found)
+    """Forces (k, 3) at unit modulus that move the mean of nodes by displacements (k, 3) in turn."""
+    forces = pressed_point(solid, nodes, np.array(alpha), displacements).forces
+    assert len(forces) == len(displacements)
+    return forces
 
 
 def felt(body, softenings, triangle, alpha, displacements):
