@@ -1,4 +1,4 @@
-"""Whether a shape jumps: what is left of its largest change when one looks nearer and nearer."""
+"""Whether a shape or a force jumps: what is left of its largest change when one looks nearer."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 PARTS = 12
+# A hand that hurries, m/s.
+SPEED = 0.1
 
 
 def jump_left(
@@ -32,3 +34,19 @@ def _largest(
     changes = [float(np.abs(b - a).max()) for a, b in pairwise(shapes)]
     worst = int(np.argmax(changes))
     return changes[worst], shares[worst : worst + 2]
+
+
+def along(corners: NDArray[np.float64], rate: int, speed: float = SPEED) -> NDArray[np.float64]:
+    """A path (ticks, m, 3) over corners (k, m, 3), metres; its fastest finger goes at ``speed``."""
+    pieces = [corners[:1]]
+    for start, end in pairwise(corners):
+        length = float(np.linalg.norm(end - start, axis=1).max())
+        ticks = max(1, int(np.ceil(length * rate / speed)))
+        share = np.arange(1, ticks + 1)[:, None, None] / ticks
+        pieces.append(start + share * (end - start))
+    return np.concatenate(pieces)
+
+
+def largest_change(forces: NDArray[np.float64]) -> float:
+    """The largest change from one tick to the next of forces (ticks, m, 3), newton."""
+    return float(np.linalg.norm(np.diff(forces, axis=0), axis=2).max())

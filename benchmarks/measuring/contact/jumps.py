@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from palpate.tests.referees.jumps import SPEED, along, largest_change
+
 Vectors = NDArray[np.float64]
 
-# A hand that hurries, m/s; and ticks a second, the servo's own first.
-SPEED = 0.1
+# Ticks a second, the servo's own first.
 RATES = (1000, 4000, 16000, 64000)
 # Changes that stand out are told from those of so many steps before and after.
 BESIDE = 3
@@ -42,17 +42,6 @@ class Jump:
         return self.left / self.force if self.force > 0.0 else 0.0
 
 
-def along(corners: Vectors, rate: int, speed: float = SPEED) -> Vectors:
-    """A path (ticks, m, 3) over corners (k, m, 3), metres; its fastest finger goes at ``speed``."""
-    pieces = [corners[:1]]
-    for start, end in itertools.pairwise(corners):
-        length = float(np.linalg.norm(end - start, axis=1).max())
-        ticks = max(1, int(np.ceil(length * rate / speed)))
-        share = np.arange(1, ticks + 1)[:, None, None] / ticks
-        pieces.append(start + share * (end - start))
-    return np.concatenate(pieces)
-
-
 def jump_of(
     follow: Callable[[Vectors, int], Vectors],
     corners: Vectors,
@@ -68,11 +57,6 @@ def jump_of(
     force = float(np.linalg.norm(answers[-1], axis=2).max())
     exponent = np.log(steps[0] / max(steps[-1], 1e-300)) / np.log(rates[-1] / rates[0])
     return Jump(force, float(steps[0]), standing_out(answers[-1]), float(exponent))
-
-
-def largest_change(forces: Vectors) -> float:
-    """The largest change from one tick to the next of forces (ticks, m, 3), newton."""
-    return float(np.linalg.norm(np.diff(forces, axis=0), axis=2).max())
 
 
 def standing_out(forces: Vectors) -> float:

@@ -5,6 +5,7 @@ import pytest
 from bodies.baked_body import baked_body
 from bodies.shared import free_triangles
 from palpate_servo.harness import solve_contacts
+from referees.jumps import largest_change
 from referees.push_cones import assert_least, yielded
 
 from palpate.core.contact.equations import two_node_forces
@@ -193,7 +194,7 @@ def test_places_the_surface_cannot_tell_apart_share_continuously(body, alphas):
         forces.append(pressed(Press(body, [None] * len(u)), [triangle] * len(u), alphas, u))
     forces = np.array(forces)
     assert np.linalg.norm(forces, axis=2).max() < 3 * firmest
-    jumps = np.linalg.norm(np.diff(forces, axis=0), axis=2).max()
+    jumps = largest_change(np.array(forces))
     assert jumps < np.diff(depths)[0] / DISTINCT * firmest
 
 
@@ -207,7 +208,7 @@ def test_fingers_pass_through_each_other_without_a_jump(cube):
             forces_of(cube, [first, first + np.array([x, 0.3 * x, 0])], [DOWN, 0.999 * DOWN])
             for x in beside
         ]
-        largest.append(np.linalg.norm(np.diff(forces, axis=0), axis=2).max())
+        largest.append(largest_change(np.array(forces)))
     assert largest[0] > 1.6 * largest[1] > 1.6**2 * largest[2]
     assert largest[2] < 0.05 * np.linalg.norm(touch_nearest(cube, first, DOWN).force)
 
@@ -221,7 +222,7 @@ def test_a_finger_comes_and_goes_without_a_jump_as_it_is_pressed_in(cube):
         for share in np.linspace(1e-6, 1, steps):
             forces.append(forces_of(cube, at, [DOWN, share * DOWN]))
             kinds.add(bool(forces[-1][1].any()))
-        largest.append(np.linalg.norm(np.diff(forces, axis=0), axis=2).max())
+        largest.append(largest_change(np.array(forces)))
     assert kinds == {False, True}
     np.testing.assert_allclose(np.divide(largest[:-1], largest[1:]), 2, rtol=0.15)
 

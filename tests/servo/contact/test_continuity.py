@@ -1,10 +1,9 @@
 """Forces of the servo's own ticks: they do not jump, and closed paths do no work."""
 
-from itertools import pairwise
-
 import numpy as np
 import pytest
 from palpate_servo.harness import SteppedFingers
+from referees.jumps import along, largest_change
 
 from palpate.core.contact.tool.tools import sphere
 from palpate.core.servo.session import native_tool
@@ -29,15 +28,6 @@ def fingers_at(whole, start, tool=None, rate_hz=1000, **feel):
     return fingers
 
 
-def along(corners, step):
-    """A path (ticks, m, 3) over corners (k, m, 3)."""
-    corners, pieces = np.array(corners), [np.array(corners[:1])]
-    for start, end in pairwise(corners):
-        count = int(np.ceil(np.linalg.norm(end - start, axis=1).max() / step))
-        pieces.append(start + np.linspace(0, 1, count + 1)[1:, None, None] * (end - start))
-    return np.concatenate(pieces)
-
-
 def put(x, y, depth):
     return np.array([x, y, TOP - depth])
 
@@ -55,11 +45,11 @@ def largest_changes(whole, path, tool=None, **feel):
     """The largest change of force in a tick of 1 ms and in one of 0.25 ms; forces in the latter."""
     largest = []
     for rate in (1000, 4000):
-        walked = along(path, 0.1 / rate)
+        walked = along(np.array(path), rate)
         forces, _ = fingers_at(whole, walked[0], tool, rate, **feel).follow(walked)
         assert (forces[0] == 0).all()
         assert (forces[-1] == 0).all()
-        largest.append(np.linalg.norm(np.diff(forces, axis=0), axis=2).max())
+        largest.append(largest_change(forces))
     return largest, forces
 
 
@@ -110,7 +100,8 @@ def test_a_finger_that_sticks_does_no_work_going_round(whole):
 def test_two_fingers_do_no_work_going_in_and_out_in_turn(whole):
     turns = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]]) * 1e-3
     path = along(
-        [[put(0.021, 0.026, 0.004 + a), put(0.045, 0.025, 0.003 + b)] for a, b in turns], 5e-5
+        np.array([[put(0.021, 0.026, 0.004 + a), put(0.045, 0.025, 0.003 + b)] for a, b in turns]),
+        2000,
     )
     assert abs(share_of_work(fingers_at(whole, path[0] + 0.006 * UP), path)) < 1e-12
 

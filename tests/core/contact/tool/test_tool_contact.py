@@ -154,30 +154,6 @@ def test_settings_that_cannot_be_are_refused(cube, settings, said):
         press_tool(cube, sphere(0.014), Pose.at([0.025, 0.025, TOP]), settings)
 
 
-def test_friction_holds_a_tool_back_and_none_changes_nothing(cube):
-    tool = sphere(0.014)
-    above = Pose.at([0.02, 0.025, TOP + 0.0145])
-    pressed = Pose.at([0.02, 0.025, TOP + 0.011])
-    beside = Pose.at([0.022, 0.025, TOP + 0.011])
-    drags = []
-    for friction in (0.0, 0.2, 0.6):
-        press = Press(cube, [tool], ContactSettings(friction=friction))
-        press.to([above])
-        press.to([pressed])
-        (touch,) = press.to([beside])
-        drags.append(-touch.force[0])
-        aside = touch.forces - touch.pushes[:, None] * touch.normals
-        across = np.einsum("px,px->p", aside, touch.normals)
-        assert np.abs(across).max() < 1e-12
-        sizes = np.linalg.norm(aside, axis=1)
-        assert (sizes <= friction * touch.pushes * (1 + 1e-9) + 1e-15).all()
-        if friction == 0.0:
-            np.testing.assert_allclose(
-                touch.force, press_tool(cube, tool, beside).force, atol=1e-10
-            )
-    assert drags[0] + 0.02 < drags[1] < drags[2] - 0.02
-
-
 def test_two_tools_that_pinch_feel_each_other_alike(cube):
     tool = sphere(0.014)
     left = Pose.at([-0.011, 0.025, 0.035])
@@ -199,27 +175,6 @@ def test_two_tools_that_pinch_feel_each_other_alike(cube):
     assert touches[1].force[0] == pytest.approx(slope, rel=2e-4)
     swapped = Press(cube, [tool, tool]).to([right, left])
     np.testing.assert_allclose(swapped[0].force, touches[1].force, rtol=1e-6, atol=1e-9)
-
-
-def test_tools_on_both_sides_of_a_part_that_bends_meet_where_it_has_gone():
-    strip, tool = soft_block((0.06, 0.008, 0.04), (8, 2, 6)), sphere(0.012)
-
-    def poses(gap):
-        """One pushes the strip 3 mm aside, the other is a ``gap`` from it at rest."""
-        return [Pose.at([0.029, y, 0.03]) for y in (-0.009, 0.02 + gap)]
-
-    press = Press(strip, [tool, tool])
-    apart = press.to(poses(0.004))
-    assert not apart[1].touching
-    touches = press.to(poses(0.0024))
-    # What one pushes the other holds, but for what the strip bears by itself.
-    alone = apart[0].force[1]
-    near, far = (touch.force[1] for touch in touches)
-    assert near < 1.5 * alone < 0 < far
-    assert near + far == pytest.approx(alone, rel=0.5)
-    # 0.1 mm nearer, and no jump.
-    nearer = press.to(poses(0.0023))[1].force[1]
-    assert far < nearer < 1.4 * far
 
 
 @pytest.fixture(scope="module")
