@@ -177,7 +177,8 @@ impl Pressing<'_> {
 
     fn in_rounds(&self, before: &Vectors) -> Option<Vectors> {
         let mut forces = self.projected(before);
-        let mut least = f64::INFINITY;
+        // A first step that leads away would be taken back by sweeps and taken again in the next tick.
+        let mut least = 2.0 * self.missing(&forces);
         for _ in 0..TICK_ROUNDS {
             let further = self.newton_step(&forces)?;
             let missing = self.missing(&further);
