@@ -217,12 +217,6 @@ class Body:
 
     @property
     def node_count(self) -> int: ...
-    @property
-    def triangle_count(self) -> int: ...
-    @property
-    def is_whole(self) -> bool: ...
-    @property
-    def has_compliance(self) -> bool: ...
     def set_softenings(self, nodes: ArrayLike, softenings: ArrayLike) -> None:
         """How nodes (k,) depart from the linear relation: b (1/m) and w (1/m^2) of each, (k, 4).
 
@@ -436,8 +430,6 @@ class ToolSurface:
         """
 
     @property
-    def point_count(self) -> int: ...
-    @property
     def spacing(self) -> float:
         """How far points usually are apart, m."""
 
@@ -473,21 +465,11 @@ class ToolContact:
         """How the force resists a small move of the tool, (3, 3), N/m."""
 
     @property
-    def linearisations(self) -> int: ...
-    @property
-    def exact(self) -> bool:
-        """The displacements stopped changing within the bounds on the tick's work."""
-
-    @property
     def free(self) -> bool:
         """The tool was outside since it was set down; until then it feels nothing."""
 
     @property
     def touching(self) -> bool: ...
-    @property
-    def near_count(self) -> int:
-        """Contact points that are looked at."""
-
     @property
     def position(self) -> NDArray[np.float64] | None: ...
     @property
@@ -503,10 +485,6 @@ class ToolContact:
     @property
     def normals(self) -> NDArray[np.float64]:
         """Outward from the tool where these points have gone to, (p, 3)."""
-
-    @property
-    def displacements(self) -> NDArray[np.float64]:
-        """Of these points, (p, 3), m."""
 
     @property
     def pressures(self) -> NDArray[np.float64]:
@@ -616,9 +594,6 @@ class ContactEngine:
         Raises ValueError for targets that are none, and RuntimeError where the forces do not
         settle; both name the finger.
         """
-
-    def lift(self) -> None:
-        """Forget all contact: the next targets are come to from outside again."""
 
 @final
 class Pointer:

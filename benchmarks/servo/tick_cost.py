@@ -41,7 +41,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 from palpate_servo import Body
-from palpate_servo.harness import tick_costs, tool_costs
+from palpate_servo.harness import SteppedFingers, tool_costs
 
 from palpate.core.bake.steps import BakeSettings, bake
 from palpate.core.body.soft_body import SoftBody
@@ -49,6 +49,7 @@ from palpate.core.contact.tool.convex_tool import convex
 from palpate.core.contact.tool.tools import Tool, plate, rod, sphere
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.servo.session import native_body, native_tool
+from palpate.core.servo.settings import Settings
 from palpate.core.stiffness.pins import PinNodes
 
 if TYPE_CHECKING:
@@ -117,7 +118,7 @@ def slides() -> Iterator[Slide]:
 
 
 def point_paths(ticks: int, fingers: int) -> Floats:
-    """Fingers (fingers, ticks, 3) that stroke the top of the cube, from above it on."""
+    """Fingers (ticks, fingers, 3) that stroke the top of the cube, from above it on."""
     seconds = np.arange(ticks) * 1e-3
     down = np.minimum(seconds, 0.006)
     paths = [
@@ -130,14 +131,16 @@ def point_paths(ticks: int, fingers: int) -> Floats:
         )
         for finger in range(fingers)
     ]
-    return np.array(paths)
+    return np.stack(paths, axis=1)
 
 
 def median_tick(body: Body, fingers: int, mode: ContactMode, ticks: int) -> float:
     """Median us of a whole tick while touching, the quickest of some rounds."""
     paths = point_paths(ticks, fingers)
     costs = [
-        np.median(tick_costs(body, paths, young_modulus=1e4, mode=mode)[ticks // 5 :])
+        np.median(
+            SteppedFingers(body, paths[0], Settings(1e4, mode=mode)).costs(paths)[ticks // 5 :]
+        )
         for _ in range(ROUNDS)
     ]
     return float(min(costs)) * 1e6

@@ -100,12 +100,11 @@ def press(
     """Run the loop; see `palpate_servo.harness.simulate_contact`, which raises ValueError."""
     how = Press() if how is None else how
     return harness.simulate_contact(
-        **vars(plant),
-        **{f"hand_{name}": value for name, value in vars(hand).items()},
-        **vars(how),
+        plant,
+        hand,
+        how,
+        coupling,
+        rate_hz=plant.rate_hz,
         body_stiffness=body_stiffness,
-        stiffness=coupling.stiffness,
-        coupling_damping=coupling.damping,
-        passivity_control=coupling.passivity_control,
         trace=trace,
     )

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from palpate_servo import harness
 from passivity.closed_forms import passive_stiffness, quantised_stiffness, stable_stiffness
-from passivity.contact_loop import DevicePlant, PassiveHand, Press, press
+from passivity.contact_loop import NONE, DevicePlant, PassiveHand, Press, press
 
 from palpate.simulated.hand.plant import ZERO, Impedance, Plant
 
@@ -58,14 +58,7 @@ def energy_from_path(stiffness, damping, coulomb, encoder_step, reach):
     # It ends where it begins, so that what the spring has stored does not count.
     path = edge + reach * np.array([1.0, *[-1.0, 1.0] * 50])
     seen = np.round(path / encoder_step) * encoder_step if encoder_step > 0.0 else path
-    held = harness.coupled_forces(
-        seen,
-        rate_hz=1000,
-        body_stiffness=stiffness,
-        stiffness=math.inf,
-        damping=0.0,
-        passivity_control=False,
-    )
+    held = harness.coupled_forces(seen, NONE, rate_hz=1000, body_stiffness=stiffness)
     way = np.diff(path)
     work = held[:-1] @ way
     friction = damping * np.sum(way**2) / PERIOD + coulomb * np.sum(np.abs(way))

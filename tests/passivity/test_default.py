@@ -131,14 +131,7 @@ def test_passivity_control_takes_back_what_a_late_force_makes():
 
 
 def forces(depths, body_stiffness, coupling):
-    return harness.coupled_forces(
-        depths,
-        rate_hz=1000,
-        body_stiffness=body_stiffness,
-        stiffness=coupling.stiffness,
-        damping=coupling.damping,
-        passivity_control=coupling.passivity_control,
-    )
+    return harness.coupled_forces(depths, coupling, rate_hz=1000, body_stiffness=body_stiffness)
 
 
 @pytest.mark.parametrize("body_stiffness", [100.0, 300.0, 750.0])

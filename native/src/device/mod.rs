@@ -129,6 +129,18 @@ pub struct Probe {
 }
 
 impl Probe {
+    /// A probe without motors, turned as the body is.
+    pub fn without_motors(position: DVec3, restart: bool) -> Self {
+        Self {
+            position,
+            orientation: DMat3::IDENTITY,
+            speed: 0.0,
+            restart,
+            buttons: 0,
+            max_force: f64::INFINITY,
+        }
+    }
+
     /// Whether the force reaches a motor, which may make energy with it.
     pub fn has_motors(&self) -> bool {
         self.max_force.is_finite()
@@ -166,9 +178,12 @@ pub trait Device: Send {
     /// The newest position at `now` (s since the start), one nominal period `dt` after the last.
     fn read(&mut self, now: f64, dt: f64, frame: &DeviceFrame) -> Reading;
     /// Gives the device its force (N, body axes); `enable` is false whenever it must go limp.
-    fn write(&mut self, force: DVec3, enable: bool, frame: &DeviceFrame);
+    /// One without motors has no use for it.
+    fn write(&mut self, _force: DVec3, _enable: bool, _frame: &DeviceFrame) {}
     /// Leaves the device without force for good.
-    fn park(&mut self);
+    fn park(&mut self) {}
     /// Counters for the user.
-    fn report(&self) -> LinkReport;
+    fn report(&self) -> LinkReport {
+        LinkReport::default()
+    }
 }

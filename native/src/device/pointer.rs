@@ -1,9 +1,9 @@
 //! The pointer as a device: it glides to the newest target, so that 60 Hz input makes no jumps.
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 use triple_buffer::Output;
 
-use crate::device::{Device, DeviceFrame, LinkReport, Probe, Reading};
+use crate::device::{Device, DeviceFrame, Probe, Reading};
 
 /// Target of the probe, from the user interface.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -80,21 +80,6 @@ impl Device for Pointer {
                 self.position + way * (reach / way.length())
             };
         }
-        Reading::At(Probe {
-            position: self.position,
-            orientation: DMat3::IDENTITY,
-            speed: 0.0,
-            restart,
-            buttons: 0,
-            max_force: f64::INFINITY,
-        })
-    }
-
-    fn write(&mut self, _force: DVec3, _enable: bool, _frame: &DeviceFrame) {}
-
-    fn park(&mut self) {}
-
-    fn report(&self) -> LinkReport {
-        LinkReport::default()
+        Reading::At(Probe::without_motors(self.position, restart))
     }
 }

@@ -60,17 +60,6 @@ impl Settling {
         }
     }
 
-    /// Forgets all contact: the next goals are come to from outside.
-    pub fn lift(&mut self) {
-        self.engine = Engine::default();
-        for toucher in &mut self.touchers {
-            match toucher {
-                Toucher::Point(point) => *point = PointTouch::default(),
-                Toucher::Tool(tool) => tool.lift(),
-            }
-        }
-    }
-
     /// All fingers go to their goals together, in equal steps of at most a stride of each tool; where
     /// tools rub each step is settled, else the end.
     ///

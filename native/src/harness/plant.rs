@@ -6,6 +6,7 @@
 
 /// The moving part of a device and its electronics. SI units; steps of zero are none.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "python", derive(pyo3::FromPyObject))]
 pub struct Plant {
     /// Moving mass, kg.
     pub mass: f64,
@@ -25,6 +26,7 @@ pub struct Plant {
 
 /// A passive hand: a spring and a damper to a place that rests, and a constant push.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "python", derive(pyo3::FromPyObject))]
 pub struct Hand {
     /// N/m.
     pub stiffness: f64,

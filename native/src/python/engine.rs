@@ -15,10 +15,9 @@ use crate::engine::settling::Settling;
 use crate::proxy::SurfacePoint;
 use crate::python::body::surface::Body;
 use crate::python::servo::settings::{contact_mode, felt_choice};
-use crate::python::tool::arrays::pose;
 use crate::python::tool::shape::Tool;
 use crate::python::tool::surface::ToolSurface;
-use crate::python::vectors::{array, finite, positive, rows, square, table};
+use crate::python::vectors::{array, finite, pose, positive, rows, square, table};
 use crate::tool::coefficients::Friction;
 use crate::tool::collider::Collider;
 use crate::tool::slot::Slot;
@@ -97,10 +96,6 @@ impl ContactEngine {
     fn set_young_modulus(&mut self, young_modulus: f64) -> PyResult<()> {
         self.inner.young_modulus = positive("young_modulus", young_modulus)?;
         Ok(())
-    }
-
-    fn lift(&mut self) {
-        self.inner.lift();
     }
 
     fn settle<'py>(

@@ -1,9 +1,11 @@
 //! Vectors and matrices between Python and the crate, and checks of single numbers.
 
 use glam::{DMat3, DVec3};
-use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use numpy::{AllowTypeChange, PyArray1, PyArray2, PyArrayLike2, PyArrayLike3, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+
+use crate::tool::shape::Pose;
 
 pub type Triple = [f64; 3];
 pub type Rows = [[f64; 3]; 3];
@@ -94,4 +96,39 @@ pub fn check_seconds(name: &str, seconds: f64) -> PyResult<()> {
             "{name} is {seconds}; it must be from 0 to 3600"
         )))
     }
+}
+
+pub fn pose(position: Triple, rows: Rows) -> PyResult<Pose> {
+    Ok(Pose {
+        position: finite("position", position)?,
+        rotation: rotation("rotation", rows)?,
+    })
+}
+
+pub fn vectors(name: &str, array: &PyArrayLike2<'_, f64, AllowTypeChange>) -> PyResult<Vec<DVec3>> {
+    let array = array.as_array();
+    if array.ncols() != 3 {
+        return Err(PyValueError::new_err(format!(
+            "{name} has {} columns, not three",
+            array.ncols()
+        )));
+    }
+    let rows = array.rows().into_iter();
+    Ok(rows.map(|r| DVec3::new(r[0], r[1], r[2])).collect())
+}
+
+pub fn matrices(
+    name: &str,
+    array: &PyArrayLike3<'_, f64, AllowTypeChange>,
+) -> PyResult<Vec<DMat3>> {
+    let array = array.as_array();
+    if array.shape()[1..] != [3, 3] {
+        return Err(PyValueError::new_err(format!(
+            "{name} must have the shape (n, 3, 3)"
+        )));
+    }
+    let block = |b: numpy::ndarray::ArrayView2<'_, f64>| {
+        DMat3::from_cols_array_2d(&[0, 1, 2].map(|c| [0, 1, 2].map(|r| b[[r, c]])))
+    };
+    Ok(array.outer_iter().map(block).collect())
 }

@@ -7,12 +7,13 @@ use std::sync::atomic::{
     AtomicBool, AtomicU64, AtomicUsize,
     Ordering::{Acquire, Relaxed, Release},
 };
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use rtrb::{Consumer, Producer, RingBuffer};
 
 use crate::servo::child_thread::ChildThread;
+use crate::servo::paced::locked;
 use crate::servo::snapshot::Sample;
 
 /// Longest delay of the thread that empties the ring without a loss, s.
@@ -105,10 +106,6 @@ pub struct Recorder {
     shared: Arc<Shared>,
     store: Arc<Mutex<Store>>,
     thread: Mutex<Option<ChildThread>>,
-}
-
-fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl Recorder {

@@ -175,12 +175,6 @@ impl Device for Dipping {
             self.touched.fetch_add(1, Relaxed);
         }
     }
-
-    fn park(&mut self) {}
-
-    fn report(&self) -> LinkReport {
-        LinkReport::default()
-    }
 }
 
 #[test]
@@ -292,14 +286,6 @@ struct Locking(Arc<Mutex<Dipping>>);
 impl Device for Locking {
     fn read(&mut self, now: f64, dt: f64, frame: &DeviceFrame) -> Reading {
         self.0.lock().expect("nobody panics").read(now, dt, frame)
-    }
-
-    fn write(&mut self, _force: DVec3, _enable: bool, _frame: &DeviceFrame) {}
-
-    fn park(&mut self) {}
-
-    fn report(&self) -> LinkReport {
-        LinkReport::default()
     }
 }
 

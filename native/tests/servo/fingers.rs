@@ -4,7 +4,7 @@
 use crate::scripted::{ABOVE, DT, OPTIONS, Table, probe, settings};
 use glam::{DMat3, DVec3};
 use palpate_servo::body::softening::Softening;
-use palpate_servo::contact::cones::MAX_FINGERS;
+use palpate_servo::contact::cones::{Blocks, Cone, MAX_FINGERS, Members, Vectors, solve_distinct};
 use palpate_servo::contact::touch::{ContactMode, touch};
 use palpate_servo::control::coupling::Coupling;
 use palpate_servo::device::{Probe, Reading};
@@ -345,4 +345,24 @@ pub fn a_finger_set_down_where_another_has_drawn_the_surface_away_is_outside() {
         shot = shots(&table.tick_all(DT, &[press, deeper]))[1];
     }
     assert!(shot.hold.is_some() && shot.contact_force.z > 0.0);
+}
+
+#[test]
+fn a_finger_alone_is_not_limited_where_the_surface_is_much_firmer_along_than_into_it() {
+    let (mut compliance, mut asked) = (Blocks::default(), Vectors::default());
+    let mut cones = [Cone::default(); MAX_FINGERS];
+    let forces = |compliance: &Blocks, asked: &Vectors, cones: &[Cone; MAX_FINGERS]| {
+        let members = Members::of(&[Some(()), None, None, None, None]);
+        solve_distinct(compliance, asked, cones, &members, &Vectors::default())
+    };
+    compliance[0][0] = DMat3::from_diagonal(DVec3::new(1.0, 1.0, 50.0));
+    asked[0] = DVec3::new(1.0, 0.0, -2.0);
+    cones[0] = Cone::about(asked[0], &compliance[0][0]).unwrap();
+    let found = forces(&compliance, &asked, &cones).unwrap()[0];
+    assert!(
+        found.distance(DVec3::new(1.0, 0.0, -0.04)) < 1e-12,
+        "{found}"
+    );
+    compliance[0][0] *= -1.0;
+    assert!(forces(&compliance, &asked, &cones).is_none());
 }

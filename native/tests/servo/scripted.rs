@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex};
 use glam::{DMat3, DVec3};
 use palpate_servo::body::surface::Body;
 use palpate_servo::control::safety::Limits;
-use palpate_servo::device::{Device, DeviceFrame, Fault, LinkReport, Probe, Reading};
+use palpate_servo::device::{Device, DeviceFrame, Fault, Probe, Reading};
 use palpate_servo::servo::Servo;
 use palpate_servo::servo::exchange::{Hand, exchange};
 use palpate_servo::servo::settings::FingerSettings;
@@ -48,10 +48,6 @@ impl Device for Scripted {
 
     fn park(&mut self) {
         self.sent.lock().unwrap().push((DVec3::ZERO, false));
-    }
-
-    fn report(&self) -> LinkReport {
-        LinkReport::default()
     }
 }
 

@@ -28,7 +28,7 @@ def test_closest_point_is_the_cubes(cube):
         (lambda n, t, b: (n, t - 1, b), "names the node -1"),
         (lambda n, t, b: (n * [1, 1, 0], t, b), "no area"),
         (lambda n, t, b: (n, t[:0], b), "no triangles"),
-        (lambda n, t, b: (n[:, :2], t, b), "three columns"),
+        (lambda n, t, b: (n[:, :2], t, b), "nodes has 2 columns"),
     ],
 )
 def test_a_surface_that_cannot_be_touched_is_refused_with_the_reason(cube, change, reason):

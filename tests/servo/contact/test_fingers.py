@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from palpate_servo import MAX_FINGERS, STATES, Body, LinkDevice, Pointer, Servo, harness
-from referees.push_cones import assert_least, yielded
+from palpate_servo import MAX_FINGERS, STATES, Body, LinkDevice, Pointer, Servo
 
 from palpate.core.contact.single_press import press_points
 from palpate.core.contact.tool.tools import sphere
@@ -85,27 +84,6 @@ def test_switching_off_silences_every_finger(pinched, eventually):
     pinched.set(Settings(MODULUS, enabled=False))
     eventually(lambda: all(f.state == "disabled" for f in pinched.snapshot().fingers))
     assert not any(finger.output_force.any() for finger in pinched.snapshot().fingers)
-
-
-def test_forces_are_least_also_on_their_cones():
-    rng = np.random.default_rng(10)
-    limited = 0
-    for _ in range(300):
-        count = int(rng.integers(1, MAX_FINGERS + 1))
-        factors = rng.normal(size=(3 * count, 3 * count))
-        matrix = factors @ factors.T + 0.2 * np.eye(3 * count)
-        compliance = matrix.reshape(count, 3, count, 3).transpose(0, 2, 1, 3)
-        if min(yielded(compliance)) < 0.04:
-            continue  # Two on one place: they are told apart first.
-        asked, pushes = rng.normal(size=(2, count, 3))
-        found = np.zeros((count, 3))
-        for _ in range(40):  # Ticks at rest: each goes on from the one before.
-            found = harness.solve_contacts(compliance, asked, pushes, found)
-        kinds = assert_least(compliance, asked, pushes, found, 1e-7)
-        limited += set(kinds) != {"held"}
-    assert limited > 100
-    with pytest.raises(ValueError, match="not positive definite"):
-        harness.solve_contacts(-compliance, asked, pushes)
 
 
 def test_another_body_must_be_a_whole_one(cube_body, whole, pinched):

@@ -7,7 +7,7 @@ from bodies.shared import highest_place
 from bodies.soft_block import soft_block
 from palpate_servo import Tool as NativeTool
 from palpate_servo import ToolContact, ToolSurface
-from palpate_servo.harness import SteppedFingers, tick_costs, tool_costs
+from palpate_servo.harness import SteppedFingers, tool_costs
 from scipy.spatial.transform import Rotation
 
 from palpate.core.contact.press import Press
@@ -157,14 +157,15 @@ def test_wrong_arrays_are_refused(body, surface):
 
 
 def test_costs_are_told_for_every_tick(body, surface):
-    path = np.tile(body.mesh.nodes.max(axis=0) + 0.01, (2, 5, 1))
-    costs = tick_costs(surface, path, young_modulus=1e4)
+    path = np.tile(body.mesh.nodes.max(axis=0) + 0.01, (5, 2, 1))
+    fingers = SteppedFingers(surface, path[0], Settings(1e4))
+    costs = fingers.costs(path)
     assert costs.shape == (5,)
     assert (costs >= 0).all()
-    with pytest.raises(ValueError, match="6 fingers"):
-        tick_costs(surface, np.zeros((6, 5, 3)), young_modulus=1e4)
+    with pytest.raises(ValueError, match="expected"):
+        fingers.costs(path[:, :1])
     contact = native_tool(body, surface, TOOLS["sphere"])
-    told = tool_costs(contact, path[0], np.tile(np.eye(3), (5, 1, 1)), 1e4)
+    told = tool_costs(contact, path[:, 0], np.tile(np.eye(3), (5, 1, 1)), 1e4)
     assert told["taken"].shape == told["pressed"].shape == (5,)
 
 

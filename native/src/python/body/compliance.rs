@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use numpy::{
-    AllowTypeChange, Element, PyArray1, PyArrayDyn, PyArrayLike1, PyArrayLike2, PyArrayMethods,
+    AllowTypeChange, Element, PyArrayDyn, PyArrayLike1, PyArrayLike2, PyArrayMethods,
     PyUntypedArrayMethods,
 };
 use pyo3::exceptions::{PyIndexError, PyKeyError, PyTypeError, PyValueError};
@@ -14,7 +14,7 @@ use pyo3::types::PyDict;
 
 use crate::body::compliance::table::Table;
 use crate::body::compliance::{self, Compressed, CompressedParts, Dense, Either};
-use crate::python::vectors::{Matrix, square};
+use crate::python::vectors::{Matrix, square, table};
 
 /// Prefix of the names of a compressed compliance's arrays.
 const PREFIX: &str = "compressed_";
@@ -109,9 +109,7 @@ impl Compliance {
                 ))),
             })
             .collect::<PyResult<Vec<_>>>()?;
-        let moved = self.inner.apply(&loads);
-        let flat: Vec<f64> = moved.iter().flat_map(|v| v.to_array()).collect();
-        PyArray1::from_vec(py, flat).reshape([count, 3])
+        table(py, self.inner.apply(&loads).into_iter())
     }
 }
 

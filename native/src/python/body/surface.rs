@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 use numpy::ndarray::ArrayView1;
 use numpy::{AllowTypeChange, PyArray1, PyArrayLike1, PyArrayLike2, PyArrayLike3};
 use pyo3::exceptions::PyValueError;
@@ -14,7 +14,9 @@ use crate::body::surface;
 use crate::contact::touch;
 use crate::python::body::compliance::Compliance;
 use crate::python::servo::settings::{contact_mode, felt_choice};
-use crate::python::vectors::{Matrix, Rows, Triple, Vector, array, finite, rows};
+use crate::python::vectors::{
+    Matrix, Rows, Triple, Vector, array, finite, matrices, rows, vectors,
+};
 
 #[pyclass(frozen, module = "palpate_servo")]
 pub struct Body {
@@ -34,26 +36,12 @@ impl Body {
         free_nodes: Option<PyArrayLike1<'_, i64, AllowTypeChange>>,
         whole: bool,
     ) -> PyResult<Self> {
-        let (nodes, triangles, blocks) = (
-            nodes.as_array(),
-            triangles.as_array(),
-            contact_blocks.as_array(),
-        );
-        if nodes.ncols() != 3 || triangles.ncols() != 3 {
-            return Err(PyValueError::new_err(
-                "nodes and triangles must have three columns",
-            ));
+        let nodes = vectors("nodes", &nodes)?;
+        let blocks = matrices("contact_blocks", &contact_blocks)?;
+        let triangles = triangles.as_array();
+        if triangles.ncols() != 3 {
+            return Err(PyValueError::new_err("triangles must have three columns"));
         }
-        if blocks.shape()[1..] != [3, 3] {
-            return Err(PyValueError::new_err(
-                "contact_blocks must have the shape (nodes, 3, 3)",
-            ));
-        }
-        let nodes = nodes
-            .rows()
-            .into_iter()
-            .map(|r| DVec3::new(r[0], r[1], r[2]))
-            .collect();
         let triangles = triangles
             .rows()
             .into_iter()
@@ -67,10 +55,6 @@ impl Body {
                 Ok([index(0)?, index(1)?, index(2)?])
             })
             .collect::<PyResult<_>>()?;
-        let blocks = blocks
-            .outer_iter()
-            .map(|b| DMat3::from_cols_array_2d(&[0, 1, 2].map(|c| [0, 1, 2].map(|r| b[[r, c]]))))
-            .collect();
         let refused = |e: surface::BodyError| PyValueError::new_err(e.to_string());
         let mut inner = surface::Body::new(nodes, triangles, blocks).map_err(refused)?;
         if let Some(compliance) = compliance {
@@ -93,21 +77,6 @@ impl Body {
     #[getter]
     fn node_count(&self) -> usize {
         self.inner.nodes.len()
-    }
-
-    #[getter]
-    fn is_whole(&self) -> bool {
-        self.inner.is_whole()
-    }
-
-    #[getter]
-    fn triangle_count(&self) -> usize {
-        self.inner.triangles.len()
-    }
-
-    #[getter]
-    fn has_compliance(&self) -> bool {
-        self.inner.has_compliance()
     }
 
     fn set_softenings(

@@ -4,7 +4,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::python::servo::counters::timing_counters;
-use crate::python::vectors::{check_rate, check_seconds};
+use crate::python::vectors::check_rate;
 use crate::servo::paced::Paced;
 
 /// A native thread that only sleeps and wakes: what the machine can do at best.
@@ -32,17 +32,4 @@ impl BareTimer {
         py.detach(|| self.paced.stop());
         self.counters(py)
     }
-}
-
-/// Run a BareTimer for some seconds: its counters.
-#[pyfunction]
-pub fn bare_timer<'py>(
-    py: Python<'py>,
-    rate_hz: u32,
-    seconds: f64,
-) -> PyResult<Bound<'py, PyDict>> {
-    check_seconds("seconds", seconds)?;
-    let timer = BareTimer::new(rate_hz)?;
-    py.detach(|| std::thread::sleep(std::time::Duration::from_secs_f64(seconds)));
-    timer.stop(py)
 }

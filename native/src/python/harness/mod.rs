@@ -5,10 +5,8 @@ mod block_cost;
 mod closed_loop;
 mod frames;
 mod proxy;
-mod several;
 mod stepped;
 mod stepped_fingers;
-mod tick_cost;
 mod tool_cost;
 
 use pyo3::prelude::*;
@@ -23,13 +21,10 @@ pub fn register(parent: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<proxy::Proxy>()?;
     module.add_class::<stepped::SteppedServo>()?;
     module.add_class::<stepped_fingers::SteppedFingers>()?;
-    module.add_function(wrap_pyfunction!(bare_timer::bare_timer, &module)?)?;
     module.add_function(wrap_pyfunction!(block_cost::seconds_per_block, &module)?)?;
     module.add_function(wrap_pyfunction!(closed_loop::coupled_forces, &module)?)?;
     module.add_function(wrap_pyfunction!(closed_loop::simulate_contact, &module)?)?;
     module.add_function(wrap_pyfunction!(frames::encode_frame, &module)?)?;
-    module.add_function(wrap_pyfunction!(several::solve_contacts, &module)?)?;
-    module.add_function(wrap_pyfunction!(tick_cost::tick_costs, &module)?)?;
     module.add_function(wrap_pyfunction!(tool_cost::tool_costs, &module)?)?;
     parent.add("harness", &module)?;
     py.import("sys")?.getattr("modules")?.set_item(NAME, module)

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use glam::DVec3;
-use numpy::{AllowTypeChange, PyArray1, PyArray2, PyArrayLike2};
+use numpy::{AllowTypeChange, PyArray1, PyArrayLike2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -15,7 +15,7 @@ use crate::proxy;
 use crate::proxy::Feel;
 use crate::python::body::surface::Body;
 use crate::python::servo::settings::{contact_mode, feel};
-use crate::python::vectors::{Matrix, Triple, Vector, array, check_rate, finite};
+use crate::python::vectors::{Matrix, Triple, Vector, array, check_rate, finite, table, vectors};
 
 /// God object and contact point alone, by the same code as in the servo.
 ///
@@ -33,15 +33,15 @@ pub struct Proxy {
 type Held<'py> = (bool, Vector<'py>, i64, Vector<'py>);
 
 impl Proxy {
-    fn place<'py>(&self, py: Python<'py>) -> Held<'py> {
-        let hold = self.inner.as_ref().and_then(proxy::Proxy::hold);
-        let position = self.inner.as_ref().map_or(DVec3::ZERO, |p| p.position());
-        (
-            hold.is_some(),
-            array(py, position),
-            hold.map_or(-1, |h| i64::from(h.triangle)),
-            PyArray1::from_slice(py, &hold.map_or([0.0; 3], |h| h.alpha)),
-        )
+    /// After a tick; set down by the first one.
+    fn led(&mut self, device: DVec3) -> &proxy::Proxy {
+        match &mut self.inner {
+            Some(inner) => {
+                inner.follow(&self.body, device, &self.feel, self.dt);
+                inner
+            }
+            empty => empty.insert(proxy::Proxy::new(&self.body, device)),
+        }
     }
 }
 
@@ -79,11 +79,14 @@ impl Proxy {
     #[pyo3(name = "move")]
     fn follow<'py>(&mut self, py: Python<'py>, device: Triple) -> PyResult<Held<'py>> {
         let device = finite("device", device)?;
-        match &mut self.inner {
-            Some(inner) => inner.follow(&self.body, device, &self.feel, self.dt),
-            None => self.inner = Some(proxy::Proxy::new(&self.body, device)),
-        }
-        Ok(self.place(py))
+        let inner = self.led(device);
+        let hold = inner.hold();
+        Ok((
+            hold.is_some(),
+            array(py, inner.position()),
+            hold.map_or(-1, |h| i64::from(h.triangle)),
+            PyArray1::from_slice(py, &hold.map_or([0.0; 3], |h| h.alpha)),
+        ))
     }
 
     fn follow_path<'py>(
@@ -91,24 +94,15 @@ impl Proxy {
         py: Python<'py>,
         devices: PyArrayLike2<'_, f64, AllowTypeChange>,
     ) -> PyResult<(Matrix<'py>, Bound<'py, PyArray1<i64>>)> {
-        let devices = rows_of(&devices)?;
-        let mut positions = Vec::with_capacity(devices.len());
+        let devices = vectors("devices", &devices)?;
         let mut triangles = Vec::with_capacity(devices.len());
-        for device in devices {
-            let inner = match &mut self.inner {
-                Some(inner) => {
-                    inner.follow(&self.body, device, &self.feel, self.dt);
-                    inner
-                }
-                empty => empty.insert(proxy::Proxy::new(&self.body, device)),
-            };
-            positions.push(inner.position().to_array().to_vec());
+        let positions = devices.into_iter().map(|device| {
+            let inner = self.led(device);
             triangles.push(inner.hold().map_or(-1, |h| i64::from(h.triangle)));
-        }
-        Ok((
-            PyArray2::from_vec2(py, &positions)?,
-            PyArray1::from_vec(py, triangles),
-        ))
+            inner.position()
+        });
+        let positions = table(py, positions)?;
+        Ok((positions, PyArray1::from_vec(py, triangles)))
     }
 
     fn time_path<'py>(
@@ -120,7 +114,7 @@ impl Proxy {
         if batch == 0 {
             return Err(PyValueError::new_err("batch must be at least 1"));
         }
-        let devices = rows_of(&devices)?;
+        let devices = vectors("devices", &devices)?;
         let (body, feel, dt) = (&*self.body, self.feel, self.dt);
         let first = devices.first().copied().unwrap_or(DVec3::ZERO);
         let inner = (self.inner).get_or_insert_with(|| proxy::Proxy::new(body, first));
@@ -149,35 +143,7 @@ impl Proxy {
     }
 
     #[getter]
-    fn god_object<'py>(&self, py: Python<'py>) -> Vector<'py> {
-        let inner = self.inner.as_ref();
-        array(py, inner.map_or(DVec3::ZERO, proxy::Proxy::god_object))
-    }
-
-    #[getter]
     fn sticking(&self) -> bool {
         self.inner.as_ref().is_some_and(proxy::Proxy::is_sticking)
     }
-
-    #[getter]
-    fn steps(&self) -> u32 {
-        self.inner.as_ref().map_or(0, proxy::Proxy::steps)
-    }
-
-    #[getter]
-    fn rescues(&self) -> u64 {
-        self.inner.as_ref().map_or(0, proxy::Proxy::rescues)
-    }
-}
-
-fn rows_of(devices: &PyArrayLike2<'_, f64, AllowTypeChange>) -> PyResult<Vec<DVec3>> {
-    let devices = devices.as_array();
-    if devices.ncols() != 3 {
-        return Err(PyValueError::new_err("devices must have three columns"));
-    }
-    devices
-        .rows()
-        .into_iter()
-        .map(|row| finite("devices", [row[0], row[1], row[2]]))
-        .collect()
 }

@@ -1,7 +1,7 @@
 //! `SteppedServo`: the servo's own ticks over the link's own bytes, in a time that the caller makes.
 
 use std::io::{self, ErrorKind};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard};
 
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -16,6 +16,7 @@ use crate::python::servo::settings::{Chosen, Given, options};
 use crate::python::servo::snapshot::Snapshot;
 use crate::servo::Servo;
 use crate::servo::exchange::{Hand, exchange};
+use crate::servo::paced::locked;
 use crate::servo::settings::Settings;
 use crate::servo::snapshot::Published;
 
@@ -33,7 +34,7 @@ struct InMemory(Arc<Mutex<Line>>);
 
 impl InMemory {
     fn line(&self) -> MutexGuard<'_, Line> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+        locked(&self.0)
     }
 }
 
@@ -90,12 +91,6 @@ pub struct SteppedServo {
     stepped: Mutex<Stepped>,
 }
 
-impl SteppedServo {
-    fn stepped(&self) -> MutexGuard<'_, Stepped> {
-        self.stepped.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
 #[pymethods]
 impl SteppedServo {
     #[new]
@@ -150,7 +145,7 @@ impl SteppedServo {
         seconds: Option<f64>,
     ) -> Bound<'py, PyBytes> {
         self.wire.line().to_host.extend(received.unwrap_or(&[]));
-        let mut stepped = self.stepped();
+        let mut stepped = locked(&self.stepped);
         stepped.now += seconds.unwrap_or(stepped.period);
         let now = stepped.now;
         stepped.servo.tick(now);
@@ -171,7 +166,7 @@ impl SteppedServo {
 
     fn set(&self, settings: Given) -> PyResult<()> {
         let chosen = Chosen::with_any_modulus(&settings)?;
-        let mut stepped = self.stepped();
+        let mut stepped = locked(&self.stepped);
         let brought = Settings::new(1.0).fingers;
         stepped.settings = chosen.on(&brought, &stepped.settings);
         let settings = stepped.settings;
@@ -180,18 +175,18 @@ impl SteppedServo {
     }
 
     fn set_body(&self, body: &Body, settings: Given) -> PyResult<()> {
-        self.stepped().hand.give(body.inner.clone());
+        locked(&self.stepped).hand.give(body.inner.clone());
         self.set(settings)?;
-        self.stepped().hand.settle();
+        locked(&self.stepped).hand.settle();
         Ok(())
     }
 
     fn snapshot(&self, py: Python<'_>) -> PyResult<Py<Snapshot>> {
-        Snapshot::of(py, self.stepped().snapshots.read(), &[])
+        Snapshot::of(py, locked(&self.stepped).snapshots.read(), &[])
     }
 
     fn counters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let told = *self.stepped().snapshots.read().first();
+        let told = *locked(&self.stepped).snapshots.read().first();
         let counters = PyDict::new(py);
         counters.set_item("faults", fault_counters(py, &told)?)?;
         counters.set_item("link", link_counters(py, &told.link)?)?;

@@ -1,23 +1,25 @@
 //! `SteppedFingers`: the servo's own ticks, its fingers led along paths, in a time of their own.
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 use numpy::{AllowTypeChange, PyArray1, PyArray3, PyArrayLike2, PyArrayLike3, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use rtrb::RingBuffer;
 use triple_buffer::{Input, Output, triple_buffer};
 
+use crate::clock::cpu_time::thread_seconds;
 use crate::contact::cones::MAX_FINGERS;
 use crate::control::safety::Limits;
-use crate::device::{Device, DeviceFrame, LinkReport, Probe, Reading};
+use crate::device::{Device, DeviceFrame, Probe, Reading};
 use crate::python::body::surface::Body;
 use crate::python::servo::settings::{Chosen, Given};
 use crate::python::servo::snapshot::Snapshot;
 use crate::python::tool::contact::{ToolContact, tip};
-use crate::python::vectors::{Rows, Triple, finite, rotation as turn};
+use crate::python::vectors::{Rows, Triple, Vector, finite, rotation as turn, vectors};
 use crate::servo::Servo;
+use crate::servo::paced::locked;
 use crate::servo::pressed_patch::PressedPatch;
 use crate::servo::settings::{Options, Settings};
 use crate::servo::snapshot::Published;
@@ -40,31 +42,11 @@ struct Place {
 #[derive(Clone)]
 struct Led(Arc<Mutex<Place>>);
 
-impl Led {
-    fn place(&self) -> MutexGuard<'_, Place> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
 impl Device for Led {
     fn read(&mut self, _now: f64, _dt: f64, _frame: &DeviceFrame) -> Reading {
-        let mut place = self.place();
-        Reading::At(Probe {
-            position: place.position,
-            orientation: DMat3::IDENTITY,
-            speed: 0.0,
-            restart: std::mem::take(&mut place.set_down),
-            buttons: 0,
-            max_force: f64::INFINITY,
-        })
-    }
-
-    fn write(&mut self, _force: DVec3, _enable: bool, _frame: &DeviceFrame) {}
-
-    fn park(&mut self) {}
-
-    fn report(&self) -> LinkReport {
-        LinkReport::default()
+        let mut place = locked(&self.0);
+        let restart = std::mem::take(&mut place.set_down);
+        Reading::At(Probe::without_motors(place.position, restart))
     }
 }
 
@@ -80,20 +62,40 @@ struct Stepped {
     ticks: u64,
 }
 
+impl Stepped {
+    /// Puts the fingers where they are in each tick, and has it made at its time.
+    fn lead(
+        &mut self,
+        paths: &PyArrayLike3<'_, f64, AllowTypeChange>,
+        mut tick: impl FnMut(&mut Self, f64),
+    ) -> PyResult<()> {
+        let paths = paths.as_array();
+        let (ticks, fingers, columns) = paths.dim();
+        if fingers != self.led.len() || columns != 3 {
+            return Err(PyValueError::new_err(format!(
+                "paths have shape ({ticks}, {fingers}, {columns}), expected (ticks, {}, 3)",
+                self.led.len()
+            )));
+        }
+        for places in paths.outer_iter() {
+            for (led, row) in self.led.iter().zip(places.rows()) {
+                locked(&led.0).position = finite("paths", [row[0], row[1], row[2]])?;
+            }
+            self.ticks += 1;
+            tick(self, self.ticks as f64 * self.period);
+        }
+        Ok(())
+    }
+}
+
 /// The ticks of a Servo, by hand and in virtual time, with fingers led along paths.
 ///
 /// No device, no limits; fingers are where the path says, however far apart its places lie.
 /// `follow(paths)` takes (ticks, m, 3), m, and gives contact forces on the fingers, N, and torques,
-/// N m, (ticks, m, 3), before coupling and safety. ValueError for several fingers on a body that is
-/// not whole, and for other shapes.
+/// N m, (ticks, m, 3), before coupling and safety; `costs(paths)` the CPU time of each tick, s. ValueError
+/// for several fingers on a body that is not whole, and for other shapes.
 #[pyclass(frozen, module = "palpate_servo.harness")]
 pub struct SteppedFingers(Mutex<Stepped>);
-
-impl SteppedFingers {
-    fn stepped(&self) -> MutexGuard<'_, Stepped> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
 
 #[pymethods]
 impl SteppedFingers {
@@ -105,7 +107,7 @@ impl SteppedFingers {
         settings: Given,
         rate_hz: u32,
     ) -> PyResult<Self> {
-        let places = places_of(&positions)?;
+        let places = vectors("positions", &positions)?;
         if places.is_empty() || places.len() > MAX_FINGERS {
             return Err(PyValueError::new_err(format!(
                 "{} positions; a servo has 1 to {MAX_FINGERS} fingers",
@@ -178,30 +180,32 @@ impl SteppedFingers {
         py: Python<'py>,
         paths: PyArrayLike3<'py, f64, AllowTypeChange>,
     ) -> PyResult<Felt<'py>> {
-        let paths = paths.as_array();
-        let stepped = &mut *self.stepped();
-        let (ticks, fingers, columns) = paths.dim();
-        if fingers != stepped.led.len() || columns != 3 {
-            return Err(PyValueError::new_err(format!(
-                "paths have shape ({ticks}, {fingers}, {columns}), expected (ticks, {}, 3)",
-                stepped.led.len()
-            )));
-        }
+        let (ticks, fingers, _) = paths.as_array().dim();
         let mut forces = Vec::with_capacity(3 * ticks * fingers);
         let mut torques = Vec::with_capacity(3 * ticks * fingers);
-        for tick in paths.outer_iter() {
-            for (led, row) in stepped.led.iter().zip(tick.rows()) {
-                led.place().position = finite("paths", [row[0], row[1], row[2]])?;
-            }
-            stepped.ticks += 1;
-            stepped.servo.tick(stepped.ticks as f64 * stepped.period);
+        locked(&self.0).lead(&paths, |stepped, now| {
+            stepped.servo.tick(now);
             for report in stepped.snapshots.read().fingers() {
                 forces.extend(report.snapshot.contact_force.to_array());
                 torques.extend(report.snapshot.torque.to_array());
             }
-        }
+        })?;
         let shaped = |values| PyArray1::from_vec(py, values).reshape([ticks, fingers, 3]);
         Ok((shaped(forces)?, shaped(torques)?))
+    }
+
+    fn costs<'py>(
+        &self,
+        py: Python<'py>,
+        paths: PyArrayLike3<'py, f64, AllowTypeChange>,
+    ) -> PyResult<Vector<'py>> {
+        let mut costs = Vec::with_capacity(paths.as_array().dim().0);
+        locked(&self.0).lead(&paths, |stepped, now| {
+            let before = thread_seconds();
+            stepped.servo.tick(now);
+            costs.push(thread_seconds() - before);
+        })?;
+        Ok(PyArray1::from_vec(py, costs))
     }
 
     #[pyo3(signature = (tool, rotation, finger=0))]
@@ -213,7 +217,7 @@ impl SteppedFingers {
     ) -> PyResult<()> {
         let tip = tip(tool.map(|tool| tool.made()));
         let orientation = turn("rotation", rotation)?;
-        let stepped = &mut *self.stepped();
+        let stepped = &mut *locked(&self.0);
         let (Some(hand), Some(own)) = (
             stepped.tips.get_mut(finger),
             stepped.settings.fingers.get_mut(finger),
@@ -229,9 +233,9 @@ impl SteppedFingers {
     }
 
     fn set_down(&self, position: Triple, finger: usize) -> PyResult<()> {
-        let stepped = self.stepped();
+        let stepped = locked(&self.0);
         let led = (stepped.led.get(finger)).ok_or_else(|| no_finger(finger, stepped.led.len()))?;
-        *led.place() = Place {
+        *locked(&led.0) = Place {
             position: finite("position", position)?,
             set_down: true,
         };
@@ -240,7 +244,7 @@ impl SteppedFingers {
 
     fn set(&self, settings: Given) -> PyResult<()> {
         let chosen = Chosen::checked(&settings)?;
-        let stepped = &mut *self.stepped();
+        let stepped = &mut *locked(&self.0);
         let before = stepped.settings;
         stepped.settings = chosen.on(&before.fingers, &before);
         // A tool's rotation is set with the tool.
@@ -252,22 +256,12 @@ impl SteppedFingers {
     }
 
     fn snapshot(&self, py: Python<'_>) -> PyResult<Py<Snapshot>> {
-        let stepped = &mut *self.stepped();
+        let stepped = &mut *locked(&self.0);
         // No tick goes on meanwhile: all of the same one.
         let patches = stepped.patches.iter_mut();
         let patches: Vec<PressedPatch> = patches.map(|patch| patch.read().clone()).collect();
         Snapshot::of(py, stepped.snapshots.read(), &patches)
     }
-}
-
-fn places_of(positions: &PyArrayLike2<'_, f64, AllowTypeChange>) -> PyResult<Vec<DVec3>> {
-    let positions = positions.as_array();
-    if positions.ncols() != 3 {
-        return Err(PyValueError::new_err("positions must have three columns"));
-    }
-    (positions.rows().into_iter())
-        .map(|row| finite("positions", [row[0], row[1], row[2]]))
-        .collect()
 }
 
 fn no_finger(finger: usize, count: usize) -> PyErr {

@@ -15,9 +15,8 @@ use pyo3::types::PyDict;
 
 use crate::clock::cpu_time::thread_seconds;
 use crate::engine::lone::LoneTool;
-use crate::python::tool::arrays::{matrices, vectors};
 use crate::python::tool::contact::ToolContact;
-use crate::python::vectors::positive;
+use crate::python::vectors::{matrices, positive, vectors};
 use crate::tool::collider::Felt;
 use crate::tool::shape::Pose;
 use numpy::{AllowTypeChange, PyArrayLike2, PyArrayLike3};

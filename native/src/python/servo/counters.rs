@@ -1,7 +1,7 @@
 //! Counters as dictionaries.
 
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{IntoPyDict, PyDict};
 
 use crate::clock::durations::{BUCKETS, DurationReport, bucket_limit_ns};
 use crate::clock::timing::{LATE_LIMITS_NS, Timing};
@@ -27,26 +27,24 @@ pub fn timing_counters<'py>(
     for (limit, count) in LATE_LIMITS_NS.iter().zip(report.late) {
         counters.set_item(format!("late_over_{}_us", limit / 1000), count)?;
     }
-    let lateness = PyDict::new(py);
-    for (name, part) in [("p50", 0.5), ("p99", 0.99), ("p99_9", 0.999)] {
-        lateness.set_item(name, us(report.lateness.percentile_ns(part)))?;
-    }
-    lateness.set_item("max", us(report.lateness.largest_ns))?;
-    counters.set_item("lateness_us", lateness)?;
+    let late = |part| us(report.lateness.percentile_ns(part));
+    let lateness = [
+        ("p50", late(0.5)),
+        ("p99", late(0.99)),
+        ("p99_9", late(0.999)),
+        ("max", us(report.lateness.largest_ns)),
+    ];
+    counters.set_item("lateness_us", lateness.into_py_dict(py)?)?;
     let filled = (0..BUCKETS).filter(|&i| report.lateness.histogram[i] > 0);
     let histogram: Vec<(f64, u64)> = filled
         .map(|i| (us(bucket_limit_ns(i)), report.lateness.histogram[i]))
         .collect();
     counters.set_item("histogram", histogram)?;
     counters.set_item("longest_gap_us", us(report.longest_gap_ns))?;
-    let busy = PyDict::new(py);
-    busy.set_item("mean", report.busy.mean_ns() * 1e-3)?;
-    busy.set_item("max", us(report.busy.largest_ns))?;
-    counters.set_item("busy_us", busy)?;
-    let busy_waited = PyDict::new(py);
-    busy_waited.set_item("mean", report.busy_waited.mean_ns() * 1e-3)?;
-    busy_waited.set_item("max", us(report.busy_waited.largest_ns))?;
-    counters.set_item("spun_us", busy_waited)?;
+    for (name, times) in [("busy_us", &report.busy), ("spun_us", &report.busy_waited)] {
+        let (mean, max) = (times.mean_ns() * 1e-3, us(times.largest_ns));
+        counters.set_item(name, [("mean", mean), ("max", max)].into_py_dict(py)?)?;
+    }
     counters.set_item("realtime", realtime)?;
     Ok(counters)
 }
@@ -60,18 +58,18 @@ pub fn stage_counters<'py>(
     for stage in Stage::ALL {
         let report = stages.map(|s| s.report(stage));
         let of = |figure: fn(&DurationReport) -> f64| report.as_ref().map_or(0.0, figure);
-        let times = PyDict::new(py);
-        times.set_item("mean", of(|r| r.mean_ns() * 1e-3))?;
-        times.set_item("p99", of(|r| us(r.percentile_ns(0.99))))?;
-        times.set_item("max", of(|r| us(r.largest_ns)))?;
-        counters.set_item(stage.name(), times)?;
+        let times = [
+            ("mean", of(|r| r.mean_ns() * 1e-3)),
+            ("p99", of(|r| us(r.percentile_ns(0.99)))),
+            ("max", of(|r| us(r.largest_ns))),
+        ];
+        counters.set_item(stage.name(), times.into_py_dict(py)?)?;
     }
     Ok(counters)
 }
 
 pub fn link_counters<'py>(py: Python<'py>, link: &LinkReport) -> PyResult<Bound<'py, PyDict>> {
-    let counters = PyDict::new(py);
-    for (name, count) in [
+    let counters = [
         ("states", link.states),
         ("forces", link.forces),
         ("lost", link.lost),
@@ -89,25 +87,21 @@ pub fn link_counters<'py>(py: Python<'py>, link: &LinkReport) -> PyResult<Bound<
         ("device_faults", link.device_faults),
         ("unsent", link.unsent),
         ("reopened", link.reopened),
-    ] {
-        counters.set_item(name, count)?;
-    }
+    ]
+    .into_py_dict(py)?;
     counters.set_item("last_fault", link.last_fault)?;
     let arrivals = &link.arrivals;
     let mean = |sum: f64, count: u64, unit: f64| sum * unit / count.max(1) as f64;
-    let interval = PyDict::new(py);
-    interval.set_item("mean", mean(arrivals.pause_seconds, arrivals.pauses, 1e6))?;
-    interval.set_item("max", arrivals.longest_pause * 1e6)?;
-    interval.set_item(
-        "device",
-        mean(arrivals.device_seconds, arrivals.states, 1e6),
-    )?;
-    counters.set_item("state_interval_us", interval)?;
+    let by_device = mean(arrivals.device_seconds, arrivals.states, 1e6);
+    let burst_ms = mean(arrivals.burst_seconds, arrivals.bursts, 1e3);
+    let interval = [
+        ("mean", mean(arrivals.pause_seconds, arrivals.pauses, 1e6)),
+        ("max", arrivals.longest_pause * 1e6),
+        ("device", by_device),
+    ];
+    counters.set_item("state_interval_us", interval.into_py_dict(py)?)?;
     counters.set_item("bursts", arrivals.bursts)?;
-    counters.set_item(
-        "burst_ms",
-        mean(arrivals.burst_seconds, arrivals.bursts, 1e3),
-    )?;
+    counters.set_item("burst_ms", burst_ms)?;
     counters.set_item("burst_states", arrivals.burst_states)?;
     let device = link.greeting.map(|g| -> PyResult<_> {
         let device = PyDict::new(py);
@@ -126,11 +120,8 @@ pub fn link_counters<'py>(py: Python<'py>, link: &LinkReport) -> PyResult<Bound<
 
 /// Times each fault began.
 pub fn fault_counters<'py>(py: Python<'py>, report: &FingerReport) -> PyResult<Bound<'py, PyDict>> {
-    let faults = PyDict::new(py);
-    for (fault, count) in Fault::ALL.iter().zip(report.faults) {
-        faults.set_item(fault.name(), count)?;
-    }
-    Ok(faults)
+    let names = Fault::ALL.map(Fault::name);
+    names.into_iter().zip(report.faults).into_py_dict(py)
 }
 
 /// Counters of one finger.
@@ -141,8 +132,7 @@ pub fn finger_counters(
 ) -> PyResult<()> {
     counters.set_item("faults", fault_counters(py, report)?)?;
     counters.set_item("link", link_counters(py, &report.link)?)?;
-    let proxy = PyDict::new(py);
-    proxy.set_item("most_steps", report.most_steps)?;
-    proxy.set_item("rescues", report.rescues)?;
-    counters.set_item("proxy", proxy)
+    let (most_steps, rescues) = (u64::from(report.most_steps), report.rescues);
+    let proxy = [("most_steps", most_steps), ("rescues", rescues)];
+    counters.set_item("proxy", proxy.into_py_dict(py)?)
 }

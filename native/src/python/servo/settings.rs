@@ -75,10 +75,34 @@ pub struct Given {
 }
 
 #[derive(FromPyObject)]
-struct GivenCoupling {
+pub struct GivenCoupling {
     stiffness: f64,
     damping: f64,
     passivity_control: bool,
+}
+
+impl GivenCoupling {
+    /// One that can be.
+    ///
+    /// # Errors
+    /// ValueError for numbers without sense.
+    pub fn checked(&self) -> PyResult<Coupling> {
+        if self.stiffness.is_nan() || self.stiffness <= 0.0 {
+            return Err(PyValueError::new_err(
+                "stiffness must be more than 0 N/m; infinite for none",
+            ));
+        }
+        if !self.damping.is_finite() || self.damping < 0.0 {
+            return Err(PyValueError::new_err(
+                "damping must be finite and at least 0 N s/m",
+            ));
+        }
+        Ok(Coupling {
+            stiffness: self.stiffness,
+            damping: self.damping,
+            passivity_control: self.passivity_control,
+        })
+    }
 }
 
 #[derive(FromPyObject)]
@@ -147,7 +171,7 @@ impl Chosen {
         Ok(Self {
             settings,
             coupling: (given.coupling.as_ref())
-                .map(|c| coupling(c.stiffness, c.damping, c.passivity_control))
+                .map(GivenCoupling::checked)
                 .transpose()?,
             frames,
         })
@@ -186,24 +210,6 @@ pub fn feel(shading: bool, static_friction: f64, dynamic_friction: f64) -> PyRes
         static_friction,
         dynamic_friction,
         mode: ContactMode::default(),
-    })
-}
-
-pub fn coupling(stiffness: f64, damping: f64, passivity_control: bool) -> PyResult<Coupling> {
-    if stiffness.is_nan() || stiffness <= 0.0 {
-        return Err(PyValueError::new_err(
-            "stiffness must be more than 0 N/m; infinite for none",
-        ));
-    }
-    if !damping.is_finite() || damping < 0.0 {
-        return Err(PyValueError::new_err(
-            "damping must be finite and at least 0 N s/m",
-        ));
-    }
-    Ok(Coupling {
-        stiffness,
-        damping,
-        passivity_control,
     })
 }
 

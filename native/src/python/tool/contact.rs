@@ -8,14 +8,13 @@ use pyo3::prelude::*;
 
 use crate::body::surface;
 use crate::engine::lone::LoneTool;
-use crate::python::vectors::{Matrix, Rows, Triple, Vector, array, positive, square, table};
+use crate::python::vectors::{Matrix, Rows, Triple, Vector, array, pose, positive, square, table};
 use crate::servo::tip::Tip;
 use crate::tool::coefficients::Friction;
 use crate::tool::collider::Collider;
 use crate::tool::points::{self};
 use crate::tool::shape::{self};
 
-use crate::python::tool::arrays::pose;
 use crate::python::tool::shape::Tool;
 use crate::python::tool::surface::ToolSurface;
 
@@ -110,16 +109,6 @@ impl ToolContact {
     }
 
     #[getter]
-    fn linearisations(&self) -> usize {
-        self.inner.felt().linearisations
-    }
-
-    #[getter]
-    fn exact(&self) -> bool {
-        self.inner.felt().exact
-    }
-
-    #[getter]
     fn free(&self) -> bool {
         self.inner.is_free()
     }
@@ -127,11 +116,6 @@ impl ToolContact {
     #[getter]
     fn touching(&self) -> bool {
         self.inner.felt().pressed > 0
-    }
-
-    #[getter]
-    fn near_count(&self) -> usize {
-        self.inner.felt().effort.near
     }
 
     #[getter]
@@ -160,11 +144,6 @@ impl ToolContact {
     #[getter]
     fn normals<'py>(&self, py: Python<'py>) -> PyResult<Matrix<'py>> {
         table(py, self.pressed().map(|slot| slot.normal))
-    }
-
-    #[getter]
-    fn displacements<'py>(&self, py: Python<'py>) -> PyResult<Matrix<'py>> {
-        table(py, self.pressed().map(|slot| slot.moved))
     }
 
     #[getter]

@@ -1,6 +1,5 @@
 //! Tools from numpy arrays, and their contact.
 
-pub mod arrays;
 pub mod contact;
 mod near_field;
 pub mod shape;

@@ -8,7 +8,7 @@ use pyo3::types::PyDict;
 
 use crate::tool::near_field::{NearField, NodeField, PointField};
 
-use crate::python::tool::arrays::{matrices, vectors};
+use crate::python::vectors::{matrices, vectors};
 
 /// The arrays that `core/contact/near_field/compliance_beneath.py` gives.
 const NEAR_FIELD: [&str; 14] = [

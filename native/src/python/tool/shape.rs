@@ -5,10 +5,8 @@ use numpy::{AllowTypeChange, PyArray1, PyArrayLike2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::python::vectors::{Matrix, Vector, table};
+use crate::python::vectors::{Matrix, Vector, table, vectors};
 use crate::tool::shape::{self};
-
-use crate::python::tool::arrays::vectors;
 
 #[pyclass(frozen, module = "palpate_servo")]
 pub struct Tool {

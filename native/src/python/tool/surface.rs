@@ -10,8 +10,8 @@ use pyo3::types::PyDict;
 use crate::python::body::surface::Body;
 use crate::tool::points::{self, Point};
 
-use crate::python::tool::arrays::vectors;
 use crate::python::tool::near_field::near_field;
+use crate::python::vectors::vectors;
 
 #[pyclass(frozen, module = "palpate_servo")]
 pub struct ToolSurface {
@@ -70,11 +70,6 @@ impl ToolSurface {
         Ok(Self {
             inner: Arc::new(surface),
         })
-    }
-
-    #[getter]
-    fn point_count(&self) -> usize {
-        self.inner.points().len()
     }
 
     #[getter]
