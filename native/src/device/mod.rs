@@ -178,10 +178,10 @@ pub trait Device: Send {
     /// The newest position at `now` (s since the start), one nominal period `dt` after the last.
     fn read(&mut self, now: f64, dt: f64, frame: &DeviceFrame) -> Reading;
     /// Gives the device its force (N, body axes); `enable` is false whenever it must go limp.
-    /// One without motors has no use for it.
-    fn write(&mut self, _force: DVec3, _enable: bool, _frame: &DeviceFrame) {}
+    /// Never left out by accident: one without motors says that it does nothing.
+    fn write(&mut self, force: DVec3, enable: bool, frame: &DeviceFrame);
     /// Leaves the device without force for good.
-    fn park(&mut self) {}
+    fn park(&mut self);
     /// Counters for the user.
     fn report(&self) -> LinkReport {
         LinkReport::default()

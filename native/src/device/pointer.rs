@@ -82,4 +82,8 @@ impl Device for Pointer {
         }
         Reading::At(Probe::without_motors(self.position, restart))
     }
+
+    fn write(&mut self, _force: DVec3, _enable: bool, _frame: &DeviceFrame) {}
+
+    fn park(&mut self) {}
 }

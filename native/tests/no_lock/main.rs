@@ -175,6 +175,8 @@ impl Device for Dipping {
             self.touched.fetch_add(1, Relaxed);
         }
     }
+
+    fn park(&mut self) {}
 }
 
 #[test]
@@ -287,6 +289,10 @@ impl Device for Locking {
     fn read(&mut self, now: f64, dt: f64, frame: &DeviceFrame) -> Reading {
         self.0.lock().expect("nobody panics").read(now, dt, frame)
     }
+
+    fn write(&mut self, _force: DVec3, _enable: bool, _frame: &DeviceFrame) {}
+
+    fn park(&mut self) {}
 }
 
 #[test]

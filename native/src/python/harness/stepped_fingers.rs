@@ -48,6 +48,10 @@ impl Device for Led {
         let restart = std::mem::take(&mut place.set_down);
         Reading::At(Probe::without_motors(place.position, restart))
     }
+
+    fn write(&mut self, _force: DVec3, _enable: bool, _frame: &DeviceFrame) {}
+
+    fn park(&mut self) {}
 }
 
 struct Stepped {
