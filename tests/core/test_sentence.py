@@ -33,8 +33,8 @@ def test_it_is_an_english_string(sentence):
 
 
 def test_it_is_said_in_another_language_with_what_stands_inside(sentence):
-    assert sentence.retold(in_german) == "{Hare}: nur 12 % sind übrig; neu berechnen"
-    assert Sentence("without {values}").retold(in_german) == "without {values}"
+    assert sentence.translated(in_german) == "{Hare}: nur 12 % sind übrig; neu berechnen"
+    assert Sentence("without {values}").translated(in_german) == "without {values}"
 
 
 @pytest.mark.parametrize(
@@ -49,7 +49,7 @@ def test_it_is_said_in_another_language_with_what_stands_inside(sentence):
 def test_it_keeps_its_parts_on_the_way_to_another_process(sentence, travel):
     there = travel(sentence)
     assert there == sentence
-    assert there.retold(in_german) == sentence.retold(in_german)
+    assert there.translated(in_german) == sentence.translated(in_german)
 
 
 def test_a_line_of_an_older_file_is_taken_as_it_is():
@@ -62,5 +62,5 @@ def test_an_error_is_its_sentence_and_may_stand_in_another():
     assert str(error) == "Hare: only 3 % is left; bake again"
     known = pickle.loads(pickle.dumps(error))  # noqa: S301  our own
     assert str(known) == str(error)
-    assert known.sentence.retold(in_german) == "Hare: nur 3 % sind übrig; neu berechnen"
+    assert known.sentence.translated(in_german) == "Hare: nur 3 % sind übrig; neu berechnen"
     assert PalpateError(error.sentence).sentence is error.sentence
