@@ -61,7 +61,7 @@ def press_with_device(
         palpate("operators.session.press_state"),
     )
     simulated = palpate("simulated.simulated_process")
-    options = palpate("simulated.options")
+    options = palpate("simulated.hand.options")
     hand = folder / "hand.json"
     write_hand(hand, place, depth)
     scene = bpy.context.scene
