@@ -81,21 +81,6 @@ def test_ticks_come_to_rest_where_the_engine_does(body, surface, name):
     assert pressed >= 3
 
 
-def test_a_tool_set_down_inside_feels_nothing_until_it_was_outside(body, surface):
-    tool = TOOLS["sphere"]
-    contact, top = native_tool(body, surface, tool), highest_place(body)
-    contact.restart(top - [0.0, 0.0, 0.02], np.eye(3))
-    assert not contact.free
-    for height in np.linspace(-0.02, 0.03, 60):
-        contact.follow(top + height * UP, np.eye(3), body.young_modulus)
-        assert not contact.touching
-    assert contact.free
-    for height in np.linspace(0.03, tool.radius - 0.003, 30):
-        contact.follow(top + height * UP, np.eye(3), body.young_modulus)
-    assert contact.touching
-    assert contact.force[2] > 0
-
-
 def test_a_tool_goes_at_most_one_stride_a_tick_and_does_not_jump_through_the_body(body, surface):
     tool = TOOLS["sphere"]
     contact, top = native_tool(body, surface, tool), highest_place(body)
@@ -156,19 +141,6 @@ def test_wrong_arrays_are_refused(body, surface):
         NativeTool(np.zeros((65, 3)), 0.01)
 
 
-def test_costs_are_told_for_every_tick(body, surface):
-    path = np.tile(body.mesh.nodes.max(axis=0) + 0.01, (5, 2, 1))
-    fingers = SteppedFingers(surface, path[0], Settings(1e4))
-    costs = fingers.costs(path)
-    assert costs.shape == (5,)
-    assert (costs >= 0).all()
-    with pytest.raises(ValueError, match="expected"):
-        fingers.costs(path[:, :1])
-    contact = native_tool(body, surface, TOOLS["sphere"])
-    told = tool_costs(contact, path[:, 0], np.tile(np.eye(3), (5, 1, 1)), 1e4)
-    assert told["taken"].shape == told["pressed"].shape == (5,)
-
-
 def test_a_tick_that_is_replayed_comes_out_the_same_and_no_longer(body, surface):
     tool = TOOLS["sphere"]
     contact, other = (native_tool(body, surface, tool, friction=0.3) for _ in range(2))
@@ -186,19 +158,6 @@ def test_a_tick_that_is_replayed_comes_out_the_same_and_no_longer(body, surface)
     assert not once["copied"].any()
     assert again["control"].shape == (113,)
     assert once["control"].shape == (0,)
-
-
-def test_a_thin_part_on_a_firm_base_is_not_passed_through():
-    slab, tool = soft_block((0.04, 0.04, 0.006), (6, 6, 2)), sphere(0.008)
-    contact = native_tool(slab, native_body(slab, whole=True), tool)
-    forces = []
-    # To twice the thickness: the sphere reaches the pinned far side.
-    for depth in np.arange(-0.001, 0.012, 0.001):
-        pose = Pose.at([0.021, 0.019, 0.006 + tool.radius - depth])
-        for _ in range(10):
-            contact.follow(pose.position, pose.rotation, slab.young_modulus)
-        forces.append(contact.force[2])
-    assert (np.diff(forces[2:]) > 0).all()
 
 
 @pytest.mark.parametrize("tool", [sphere(0.007), rod(0.006, 0.01)], ids=["sphere", "rod"])

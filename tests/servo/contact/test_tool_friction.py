@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from bodies.shared import highest_place
+from palpate_servo.harness import SteppedFingers
 from scipy.spatial.transform import Rotation
 
 from palpate.core.contact.press import ContactSettings, Press
@@ -10,6 +11,7 @@ from palpate.core.contact.tool.pose import Pose
 from palpate.core.contact.tool.tools import rod, sphere
 from palpate.core.errors import PalpateError
 from palpate.core.servo.session import native_tool
+from palpate.core.servo.settings import Settings
 
 TOOLS = {"sphere": sphere(0.018), "rod": rod(0.014, 0.015)}
 FRICTION = 0.4
@@ -37,21 +39,20 @@ def aside_and_push(contact):
 
 
 @pytest.mark.parametrize("name", list(TOOLS))
-def test_ticks_at_rest_are_the_engine_on_the_same_way(body, surface, name):
+def test_the_servos_ticks_at_rest_are_the_engine_on_the_same_way(body, surface, name):
     tool = TOOLS[name]
     places = above(body, tool) + press_shear_unload()
-    contact = native_tool(body, surface, tool, friction=FRICTION)
-    contact.restart(places[0], np.eye(3))
+    settings = Settings(body.young_modulus, static_friction=FRICTION, dynamic_friction=FRICTION)
+    fingers = SteppedFingers(surface, places[:1], settings)
+    fingers.set_tool(native_tool(body, surface, tool), np.eye(3))
     press = Press(body, [tool], ContactSettings(friction=FRICTION))
     forces, expected, torques, slid = [], [], [], 0.0
     for place in places:
         (touch,) = press.to([Pose.at(place)])
-        for _ in range(TICKS_TO_REST):
-            contact.follow(place, np.eye(3), body.young_modulus)
-        assert contact.touching == touch.touching
-        forces.append(contact.force)
+        felt, turned = fingers.follow(np.tile(place, (TICKS_TO_REST, 1, 1)))
+        forces.append(felt[-1, 0])
         expected.append(touch.force)
-        torques.append(np.abs(contact.torque - touch.torque).max())
+        torques.append(np.abs(turned[-1, 0] - touch.torque).max())
         aside = touch.forces - touch.pushes[:, None] * touch.normals
         slid = max(slid, np.linalg.norm(aside, axis=1).sum() / max(touch.pushes.sum(), 1e-12))
     assert slid > 0.9 * FRICTION

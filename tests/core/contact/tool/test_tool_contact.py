@@ -117,14 +117,21 @@ def test_in_an_inner_corner_wall_and_floor_are_felt_each_by_itself(corner, depth
     assert far[0] < 0.5 * touching[0] < touching[0] < 0.3 * far[2]
 
 
-def test_what_has_come_through_a_thin_part_does_not_draw_the_tool_on():
-    strip, tool = soft_block((0.06, 0.006, 0.04), (10, 2, 6)), sphere(0.006)
-    depths = 0.001 * np.arange(1, 11)
-    poses = [Pose.at([0.029, 0.006 + tool.radius - depth, 0.012]) for depth in depths]
-    press = Press(strip, [tool])
-    press.to([Pose.at([0.029, 0.0125, 0.012])])
-    forces = [press.to([pose])[0].force[1] for pose in poses]
-    assert (np.diff(forces) > 0).all()
+@pytest.mark.parametrize(
+    ("size", "cells", "tool", "place", "out"),
+    [
+        ((0.06, 0.006, 0.04), (10, 2, 6), sphere(0.006), [0.029, 0.006, 0.012], [0.0, 1.0, 0.0]),
+        # To nearly twice the thickness: the sphere reaches the pinned far side.
+        ((0.04, 0.04, 0.006), (6, 6, 2), sphere(0.008), [0.021, 0.019, 0.006], [0.0, 0.0, 1.0]),
+    ],
+    ids=["upright strip", "slab on a firm base"],
+)
+def test_what_has_come_through_a_thin_part_does_not_draw_the_tool_on(size, cells, tool, place, out):
+    press, forces = Press(soft_block(size, cells), [tool]), []
+    for depth in 0.001 * np.arange(-1, 12):
+        (touch,) = press.to([Pose.at(place + (tool.radius - depth) * np.array(out))])
+        forces.append(touch.force @ out)
+    assert (np.diff(forces[2:]) > 0).all()
 
 
 def test_the_way_there_does_not_matter(press, pressed):
