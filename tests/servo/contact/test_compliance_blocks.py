@@ -1,8 +1,7 @@
 """The native compliance against core's, block by block, and what snapshots tell of the surface."""
 
 import os
-from functools import lru_cache
-from pathlib import Path
+from functools import cache
 
 import numpy as np
 import pytest
@@ -13,24 +12,25 @@ from palpate.core.body import body_file
 from palpate.core.contact.single_press import touch_at
 from palpate.core.contact.touches import contact_displacement
 from palpate.core.errors import BodyFileError
-from palpate.core.mesh.tet_mesh import TetMesh
 from palpate.core.servo.session import native_body, native_compliance, servo_on
 from palpate.core.servo.settings import Settings
 from palpate.core.stiffness.pins import PinNodes
 
-MOUSE = Path(__file__).resolve().parents[2] / "meshes" / "mouse-1.7k.npz"
 
+@pytest.fixture(scope="module")
+def baked(mouse_mesh):
+    mesh, fixed = mouse_mesh
 
-@lru_cache
-def baked(form, tolerance):
-    with np.load(MOUSE) as file:
-        mesh, fixed = TetMesh.checked(file["X"], file["T"]), file["fixed"]
-    settings = BakeSettings(0.3, 1_000.0, PinNodes(fixed), form=form, tolerance=tolerance)
-    return bake(mesh, settings)[0]
+    @cache
+    def bake_as(form, tolerance=1e-3):
+        settings = BakeSettings(0.3, 1_000.0, PinNodes(fixed), form=form, tolerance=tolerance)
+        return bake(mesh, settings)[0]
+
+    return bake_as
 
 
 @pytest.fixture(params=[("dense", 1e-3), ("compressed", 1e-3), ("compressed", 1e-4)])
-def body(request):
+def body(request, baked):
     return baked(*request.param)
 
 
@@ -130,9 +130,9 @@ def test_the_thread_reads_nothing_that_may_be_written_to_or_lie_in_a_file(cube):
     assert np.isfinite(after).all()
 
 
-def test_a_table_whose_file_was_cut_short_is_not_read(tmp_path):
+def test_a_table_whose_file_was_cut_short_is_not_read(tmp_path, baked):
     file = tmp_path / "mouse.npz"
-    body_file.save(baked("dense", 1e-3), file)
+    body_file.save(baked("dense"), file)
     body = body_file.load(file, mapped_from_bytes=0)
     assert native_body(body).surface_displacement(7, [1, 0, 0], np.eye(3), 1.0) is not None
     os.truncate(file, 1_000_000)
@@ -153,8 +153,8 @@ def test_a_table_that_cannot_be_read_is_refused(table, error, reason):
         Compliance.dense(table)
 
 
-def test_arrays_that_cannot_be_read_are_refused():
-    arrays = baked("compressed", 1e-3).compliance.arrays()
+def test_arrays_that_cannot_be_read_are_refused(baked):
+    arrays = baked("compressed").compliance.arrays()
     with pytest.raises(KeyError, match="compressed_basis"):
         Compliance.compressed({k: v for k, v in arrays.items() if k != "compressed_basis"})
     with pytest.raises(ValueError, match="beyond"):

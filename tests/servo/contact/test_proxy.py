@@ -80,21 +80,6 @@ def test_pushes_into_the_mouse_never_fall_through_and_are_held_locally_nearest(m
     assert held > 330
 
 
-def test_force_is_nothing_at_touch_and_at_release(cube):
-    proxy = Proxy(cube.native)
-    proxy.restart([0.02, 0.03, 0.06])
-    for height in [1e-3, 1e-9, 0.0]:
-        _, position, _, _ = proxy.move([0.02, 0.03, 0.05 + height])
-        np.testing.assert_allclose(position, [0.02, 0.03, 0.05 + height], atol=1e-17)
-    for depth in [1e-9, 1e-6, 1e-3, 1e-6, 1e-9]:
-        touching, position, _, _ = proxy.move([0.02, 0.03, 0.05 - depth])
-        assert touching
-        np.testing.assert_allclose(position, [0.02, 0.03, 0.05], atol=1e-16)
-    touching, position, triangle, alpha = proxy.move([0.02, 0.03, 0.05 + 1e-9])
-    assert (touching, triangle) == (False, -1)
-    assert not alpha.any()
-
-
 def test_on_a_node_the_area_coordinates_are_exact(cube):
     proxy = Proxy(cube.native)
     proxy.restart([0.025, 0.025, 0.06])
@@ -190,21 +175,6 @@ def test_slipping_over_the_mouse_its_force_lies_on_the_cone(mouse):
     assert slipped > 1000
     # The rest has just passed the border of a facet.
     assert on_cone > 0.9 * slipped
-
-
-def test_a_contact_point_that_sticks_stays_until_the_static_cone(cube):
-    identical = Body(cube.nodes, cube.triangles, np.tile(np.eye(3), (len(cube.nodes), 1, 1)))
-    proxy = Proxy(identical, static_friction=0.5, dynamic_friction=0.3)
-    for depth in np.linspace(-1e-3, 2e-3, 60):
-        proxy.move([0.02, 0.022, 0.05 - depth])
-    for aside in np.linspace(0, 0.99e-3, 100):
-        _, position, _, _ = proxy.move([0.02 + aside, 0.022, 0.048])
-        assert proxy.sticking
-        np.testing.assert_allclose(position, [0.02, 0.022, 0.05], atol=1e-15)
-    _, position, _, _ = proxy.move([0.02 + 1.01e-3, 0.022, 0.048])
-    assert not proxy.sticking
-    # 0.3 of 2 mm behind the finger.
-    np.testing.assert_allclose(position, [0.02 + 0.41e-3, 0.022, 0.05], atol=1e-6)
 
 
 @pytest.mark.parametrize(("still", "moving"), [(0.2, 0.3), (-0.1, -0.1), (np.nan, 0.0)])
