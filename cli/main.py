@@ -33,7 +33,11 @@ def make_parser() -> argparse.ArgumentParser:
     )
     subparsers = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
     for command in COMMANDS:
-        command.add_parser(subparsers)
+        name = command.__name__.rpartition(".")[2]
+        one = subparsers.add_parser(name, help=command.HELP, description=command.DESCRIPTION)
+        command.add_options(one)
+        one.add_argument("--json", action="store_true", help="print figures as JSON")
+        one.set_defaults(run=command.run)
     return parser
 
 

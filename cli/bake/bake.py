@@ -20,15 +20,15 @@ from . import bake_folder, bake_prediction
 from .bake_options import add_bake_options, bake_input
 from .status_line import bake_status, show, status_line
 
+HELP = "make body files from mesh files"
+DESCRIPTION = (
+    "Fill meshes with tetrahedra and compute once how their surfaces give way: "
+    "one body file for each mesh."
+)
 
-def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Describe the command."""
-    parser = subparsers.add_parser(
-        "bake",
-        help="make body files from mesh files",
-        description="Fill meshes with tetrahedra and compute once how their surfaces give way: "
-        "one body file for each mesh.",
-    )
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add the command's options."""
     parser.add_argument(
         "meshes",
         type=Path,
@@ -64,8 +64,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help="bake on a Dask cluster, for example tcp://farm:8786, or its scheduler file",
     )
     add_bake_options(parser)
-    parser.add_argument("--json", action="store_true", help="print figures as JSON")
-    parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:

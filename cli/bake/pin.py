@@ -21,14 +21,12 @@ from ..body.body_figures import body_figures
 from ..body.figure_lines import as_lines
 from .bake_options import AXES
 
+HELP = "pin more of a body, without a new bake"
+DESCRIPTION = "Write the body file that a bake with these nodes pinned besides would give."
 
-def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Describe the command."""
-    parser = subparsers.add_parser(
-        "pin",
-        help="pin more of a body, without a new bake",
-        description="Write the body file that a bake with these nodes pinned besides would give.",
-    )
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add the command's options."""
     add_body(parser)
     parser.add_argument(
         "-o", "--output", type=Path, required=True, metavar="OUT.npz", help="body file to write"
@@ -47,8 +45,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help="pin these nodes besides: numbers in a text file, or an integer array in a .npy",
     )
     parser.add_argument("--up", choices=AXES, default="z", help="upward axis (default: z)")
-    parser.add_argument("--json", action="store_true", help="print figures as JSON")
-    parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -11,18 +11,13 @@ from .body_argument import add_body
 from .body_figures import body_figures
 from .figure_lines import as_lines
 
+HELP = "check a body file and print its figures"
+DESCRIPTION = "Check a body file against its checksums and print its size, material and pins."
 
-def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Describe the command."""
-    parser = subparsers.add_parser(
-        "info",
-        help="check a body file and print its figures",
-        description="Check a body file against its checksums and print its size, material and "
-        "pins.",
-    )
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add the command's options."""
     add_body(parser)
-    parser.add_argument("--json", action="store_true", help="print figures as JSON")
-    parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -10,14 +10,12 @@ from ...core.servo.ports import Port, list_ports
 from ...simulated import device_process
 from ...simulated.hand.options import add_simulated_options, simulated_options
 
+HELP = "list haptic devices, or simulate one"
+DESCRIPTION = "List the serial ports and the haptic devices that answer there."
 
-def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Describe the command and its subcommand."""
-    parser = subparsers.add_parser(
-        "devices",
-        help="list haptic devices, or simulate one",
-        description="List the serial ports and the haptic devices that answer there.",
-    )
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add the command's options."""
     parser.add_argument(
         "--port",
         nargs="+",
@@ -26,8 +24,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         metavar="PATH",
         help="ask these ports too, whatever they are",
     )
-    parser.add_argument("--json", action="store_true", help="print figures as JSON")
-    parser.set_defaults(run=run)
     below = parser.add_subparsers(title="without hardware", metavar="COMMAND")
     simulate = below.add_parser(
         "simulate",

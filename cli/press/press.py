@@ -28,16 +28,16 @@ from .felt_option import add_felt, refuse_with_tool, softenings_for
 from .press_tool import pressed_tools, tool_figures, tool_summary
 from .tool_option import KINDS, tool_from
 
+HELP = "press a body with one or several fingers and read the forces"
+DESCRIPTION = (
+    "Press a body and print the force on each finger, where it touches, and how "
+    "far the surface moves."
+)
 
-def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Describe the command."""
-    parser = subparsers.add_parser(
-        "press",
-        help="press a body with one or several fingers and read the forces",
-        description="Press a body and print the force on each finger, where it touches, and how "
-        "far the surface moves.",
-        epilog="Several fingers: give --at and --by once for each, in the same order.",
-    )
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add the command's options."""
+    parser.epilog = "Several fingers: give --at and --by once for each, in the same order."
     add_body(parser)
     for name, what in (
         ("at", "the surface point nearest to this is touched"),
@@ -88,8 +88,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         metavar="OUT.npy",
         help="write displacements of the free surface nodes, float64 (n, 3)",
     )
-    parser.add_argument("--json", action="store_true", help="print figures as JSON")
-    parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -42,14 +42,15 @@ HAND_FORCE = 1.5
 """Largest force of the simulated hand, N: half of its device's."""
 
 
-def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Describe the command."""
-    parser = subparsers.add_parser(
-        "servo",
-        help="touch a body with a device, at 1 kHz",
-        description="Run the real-time thread between a device and a body, then print what was "
-        "felt and how its deadlines were kept. Ctrl-C ends it with zero force.",
-    )
+HELP = "touch a body with a device, at 1 kHz"
+DESCRIPTION = (
+    "Run the real-time thread between a device and a body, then print what was "
+    "felt and how its deadlines were kept. Ctrl-C ends it with zero force."
+)
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add the command's options."""
     add_body(parser)
     device = parser.add_mutually_exclusive_group(required=True)
     device.add_argument("--port", metavar="PORT", help="a device that speaks the link")
@@ -88,8 +89,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         "--record", type=Path, metavar="FILE", help="write every tick to FILE.csv or FILE.npz"
     )
-    parser.add_argument("--json", action="store_true", help="print figures as JSON")
-    parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:

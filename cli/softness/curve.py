@@ -19,14 +19,15 @@ from .place_options import add_at, add_young, positive_length, refuse_suffix, yo
 POINT, FINGERTIP = "point", "sphere:0.008"
 
 
-def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Describe the command."""
-    parser = subparsers.add_parser(
-        "curve",
-        help="print force against depth at a place of a body",
-        description="Press a point or tool into a body in steps, along the surface's normal, and "
-        "print force and stiffness.",
-    )
+HELP = "print force against depth at a place of a body"
+DESCRIPTION = (
+    "Press a point or tool into a body in steps, along the surface's normal, and "
+    "print force and stiffness."
+)
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add the command's options."""
     add_body(parser)
     add_at(parser)
     parser.add_argument(
@@ -49,8 +50,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add_felt(parser)
     parser.add_argument("--csv", type=Path, metavar="OUT.csv", help="write the curve as a table")
     parser.add_argument("--picture", type=Path, metavar="OUT.svg", help="write it as a picture")
-    parser.add_argument("--json", action="store_true", help="print figures as JSON")
-    parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -13,15 +13,15 @@ from ..body.body_argument import add_body
 from ..body.figure_lines import as_lines
 from .place_options import add_at, add_young, young_modulus_of
 
+HELP = "read a virtual durometer set on a body"
+DESCRIPTION = (
+    "Press the standard's indenter into a body and print the Shore value that the "
+    "instrument would show there."
+)
 
-def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Describe the command."""
-    parser = subparsers.add_parser(
-        "durometer",
-        help="read a virtual durometer set on a body",
-        description="Press the standard's indenter into a body and print the Shore value that the "
-        "instrument would show there.",
-    )
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add the command's options."""
     add_body(parser)
     add_at(parser)
     parser.add_argument(
@@ -40,8 +40,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         action="store_true",
         help="press with the standard's mass: 400 g for 00, 1 kg for A",
     )
-    parser.add_argument("--json", action="store_true", help="print figures as JSON")
-    parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -7,17 +7,15 @@ import json
 
 from ...core.softness.scales.materials import MATERIALS, Material
 
+HELP = "list the material presets and their sources"
+DESCRIPTION = (
+    "List the materials that 'palpate bake --material' knows, with their constants "
+    "and where these come from."
+)
 
-def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Describe the command."""
-    parser = subparsers.add_parser(
-        "materials",
-        help="list the material presets and their sources",
-        description="List the materials that 'palpate bake --material' knows, with their constants "
-        "and where these come from.",
-    )
-    parser.add_argument("--json", action="store_true", help="print figures as JSON")
-    parser.set_defaults(run=run)
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add the command's options."""
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -16,15 +16,12 @@ from ...core.softness.scales.shore import (
 )
 from ..body.figure_lines import as_lines
 
+HELP = "convert Shore 00 or A to Young's modulus, and back"
+DESCRIPTION = "Print Young's modulus for a Shore value, or the Shore values for Young's modulus."
 
-def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Describe the command."""
-    parser = subparsers.add_parser(
-        "shore",
-        help="convert Shore 00 or A to Young's modulus, and back",
-        description="Print Young's modulus for a Shore value, or the Shore values for Young's "
-        "modulus.",
-    )
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add the command's options."""
     which = parser.add_mutually_exclusive_group(required=True)
     which.add_argument(
         "value", nargs="?", metavar="SHORE", help="Shore value, such as 00-30 or A20"
@@ -39,8 +36,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         metavar="NU",
         help="Poisson's ratio (default: %(default)g, rubber)",
     )
-    parser.add_argument("--json", action="store_true", help="print figures as JSON")
-    parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -21,13 +21,12 @@ from .place_options import add_young, refuse_suffix, young_modulus_of
 KINDS = (".npy", ".ply")
 
 
-def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Describe the command."""
-    parser = subparsers.add_parser(
-        "softness",
-        help="map how soft a body is all over its surface",
-        description="Write how firm a body is under a finger at each node of its surface.",
-    )
+HELP = "map how soft a body is all over its surface"
+DESCRIPTION = "Write how firm a body is under a finger at each node of its surface."
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add the command's options."""
     add_body(parser)
     parser.add_argument(
         "-o",
@@ -46,8 +45,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "which follows the mesh",
     )
     add_young(parser)
-    parser.add_argument("--json", action="store_true", help="print figures as JSON")
-    parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -17,6 +17,7 @@ from ...core.sentence import Sentence
 from ...core.stiffness.pins import PinNodes
 from ..object import baked_record, body_store, soft_object
 from ..pins import pin_group, stiff_region
+from ..reporting.acting import Acting
 from ..scene import drawn_surface
 from ..scene.drawn_surface import DrawnSurface
 from ..scene.fingerprint import Fingerprint, changed_body
@@ -216,11 +217,15 @@ def settings_of(thing: bpy.types.Object, drawn: DrawnSurface) -> BakeSettings:
     )
 
 
-def refusal_of_soft(context: bpy.types.Context) -> str:
-    """Reason why the active object's body cannot be changed now; empty if it can."""
-    reason = soft_object.refusal(context.object)
-    if not reason and not context.object.palpate.body_key:
-        reason = Sentence("{name} is not soft yet; press Make Soft first", name=context.object.name)
-    if not reason and (current() or press_session.current()):
-        reason = "Finish baking or pressing first"
-    return reason
+class OnSoft(Acting):
+    """Mixin for an operator on a soft object that is neither baked nor pressed now."""
+
+    @classmethod
+    def refusal(cls, context: bpy.types.Context) -> str:
+        reason = soft_object.refusal(context.object)
+        if not reason and not context.object.palpate.body_key:
+            name = context.object.name
+            reason = Sentence("{name} is not soft yet; press Make Soft first", name=name)
+        if not reason and (current() or press_session.current()):
+            reason = "Finish baking or pressing first"
+        return reason

@@ -38,11 +38,10 @@ class BakingOperator(Acting):
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if bpy.app.background:
             return self.execute(context)
-        try:
-            self._session = bake_session.start(context.object, context.scene, rebuild=self.rebuild)
-        except PalpateError as problem:
-            self.report({"ERROR"}, reported(problem))
-            return {"CANCELLED"}
+        return self.guarded(lambda: self._start(context))
+
+    def _start(self, context: bpy.types.Context) -> set[str]:
+        self._session = bake_session.start(context.object, context.scene, rebuild=self.rebuild)
         manager = context.window_manager
         self._timer = manager.event_timer_add(1 / POLLS_PER_SECOND, window=context.window)
         manager.progress_begin(0, 100)

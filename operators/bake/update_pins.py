@@ -5,13 +5,12 @@ from __future__ import annotations
 import bpy
 
 from ..object import pin_change, soft_object
-from ..reporting.acting import Acting
 from ..reporting.translated import reported
 from ..scene import drawn_surface
-from .bake_session import refusal_of_soft
+from .bake_session import OnSoft
 
 
-class PALPATE_OT_update_pins(Acting, bpy.types.Operator):
+class PALPATE_OT_update_pins(OnSoft, bpy.types.Operator):
     bl_idname = "palpate.update_pins"
     bl_label = "Update Pins"
     bl_description = (
@@ -19,10 +18,6 @@ class PALPATE_OT_update_pins(Acting, bpy.types.Operator):
         "so do pins that were baked before"
     )
     bl_options = {"REGISTER", "UNDO"}
-
-    @classmethod
-    def refusal(cls, context: bpy.types.Context) -> str:
-        return refusal_of_soft(context)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         context.window.cursor_modal_set("WAIT")

@@ -74,16 +74,18 @@ class ModalPress(Pressing):
     _status = ""
 
     def start(self, context: bpy.types.Context, source: Source, *, pinch: bool) -> set[str]:
-        """Start to press the active object and to receive events."""
+        """Start to press the active object and to receive events.
+
+        Raises
+        ------
+        PalpateError
+            It is hidden; as of :func:`press_session.begin`.
+        """
         thing = context.object
         if not thing.visible_get():
-            self.report(
-                {"ERROR"},
-                reported(
-                    "{name} is hidden; show it (Object > Show/Hide) to press it", name=thing.name
-                ),
+            raise PalpateError(
+                "{name} is hidden; show it (Object > Show/Hide) to press it", name=thing.name
             )
-            return {"CANCELLED"}
         # A missing body file is recomputed first, which may take a few seconds.
         context.window.cursor_modal_set("WAIT")
         try:
@@ -91,11 +93,10 @@ class ModalPress(Pressing):
             self._hand = PointerHand(self._session, (0, 1) if pinch else (0,))
             if pinch:
                 self._hand.place_on_both_sides(context.space_data.region_3d)
-        except PalpateError as problem:
+        except PalpateError:
             press_session.give_way("")
-            self.report({"ERROR"}, reported(problem))
             redraw_views()
-            return {"CANCELLED"}
+            raise
         finally:
             context.window.cursor_modal_restore()
         manager = context.window_manager

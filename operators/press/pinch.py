@@ -3,7 +3,6 @@
 import bpy
 
 from ...core.errors import PalpateError
-from ..reporting.translated import reported
 from ..session.press_events import Source
 from .modal_press import ModalPress
 from .press import report
@@ -39,38 +38,23 @@ class PALPATE_OT_pinch(ModalPress, bpy.types.Operator):
         options={"SKIP_SAVE"},
     )
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def act(self, context: bpy.types.Context) -> None:
         for name in ("by_1", "by_2"):
             if not any(getattr(self, name)):
-                self.report(
-                    {"ERROR"},
-                    reported(
-                        "pinch: '{name}' is zero; say how far to press, in world units", name=name
-                    ),
+                raise PalpateError(
+                    "pinch: '{name}' is zero; say how far to press, in world units", name=name
                 )
-                return {"CANCELLED"}
-        try:
-            pressed = press_several(
-                context.object,
-                context.scene,
-                [self.at_1, self.at_2],
-                [self.by_1, self.by_2],
-                keep=self.keep,
-            )
-        except PalpateError as problem:
-            self.report({"ERROR"}, reported(problem))
-            return {"CANCELLED"}
-        report(self, pressed)
-        return {"FINISHED"}
+        ats, bys = [self.at_1, self.at_2], [self.by_1, self.by_2]
+        report(self, press_several(context.object, context.scene, ats, bys, keep=self.keep))
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if bpy.app.background:
             return self.execute(context)
+        return self.guarded(lambda: self._start_in_view(context))
+
+    def _start_in_view(self, context: bpy.types.Context) -> set[str]:
         if context.area is None or context.area.type != "VIEW_3D":
-            self.report(
-                {"ERROR"}, reported("pinch: start it in a 3D view, where its handles are drawn")
-            )
-            return {"CANCELLED"}
+            raise PalpateError("pinch: start it in a 3D view, where its handles are drawn")
         return self.start(context, Source.POINTER, pinch=True)
 
 

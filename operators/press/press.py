@@ -39,25 +39,16 @@ class PALPATE_OT_press(ModalPress, bpy.types.Operator):
         options={"SKIP_SAVE"},
     )
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def act(self, context: bpy.types.Context) -> None:
         if not any(self.by):
-            self.report(
-                {"ERROR"}, reported("press: 'by' is zero; say how far to press, in world units")
-            )
-            return {"CANCELLED"}
-        try:
-            pressed = press_once(context.object, context.scene, self.at, self.by, keep=self.keep)
-        except PalpateError as problem:
-            self.report({"ERROR"}, reported(problem))
-            return {"CANCELLED"}
-        report(self, pressed)
-        return {"FINISHED"}
+            raise PalpateError("press: 'by' is zero; say how far to press, in world units")
+        report(self, press_once(context.object, context.scene, self.at, self.by, keep=self.keep))
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if bpy.app.background:
             return self.execute(context)
         source = SOURCES.get(context.scene.palpate.source, Source.DEVICE)
-        return self.start(context, source, pinch=False)
+        return self.guarded(lambda: self.start(context, source, pinch=False))
 
 
 def report(operator: bpy.types.Operator, pressed: Pressed) -> None:

@@ -18,10 +18,12 @@ from ...core.contact.press import ContactSettings, Press
 from ...core.contact.tool.pose import Pose
 from ...core.contact.touches import Touch
 from ...core.errors import PalpateError
+from ...core.shape.meeting import settled
+from ...core.shape.shapes import Shape
 from ..object.drawn_body import DrawnBody, open_body
 from ..reporting.translated import reported
 from ..scene.body_frame import BodyFrame
-from ..shape.drawn_shape import CompleteShape, complete_shape
+from ..shape.drawn_shape import closing_shape
 from ..tool import tool_turn
 from ..tool.finger_tip import chosen_tip
 from .modal_press import Pressing
@@ -68,37 +70,26 @@ class PALPATE_OT_press_frames(Pressing, bpy.types.Operator):
         description="Press up to the current frame and keep only its shape",
     )
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def act(self, context: bpy.types.Context) -> None:
         thing, scene = context.object, context.scene
-        try:
-            frames = self._frames(scene)
-            drawn = open_body(thing, scene)
-            with _frame_kept(scene), complete_shape(thing, drawn) as shape:
-                pressed = list(press_frames(thing, scene, drawn, frames, shape))
-        except PalpateError as problem:
-            self.report({"ERROR"}, reported(problem))
-            return {"CANCELLED"}
+        frames = self._frames(scene)
+        drawn = open_body(thing, scene)
+        with _frame_kept(scene), closing_shape(thing, drawn) as shape:
+            pressed = list(press_frames(thing, scene, drawn, frames, shape))
         if shape.notice:
             self.report({"WARNING"}, reported(shape.notice))
         touched = [frame for frame in pressed if frame.displacements is not None]
         if not touched:
-            self.report(
-                {"ERROR"},
-                reported(
-                    "The tool touches nothing in these frames; move its keyframes to the surface"
-                ),
+            raise PalpateError(
+                "The tool touches nothing in these frames; move its keyframes to the surface"
             )
-            return {"CANCELLED"}
         if self.current_only:
             if pressed[-1].displacements is None:
-                self.report(
-                    {"ERROR"}, reported("The tool touches nothing in this frame; choose another")
-                )
-                return {"CANCELLED"}
+                raise PalpateError("The tool touches nothing in this frame; choose another")
             tools = pressing_tools(pressed[-1].fingers)
             name = keep_shape(thing, drawn, pressed[-1].displacements, tools)
             self.report({"INFO"}, reported("Kept as shape key '{key}'", key=name))
-            return {"FINISHED"}
+            return
         count = keep_frames(thing, drawn, pressed)
         largest = max(
             float(np.linalg.norm(finger.force)) for frame in touched for finger in frame.fingers
@@ -107,7 +98,6 @@ class PALPATE_OT_press_frames(Pressing, bpy.types.Operator):
             {"INFO"},
             reported("{count} shape keys, up to {largest:.3g} N", count=count, largest=largest),
         )
-        return {"FINISHED"}
 
     def _frames(self, scene: bpy.types.Scene) -> list[int]:
         first = scene.frame_start if self.frame_start < 0 else self.frame_start
@@ -135,7 +125,7 @@ def press_frames(
     scene: bpy.types.Scene,
     drawn: DrawnBody,
     frames: list[int],
-    shape: CompleteShape,
+    shape: Shape,
 ) -> Iterator[PressedFrame]:
     """Lead the scene's tools through these frames, one result each.
 
@@ -158,7 +148,7 @@ def press_frames(
         scene.frame_set(frame)
         touches = press.to([_pose(guide, scene, drawn.frame) for guide in guides])
         loads = loads_of(touches)
-        moved = shape.under(loads, modulus).displacements if loads else None
+        moved = settled(drawn.body, shape, loads, modulus).displacements if loads else None
         yield PressedFrame(frame, touches, moved)
 
 

@@ -14,13 +14,13 @@ from ...core.contact.press import ContactSettings
 from ...core.contact.single_press import press_points, press_tools, set_down
 from ...core.contact.tool.tool_dent import PressingTool
 from ...core.contact.tool.tools import Tool
-from ...core.contact.touches import PointTouch, ToolTouch, Touch
+from ...core.contact.touches import ToolTouch, Touch
 from ...core.errors import PalpateError
-from ...core.shape.meeting import FingerLoad
+from ...core.shape.meeting import FingerLoad, settled
 from ..object.drawn_body import DrawnBody, open_body
 from ..scene import live_shape
 from ..session.live_settings import contact_mode
-from ..shape.drawn_shape import complete_shape
+from ..shape.drawn_shape import closing_shape
 from ..shape.felt_table import softenings_for
 from ..tool import tool_turn
 from ..tool.finger_tip import chosen_tip
@@ -50,20 +50,9 @@ class Pressed:
     remarks: tuple[str, ...] = ()
 
     @property
-    def touch(self) -> PointTouch | None:
-        """The first finger's contact if it is a point."""
-        made = self.fingers[0].made
-        return made if isinstance(made, PointTouch) else None
-
-    @property
     def force(self) -> Vector:
         """The first finger's, N."""
         return self.fingers[0].force
-
-    @property
-    def depth(self) -> float:
-        """The first finger's, m."""
-        return self.fingers[0].depth
 
 
 def press_once(
@@ -106,15 +95,17 @@ def press_several(
     places = np.array([_point(frame.body_from_world(_point(at, "at")), "at") for at in ats])
     inward = np.array([frame.turn_to_body(_point(by, "by")) * frame.metres_per_unit for by in bys])
     made = _touches(thing, scene, drawn, tip.tool, places, inward)
-    with complete_shape(thing, drawn) as shape:
-        displacements = shape.under(loads_of(made), young_modulus).displacements
+    with closing_shape(thing, drawn) as shape:
+        met = settled(drawn.body, shape, loads_of(made), young_modulus)
     return Pressed(
         fingers=tuple(
             PressedFinger(one, world_vector(drawn, one.force), float(np.linalg.norm(way)))
             for one, way in zip(made, inward, strict=True)
         ),
-        largest_displacement=float(np.linalg.norm(displacements, axis=1).max()),
-        shape_key=keep_shape(thing, drawn, displacements, pressing_tools(made)) if keep else "",
+        largest_displacement=float(np.linalg.norm(met.displacements, axis=1).max()),
+        shape_key=(
+            keep_shape(thing, drawn, met.displacements, pressing_tools(made)) if keep else ""
+        ),
         remarks=tuple(filter(None, (tip.remark, shape.notice))),
     )
 

@@ -45,11 +45,12 @@ class Acting:
         """
         raise NotImplementedError
 
-    def guarded(self, act: Callable[[], None]) -> set[str]:
-        """Run work that may raise PalpateError, and report it; returns Blender's result."""
+    def guarded(self, act: Callable[[], set[str] | None]) -> set[str]:
+        """Run work that may raise PalpateError, and report it; returns Blender's result, finished
+        where the work returns none.
+        """
         try:
-            act()
+            return act() or {"FINISHED"}
         except PalpateError as problem:
             self.report({"ERROR"}, reported(problem))
             return {"CANCELLED"}
-        return {"FINISHED"}

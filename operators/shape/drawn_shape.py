@@ -17,7 +17,7 @@ import bpy
 from ...core.body.soft_body import SoftBody
 from ...core.errors import PalpateError
 from ...core.servo.session import Snapshot
-from ...core.shape.meeting import FingerLoad, Meeting, Met, settled
+from ...core.shape.meeting import FingerLoad, Meeting, Met
 from ...core.shape.shapes import LinearShape, Shape, shape
 from ..object.drawn_body import DrawnBody
 
@@ -132,31 +132,8 @@ class DrawnShape:
             self._behind.submit(_close, self._shape)
 
 
-@dataclass(frozen=True, eq=False)
-class CompleteShape:
-    """Shape that waits for the tables of the fingers' loads."""
-
-    body: SoftBody
-    shape: Shape
-
-    def under(self, fingers: Sequence[FingerLoad], young_modulus: float) -> Met:
-        """Displacements under these fingers.
-
-        Raises
-        ------
-        PalpateError
-            It cannot be computed.
-        """
-        return settled(self.body, self.shape, fingers, young_modulus)
-
-    @property
-    def notice(self) -> str:
-        """Reason why a table's file could not be used or, once closed, written; empty otherwise."""
-        return self.shape.notice
-
-
 @contextmanager
-def complete_shape(thing: bpy.types.Object, drawn: DrawnBody) -> Iterator[CompleteShape]:
+def closing_shape(thing: bpy.types.Object, drawn: DrawnBody) -> Iterator[Shape]:
     """Shape chosen in the object's panel; closed in the end.
 
     Raises
@@ -166,7 +143,7 @@ def complete_shape(thing: bpy.types.Object, drawn: DrawnBody) -> Iterator[Comple
     """
     made = shape(drawn.body, chosen_shape(thing), drawn.file)
     try:
-        yield CompleteShape(drawn.body, made)
+        yield made
     finally:
         made.close()
 

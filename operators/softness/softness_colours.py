@@ -12,7 +12,7 @@ from ..object import soft_object
 from ..object.drawn_body import DrawnBody
 from ..reporting.acting import Acting
 from ..reporting.translated import reported
-from .softness_operator import Place, SoftnessOperator
+from .softness_operator import SoftnessOperator
 
 ATTRIBUTE = "Palpate Softness"
 
@@ -24,7 +24,7 @@ class PALPATE_OT_map_softness(SoftnessOperator, bpy.types.Operator):
         "Colour the object by how hard a fingertip must push for each millimetre: dark is soft, "
         "yellow is firm. Writes the colour attribute Palpate Softness and shows it in the view"
     )
-    asks = Place.EVERYWHERE
+    asks_everywhere = True
 
     def measure(self, context: bpy.types.Context, drawn: DrawnBody) -> None:
         thing = context.object

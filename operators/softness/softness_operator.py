@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from enum import Enum
 from typing import TYPE_CHECKING
 
 import bpy
 
-from ...core.errors import PalpateError
-from ..bake.bake_session import refusal_of_soft
+from ..bake.bake_session import OnSoft
 from ..object.drawn_body import DrawnBody, open_body
-from ..reporting.acting import Acting
 from ..reporting.translated import reported, shown
 from ..scene import ray, viewport
 
@@ -24,39 +21,27 @@ else:
         """Empty base: Blender registers subclasses of its own class, not what they share."""
 
 
-class Place(Enum):
-    """Whether an operator measures at one place, which may be clicked, or everywhere."""
-
-    ONE = "one"
-    EVERYWHERE = "everywhere"
-
-
-class SoftnessOperator(Acting, _Operator):
+class SoftnessOperator(OnSoft, _Operator):
     """Operator on the body of the active object, by :meth:`measure`, whose
     :class:`PalpateError` is reported. One for a single place has ``at`` and ``pick``.
     """
 
     bl_options = {"REGISTER", "UNDO"}
-    asks = Place.ONE
-
-    @classmethod
-    def refusal(cls, context: bpy.types.Context) -> str:
-        return refusal_of_soft(context)
+    asks_everywhere = False
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        if self.asks is Place.EVERYWHERE or not self.properties.pick:
+        if self.asks_everywhere or not self.properties.pick:
             return self.execute(context)
-        try:
-            self._drawn = open_body(context.object, context.scene)
-        except PalpateError as problem:
-            self.report({"ERROR"}, reported(problem))
-            return {"CANCELLED"}
+        return self.guarded(lambda: self._pick(context))
+
+    def _pick(self, context: bpy.types.Context) -> set[str]:
+        self._drawn = open_body(context.object, context.scene)
         context.window.cursor_modal_set("EYEDROPPER")
         context.workspace.status_text_set(
             shown("Click the place on the object; right click to leave")
         )
         context.window_manager.modal_handler_add(self)
-        return {"RUNNING_MODAL"}
+        return MODAL
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if event.type in {"RIGHTMOUSE", "ESC"}:

@@ -129,7 +129,7 @@ def test_sizes_of_tools_are_scene_units(chosen):
     chosen.tip_radius = 20.0
     millimetres = pressed(thing, [np.multiply(1000, TOP)], [np.multiply(1000, DOWN)])
     assert np.allclose(metres.force, millimetres.force, rtol=0.01, atol=1e-4)
-    assert np.isclose(metres.depth, millimetres.depth)
+    assert np.isclose(metres.fingers[0].depth, millimetres.fingers[0].depth)
 
 
 def test_a_mesh_presses_like_the_tool_it_is_shaped_as(chosen):
