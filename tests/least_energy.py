@@ -14,7 +14,7 @@ import numpy as np
 from scipy.optimize import minimize, nnls
 
 from palpate.core.contact.near_field.point_compliance import point_compliance
-from palpate.core.contact.tool.tool_surface import correction_for, surface_for
+from palpate.core.contact.tool.tool_surface import surface_and_correction
 
 # Points within this share of a tool's radius of it at rest may be touched.
 NEAR = 0.6
@@ -31,7 +31,7 @@ class Held:
 
 def least_energy(body, tools, held=()):
     """Forces felt by tools (t, 3), (tool, pose) of one spacing, and by held points (h, 3), N."""
-    surface, correction = (f(body, tools[0][0]) for f in (surface_for, correction_for))
+    surface, correction = surface_and_correction(body, tools[0][0])
     gaps = [tool.distance(pose.to_tool(surface.positions))[0] for tool, pose in tools]
     near = [gap < NEAR * tool.radius for gap, (tool, _) in zip(gaps, tools, strict=True)]
     chosen = np.flatnonzero(np.any(near, axis=0))

@@ -2,6 +2,8 @@
 
 import bpy
 
+from ...operators.session import press_session
+
 NAME_SHARE = 0.55
 
 
@@ -25,9 +27,26 @@ def named_properties(panel: bpy.types.Panel) -> bpy.types.UILayout:
     return layout
 
 
+def while_idle(layout: bpy.types.UILayout) -> bpy.types.UILayout:
+    """Column of what cannot be changed during a press."""
+    column = layout.column()
+    column.enabled = press_session.current() is None
+    return column
+
+
 def draw_rows(layout: bpy.types.UILayout, rows: list[tuple[str, str]]) -> None:
     """Draw figures below each other, their names on the left."""
     for name, value in rows:
         row = layout.split(factor=NAME_SHARE)
         row.label(text=name)
         row.label(text=value, translate=False)
+
+
+def draw_box(
+    layout: bpy.types.UILayout, title: str, rows: list[tuple[str, str]], icon: str = "NONE"
+) -> bpy.types.UILayout:
+    """Draw figures in a box under a title; returns the box."""
+    box = layout.box().column(align=True)
+    box.label(text=title, icon=icon)
+    draw_rows(box, rows)
+    return box

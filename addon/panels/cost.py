@@ -8,7 +8,7 @@ from ...operators.bake.bake_prediction import Prediction
 from ...operators.reporting.translated import shown
 from ...operators.scene.quantities import about, duration, memory, percent
 from .. import known_status
-from .base import draw_rows
+from .base import draw_box, draw_rows
 from .sentence import say
 
 FORM_NAMES = {"dense": "Full", "compressed": "Compressed"}
@@ -34,8 +34,6 @@ def draw_prediction(layout: bpy.types.UILayout, context: bpy.types.Context) -> N
     if prediction is None:
         return
     cost = prediction.cost
-    box = layout.box().column(align=True)
-    box.label(text="The Next Bake, About")
     rows = [
         ("Nodes", about(cost.nodes)),
         ("Free Surface Nodes", about(cost.free_surface_nodes)),
@@ -44,7 +42,7 @@ def draw_prediction(layout: bpy.types.UILayout, context: bpy.types.Context) -> N
         ("File", memory(cost.file_bytes)),
         ("Compliance", shown(FORM_NAMES[cost.form])),
     ]
-    draw_rows(box, rows)
+    box = draw_box(layout, "The Next Bake, About", rows)
     if not prediction.fits:
         _draw_alarm(box, context, prediction, boxed=True)
 

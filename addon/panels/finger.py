@@ -3,7 +3,7 @@
 import bpy
 
 from ...operators.session import press_session
-from .base import PalpatePanel, named_properties
+from .base import PalpatePanel, named_properties, while_idle
 from .sentence import say
 
 MODE_TEXTS = {
@@ -23,8 +23,7 @@ class PALPATE_PT_finger(PalpatePanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         layout, chosen = named_properties(self), context.scene.palpate
-        column = layout.column()
-        column.enabled = press_session.current() is None
+        column = while_idle(layout)
         column.prop(chosen, "tip")
         _draw_sizes(column, context, chosen)
         if chosen.tip in TIP_TEXTS:
@@ -34,9 +33,7 @@ class PALPATE_PT_finger(PalpatePanel, bpy.types.Panel):
             say(layout, context, MODE_TEXTS[chosen.contact_mode], "BLANK1")
         else:
             layout.prop(chosen, "show_pressure")
-            column = layout.column()
-            column.enabled = press_session.current() is None
-            column.operator("palpate.press_frames", icon="RENDER_ANIMATION")
+            while_idle(layout).operator("palpate.press_frames", icon="RENDER_ANIMATION")
 
 
 def _draw_sizes(

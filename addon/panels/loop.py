@@ -10,7 +10,7 @@ from ...core.servo import latency_timer
 from ...operators.device.servo_words import FAULT_NAMES
 from ...operators.scene.quantities import microseconds
 from ...operators.session import press_session
-from .base import PalpatePanel, draw_rows, named_properties
+from .base import PalpatePanel, draw_box, draw_rows, named_properties, while_idle
 from .sentence import say
 
 if TYPE_CHECKING:
@@ -29,9 +29,7 @@ class PALPATE_PT_loop(PalpatePanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         layout = named_properties(self)
         session = press_session.current()
-        row = layout.row()
-        row.enabled = session is None
-        row.prop(context.scene.palpate, "rate")
+        while_idle(layout).prop(context.scene.palpate, "rate")
         _draw_coupling(layout, context.scene)
         loop = session.loop if session is not None else None
         counters = loop.figures.counters if loop is not None else None
@@ -96,9 +94,7 @@ def _draw_stages(layout: bpy.types.UILayout, counters: ServoCounters) -> None:
         (name, f"{microseconds(stages[stage]['mean'])}, {microseconds(stages[stage]['p99'])}")
         for stage, name in STAGE_NAMES.items()
     ]
-    box = layout.box().column(align=True)
-    box.label(text="Time in a Tick: Mean, 99 %")
-    draw_rows(box, rows)
+    draw_box(layout, "Time in a Tick: Mean, 99 %", rows)
 
 
 def _draw_faults(layout: bpy.types.UILayout, counters: ServoCounters) -> None:
@@ -108,9 +104,7 @@ def _draw_faults(layout: bpy.types.UILayout, counters: ServoCounters) -> None:
         if count
     ]
     if rows:
-        box = layout.box().column(align=True)
-        box.label(text="Faults", icon="ERROR")
-        draw_rows(box, rows)
+        draw_box(layout, "Faults", rows, "ERROR")
 
 
 def _draw_link(layout: bpy.types.UILayout, link: LinkCounters) -> None:
@@ -127,9 +121,7 @@ def _draw_link(layout: bpy.types.UILayout, link: LinkCounters) -> None:
     device = link["device"]
     if device is not None:
         rows.insert(0, ("Device", device["name"]))
-    box = layout.box().column(align=True)
-    box.label(text="Connection")
-    draw_rows(box, rows)
+    draw_box(layout, "Connection", rows)
 
 
 classes = (PALPATE_PT_loop,)

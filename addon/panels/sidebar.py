@@ -7,7 +7,7 @@ from ...operators.device.device_source import is_planar
 from ...operators.object import soft_object
 from ...operators.session import press_session
 from . import cost, finger, loop, recording, shape, softness, state
-from .base import PalpatePanel, named_properties
+from .base import PalpatePanel, named_properties, while_idle
 from .sentence import say
 
 # Purpose of each formulation, in a line.
@@ -46,9 +46,7 @@ class PALPATE_PT_material(PalpatePanel, bpy.types.Panel):
         column = layout.column(align=True)
         column.prop(settings, "young_modulus", text="Young's (Pa)")
         softness.draw_shore(column, context)
-        row = column.row()
-        row.enabled = press_session.current() is None
-        row.prop(settings, "poisson_ratio")
+        while_idle(column).prop(settings, "poisson_ratio")
 
 
 class PALPATE_PT_stiff_region(PalpatePanel, bpy.types.Panel):
@@ -112,19 +110,13 @@ class PALPATE_PT_press(PalpatePanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         layout = named_properties(self)
         chosen = context.scene.palpate
-        idle = press_session.current() is None
-        row = layout.row()
-        row.enabled = idle
-        row.prop(chosen, "source")
+        column = while_idle(layout)
+        column.prop(chosen, "source")
         if chosen.source == "POINTER":
             return
         if chosen.source == "EMPTY":
-            row = layout.row()
-            row.enabled = idle
-            row.prop(chosen, "source_empty")
+            column.prop(chosen, "source_empty")
             return
-        column = layout.column()
-        column.enabled = idle
         if chosen.source == "SIMULATED":
             column.prop(chosen, "simulated_kind")
         else:
@@ -135,7 +127,7 @@ class PALPATE_PT_press(PalpatePanel, bpy.types.Panel):
             column.prop(chosen, "haply_model")
         if chosen.source == "HAPLY":
             column.prop(chosen, "haply_at_rest")
-            if idle:
+            if press_session.current() is None:
                 text = "Before Press, put the handle in its rest pose and leave it there"
                 say(layout, context, text, "INFO")
         layout.prop(chosen, "device_frame")

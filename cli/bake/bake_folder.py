@@ -7,36 +7,18 @@ import json
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Executor, ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 
-from ...core.bake.many import BakeOutcome, BakeTask, always, bake_many
+from ...core.bake.many import BakeOutcome, BakeTask, bake_many
 from ...core.errors import PalpateError
 from ...core.machine.available_cores import available_cores
 from .bake_options import bake_input
+from .scheduler import Workers, cluster
 from .status_line import clear, duration, show, status_line
 
 EXIT_ERROR = 2
-
-
-@dataclass(frozen=True)
-class Workers:
-    """Workers for the bakes.
-
-    Attributes
-    ----------
-    executor : of the tasks.
-    count : tasks at once.
-    threads : of BLAS for each task.
-    wanted : called by remote workers: whether their results are still wanted.
-    """
-
-    executor: Executor
-    count: int
-    threads: int
-    wanted: Callable[[], bool] = always
 
 
 def run(arguments: argparse.Namespace, stopped: Sequence[int]) -> int:
@@ -59,8 +41,9 @@ def run(arguments: argparse.Namespace, stopped: Sequence[int]) -> int:
         )
 
     with _workers(arguments, len(names)) as workers, status_line():
+        threads = workers.threads if arguments.threads is None else arguments.threads
         bake_many(
-            _tasks(arguments, names, workers.threads, note),
+            _tasks(arguments, names, threads, note),
             arguments.output_folder,
             workers.executor,
             on_done=note,
@@ -98,22 +81,15 @@ def _file_names(meshes: Sequence[Path], folder: Path) -> dict[Path, str]:
 @contextmanager
 def _workers(arguments: argparse.Namespace, meshes: int) -> Iterator[Workers]:
     if arguments.scheduler is not None:
-        from .scheduler import cluster
-
-        with cluster(arguments.scheduler) as found:
-            # Workers of a cluster already have their share of the machine's cores.
-            yield Workers(found.executor, found.slots, _threads(arguments, 1), found.wanted)
+        with cluster(arguments.scheduler) as workers:
+            yield workers
         return
     cores = available_cores()
     jobs = min(cores if arguments.jobs is None else arguments.jobs, meshes)
     if jobs < 1:
         raise PalpateError(f"--jobs: {arguments.jobs} bakes do nothing; give 1 or more")
     with ThreadPoolExecutor(jobs) as executor:
-        yield Workers(executor, jobs, _threads(arguments, max(1, cores // jobs)))
-
-
-def _threads(arguments: argparse.Namespace, share: int) -> int:
-    return share if arguments.threads is None else arguments.threads
+        yield Workers(executor, jobs, max(1, cores // jobs))
 
 
 def _tasks(

@@ -6,13 +6,14 @@ import importlib.metadata
 import json
 import logging
 import secrets
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ...core.bake.many import always
 from ...core.errors import PalpateError
 
 if TYPE_CHECKING:
@@ -38,24 +39,27 @@ class StillWanted:
 
 
 @dataclass(frozen=True)
-class Cluster:
-    """Workers of a cluster, all with this version of Palpate.
+class Workers:
+    """Workers for bakes.
 
     Attributes
     ----------
-    executor : submits tasks to them.
-    slots : tasks at once.
-    wanted : whether results are still wanted.
+    executor : of the tasks.
+    count : tasks at once.
+    threads : of BLAS for each task, unless the user gives another number.
+    wanted : called by remote workers: whether their results are still wanted.
     """
 
     executor: Executor
-    slots: int
-    wanted: StillWanted
+    count: int
+    threads: int = 1
+    wanted: Callable[[], bool] = always
 
 
 @contextmanager
-def cluster(address: str) -> Iterator[Cluster]:
-    """Cluster whose scheduler is at ``address``, or described in a scheduler file.
+def cluster(address: str) -> Iterator[Workers]:
+    """Workers of the cluster whose scheduler is at ``address``, or described in a scheduler file,
+    all with this version of Palpate. They already have their share of the machine's cores.
 
     Raises
     ------
@@ -69,11 +73,11 @@ def cluster(address: str) -> Iterator[Cluster]:
 
         stop = Event(f"palpate-stop-{secrets.token_hex(8)}", client=client)
         try:
-            yield Cluster(
+            yield Workers(
                 # Not pure: else Dask would hash every mesh to find equal tasks.
                 client.get_executor(pure=False),
                 sum(client.nthreads().values()),
-                StillWanted(stop.name),
+                wanted=StillWanted(stop.name),
             )
         except BaseException:
             # A cluster that is gone needs no notice.

@@ -35,7 +35,9 @@ def clear() -> None:
 
 def bake_status(progress: JobProgress) -> str:
     """Step, share, elapsed and remaining time in words."""
-    parts = [progress.text if progress.share is None else _with_share(progress)]
+    parts: list[str] = [progress.text]
+    if progress.share is not None:
+        parts[0] += f" {100 * progress.share:.0f} %"
     parts.append(duration(progress.seconds))
     if progress.remaining is not None:
         parts.append(f"about {duration(progress.remaining)} left")
@@ -49,7 +51,3 @@ def duration(seconds: float) -> str:
     if seconds < LONGEST_AS_MINUTES:
         return f"{seconds / 60:.1f} min"
     return f"{seconds / 3600:.1f} h"
-
-
-def _with_share(progress: JobProgress) -> str:
-    return f"{progress.text} {100 * (progress.share or 0.0):.0f} %"

@@ -111,18 +111,8 @@ def _press_points(arguments: argparse.Namespace, body: SoftBody, young_modulus: 
     contacts = [_contact_figures(body, touch, displacements) for touch in touches]
     common = _common_figures(arguments, displacements, young_modulus)
     common |= {"mode": settings.mode, "felt": arguments.felt}
-    if len(contacts) == 1:
-        figures = contacts[0] | common
-        print(json.dumps(figures) if arguments.json else as_lines(figures))
-        return 0
-    coupling = _coupling(body, arguments.at, young_modulus)
-    if arguments.json:
-        print(json.dumps({"contacts": contacts, "coupling": coupling.tolist(), **common}))
-        return 0
-    for number, contact in enumerate(contacts, start=1):
-        print(f"contact {number}\n{_indented(as_lines(contact))}")
-    print(f"coupling, m/N (how far each contact moves per newton on each)\n{_as_table(coupling)}")
-    print(as_lines(common))
+    coupling = _coupling(body, arguments.at, young_modulus) if len(contacts) > 1 else None
+    _print(arguments, contacts, common, coupling)
     return 0
 
 
@@ -137,16 +127,30 @@ def _press_tool(arguments: argparse.Namespace, body: SoftBody, young_modulus: fl
     displacements = _deformed(arguments, body, loads, young_modulus)
     common = _common_figures(arguments, displacements, young_modulus)
     figures = [(tool_figures if arguments.json else tool_summary)(touch) for touch in touches]
-    if arguments.json:
-        several: dict[str, object] = {"contacts": figures}
-        print(json.dumps((figures[0] if len(figures) == 1 else several) | common))
-    elif len(figures) == 1:
-        print(as_lines(figures[0] | common))
-    else:
-        for number, contact in enumerate(figures, start=1):
-            print(f"contact {number}\n{_indented(as_lines(contact))}")
-        print(as_lines(common))
+    _print(arguments, figures, common)
     return 0
+
+
+def _print(
+    arguments: argparse.Namespace,
+    contacts: list[dict[str, object]],
+    common: dict[str, object],
+    coupling: NDArray[np.float64] | None = None,
+) -> None:
+    """Figures of each contact and of all, m/N those of the coupling between contacts."""
+    if len(contacts) == 1:
+        figures = contacts[0] | common
+        print(json.dumps(figures) if arguments.json else as_lines(figures))
+    elif arguments.json:
+        coupled = {} if coupling is None else {"coupling": coupling.tolist()}
+        print(json.dumps({"contacts": contacts, **coupled, **common}))
+    else:
+        for number, contact in enumerate(contacts, start=1):
+            print(f"contact {number}\n{_indented(as_lines(contact))}")
+        if coupling is not None:
+            print("coupling, m/N (how far each contact moves per newton on each)")
+            print(_as_table(coupling))
+        print(as_lines(common))
 
 
 def _deformed(

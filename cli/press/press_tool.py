@@ -10,11 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 from ...core.body.soft_body import SoftBody
 from ...core.contact.place import nearest_place
 from ...core.contact.press import ContactSettings
-from ...core.contact.single_press import press_tools, set_down
+from ...core.contact.single_press import pairs_checked, press_tools, set_down
 from ...core.contact.tool.tools import Tool
 from ...core.contact.touches import ToolTouch
-from ...core.errors import PalpateError
-from ...core.mesh.coordinates import refuse_unusable
 
 
 def pressed_tools(
@@ -35,16 +33,8 @@ def pressed_tools(
         Coordinates that are not three finite numbers, or not as many of one as of the other; forces
         that do not come to rest.
     """
-    if len(at) != len(by):
-        raise PalpateError(
-            f"--at is given {len(at)} times and --by {len(by)} times; give one --by for every --at"
-        )
-    ways = [np.asarray(way, dtype=np.float64) for way in by]
-    for way in ways:
-        if way.shape != (3,):
-            raise PalpateError(f"--by: {way.tolist()} is no displacement; give three numbers")
-        refuse_unusable("--by", way[None])
-    starts = [set_down(body, tool, nearest_place(body, place)) for place in at]
+    places, ways = pairs_checked(at, by)
+    starts = [set_down(body, tool, nearest_place(body, place)) for place in places]
     return press_tools(body, tool, starts, ways, settings)
 
 

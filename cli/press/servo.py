@@ -129,7 +129,8 @@ def run(arguments: argparse.Namespace) -> int:
             connect_haply(servo, arguments, _vector(at), stopped)
         else:
             _connect(servo, port, stopped)
-        _await_greetings(servo, others, stopped)
+        for finger, other in enumerate(others, start=1):
+            _await_greeting(servo, finger, other, stopped)
         report = _touch(servo, port, arguments.seconds, stopped, table)
         if simulated is not None:
             report["simulated_device"] = simulated.stop()
@@ -225,11 +226,6 @@ def _check_ports(ports: Sequence[str]) -> None:
         check_port(port)
     if len(set(ports)) < len(ports):
         raise PalpateError("--second-port: a port is named twice; give each device its own")
-
-
-def _await_greetings(servo: Servo, others: Sequence[str], stopped: Sequence[int]) -> None:
-    for finger, port in enumerate(others, start=1):
-        _await_greeting(servo, finger, port, stopped)
 
 
 def _add_fingers(servo: Servo, ports: Sequence[str]) -> None:

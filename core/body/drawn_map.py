@@ -18,12 +18,10 @@ class DrawnMap:
     Attributes
     ----------
     weights : W, sparse (p, n): area coordinates, without the pinned nodes, which do not move.
-    offset : float64 (p,), distance of each drawn vertex from the body's surface, metres.
     normals : float64 (p, 3), outward unit normals of the triangles that they hang on, at rest.
     """
 
     weights: csr_array
-    offset: NDArray[np.float64]
     normals: NDArray[np.float64]
 
     @classmethod
@@ -42,7 +40,7 @@ class DrawnMap:
         i, j, k = (body.mesh.nodes[corners[:, corner]] for corner in range(3))
         normals = np.cross(j - i, k - i)
         normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-        return cls(weights, places.distance, normals)
+        return cls(weights, normals)
 
     def displacements(self, free_surface: NDArray[np.float64]) -> NDArray[np.float64]:
         """Displacements (p, 3) of drawn vertices from those of the free surface nodes (n, 3)."""

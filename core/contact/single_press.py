@@ -89,7 +89,7 @@ def press_points(
         Coordinates that are not rows of three finite numbers, as many of one as of the other; as of
         :class:`Press`.
     """
-    starts, ways = _pairs_checked(at, by)
+    starts, ways = pairs_checked(at, by)
     places = body.closest_points.query(starts)
     goals = [
         PointGoal(int(triangle), alpha, way)
@@ -181,9 +181,10 @@ def _point_checked(name: str, value: ArrayLike) -> Array:
     return point
 
 
-def _pairs_checked(
+def pairs_checked(
     at: ArrayLike | Sequence[ArrayLike], by: ArrayLike | Sequence[ArrayLike]
 ) -> tuple[Array, Array]:
+    """Places and displacements of fingers, (m, 3), metres; errors as of :func:`press_points`."""
     starts, ways = (
         np.array([_point_checked(name, row) for row in np.asarray(value)]).reshape(-1, 3)
         for name, value in (("at", at), ("by", by))

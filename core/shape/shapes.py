@@ -42,14 +42,14 @@ class Shape(Protocol):
 
         What is missing yet is drawn as ``linear``.
         """
-        ...
+        return 1.0
 
     @property
     def notice(self) -> str:
         """What users should know: which file of a table could not be used or written, and why, or
         that another shape is drawn than the one that was named; empty otherwise.
         """
-        ...
+        return ""
 
     def displacements(
         self,
@@ -83,20 +83,10 @@ class Shape(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class LinearShape:
+class LinearShape(Shape):
     """Equation (15)."""
 
     body: SoftBody
-
-    @property
-    def ready(self) -> float:
-        """Always 1."""
-        return 1.0
-
-    @property
-    def notice(self) -> str:
-        """Always empty."""
-        return ""
 
     def displacements(
         self,

@@ -11,11 +11,10 @@ from numpy.typing import NDArray
 
 from ...core.errors import PalpateError
 from ...simulated.hand.options import SimulatedOptions
-from ...simulated.hand.plant import Vector
 from ...simulated.simulated_process import SimulatedDevice
 from ..object.drawn_body import DrawnBody
 from ..scene import ray
-from ..scene.body_frame import BodyFrame
+from ..scene.body_frame import BodyFrame, as_point
 from .device_plane import half_extents, upright_plane
 
 Array = NDArray[np.float64]
@@ -176,14 +175,9 @@ def start_simulated(
 def _hand(frame: DeviceFrame, at: Array, above: Array, deep: Array) -> SimulatedOptions:
     """Options of a hand that rests ``above`` a place and presses ``deep``; body vectors, m."""
     return SimulatedOptions(
-        rest=_vector(frame.device_from_body(at + above)),
-        at=_vector(frame.device_from_body(at)),
-        by=_vector(-frame.rotation.T @ deep / frame.scale),
+        rest=as_point(frame.device_from_body(at + above)),
+        at=as_point(frame.device_from_body(at)),
+        by=as_point(-frame.rotation.T @ deep / frame.scale),
         period=3.0,
         hold=0.5,
     )
-
-
-def _vector(array: Array) -> Vector:
-    x, y, z = array.tolist()
-    return (x, y, z)

@@ -19,6 +19,7 @@ from ...core.errors import PalpateError
 from ...core.shape.meeting import FingerLoad, settled
 from ..object.drawn_body import DrawnBody, open_body
 from ..scene import live_shape
+from ..scene.body_frame import Point, as_point
 from ..session.live_settings import contact_mode
 from ..shape.drawn_shape import closing_shape
 from ..shape.felt_table import softenings_for
@@ -26,7 +27,6 @@ from ..tool import tool_turn
 from ..tool.finger_tip import chosen_tip
 
 Array = NDArray[np.float64]
-Vector = tuple[float, float, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +34,7 @@ class PressedFinger:
     """Result of one finger; ``force`` (N, on the finger) in world axes, ``depth`` in metres."""
 
     made: Touch
-    force: Vector
+    force: Point
     depth: float
 
 
@@ -50,7 +50,7 @@ class Pressed:
     remarks: tuple[str, ...] = ()
 
     @property
-    def force(self) -> Vector:
+    def force(self) -> Point:
         """The first finger's, N."""
         return self.fingers[0].force
 
@@ -99,7 +99,7 @@ def press_several(
         met = settled(drawn.body, shape, loads_of(made), young_modulus)
     return Pressed(
         fingers=tuple(
-            PressedFinger(one, world_vector(drawn, one.force), float(np.linalg.norm(way)))
+            PressedFinger(one, as_point(frame.turn_to_world(one.force)), float(np.linalg.norm(way)))
             for one, way in zip(made, inward, strict=True)
         ),
         largest_displacement=float(np.linalg.norm(met.displacements, axis=1).max()),
@@ -122,12 +122,6 @@ def keep_shape(
     name = live_shape.keep(thing)
     thing.data.update()
     return name
-
-
-def world_vector(drawn: DrawnBody, vector: Array) -> Vector:
-    """A force or direction of the body in world axes."""
-    x, y, z = drawn.frame.turn_to_world(vector).tolist()
-    return (x, y, z)
 
 
 def _touches(

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from ...core.errors import PalpateError
 
 Array = NDArray[np.float64]
+Point = tuple[float, float, float]
 
 # Stretches below this share of the largest one count as flat.
 SMALLEST_RELATIVE_STRETCH = 1e-6
@@ -108,3 +109,9 @@ class BodyFrame:
     def wind(self, triangles: NDArray[np.int64]) -> NDArray[np.int64]:
         """Triangles (m, 3) of the local surface, rewound if mirrored."""
         return triangles[:, ::-1] if self.mirrored else triangles
+
+
+def as_point(vector: Array) -> Point:
+    """Vector (3,) as plain numbers."""
+    x, y, z = vector.tolist()
+    return (x, y, z)

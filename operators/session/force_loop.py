@@ -35,7 +35,8 @@ from ..tool.finger_tip import FingerTip
 from ..tool.tool_turn import Point, Turn
 from .finger_leads import second_port
 from .live_settings import LiveSettings
-from .press_effects import MoveProbe, PlaceProbe, SwitchForce
+from .press_effects import SwitchForce
+from .press_events import Move, SetDown
 
 
 @dataclass(eq=False)
@@ -169,14 +170,14 @@ class ForceLoop:
         turns = [self._turns.get(k, np.eye(3)) for k in range(max(self._turns, default=-1) + 1)]
         self.servo.set(replace(self.settings.servo, enabled=self._enabled, orientations=turns))
 
-    def carry_out(self, effect: PlaceProbe | MoveProbe | SwitchForce) -> None:
+    def carry_out(self, effect: SetDown | Move | SwitchForce) -> None:
         """Carry out an effect on the servo."""
         match effect:
-            case PlaceProbe(point, finger, turn):
+            case SetDown(point, finger, turn):
                 if turn is not None:
                     self._turn(finger, turn)
                 self.servo.set_target(point, restart=True, finger=finger)
-            case MoveProbe(point, finger):
+            case Move(point, finger):
                 self.servo.set_target(point, finger=finger)
             case SwitchForce(on):
                 self._enabled = on

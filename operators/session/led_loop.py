@@ -11,6 +11,7 @@ from ...core.errors import PalpateError
 from ...core.sentence import Sentence
 from ..object.drawn_body import DrawnBody
 from ..record import recording_writer
+from ..scene.body_frame import as_point
 from ..tool import tool_turn
 from ..tool.finger_tip import FingerTip
 from ..tool.tool_turn import Point, Turn
@@ -100,8 +101,7 @@ def _start_of(lead: FingerLead, drawn: DrawnBody) -> Point:
 
 
 def _place_of(empty: bpy.types.Object, drawn: DrawnBody) -> Point:
-    x, y, z = drawn.frame.body_from_world(np.array(empty.matrix_world)[:3, 3]).tolist()
-    return (x, y, z)
+    return as_point(drawn.frame.body_from_world(np.array(empty.matrix_world)[:3, 3]))
 
 
 def _turn_of(

@@ -12,11 +12,12 @@ from numpy.typing import NDArray
 
 from ...core.contact.tool.pose import resting_on
 from ..scene import ray
+from ..scene.body_frame import as_point
 from ..scene.package_preferences import preferences
 from ..scene.probe_drag import ProbeDrag
 from ..scene.viewport import Viewport
 from ..tool import tool_turn
-from ..tool.tool_turn import Point, Turn
+from ..tool.tool_turn import Turn
 from .press_events import Moment, Move, SetDown
 from .press_session import PressSession
 
@@ -93,7 +94,7 @@ class PointerHand:
             return
         target = self._drag.target
         self.held[self._finger] = Held(target, self._drag.normal)
-        self.session.post(Move(_point(target), self._finger))
+        self.session.post(Move(as_point(target), self._finger))
 
     def place_on_both_sides(self, region_3d: bpy.types.RegionView3D) -> None:
         """Set two fingers down at the left and right of the body in the view."""
@@ -145,7 +146,7 @@ class PointerHand:
         return True
 
     def _set_down(self, finger: int, turn: Turn | None) -> None:
-        self.session.post(SetDown(_point(self.held[finger].target), finger, turn))
+        self.session.post(SetDown(as_point(self.held[finger].target), finger, turn))
 
     def _free_finger(self, here: Viewport) -> int:
         """Finger not set down yet, else the nearest on the screen."""
@@ -170,8 +171,3 @@ class PointerHand:
 
 def _pressure(event: bpy.types.Event) -> float:
     return event.pressure if event.is_tablet else 0.0
-
-
-def _point(vector: Array) -> Point:
-    x, y, z = vector.tolist()
-    return (x, y, z)

@@ -5,28 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
-from ..tool.tool_turn import Point, Turn
-from .press_events import Source
+from .press_events import Move, SetDown, Source
 
 
 @dataclass(frozen=True)
 class StartServo:
     source: Source
-
-
-@dataclass(frozen=True)
-class PlaceProbe:
-    """Lift the probe off and set it down there, without a sweep through the body."""
-
-    point: Point
-    finger: int = 0
-    turn: Turn | None = None
-
-
-@dataclass(frozen=True)
-class MoveProbe:
-    point: Point
-    finger: int = 0
 
 
 @dataclass(frozen=True)
@@ -54,4 +38,5 @@ class Act(Enum):
     KEEP_SHAPE = "turn the live shape key into a kept one"
 
 
-Effect = StartServo | PlaceProbe | MoveProbe | SwitchForce | Say | Act
+# What the pointer does with a finger is carried out as it is told.
+Effect = StartServo | SetDown | Move | SwitchForce | Say | Act

@@ -27,7 +27,7 @@ class Start:
 @dataclass(frozen=True)
 class SetDown:
     """The pointer sets one of its fingers down here (body coordinates), with this rotation of its
-    tool.
+    tool; it is lifted off first, so that it does not sweep through the body.
     """
 
     point: Point

@@ -29,8 +29,19 @@ from .finger_leads import BOTH_POINTER, FingerLead, Lead, leads_of
 from .force_loop import ForceLoop
 from .led_loop import lead_fingers, record, start_loop
 from .live_settings import LiveSettings
-from .press_effects import Act, Effect, MoveProbe, PlaceProbe, Say, StartServo, SwitchForce
-from .press_events import BringBack, Event, Fault, GiveWay, LetGo, Moment, Source, Start
+from .press_effects import Act, Effect, Say, StartServo, SwitchForce
+from .press_events import (
+    BringBack,
+    Event,
+    Fault,
+    GiveWay,
+    LetGo,
+    Moment,
+    Move,
+    SetDown,
+    Source,
+    Start,
+)
 from .press_state import Phase, PressState, transition
 from .seen_body import SeenBody
 
@@ -139,7 +150,7 @@ class PressSession:
                 self.seen.drawn_contact = ()
             case StartServo(source):
                 self._start_loop(source)
-            case PlaceProbe() | MoveProbe() | SwitchForce():
+            case SetDown() | Move() | SwitchForce():
                 self._running.carry_out(effect)
             case Act.DRAW_REST:
                 self.seen.draw_rest(self.handle.find())

@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass, replace
 from enum import Enum
 
-from .press_effects import Act, Effect, MoveProbe, PlaceProbe, Say, StartServo, SwitchForce
+from .press_effects import Act, Effect, Say, StartServo, SwitchForce
 from .press_events import (
     BringBack,
     Event,
@@ -103,13 +103,12 @@ def _start(state: PressState, event: Start) -> Step:
 
 def _pointer(state: PressState, event: SetDown | Move | Moment) -> Step:
     match state.phase, event:
-        case ((Phase.READY | Phase.HOLDING), SetDown(point, finger, turn)):
-            dragging = replace(state, phase=Phase.DRAGGING, message="")
-            return dragging, (PlaceProbe(point, finger, turn),)
+        case ((Phase.READY | Phase.HOLDING), SetDown()):
+            return replace(state, phase=Phase.DRAGGING, message=""), (event,)
         case ((Phase.READY | Phase.HOLDING), Moment.GRAB):
             return replace(state, phase=Phase.DRAGGING, message=""), ()
-        case Phase.DRAGGING, Move(point, finger):
-            return state, (MoveProbe(point, finger),)
+        case Phase.DRAGGING, Move():
+            return state, (event,)
         case Phase.DRAGGING, Moment.RELEASE:
             return replace(state, phase=Phase.HOLDING), ()
     return state, ()

@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.contact.tool.tool_surface import surface_for
+from ...core.contact.tool.tool_surface import surface_and_correction
 from ...core.sentence import Sentence
 from ...core.servo.session import Snapshot
 from ...core.shape.meeting import FingerLoad
@@ -49,7 +49,7 @@ class SeenBody:
         tool = self.tip.tool
         if tool is None:
             return self.drawn.surface_nodes
-        return surface_for(self.drawn.body, tool).positions
+        return surface_and_correction(self.drawn.body, tool)[0].positions
 
     def nodes(self) -> Array:
         """All nodes of the body as drawn, (N, 3), body coordinates."""

@@ -10,6 +10,7 @@ from ..bake.bake_session import OnSoft
 from ..object.drawn_body import DrawnBody, open_body
 from ..reporting.translated import reported, shown
 from ..scene import ray, viewport
+from ..scene.body_frame import Point, as_point
 
 if TYPE_CHECKING:
 
@@ -76,7 +77,7 @@ class SoftnessOperator(OnSoft, _Operator):
 MODAL = {"RUNNING_MODAL"}
 
 
-def _met(drawn: DrawnBody, here: viewport.Viewport) -> tuple[float, float, float] | None:
+def _met(drawn: DrawnBody, here: viewport.Viewport) -> Point | None:
     """Point of the body under the pointer, world units."""
     mesh = drawn.body.mesh
     origin, direction = here.ray(drawn.frame)
@@ -84,5 +85,4 @@ def _met(drawn: DrawnBody, here: viewport.Viewport) -> tuple[float, float, float
     if hit is None:
         return None
     point = hit.alpha @ mesh.nodes[mesh.surface_triangles[hit.triangle]]
-    x, y, z = drawn.frame.world_from_body(point).tolist()
-    return (x, y, z)
+    return as_point(drawn.frame.world_from_body(point))

@@ -7,7 +7,7 @@ arm's geometry. The firmware is `haply_firmware.py`.
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 
 from ...core.errors import PalpateError
@@ -18,7 +18,7 @@ from ..hand.plant import Plant, Vector
 from ..hand.quaternion import Quaternion
 from ..wire.pseudo_terminal import PseudoTerminal
 from ..wire.wire_faults import BadWire
-from .haply_firmware import PORTS, HaplyCounters, HaplyFirmware
+from .haply_firmware import PORTS, HaplyFirmware
 
 RELEASE_AFTER_SECONDS = 0.25
 
@@ -114,14 +114,9 @@ class HaplyBoard:
 
     def report(self) -> dict[str, object]:
         """Counters and present state; SI units, angles in degrees."""
-        seen: HaplyCounters = self.firmware.counters
         plant = self.plant
         return {
-            "resets": seen.resets,
-            "setups": seen.setups,
-            "answers": seen.answers,
-            "bytes_skipped": seen.skipped,
-            "read_timeouts": seen.timeouts,
+            **asdict(self.firmware.counters),
             "plugged": self.terminal.plugged,
             "unplugged": self._unplugged,
             "torques": [self.firmware.torque(port) for port in range(PORTS)],

@@ -50,9 +50,9 @@ class HaplyCounters:
     resets: int = 0
     setups: int = 0
     answers: int = 0
-    skipped: int = 0
+    bytes_skipped: int = 0
     """Bytes where a command should have been."""
-    timeouts: int = 0
+    read_timeouts: int = 0
 
 
 @dataclass
@@ -118,7 +118,7 @@ class HaplyFirmware:
     def _go_on(self, wait: _Wait) -> bytes:
         self._wait = None
         arrived = bytes(self._unread.popleft() for _ in range(min(wait.count, len(self._unread))))
-        self.counters.timeouts += len(arrived) < wait.count
+        self.counters.read_timeouts += len(arrived) < wait.count
         # The rest of the buffer was never written.
         content = arrived + self._memory[len(arrived) : wait.count]
         self._memory = content + self._memory[len(content) :]
@@ -134,7 +134,7 @@ class HaplyFirmware:
             return self._set_up(now)
         if command == TORQUES:
             return self._take_torques(now)
-        self.counters.skipped += 1
+        self.counters.bytes_skipped += 1
         return b""
 
     def _forget(self) -> None:

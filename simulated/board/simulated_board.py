@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 
 from ..hand.hand_schedule import HandSchedule
@@ -79,27 +80,14 @@ class SimulatedBoard:
 
     def report(self) -> dict[str, object]:
         """Counters and present state; SI units."""
-        seen, errors, plant = self.firmware.counters, self.firmware.decoder.errors, self.plant
+        plant = self.plant
         return {
-            "states": seen.states,
+            **asdict(self.firmware.counters),
+            **asdict(self.firmware.decoder.errors),
             "states_dropped": self.terminal.dropped,
-            "hellos": seen.hellos,
-            "forces": seen.forces,
-            "lost": seen.lost,
-            "duplicates": seen.duplicates,
-            "out_of_order": seen.out_of_order,
-            "crc_errors": errors.crc_errors,
-            "malformed": errors.malformed,
-            "unknown": errors.unknown,
-            "unexpected": seen.unexpected,
-            "clamped": seen.clamped,
-            "limp_count": seen.limp,
             "limp": self.firmware.limp,
-            "limp_after": seen.limp_after,
-            "limp_look": seen.limp_look,
             "plugged": self.terminal.plugged,
             "unplugged": self._unplugged,
-            "largest_force": seen.largest_force,
             "felt_force": self.firmware.force,
             "hand_force": plant.hand_force,
             "position": plant.position,

@@ -33,7 +33,7 @@ class FirmwareCounters:
     unexpected: int = 0
     """Valid frames that no host may send, or FORCE before any HELLO."""
     clamped: int = 0
-    limp: int = 0
+    limp_count: int = 0
     """Number of times the watchdog ran out while a host was driving."""
     limp_after: float = 0.0
     """Latest time from the last valid FORCE to going limp, s."""
@@ -85,8 +85,8 @@ class Firmware:
         self.counters.limp_after = now - self._heard_at
         self.counters.limp_look = now - max(looked_at, self._heard_at)
         self._heard_at = None
-        self.counters.limp += 1
-        return link.encode(link.Fault(FAULT_LIMP, self.counters.limp % (1 << 16)))
+        self.counters.limp_count += 1
+        return link.encode(link.Fault(FAULT_LIMP, self.counters.limp_count % (1 << 16)))
 
     @property
     def force(self) -> Vector:

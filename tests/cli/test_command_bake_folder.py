@@ -170,7 +170,7 @@ def test_a_cluster_learns_that_nobody_waits_any_more(two_workers):
     def interrupted():
         with scheduler.cluster(two_workers) as workers:
             found.append(workers)
-            assert workers.slots == 2
+            assert workers.count == 2
             assert workers.executor.submit(workers.wanted).result() is True
             raise KeyboardInterrupt
 

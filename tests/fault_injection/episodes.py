@@ -171,10 +171,10 @@ def killed_row(times: int, dice: Random) -> Row:
     for _ in range(times):
         press.glide(DEEP)
         press.press()
-        limp = press.device.counters.limp
+        limp = press.device.counters.limp_count
         for _ in range(30 + dice.randrange(100)):
             press.tick(device_hears=False)
-        if press.device.counters.limp != limp + 1:
+        if press.device.counters.limp_count != limp + 1:
             broken.append("not limp, or more than once")
         slowest = max(slowest, press.device.counters.limp_after)
         press.press()

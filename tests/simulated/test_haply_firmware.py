@@ -81,7 +81,7 @@ def test_a_missing_byte_is_taken_from_the_next_message(board):
     assert board.duties[1] == 0
     assert board.duties[0] != 0
     # What is left, an address and two floats, is skipped byte by byte, as none is a command.
-    assert board.firmware.counters.skipped == 9
+    assert board.firmware.counters.bytes_skipped == 9
     assert len(board.say(whole)) == 9
 
 
@@ -90,7 +90,7 @@ def test_floats_are_waited_for_one_second_and_then_made_up(board):
     board.say(whole)
     assert board.say(whole[:-3], seconds=0.9) == b""
     assert len(board.say(b"", seconds=0.2)) == 9
-    assert board.firmware.counters.timeouts == 1
+    assert board.firmware.counters.read_timeouts == 1
 
 
 def test_hello_of_the_link_makes_it_forget_its_device(board):

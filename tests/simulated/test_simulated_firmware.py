@@ -36,7 +36,7 @@ def test_how_late_it_went_limp_is_counted(greeted):
     tell(greeted, force(0), 1.0)
     assert greeted.watch(1.0199) == b""
     assert greeted.watch(1.0201)
-    assert greeted.counters.limp == 1
+    assert greeted.counters.limp_count == 1
     assert greeted.counters.limp_after == pytest.approx(0.0201)
     assert greeted.counters.limp_look == pytest.approx(0.0002)
 

@@ -15,18 +15,10 @@ _surfaces: WeakKeyDictionary[SoftBody, dict[float, tuple[ContactPoints, NearCorr
 )
 
 
-def surface_for(body: SoftBody, tool: Tool) -> ContactPoints:
-    """Contact points of a body for a tool; cached with the body."""
-    return surface_and_correction(body, tool)[0]
-
-
-def correction_for(body: SoftBody, tool: Tool) -> NearCorrection:
-    """What the near field adds to the compliance between these points; kept as they are."""
-    return surface_and_correction(body, tool)[1]
-
-
 def surface_and_correction(body: SoftBody, tool: Tool) -> tuple[ContactPoints, NearCorrection]:
-    """Both of them."""
+    """Contact points of a body for a tool, and what the near field adds to the compliance between
+    them; cached with the body.
+    """
     known = _surfaces.setdefault(body, {})
     spacing = spacing_on(body, tool.spacing)
     if spacing not in known:

@@ -33,9 +33,6 @@ SPACING_PER_RADIUS = 0.2
 SPACING_PER_ROD_RADIUS = 0.25
 SPACING_PER_WIDTH = 0.125
 
-# Largest motion in a tick, as a share of the inner radius, so that no tool passes through a wall.
-STRIDE_PER_INNER_RADIUS = 0.25
-
 # Default rounding of the edges, as a share of the inner radius: a sharp edge has no normal.
 SHARPEST_ROUNDING = 0.1
 
@@ -138,11 +135,6 @@ class Tool:
             return SPACING_PER_WIDTH * self.size
         round_share = SPACING_PER_RADIUS if len(self.core) == 1 else SPACING_PER_ROD_RADIUS
         return round_share * self.radius
-
-    @property
-    def stride(self) -> float:
-        """Largest motion of the tool in one tick, metres."""
-        return STRIDE_PER_INNER_RADIUS * self.inner_radius
 
     @cached_property
     def reach(self) -> float:

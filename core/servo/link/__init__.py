@@ -1,11 +1,10 @@
 """Serial link, version 1, as defined in `docs/link.md`: messages to frames and back."""
 
-from .codec import Decoder, LinkErrors, encode
+from .codec import Decoder, encode
 from .frames import MAX_FRAME, MAX_PAYLOAD, LinkError, cobs_decode, cobs_encode, crc16, frame
 from .messages import (
     NAME_BYTES,
     PROTOCOL,
-    QUATERNION_UNIT,
     SEQUENCES,
     DeviceHello,
     Fault,
@@ -27,7 +26,6 @@ __all__ = [
     "MAX_PAYLOAD",
     "NAME_BYTES",
     "PROTOCOL",
-    "QUATERNION_UNIT",
     "SEQUENCES",
     "Decoder",
     "DeviceHello",
@@ -36,7 +34,6 @@ __all__ = [
     "ForceFlag",
     "HostHello",
     "LinkError",
-    "LinkErrors",
     "Message",
     "Orientation",
     "OtherHello",

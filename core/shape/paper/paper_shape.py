@@ -80,7 +80,8 @@ class PaperShape:
         self._asked = places
         if places.size:
             self._filling.around(places)
-        self._raise_problem()
+        if self._filling.problem is not None:
+            raise self._filling.problem
         known = self.table.is_filled[places]
         others = self._body.compliance.free_surface[places[~known]]
         moved = self._body.deform(others, forces[~known], modulus)
@@ -138,7 +139,3 @@ class PaperShape:
         sums = np.zeros((len(places), 3))
         np.add.at(sums, which, forces)
         return places, sums
-
-    def _raise_problem(self) -> None:
-        if self._filling.problem is not None:
-            raise self._filling.problem

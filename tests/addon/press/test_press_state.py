@@ -37,8 +37,8 @@ def test_a_pointer_press_goes_from_touch_to_kept_shape(ps):
     assert effects == [
         ps.Act.HANG_LIVE_SHAPE,
         ps.StartServo(ps.Source.POINTER),
-        ps.PlaceProbe(POINT),
-        ps.MoveProbe((0.0, 0.0, 0.09)),
+        ps.SetDown(POINT),
+        ps.Move((0.0, 0.0, 0.09)),
         ps.Act.STOP_SERVO,
         ps.Act.KEEP_SHAPE,
     ]
@@ -60,7 +60,7 @@ def test_nothing_pressed_cannot_be_kept(ps):
 
 def test_moving_without_the_button_does_not_move_the_probe(ps):
     _, effects = play(ps, ps.Start(ps.Source.POINTER), ps.Move(POINT))
-    assert not [effect for effect in effects if isinstance(effect, ps.MoveProbe)]
+    assert not [effect for effect in effects if isinstance(effect, ps.Move)]
 
 
 def test_a_device_that_goes_away_leaves_the_rest_shape_and_comes_back(ps):
@@ -162,17 +162,17 @@ def test_a_pinch_leads_each_finger_and_takes_hold_of_it_again(ps):
     )
     assert state.phase is ps.Phase.DRAGGING
     assert effects[2:] == [
-        ps.PlaceProbe(POINT, 0),
-        ps.PlaceProbe(other, 1),
-        ps.MoveProbe(POINT, 1),
-        ps.MoveProbe(other, 0),
+        ps.SetDown(POINT, 0),
+        ps.SetDown(other, 1),
+        ps.Move(POINT, 1),
+        ps.Move(other, 0),
     ]
 
 
 def test_nothing_can_be_grabbed_that_the_pointer_does_not_lead(ps):
     state, effects = play(ps, ps.Start(ps.Source.EMPTY), ps.Moment.GRAB, ps.SetDown(POINT))
     assert state.phase is ps.Phase.FEELING
-    assert ps.PlaceProbe(POINT) not in effects
+    assert ps.SetDown(POINT) not in effects
 
 
 def test_space_lets_a_second_finger_s_device_go_while_the_pointer_leads_the_first(ps):

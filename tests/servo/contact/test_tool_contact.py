@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 from palpate.core.contact.press import Press
 from palpate.core.contact.tool.convex_tool import convex
 from palpate.core.contact.tool.pose import Pose
-from palpate.core.contact.tool.tool_surface import correction_for, surface_for
+from palpate.core.contact.tool.tool_surface import surface_and_correction
 from palpate.core.contact.tool.tools import plate, rod, sphere
 from palpate.core.errors import PalpateError
 from palpate.core.servo.session import native_body, native_tool
@@ -88,12 +88,12 @@ def test_a_tool_goes_at_most_one_stride_a_tick_and_does_not_jump_through_the_bod
     for _ in range(4):
         before = contact.position
         contact.follow(top - [0.0, 0.0, 0.1], np.eye(3), body.young_modulus)
-        assert np.linalg.norm(contact.position - before) <= tool.stride * 1.0001
+        assert np.linalg.norm(contact.position - before) <= 0.25 * tool.inner_radius * 1.0001
     assert contact.force[2] > 0
     before, turn = contact.rotation, Rotation.from_rotvec([3.0, 0.0, 0.0]).as_matrix()
     contact.follow(contact.position, turn, body.young_modulus)
     angle = Rotation.from_matrix(contact.rotation @ before.T).magnitude()
-    assert 0 < angle * tool.reach <= tool.stride * 1.0001
+    assert 0 < angle * tool.reach <= 0.25 * tool.inner_radius * 1.0001
 
 
 @pytest.mark.parametrize("name", list(TOOLS))
@@ -107,7 +107,7 @@ def test_distances_are_those_of_the_reference(name):
     # Where two faces are equally near, either normal is one.
     alike = np.einsum("px,px->p", found, normals) > 1 - 1e-9
     assert alike.mean() > 0.99
-    assert native.stride == pytest.approx(tool.stride)
+    assert native.stride == pytest.approx(0.25 * tool.inner_radius)
     assert native.reach == pytest.approx(tool.reach)
 
 
@@ -117,12 +117,12 @@ def test_a_body_that_is_not_whole_is_refused(body):
 
 
 def test_wrong_arrays_are_refused(body, surface):
-    points = surface_for(body, TOOLS["sphere"])
+    points, correction = surface_and_correction(body, TOOLS["sphere"])
     arrays = [points.positions, points.normals, points.triangles, points.alphas, points.areas]
     ToolSurface(surface, *arrays)
     with pytest.raises(ValueError, match="a row for each"):
         ToolSurface(surface, *arrays[:-1], points.areas[1:])
-    near = correction_for(body, TOOLS["sphere"]).arrays()
+    near = correction.arrays()
     for name, remark in {"own": "a row for each", "normals": "a row for each"}.items():
         with pytest.raises(ValueError, match=remark):
             ToolSurface(surface, *arrays, near | {name: near[name][1:]})

@@ -9,7 +9,7 @@ from palpate.core.contact.press import ContactSettings, Press
 from palpate.core.contact.single_press import press_tool
 from palpate.core.contact.tool.convex_tool import convex
 from palpate.core.contact.tool.pose import Pose
-from palpate.core.contact.tool.tool_surface import correction_for, surface_for
+from palpate.core.contact.tool.tool_surface import surface_and_correction
 from palpate.core.contact.tool.tools import plate, rod, sphere
 from palpate.core.errors import PalpateError
 
@@ -216,7 +216,7 @@ def test_how_far_a_strip_gives_way_to_two_fingertips_does_not_follow_its_mesh(st
 def test_all_that_two_fingertips_press_on_both_sides_of_a_strip_takes_work(strips):
     """Points within 0.7 of the radius from the middle of either side, together."""
     for strip in strips:
-        surface = surface_for(strip, TIP)
+        surface, near = surface_and_correction(strip, TIP)
         aside = np.linalg.norm((surface.positions - [0.029, 0.0, 0.02])[:, [0, 2]], axis=1)
         few = [
             np.flatnonzero((aside < 0.0056) & (surface.normals[:, 1] * side > 0.9))
@@ -224,7 +224,6 @@ def test_all_that_two_fingertips_press_on_both_sides_of_a_strip_takes_work(strip
         ]
         together = np.concatenate(few)
         blocks = point_compliance(strip, surface, together, together)
-        near = correction_for(strip, TIP)
         first = len(few[0])
         blocks[:first, :first] += near.between(few[0], few[0])
         blocks[first:, first:] += near.between(few[1], few[1])

@@ -137,12 +137,10 @@ def test_a_fine_mesh_becomes_a_tool_of_few_corners_near_it(rng):
 def test_widths_follow_the_tools_shape():
     assert sphere(0.01).size == pytest.approx(0.02)
     assert sphere(0.01).spacing == pytest.approx(0.002)
-    assert sphere(0.01).stride == pytest.approx(0.0025)
     assert rod(0.004, 0.05).size == pytest.approx(0.008)
     assert rod(0.004, 0.05).reach == pytest.approx(0.029)
     assert plate(0.04, 0.016).size == pytest.approx(0.016)
     assert plate(0.04, 0.016).spacing == pytest.approx(0.002)
-    assert plate(0.04, 0.016).stride == pytest.approx(0.001)
 
 
 def test_a_pose_takes_points_to_the_tool_and_refuses_what_is_no_rotation(rng):
