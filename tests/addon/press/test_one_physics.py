@@ -114,11 +114,10 @@ def command_line(file, thing, places, bys, words, capsys):
     ]
     capsys.readouterr()
     young = repr(thing.palpate.young_modulus)
-    words = ["press", str(file), *pairs, *words, "--young", young, "--json"]
-    parser = argparse.ArgumentParser()
-    part("cli.press.press").add_parser(parser.add_subparsers())
-    arguments = parser.parse_args(words)
-    assert arguments.run(arguments) == 0
+    command, parser = part("cli.press.press"), argparse.ArgumentParser()
+    command.add_options(parser)
+    parser.set_defaults(json=True)
+    assert command.run(parser.parse_args([str(file), *pairs, *words, "--young", young])) == 0
     figures = json.loads(capsys.readouterr().out)
     return [contact["force"] for contact in figures.get("contacts", [figures])]
 
