@@ -36,6 +36,7 @@ USER_FOLDER = Path(tempfile.mkdtemp(prefix="palpate-addon-tests-"))
 os.environ["BLENDER_USER_RESOURCES"] = str(USER_FOLDER)
 
 import bpy  # noqa: E402 -- the environment comes first, see above
+from soft_scene import mesh_state, soft_cube  # noqa: E402
 
 
 def pytest_report_header() -> str:
@@ -92,6 +93,18 @@ def sessions(palpate: ModuleType) -> Iterator[ModuleType]:
     module = importlib.import_module(f"{MODULE}.operators.session.press_session")
     yield module
     module.give_way("")
+
+
+@pytest.fixture
+def thing(palpate: ModuleType) -> bpy.types.Object:
+    """Return a soft cube, the active object."""
+    return soft_cube()
+
+
+@pytest.fixture
+def before(thing: bpy.types.Object) -> object:
+    """Return all that a press may change about the soft cube, as it was at first."""
+    return mesh_state(thing)
 
 
 @pytest.fixture

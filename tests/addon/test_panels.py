@@ -53,8 +53,7 @@ class Halfway:
 
 
 @pytest.mark.parametrize("name", SHAPES)
-def test_each_shape_is_explained_and_its_cost_told_before_the_press(panel, name):
-    thing = soft_cube()
+def test_each_shape_is_explained_and_its_cost_told_before_the_press(panel, name, thing):
     thing.palpate.shape = name
     shapes = part("core.shape.shapes")
     felt = part("core.shape.force_at_depth.felt_force")
@@ -71,8 +70,7 @@ def test_each_shape_is_explained_and_its_cost_told_before_the_press(panel, name)
     assert "A Frame, About" not in drawn(panel, thing).lines
 
 
-def test_figures_are_those_of_the_prediction_with_their_units(panel):
-    thing = soft_cube()
+def test_figures_are_those_of_the_prediction_with_their_units(panel, thing):
     thing.palpate.shape = "TABLE"
     as_large(thing)
     cost, size = (
@@ -88,8 +86,7 @@ def test_figures_are_those_of_the_prediction_with_their_units(panel):
     assert rows["Memory, About"] == quantities.memory(expected.memory_bytes)
 
 
-def test_a_body_too_large_for_60_frames_a_second_is_told_so(panel):
-    thing = soft_cube()
+def test_a_body_too_large_for_60_frames_a_second_is_told_so(panel, thing):
     for name in SHAPES:
         thing.palpate.shape = name
         as_large(thing)
@@ -105,8 +102,7 @@ def test_a_body_too_large_for_60_frames_a_second_is_told_so(panel):
     assert "60 times a second" not in drawn(panel, thing).text
 
 
-def test_the_corrected_force_tells_its_cost_and_that_tools_do_not_feel_it(panel):
-    thing = soft_cube()
+def test_the_corrected_force_tells_its_cost_and_that_tools_do_not_feel_it(panel, thing):
     thing.palpate.felt = "CORRECTED"
     assert "Whole Surface, About" in drawn(panel, thing).lines
     bpy.context.scene.palpate.tip = "SPHERE"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bpy
 import pytest
-from soft_scene import cube, error_of, mesh_state, part, soft_cube
+from soft_scene import cube, error_of, mesh_state, part
 
 
 def test_shore_sets_young_modulus_and_follows_it(palpate):
@@ -51,8 +51,7 @@ def test_files_from_before_keep_their_material(palpate, tmp_path):
 MIDDLE = (0.004, 0.003, 0.025)
 
 
-def test_a_durometer_is_read_at_the_cursor_and_where_a_script_says(palpate):
-    thing = soft_cube()
+def test_a_durometer_is_read_at_the_cursor_and_where_a_script_says(palpate, thing):
     thing.palpate.material = "ECOFLEX_30"
     softness = thing.palpate_softness
     assert bpy.ops.palpate.read_durometer(at=MIDDLE) == {"FINISHED"}
@@ -65,9 +64,8 @@ def test_a_durometer_is_read_at_the_cursor_and_where_a_script_says(palpate):
     assert softness.read_scale == "00"
 
 
-def test_a_durometer_is_read_at_the_selected_vertices(palpate):
+def test_a_durometer_is_read_at_the_selected_vertices(palpate, thing):
     """Two at one end of a cube's edge: their middle, not the cursor."""
-    thing = soft_cube()
     softness = thing.palpate_softness
     softness.place = "VERTICES"
     for vertex in thing.data.vertices:
@@ -88,8 +86,7 @@ def test_a_durometer_is_read_at_the_selected_vertices(palpate):
     assert softness.curve_force != pytest.approx(at_vertices, rel=0.05)
 
 
-def test_a_force_curve_becomes_figures_and_a_text_block(palpate):
-    thing = soft_cube()
+def test_a_force_curve_becomes_figures_and_a_text_block(palpate, thing):
     softness = thing.palpate_softness
     for radius in (0.0, 0.008):
         softness.finger_radius = radius
@@ -101,8 +98,7 @@ def test_a_force_curve_becomes_figures_and_a_text_block(palpate):
     assert len(bpy.data.texts) == 1
 
 
-def test_the_map_colours_vertices_and_changes_nothing_else(palpate):
-    thing = soft_cube()
+def test_the_map_colours_vertices_and_changes_nothing_else(palpate, thing):
     mesh = thing.data
     before = mesh_state(thing)
     mesh.color_attributes.new("Paint", "BYTE_COLOR", "CORNER")

@@ -245,8 +245,7 @@ def test_opening_another_file_ends_the_bake(palpate):
     assert bake.current() is None
 
 
-def test_remove_softness_takes_the_body_and_leaves_the_shapes(palpate):
-    thing = soft_cube()
+def test_remove_softness_takes_the_body_and_leaves_the_shapes(palpate, thing):
     press_down(thing)
     path = locate(thing)
     assert path.is_file()

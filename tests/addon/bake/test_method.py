@@ -6,7 +6,7 @@ import bmesh
 import bpy
 import numpy as np
 import pytest
-from soft_scene import body_of, cube, error_of, locate, part, press_down, select, soft_cube, status
+from soft_scene import body_of, cube, error_of, locate, part, press_down, select, status
 
 
 def boned_cube(factor=1000.0):
@@ -24,8 +24,7 @@ def boned_cube(factor=1000.0):
     return select(thing)
 
 
-def test_automatic_takes_the_formulation_that_fits_the_material(palpate):
-    thing = soft_cube()
+def test_automatic_takes_the_formulation_that_fits_the_material(palpate, thing):
     assert thing.palpate.baked_formulation == "linear"
     thing.palpate.poisson_ratio = 0.49
     assert "Formulation" in status(thing).changed

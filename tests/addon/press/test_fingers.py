@@ -48,8 +48,7 @@ def ball(radius=0.02, at=(0.0, 0.0, 0.1), name="Ball"):
 
 
 @pytest.mark.parametrize("tip", ["SPHERE", "PLATE", "ROD"])
-def test_a_tool_presses_out_and_touches_an_area(chosen, tip):
-    thing = soft_cube()
+def test_a_tool_presses_out_and_touches_an_area(chosen, tip, thing):
     chosen.tip = tip
     finger = pressed(thing, [TOP], [DOWN]).fingers[0]
     assert finger.force[2] > 3 * abs(finger.force[0])
@@ -57,9 +56,8 @@ def test_a_tool_presses_out_and_touches_an_area(chosen, tip):
     assert finger.made.largest_pressure >= 0.9 * finger.force[2] / finger.made.area
 
 
-def test_a_kept_shape_lies_outside_the_tool(chosen):
+def test_a_kept_shape_lies_outside_the_tool(chosen, thing):
     """The corner on top is under the fingertip, however far the elements alone would take it."""
-    thing = soft_cube()
     chosen.tip, chosen.tip_radius = "SPHERE", 0.01
     corner = np.array([0.025, 0.025, 0.025])
     press = pressed(thing, [corner - [0.002, 0.002, 0.0]], [(0.0, 0.0, -0.006)], keep=True)
@@ -78,8 +76,7 @@ def test_a_kept_shape_lies_outside_the_tool(chosen):
     np.testing.assert_allclose(kept.ravel(), drawn.local_coordinates(moved, tools), atol=1e-6)
 
 
-def test_friction_of_the_material_holds_a_fingertip_back(chosen):
-    thing = soft_cube()
+def test_friction_of_the_material_holds_a_fingertip_back(chosen, thing):
     chosen.tip = "SPHERE"
     aslant = (0.004, 0.0, -0.004)
     slippery = pressed(thing, [TOP], [aslant]).force
@@ -88,8 +85,7 @@ def test_friction_of_the_material_holds_a_fingertip_back(chosen):
     assert rough[0] < slippery[0] - 0.1 * slippery[2]
 
 
-def test_a_larger_fingertip_feels_more(chosen):
-    thing = soft_cube()
+def test_a_larger_fingertip_feels_more(chosen, thing):
     chosen.tip = "SPHERE"
     felt = []
     for radius in (0.015, 0.03):
@@ -98,8 +94,7 @@ def test_a_larger_fingertip_feels_more(chosen):
     assert felt[1] > 1.1 * felt[0]
 
 
-def test_a_tool_much_larger_than_the_body_presses_as_deep_as_it_is_told(chosen):
-    thing = soft_cube()
+def test_a_tool_much_larger_than_the_body_presses_as_deep_as_it_is_told(chosen, thing):
     chosen.tip = "SPHERE"
 
     def felt(radius):
@@ -110,17 +105,15 @@ def test_a_tool_much_larger_than_the_body_presses_as_deep_as_it_is_told(chosen):
     assert felt(1000.0) > 0.02
 
 
-def test_a_plate_takes_the_surface_under_it_along(chosen):
-    thing = soft_cube()
+def test_a_plate_takes_the_surface_under_it_along(chosen, thing):
     chosen.tip, chosen.plate_width, chosen.plate_depth = "PLATE", 0.03, 0.03
     press = pressed(thing, [TOP], [DOWN])
     assert press.largest_displacement == pytest.approx(0.004, rel=0.1)
     assert press.fingers[0].made.area == pytest.approx(0.03**2, rel=0.3)
 
 
-def test_sizes_of_tools_are_scene_units(chosen):
+def test_sizes_of_tools_are_scene_units(chosen, thing):
     """A scene in millimetres whose object is as large gives the same newtons."""
-    thing = soft_cube()
     chosen.tip = "SPHERE"
     metres = pressed(thing, [TOP], [DOWN])
     bpy.context.scene.unit_settings.scale_length = 0.001
@@ -155,8 +148,7 @@ def test_the_scale_of_a_tool_object_counts(chosen):
     assert pressed(thing, [TOP], [DOWN]).force[2] > 1.02 * small
 
 
-def test_a_hollow_mesh_presses_with_its_hull_and_says_so(chosen):
-    thing = soft_cube()
+def test_a_hollow_mesh_presses_with_its_hull_and_says_so(chosen, thing):
     corner = [(x, y, z) for x in (0, 0.03) for y in (0, 0.03) for z in (0, 0.03)]
     dent = (0.015, 0.015, 0.015)
     faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4)]
@@ -176,8 +168,7 @@ def test_a_hollow_mesh_presses_with_its_hull_and_says_so(chosen):
     [([], []), ([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], [(0, 1, 2, 3)])],
     ids=["empty", "flat"],
 )
-def test_a_tool_without_volume_is_refused(chosen, vertices, faces):
-    thing = soft_cube()
+def test_a_tool_without_volume_is_refused(chosen, vertices, faces, thing):
     chosen.tip, chosen.tip_object = "MESH", mesh_object(vertices, faces, name="Nothing")
     select(thing)
     message = error_of(bpy.ops.palpate.press, at=TOP, by=DOWN)
@@ -197,8 +188,7 @@ def test_a_tool_that_is_not_there_or_is_the_body_is_refused(chosen):
     assert "cannot press itself" in error_of(bpy.ops.palpate.press, at=TOP, by=DOWN)
 
 
-def test_a_pinch_squeezes_from_both_sides(chosen):
-    thing = soft_cube()
+def test_a_pinch_squeezes_from_both_sides(chosen, thing):
     by = 0.003
     assert bpy.ops.palpate.pinch(at_1=LEFT, by_1=(by, 0, 0), at_2=RIGHT, by_2=(-by, 0, 0)) == {
         "FINISHED"
@@ -211,8 +201,7 @@ def test_a_pinch_squeezes_from_both_sides(chosen):
     assert not np.allclose(left, alone, rtol=1e-3)
 
 
-def test_two_fingertips_feel_each_other(chosen):
-    thing = soft_cube()
+def test_two_fingertips_feel_each_other(chosen, thing):
     chosen.tip = "SPHERE"
     ways = [(0.003, 0, 0), (-0.003, 0, 0)]
     left, right = forces(thing, [LEFT, RIGHT], ways)
@@ -227,8 +216,7 @@ def test_a_pinch_that_does_not_move_is_refused(chosen):
     assert "'by_2' is zero" in message
 
 
-def test_the_paper_mode_differs_within_a_triangle(chosen):
-    thing = soft_cube()
+def test_the_paper_mode_differs_within_a_triangle(chosen, thing):
     place = (0.003, 0.001, 0.025)
     chosen.contact_mode = "PAPER"
     paper = pressed(thing, [place], [DOWN]).force[2]

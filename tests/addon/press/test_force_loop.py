@@ -96,8 +96,7 @@ def test_the_pointer_has_no_force_to_switch_off(sessions, states):
     assert "device" in error_of(bpy.ops.palpate.switch_force)
 
 
-def test_friction_set_while_pressing_is_felt_sideways(sessions, states):
-    thing = soft_cube()
+def test_friction_set_while_pressing_is_felt_sideways(sessions, states, thing):
     session = begin(sessions, states, thing)
     press_in(session, states)
 
@@ -231,9 +230,7 @@ def test_a_long_recording_is_written_while_the_press_goes_on(
     assert writer.latest() is None
 
 
-def test_a_haply_presses_in_the_upright_plane_through_the_top(sessions, states):
-    thing = soft_cube()
-    before = mesh_state(thing)
+def test_a_haply_presses_in_the_upright_plane_through_the_top(sessions, states, thing, before):
     scene = bpy.context.scene
     scene.palpate.source, scene.palpate.simulated_kind = "SIMULATED", "HAPLY"
     session = begin(sessions, states, thing, "DEVICE")
@@ -308,9 +305,9 @@ def test_a_port_that_cannot_be_opened_has_one_remedy(palpate):
         servo.start(palpate_servo.LinkDevice("/no/such/port"))
 
 
-def test_a_failed_force_loop_ends_the_press_and_leaves_the_mesh_clean(sessions, states):
-    thing = soft_cube()
-    before = mesh_state(thing)
+def test_a_failed_force_loop_ends_the_press_and_leaves_the_mesh_clean(
+    sessions, states, thing, before
+):
     session = begin(sessions, states, thing)
     press_in(session, states)
     dead = SimpleNamespace(state="stopped", fault="internal error", reason="", limited="")

@@ -19,9 +19,9 @@ def arrived(session, *places):
     )
 
 
-def test_a_pinch_is_felt_by_both_and_agrees_with_the_one_without_a_clock(sessions, states):
-    thing = soft_cube()
-    before = mesh_state(thing)
+def test_a_pinch_is_felt_by_both_and_agrees_with_the_one_without_a_clock(
+    sessions, states, thing, before
+):
     once = part("operators.press.press_once").press_several(
         thing,
         bpy.context.scene,
@@ -64,8 +64,7 @@ def test_empties_lead_both_fingers_and_one_may_be_deleted(sessions, states):
     assert key_names(thing) == ["Basis", "Press 1"]
 
 
-def test_a_simulated_device_presses_beside_the_pointer(sessions, states):
-    thing = soft_cube()
+def test_a_simulated_device_presses_beside_the_pointer(sessions, states, thing):
     bpy.context.scene.palpate.second = "SIMULATED"
     session = begin(sessions, states, thing)
     assert session.state.has_device
@@ -104,8 +103,7 @@ def test_a_haply_presses_beside_the_pointer(sessions, states):
         session.post(states.Moment.CANCEL)
 
 
-def test_the_mode_is_felt_while_pressing(sessions, states):
-    thing = soft_cube()
+def test_the_mode_is_felt_while_pressing(sessions, states, thing):
     session = begin(sessions, states, thing)
     place, deep = (0.004, 0.001, 0.02501), (0.004, 0.001, 0.021)
     session.post(states.SetDown(place))
@@ -169,8 +167,9 @@ def test_a_tool_object_may_be_deleted_while_it_presses(sessions, states):
     assert key_names(thing) == ["Basis", "Press 1"]
 
 
-def test_the_next_press_does_not_read_the_body_again_unless_its_file_changed(sessions, states):
-    thing = soft_cube()
+def test_the_next_press_does_not_read_the_body_again_unless_its_file_changed(
+    sessions, states, thing
+):
     bodies = []
     for touch_file in (False, False, True):
         if touch_file:

@@ -6,6 +6,7 @@ import bpy
 import numpy as np
 import pytest
 from soft_scene import (
+    MODULE,
     TOP,
     begin,
     cube,
@@ -18,14 +19,12 @@ from soft_scene import (
     press_down,
     press_in,
     select,
-    soft_cube,
     status,
     wait,
 )
 
 
-def test_a_script_presses_and_keeps_a_shape(palpate):
-    thing = soft_cube()
+def test_a_script_presses_and_keeps_a_shape(thing):
     press_down(thing)
     assert key_names(thing) == ["Basis", "Press 1"]
     moved = key_coordinates(thing, "Press 1") - key_coordinates(thing, "Basis")
@@ -35,15 +34,12 @@ def test_a_script_presses_and_keeps_a_shape(palpate):
     assert key_names(thing) == ["Basis", "Press 1", "Press 2"]
 
 
-def test_without_keep_nothing_changes(palpate):
-    thing = soft_cube()
-    before = mesh_state(thing)
+def test_without_keep_nothing_changes(palpate, thing, before):
     assert bpy.ops.palpate.press(at=TOP, by=(0, 0, -0.005), keep=False) == {"FINISHED"}
     assert mesh_state(thing) == before
 
 
-def test_force_grows_with_the_modulus_and_the_shape_does_not_without_a_bake(palpate):
-    thing = soft_cube()
+def test_force_grows_with_the_modulus_and_the_shape_does_not_without_a_bake(palpate, thing):
     press = part("operators.press.press_once").press_once
     path = locate(thing)
     stamp = path.stat().st_mtime_ns
@@ -62,8 +58,7 @@ def test_what_was_never_baked_cannot_be_pressed(palpate):
 
 
 @pytest.mark.parametrize("with_keys", [False, True])
-def test_cancel_restores_every_bit(sessions, states, with_keys):
-    thing = soft_cube()
+def test_cancel_restores_every_bit(sessions, states, with_keys, thing):
     if with_keys:
         thing.shape_key_add(name="Basis")
         other = thing.shape_key_add(name="Other")
@@ -82,8 +77,7 @@ def test_cancel_restores_every_bit(sessions, states, with_keys):
 
 
 @pytest.mark.parametrize("with_keys", [False, True])
-def test_keep_leaves_one_new_key_and_all_else(sessions, states, with_keys):
-    thing = soft_cube()
+def test_keep_leaves_one_new_key_and_all_else(sessions, states, with_keys, thing):
     if with_keys:
         thing.shape_key_add(name="Basis")
         thing.shape_key_add(name="Other").value = 0.3
@@ -102,10 +96,15 @@ def test_keep_leaves_one_new_key_and_all_else(sessions, states, with_keys):
         assert after["Basis"] == before["Basis"]
 
 
-def test_a_modulus_changed_while_pressing_is_felt_at_once(sessions, states):
-    thing = soft_cube()
+@pytest.fixture
+def session(sessions, states, thing, before):
+    """A running press into the top of the cube."""
     session = begin(sessions, states, thing)
     press_in(session, states)
+    return session
+
+
+def test_a_modulus_changed_while_pressing_is_felt_at_once(thing, session):
     soft = np.linalg.norm(session.snapshot.contact_force)
     thing.palpate.young_modulus *= 2
     wait(
@@ -114,36 +113,52 @@ def test_a_modulus_changed_while_pressing_is_felt_at_once(sessions, states):
     )
 
 
-def test_an_object_may_be_moved_but_not_scaled_while_pressed(sessions, states):
-    thing = soft_cube()
-    before = mesh_state(thing)
-    session = begin(sessions, states, thing)
-    press_in(session, states)
+def scaled(thing):
+    thing.scale.x = 1.2
+    bpy.context.view_layer.update()
+
+
+def deleted(thing):
+    bpy.data.objects.remove(thing)
+
+
+ENDS = {
+    "scaled": scaled,
+    "edited": lambda _: bpy.ops.object.mode_set(mode="EDIT"),
+    "deleted": deleted,
+    "another file": lambda _: bpy.ops.wm.read_homefile(use_factory_startup=True),
+    "switched off": lambda _: bpy.ops.preferences.addon_disable(module=MODULE),
+}
+
+
+@pytest.mark.parametrize("end", ENDS)
+def test_what_happens_to_the_object_or_the_file_ends_the_press(
+    sessions, thing, before, session, end
+):
+    """A mesh that is still there is left clean."""
+    servo = session.loop.servo
+    ENDS[end](thing)
+    # Of a file or an extension that goes handlers tell at once, the rest is seen in the next tick.
+    if end in {"scaled", "edited", "deleted"}:
+        session.tick()
+    assert sessions.current() is None
+    assert session.loop is None
+    assert not servo.running
+    assert ("scaled" in session.state.message) == (end == "scaled")
+    if end not in {"deleted", "another file"}:
+        bpy.ops.object.mode_set(mode="OBJECT")
+        assert mesh_state(thing) == before
+
+
+def test_an_object_may_be_moved_while_pressed(sessions, thing, session):
     thing.location.x += 1.0
     thing.rotation_euler.z += 0.5
     bpy.context.view_layer.update()
     session.tick()
     assert sessions.current() is session
-    thing.scale.x = 1.2
-    bpy.context.view_layer.update()
-    session.tick()
-    assert sessions.current() is None
-    assert "scaled" in session.state.message
-    assert mesh_state(thing) == before
 
 
-def test_a_deleted_object_ends_the_press(sessions, states):
-    thing = soft_cube()
-    session = begin(sessions, states, thing)
-    press_in(session, states)
-    bpy.data.objects.remove(thing)
-    session.tick()
-    assert sessions.current() is None
-    assert session.loop is None
-
-
-def test_a_renamed_object_is_pressed_on(sessions, states):
-    thing = soft_cube()
+def test_a_renamed_object_is_pressed_on(sessions, states, thing):
     session = begin(sessions, states, thing)
     thing.name = "Another name"
     press_in(session, states)
@@ -151,25 +166,10 @@ def test_a_renamed_object_is_pressed_on(sessions, states):
     assert key_names(thing) == []
 
 
-def test_edit_mode_ends_the_press_and_leaves_the_mesh_clean(sessions, states):
-    thing = soft_cube()
-    before = mesh_state(thing)
-    session = begin(sessions, states, thing)
-    press_in(session, states)
-    bpy.ops.object.mode_set(mode="EDIT")
-    session.tick()
-    assert sessions.current() is None
-    bpy.ops.object.mode_set(mode="OBJECT")
-    assert mesh_state(thing) == before
-
-
 def test_a_save_while_pressing_writes_no_live_shape_and_the_press_goes_on(
-    sessions, states, tmp_path
+    sessions, states, thing, session, tmp_path
 ):
-    thing = soft_cube()
     name = thing.name
-    session = begin(sessions, states, thing)
-    press_in(session, states)
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "saved.blend"))
     assert sessions.current() is session
     session.tick()
@@ -179,17 +179,7 @@ def test_a_save_while_pressing_writes_no_live_shape_and_the_press_goes_on(
     assert key_names(bpy.data.objects[name]) == []
 
 
-def test_opening_another_file_ends_the_press(sessions, states):
-    session = begin(sessions, states, soft_cube())
-    press_in(session, states)
-    servo = session.loop.servo
-    bpy.ops.wm.read_homefile(use_factory_startup=True)
-    assert sessions.current() is None
-    assert not servo.running
-
-
-def test_undo_while_pressing_ends_it_and_leaves_the_mesh_clean(sessions, states):
-    thing = soft_cube()
+def test_undo_while_pressing_ends_it_and_leaves_the_mesh_clean(sessions, states, thing):
     name = thing.name
     bpy.ops.ed.undo_push(message="soft")
     session = begin(sessions, states, thing)
@@ -204,29 +194,16 @@ def test_undo_while_pressing_ends_it_and_leaves_the_mesh_clean(sessions, states)
     assert key_names(bpy.data.objects[name]) == []
 
 
-def test_switching_the_extension_off_ends_the_press(palpate, sessions, states):
-    thing = soft_cube()
-    before = mesh_state(thing)
-    session = begin(sessions, states, thing)
-    press_in(session, states)
-    servo = session.loop.servo
-    bpy.ops.preferences.addon_disable(module=palpate.__name__)
-    assert not servo.running
-    assert mesh_state(thing) == before
-
-
-def test_only_one_press_at_a_time(sessions, states):
-    thing = soft_cube()
-    begin(sessions, states, thing)
+def test_only_one_press_at_a_time(sessions, states, thing, session):
     error = part("core.errors").PalpateError
     with pytest.raises(error, match="Escape"):
         begin(sessions, states, thing)
     assert "press" in error_of(bpy.ops.palpate.press, at=TOP, by=(0, 0, -0.005))
 
 
-def test_a_port_that_is_not_there_is_refused_and_leaves_the_mesh_clean(sessions, states):
-    thing = soft_cube()
-    before = mesh_state(thing)
+def test_a_port_that_is_not_there_is_refused_and_leaves_the_mesh_clean(
+    sessions, states, thing, before
+):
     bpy.context.scene.palpate.source = "SERIAL"
     bpy.context.scene.palpate.port = "/nowhere/port"
     error = part("core.errors").PalpateError
@@ -247,8 +224,7 @@ def test_a_port_is_taken_as_typed_or_with_what_the_list_says_of_it(palpate):
         assert port_of(scene) == port
 
 
-def test_a_device_that_says_nothing_is_waited_for(sessions, states, silent_port):
-    thing = soft_cube()
+def test_a_device_that_says_nothing_is_waited_for(sessions, states, silent_port, thing):
     bpy.context.scene.palpate.source = "SERIAL"
     bpy.context.scene.palpate.port = silent_port
     session = begin(sessions, states, thing, "DEVICE")
@@ -260,11 +236,9 @@ def test_a_device_that_says_nothing_is_waited_for(sessions, states, silent_port)
     assert key_names(thing) == []
 
 
-def test_a_servo_that_fails_to_stop_does_not_leave_the_live_key(sessions, states):
-    thing = soft_cube()
-    before = mesh_state(thing)
-    session = begin(sessions, states, thing)
-    press_in(session, states)
+def test_a_servo_that_fails_to_stop_does_not_leave_the_live_key(
+    sessions, states, thing, before, session
+):
     servo = session.loop.servo
 
     class Failing:
@@ -279,9 +253,7 @@ def test_a_servo_that_fails_to_stop_does_not_leave_the_live_key(sessions, states
     assert sessions.current() is None
 
 
-def test_the_simulated_device_presses_is_unplugged_and_comes_back(sessions, states):
-    thing = soft_cube()
-    before = mesh_state(thing)
+def test_the_simulated_device_presses_is_unplugged_and_comes_back(sessions, states, thing, before):
     bpy.context.scene.palpate.source = "SIMULATED"
     session = begin(sessions, states, thing, "DEVICE")
     wait(session, lambda: session.snapshot.touching)
@@ -300,8 +272,7 @@ def test_the_simulated_device_presses_is_unplugged_and_comes_back(sessions, stat
     assert mesh_state(thing) == before
 
 
-def test_an_empty_places_the_device(sessions, states):
-    thing = soft_cube()
+def test_an_empty_places_the_device(sessions, states, thing):
     bpy.ops.object.empty_add(location=(0.0, 0.0, 0.3), rotation=(0.3, 0.0, 0.0))
     scene = bpy.context.scene
     scene.palpate.device_frame, scene.palpate.device_scale = bpy.context.object, 2.0
@@ -317,9 +288,8 @@ def test_an_empty_places_the_device(sessions, states):
     select(thing)
 
 
-def test_bounding_box_and_normals_follow_each_frame(palpate):
+def test_bounding_box_and_normals_follow_each_frame(thing):
     """Blender 5.0 leaves both stale after bulk writes in some places."""
-    thing = soft_cube()
     live = part("operators.scene.live_shape")
     live.hang(thing)
     rest = part("operators.scene.drawn_surface").rest_coordinates(thing.data).reshape(-1, 3)

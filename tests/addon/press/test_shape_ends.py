@@ -18,7 +18,6 @@ from soft_scene import (
     mesh_state,
     part,
     press_down,
-    soft_cube,
     wait,
 )
 
@@ -32,9 +31,7 @@ def table_file(thing, kind):
 
 @pytest.mark.parametrize("way", ["escape", "undo"])
 @pytest.mark.parametrize("name", SHAPES)
-def test_every_shape_leaves_the_mesh_as_it_was(sessions, states, name, way):
-    thing = soft_cube()
-    before = mesh_state(thing)
+def test_every_shape_leaves_the_mesh_as_it_was(sessions, states, name, way, thing, before):
     thing.palpate.shape = name
     session = begin_pressed(sessions, states, thing)
     wait(session, lambda: session.seen.shape.ready == 1.0)
@@ -49,8 +46,7 @@ def test_every_shape_leaves_the_mesh_as_it_was(sessions, states, name, way):
 
 
 @pytest.mark.parametrize("name", SHAPES)
-def test_enter_keeps_what_every_shape_drew(sessions, states, name):
-    thing = soft_cube()
+def test_enter_keeps_what_every_shape_drew(sessions, states, name, thing):
     thing.palpate.shape = name
     session = begin_pressed(sessions, states, thing)
     wait(session, lambda: session.seen.shape.ready == 1.0 and session.seen.drawn_contact)
@@ -63,8 +59,7 @@ def test_enter_keeps_what_every_shape_drew(sessions, states, name):
 
 
 @pytest.mark.parametrize("trouble", ["missing", "damaged", "foreign", "no table"])
-def test_a_table_file_that_is_no_good_is_told_once_and_made_anew(sessions, states, trouble):
-    thing = soft_cube()
+def test_a_table_file_that_is_no_good_is_told_once_and_made_anew(sessions, states, trouble, thing):
     thing.palpate.shape = "TABLE"
     press_down(thing, depth=DEPTH)
     first = key_coordinates(thing, "Press 1")
@@ -95,8 +90,7 @@ def test_a_table_file_that_is_no_good_is_told_once_and_made_anew(sessions, state
     np.testing.assert_allclose(key_coordinates(thing, "Press 1"), first, rtol=0, atol=1e-7)
 
 
-def test_a_table_that_cannot_be_used_is_a_warning_of_the_operator(palpate, monkeypatch):
-    thing = soft_cube()
+def test_a_table_that_cannot_be_used_is_a_warning_of_the_operator(palpate, monkeypatch, thing):
     thing.palpate.shape = "TABLE"
     file = table_file(thing, "newton-table")
     file.write_bytes(b"nothing")
@@ -109,8 +103,7 @@ def test_a_table_that_cannot_be_used_is_a_warning_of_the_operator(palpate, monke
     assert pressed.remarks == ()
 
 
-def test_two_troubles_are_told_once_each_not_in_turns(sessions, states):
-    thing = soft_cube()
+def test_two_troubles_are_told_once_each_not_in_turns(sessions, states, thing):
     files = [table_file(thing, kind) for kind in ("newton-table", "softening")]
     for file in files:
         file.write_bytes(b"nothing")

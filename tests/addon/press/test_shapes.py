@@ -72,8 +72,7 @@ def test_the_panel_offers_every_shape_with_its_sentence(palpate, shapes):
         assert items[name].description == shapes.EXPLANATIONS[explained]
 
 
-def test_scripts_that_name_the_former_series_get_paper_and_are_told(palpate, shapes):
-    thing = soft_cube()
+def test_scripts_that_name_the_former_series_get_paper_and_are_told(palpate, shapes, thing):
     once, keys = part("operators.press.press_once").press_once, {}
     for name in ("TABLE", "SERIES"):
         thing.palpate.shape = name
@@ -100,8 +99,7 @@ def test_costs_are_told_before_and_grow_with_the_body(palpate, name):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_a_script_keeps_the_shape_that_is_chosen(palpate, name):
-    thing = soft_cube()
+def test_a_script_keeps_the_shape_that_is_chosen(palpate, name, thing):
     press_down(thing, depth=DEPTH)
     thing.palpate.shape = name
     press_down(thing, depth=DEPTH)
@@ -112,9 +110,9 @@ def test_a_script_keeps_the_shape_that_is_chosen(palpate, name):
 
 
 @pytest.mark.parametrize("name", ["TABLE", "ROTATION_STRAIN"])
-def test_a_shape_is_switched_while_pressing_and_nothing_is_lost(sessions, states, name):
-    thing = soft_cube()
-    before = mesh_state(thing)
+def test_a_shape_is_switched_while_pressing_and_nothing_is_lost(
+    sessions, states, name, thing, before
+):
     session = begin_pressed(sessions, states, thing)
     linear = session.seen.displacements
     thing.palpate.shape = name
@@ -264,8 +262,7 @@ def test_pressure_is_drawn_on_the_shape_that_is_seen(palpate):
     np.testing.assert_allclose(moved, points + np.array([0.0, 0.0, 0.002]), atol=1e-12)
 
 
-def test_the_corrected_force_is_felt_where_it_is_known_and_switched_live(sessions, states):
-    thing = soft_cube()
+def test_the_corrected_force_is_felt_where_it_is_known_and_switched_live(sessions, states, thing):
     once = part("operators.press.press_once").press_once
     at, by = BESIDE, (0.0, 0.0, -DEPTH)
     linear = once(thing, bpy.context.scene, at, by, keep=False)
