@@ -19,13 +19,13 @@ import argparse
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 from palpate_servo import Body, ToolContact
 from palpate_servo.harness import SteppedFingers
 
+from palpate.benchmarks.measuring.bodies import tets_of
 from palpate.benchmarks.measuring.contact.finger_paths import (
     beside,
     moved_to_node,
@@ -40,8 +40,6 @@ from palpate.core.bake.steps import BakeSettings, bake
 from palpate.core.body.soft_body import SoftBody
 from palpate.core.contact.tool.convex_tool import convex
 from palpate.core.contact.tool.tools import Tool, plate, rod, sphere
-from palpate.core.mesh.paper_cube import paper_cube
-from palpate.core.mesh.tet_mesh import TetMesh
 from palpate.core.servo.session import native_body, native_tool
 from palpate.core.servo.settings import Settings
 from palpate.core.stiffness.pins import PinNodes
@@ -49,7 +47,6 @@ from palpate.core.stiffness.pins import PinNodes
 Vectors = NDArray[np.float64]
 Follow = Callable[[Vectors, int], Vectors]
 
-SCENES = Path(__file__).resolve().parents[2] / "sample_scenes"
 # Poisson's ratio of each sample scene's body.
 BODIES = {"cube": 0.49, "mouse": 0.49, "drumstick": 0.49, "hare": 0.3}
 YOUNG_MODULUS = 10_000.0
@@ -102,12 +99,7 @@ class Row:
 
 def soft_body(name: str) -> SoftBody:
     """A sample scene's body."""
-    if name == "cube":
-        mesh, fixed = paper_cube()
-    else:
-        with np.load(SCENES / f"{name}-tets.npz") as stored:
-            mesh = TetMesh.checked(stored["X"], stored["T"])
-            fixed = np.unique(stored["fixed"]).astype(np.int64)
+    mesh, fixed = tets_of(name)
     return bake(mesh, BakeSettings(BODIES[name], YOUNG_MODULUS, PinNodes(fixed)))[0]
 
 

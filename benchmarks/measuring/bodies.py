@@ -14,11 +14,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.mesh.surface import Surface
 from palpate.core.mesh.tet_mesh import TetMesh
 from palpate.core.mesh.tetrahedralize import tetrahedralize
 
 PROJECT = Path(__file__).resolve().parents[2]
+SCENES = PROJECT / "sample_scenes"
 STORED = (PROJECT / "tests" / "meshes", PROJECT.parent / "shared" / "meshes")
 MADE = PROJECT / "build" / "bodies"
 SHAPE = "mouse-1.7k"
@@ -66,6 +68,17 @@ def stored_body(name: str) -> MeasuredBody:
         if file.exists():
             return _read(name, file)
     return made_body(SIZE_OF_MISSING[name])
+
+
+def tets_of(name: str) -> tuple[TetMesh, NDArray[np.int64]]:
+    """Tetrahedra and pins of the paper's ``cube``, of a sample scene's ``mouse``, ``drumstick`` or
+    ``hare``, or of a stored body.
+    """
+    if name == "cube":
+        return paper_cube()
+    scene = SCENES / f"{name}-tets.npz"
+    body = _read(name, scene) if scene.exists() else stored_body(name)
+    return body.mesh, body.fixed
 
 
 def made_body(nodes: int) -> MeasuredBody:

@@ -29,12 +29,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from palpate.benchmarks.measuring.bodies import stored_body
+from palpate.benchmarks.measuring.bodies import tets_of
 from palpate.core.bake.steps import BakeSettings, bake
 from palpate.core.body.soft_body import SoftBody
 from palpate.core.contact.place import Place, nearest_place
 from palpate.core.contact.single_press import touch_at
-from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.shape.force_at_depth.softening_table import SofteningTable
 from palpate.core.shape.solid.free_solid import FreeSolid
 from palpate.core.softness.parallel_rays import thickness
@@ -84,11 +83,8 @@ def main() -> int:
 
 
 def _body(name: str) -> SoftBody:
-    if name == "cube":
-        mesh, fixed = paper_cube()
-        return bake(mesh, BakeSettings(0.3, 1.0, PinNodes(fixed)))[0]
-    stored = stored_body(name)
-    return bake(stored.mesh, BakeSettings(0.3, 1.0, PinNodes(stored.fixed)))[0]
+    mesh, fixed = tets_of(name)
+    return bake(mesh, BakeSettings(0.3, 1.0, PinNodes(fixed)))[0]
 
 
 def _places(body: SoftBody, count: int) -> list[Place]:

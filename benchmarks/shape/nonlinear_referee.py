@@ -20,11 +20,10 @@ import sys
 import numpy as np
 from numpy.typing import NDArray
 
-from palpate.benchmarks.measuring.bodies import stored_body
+from palpate.benchmarks.measuring.bodies import tets_of
 from palpate.benchmarks.measuring.shape.calculix import calculix_displacements, ccx_program
 from palpate.core.body.soft_body import SoftBody
 from palpate.core.compliance.dense import DenseCompliance
-from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.mesh.tet_mesh import TetMesh
 from palpate.core.shape.solid.free_solid import FreeSolid
 from palpate.tests.bodies.large_loads import carried, large_loads
@@ -50,7 +49,7 @@ def main() -> int:
     head = ("of load", "moved mm", "least det F", "steps", "iterations", "scikit-fem", "CalculiX")
     worst = 0.0
     for name in options.bodies:
-        mesh, fixed = paper_cube() if name == "cube" else _stored(name)
+        mesh, fixed = tets_of(name)
         ratio, axis = BODIES[name]
         body = free_solid(mesh, fixed, ratio)
         reference = NonlinearReference(mesh, body.free, ratio)
@@ -85,11 +84,6 @@ def free_solid(mesh: TetMesh, fixed: NDArray[np.int64], poisson_ratio: float) ->
     nodes = np.setdiff1d(mesh.surface_nodes, fixed)
     none = DenseCompliance(nodes, np.empty((len(nodes), 3, 0)))
     return FreeSolid.of(SoftBody(mesh, fixed, poisson_ratio, none, 1.0))
-
-
-def _stored(name: str) -> tuple[TetMesh, NDArray[np.int64]]:
-    body = stored_body(name)
-    return body.mesh, body.fixed
 
 
 if __name__ == "__main__":

@@ -21,10 +21,9 @@ from pathlib import Path
 
 import numpy as np
 
-from palpate.benchmarks.measuring.bodies import stored_body
+from palpate.benchmarks.measuring.bodies import tets_of
 from palpate.benchmarks.measuring.shape.figure_4 import draw_figure_4
 from palpate.core.body.soft_body import SoftBody
-from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.shape.paper.paper_entries import SIGNS, EntryFinder, usual_largest_force
 from palpate.core.shape.paper.paper_table import PaperTable
 from palpate.core.shape.solid.free_solid import FreeSolid
@@ -56,12 +55,8 @@ def main() -> int:
 
 def body(name: str) -> SoftBody:
     """The cube or the stored mouse."""
-    if name == "cube":
-        (mesh, fixed), poisson_ratio = paper_cube(), 0.49
-    else:
-        stored, poisson_ratio = stored_body("mouse-1.7k"), 0.3
-        mesh, fixed = stored.mesh, stored.fixed
-    return baked_body(mesh, fixed, poisson_ratio, YOUNG_MODULUS)
+    stored, poisson_ratio = {"cube": ("cube", 0.49), "mouse": ("mouse-1.7k", 0.3)}[name]
+    return baked_body(*tets_of(stored), poisson_ratio, YOUNG_MODULUS)
 
 
 def compared(name: str, made: SoftBody, sample: int) -> bool:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,7 +14,7 @@ from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.mesh.tet_mesh import TetMesh
 from palpate.tests.bodies.baked_body import baked_body
 
-from ..bodies import PROJECT, stored_body
+from ..bodies import tets_of
 from ..refined import refined
 from .solved_body import SolvedBody
 
@@ -157,33 +156,23 @@ def _beam_tets(cells: int) -> tuple[TetMesh, NDArray[np.int64]]:
 @cache
 def mouse_body() -> SoftBody:
     """The plush mouse of 1.7k nodes."""
-    mouse = stored_body("mouse-1.7k")
-    return baked_body(mouse.mesh, mouse.fixed, 0.3, 1000.0)
+    return baked_body(*tets_of("mouse-1.7k"), 0.3, 1000.0)
 
 
 @cache
 def hare_body() -> SoftBody:
     """The plush hare with long ears, from the sample scenes."""
-    return baked_body(*hare_tets(), 0.3, 1000.0)
-
-
-def hare_tets() -> tuple[TetMesh, NDArray[np.int64]]:
-    """Its tetrahedra and pins."""
-    file: Path = PROJECT / "sample_scenes" / "hare-tets.npz"
-    with np.load(file) as stored:
-        mesh = TetMesh.checked(stored["X"], stored["T"])
-        return mesh, np.unique(stored["fixed"]).astype(np.int64)
+    return baked_body(*tets_of("hare"), 0.3, 1000.0)
 
 
 def large_hare() -> SolvedBody:
     """The hare with every tetrahedron cut in eight, 12,000 nodes."""
-    return SolvedBody.of(*refined(*hare_tets()), 0.3, 1000.0)
+    return SolvedBody.of(*refined(*tets_of("hare")), 0.3, 1000.0)
 
 
 def large_mouse() -> SolvedBody:
     """The plush mouse of 20,000 nodes."""
-    mouse = stored_body("mouse-20k")
-    return SolvedBody.of(mouse.mesh, mouse.fixed, 0.3, 1000.0)
+    return SolvedBody.of(*tets_of("mouse-20k"), 0.3, 1000.0)
 
 
 def large_beam() -> SolvedBody:
