@@ -228,7 +228,7 @@ pub struct Blend {
     /// From 0, linear, to 1, corrected; `None` while nothing is touched: then it begins anew.
     choice: Option<f64>,
     nodes: [u32; 3],
-    /// Share of each node's softening that is in.
+    /// Share of each node's softening that is in, but for the choice.
     shares: [f64; 3],
 }
 
@@ -242,29 +242,21 @@ impl Default for Blend {
     }
 }
 
-/// Softenings felt of a touched triangle's nodes.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Blended {
-    /// Softening of each node.
-    pub softenings: [Softening; 3],
-    /// Share of the corrected relation at each node, 0 to 1.
-    shares: [f64; 3],
-}
-
-impl Blended {
-    /// Share of the corrected relation that is felt at a place, 0 to 1.
-    pub fn share(&self, alpha: [f64; 3]) -> f64 {
-        self.shares.iter().zip(alpha).map(|(s, a)| s * a).sum()
-    }
-}
-
 impl Blend {
     /// Nothing is touched.
     pub fn let_go(&mut self) {
         *self = Self::default();
     }
 
-    /// A tick of `dt` seconds on a triangle with these nodes.
+    /// Share of the corrected relation that is felt at a place of the triangle, 0 to 1.
+    pub fn share(&self, alpha: [f64; 3]) -> f64 {
+        let choice = self.choice.unwrap_or(0.0);
+        (self.shares.iter().zip(alpha))
+            .map(|(share, a)| choice * share * a)
+            .sum()
+    }
+
+    /// A tick of `dt` seconds on a triangle with these nodes; their softenings as they are felt.
     ///
     /// A node met for the first time counts at once, for it carries nothing yet; what becomes known
     /// of one that is held already, and another choice, come in over [`BLEND_SECONDS`].
@@ -274,14 +266,14 @@ impl Blend {
         nodes: [u32; 3],
         felt: Felt,
         dt: f64,
-    ) -> Blended {
+    ) -> [Softening; 3] {
         let step = dt / BLEND_SECONDS;
         let aim = f64::from(u8::from(felt == Felt::Corrected));
         let choice = match self.choice {
             Some(now) => now + (aim - now).clamp(-step, step),
             None => aim,
         };
-        let mut blended = Blended::default();
+        let mut blended = [Softening::default(); 3];
         let mut known = [0.0; 3];
         for (k, &node) in nodes.iter().enumerate() {
             let before = (self.nodes.iter().position(|&n| n == node)).map(|at| self.shares[at]);
@@ -289,8 +281,7 @@ impl Blend {
                 continue;
             };
             known[k] = before.map_or(1.0, |share| (share + step).min(1.0));
-            blended.shares[k] = choice * known[k];
-            blended.softenings[k] = Softening::default().plus(&softening, blended.shares[k]);
+            blended[k] = Softening::default().plus(&softening, choice * known[k]);
         }
         (self.choice, self.nodes, self.shares) = (Some(choice), nodes, known);
         blended

@@ -15,21 +15,20 @@ pub mod tip;
 use std::sync::Arc;
 use std::time::Instant;
 
-use glam::DVec3;
 use rtrb::Producer;
 use triple_buffer::{Input, Output};
 
 use crate::body::surface::Body;
-use crate::contact::cones::{MAX_FINGERS, Vectors};
+use crate::contact::cones::MAX_FINGERS;
 use crate::contact::touch::ContactMode;
 use crate::device::{Device, Fault};
 use crate::engine::Engine;
 use crate::engine::joint::Ground;
 use crate::servo::exchange::{Holder, exchange};
-use crate::servo::finger::Finger;
+use crate::servo::finger::{Finger, Followed, Touch};
 use crate::servo::recorder::Tape;
 use crate::servo::settings::{Moment, Options, Settings};
-use crate::servo::snapshot::{Published, Sample};
+use crate::servo::snapshot::{Published, Sample, Snapshot};
 use crate::servo::stages::{Stage, Stages};
 
 /// The loop's body and memory.
@@ -93,83 +92,76 @@ impl Servo {
         // tick never frees it.
         let (body, number, body_replaced) = self.bodies.newest();
         let body = Arc::clone(body);
-        let settings = *self.settings.read();
+        let (settings, options) = (*self.settings.read(), self.options);
         self.tick += 1;
         let moment = Moment {
             tick: self.tick,
             now,
-            dt: 1.0 / f64::from(self.options.rate_hz),
+            dt: 1.0 / f64::from(options.rate_hz),
             gap: self.ticked_at.replace(now).map_or(0.0, |last| now - last),
-            body: number,
+            body: &body,
+            body_number: number,
             body_replaced,
+            settings: &settings,
+            options: &options,
         };
-        for (finger, own) in self.fingers.iter_mut().zip(&settings.fingers) {
-            finger.read(&moment, own);
-        }
+        let own = &settings.fingers;
+        let readings = each(&mut self.fingers, |k, finger| {
+            Some(finger.read(&moment, &own[k]))
+        });
         self.stages.end_of(Stage::Read, &mut since);
 
-        for (finger, own) in self.fingers.iter_mut().zip(&settings.fingers) {
-            finger.follow(&body, &moment, &settings, own, &self.options);
-        }
+        let followed = each(&mut self.fingers, |k, finger| {
+            Some(finger.follow(&moment, &own[k], readings[k].as_ref()?))
+        });
         self.stages.end_of(Stage::Proxy, &mut since);
 
-        let wanted = self.feel(&body, &moment, &settings);
+        let touches = self.feel(&moment, &followed);
         self.stages.end_of(Stage::Contact, &mut since);
 
-        let mut limits = self.options.limits;
-        limits.max_force = settings.max_force.unwrap_or(limits.max_force);
-        let fingers = self.fingers.iter_mut().zip(&settings.fingers);
-        for ((finger, own), wanted) in fingers.zip(wanted) {
-            finger.send(wanted, &limits, own, moment.dt);
-        }
+        let shots = each(&mut self.fingers, |k, finger| {
+            Some(finger.send(followed[k].as_ref()?, touches[k].as_ref()?))
+        });
         self.stages.end_of(Stage::Write, &mut since);
-        self.publish(settings.young_modulus);
+        self.publish(&shots, settings.young_modulus);
     }
 
-    /// What the body makes each finger feel; what is to go to the motors, N.
-    fn feel(&mut self, body: &Body, moment: &Moment, settings: &Settings) -> Vectors {
-        let own = &settings.fingers;
+    /// The contact of each finger with the body.
+    fn feel(&mut self, moment: &Moment<'_>, followed: &Each<Followed<'_>>) -> Each<Touch> {
+        let settings = moment.settings;
         // The paper couples fingers on nodes alone (10); in its mode each feels as if it were alone.
         let are_several = self.fingers.len() > 1;
         let are_coupled = are_several && settings.feel.mode == ContactMode::Consistent;
-        let reckons = |finger: &Finger| finger.acts() || finger.is_moved();
+        let acts = followed.iter().flatten().any(Followed::acts);
         let mut presses = [None; MAX_FINGERS];
-        if are_coupled && self.fingers.iter().any(reckons) {
-            for ((press, finger), own) in presses.iter_mut().zip(&mut self.fingers).zip(own) {
-                *press = finger.press(body, settings, own, moment.dt);
-            }
+        if are_coupled && (acts || self.fingers.iter().any(Finger::is_moved)) {
+            presses = each(&mut self.fingers, |k, finger| {
+                finger.press(followed[k].as_ref()?)
+            });
         }
         let mut led = [const { None }; MAX_FINGERS];
-        for (led, finger) in led.iter_mut().zip(&mut self.fingers) {
-            *led = finger.lead(&settings.feel, are_several);
+        for ((led, finger), followed) in led.iter_mut().zip(&mut self.fingers).zip(followed) {
+            *led = (followed.as_ref()).and_then(|followed| finger.lead(followed, are_several));
         }
         let ground = Ground {
-            body,
-            number: moment.body,
+            body: moment.body,
+            number: moment.body_number,
             young_modulus: settings.young_modulus,
             dt: moment.dt,
         };
         let answers = self.engine.tick(&ground, &presses, &mut led);
-        let mut wanted = [DVec3::ZERO; MAX_FINGERS];
-        for (p, finger) in self.fingers.iter_mut().enumerate() {
-            wanted[p] = if finger.has_tool() {
-                finger.feel_tool(&own[p], moment.dt)
-            } else if let Some(answers) = &answers {
-                finger.feel(body, settings, &own[p], &answers[p], moment.dt)
-            } else {
-                finger.forget_others();
-                finger.feel_alone(body, settings, &own[p], moment.dt)
-            };
-        }
-        wanted
+        each(&mut self.fingers, |k, finger| {
+            let answer = answers.as_ref().map(|answers| &answers[k]);
+            Some(finger.feel(followed[k].as_ref()?, answer))
+        })
     }
 
-    fn publish(&mut self, young_modulus: f64) {
+    fn publish(&mut self, shots: &Each<Snapshot>, young_modulus: f64) {
         let published = self.snapshots.input_buffer_mut();
         published.count = self.fingers.len();
-        for (number, finger) in self.fingers.iter_mut().enumerate() {
-            published.reports[number] = *finger.tell(young_modulus);
-            let sample = finger.sample(number as u32);
+        for (number, shot) in shots.iter().flatten().enumerate() {
+            published.reports[number] = *self.fingers[number].tell(shot, young_modulus);
+            let sample = Sample::of(shot, number as u32);
             if self.samples.push(sample).is_err() {
                 self.samples_lost += 1;
             }
@@ -191,4 +183,15 @@ impl Servo {
         }
         self.snapshots.publish();
     }
+}
+
+/// A value of each finger that there is, by number.
+type Each<T> = [Option<T>; MAX_FINGERS];
+
+/// A stage of the tick: its value of each finger.
+fn each<T>(
+    fingers: &mut [Finger],
+    mut stage: impl FnMut(usize, &mut Finger) -> Option<T>,
+) -> Each<T> {
+    std::array::from_fn(|k| stage(k, fingers.get_mut(k)?))
 }

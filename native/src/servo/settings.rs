@@ -1,8 +1,9 @@
-//! What a servo is set to, and what a tick is.
+//! Settings of a servo, and the tick that they hold for.
 
 use glam::DMat3;
 
 use crate::body::softening::Felt;
+use crate::body::surface::Body;
 use crate::contact::cones::MAX_FINGERS;
 use crate::control::coupling::Coupling;
 use crate::control::safety::Limits;
@@ -82,9 +83,9 @@ impl FingerSettings {
     }
 }
 
-/// What a tick is for all fingers.
+/// A tick, the same for all fingers.
 #[derive(Debug, Clone, Copy)]
-pub struct Moment {
+pub struct Moment<'a> {
     /// Counts from 1.
     pub tick: u64,
     /// Since the start, s.
@@ -93,8 +94,14 @@ pub struct Moment {
     pub dt: f64,
     /// Since the last tick, s; 0 in the first.
     pub gap: f64,
+    /// What is touched.
+    pub body: &'a Body,
     /// Counts the exchanges of the body.
-    pub body: u32,
+    pub body_number: u32,
     /// The body is another one since this tick.
     pub body_replaced: bool,
+    /// In force.
+    pub settings: &'a Settings,
+    /// Fixed at the start.
+    pub options: &'a Options,
 }

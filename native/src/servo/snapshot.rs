@@ -132,3 +132,20 @@ pub struct Sample {
     /// From 0 on.
     pub finger: u32,
 }
+
+impl Sample {
+    /// The sample of a finger's tick.
+    pub fn of(shot: &Snapshot, finger: u32) -> Self {
+        Self {
+            tick: shot.tick,
+            time: shot.time,
+            probe: shot.probe.to_array(),
+            proxy: shot.proxy.to_array(),
+            surface: shot.surface_point.unwrap_or(DVec3::NAN).to_array(),
+            force: shot.contact_force.to_array(),
+            output: shot.output_force.to_array(),
+            state: shot.state as u32,
+            finger,
+        }
+    }
+}

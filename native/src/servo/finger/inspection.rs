@@ -1,8 +1,8 @@
-//! What is wrong with a finger in a tick, as far as the clock and the device tell.
+//! Findings: what is wrong with a finger in a tick, before its contact.
 
 use super::Finger;
 use crate::control::state::Findings;
-use crate::device::{Fault, Probe, Reading};
+use crate::device::{Fault, Probe, Reading, reason};
 use crate::servo::settings::Moment;
 
 /// Two ticks further apart than this were interrupted: the device has gone limp meanwhile, s.
@@ -13,16 +13,24 @@ const HOLES_SECONDS: f64 = 0.05;
 const CALM_PART: f64 = 0.5;
 
 impl Finger {
-    /// What the clock and the device tell.
-    pub(super) fn inspect(&mut self, moment: &Moment, max_speed: f64) -> Findings {
-        let Moment { now, gap, .. } = *moment;
+    /// Findings of the clock, the device and the settings.
+    pub(super) fn inspect(
+        &mut self,
+        moment: &Moment<'_>,
+        reading: &Reading,
+        tip_fits: bool,
+    ) -> Findings {
+        let Moment {
+            now, gap, settings, ..
+        } = *moment;
+        let max_speed = moment.options.max_speed;
         // While there is no force, a gap endangers nobody.
         if gap > SUSPENDED_SECONDS {
             self.interrupted_at = now;
         }
         let is_suspended = self.standing.fault == Some(Fault::Suspended);
         let was_pushing = is_suspended || self.standing.state.may_push();
-        let fault = match &self.reading {
+        let fault = match reading {
             _ if was_pushing && gap > SUSPENDED_SECONDS => Some(Fault::Suspended),
             Reading::At(probe) | Reading::Passive(probe, _) => match fault_of(probe, max_speed) {
                 // What the line had stored has holes, which look like jumps.
@@ -36,13 +44,16 @@ impl Finger {
             Reading::Waiting(_) => None,
             Reading::Fault(fault) => Some(*fault),
         };
-        let probe = self.reading.probe();
+        let probe = reading.probe();
+        let has_modulus = settings.young_modulus > 0.0 && settings.young_modulus.is_finite();
         Findings {
-            fault,
-            waiting: match self.reading {
+            fault: fault.or((!has_modulus).then_some(Fault::Nan)),
+            waiting: match *reading {
                 Reading::Waiting(reason) | Reading::Passive(_, reason) => Some(reason),
-                _ => None,
+                _ => (!tip_fits).then_some(reason::OTHER_BODY),
             },
+            switched_off: !settings.enabled,
+            body_replaced: moment.body_replaced,
             blind: probe.is_none(),
             button: probe.is_some_and(|p| p.buttons != 0),
             calm: probe.is_none_or(|p| p.speed <= CALM_PART * max_speed),

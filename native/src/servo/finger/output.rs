@@ -1,76 +1,65 @@
-//! What a finger gives: force to the device, and all that others may read of the tick.
+//! The output of a finger: force to the device, and all that others may read of the tick.
 
 use glam::DVec3;
 
-use super::Finger;
+use super::{Finger, Followed, Touch};
 use crate::control::safety::Limits;
 use crate::control::state::{Standing, State, transition};
+use crate::device::Fault;
 use crate::device::reason;
-use crate::device::{Fault, Reading};
-use crate::servo::settings::FingerSettings;
-use crate::servo::snapshot::{FingerReport, Sample};
+use crate::servo::settings::Moment;
+use crate::servo::snapshot::{FingerReport, Snapshot};
 use crate::servo::tip::Tip;
 
 impl Finger {
     /// State and safety, then the device.
-    pub fn send(&mut self, wanted: DVec3, limits: &Limits, own: &FingerSettings, dt: f64) {
-        let found = &self.found;
+    pub fn send(&mut self, followed: &Followed<'_>, touch: &Touch) -> Snapshot {
+        let (found, dt) = (&touch.found, followed.moment.dt);
         self.standing = transition(&self.standing, found, dt);
+        let (mut output_force, mut limited) = (DVec3::ZERO, "");
         if self.standing.may_push(found) {
-            let limits = limits_with(limits, &self.reading);
-            match self.safety.limit(wanted, &limits, dt) {
-                Some(limited) => {
-                    self.shot.output_force = limited.force;
-                    self.shot.limited = limited.by;
-                }
+            match self.safety.limit(touch.wanted, &limits(followed), dt) {
+                Some(within) => (output_force, limited) = (within.force, within.by),
                 None => self.standing = Standing::fault(Fault::Nan),
             }
         }
         let may_push = self.standing.may_push(found);
         if !may_push {
-            self.shot.output_force = self.safety.silence();
+            output_force = self.safety.silence();
         }
-        self.shot.state = self.standing.state;
-        self.shot.fault = self.standing.fault;
-        self.shot.reason = self.standing.reason;
-        self.coupler.sent(self.shot.output_force);
+        self.coupler.sent(output_force);
         self.device
-            .write(self.shot.output_force, may_push, &own.frame);
+            .write(output_force, may_push, &followed.own.frame);
+        Snapshot {
+            output_force,
+            limited,
+            state: self.standing.state,
+            fault: self.standing.fault,
+            reason: self.standing.reason,
+            ..touch.shot
+        }
     }
 
-    /// What the tick came to, for others to read.
-    pub fn tell(&mut self, young_modulus: f64) -> &FingerReport {
+    /// The tick with its counters, for others to read.
+    pub fn tell(&mut self, shot: &Snapshot, young_modulus: f64) -> &FingerReport {
         if let (Some(patches), Tip::Tool(tool)) = (&mut self.patches, &self.tips.tip) {
-            let tool = self.shot.touching.then_some(&**tool);
-            patches
-                .input_buffer_mut()
-                .show(self.shot.tick, tool, young_modulus);
+            let tool = shot.touching.then_some(&**tool);
+            (patches.input_buffer_mut()).show(shot.tick, tool, young_modulus);
             patches.publish();
         }
-        if let Some(fault) = self.shot.fault
-            && self.report.snapshot.fault != Some(fault)
+        let report = &mut self.report;
+        if let Some(fault) = shot.fault
+            && report.snapshot.fault != Some(fault)
         {
-            self.report.faults[fault as usize] += 1;
+            report.faults[fault as usize] += 1;
         }
-        self.report.snapshot = self.shot;
-        self.report.link = self.device.report();
-        &self.report
-    }
-
-    /// The tick in the recording.
-    pub fn sample(&self, finger: u32) -> Sample {
-        let shot = &self.shot;
-        Sample {
-            tick: shot.tick,
-            time: shot.time,
-            probe: shot.probe.to_array(),
-            proxy: shot.proxy.to_array(),
-            surface: shot.surface_point.unwrap_or(DVec3::NAN).to_array(),
-            force: shot.contact_force.to_array(),
-            output: shot.output_force.to_array(),
-            state: shot.state as u32,
-            finger,
+        if let Some(proxy) = &self.point.proxy {
+            report.most_steps = report.most_steps.max(proxy.steps());
+            report.rescues = proxy.rescues();
         }
+        report.snapshot = *shot;
+        report.link = self.device.report();
+        report
     }
 
     /// Leaves the device limp and says so.
@@ -91,12 +80,14 @@ impl Finger {
 }
 
 /// The servo's limits and the device's own, whichever is less; what is no number stays none.
-fn limits_with(limits: &Limits, reading: &Reading) -> Limits {
-    let mut limits = *limits;
-    if let Some(probe) = reading.probe()
-        && probe.max_force < limits.max_force
-    {
-        limits.max_force = probe.max_force;
+fn limits(followed: &Followed<'_>) -> Limits {
+    let Moment {
+        options, settings, ..
+    } = *followed.moment;
+    let most = settings.max_force.unwrap_or(options.limits.max_force);
+    let device = followed.motors.filter(|&force| force < most);
+    Limits {
+        max_force: device.unwrap_or(most),
+        ..options.limits
     }
-    limits
 }

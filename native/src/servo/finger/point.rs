@@ -2,57 +2,86 @@
 
 use glam::DVec3;
 
-use super::Finger;
 use super::among::Among;
+use super::{Followed, Touch};
 use crate::algebra::series_share;
 use crate::body::face::closest_on_face;
-use crate::body::softening::Softening;
+use crate::body::softening::{Blend, Relation, Softening};
 use crate::body::surface::Body;
 use crate::contact::touch::{contact_relation, softened_touch, surface_displacement, touch};
-use crate::control::coupling::{Contact, Coupled, series_compliance};
-use crate::device::Fault;
+use crate::control::coupling::{Contact, Coupled, Coupler, series_compliance};
 use crate::fingers::press::{Answer, Press};
-use crate::proxy::Proxy;
-use crate::servo::settings::FingerSettings;
-use crate::servo::settings::Settings;
+use crate::proxy::{Proxy, SurfacePoint};
+use crate::servo::settings::Moment;
+use crate::servo::snapshot::Snapshot;
 
-impl Finger {
+/// A point from tick to tick.
+pub(super) struct Point {
+    pub proxy: Option<Proxy>,
+    pub among: Among,
+    pub blend: Blend,
+}
+
+impl Point {
+    /// Not set down yet.
+    pub fn fresh() -> Self {
+        Self {
+            proxy: None,
+            among: Among::fresh(),
+            blend: Blend::default(),
+        }
+    }
+
+    /// Goes over to another body, near a place.
+    pub fn turn_to(&mut self, body: &Body, place: DVec3) {
+        self.among = Among::default();
+        self.blend.let_go();
+        if let Some(proxy) = &mut self.proxy {
+            proxy.restart(body, place);
+        }
+    }
+
+    /// Is set down: what the others do there is not known yet.
+    pub fn set_down(&mut self) {
+        self.among = Among::fresh();
+    }
+
+    /// Moves the proxy after the probe, or sets it down anew where no sweep leads there.
+    ///
+    /// The proxy lives on the rest surface: it sees the probe where it would be, had the others not
+    /// moved the surface. Across its push a finger holds the surface as it met it.
+    pub fn follow(&mut self, moment: &Moment<'_>, probe: DVec3, is_lifted: bool) {
+        let is_lifted = is_lifted || std::mem::take(&mut self.among.set_down_again);
+        self.among = self.among.carried();
+        let (body, seen) = (moment.body, probe - self.among.moved_back);
+        match &mut self.proxy {
+            Some(proxy) if !is_lifted => {
+                proxy.follow(body, seen, &moment.settings.feel, moment.dt);
+            }
+            Some(proxy) => proxy.restart(body, seen),
+            None => self.proxy = Some(Proxy::new(body, seen)),
+        }
+    }
+
     /// The finger as the others see it: on the surface, or where it is nearest to that.
-    pub fn press(
-        &mut self,
-        body: &Body,
-        settings: &Settings,
-        own: &FingerSettings,
-        dt: f64,
-    ) -> Option<Press> {
-        let young_modulus = settings.young_modulus;
-        let proxy = self.proxy.as_ref().filter(|_| !self.has_tool())?;
-        if self.acts() {
-            let hold = proxy.hold()?;
-            let nodes = body.triangles[hold.triangle as usize];
-            let blended = (self.blend).follow(&body.softenings, nodes, settings.felt, dt);
-            self.shot.felt_share = blended.share(hold.alpha);
-            let displacement = self.shot.probe - self.shot.proxy;
-            let limit = if self.has_motors() {
-                own.coupling.stiffness / own.frame.scale / young_modulus
-            } else {
-                f64::INFINITY
-            };
+    pub fn press(&mut self, followed: &Followed<'_>) -> Option<Press> {
+        let Moment { body, settings, .. } = *followed.moment;
+        if let Some(hold) = followed.hold.filter(|_| followed.acts()) {
+            let displacement = followed.displacement();
+            let limit = followed.most_stiffness() / settings.young_modulus;
             return Some(Press {
                 hold,
                 touches: true,
                 displacement,
                 push: displacement - self.among.moved_back,
-                most_stiffness: limit,
-                presence: self.presence,
-                softening: Softening::mixed(&blended.softenings, hold.alpha),
+                most_stiffness: followed.motors.map_or(f64::INFINITY, |_| limit),
+                presence: followed.presence,
+                softening: Softening::mixed(&self.softenings(followed, &hold), hold.alpha),
             });
         }
-        if self.found.blind {
-            return None;
-        }
+        let proxy = self.proxy.as_ref().filter(|_| !followed.found.blind)?;
         let mut hold = proxy.nearest();
-        let seen = self.probe - self.among.moved_back;
+        let seen = followed.shot.probe - self.among.moved_back;
         hold.alpha = closest_on_face(body.face(hold.triangle), seen).0;
         Some(Press {
             hold,
@@ -65,170 +94,167 @@ impl Finger {
         })
     }
 
-    /// The contact of a finger that is alone, (11) to (14); what goes to the motors, N.
-    pub fn feel_alone(
+    /// The contact of a finger, among others if they answer.
+    pub fn feel(
         &mut self,
-        body: &Body,
-        settings: &Settings,
-        own: &FingerSettings,
-        dt: f64,
-    ) -> DVec3 {
-        let (mode, young_modulus) = (settings.feel.mode, settings.young_modulus);
-        let Some(hold @ (triangle, alpha)) = self.hold() else {
-            self.let_go();
-            return DVec3::ZERO;
+        followed: &Followed<'_>,
+        answer: Option<&Answer>,
+        coupler: &mut Coupler,
+    ) -> Touch {
+        let acts = followed.acts();
+        self.among = match answer {
+            None => Among::default(),
+            Some(_) if followed.found.blind => self.among,
+            Some(answer) => {
+                let displacement = acts.then(|| followed.displacement());
+                (self.among).after(answer, followed.touches, displacement)
+            }
         };
-        let displacement = self.shot.probe - self.shot.proxy;
-        let nodes = body.triangles[triangle as usize];
-        let blended = (self.blend).follow(&body.softenings, nodes, settings.felt, dt);
+        let Some(hold) = followed.hold else {
+            return Touch::none(followed);
+        };
+        if let Some(answer) = answer.filter(|_| acts) {
+            return self.feel_others(followed, &hold, answer, coupler);
+        }
+        let mut touch = self.feel_alone(followed, &hold, coupler);
+        if answer.is_some() {
+            // Its contact is lifted: it is followed, for it may come back, but presses nothing.
+            touch.shot.nodal_forces = [DVec3::ZERO; 3];
+        }
+        touch
+    }
+
+    /// The contact of a finger that is alone, (11) to (14).
+    fn feel_alone(
+        &mut self,
+        followed: &Followed<'_>,
+        hold: &SurfacePoint,
+        coupler: &mut Coupler,
+    ) -> Touch {
+        let Moment { body, settings, .. } = *followed.moment;
+        let (mode, young_modulus) = (settings.feel.mode, settings.young_modulus);
+        let place @ (triangle, alpha) = (hold.triangle, hold.alpha);
+        let displacement = followed.displacement();
+        let felt = self.softenings(followed, hold);
         let linear = |u| touch(body, mode, triangle, alpha, u, young_modulus);
-        let softened = |by: &_, u| softened_touch(body, mode, hold, by, u, young_modulus);
-        let felt = blended.softenings;
         let is_softened = felt.iter().any(|one| !one.is_none());
         let whole = if is_softened {
-            softened(&felt, displacement)
+            softened_touch(body, mode, place, &felt, displacement, young_modulus)
         } else {
             linear(displacement)
         };
-        if !self.takes(body, hold, whole.force) {
-            self.let_go();
-            return DVec3::ZERO;
+        if !whole.force.is_finite() {
+            return Touch::nan(followed);
         }
-        let mut wanted = whole.force;
-        let mut reached = displacement;
-        if self.has_motors() {
-            let relation = contact_relation(body, mode, triangle, alpha, &felt);
-            let (coupling, scale) = (&own.coupling, own.frame.scale);
-            let contact = Contact {
-                stiffness: relation.stiffness * young_modulus,
-                displacement,
-                force: whole.force,
-            };
-            let coupled = if is_softened {
-                let tangent = relation.tangent(displacement) * young_modulus;
-                let most = coupling.stiffness / scale;
-                let spring = series_compliance(&contact.stiffness, most)
-                    .max(series_compliance(&tangent, most));
-                let moved = relation.behind_spring(spring * young_modulus, displacement);
-                let there = relation.tangent(moved) * young_modulus;
-                let seen = Contact {
-                    stiffness: series_share(&there, spring) * there,
-                    displacement,
-                    force: relation.force(moved) * -young_modulus,
-                };
-                Coupled {
-                    body_displacement: moved,
-                    force: self.coupler.drive(&seen, coupling, scale, dt),
-                }
-            } else {
-                self.coupler.couple(&contact, coupling, scale, dt)
-            };
-            (wanted, reached) = (coupled.force, coupled.body_displacement);
-        }
-        self.shot.nodal_forces = if !is_softened && reached == displacement {
-            whole.nodal_forces
-        } else {
-            linear(reached).nodal_forces
+        let mut coupled = Coupled {
+            body_displacement: displacement,
+            force: whole.force,
         };
-        self.shot.felt_share = blended.share(alpha);
-        self.show_surface(body, hold, young_modulus, DVec3::ZERO);
-        wanted
+        if followed.motors.is_some() {
+            let relation = contact_relation(body, mode, triangle, alpha, &felt);
+            coupled = if is_softened {
+                drive_softened(followed, &relation, coupler)
+            } else {
+                let contact = Contact {
+                    stiffness: relation.stiffness * young_modulus,
+                    displacement,
+                    force: whole.force,
+                };
+                followed.couple(coupler, &contact)
+            };
+        }
+        let reached = coupled.body_displacement;
+        let shot = Snapshot {
+            contact_force: whole.force,
+            nodal_forces: if !is_softened && reached == displacement {
+                whole.nodal_forces
+            } else {
+                linear(reached).nodal_forces
+            },
+            felt_share: self.blend.share(alpha),
+            ..followed.shot
+        };
+        let shot = self.on_surface(followed, hold, shot, DVec3::ZERO);
+        Touch::of(followed, shot, coupled.force)
     }
 
-    /// The contact of a finger among others; what goes to the motors, N.
-    pub fn feel(
-        &mut self,
-        body: &Body,
-        settings: &Settings,
-        own: &FingerSettings,
+    /// The contact of a finger among others.
+    fn feel_others(
+        &self,
+        followed: &Followed<'_>,
+        hold: &SurfacePoint,
         answer: &Answer,
-        dt: f64,
-    ) -> DVec3 {
-        let young_modulus = settings.young_modulus;
-        self.reckon_with(answer);
-        let Some(hold) = self.hold() else {
-            self.let_go();
-            return DVec3::ZERO;
-        };
-        if !self.acts() {
-            // Its contact is lifted: it is followed, for it may come back, but presses nothing.
-            let wanted = self.feel_alone(body, settings, own, dt);
-            self.shot.nodal_forces = [DVec3::ZERO; 3];
-            return wanted;
+        coupler: &mut Coupler,
+    ) -> Touch {
+        let young_modulus = followed.moment.settings.young_modulus;
+        let [force, contact_force] =
+            [answer.force, answer.contact_force].map(|f| f * -young_modulus);
+        if !(force.is_finite() && contact_force.is_finite()) {
+            return Touch::nan(followed);
         }
-        let force = answer.force * -young_modulus;
-        if !self.takes(body, hold, answer.contact_force * -young_modulus) || !force.is_finite() {
-            self.let_go();
-            return DVec3::ZERO;
-        }
-        self.shot.felt_share *= answer.felt_share;
         let (drawn, carried) = answer.drawn;
-        self.shot.nodal_forces = hold.1.map(|share| drawn * (share * young_modulus));
-        self.show_surface(body, hold, young_modulus, carried);
-        if !self.has_motors() {
-            return force;
-        }
+        let shot = Snapshot {
+            contact_force,
+            nodal_forces: hold.alpha.map(|share| drawn * (share * young_modulus)),
+            felt_share: self.blend.share(hold.alpha) * answer.felt_share,
+            ..followed.shot
+        };
+        let shot = self.on_surface(followed, hold, shot, carried);
         let seen = Contact {
             stiffness: answer.seen_stiffness * young_modulus,
-            displacement: self.shot.probe - self.shot.proxy - answer.by_others,
+            displacement: followed.displacement() - answer.by_others,
             force,
         };
-        self.coupler
-            .drive(&seen, &own.coupling, own.frame.scale, dt)
+        Touch::of(followed, shot, followed.drive(coupler, &seen))
     }
 
-    /// Forgets what the others do.
-    pub fn forget_others(&mut self) {
-        self.among = Among::default();
+    /// Softenings of the touched triangle's nodes, as they are felt in this tick.
+    fn softenings(&mut self, followed: &Followed<'_>, hold: &SurfacePoint) -> [Softening; 3] {
+        let Moment {
+            body, settings, dt, ..
+        } = *followed.moment;
+        let nodes = body.triangles[hold.triangle as usize];
+        (self.blend).follow(&body.softenings, nodes, settings.felt, dt)
     }
 
-    /// Notes what the others do at its place, and which way it pushes itself.
-    fn reckon_with(&mut self, answer: &Answer) {
-        if !self.found.blind {
-            let pressed = self.shot.probe - self.shot.proxy;
-            let displacement = self.acts().then_some(pressed);
-            self.among = self.among.after(answer, self.touches(), displacement);
-        }
-    }
-
-    fn hold(&self) -> Option<(u32, [f64; 3])> {
-        let hold = self.proxy.as_ref().filter(|_| self.touches())?.hold()?;
-        Some((hold.triangle, hold.alpha))
-    }
-
-    /// A touch is over. In a tick without a position nobody knows, and the coupling waits.
-    pub(super) fn let_go(&mut self) {
-        self.blend.let_go();
-        if self.has_motors() {
-            self.coupler.release();
-        }
-    }
-
-    /// Notes a contact and its force; false if that is no number.
-    fn takes(&mut self, body: &Body, hold: (u32, [f64; 3]), force: DVec3) -> bool {
-        if !force.is_finite() {
-            self.found.fault = self.found.fault.or(Some(Fault::Nan));
-            return false;
-        }
-        self.found.touching = true;
-        self.shot.touching = true;
-        self.shot.sticking = self.proxy.as_ref().is_some_and(Proxy::is_sticking);
-        self.shot.hold = Some(hold);
-        self.shot.triangle = body.triangles[hold.0 as usize];
-        self.shot.contact_force = force;
-        true
-    }
-
-    /// Where the touched point of the surface is, by its own nodal forces and the others'.
-    fn show_surface(
-        &mut self,
-        body: &Body,
-        (triangle, alpha): (u32, [f64; 3]),
-        young_modulus: f64,
+    /// A contact with where it is: the touched point of the surface is moved by its own nodal forces
+    /// and carried by the others'.
+    fn on_surface(
+        &self,
+        followed: &Followed<'_>,
+        &SurfacePoint { triangle, alpha }: &SurfacePoint,
+        shot: Snapshot,
         carried: DVec3,
-    ) {
-        let forces = &self.shot.nodal_forces;
+    ) -> Snapshot {
+        let Moment { body, settings, .. } = *followed.moment;
+        let (forces, young_modulus) = (&shot.nodal_forces, settings.young_modulus);
         let moved = surface_displacement(body, triangle, alpha, forces, young_modulus);
-        self.shot.surface_point = moved.map(|moved| self.shot.proxy + moved + carried);
+        Snapshot {
+            sticking: self.proxy.as_ref().is_some_and(Proxy::is_sticking),
+            hold: Some((triangle, alpha)),
+            triangle: body.triangles[triangle as usize],
+            surface_point: moved.map(|moved| shot.proxy + moved + carried),
+            ..shot
+        }
+    }
+}
+
+/// A place that softens and the coupling's spring in series, damped.
+fn drive_softened(followed: &Followed<'_>, relation: &Relation, coupler: &mut Coupler) -> Coupled {
+    let young_modulus = followed.moment.settings.young_modulus;
+    let (displacement, most) = (followed.displacement(), followed.most_stiffness());
+    let tangent = relation.tangent(displacement) * young_modulus;
+    let spring = series_compliance(&(relation.stiffness * young_modulus), most)
+        .max(series_compliance(&tangent, most));
+    let moved = relation.behind_spring(spring * young_modulus, displacement);
+    let there = relation.tangent(moved) * young_modulus;
+    let seen = Contact {
+        stiffness: series_share(&there, spring) * there,
+        displacement,
+        force: relation.force(moved) * -young_modulus,
+    };
+    Coupled {
+        body_displacement: moved,
+        force: followed.drive(coupler, &seen),
     }
 }

@@ -1,0 +1,47 @@
+//! The contact of a finger in a tick.
+
+use glam::DVec3;
+
+use super::Followed;
+use crate::control::state::Findings;
+use crate::device::Fault;
+use crate::servo::snapshot::Snapshot;
+
+/// A finger in a tick, with its contact.
+#[derive(Debug, Clone, Copy)]
+pub struct Touch {
+    /// What is known of the tick, but for the output.
+    pub(super) shot: Snapshot,
+    pub(super) found: Findings,
+    /// To go to the motors, N.
+    pub(super) wanted: DVec3,
+}
+
+impl Touch {
+    /// A contact that is shown so.
+    pub(super) fn of(followed: &Followed<'_>, mut shot: Snapshot, wanted: DVec3) -> Self {
+        let mut found = followed.found;
+        (shot.touching, found.touching) = (true, true);
+        Self {
+            shot,
+            found,
+            wanted,
+        }
+    }
+
+    /// Nothing is touched.
+    pub(super) fn none(followed: &Followed<'_>) -> Self {
+        Self {
+            shot: followed.shot,
+            found: followed.found,
+            wanted: DVec3::ZERO,
+        }
+    }
+
+    /// The contact came out as no number.
+    pub(super) fn nan(followed: &Followed<'_>) -> Self {
+        let mut none = Self::none(followed);
+        none.found.fault = none.found.fault.or(Some(Fault::Nan));
+        none
+    }
+}
