@@ -433,71 +433,6 @@ class ToolSurface:
     def spacing(self) -> float:
         """How far points usually are apart, m."""
 
-@final
-class ToolContact:
-    """A tool on a body alone, tick by tick; as the servo's fingers have it."""
-
-    def __init__(self, surface: ToolSurface, tool: Tool, *, friction: float = 0.0) -> None:
-        """Take Coulomb's coefficient too; a servo's tools have those of `Servo.set_feel` instead.
-
-        Raises ValueError for a negative coefficient, or one that is no number.
-        """
-
-    def restart(self, position: _Vector, rotation: _Matrix) -> None:
-        """Set the tool down; inside the body it feels nothing until it was outside."""
-
-    def follow(self, position: _Vector, rotation: _Matrix, young_modulus: float) -> None:
-        """One tick: go towards a pose by at most one stride, and feel the body (Pa) there.
-
-        ValueError for a pose that is none, or where the forces came out as no numbers.
-        """
-
-    @property
-    def force(self) -> NDArray[np.float64]:
-        """On the tool, (3,), N."""
-
-    @property
-    def torque(self) -> NDArray[np.float64]:
-        """On the tool about its reference point, (3,), N m."""
-
-    @property
-    def stiffness(self) -> NDArray[np.float64]:
-        """How the force resists a small move of the tool, (3, 3), N/m."""
-
-    @property
-    def free(self) -> bool:
-        """The tool was outside since it was set down; until then it feels nothing."""
-
-    @property
-    def touching(self) -> bool: ...
-    @property
-    def position(self) -> NDArray[np.float64] | None: ...
-    @property
-    def rotation(self) -> NDArray[np.float64] | None: ...
-    @property
-    def points(self) -> NDArray[np.int64]:
-        """Numbers of the pressed contact points (p,), in no order."""
-
-    @property
-    def forces(self) -> NDArray[np.float64]:
-        """On the body at these points, (p, 3), N."""
-
-    @property
-    def normals(self) -> NDArray[np.float64]:
-        """Outward from the tool where these points have gone to, (p, 3)."""
-
-    @property
-    def pressures(self) -> NDArray[np.float64]:
-        """At these points, (p,), Pa."""
-
-    @property
-    def nodes(self) -> NDArray[np.int64]:
-        """Surface nodes that carry force (k,)."""
-
-    @property
-    def nodal_forces(self) -> NDArray[np.float64]:
-        """Forces on these nodes, (k, 3), N."""
-
 PointTarget: TypeAlias = tuple[int, _Vector, _Vector]
 """Triangle, area coordinates there, and how far from that place, m."""
 PoseTarget: TypeAlias = tuple[_Vector, _Matrix]
@@ -746,12 +681,12 @@ class Servo:
         RuntimeError unless that finger is a pointer.
         """
 
-    def set_tool(self, tool: ToolContact | None, finger: int = 0) -> None:
+    def set_tool(self, tool: tuple[ToolSurface, Tool] | None, finger: int = 0) -> None:
         """Give a finger a tool, also while the servo runs, or make it a point again (None).
 
-        Only what the tool is and which contact points it meets is taken; the finger has a contact
-        of its own. Inside the body it feels nothing until it was outside. Returns when the thread
-        uses it. ValueError for a tool that was made for another Body than that of the servo.
+        A tool is its shape, and the contact points that it meets. Inside the body it feels nothing
+        until it was outside. Returns when the thread uses it. ValueError for contact points on
+        another Body than that of the servo.
         """
 
     def set_body(self, body: Body, settings: ServoSettings) -> None:

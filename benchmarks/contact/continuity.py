@@ -22,7 +22,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from palpate_servo import Body, ToolContact
+from palpate_servo import Body
 from palpate_servo.harness import SteppedFingers
 
 from palpate.benchmarks.measuring.bodies import tets_of
@@ -39,6 +39,7 @@ from palpate.benchmarks.measuring.contact.smooth_places import Facets, Place
 from palpate.core.bake.steps import BakeSettings, bake
 from palpate.core.body.soft_body import SoftBody
 from palpate.core.contact.tool.convex_tool import convex
+from palpate.core.contact.tool.native_tool import NativeTip
 from palpate.core.contact.tool.tools import Tool, plate, rod, sphere
 from palpate.core.servo.session import native_body, native_tool
 from palpate.core.servo.settings import Settings
@@ -172,7 +173,7 @@ def point_rows(body: SoftBody, native: Body, place: Place, reach: float) -> Iter
 
 
 def by_tool(
-    native: Body, contact: ToolContact, place: Place, front: float, friction: float = 0.0
+    native: Body, made: NativeTip, place: Place, front: float, friction: float = 0.0
 ) -> Follow:
     """Contact forces of a tool that looks at the place, lifted so that its front is on the path."""
     rotation = np.column_stack([place.along, np.cross(place.normal, place.along), place.normal])
@@ -185,7 +186,7 @@ def by_tool(
             Settings(YOUNG_MODULUS, static_friction=friction, dynamic_friction=friction),
             rate_hz=rate,
         )
-        fingers.set_tool(contact, rotation)
+        fingers.set_tool(made, rotation)
         return fingers.follow(path + raised)[0]
 
     return follow

@@ -41,7 +41,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 from palpate_servo import Body
-from palpate_servo.harness import SteppedFingers, tool_costs
+from palpate_servo.harness import SteppedFingers, ToolContact, tool_costs
 
 from palpate.core.bake.steps import BakeSettings, bake
 from palpate.core.body.soft_body import SoftBody
@@ -163,7 +163,7 @@ def slide_costs(
     body: SoftBody, surface: Body, slide: Slide, friction: float, ticks: int
 ) -> dict[str, NDArray[np.generic]]:
     """What every tick of a tool took."""
-    contact = native_tool(body, surface, slide.tool, friction=friction)
+    contact = ToolContact(*native_tool(body, surface, slide.tool), friction=friction)
     path = slide.path(ticks)
     way_in = np.linspace(path[0] + [0.0, 0.0, 0.03], path[0], 500)
     upright = np.tile(np.eye(3), (max(ticks, len(way_in)), 1, 1))
@@ -175,7 +175,7 @@ def slide_costs(
 
 def ticks_to_settle(body: SoftBody, surface: Body, slide: Slide) -> int:
     """Ticks after which the force of a tool that is held still stays what it is in the end."""
-    contact = native_tool(body, surface, slide.tool)
+    contact = ToolContact(*native_tool(body, surface, slide.tool))
     place = np.array([0.027, 0.024, TOP + slide.height])
     upright = np.eye(3).tolist()
     contact.restart((place + np.array([0.0, 0.0, 0.002])).tolist(), upright)

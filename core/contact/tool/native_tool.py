@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from palpate_servo import Body, ToolContact, ToolSurface
+from typing import TypeAlias
+
+from palpate_servo import Body, ToolSurface
 from palpate_servo import Tool as NativeTool
 
 from ...body.soft_body import SoftBody
@@ -11,6 +13,9 @@ from ..near_field.compliance_beneath import NearCorrection
 from ..near_field.contact_points import ContactPoints
 from .tool_surface import surface_and_correction
 from .tools import Tool
+
+NativeTip: TypeAlias = tuple[ToolSurface, NativeTool]
+"""Contact points and shape of a tool."""
 
 
 def native_surface(native: Body, points: ContactPoints, near: NearCorrection | None) -> ToolSurface:
@@ -37,25 +42,22 @@ def native_shape(tool: Tool) -> NativeTool:
     return NativeTool(tool.core, tool.radius)
 
 
-def native_tool(body: SoftBody, native: Body, tool: Tool, *, friction: float = 0.0) -> ToolContact:
-    """Native contact of a tool, with all the memory that it will ever need.
+def native_tool(body: SoftBody, native: Body, tool: Tool) -> NativeTip:
+    """Contact points and shape of a tool, for a finger of the servo.
 
     Takes some tenths of a second, to spread contact points and to estimate the near field.
 
     Parameters
     ----------
     native : of ``native_body(body, whole=True)``, the one that the servo touches.
-    friction : coefficient of the contact when it is stepped alone; a servo's fingers have that of
-        its settings.
 
     Raises
     ------
     PalpateError
-        A body without its whole compliance, a tool too small for the body, or friction below zero.
+        A body without its whole compliance, or a tool too small for the body.
     """
     points, near = surface_and_correction(body, tool)
     try:
-        surface = native_surface(native, points, near)
-        return ToolContact(surface, native_shape(tool), friction=friction)
+        return native_surface(native, points, near), native_shape(tool)
     except ValueError as problem:
         raise PalpateError("tool {name}: {problem}", name=tool.name, problem=problem) from problem

@@ -31,7 +31,6 @@ fn palpate_servo(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<servo::snapshot::FingerSnapshot>()?;
     module.add_class::<tool::shape::Tool>()?;
     module.add_class::<tool::surface::ToolSurface>()?;
-    module.add_class::<tool::contact::ToolContact>()?;
     module.add_class::<engine::ContactEngine>()?;
     module.add_function(wrap_pyfunction!(device::coupling::device_coupling, module)?)?;
     module.add_function(wrap_pyfunction!(device::haply::haply_encoder_step, module)?)?;

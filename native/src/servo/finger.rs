@@ -6,6 +6,7 @@
 
 mod among;
 mod follow;
+mod followed;
 mod inspection;
 mod output;
 mod point;
@@ -19,13 +20,15 @@ use crate::control::coupling::Coupler;
 use crate::control::safety::Safety;
 use crate::control::state::Standing;
 use crate::device::{Device, Reading};
+use crate::engine::joint::Led;
 use crate::fingers::press::{Answer, Press};
 use crate::servo::pressed_patch::PressedPatch;
 use crate::servo::settings::{FingerSettings, Moment};
 use crate::servo::snapshot::FingerReport;
-use crate::servo::tip::{Tip, TipHolder, exchange_tips};
+use crate::servo::tip::{Tip, TipHolder};
+use crate::tool::coefficients::Friction;
 use crate::tool::shape::Pose;
-pub use follow::Followed;
+pub use followed::Followed;
 use point::Point;
 use tool::ToolTouch;
 pub use touch::Touch;
@@ -33,11 +36,11 @@ pub use touch::Touch;
 /// A finger.
 pub struct Finger {
     /// What moves it.
-    pub device: Box<dyn Device>,
+    device: Box<dyn Device>,
     /// What it touches with.
     pub tips: TipHolder,
     /// Where the patch of a tool is shown.
-    pub patches: Option<Input<PressedPatch>>,
+    patches: Input<PressedPatch>,
     /// The last that is known.
     pose: Pose,
     frame_epoch: u32,
@@ -55,11 +58,16 @@ pub struct Finger {
 
 impl Finger {
     /// A finger at rest.
-    pub fn new(device: Box<dyn Device>, settings: &FingerSettings) -> Self {
+    pub fn new(
+        device: Box<dyn Device>,
+        tips: TipHolder,
+        patches: Input<PressedPatch>,
+        settings: &FingerSettings,
+    ) -> Self {
         Self {
             device,
-            tips: exchange_tips(Tip::Point).1,
-            patches: None,
+            tips,
+            patches,
             pose: Pose {
                 position: DVec3::ZERO,
                 rotation: DMat3::IDENTITY,
@@ -95,6 +103,27 @@ impl Finger {
     pub fn press(&mut self, followed: &Followed<'_>) -> Option<Press> {
         let is_point = !self.has_tool();
         is_point.then(|| self.point.press(followed))?
+    }
+
+    /// The tool and where it is to go, if the finger has one and knows where it is. Among several it
+    /// presses as far as it is present.
+    pub fn lead(&mut self, followed: &Followed<'_>, are_several: bool) -> Option<Led<'_>> {
+        let Tip::Tool(tool) = &mut self.tips.tip else {
+            return None;
+        };
+        if !followed.is_sound {
+            return None;
+        }
+        let feel = &followed.moment.settings.feel;
+        tool.set_friction(Friction {
+            sticking: feel.static_friction,
+            slipping: feel.dynamic_friction,
+        });
+        Some(Led {
+            collider: tool,
+            goal: self.pose,
+            presence: if are_several { self.presence } else { 1.0 },
+        })
     }
 
     /// The contact of the finger, alone or with what the others make of it.

@@ -15,8 +15,8 @@ pub mod tip;
 use std::sync::Arc;
 use std::time::Instant;
 
-use rtrb::Producer;
-use triple_buffer::{Input, Output};
+use rtrb::{Consumer, Producer};
+use triple_buffer::{Input, Output, triple_buffer};
 
 use crate::body::surface::Body;
 use crate::contact::cones::MAX_FINGERS;
@@ -24,17 +24,34 @@ use crate::contact::touch::ContactMode;
 use crate::device::{Device, Fault};
 use crate::engine::Engine;
 use crate::engine::joint::Ground;
-use crate::servo::exchange::{Holder, exchange};
+use crate::servo::exchange::{Hand, Holder, exchange};
 use crate::servo::finger::{Finger, Followed, Touch};
-use crate::servo::recorder::Tape;
+use crate::servo::pressed_patch::PressedPatch;
+use crate::servo::recorder::{Tape, touched_ring};
 use crate::servo::settings::{Moment, Options, Settings};
 use crate::servo::snapshot::{Published, Sample, Snapshot};
 use crate::servo::stages::{Stage, Stages};
+use crate::servo::tip::{Tip, TipHand, exchange_tips};
+
+/// The ends of a servo's ways that stay outside of its thread.
+pub struct Ends {
+    /// Bodies to touch.
+    pub bodies: Hand,
+    /// Tips, by finger.
+    pub tips: Vec<TipHand>,
+    /// Patches of tools, by finger.
+    pub patches: Vec<Output<PressedPatch>>,
+    /// Settings.
+    pub settings: Input<Settings>,
+    /// The newest tick.
+    pub snapshots: Output<Published>,
+    /// Every tick, as far as there is room.
+    pub samples: Consumer<Sample>,
+}
 
 /// The loop's body and memory.
 pub struct Servo {
-    /// The body to touch, and those that come.
-    pub bodies: Holder,
+    bodies: Holder,
     /// Those that touch it, at least one.
     pub fingers: Vec<Finger>,
     options: Options,
@@ -52,32 +69,53 @@ pub struct Servo {
 }
 
 impl Servo {
-    /// A servo at rest, with as many fingers as devices: one to [`MAX_FINGERS`].
+    /// A servo at rest, with as many fingers as devices, one to [`MAX_FINGERS`], points all of them;
+    /// and its other ends. As many samples are kept as asked.
     pub fn new(
         body: Arc<Body>,
         devices: Vec<Box<dyn Device>>,
         options: Options,
-        mut settings: Output<Settings>,
-        snapshots: Input<Published>,
-        samples: Producer<Sample>,
-    ) -> Self {
+        settings: &Settings,
+        most_samples: usize,
+    ) -> (Self, Ends) {
         assert!((1..=MAX_FINGERS).contains(&devices.len()));
-        let own = settings.read().fingers;
-        let fingers = devices.into_iter().zip(&own);
-        Self {
-            bodies: exchange(body).1,
-            fingers: fingers.map(|(d, own)| Finger::new(d, own)).collect(),
+        let (bodies, holder) = exchange(body);
+        let (settings_in, settings_out) = triple_buffer(settings);
+        let before = Published::before_the_start(devices.len());
+        let (snapshots_in, snapshots) = triple_buffer(&before);
+        let (samples_in, samples) = touched_ring(most_samples);
+        let (mut tips, mut patches) = (Vec::new(), Vec::new());
+        let fingers = devices.into_iter().zip(&settings.fingers);
+        let fingers = fingers.map(|(device, own)| {
+            let (tip_hand, tip_holder) = exchange_tips(Tip::Point);
+            let (patches_in, patches_out) = triple_buffer(&PressedPatch::default());
+            tips.push(tip_hand);
+            patches.push(patches_out);
+            Finger::new(device, tip_holder, patches_in, own)
+        });
+        let servo = Self {
+            fingers: fingers.collect(),
+            bodies: holder,
             options,
-            settings,
-            snapshots,
-            samples,
+            settings: settings_out,
+            snapshots: snapshots_in,
+            samples: samples_in,
             tape: None,
             engine: Engine::default(),
             tick: 0,
             ticked_at: None,
             samples_lost: 0,
             stages: Arc::default(),
-        }
+        };
+        let ends = Ends {
+            bodies,
+            tips,
+            patches,
+            settings: settings_in,
+            snapshots,
+            samples,
+        };
+        (servo, ends)
     }
 
     /// Times of the tick's parts, for other threads to read.

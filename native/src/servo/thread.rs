@@ -5,21 +5,21 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use rtrb::Consumer;
-use triple_buffer::{Input, Output, triple_buffer};
+use triple_buffer::{Input, Output};
 
 use crate::body::surface::Body;
 use crate::clock::suspension::Suspension;
 use crate::clock::timing::Waking;
 use crate::device::{Device, Fault};
 use crate::servo::Servo;
-use crate::servo::exchange::{Hand, exchange};
+use crate::servo::exchange::Hand;
 use crate::servo::paced::{Paced, locked};
 use crate::servo::pressed_patch::PressedPatch;
-use crate::servo::recorder::{RING_SECONDS, Recorder, touched_ring};
+use crate::servo::recorder::{RING_SECONDS, Recorder};
 use crate::servo::settings::{Options, Settings};
 use crate::servo::snapshot::{Published, Sample};
 use crate::servo::stages::Stages;
-use crate::servo::tip::{Tip, TipHand, exchange_tips};
+use crate::servo::tip::{Tip, TipHand};
 
 /// Longest wait of an exchange of the body for the thread.
 const EXCHANGE_SECONDS: Duration = Duration::from_millis(200);
@@ -72,34 +72,16 @@ impl Running {
         settings: Settings,
         (record_samples, recorded_ticks): (usize, usize),
     ) -> std::io::Result<Self> {
-        let (hand, holder) = exchange(body.clone());
-        let (settings_in, settings_out) = triple_buffer(&settings);
-        let (snapshots_in, snapshots_out) =
-            triple_buffer(&Published::before_the_start(devices.len()));
-        let (samples_in, samples_out) = touched_ring(record_samples * devices.len());
-        let (tape, recorder) =
-            Recorder::new((RING_SECONDS * options.rate_hz) as usize * devices.len());
-        if recorded_ticks > 0 {
-            recorder.start(recorded_ticks * devices.len())?;
-        }
         let finger_count = devices.len();
-        let mut servo = Servo::new(
-            body,
-            devices,
-            options,
-            settings_out,
-            snapshots_in,
-            samples_in,
-        );
-        servo.bodies = holder;
-        let mut hands = Vec::new();
-        let mut patches = Vec::new();
+        let (tape, recorder) =
+            Recorder::new((RING_SECONDS * options.rate_hz) as usize * finger_count);
+        if recorded_ticks > 0 {
+            recorder.start(recorded_ticks * finger_count)?;
+        }
+        let most_samples = record_samples * finger_count;
+        let (mut servo, ends) = Servo::new(body, devices, options, &settings, most_samples);
         for (finger, tip) in servo.fingers.iter_mut().zip(tips) {
-            let (tip_hand, tip_holder) = exchange_tips(tip);
-            let (patches_in, patches_out) = triple_buffer(&PressedPatch::default());
-            (finger.tips, finger.patches) = (tip_holder, Some(patches_in));
-            hands.push(tip_hand);
-            patches.push(patches_out);
+            finger.tips.tip = tip;
         }
         servo.tape = Some(tape);
         let stages = servo.stages();
@@ -119,12 +101,12 @@ impl Running {
         )?;
         Ok(Self {
             paced,
-            bodies: Mutex::new(hand),
-            tips: Mutex::new(hands),
-            patches: Mutex::new(patches),
-            settings: Mutex::new(settings_in),
-            snapshots: Mutex::new(snapshots_out),
-            samples: Mutex::new(samples_out),
+            bodies: Mutex::new(ends.bodies),
+            tips: Mutex::new(ends.tips),
+            patches: Mutex::new(ends.patches),
+            settings: Mutex::new(ends.settings),
+            snapshots: Mutex::new(ends.snapshots),
+            samples: Mutex::new(ends.samples),
             recorder,
             stages,
             finger_count,

@@ -14,12 +14,10 @@ use palpate_servo::device::link::LinkDevice;
 use palpate_servo::device::pointer::{Pointer, Target};
 use palpate_servo::device::{Device, DeviceFrame, Fault, LinkReport, Probe, Reading};
 use palpate_servo::servo::Servo;
-use palpate_servo::servo::exchange::exchange;
 use palpate_servo::servo::recorder::Recorder;
 use palpate_servo::servo::settings::{Options, Settings};
 use palpate_servo::servo::snapshot::{Published, State};
 use palpate_servo::servo::stages::Stage;
-use rtrb::RingBuffer;
 use triple_buffer::triple_buffer;
 
 const OPTIONS: Options = Options {
@@ -63,28 +61,19 @@ fn changed(tick: u32) -> Settings {
 
 fn ticks_of<D: Device + 'static>(device: D, mut each: impl FnMut(u32)) -> (Published, u64) {
     const TICKS: u32 = 100_000;
-    let (mut settings_in, settings_out) = triple_buffer(&settings());
     // Full long before the end, and emptied by a thread that allocates on its own account.
     let (tape, recorder) = Recorder::new(1000);
     recorder.start(TICKS as usize / 2).expect("a thread");
-    let (snapshots_in, mut snapshots) = triple_buffer(&Published::default());
-    // Smaller than the run: a full ring must not allocate either.
-    let (samples_in, _samples) = RingBuffer::new(50_000);
     let body = softening(crate::bodies::giving_cube());
-    let mut servo = Servo::new(
-        body,
-        vec![Box::new(device)],
-        OPTIONS,
-        settings_out,
-        snapshots_in,
-        samples_in,
-    );
+    // Smaller than the run: a full ring must not allocate either.
+    let (mut servo, mut ends) =
+        Servo::new(body, vec![Box::new(device)], OPTIONS, &settings(), 50_000);
     servo.tape = Some(tape);
     let ((), allocations) = counted(|| {
         for tick in 1..=TICKS {
             each(tick);
             if tick % 3 == 0 {
-                settings_in.write(changed(tick));
+                ends.settings.write(changed(tick));
             }
             servo.tick(f64::from(tick) * 1e-3);
         }
@@ -94,7 +83,7 @@ fn ticks_of<D: Device + 'static>(device: D, mut each: impl FnMut(u32)) -> (Publi
     for stage in Stage::ALL {
         assert_eq!(servo.stages().report(stage).count, u64::from(TICKS));
     }
-    (*snapshots.read(), allocations)
+    (*ends.snapshots.read(), allocations)
 }
 
 #[test]
@@ -168,22 +157,11 @@ fn a_hundred_thousand_ticks_with_a_pointer_allocate_nothing() {
 fn a_body_is_exchanged_without_allocating_or_freeing_in_the_tick() {
     let start = Target::first(DVec3::new(0.02, 0.02, 0.045));
     let (_targets_in, targets) = triple_buffer(&start);
-    let (_settings_in, settings_out) = triple_buffer(&settings());
-    let (snapshots_in, mut snapshots) = triple_buffer(&Published::default());
-    let (samples_in, _samples) = RingBuffer::new(50_000);
     let first = crate::bodies::cube();
     let mut old = Arc::downgrade(&first);
-    let (mut hand, holder) = exchange(first.clone());
-    let pointer = Pointer::new(start, targets, 0.5);
-    let mut servo = Servo::new(
-        first,
-        vec![Box::new(pointer)],
-        OPTIONS,
-        settings_out,
-        snapshots_in,
-        samples_in,
-    );
-    servo.bodies = holder;
+    let pointer = Box::new(Pointer::new(start, targets, 0.5));
+    let (mut servo, ends) = Servo::new(first, vec![pointer], OPTIONS, &settings(), 50_000);
+    let (mut hand, mut snapshots) = (ends.bodies, ends.snapshots);
     let mut now = 0.0;
     let mut tick = || {
         now += 1e-3;
@@ -246,25 +224,16 @@ fn five_fingers_that_feel_each_other_allocate_nothing() {
             phase: 1.3 * k as f64,
         })
     });
-    let (mut settings_in, settings_out) = triple_buffer(&settings());
-    let (snapshots_in, mut snapshots) = triple_buffer(&Published::default());
-    let (samples_in, _samples) = RingBuffer::new(50_000);
-    let mut servo = Servo::new(
-        softening(crate::bodies::elastic_cube()),
-        devices.collect(),
-        OPTIONS,
-        settings_out,
-        snapshots_in,
-        samples_in,
-    );
+    let body = softening(crate::bodies::elastic_cube());
+    let (mut servo, mut ends) = Servo::new(body, devices.collect(), OPTIONS, &settings(), 50_000);
     let (mut together, mut softened) = (0, 0);
     let ((), allocations) = counted(|| {
         for tick in 1..=20_000 {
             if tick % 3 == 0 {
-                settings_in.write(changed(tick));
+                ends.settings.write(changed(tick));
             }
             servo.tick(f64::from(tick) * 1e-3);
-            let told = snapshots.read().fingers();
+            let told = ends.snapshots.read().fingers();
             let touching = told.iter().filter(|told| told.snapshot.hold.is_some());
             together += u32::from(touching.count() > 2);
             softened += u32::from(told.iter().any(|told| told.snapshot.felt_share == 1.0));
@@ -275,7 +244,7 @@ fn five_fingers_that_feel_each_other_allocate_nothing() {
         together > 3_000 && softened > 3_000,
         "{together} {softened}"
     );
-    let last = snapshots.read();
+    let last = ends.snapshots.read();
     assert!(
         last.fingers()
             .iter()

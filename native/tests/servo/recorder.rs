@@ -8,9 +8,8 @@ use palpate_servo::device::pointer::{Pointer, Target};
 use palpate_servo::servo::Servo;
 use palpate_servo::servo::recorder::{RING_SECONDS, Recorder, Tape};
 use palpate_servo::servo::settings::{Options, Settings};
-use palpate_servo::servo::snapshot::{Published, Sample, State};
+use palpate_servo::servo::snapshot::{Sample, State};
 use palpate_servo::servo::thread::Running;
-use rtrb::RingBuffer;
 use triple_buffer::triple_buffer;
 
 const OPTIONS: Options = Options {
@@ -63,17 +62,9 @@ fn ten_minutes_at_1_khz_lose_no_tick_while_pressing() {
     const TICKS: u64 = 600_000;
     let start = Target::first(DVec3::new(0.02, 0.03, 0.055));
     let (mut targets_in, targets) = triple_buffer(&start);
-    let (_settings_in, settings_out) = triple_buffer(&settings());
-    let (snapshots_in, mut snapshots) = triple_buffer(&Published::default());
-    let (samples_in, mut samples) = RingBuffer::new(1000);
-    let mut servo = Servo::new(
-        crate::bodies::cube(),
-        vec![Box::new(Pointer::new(start, targets, 0.5))],
-        OPTIONS,
-        settings_out,
-        snapshots_in,
-        samples_in,
-    );
+    let pointer = Box::new(Pointer::new(start, targets, 0.5));
+    let body = crate::bodies::cube();
+    let (mut servo, mut ends) = Servo::new(body, vec![pointer], OPTIONS, &settings(), 1000);
     let ring = RING_SECONDS as usize * 1000;
     let (tape, recorder) = Recorder::new(ring);
     servo.tape = Some(tape);
@@ -89,7 +80,7 @@ fn ten_minutes_at_1_khz_lose_no_tick_while_pressing() {
         servo.tick(tick as f64 * 1e-3);
         if tick % 1000 == 0 {
             // `samples()` takes every tick too, from a ring of its own.
-            beside += std::iter::from_fn(|| samples.pop().ok()).count() as u64;
+            beside += std::iter::from_fn(|| ends.samples.pop().ok()).count() as u64;
         }
         if tick % (ring as u64 / 2) == 0 {
             // Time goes by faster here than the recorder's pauses allow for.
@@ -99,7 +90,7 @@ fn ten_minutes_at_1_khz_lose_no_tick_while_pressing() {
     recorder.stop();
     let all = recorded(&recorder);
     assert_eq!((recorder.lost(), all.len() as u64), (0, TICKS));
-    assert_eq!(snapshots.read().samples_lost, 0);
+    assert_eq!(ends.snapshots.read().samples_lost, 0);
     assert_eq!(beside, TICKS);
     let mut touching = 0;
     for (number, sample) in (1..).zip(&all) {

@@ -8,12 +8,13 @@ use palpate_servo::body::surface::Body;
 use palpate_servo::control::safety::Limits;
 use palpate_servo::device::{Device, DeviceFrame, Fault, Probe, Reading};
 use palpate_servo::servo::Servo;
-use palpate_servo::servo::exchange::{Hand, exchange};
+use palpate_servo::servo::exchange::Hand;
 use palpate_servo::servo::settings::FingerSettings;
 use palpate_servo::servo::settings::{Options, Settings};
 use palpate_servo::servo::snapshot::{Published, Sample, Snapshot, State};
-use rtrb::{Consumer, RingBuffer};
-use triple_buffer::{Input, Output, triple_buffer};
+use palpate_servo::servo::tip::TipHand;
+use rtrb::Consumer;
+use triple_buffer::{Input, Output};
 
 pub const ABOVE: DVec3 = DVec3::new(0.02, 0.03, 0.055);
 pub const PRESSED: DVec3 = DVec3::new(0.02, 0.03, 0.047);
@@ -88,6 +89,7 @@ pub struct Table {
     pub body: Arc<Body>,
     pub devices: Vec<Scripted>,
     pub hand: Hand,
+    pub tips: Vec<TipHand>,
     pub settings: Input<Settings>,
     pub samples: Consumer<Sample>,
     pub now: f64,
@@ -102,31 +104,20 @@ impl Table {
 
     /// The same with some fingers.
     pub fn with_fingers(body: Arc<Body>, options: Options, count: usize) -> Self {
-        let (settings_in, settings_out) = triple_buffer(&settings());
-        let (snapshots_in, snapshots) = triple_buffer(&Published::default());
-        let (samples_in, samples) = RingBuffer::new(10);
-        let kept = body.clone();
-        let (hand, holder) = exchange(body.clone());
         let devices: Vec<Scripted> = (0..count).map(|_| Scripted::above()).collect();
         let boxed = devices.iter().cloned();
-        let mut servo = Servo::new(
-            body,
-            boxed.map(|d| -> Box<dyn Device> { Box::new(d) }).collect(),
-            options,
-            settings_out,
-            snapshots_in,
-            samples_in,
-        );
-        servo.bodies = holder;
+        let boxed = boxed.map(|d| -> Box<dyn Device> { Box::new(d) }).collect();
+        let (servo, ends) = Servo::new(body.clone(), boxed, options, &settings(), 10);
         Self {
             servo,
-            body: kept,
+            body,
             devices,
-            hand,
-            settings: settings_in,
-            samples,
+            hand: ends.bodies,
+            tips: ends.tips,
+            settings: ends.settings,
+            samples: ends.samples,
             now: 0.0,
-            snapshots,
+            snapshots: ends.snapshots,
         }
     }
 

@@ -46,7 +46,7 @@ fn table(with_ball: &[bool]) -> (Table, Arc<ToolSurface>) {
     let surface = surface(&table.body);
     for (finger, &with_ball) in table.servo.fingers.iter_mut().zip(with_ball) {
         if with_ball {
-            finger.tips = exchange_tips(ball(&surface)).1;
+            finger.tips.tip = ball(&surface);
         }
     }
     (table, surface)
@@ -202,8 +202,6 @@ fn two_balls_feel_each_other_and_a_fault_of_one_lifts_it_alone() {
 #[test]
 fn a_tool_is_exchanged_without_allocating_or_freeing_in_the_tick() {
     let (mut table, surface) = table(&[false]);
-    let (mut hand, holder) = exchange_tips(Tip::Point);
-    table.servo.fingers[0].tips = holder;
     let mut now = 0.0;
     for round in 0..20 {
         let tip = if round % 3 == 2 {
@@ -211,7 +209,7 @@ fn a_tool_is_exchanged_without_allocating_or_freeing_in_the_tick() {
         } else {
             ball(&surface)
         };
-        assert!(hand.give(tip).is_ok());
+        assert!(table.tips[0].give(tip).is_ok());
         for tick in 0..50 {
             let height = 0.002 * f64::from(25 - tick) / 25.0;
             *table.devices[0].reading.lock().unwrap() = in_by(0.025, 0.025, -height);
@@ -226,7 +224,7 @@ fn a_tool_is_exchanged_without_allocating_or_freeing_in_the_tick() {
             );
         }
         assert_eq!(table.servo.fingers[0].has_tool(), round % 3 != 2);
-        assert_eq!(hand.free_old(), 1);
+        assert_eq!(table.tips[0].free_old(), 1);
     }
 }
 
@@ -247,9 +245,7 @@ fn on_another_body_a_tool_waits_to_be_set_again() {
         );
         assert_eq!((shot.output_force, shot.touching), (DVec3::ZERO, false));
     }
-    let (mut hand, holder) = exchange_tips(Tip::Point);
-    table.servo.fingers[0].tips = holder;
-    assert!(hand.give(ball(&surface(&other))).is_ok());
+    assert!(table.tips[0].give(ball(&surface(&other))).is_ok());
     let shot = pressed(&mut table, |way| {
         vec![in_by(0.025, 0.025, down(way, 0.002))]
     })[0];

@@ -6,8 +6,8 @@ from bodies.inner_corner import inner_corner
 from bodies.shared import highest_place
 from bodies.soft_block import soft_block
 from palpate_servo import Tool as NativeTool
-from palpate_servo import ToolContact, ToolSurface
-from palpate_servo.harness import SteppedFingers, tool_costs
+from palpate_servo import ToolSurface
+from palpate_servo.harness import SteppedFingers, ToolContact, tool_costs
 from scipy.spatial.transform import Rotation
 
 from palpate.core.contact.press import Press
@@ -54,7 +54,7 @@ def settled(contact, pose, young_modulus):
 @pytest.mark.parametrize("name", list(TOOLS))
 def test_ticks_come_to_rest_where_the_engine_does(body, surface, name):
     tool = TOOLS[name]
-    contact, press = native_tool(body, surface, tool), Press(body, [tool])
+    contact, press = ToolContact(*native_tool(body, surface, tool)), Press(body, [tool])
     poses = list(path_over(body, tool))
     contact.restart(poses[0].position, poses[0].rotation)
     pressed = 0
@@ -83,7 +83,7 @@ def test_ticks_come_to_rest_where_the_engine_does(body, surface, name):
 
 def test_a_tool_goes_at_most_one_stride_a_tick_and_does_not_jump_through_the_body(body, surface):
     tool = TOOLS["sphere"]
-    contact, top = native_tool(body, surface, tool), highest_place(body)
+    contact, top = ToolContact(*native_tool(body, surface, tool)), highest_place(body)
     contact.restart(top + 1.2 * tool.radius * UP, np.eye(3))
     for _ in range(4):
         before = contact.position
@@ -143,7 +143,8 @@ def test_wrong_arrays_are_refused(body, surface):
 
 def test_a_tick_that_is_replayed_comes_out_the_same_and_no_longer(body, surface):
     tool = TOOLS["sphere"]
-    contact, other = (native_tool(body, surface, tool, friction=0.3) for _ in range(2))
+    made = native_tool(body, surface, tool)
+    contact, other = (ToolContact(*made, friction=0.3) for _ in range(2))
     places = highest_place(body) + [0.0, 0.0, 1.0] * np.linspace(0.02, 0.014, 450)[:, None]
     turns = np.tile(np.eye(3), (450, 1, 1))
     once = tool_costs(contact, places, turns, 1e4)
@@ -164,7 +165,7 @@ def test_a_tick_that_is_replayed_comes_out_the_same_and_no_longer(body, surface)
 def test_in_an_inner_corner_it_comes_to_rest_where_the_engine_does(tool):
     """Beside a floor 3 mm deep a wall is approached, touched, and left again."""
     corner = inner_corner()
-    contact = native_tool(corner, native_body(corner, whole=True), tool)
+    contact = ToolContact(*native_tool(corner, native_body(corner, whole=True), tool))
     low, left = tool.core.min(axis=0)[[2, 0]] - tool.radius
     poses = [Pose.at([0.025 - left - into, 0.025, 0.022 - low]) for into in (-5e-4, 6e-4, -1e-4)]
     press, above = Press(corner, [tool]), Pose.at(poses[0].position + np.array([0.0, 0.0, 0.004]))

@@ -3,13 +3,12 @@
 import numpy as np
 import pytest
 from bodies.shared import highest_place
-from palpate_servo.harness import SteppedFingers
+from palpate_servo.harness import SteppedFingers, ToolContact
 from scipy.spatial.transform import Rotation
 
 from palpate.core.contact.press import ContactSettings, Press
 from palpate.core.contact.tool.pose import Pose
 from palpate.core.contact.tool.tools import rod, sphere
-from palpate.core.errors import PalpateError
 from palpate.core.servo.session import native_tool
 from palpate.core.servo.settings import Settings
 
@@ -65,7 +64,7 @@ def test_the_cone_holds_on_any_way(body, surface):
     dice = np.random.default_rng(5)
     tool = TOOLS["sphere"]
     for friction in (0.05, 0.7):
-        contact = native_tool(body, surface, tool, friction=friction)
+        contact = ToolContact(*native_tool(body, surface, tool), friction=friction)
         place = above(body, tool) + np.array([0.0, 0.0, 0.004])
         contact.restart(place, np.eye(3))
         way, most = np.zeros(3), 0
@@ -89,7 +88,7 @@ def test_friction_takes_energy_on_closed_ways_and_gives_none(body, surface):
     path = start + np.vstack([down, round_trip, down[::-1]])
     spent = {}
     for friction in (0.0, 0.1, 0.4):
-        contact = native_tool(body, surface, tool, friction=friction)
+        contact = ToolContact(*native_tool(body, surface, tool), friction=friction)
         contact.restart(path[0], np.eye(3))
         forces = []
         for place in path:
@@ -104,6 +103,7 @@ def test_friction_takes_energy_on_closed_ways_and_gives_none(body, surface):
 
 
 def test_a_coefficient_below_zero_is_refused(body, surface):
+    tool = native_tool(body, surface, TOOLS["sphere"])
     for friction in (-0.1, float("nan"), float("inf")):
-        with pytest.raises(PalpateError, match="sphere: friction is"):
-            native_tool(body, surface, TOOLS["sphere"], friction=friction)
+        with pytest.raises(ValueError, match="friction is"):
+            ToolContact(*tool, friction=friction)

@@ -7,6 +7,8 @@ mod frames;
 mod proxy;
 mod stepped;
 mod stepped_fingers;
+mod stepping;
+mod tool_contact;
 mod tool_cost;
 
 use pyo3::prelude::*;
@@ -21,6 +23,7 @@ pub fn register(parent: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<proxy::Proxy>()?;
     module.add_class::<stepped::SteppedServo>()?;
     module.add_class::<stepped_fingers::SteppedFingers>()?;
+    module.add_class::<tool_contact::ToolContact>()?;
     module.add_function(wrap_pyfunction!(block_cost::seconds_per_block, &module)?)?;
     module.add_function(wrap_pyfunction!(closed_loop::coupled_forces, &module)?)?;
     module.add_function(wrap_pyfunction!(closed_loop::simulate_contact, &module)?)?;

@@ -5,20 +5,16 @@ use std::sync::{Arc, Mutex, MutexGuard};
 
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
-use rtrb::RingBuffer;
-use triple_buffer::{Input, Output, triple_buffer};
 
 use crate::device::link::LinkDevice;
 use crate::device::serial::port::{Opener, Wire};
 use crate::python::body::surface::Body;
+use crate::python::harness::stepping::Stepping;
 use crate::python::servo::counters::{fault_counters, link_counters};
 use crate::python::servo::settings::{Chosen, Given, options};
 use crate::python::servo::snapshot::Snapshot;
-use crate::servo::Servo;
-use crate::servo::exchange::{Hand, exchange};
 use crate::servo::paced::locked;
 use crate::servo::settings::Settings;
-use crate::servo::snapshot::Published;
 
 /// Bytes on the line in either direction.
 #[derive(Debug, Default)]
@@ -71,16 +67,6 @@ impl Opener for InMemory {
     }
 }
 
-struct Stepped {
-    servo: Servo,
-    hand: Hand,
-    settings: Settings,
-    settings_in: Input<Settings>,
-    snapshots: Output<Published>,
-    period: f64,
-    now: f64,
-}
-
 /// The ticks of a Servo, by hand and in virtual time, with a device on a line in memory.
 ///
 /// Nothing waits, and the same input gives the same output. Methods are as of Servo; `tick(received,
@@ -88,7 +74,7 @@ struct Stepped {
 #[pyclass(frozen, module = "palpate_servo.harness")]
 pub struct SteppedServo {
     wire: InMemory,
-    stepped: Mutex<Stepped>,
+    stepped: Mutex<Stepping>,
 }
 
 #[pymethods]
@@ -107,34 +93,10 @@ impl SteppedServo {
         max_speed: f64,
     ) -> PyResult<Self> {
         let options = options(rate_hz, max_force, max_slew, ramp_seconds, max_speed)?;
-        let plain = Settings::new(1.0);
-        let settings = Chosen::checked(&settings)?.on(&plain.fingers, &plain);
         let wire = InMemory::default();
-        let (settings_in, settings_out) = triple_buffer(&settings);
-        let (snapshots_in, snapshots) = triple_buffer(&Published::before_the_start(1));
-        let (samples_in, _nobody_takes_them) = RingBuffer::new(1);
-        let (hand, holder) = exchange(body.inner.clone());
-        let mut servo = Servo::new(
-            body.inner.clone(),
-            vec![Box::new(LinkDevice::open(wire.clone())?)],
-            options,
-            settings_out,
-            snapshots_in,
-            samples_in,
-        );
-        servo.bodies = holder;
-        Ok(Self {
-            wire,
-            stepped: Mutex::new(Stepped {
-                servo,
-                hand,
-                settings,
-                settings_in,
-                snapshots,
-                period: 1.0 / f64::from(rate_hz),
-                now: 0.0,
-            }),
-        })
+        let device = Box::new(LinkDevice::open(wire.clone())?);
+        let stepped = Mutex::new(Stepping::new(body, vec![device], &settings, options)?);
+        Ok(Self { wire, stepped })
     }
 
     #[pyo3(signature = (received=None, seconds=None))]
@@ -145,10 +107,7 @@ impl SteppedServo {
         seconds: Option<f64>,
     ) -> Bound<'py, PyBytes> {
         self.wire.line().to_host.extend(received.unwrap_or(&[]));
-        let mut stepped = locked(&self.stepped);
-        stepped.now += seconds.unwrap_or(stepped.period);
-        let now = stepped.now;
-        stepped.servo.tick(now);
+        locked(&self.stepped).tick(seconds);
         let sent = std::mem::take(&mut self.wire.line().from_host);
         PyBytes::new(py, &sent)
     }
@@ -167,26 +126,24 @@ impl SteppedServo {
     fn set(&self, settings: Given) -> PyResult<()> {
         let chosen = Chosen::with_any_modulus(&settings)?;
         let mut stepped = locked(&self.stepped);
-        let brought = Settings::new(1.0).fingers;
-        stepped.settings = chosen.on(&brought, &stepped.settings);
-        let settings = stepped.settings;
-        stepped.settings_in.write(settings);
+        let settings = chosen.on(&Settings::new(1.0).fingers, &stepped.settings);
+        stepped.write(settings);
         Ok(())
     }
 
     fn set_body(&self, body: &Body, settings: Given) -> PyResult<()> {
-        locked(&self.stepped).hand.give(body.inner.clone());
+        locked(&self.stepped).ends.bodies.give(body.inner.clone());
         self.set(settings)?;
-        locked(&self.stepped).hand.settle();
+        locked(&self.stepped).ends.bodies.settle();
         Ok(())
     }
 
     fn snapshot(&self, py: Python<'_>) -> PyResult<Py<Snapshot>> {
-        Snapshot::of(py, locked(&self.stepped).snapshots.read(), &[])
+        Snapshot::of(py, locked(&self.stepped).ends.snapshots.read(), &[])
     }
 
     fn counters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let told = *locked(&self.stepped).snapshots.read().first();
+        let told = *locked(&self.stepped).ends.snapshots.read().first();
         let counters = PyDict::new(py);
         counters.set_item("faults", fault_counters(py, &told)?)?;
         counters.set_item("link", link_counters(py, &told.link)?)?;

@@ -6,24 +6,20 @@ use glam::DVec3;
 use numpy::{AllowTypeChange, PyArray1, PyArray3, PyArrayLike2, PyArrayLike3, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use rtrb::RingBuffer;
-use triple_buffer::{Input, Output, triple_buffer};
 
 use crate::clock::cpu_time::thread_seconds;
 use crate::contact::cones::MAX_FINGERS;
 use crate::control::safety::Limits;
 use crate::device::{Device, DeviceFrame, Probe, Reading};
 use crate::python::body::surface::Body;
+use crate::python::harness::stepping::Stepping;
 use crate::python::servo::settings::{Chosen, Given};
 use crate::python::servo::snapshot::Snapshot;
-use crate::python::tool::contact::{ToolContact, tip};
+use crate::python::tool::made::{GivenTool, made, tip};
 use crate::python::vectors::{Rows, Triple, Vector, finite, rotation as turn, vectors};
-use crate::servo::Servo;
 use crate::servo::paced::locked;
 use crate::servo::pressed_patch::PressedPatch;
-use crate::servo::settings::{Options, Settings};
-use crate::servo::snapshot::Published;
-use crate::servo::tip::{Tip, TipHand, exchange_tips};
+use crate::servo::settings::Options;
 
 /// Forces and torques (ticks, m, 3).
 type Felt<'py> = (Bound<'py, PyArray3<f64>>, Bound<'py, PyArray3<f64>>);
@@ -55,15 +51,8 @@ impl Device for Led {
 }
 
 struct Stepped {
-    servo: Servo,
+    stepping: Stepping,
     led: Vec<Led>,
-    tips: Vec<TipHand>,
-    settings: Settings,
-    settings_in: Input<Settings>,
-    snapshots: Output<Published>,
-    patches: Vec<Output<PressedPatch>>,
-    period: f64,
-    ticks: u64,
 }
 
 impl Stepped {
@@ -71,7 +60,7 @@ impl Stepped {
     fn lead(
         &mut self,
         paths: &PyArrayLike3<'_, f64, AllowTypeChange>,
-        mut tick: impl FnMut(&mut Self, f64),
+        mut tick: impl FnMut(&mut Stepping),
     ) -> PyResult<()> {
         let paths = paths.as_array();
         let (ticks, fingers, columns) = paths.dim();
@@ -85,8 +74,7 @@ impl Stepped {
             for (led, row) in self.led.iter().zip(places.rows()) {
                 locked(&led.0).position = finite("paths", [row[0], row[1], row[2]])?;
             }
-            self.ticks += 1;
-            tick(self, self.ticks as f64 * self.period);
+            tick(&mut self.stepping);
         }
         Ok(())
     }
@@ -132,8 +120,6 @@ impl SteppedFingers {
             },
             max_speed: NO_LIMIT,
         };
-        let plain = Settings::new(1.0);
-        let settings = Chosen::checked(&settings)?.on(&plain.fingers, &plain);
         let led: Vec<Led> = (places.into_iter())
             .map(|position| {
                 Led(Arc::new(Mutex::new(Place {
@@ -142,41 +128,12 @@ impl SteppedFingers {
                 })))
             })
             .collect();
-        let (settings_in, settings_out) = triple_buffer(&settings);
-        let (snapshots_in, snapshots) = triple_buffer(&Published::before_the_start(led.len()));
-        let (samples_in, _nobody_takes_them) = RingBuffer::new(1);
-        let devices = led
+        let boxed = led
             .iter()
-            .map(|one| Box::new(one.clone()) as Box<dyn Device>);
-        let mut servo = Servo::new(
-            body.inner.clone(),
-            devices.collect(),
-            options,
-            settings_out,
-            snapshots_in,
-            samples_in,
-        );
-        let period = 1.0 / f64::from(options.rate_hz);
-        let (mut tips, mut patches) = (Vec::new(), Vec::new());
-        for finger in &mut servo.fingers {
-            let (hand, holder) = exchange_tips(Tip::Point);
-            let (patches_in, patches_out) = triple_buffer(&PressedPatch::default());
-            (finger.tips, finger.patches) = (holder, Some(patches_in));
-            tips.push(hand);
-            patches.push(patches_out);
-        }
-        servo.tick(0.0);
-        Ok(Self(Mutex::new(Stepped {
-            servo,
-            led,
-            tips,
-            settings,
-            settings_in,
-            snapshots,
-            patches,
-            period,
-            ticks: 0,
-        })))
+            .map(|one| -> Box<dyn Device> { Box::new(one.clone()) });
+        let mut stepping = Stepping::new(body, boxed.collect(), &settings, options)?;
+        stepping.tick(Some(0.0));
+        Ok(Self(Mutex::new(Stepped { stepping, led })))
     }
 
     fn follow<'py>(
@@ -187,9 +144,9 @@ impl SteppedFingers {
         let (ticks, fingers, _) = paths.as_array().dim();
         let mut forces = Vec::with_capacity(3 * ticks * fingers);
         let mut torques = Vec::with_capacity(3 * ticks * fingers);
-        locked(&self.0).lead(&paths, |stepped, now| {
-            stepped.servo.tick(now);
-            for report in stepped.snapshots.read().fingers() {
+        locked(&self.0).lead(&paths, |stepping| {
+            stepping.tick(None);
+            for report in stepping.ends.snapshots.read().fingers() {
                 forces.extend(report.snapshot.contact_force.to_array());
                 torques.extend(report.snapshot.torque.to_array());
             }
@@ -204,32 +161,29 @@ impl SteppedFingers {
         paths: PyArrayLike3<'py, f64, AllowTypeChange>,
     ) -> PyResult<Vector<'py>> {
         let mut costs = Vec::with_capacity(paths.as_array().dim().0);
-        locked(&self.0).lead(&paths, |stepped, now| {
+        locked(&self.0).lead(&paths, |stepping| {
             let before = thread_seconds();
-            stepped.servo.tick(now);
+            stepping.tick(None);
             costs.push(thread_seconds() - before);
         })?;
         Ok(PyArray1::from_vec(py, costs))
     }
 
     #[pyo3(signature = (tool, rotation, finger=0))]
-    fn set_tool(
-        &self,
-        tool: Option<PyRef<'_, ToolContact>>,
-        rotation: Rows,
-        finger: usize,
-    ) -> PyResult<()> {
-        let tip = tip(tool.map(|tool| tool.made()));
+    fn set_tool(&self, tool: Option<GivenTool<'_>>, rotation: Rows, finger: usize) -> PyResult<()> {
+        let tip = tip(tool.as_ref().map(made));
         let orientation = turn("rotation", rotation)?;
-        let stepped = &mut *locked(&self.0);
+        let Stepped { stepping, led } = &mut *locked(&self.0);
+        let mut settings = stepping.settings;
         let (Some(hand), Some(own)) = (
-            stepped.tips.get_mut(finger),
-            stepped.settings.fingers.get_mut(finger),
+            stepping.ends.tips.get_mut(finger),
+            settings.fingers.get_mut(finger),
         ) else {
-            return Err(no_finger(finger, stepped.led.len()));
+            return Err(no_finger(finger, led.len()));
         };
         own.orientation = orientation;
-        stepped.settings_in.write(stepped.settings);
+        stepping.settings = settings;
+        stepping.ends.settings.write(settings);
         hand.free_old();
         hand.give(tip).map_err(|_| {
             PyValueError::new_err("tools wait to be taken; let the fingers follow a path first")
@@ -248,23 +202,23 @@ impl SteppedFingers {
 
     fn set(&self, settings: Given) -> PyResult<()> {
         let chosen = Chosen::checked(&settings)?;
-        let stepped = &mut *locked(&self.0);
-        let before = stepped.settings;
-        stepped.settings = chosen.on(&before.fingers, &before);
+        let stepping = &mut locked(&self.0).stepping;
+        let before = stepping.settings;
+        let mut settings = chosen.on(&before.fingers, &before);
         // A tool's rotation is set with the tool.
-        for (finger, before) in stepped.settings.fingers.iter_mut().zip(&before.fingers) {
+        for (finger, before) in settings.fingers.iter_mut().zip(&before.fingers) {
             finger.orientation = before.orientation;
         }
-        stepped.settings_in.write(stepped.settings);
+        stepping.write(settings);
         Ok(())
     }
 
     fn snapshot(&self, py: Python<'_>) -> PyResult<Py<Snapshot>> {
-        let stepped = &mut *locked(&self.0);
+        let ends = &mut locked(&self.0).stepping.ends;
         // No tick goes on meanwhile: all of the same one.
-        let patches = stepped.patches.iter_mut();
+        let patches = ends.patches.iter_mut();
         let patches: Vec<PressedPatch> = patches.map(|patch| patch.read().clone()).collect();
-        Snapshot::of(py, stepped.snapshots.read(), &patches)
+        Snapshot::of(py, ends.snapshots.read(), &patches)
     }
 }
 

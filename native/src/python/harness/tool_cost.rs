@@ -15,7 +15,7 @@ use pyo3::types::PyDict;
 
 use crate::clock::cpu_time::thread_seconds;
 use crate::engine::lone::LoneTool;
-use crate::python::tool::contact::ToolContact;
+use crate::python::harness::tool_contact::ToolContact;
 use crate::python::vectors::{matrices, positive, vectors};
 use crate::tool::collider::Felt;
 use crate::tool::shape::Pose;

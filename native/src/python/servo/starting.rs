@@ -12,7 +12,7 @@ use crate::python::device::setups::DeviceSetup;
 use crate::python::servo::refusals::{NOT_WHOLE, no_thread};
 use crate::python::servo::started::remember;
 use crate::python::servo::thread::Servo;
-use crate::python::tool::contact::tip;
+use crate::python::tool::made::tip;
 use crate::servo::paced::locked;
 use crate::servo::thread::Running;
 

@@ -19,7 +19,7 @@ use crate::python::servo::samples::{structured, structured_pieces};
 use crate::python::servo::settings::{Chosen, Given, options};
 use crate::python::servo::snapshot::Snapshot;
 use crate::python::servo::standing::Standing;
-use crate::python::tool::contact::{MadeTool, ToolContact, tip};
+use crate::python::tool::made::{GivenTool, MadeTool, made, tip};
 use crate::python::vectors::{Triple, check_seconds, finite, positive};
 use crate::servo::paced::locked;
 use crate::servo::settings::FingerSettings;
@@ -138,15 +138,11 @@ impl Servo {
     }
 
     #[pyo3(signature = (tool, finger=0))]
-    fn set_tool(
-        &self,
-        py: Python<'_>,
-        tool: Option<PyRef<'_, ToolContact>>,
-        finger: usize,
-    ) -> PyResult<()> {
+    fn set_tool(&self, py: Python<'_>, tool: Option<GivenTool<'_>>, finger: usize) -> PyResult<()> {
         check_finger(finger)?;
-        let made = tool.map(|tool| tool.made());
-        if (made.as_ref()).is_some_and(|made| !made.is_for(&locked(&self.body))) {
+        let made = tool.as_ref().map(made);
+        let body = locked(&self.body).clone();
+        if (made.as_ref()).is_some_and(|(surface, _)| !Arc::ptr_eq(surface.body(), &body)) {
             return Err(PyValueError::new_err(
                 "the tool was made for another body; make it with the Body that the servo touches",
             ));

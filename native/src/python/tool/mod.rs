@@ -1,6 +1,6 @@
-//! Tools from numpy arrays, and their contact.
+//! Tools from numpy arrays.
 
-pub mod contact;
+pub mod made;
 mod near_field;
 pub mod shape;
 pub mod surface;

@@ -2,7 +2,9 @@
 
 use glam::DVec3;
 
-use super::{Finger, Followed, Touch};
+use super::Finger;
+use super::followed::Followed;
+use super::touch::Touch;
 use crate::control::safety::Limits;
 use crate::control::state::{Standing, State, transition};
 use crate::device::Fault;
@@ -42,10 +44,10 @@ impl Finger {
 
     /// The tick with its counters, for others to read.
     pub fn tell(&mut self, shot: &Snapshot, young_modulus: f64) -> &FingerReport {
-        if let (Some(patches), Tip::Tool(tool)) = (&mut self.patches, &self.tips.tip) {
+        if let Tip::Tool(tool) = &self.tips.tip {
             let tool = shot.touching.then_some(&**tool);
-            (patches.input_buffer_mut()).show(shot.tick, tool, young_modulus);
-            patches.publish();
+            (self.patches.input_buffer_mut()).show(shot.tick, tool, young_modulus);
+            self.patches.publish();
         }
         let report = &mut self.report;
         if let Some(fault) = shot.fault

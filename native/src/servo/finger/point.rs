@@ -3,7 +3,8 @@
 use glam::DVec3;
 
 use super::among::Among;
-use super::{Followed, Touch};
+use super::followed::Followed;
+use super::touch::Touch;
 use crate::algebra::series_share;
 use crate::body::face::closest_on_face;
 use crate::body::softening::{Blend, Relation, Softening};

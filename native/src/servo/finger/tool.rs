@@ -2,12 +2,10 @@
 
 use glam::{DMat3, DVec3};
 
-use super::{Finger, Followed, Touch};
+use super::followed::Followed;
+use super::touch::Touch;
 use crate::control::coupling::{Contact, Coupler};
-use crate::engine::joint::Led;
 use crate::servo::snapshot::Snapshot;
-use crate::servo::tip::Tip;
-use crate::tool::coefficients::Friction;
 use crate::tool::collider::Collider;
 
 /// The coupling sees a tool's stiffness smoothed over this time, s: it jumps where a point comes to
@@ -21,29 +19,6 @@ pub(super) struct ToolTouch {
     begin: DVec3,
     /// Smoothed, N/m.
     stiffness: DMat3,
-}
-
-impl Finger {
-    /// The tool and where it is to go, if the finger has one and knows where it is. Among several it
-    /// presses as far as it is present.
-    pub fn lead(&mut self, followed: &Followed<'_>, are_several: bool) -> Option<Led<'_>> {
-        let Tip::Tool(tool) = &mut self.tips.tip else {
-            return None;
-        };
-        if !followed.is_sound {
-            return None;
-        }
-        let feel = &followed.moment.settings.feel;
-        tool.set_friction(Friction {
-            sticking: feel.static_friction,
-            slipping: feel.dynamic_friction,
-        });
-        Some(Led {
-            collider: tool,
-            goal: self.pose,
-            presence: if are_several { self.presence } else { 1.0 },
-        })
-    }
 }
 
 impl ToolTouch {

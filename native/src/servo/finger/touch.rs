@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::Followed;
+use super::followed::Followed;
 use crate::control::state::Findings;
 use crate::device::Fault;
 use crate::servo::snapshot::Snapshot;

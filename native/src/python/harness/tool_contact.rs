@@ -1,60 +1,33 @@
-//! `ToolContact`: a tool on a body, for a finger of the servo or alone, tick by tick.
-
-use std::sync::Arc;
+//! `ToolContact`: a tool on a body alone, tick by tick; as the servo's fingers have it.
 
 use numpy::PyArray1;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::body::surface;
 use crate::engine::lone::LoneTool;
-use crate::python::vectors::{Matrix, Rows, Triple, Vector, array, pose, positive, square, table};
-use crate::servo::tip::Tip;
-use crate::tool::coefficients::Friction;
-use crate::tool::collider::Collider;
-use crate::tool::points::{self};
-use crate::tool::shape::{self};
-
 use crate::python::tool::shape::Tool;
 use crate::python::tool::surface::ToolSurface;
+use crate::python::vectors::{Matrix, Rows, Triple, Vector, array, pose, positive, square, table};
+use crate::tool::coefficients::Friction;
+use crate::tool::slot::Slot;
 
 type Numbers<'py> = Bound<'py, PyArray1<i64>>;
 
-#[pyclass(module = "palpate_servo")]
+/// A tool on a body alone, tick by tick.
+///
+/// `restart` sets it down; `follow(position, rotation, young_modulus)` goes towards a pose by at most one
+/// stride, and feels the body (Pa) there. Forces on the tool, N, and torques, N m; of the p pressed contact
+/// points their numbers, forces on the body, the tool's normals, and pressures, Pa; of the nodes that
+/// carry force, these. ValueError for a friction below zero, poses that are none and forces without
+/// sense.
+#[pyclass(module = "palpate_servo.harness")]
 pub struct ToolContact {
     pub inner: LoneTool,
     pub young_modulus: f64,
 }
 
-/// What a finger takes of a tool: which it is, and the contact points that it meets.
-#[derive(Clone)]
-pub struct MadeTool {
-    surface: Arc<points::ToolSurface>,
-    tool: shape::Tool,
-}
-
-impl MadeTool {
-    pub fn is_for(&self, body: &Arc<surface::Body>) -> bool {
-        Arc::ptr_eq(self.surface.body(), body)
-    }
-}
-
-/// A tip with all its memory; a point for no tool.
-pub fn tip(made: Option<MadeTool>) -> Tip {
-    made.map_or(Tip::Point, |made| {
-        Tip::Tool(Box::new(Collider::new(made.surface, made.tool)))
-    })
-}
-
 impl ToolContact {
-    pub fn made(&self) -> MadeTool {
-        MadeTool {
-            surface: self.inner.surface().clone(),
-            tool: self.inner.tool().clone(),
-        }
-    }
-
-    fn pressed(&self) -> impl Iterator<Item = &crate::tool::slot::Slot> {
+    fn pressed(&self) -> impl Iterator<Item = &Slot> {
         self.inner.pressed().iter()
     }
 }
@@ -148,8 +121,7 @@ impl ToolContact {
 
     #[getter]
     fn pressures<'py>(&self, py: Python<'py>) -> Vector<'py> {
-        let pressure =
-            |slot: &crate::tool::slot::Slot| slot.push * self.young_modulus / slot.at.area;
+        let pressure = |slot: &Slot| slot.push * self.young_modulus / slot.at.area;
         PyArray1::from_iter(py, self.pressed().map(pressure))
     }
 
