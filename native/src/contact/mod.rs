@@ -2,4 +2,5 @@
 
 pub mod cone;
 pub mod cones;
+pub mod ground;
 pub mod touch;

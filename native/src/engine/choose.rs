@@ -1,12 +1,15 @@
-//! Which contact points of a tool a tick looks at.
+//! Which contact points of a tool on a body a tick looks at.
 
 use glam::DVec3;
 
-use super::joint::{AllLed, Beside, Ground, Joint, Led, MOST_ENTERING};
+use super::joint::{AllLed, Beside, Joint, Led, MOST_ENTERING};
 use crate::algebra::MOST_POINTS;
 use crate::body::closest::closest_point;
-use crate::tool::collider::{Collider, MOST_NEAR};
-use crate::tool::shape::Pose;
+use crate::contact::ground::Ground;
+use crate::fingers::press::Press;
+use crate::tool::collider::MOST_NEAR;
+use crate::tool::collider::side::Side;
+use crate::tool::shape::{Pose, Tool};
 
 /// Points within so many spacings of the tool are looked at.
 pub(super) const MARGIN: f64 = 1.0;
@@ -24,45 +27,49 @@ const MOST_REPLACED: usize = 4;
 const MOST_LEAVING: usize = 24;
 
 impl Joint {
-    /// Lets points of a tool go that are far, and those near come in, nearest first; whether all of
-    /// them are.
+    /// Lets points of a tool on a body go that are far, and those near come in, nearest first; whether
+    /// all of them are.
     pub(super) fn choose(
         &mut self,
-        number: u8,
-        ground: &Ground<'_>,
+        pair: [u8; 2],
+        grounds: &[Ground<'_>],
         led: &mut AllLed<'_>,
         beside: &Beside<'_>,
     ) -> bool {
-        let Some(pose) = led[usize::from(number)]
-            .as_ref()
-            .and_then(|led| led.collider.pose().copied())
-        else {
+        let [tool, body] = pair.map(usize::from);
+        let Some(collider) = led[tool].as_ref().map(|led| &*led.collider) else {
             return true;
         };
-        if let Some(led) = &led[usize::from(number)] {
-            self.let_leave(number, led.collider, &pose);
-        }
-        let carried = self.carried(number, ground, led, beside, &pose);
-        let Some(led) = &mut led[usize::from(number)] else {
+        let (Some(pose), Some(side)) = (collider.pose().copied(), collider.side(body)) else {
             return true;
         };
-        led.collider.carried = carried;
-        led.collider.marks.begin();
-        for slot in self.patch.slots().iter().filter(|slot| slot.tool == number) {
-            led.collider.marks.set(slot.point);
+        self.let_leave(pair, collider.tool(), side, &pose);
+        let carried = self.carried(pair, grounds, led, beside, &pose);
+        let Some(collider) = led[tool].as_mut().map(|led| &mut *led.collider) else {
+            return true;
+        };
+        if let Some(side) = collider.side_mut(body) {
+            side.carried = carried;
+            side.marks.begin();
+            for slot in self.patch.slots().iter().filter(|slot| slot.is_of(pair)) {
+                side.marks.set(slot.point);
+            }
         }
-        self.offer(number, led.collider, &pose);
-        self.let_in(number, led.collider, &pose, ground, beside)
+        let Some(side) = collider.side(body) else {
+            return true;
+        };
+        self.offer(pair, collider.tool(), side, &pose);
+        self.let_in(pair, collider.tool(), side, &pose, grounds, beside)
     }
 
     /// Lets points go that are far.
-    fn let_leave(&mut self, number: u8, collider: &Collider, pose: &Pose) {
-        let (tool, margin) = (collider.tool(), MARGIN * collider.surface().spacing());
-        let could_fill = self.has_room(number, MOST_ENTERING).is_err();
+    fn let_leave(&mut self, pair: [u8; 2], tool: &Tool, side: &Side, pose: &Pose) {
+        let margin = MARGIN * side.surface().spacing();
+        let could_fill = self.has_room(pair[0], MOST_ENTERING).is_err();
         let mut left = 0;
         for place in (0..self.patch.slots().len()).rev() {
             let slot = &mut self.patch.slots_mut()[place];
-            if slot.tool != number {
+            if !slot.is_of(pair) {
                 continue;
             }
             let rest = slot.at.position;
@@ -77,7 +84,7 @@ impl Joint {
                 slot.nearest = slot.nearest.min(at_rest);
             }
             let is_far = is_gone && slot.nearest > FORGOTTEN * margin;
-            if is_far && left < MOST_LEAVING && !self.is_beside_pressed(place, collider, pose) {
+            if is_far && left < MOST_LEAVING && !self.is_beside_pressed(place, tool, side, pose) {
                 self.patch.leave(place);
                 left += 1;
             }
@@ -86,14 +93,14 @@ impl Joint {
     }
 
     /// Points near the tool that are not looked at yet, nearest first.
-    fn offer(&mut self, number: u8, collider: &Collider, pose: &Pose) {
-        let (tool, surface) = (collider.tool(), collider.surface());
+    fn offer(&mut self, pair: [u8; 2], tool: &Tool, side: &Side, pose: &Pose) {
+        let surface = side.surface();
         let margin = MARGIN * surface.spacing();
         self.entering.clear();
         let (points, patch) = (surface.points(), &self.patch);
         let entering = &mut self.entering;
         let mut offer = |point: u32, moved: DVec3| {
-            if collider.marks.has(point) {
+            if side.marks.has(point) {
                 return;
             }
             let place = points[point as usize].position + moved;
@@ -106,16 +113,16 @@ impl Joint {
             |middle, radius| tool.least_distance(pose.to_tool(middle)) <= margin + radius,
             |point| offer(point, DVec3::ZERO),
         );
-        if collider.carried != DVec3::ZERO {
-            let back = pose.moved(-collider.carried);
+        if side.carried != DVec3::ZERO {
+            let back = pose.moved(-side.carried);
             surface.tree().visit(
                 |middle, radius| tool.least_distance(back.to_tool(middle)) <= margin + radius,
-                |point| offer(point, collider.carried),
+                |point| offer(point, side.carried),
             );
         }
         // Deep in the body the tool is past where the points were at rest: they come in from the side.
         for slot in patch.slots() {
-            if slot.tool == number && slot.force != DVec3::ZERO {
+            if slot.is_of(pair) && slot.force != DVec3::ZERO {
                 for &other in surface.neighbours(slot.point) {
                     offer(other, slot.moved);
                 }
@@ -126,36 +133,36 @@ impl Joint {
     /// Takes in what was offered; whether it was all there is.
     fn let_in(
         &mut self,
-        number: u8,
-        collider: &Collider,
+        pair: [u8; 2],
+        tool: &Tool,
+        side: &Side,
         pose: &Pose,
-        ground: &Ground<'_>,
+        grounds: &[Ground<'_>],
         beside: &Beside<'_>,
     ) -> bool {
+        let [number, body] = pair.map(usize::from);
         let first = self.patch.fetched();
         let (mut entered, mut replaced) = (0, 0);
-        let kin = self.kin[usize::from(number)];
+        let kin = self.kin[body][number];
         for place in 0..self.entering.len() {
             let (distance, point) = self.entering[place];
             let reckoned = entered * self.patch.slots().len();
             if self.patch.fetched() - first > MOST_FETCHED || reckoned > MOST_RESPONSES {
                 return false;
             }
-            if let Err(among) = self.has_room(number, 1) {
+            if let Err(among) = self.has_room(pair[0], 1) {
                 if replaced == MOST_REPLACED || !self.make_room(distance, among) {
                     return false;
                 }
                 replaced += 1;
             }
-            self.patch.enter(collider.surface(), number, point, &kin);
+            (self.patch).enter(&grounds[body], side.surface(), pair, point, &kin);
             let new = self.patch.slots().len() - 1;
-            self.offset_one(new, ground, beside);
+            self.offset_one(new, grounds, beside);
             let moved = self.patch.slots()[new].offset + self.patch.moved_of(new, |_| true);
             let slot = &mut self.patch.slots_mut()[new];
             slot.moved = moved;
-            slot.free = collider
-                .tool()
-                .distance(pose.to_tool(slot.at.position + moved));
+            slot.free = tool.distance(pose.to_tool(slot.at.position + moved));
             entered += 1;
             self.effort.entered += 1;
         }
@@ -168,47 +175,52 @@ impl Joint {
     /// carried in the last one.
     fn carried(
         &mut self,
-        number: u8,
-        ground: &Ground<'_>,
+        pair: [u8; 2],
+        grounds: &[Ground<'_>],
         led: &AllLed<'_>,
         beside: &Beside<'_>,
         pose: &Pose,
     ) -> DVec3 {
-        let others = |other: usize| other != usize::from(number);
+        let [number, body] = pair.map(usize::from);
+        let others = |other: usize| other != number;
         let acts = |(other, led): (usize, &Option<Led<'_>>)| {
             others(other)
-                && (led.as_ref()).is_some_and(|led| !led.collider.nodal_forces().is_empty())
+                && (led.as_ref()).is_some_and(|led| !led.collider.nodal_forces(body).is_empty())
         };
-        if !(led.iter().enumerate().any(acts) || beside.presses.iter().any(Option::is_some)) {
+        let presses = |press: &Press| usize::from(press.body) == body;
+        if !(led.iter().enumerate().any(acts) || beside.presses.iter().flatten().any(presses)) {
             return DVec3::ZERO;
         }
         let slots = self.patch.slots().iter().enumerate();
-        let own = slots.filter(|(_, slot)| slot.tool == number);
+        let own = slots.filter(|(_, slot)| slot.is_of(pair));
         if let Some((nearest, slot)) = own.min_by(|a, b| a.1.free.0.total_cmp(&b.1.free.0)) {
-            return slot.offset + self.patch.moved_of(nearest, |slot| slot.tool != number);
+            return slot.offset + self.patch.moved_of(nearest, |slot| slot.tool != pair[0]);
         }
-        let Some(led_tool) = &led[usize::from(number)] else {
+        let Some(collider) = led[number].as_ref().map(|led| &*led.collider) else {
             return DVec3::ZERO;
         };
-        let collider = &*led_tool.collider;
-        let middle = pose.position + pose.rotation * collider.tool().middle() - collider.carried;
-        let (closest, _) = closest_point(ground.body, middle, 0);
-        let nodes = ground.body.triangles[closest.triangle as usize];
-        self.moved_by_tools(ground.body, led, nodes, closest.alpha, others)
-            + self.moved_by_points(ground.body, beside, nodes, closest.alpha)
+        let carried = collider.side(body).map_or(DVec3::ZERO, |side| side.carried);
+        let middle = pose.position + pose.rotation * collider.tool().middle() - carried;
+        let ground = (body, &grounds[body]);
+        let (closest, _) = closest_point(ground.1.body, middle, 0);
+        let nodes = ground.1.body.triangles[closest.triangle as usize];
+        self.moved_by_tools(ground, led, nodes, closest.alpha, others)
+            + self.moved_by_points(ground, beside, nodes, closest.alpha)
     }
 
     /// Whether a point would be near the tool if it went where a pressed neighbour went.
-    fn is_beside_pressed(&self, place: usize, collider: &Collider, pose: &Pose) -> bool {
+    fn is_beside_pressed(&self, place: usize, tool: &Tool, side: &Side, pose: &Pose) -> bool {
         let slot = &self.patch.slots()[place];
-        let surface = collider.surface();
+        let surface = side.surface();
         let limit = FORGOTTEN * MARGIN * surface.spacing();
         let mut others = surface.neighbours(slot.point).iter();
         others.any(|&other| {
-            self.patch.slot(slot.tool, other).is_some_and(|other| {
-                let place = pose.to_tool(slot.at.position + other.moved);
-                other.force != DVec3::ZERO && collider.tool().distance(place).0 <= limit
-            })
+            self.patch
+                .slot([slot.tool, slot.body], other)
+                .is_some_and(|other| {
+                    let place = pose.to_tool(slot.at.position + other.moved);
+                    other.force != DVec3::ZERO && tool.distance(place).0 <= limit
+                })
         })
     }
 

@@ -3,12 +3,15 @@
 use glam::DVec3;
 
 use super::choose::MARGIN;
-use super::joint::{AllLed, Beside, Ground, Joint, Led};
+use super::joint::{AllLed, Beside, Joint, Led};
 use crate::algebra::MOST_POINTS;
-use crate::contact::cones::MAX_FINGERS;
+use crate::contact::ground::{Ground, MOST_BODIES};
 use crate::tool::coefficients::AllPosed;
+use crate::tool::collider::Collider;
+use crate::tool::collider::side::Side;
 use crate::tool::friction::across;
 use crate::tool::shape::tilt::TiltLimit;
+use crate::tool::slot::Slot;
 
 /// Linearisations in one tick.
 const MOST_LINEARISATIONS: usize = 6;
@@ -29,7 +32,7 @@ impl Joint {
     /// linearisations it took, and whether it was found.
     pub(super) fn settle(
         &mut self,
-        ground: &Ground<'_>,
+        grounds: &[Ground<'_>],
         led: &AllLed<'_>,
         posed: &AllPosed,
         beside: &mut Beside<'_>,
@@ -44,7 +47,7 @@ impl Joint {
             let left = most_work.saturating_sub(before).min(MOST_WORK);
             self.problem.solve(left);
             let solved = self.problem.work();
-            let meets = self.meet_points(ground, beside, left);
+            let meets = self.meet_points(grounds, beside, left);
             self.push();
             let is_held = !rubs || self.rubbing.rub(&mut self.patch, posed);
             if !rubs {
@@ -100,29 +103,33 @@ impl Joint {
     /// displacements are wrong with these at most, about.
     fn see(&mut self, led: &AllLed<'_>) -> f64 {
         let mut error = 0.0_f64;
-        for number in 0..MAX_FINGERS {
-            if let Some(led) = &led[number] {
-                error = error.max(self.see_one(number as u8, led));
+        for (number, led) in led.iter().enumerate() {
+            let Some(led) = led else { continue };
+            for body in 0..MOST_BODIES {
+                if let Some(side) = led.collider.side(body) {
+                    let pair = [number as u8, body as u8];
+                    error = error.max(self.see_one(pair, led.collider, side));
+                }
             }
         }
         error
     }
 
-    /// The same for one tool: what its gaps are from zero, and what its forces turned along the new
+    /// The same for one tool on one body: what its gaps are from zero, and what its forces turned along the new
     /// normals would move.
-    fn see_one(&mut self, number: u8, led: &Led<'_>) -> f64 {
-        let (collider, tool) = (&*led.collider, led.collider.tool());
+    fn see_one(&mut self, pair: [u8; 2], collider: &Collider, side: &Side) -> f64 {
+        let tool = collider.tool();
         let Some(pose) = collider.pose() else {
             return 0.0;
         };
-        let watched = WATCHED * MARGIN * collider.surface().spacing();
-        let own = |slot: &&crate::tool::slot::Slot| slot.tool == number;
+        let watched = WATCHED * MARGIN * side.surface().spacing();
+        let own = |slot: &&Slot| slot.is_of(pair);
         let pushes = self.patch.slots().iter().filter(own);
         let hold = TiltLimit::of(pushes.map(|slot| (slot.push * slot.normal, slot.at.normal)));
         let hold = hold.map(|hold| hold.seen_from(&pose.rotation));
         let (mut gap, mut turned, mut gives) = (0.0_f64, 0.0, 0.0_f64);
         for slot in self.patch.slots_mut().iter_mut() {
-            if slot.tool != number {
+            if !slot.is_of(pair) {
                 continue;
             }
             let (distance, normal) = hold.map_or(slot.free, |hold| {
@@ -166,7 +173,7 @@ impl Joint {
         let mut normals = [DVec3::ZERO; MOST_POINTS];
         for (number, slot) in self.patch.slots_mut().iter_mut().enumerate() {
             (slot.distance, slot.normal) = slot.seen;
-            if slot.distance < watched(led, slot.tool) || slot.force != DVec3::ZERO {
+            if slot.distance < watched(led, [slot.tool, slot.body]) || slot.force != DVec3::ZERO {
                 let place = self.chosen.len();
                 self.problem.forces[place] = slot.push;
                 let given = slot.moved - slot.offset;
@@ -209,13 +216,13 @@ impl Joint {
                 .as_ref()
                 .map_or(1.0, |led| led.presence);
             let mut share = 1.0 / presence.max(LEAST_PRESENCE) - 1.0;
-            for (other, _) in self.kin[usize::from(slot.tool)]
+            for (other, _) in self.kin[usize::from(slot.body)][usize::from(slot.tool)]
                 .iter()
                 .enumerate()
                 .filter(|k| *k.1)
             {
-                let other = other as u8;
-                if other != slot.tool
+                let other = [other as u8, slot.body];
+                if other[0] != slot.tool
                     && let Some(beside) = self.patch.slot(other, slot.point)
                 {
                     // From nothing where the other tool is about to be looked at to all at its touch.
@@ -235,9 +242,8 @@ impl Joint {
 const LEAST_PRESENCE: f64 = 1e-3;
 
 /// How far from a tool its points are only watched, m.
-fn watched(led: &AllLed<'_>, tool: u8) -> f64 {
-    let led = led[usize::from(tool)].as_ref();
-    led.map_or(0.0, |led| {
-        WATCHED * MARGIN * led.collider.surface().spacing()
-    })
+fn watched(led: &AllLed<'_>, [tool, body]: [u8; 2]) -> f64 {
+    let side =
+        (led[usize::from(tool)].as_ref()).and_then(|led| led.collider.side(usize::from(body)));
+    side.map_or(0.0, |side| WATCHED * MARGIN * side.surface().spacing())
 }

@@ -9,18 +9,20 @@ use crate::control::coupling::largest_eigenvalue;
 use crate::tool::collider::{Collider, Felt};
 
 impl Joint {
-    /// Sums the forces of a tool up; `stuck` of its pushes are on points that stick.
+    /// Adds the forces of a tool on a body; `stuck` of its pushes are on points that stick.
     pub(super) fn feel(
         &mut self,
-        number: u8,
+        pair: [u8; 2],
         collider: &mut Collider,
         young_modulus: f64,
         stuck: f64,
-    ) -> Felt {
-        let mut felt = Felt::default();
-        collider.begin_taking();
-        let position = collider.pose().map_or(DVec3::ZERO, |pose| pose.position);
-        for slot in self.patch.slots().iter().filter(|slot| slot.tool == number) {
+        felt: &mut Felt,
+    ) {
+        let (before, position) = (
+            felt.pressed,
+            collider.pose().map_or(DVec3::ZERO, |pose| pose.position),
+        );
+        for slot in self.patch.slots().iter().filter(|slot| slot.is_of(pair)) {
             if slot.force == DVec3::ZERO {
                 continue;
             }
@@ -30,12 +32,13 @@ impl Joint {
             felt.pressed += 1;
             collider.take(slot);
         }
-        felt.stiffness = with_stuck(self.stiffness(number), stuck) * young_modulus;
-        felt
+        if felt.pressed > before {
+            felt.stiffness += with_stuck(self.stiffness(pair), stuck) * young_modulus;
+        }
     }
 
-    /// sum_ij n_i [(N' C N)^-1]_ij n_j' over the pressed points of a tool, at unit modulus.
-    fn stiffness(&mut self, number: u8) -> DMat3 {
+    /// sum_ij n_i [(N' C N)^-1]_ij n_j' over the points of a tool that press a body, at unit modulus.
+    fn stiffness(&mut self, pair: [u8; 2]) -> DMat3 {
         if !self.problem.take_face() {
             return DMat3::ZERO;
         }
@@ -43,7 +46,7 @@ impl Joint {
         let mut columns = [[0.0; MOST_POINTS]; 3];
         for (place, &i) in face.iter().enumerate() {
             let slot = &self.patch.slots()[self.chosen[i]];
-            if slot.tool == number {
+            if slot.is_of(pair) {
                 for (column, n) in columns.iter_mut().zip(slot.normal.to_array()) {
                     column[place] = n;
                 }

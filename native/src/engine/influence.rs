@@ -8,14 +8,15 @@
 
 use glam::{DMat3, DVec3};
 
-use super::joint::{Beside, Ground, Joint};
+use super::joint::{Beside, Joint};
 use crate::algebra::MOST_POINTS;
 use crate::algebra::cholesky::dot;
-use crate::body::surface::Body;
 use crate::contact::cones::MAX_FINGERS;
+use crate::contact::ground::Ground;
 use crate::contact::touch::{contact_compliance, inverse_of_definite};
 use crate::control::coupling::largest_eigenvalue;
 use crate::fingers::press::{Press, Reaction, numbered};
+use crate::tool::slot::Slot;
 
 /// Of what a point gives way alone tools take this share at most: on one place with a tool it would
 /// else not give way at all, and have no end of force. What they do to each other is reduced for that.
@@ -25,8 +26,8 @@ const MOST_TURNS: usize = 4;
 
 impl Joint {
     /// Moves all slots by what the points do where they are now, with the forces of the last tick.
-    pub(super) fn offset(&mut self, ground: &Ground<'_>, beside: &Beside<'_>) {
-        self.find_influence(ground.body, beside);
+    pub(super) fn offset(&mut self, grounds: &[Ground<'_>], beside: &Beside<'_>) {
+        self.find_influence(grounds, beside);
         for place in 0..self.patch.slots().len() {
             let offset = self.offset_of(place, beside);
             let slot = &mut self.patch.slots_mut()[place];
@@ -36,25 +37,31 @@ impl Joint {
     }
 
     /// How far the points move each slot.
-    pub(super) fn find_influence(&mut self, body: &Body, beside: &Beside<'_>) {
+    pub(super) fn find_influence(&mut self, grounds: &[Ground<'_>], beside: &Beside<'_>) {
         for (p, press) in numbered(beside.presses) {
             self.influence.recent.begin();
             for place in 0..self.patch.slots().len() {
-                let found = self.influence_on(place, body, &press);
+                let found = self.influence_on(place, grounds, &press);
                 self.influence.by_slot[place][p] = found;
             }
         }
     }
 
-    fn influence_on(&mut self, place: usize, body: &Body, press: &Press) -> DMat3 {
-        let nodes = body.triangles[press.hold.triangle as usize];
-        let at = self.patch.slots()[place].at;
+    fn influence_on(&mut self, place: usize, grounds: &[Ground<'_>], press: &Press) -> DMat3 {
+        let Slot { at, body, .. } = self.patch.slots()[place];
+        let Some(ground) = grounds
+            .get(usize::from(body))
+            .filter(|_| body == press.body)
+        else {
+            return DMat3::ZERO;
+        };
+        let nodes = ground.body.triangles[press.hold.triangle as usize];
         let (recent, blocks) = (&mut self.influence.recent, self.patch.blocks_mut());
         let mut of_node = |seen: u32| {
             let mut sum = DMat3::ZERO;
             for (loaded, weight) in nodes.into_iter().zip(press.hold.alpha) {
                 if weight != 0.0 {
-                    sum += blocks.get(body, seen, loaded) * weight;
+                    sum += blocks.get(ground, seen, loaded) * weight;
                 }
             }
             sum
@@ -63,10 +70,10 @@ impl Joint {
     }
 
     /// The same for a slot that has just come in.
-    pub(super) fn offset_one(&mut self, place: usize, ground: &Ground<'_>, beside: &Beside<'_>) {
+    pub(super) fn offset_one(&mut self, place: usize, grounds: &[Ground<'_>], beside: &Beside<'_>) {
         for (p, press) in numbered(beside.presses) {
             self.influence.recent.begin();
-            let found = self.influence_on(place, ground.body, &press);
+            let found = self.influence_on(place, grounds, &press);
             self.influence.by_slot[place][p] = found;
         }
         self.patch.slots_mut()[place].offset = self.offset_of(place, beside);
@@ -84,18 +91,19 @@ impl Joint {
     /// How far points move a place in a triangle, m.
     pub(super) fn moved_by_points(
         &mut self,
-        body: &Body,
+        (body, ground): (usize, &Ground<'_>),
         beside: &Beside<'_>,
         nodes: [u32; 3],
         alpha: [f64; 3],
     ) -> DVec3 {
         let forces = beside.several.forces();
         let mut moved = DVec3::ZERO;
-        for (p, press) in numbered(beside.presses).filter(|(_, press)| press.touches) {
-            let loaded = body.triangles[press.hold.triangle as usize];
+        let acts = |press: &Press| press.touches && usize::from(press.body) == body;
+        for (p, press) in numbered(beside.presses).filter(|(_, press)| acts(press)) {
+            let loaded = ground.body.triangles[press.hold.triangle as usize];
             for (node, weight) in nodes.into_iter().zip(alpha) {
                 for (other, share) in loaded.into_iter().zip(press.hold.alpha) {
-                    let block = self.patch.blocks_mut().get(body, node, other);
+                    let block = self.patch.blocks_mut().get(ground, node, other);
                     moved += block * forces[p] * (weight * share);
                 }
             }
@@ -107,7 +115,7 @@ impl Joint {
     /// both are found.
     pub(super) fn meet_points(
         &mut self,
-        ground: &Ground<'_>,
+        grounds: &[Ground<'_>],
         beside: &mut Beside<'_>,
         most_work: usize,
     ) -> bool {
@@ -115,19 +123,19 @@ impl Joint {
             return true;
         }
         for _ in 0..MOST_TURNS {
-            let reaction = self.reaction(ground.body, beside);
+            let reaction = self.reaction(grounds, beside);
             // What fades in or out does so once a tick.
             let dt = if beside.answers.is_none() {
-                ground.dt
+                beside.dt
             } else {
                 0.0
             };
             let (several, presses) = (&mut *beside.several, beside.presses);
-            let mut answers = several.solve(ground.body, ground.number, presses, &reaction, dt);
+            let mut answers = several.solve(grounds, presses, &reaction, dt);
             if answers.is_none() {
                 self.influence.reduced = [0.0; MAX_FINGERS];
                 let none = Reaction::default();
-                answers = several.solve(ground.body, ground.number, presses, &none, dt);
+                answers = several.solve(grounds, presses, &none, dt);
             }
             if answers.is_none() {
                 return true;
@@ -157,7 +165,7 @@ impl Joint {
     }
 
     /// How the tools answer to the points' forces, on the slots that carry force now.
-    fn reaction(&mut self, body: &Body, beside: &Beside<'_>) -> Reaction {
+    fn reaction(&mut self, grounds: &[Ground<'_>], beside: &Beside<'_>) -> Reaction {
         let mut reaction = Reaction::default();
         if !self.problem.take_face() {
             return reaction;
@@ -203,7 +211,9 @@ impl Joint {
             }
         }
         for (p, press) in numbered(beside.presses) {
-            let own = contact_compliance(body, press.hold.triangle, press.hold.alpha);
+            let own = (grounds.get(usize::from(press.body))).and_then(|ground| {
+                contact_compliance(ground.body, press.hold.triangle, press.hold.alpha)
+            });
             let taken = own.map_or(0.0, |own| share_taken(&own, &-reaction.by[p][p]));
             self.influence.reduced[p] = (MOST_TAKEN / taken).sqrt().min(1.0);
         }

@@ -1,10 +1,10 @@
-//! All tools on a body in one tick: one problem of contact, with the points beside them.
+//! All tools in one tick: one problem of contact, with the points beside them.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use crate::algebra::MOST_POINTS;
-use crate::body::surface::Body;
 use crate::contact::cones::MAX_FINGERS;
+use crate::contact::ground::{Ground, MOST_BODIES};
 use crate::fingers::press::{Answers, Presses};
 use crate::fingers::several::Several;
 use crate::tool::coefficients::AllPosed;
@@ -14,6 +14,7 @@ use crate::tool::effort::Effort;
 use crate::tool::friction::{Rubbing, take_anchors};
 use crate::tool::patch::Patch;
 use crate::tool::shape::Pose;
+use crate::tool::slot::Slot;
 
 use super::responses::Influence;
 
@@ -33,28 +34,17 @@ pub struct Led<'a> {
 /// All tools, by the number of their finger.
 pub type AllLed<'a> = [Option<Led<'a>>; MAX_FINGERS];
 
-/// What a tick is on.
-#[derive(Debug, Clone, Copy)]
-pub struct Ground<'a> {
-    /// The body.
-    pub body: &'a Body,
-    /// Counts the exchanges of the body.
-    pub number: u32,
-    /// Pa.
-    pub young_modulus: f64,
-    /// Length of the tick, s.
-    pub dt: f64,
-}
-
 /// The points beside the tools.
 pub(super) struct Beside<'a> {
     pub several: &'a mut Several,
     pub presses: &'a Presses,
+    /// Length of the tick, s.
+    pub dt: f64,
     /// What became of them, once it is found.
     pub answers: Option<Answers>,
 }
 
-/// The contact of all tools on a body, from tick to tick. Allocates all it ever needs.
+/// The contact of all tools, from tick to tick. Allocates all it ever needs.
 #[derive(Debug, Clone)]
 pub struct Joint {
     pub(super) patch: Patch,
@@ -68,9 +58,9 @@ pub struct Joint {
     pub(super) effort: Effort,
     /// Whose slots there are.
     eras: [Option<u64>; MAX_FINGERS],
-    body: u32,
-    /// Tools that have the same contact points.
-    pub(super) kin: [[bool; MAX_FINGERS]; MAX_FINGERS],
+    bodies: [Option<u32>; MOST_BODIES],
+    /// Tools that have the same contact points, by body.
+    pub(super) kin: [[[bool; MAX_FINGERS]; MAX_FINGERS]; MOST_BODIES],
 }
 
 impl Default for Joint {
@@ -84,51 +74,69 @@ impl Default for Joint {
             entering: Vec::with_capacity(MOST_ENTERING + 1),
             effort: Effort::default(),
             eras: [None; MAX_FINGERS],
-            body: 0,
-            kin: [[false; MAX_FINGERS]; MAX_FINGERS],
+            bodies: [None; MOST_BODIES],
+            kin: [[[false; MAX_FINGERS]; MAX_FINGERS]; MOST_BODIES],
         }
     }
 }
 
 impl Joint {
-    /// One tick: all tools go towards their goals by at most one stride, and feel the body, each other
+    /// One tick: all tools go towards their goals by at most one stride, and feel the bodies, each other
     /// and the points there.
     pub(super) fn tick(
         &mut self,
-        ground: &Ground<'_>,
+        grounds: &[Ground<'_>],
         led: &mut AllLed<'_>,
         beside: &mut Beside<'_>,
     ) {
         self.effort = Effort::default();
-        self.begin(ground, led);
-        self.offset(ground, beside);
+        self.begin(grounds, led);
+        self.offset(grounds, beside);
         let mut all_in = [true; MAX_FINGERS];
         for (number, all_in) in all_in.iter_mut().enumerate() {
-            if self.eras[number].is_some() {
-                *all_in = self.choose(number as u8, ground, led, beside);
+            for body in 0..grounds.len() {
+                if self.eras[number].is_some() {
+                    *all_in &= self.choose([number as u8, body as u8], grounds, led, beside);
+                }
             }
         }
         // Slots have gone and come.
-        self.find_influence(ground.body, beside);
+        self.find_influence(grounds, beside);
         let posed = self.posed(led);
-        let (linearisations, exact) = self.settle(ground, led, &posed, beside);
+        let (linearisations, exact) = self.settle(grounds, led, &posed, beside);
         let mut are_numbers = self.patch.slots().iter().all(|slot| slot.moved.is_finite());
         for (number, tool) in posed.iter().enumerate() {
             let (Some(tool), Some(led)) = (tool, &mut led[number]) else {
                 continue;
             };
-            let stuck = take_anchors(&mut self.patch, number as u8, tool);
-            let felt = Felt {
+            led.collider.begin_taking();
+            let mut felt = Felt {
                 linearisations,
                 exact: exact && all_in[number],
                 effort: self.effort,
-                ..self.feel(number as u8, led.collider, ground.young_modulus, stuck)
+                stiffness: DMat3::ZERO,
+                ..Felt::default()
             };
+            let mut nearest = [None; MOST_BODIES];
+            for (body, ground) in grounds.iter().enumerate() {
+                let pair = [number as u8, body as u8];
+                let stuck = take_anchors(&mut self.patch, pair, tool);
+                self.feel(pair, led.collider, ground.young_modulus, stuck, &mut felt);
+            }
+            for slot in self
+                .patch
+                .slots()
+                .iter()
+                .filter(|slot| usize::from(slot.tool) == number)
+            {
+                let nearest = &mut nearest[usize::from(slot.body)];
+                if nearest.is_none_or(|other: &Slot| slot.seen.0 < other.seen.0) {
+                    *nearest = Some(slot);
+                }
+            }
             are_numbers &= felt.force.is_finite() && felt.torque.is_finite();
-            let own = (self.patch.slots().iter()).filter(|slot| usize::from(slot.tool) == number);
-            let nearest = own.min_by(|a, b| a.seen.0.total_cmp(&b.seen.0));
             if led.collider.feel(felt, nearest) {
-                self.patch.let_go(number as u8);
+                self.patch.let_go(|slot| usize::from(slot.tool) == number);
             }
         }
         if !are_numbers {
@@ -139,7 +147,7 @@ impl Joint {
     }
 
     /// Tools take their way; slots of those that are not there any more, or feel nothing, go.
-    fn begin(&mut self, ground: &Ground<'_>, led: &mut AllLed<'_>) {
+    fn begin(&mut self, grounds: &[Ground<'_>], led: &mut AllLed<'_>) {
         let mut eras = [None; MAX_FINGERS];
         for (era, tool) in eras.iter_mut().zip(led.iter_mut()) {
             let Some(Led {
@@ -159,23 +167,27 @@ impl Joint {
         }
         for (number, (before, now)) in self.eras.iter().zip(&eras).enumerate() {
             if before.is_some() && before != now {
-                self.patch.let_go(number as u8);
+                self.patch.let_go(|slot| usize::from(slot.tool) == number);
             }
         }
         self.eras = eras;
-        if self.body != ground.number {
-            self.body = ground.number;
-            self.patch.turn_to(ground.number);
-        }
-        for (p, kin) in self.kin.iter_mut().enumerate() {
-            for (q, is_kin) in kin.iter_mut().enumerate() {
-                *is_kin = matches!((&led[p], &led[q]), (Some(p), Some(q))
-                    if p.collider.surface().is_same(q.collider.surface()));
+        for (body, (kin, number)) in self.kin.iter_mut().zip(&mut self.bodies).enumerate() {
+            let now = grounds.get(body).map(|ground| ground.number);
+            if *number != now {
+                *number = now;
+                self.patch.let_go(|slot| usize::from(slot.body) == body);
+            }
+            let surface = |tool: usize| led[tool].as_ref()?.collider.surface(body);
+            for (p, kin) in kin.iter_mut().enumerate() {
+                for (q, is_kin) in kin.iter_mut().enumerate() {
+                    *is_kin =
+                        matches!((surface(p), surface(q)), (Some(p), Some(q)) if p.is_same(q));
+                }
             }
         }
     }
 
-    /// The tools that feel the body, where they are.
+    /// The tools that feel the bodies, where they are.
     fn posed(&self, led: &AllLed<'_>) -> AllPosed {
         let mut posed = [None; MAX_FINGERS];
         for (number, posed) in posed.iter_mut().enumerate() {
@@ -193,7 +205,7 @@ impl Joint {
     /// How far tools move a place of the surface by their last forces, m.
     pub(super) fn moved_by_tools(
         &mut self,
-        body: &Body,
+        (body, ground): (usize, &Ground<'_>),
         led: &AllLed<'_>,
         nodes: [u32; 3],
         alpha: [f64; 3],
@@ -204,10 +216,10 @@ impl Joint {
             let Some(tool) = tool.as_ref().filter(|_| counts(number)) else {
                 continue;
             };
-            for &(loaded, force) in tool.collider.nodal_forces() {
+            for &(loaded, force) in tool.collider.nodal_forces(body) {
                 for (node, weight) in nodes.into_iter().zip(alpha) {
                     if weight != 0.0 {
-                        let block = self.patch.blocks_mut().get(body, node, loaded);
+                        let block = self.patch.blocks_mut().get(ground, node, loaded);
                         moved += block * force * weight;
                     }
                 }

@@ -3,9 +3,11 @@
 use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
 
+use glam::DVec3;
+
 use super::Engine;
-use super::joint::{Ground, Led};
-use crate::body::surface::Body;
+use super::joint::Led;
+use crate::contact::ground::Ground;
 use crate::tool::collider::{Collider, Felt, NotANumber};
 use crate::tool::points::ToolSurface;
 use crate::tool::shape::{Pose, Tool};
@@ -13,6 +15,7 @@ use crate::tool::shape::{Pose, Tool};
 /// A tool that no other finger is beside.
 #[derive(Debug, Clone)]
 pub struct LoneTool {
+    surface: Arc<ToolSurface>,
     collider: Collider,
     engine: Engine,
 }
@@ -21,9 +24,20 @@ impl LoneTool {
     /// A tool that was not yet set down.
     pub fn new(surface: Arc<ToolSurface>, tool: Tool) -> Self {
         Self {
-            collider: Collider::new(surface, tool),
+            collider: Collider::new(surface.clone(), tool),
+            surface,
             engine: Engine::default(),
         }
+    }
+
+    /// The contact points.
+    pub fn surface(&self) -> &Arc<ToolSurface> {
+        &self.surface
+    }
+
+    /// Nodes that carry force, and their forces at unit modulus.
+    pub fn nodal_forces(&self) -> &[(u32, DVec3)] {
+        self.collider.nodal_forces(0)
     }
 
     /// What the last tick found; nothing where that was no number.
@@ -40,12 +54,11 @@ impl LoneTool {
             self.collider.lift();
             return Err(NotANumber);
         }
-        let body: Arc<Body> = Arc::clone(self.collider.surface().body());
+        let body = Arc::clone(self.surface.body());
         let ground = Ground {
             body: &body,
             number: 0,
             young_modulus,
-            dt: 0.0,
         };
         let mut led = [const { None }; crate::contact::cones::MAX_FINGERS];
         led[0] = Some(Led {
@@ -54,7 +67,7 @@ impl LoneTool {
             presence: 1.0,
         });
         let presses = [None; crate::contact::cones::MAX_FINGERS];
-        self.engine.tick(&ground, &presses, &mut led);
+        self.engine.tick(&[ground], &presses, &mut led, 0.0);
         self.collider.felt()
     }
 }

@@ -1,4 +1,4 @@
-//! All that touches one body at once, as one problem of contact: for the tick, and for whoever has no
+//! All that touches some bodies at once, as one problem of contact: for the tick, and for whoever has no
 //! clock.
 //!
 //! Tools are [`Led`](joint::Led) to where they are to go, points say where they press; what presses is
@@ -14,11 +14,12 @@ pub mod lone;
 mod responses;
 pub mod settling;
 
+use crate::contact::ground::Ground;
 use crate::fingers::press::{Answers, Presses, Reaction};
 use crate::fingers::several::Several;
-use joint::{AllLed, Beside, Ground, Joint};
+use joint::{AllLed, Beside, Joint};
 
-/// The contact of all fingers on a body, from tick to tick.
+/// The contact of all fingers, from tick to tick.
 #[derive(Debug, Clone, Default)]
 pub struct Engine {
     several: Several,
@@ -26,14 +27,15 @@ pub struct Engine {
 }
 
 impl Engine {
-    /// One tick: what becomes of the points, and each tool keeps what it felt. `None` where there are no
+    /// One tick of `dt` s on a list of bodies: what becomes of the points, and each tool keeps what it felt. `None` where there are no
     /// points, on a body that does not keep its whole compliance, or where rounding has made nonsense
     /// of it.
     pub fn tick(
         &mut self,
-        ground: &Ground<'_>,
+        grounds: &[Ground<'_>],
         presses: &Presses,
         led: &mut AllLed<'_>,
+        dt: f64,
     ) -> Option<Answers> {
         let has_points = presses.iter().any(Option::is_some);
         if !has_points {
@@ -41,16 +43,15 @@ impl Engine {
         }
         if led.iter().all(Option::is_none) && self.joint.is_idle() {
             let none = Reaction::default();
-            return has_points.then(|| {
-                (self.several).solve(ground.body, ground.number, presses, &none, ground.dt)
-            })?;
+            return has_points.then(|| self.several.solve(grounds, presses, &none, dt))?;
         }
         let mut beside = Beside {
             several: &mut self.several,
             presses,
+            dt,
             answers: None,
         };
-        self.joint.tick(ground, led, &mut beside);
+        self.joint.tick(grounds, led, &mut beside);
         beside.answers
     }
 }

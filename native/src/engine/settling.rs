@@ -6,10 +6,11 @@ use glam::DVec3;
 
 use super::Engine;
 use super::goals::{Goal, PointTouch, Toucher, Unsettled, between};
-use super::joint::{AllLed, Ground, Led};
+use super::joint::{AllLed, Led};
 use crate::body::softening::{Felt, Softening};
 use crate::body::surface::Body;
 use crate::contact::cones::MAX_FINGERS;
+use crate::contact::ground::Ground;
 use crate::contact::touch::{ContactMode, softened_touch, touch};
 use crate::fingers::press::{Answers, Press, Presses};
 use crate::proxy::SurfacePoint;
@@ -154,10 +155,10 @@ impl Settling {
             body: &self.body,
             number: 0,
             young_modulus: self.young_modulus,
-            // Nothing fades in or out here: whatever was asked for is there at once.
-            dt: f64::INFINITY,
         };
-        let answers = self.engine.tick(&ground, &presses, &mut led);
+        // Nothing fades in or out here: whatever was asked for is there at once.
+        let dt = f64::INFINITY;
+        let answers = self.engine.tick(&[ground], &presses, &mut led, dt);
         self.take(goals, answers.as_ref());
         let largest = (before.iter().enumerate())
             .map(|(number, before)| self.force(number).length().max(before.length()))
@@ -263,6 +264,7 @@ impl Settling {
             displacement
         };
         Press {
+            body: 0,
             hold,
             touches: true,
             displacement,

@@ -9,7 +9,9 @@ use crate::proxy::SurfacePoint;
 /// A finger on the body, or near it where the others move the surface.
 #[derive(Debug, Clone, Copy)]
 pub struct Press {
-    /// Where on the surface.
+    /// Number of the body in the list.
+    pub body: u8,
+    /// Where on its surface.
     pub hold: SurfacePoint,
     /// It touches; otherwise only what the others do there is asked for.
     pub touches: bool,

@@ -1,4 +1,4 @@
-//! Several fingers on one body: each feels the others through it, equation (10) and its extension
+//! Several points on soft bodies: each feels the others through it, equation (10) and its extension
 //! to places on triangles. See `docs/contact.md`.
 //!
 //! Contact point p moves by the forces on all, u_p = sum_q C_pq F_q / E with
@@ -11,6 +11,7 @@ use glam::{DMat3, DVec3};
 use crate::algebra::series_share;
 use crate::body::surface::Body;
 use crate::contact::cones::{Blocks, Cone, MAX_FINGERS, Members, Vectors, mean, solve_distinct};
+use crate::contact::ground::Ground;
 use crate::contact::touch::{contact_compliance, inverse_of_definite};
 use crate::control::coupling::series_compliance;
 use crate::fingers::press::{Answer, Answers, Presses, Reaction, numbered};
@@ -64,17 +65,16 @@ impl Several {
     /// Forces of all fingers that touch, and how far they move the surface at all that are there,
     /// between tools that answer as told.
     ///
-    /// `number` counts the bodies that were exchanged, `dt` is the tick's length in s. `None` for a
-    /// body that does not keep its whole compliance, or one of which rounding has made nonsense.
+    /// `dt` is the tick's length in s. `None` for a press on a body that is not there or does not keep
+    /// its whole compliance, or where rounding has made nonsense of one.
     pub fn solve(
         &mut self,
-        body: &Body,
-        number: u32,
+        grounds: &[Ground<'_>],
         presses: &Presses,
         tools: &Reaction,
         dt: f64,
     ) -> Option<Answers> {
-        let mut alone = self.coupled_compliance(body, number, presses)?;
+        let mut alone = self.coupled_compliance(grounds, presses)?;
         tell_apart(&mut alone, &Members::of(presses))?;
         let compliance = tools.on(&alone);
         let touching = presses.map(|press| press.filter(|p| p.touches));
@@ -141,17 +141,14 @@ impl Several {
         self.softened = Softened::default();
     }
 
-    /// C_pq of all fingers that are there.
-    fn coupled_compliance(
-        &mut self,
-        body: &Body,
-        number: u32,
-        presses: &Presses,
-    ) -> Option<Blocks> {
+    /// C_pq of all fingers that are there, zero between bodies.
+    fn coupled_compliance(&mut self, grounds: &[Ground<'_>], presses: &Presses) -> Option<Blocks> {
         let mut compliance = [[DMat3::ZERO; MAX_FINGERS]; MAX_FINGERS];
         for (p, press) in numbered(presses) {
+            let Ground { body, number, .. } = *grounds.get(usize::from(press.body))?;
             compliance[p][p] = contact_compliance(body, press.hold.triangle, press.hold.alpha)?;
-            for (q, other) in numbered(presses).take_while(|&(q, _)| q < p) {
+            let before = numbered(presses).take_while(|&(q, _)| q < p);
+            for (q, other) in before.filter(|(_, other)| other.body == press.body) {
                 let triangles = [press.hold.triangle, other.hold.triangle];
                 let cross = &mut self.cross[p][q];
                 if (cross.triangles, cross.body) != (triangles, number) {

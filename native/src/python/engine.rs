@@ -192,7 +192,7 @@ impl ContactEngine {
         told.set_item("point_forces", vectors(&|slot| slot.force * modulus)?)?;
         told.set_item("normals", vectors(&|slot| slot.normal)?)?;
         told.set_item("displacements", vectors(&|slot| slot.moved)?)?;
-        let nodes = tool.nodal_forces().iter();
+        let nodes = tool.nodal_forces(0).iter();
         let (numbers, forces): (Vec<i64>, Vec<DVec3>) =
             (nodes.map(|&(node, force)| (i64::from(node), force * modulus))).unzip();
         told.set_item("nodes", PyArray1::from_vec(py, numbers))?;

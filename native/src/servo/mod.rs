@@ -20,10 +20,10 @@ use triple_buffer::{Input, Output, triple_buffer};
 
 use crate::body::surface::Body;
 use crate::contact::cones::MAX_FINGERS;
+use crate::contact::ground::Ground;
 use crate::contact::touch::ContactMode;
 use crate::device::{Device, Fault};
 use crate::engine::Engine;
-use crate::engine::joint::Ground;
 use crate::servo::exchange::{Hand, Holder, exchange};
 use crate::servo::finger::{Finger, Followed, Touch};
 use crate::servo::pressed_patch::PressedPatch;
@@ -185,9 +185,8 @@ impl Servo {
             body: moment.body,
             number: moment.body_number,
             young_modulus: settings.young_modulus,
-            dt: moment.dt,
         };
-        let answers = self.engine.tick(&ground, &presses, &mut led);
+        let answers = (self.engine).tick(&[ground], &presses, &mut led, moment.dt);
         each(&mut self.fingers, |k, finger| {
             let answer = answers.as_ref().map(|answers| &answers[k]);
             Some(finger.feel(followed[k].as_ref()?, answer))

@@ -64,7 +64,7 @@ impl PressedPatch {
             };
             self.point_count += 1;
         }
-        for (shown, &(node, force)) in self.nodes.iter_mut().zip(tool.nodal_forces()) {
+        for (shown, &(node, force)) in self.nodes.iter_mut().zip(tool.nodal_forces(0)) {
             *shown = (node, force * young_modulus);
             self.node_count += 1;
         }

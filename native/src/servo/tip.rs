@@ -23,7 +23,7 @@ impl Tip {
     pub fn fits(&self, body: &Body) -> bool {
         match self {
             Self::Point => true,
-            Self::Tool(tool) => std::ptr::eq(&raw const **tool.surface().body(), body),
+            Self::Tool(tool) => tool.is_on(body),
         }
     }
 }

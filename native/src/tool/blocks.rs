@@ -1,11 +1,11 @@
-//! Blocks of the compliance between nodes near a tool, kept at hand.
+//! Blocks of compliances between nodes near a tool, kept at hand.
 //!
 //! A block of a table of hundreds of megabytes costs three waits for memory, one of a compressed
 //! table sums over its patterns; under a tool the same few thousand are asked for again and again.
 
 use glam::DMat3;
 
-use crate::body::surface::Body;
+use crate::contact::ground::Ground;
 
 /// Places; a tool over 300 nodes needs 45,000.
 const PLACES: usize = 1 << 16;
@@ -14,11 +14,10 @@ const EMPTY: u64 = u64::MAX;
 /// Nodes that are told apart, and bodies of those that follow each other.
 const NODE_BITS: u32 = 24;
 
-/// Some blocks of one body.
+/// Some blocks of some bodies.
 #[derive(Debug, Clone)]
 pub(crate) struct Blocks {
     places: Vec<(u64, DMat3)>,
-    body: u64,
     fetched: usize,
 }
 
@@ -26,15 +25,8 @@ impl Blocks {
     pub(crate) fn new() -> Self {
         Self {
             places: vec![(EMPTY, DMat3::ZERO); PLACES],
-            body: 0,
             fetched: 0,
         }
-    }
-
-    /// From now on blocks are of the body with this number: those of others are no longer found.
-    #[inline]
-    pub(crate) fn turn_to(&mut self, body: u32) {
-        self.body = u64::from(body) << (2 * NODE_BITS);
     }
 
     /// How many were not at hand so far.
@@ -45,15 +37,25 @@ impl Blocks {
 
     /// L_ab at unit modulus, zero for a body that does not keep its compliance.
     #[inline]
-    pub(crate) fn get(&mut self, body: &Body, a: u32, b: u32) -> DMat3 {
-        self.kept(a, b, |a, b| body.block(a, b).unwrap_or(DMat3::ZERO))
+    pub(crate) fn get(&mut self, ground: &Ground<'_>, a: u32, b: u32) -> DMat3 {
+        let body = ground.body;
+        self.kept(ground.number, a, b, |a, b| {
+            body.block(a, b).unwrap_or(DMat3::ZERO)
+        })
     }
 
-    /// A block between two nodes that is the transpose of the one between them the other way round.
+    /// A block between two nodes of a numbered body that is the transpose of the one between them the other way round.
     #[inline]
-    pub(crate) fn kept(&mut self, a: u32, b: u32, found: impl FnOnce(u32, u32) -> DMat3) -> DMat3 {
+    pub(crate) fn kept(
+        &mut self,
+        body: u32,
+        a: u32,
+        b: u32,
+        found: impl FnOnce(u32, u32) -> DMat3,
+    ) -> DMat3 {
         let (low, high) = (a.min(b), a.max(b));
-        let key = self.body | u64::from(low) << NODE_BITS | u64::from(high);
+        let key =
+            u64::from(body) << (2 * NODE_BITS) | u64::from(low) << NODE_BITS | u64::from(high);
         // Fibonacci hashing (Knuth 6.4): neighbouring numbers go far apart.
         let place = (key.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 48) as usize % PLACES;
         let kept = &mut self.places[place];

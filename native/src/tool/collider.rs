@@ -1,6 +1,7 @@
-//! A rigid tool on a body: where it is, and what it felt in the last tick.
+//! A rigid tool on one or more bodies: where it is, and what it felt in the last tick.
 
 mod marks;
+pub(crate) mod side;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -8,24 +9,21 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use glam::{DMat3, DQuat, DVec3};
 
 use super::coefficients::{Friction, Posed};
-use marks::Marks;
+use side::Side;
 
 use super::effort::Effort;
 use super::points::ToolSurface;
 use super::shape::{Pose, Tool};
 use super::slot::Slot;
-use crate::body::closest::closest_point;
+use crate::body::surface::Body;
+use crate::contact::ground::MOST_BODIES;
 
 /// Contact points that a tool can have near it at once.
 pub const MOST_NEAR: usize = 160;
 /// Nodes that can carry its force.
 pub const MOST_NODES: usize = 3 * MOST_NEAR;
-/// A point counts as in the tool below this share of its reach: one that is just touched is not.
-const IN_TOOL: f64 = 1e-9;
 /// Strides within which any tool is outside of any body.
 const MOST_STRIDES_OUT: u32 = 2000;
-/// The place of a node that carries nothing.
-const NOWHERE: u16 = u16::MAX;
 
 /// What the tool feels, and how it was found.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -50,24 +48,20 @@ pub struct Felt {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NotANumber;
 
-/// A tool on a body and what is kept of it from tick to tick.
+/// A tool's contact points on each body that it may touch, by the body's place in the list.
+pub type Surfaces = [Option<Arc<ToolSurface>>; MOST_BODIES];
+
+/// A tool and what is kept of it from tick to tick.
 #[derive(Debug, Clone)]
 pub struct Collider {
-    surface: Arc<ToolSurface>,
+    sides: [Option<Side>; MOST_BODIES],
     tool: Tool,
     friction: Friction,
     pose: Option<Pose>,
     /// The tool was outside since it was set down; until then it feels nothing.
     is_free: bool,
-    /// How far others moved the surface nearest to the tool in the last tick, m.
-    pub(crate) carried: DVec3,
     felt: Result<Felt, NotANumber>,
     pressed: Vec<Slot>,
-    /// Nodes that carry force, and which place each node of the body has among them.
-    nodes: Vec<(u32, DVec3)>,
-    place_of: Vec<u16>,
-    /// In which turn each contact point was last marked.
-    pub(crate) marks: Marks,
     /// Another one each time that it is lifted: what is remembered of it elsewhere is over.
     era: u64,
 }
@@ -80,21 +74,23 @@ fn next_era() -> u64 {
 }
 
 impl Collider {
-    /// A tool that was not yet set down. Allocates all it ever needs.
+    /// A tool on the first body alone, not yet set down.
     pub fn new(surface: Arc<ToolSurface>, tool: Tool) -> Self {
-        let (nodes, points) = (surface.body().nodes.len(), surface.points().len());
+        let mut surfaces = [const { None }; MOST_BODIES];
+        surfaces[0] = Some(surface);
+        Self::on(surfaces, tool)
+    }
+
+    /// A tool on several bodies, not yet set down. Allocates all it ever needs.
+    pub fn on(surfaces: Surfaces, tool: Tool) -> Self {
         Self {
-            surface,
+            sides: surfaces.map(|surface| surface.map(Side::new)),
             tool,
             friction: Friction::default(),
             pose: None,
             is_free: false,
-            carried: DVec3::ZERO,
             felt: Ok(Felt::default()),
             pressed: Vec::with_capacity(MOST_NEAR),
-            nodes: Vec::with_capacity(MOST_NODES),
-            place_of: vec![NOWHERE; nodes],
-            marks: Marks::new(points),
             era: next_era(),
         }
     }
@@ -104,9 +100,25 @@ impl Collider {
         &self.tool
     }
 
-    /// The contact points.
-    pub fn surface(&self) -> &Arc<ToolSurface> {
-        &self.surface
+    /// The contact points on a body.
+    pub fn surface(&self, body: usize) -> Option<&Arc<ToolSurface>> {
+        self.sides[body].as_ref().map(|side| &side.surface)
+    }
+
+    /// Whether it may touch a body at all.
+    pub fn is_on(&self, body: &Body) -> bool {
+        let mut sides = self.sides.iter().flatten();
+        sides.any(|side| std::ptr::eq(&raw const **side.surface.body(), body))
+    }
+
+    #[inline]
+    pub(crate) fn side(&self, body: usize) -> Option<&Side> {
+        self.sides[body].as_ref()
+    }
+
+    #[inline]
+    pub(crate) fn side_mut(&mut self, body: usize) -> Option<&mut Side> {
+        self.sides[body].as_mut()
     }
 
     /// Friction from the next tick on; none unless told.
@@ -137,9 +149,9 @@ impl Collider {
         &self.pressed
     }
 
-    /// Nodes of the body that carry force, and their forces at unit modulus.
-    pub fn nodal_forces(&self) -> &[(u32, DVec3)] {
-        &self.nodes
+    /// Nodes of a body that carry force, and their forces at unit modulus.
+    pub fn nodal_forces(&self, body: usize) -> &[(u32, DVec3)] {
+        self.side(body).map_or(&[], Side::nodal_forces)
     }
 
     pub(crate) fn era(&self) -> u64 {
@@ -157,23 +169,26 @@ impl Collider {
 
     /// Forgets all contact; the next pose is where the tool appears.
     pub fn lift(&mut self) {
-        (self.pose, self.carried) = (None, DVec3::ZERO);
+        self.pose = None;
         self.era = next_era();
         self.clear();
+        for side in self.sides.iter_mut().flatten() {
+            side.carried = DVec3::ZERO;
+        }
     }
 
     /// Feels nothing.
     pub(crate) fn clear(&mut self) {
         self.felt = Ok(Felt::default());
         self.begin_taking();
+        let sides = self.sides.iter_mut().flatten();
+        sides.for_each(|side| side.was_pressed = false);
     }
 
     /// Forgets which points are pressed.
     pub(crate) fn begin_taking(&mut self) {
         self.pressed.clear();
-        for (node, _) in self.nodes.drain(..) {
-            self.place_of[node as usize] = NOWHERE;
-        }
+        self.sides.iter_mut().flatten().for_each(Side::clear);
     }
 
     /// Lets the body go, for what was asked or found is no number.
@@ -211,34 +226,23 @@ impl Collider {
     /// A point that is pressed, with what its nodes carry of that.
     pub(crate) fn take(&mut self, slot: &Slot) {
         self.pressed.push(*slot);
-        for (node, weight) in slot.at.nodes.into_iter().zip(slot.at.alpha) {
-            if weight == 0.0 {
-                continue;
-            }
-            let place = &mut self.place_of[node as usize];
-            if *place == NOWHERE {
-                *place = self.nodes.len() as u16;
-                self.nodes.push((node, slot.force * weight));
-            } else {
-                self.nodes[usize::from(*place)].1 += slot.force * weight;
-            }
+        if let Some(side) = &mut self.sides[usize::from(slot.body)] {
+            side.take(slot);
         }
     }
 
-    /// What it feels. A tool that lost the surface, as others have moved it, while in the body would
-    /// come out at any side: it is let go, which is told. One from which others have only moved the
-    /// surface away is before the point that is nearest.
-    pub(crate) fn feel(&mut self, felt: Felt, nearest: Option<&Slot>) -> bool {
-        let was_pressed = self.felt.is_ok_and(|felt| felt.pressed > 0);
+    /// What it feels; `nearest` is its nearest point on each body. A tool that lost a surface while in
+    /// the body is let go, which is told.
+    pub(crate) fn feel(&mut self, felt: Felt, nearest: [Option<&Slot>; MOST_BODIES]) -> bool {
         self.felt = Ok(felt);
-        let back = self.pose.map(|pose| pose.moved(-self.carried));
-        let is_before = self.carried != DVec3::ZERO
-            && nearest
-                .is_some_and(|slot| slot.seen.0 > 0.0 && slot.seen.1.dot(slot.at.normal) < 0.0);
-        let is_lost = was_pressed
-            && felt.pressed == 0
-            && !is_before
-            && back.is_some_and(|back| !self.is_outside(&back));
+        let mut is_lost = false;
+        for (side, nearest) in self.sides.iter_mut().zip(nearest) {
+            let (Some(side), Some(pose)) = (side, &self.pose) else {
+                continue;
+            };
+            is_lost |= side.is_lost(&self.tool, pose, nearest);
+            side.was_pressed = !side.nodal_forces().is_empty();
+        }
         if is_lost {
             self.is_free = false;
             self.clear();
@@ -246,13 +250,14 @@ impl Collider {
         is_lost
     }
 
-    /// The nearest pose outside of the body at rest, on the way on which that would push the tool out.
+    /// The nearest pose outside of the bodies at rest, on the way on which that would push the tool out.
     pub fn way_out(&self, pose: &Pose) -> Option<Pose> {
         if self.is_outside(pose) {
             return Some(*pose);
         }
         let (mut push, mut nearest) = (DVec3::ZERO, (f64::INFINITY, DVec3::ZERO));
-        for point in self.surface.points() {
+        let sides = self.sides.iter().flatten();
+        for point in sides.flat_map(|side| side.surface.points()) {
             let distance = self.tool.distance(pose.to_tool(point.position)).0;
             push += point.normal * (-distance).max(0.0) * point.area;
             if distance < nearest.0 {
@@ -266,20 +271,10 @@ impl Collider {
             .find(|pose| self.is_outside(pose))
     }
 
-    /// Whether the tool is clear of the body at rest: no point in it, nor it in the body.
+    /// Whether the tool is clear of all bodies at rest.
     fn is_outside(&self, pose: &Pose) -> bool {
-        let mut overlaps = false;
-        let tool = &self.tool;
-        self.surface.tree().visit(
-            |middle, radius| tool.least_distance(pose.to_tool(middle)) <= radius,
-            |point| {
-                let place = self.surface.points()[point as usize].position;
-                let distance = tool.distance(pose.to_tool(place)).0;
-                overlaps = overlaps || distance < -IN_TOOL * tool.reach();
-            },
-        );
-        let middle = pose.position + pose.rotation * tool.middle();
-        !overlaps && !closest_point(self.surface.body(), middle, 0).1
+        let mut sides = self.sides.iter().flatten();
+        sides.all(|side| side.is_outside(&self.tool, pose))
     }
 }
 

@@ -221,16 +221,12 @@ fn shortened(force: DVec3, limit: f64) -> DVec3 {
     }
 }
 
-/// After a tick: anchors of a tool's points that stuck stay, others are where the points are. How much
+/// After a tick: anchors of a tool's points on a body that stuck stay, others are where the points are. How much
 /// of all pushes is on points that stick, 0 to 1.
-pub(crate) fn take_anchors(patch: &mut Patch, number: u8, tool: &Posed) -> f64 {
+pub(crate) fn take_anchors(patch: &mut Patch, pair: [u8; 2], tool: &Posed) -> f64 {
     let (mut stuck, mut all) = (0.0, 0.0);
     let Posed { pose, friction, .. } = tool;
-    for slot in patch
-        .slots_mut()
-        .iter_mut()
-        .filter(|slot| slot.tool == number)
-    {
+    for slot in patch.slots_mut().iter_mut().filter(|slot| slot.is_of(pair)) {
         if slot.push <= 0.0 || friction.is_none() {
             (slot.aside, slot.anchor, slot.slips) = (DVec3::ZERO, None, false);
             continue;

@@ -1,4 +1,4 @@
-//! The contact points near all tools on a body, and how each gives way to a force on each other.
+//! The contact points near all tools, and how each gives way to a force on each other.
 
 mod response;
 mod slot_numbers;
@@ -15,6 +15,7 @@ use super::slot::Slot;
 use crate::algebra::wide::widely;
 use crate::algebra::{MOST_POINTS, room};
 use crate::contact::cones::MAX_FINGERS;
+use crate::contact::ground::Ground;
 
 /// Numbers of a column: how all slots give way to a force on one, an entry of the blocks after the
 /// other, row by row, each for all slots.
@@ -51,12 +52,6 @@ impl Patch {
         }
     }
 
-    /// From now on points are on the body with this number. There must be no slots in use.
-    pub(crate) fn turn_to(&mut self, body: u32) {
-        self.blocks.turn_to(body);
-        self.beyond.turn_to(body);
-    }
-
     /// All slots in use.
     #[inline]
     pub fn slots(&self) -> &[Slot] {
@@ -68,11 +63,11 @@ impl Patch {
         &mut self.slots
     }
 
-    /// The slot of a tool's point that has one.
+    /// The slot of a tool's point on a body that has one.
     #[inline]
-    pub(crate) fn slot(&self, tool: u8, point: u32) -> Option<&Slot> {
+    pub(crate) fn slot(&self, pair: [u8; 2], point: u32) -> Option<&Slot> {
         self.numbers
-            .of(tool, point)
+            .of(pair, point)
             .map(|number| &self.slots[number])
     }
 
@@ -149,25 +144,31 @@ impl Patch {
         self.blocks.fetched() + self.beyond.fetched()
     }
 
-    /// Takes a tool's point in; there must be room. `kin` tells of tools which have the same points.
+    /// Takes a tool's point on a body in; there must be room. `kin` tells of tools which have the same
+    /// points there.
     pub(crate) fn enter(
         &mut self,
+        ground: &Ground<'_>,
         surface: &ToolSurface,
-        tool: u8,
+        pair: [u8; 2],
         point: u32,
         kin: &[bool; MAX_FINGERS],
     ) {
         let new = self.slots.len();
-        debug_assert!(new < MOST_POINTS && self.slot(tool, point).is_none());
+        debug_assert!(new < MOST_POINTS && self.slot(pair, point).is_none());
         let at = &surface.points()[point as usize];
-        self.slots.push(Slot::new(tool, point, at));
-        self.numbers.set(tool, point, new);
+        self.slots.push(Slot::new(pair, point, at));
+        self.numbers.set(pair, point, new);
         self.of_nodes.iter_mut().for_each(Recent::begin);
         for slot in 0..=new {
             let other = &self.slots[slot];
+            if other.body != pair[1] {
+                self.put(new, slot, DMat3::ZERO);
+                continue;
+            }
             let near = surface.near().filter(|_| kin[usize::from(other.tool)]);
-            let pair = [(point, at), (other.point, &{ other.at })];
-            let block = self.response(surface.body(), near, pair);
+            let points = [(point, at), (other.point, &{ other.at })];
+            let block = self.response(ground, near, points);
             self.put(new, slot, block);
         }
         let own = self.compliance(new, new);
@@ -206,7 +207,7 @@ impl Patch {
     pub(crate) fn leave(&mut self, slot: usize) {
         let last = self.slots.len() - 1;
         let gone = self.slots[slot];
-        self.numbers.remove(gone.tool, gone.point);
+        self.numbers.remove([gone.tool, gone.body], gone.point);
         if slot != last {
             let own = self.compliance(last, last);
             for other in 0..last {
@@ -215,15 +216,16 @@ impl Patch {
             }
             self.put(slot, slot, own);
             let moved = self.slots[last];
-            self.numbers.set(moved.tool, moved.point, slot);
+            self.numbers
+                .set([moved.tool, moved.body], moved.point, slot);
         }
         self.slots.swap_remove(slot);
     }
 
-    /// Drops all of a tool.
-    pub(crate) fn let_go(&mut self, tool: u8) {
+    /// Drops some.
+    pub(crate) fn let_go(&mut self, goes: impl Fn(&Slot) -> bool) {
         for slot in (0..self.slots.len()).rev() {
-            if self.slots[slot].tool == tool {
+            if goes(&self.slots[slot]) {
                 self.leave(slot);
             }
         }

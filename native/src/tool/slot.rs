@@ -9,6 +9,8 @@ use super::points::Point;
 pub struct Slot {
     /// Number of the tool.
     pub tool: u8,
+    /// Number of the body in the list.
+    pub body: u8,
     /// Number of the contact point.
     pub point: u32,
     /// What is fixed there.
@@ -46,9 +48,16 @@ pub struct Slot {
 }
 
 impl Slot {
-    pub(super) fn new(tool: u8, point: u32, at: &Point) -> Self {
+    /// Whether it is one of a tool on a body.
+    #[inline]
+    pub(crate) fn is_of(&self, pair: [u8; 2]) -> bool {
+        [self.tool, self.body] == pair
+    }
+
+    pub(super) fn new([tool, body]: [u8; 2], point: u32, at: &Point) -> Self {
         Self {
             tool,
+            body,
             point,
             at: *at,
             force: DVec3::ZERO,

@@ -8,4 +8,5 @@ mod contact;
 mod counting;
 mod friction;
 mod on_cube;
+mod several_bodies;
 mod shape;

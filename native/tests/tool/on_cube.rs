@@ -79,6 +79,11 @@ pub fn own_parts(body: &Body, points: &[Point]) -> NearField {
 
 /// The cube, pinned below, giving way about as rubber does: less the farther away.
 pub fn rubber_cube() -> Arc<Body> {
+    rubber_cube_at(|node| node)
+}
+
+/// The same elsewhere: by a rigid move.
+pub fn rubber_cube_at(moved: impl Fn(DVec3) -> DVec3) -> Arc<Body> {
     let cube = crate::bodies::cube();
     let free: Vec<u32> = (0..cube.nodes.len() as u32)
         .filter(|&node| cube.nodes[node as usize].z > 1e-9)
@@ -97,7 +102,8 @@ pub fn rubber_cube() -> Arc<Body> {
     let compliance = Dense::new(free.len(), Either::Long(table.into())).expect("n x 3 x 3n");
     let own = DMat3::from_diagonal(DVec3::splat(1.0 / between(0, 0)));
     let blocks = vec![own; cube.nodes.len()];
-    let body = Body::new(cube.nodes.clone(), cube.triangles.clone(), blocks).expect("sound");
+    let nodes = cube.nodes.iter().map(|&node| moved(node)).collect();
+    let body = Body::new(nodes, cube.triangles.clone(), blocks).expect("sound");
     let compliance = Arc::new(Compliance::Dense(compliance));
     Arc::new((body.with_whole_compliance(compliance, &free)).expect("it fits"))
 }

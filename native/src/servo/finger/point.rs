@@ -71,6 +71,7 @@ impl Point {
             let displacement = followed.displacement();
             let limit = followed.most_stiffness() / settings.young_modulus;
             return Some(Press {
+                body: 0,
                 hold,
                 touches: true,
                 displacement,
@@ -85,6 +86,7 @@ impl Point {
         let seen = followed.shot.probe - self.among.moved_back;
         hold.alpha = closest_on_face(body.face(hold.triangle), seen).0;
         Some(Press {
+            body: 0,
             hold,
             touches: false,
             displacement: DVec3::ZERO,

@@ -4,7 +4,7 @@
 use glam::DMat3;
 
 use super::Patch;
-use crate::body::surface::Body;
+use crate::contact::ground::Ground;
 use crate::tool::near_field::NearField;
 use crate::tool::points::Point;
 
@@ -12,44 +12,51 @@ impl Patch {
     /// Displacement of the point that enters, the first, per force on another.
     pub(super) fn response(
         &mut self,
-        body: &Body,
+        ground: &Ground<'_>,
         near: Option<&NearField>,
         [(point, p), (other, q)]: [(u32, &Point); 2],
     ) -> DMat3 {
         let Some(near) = near else {
-            return self.resolved(body, p, q);
+            return self.resolved(ground, p, q);
         };
         if point == other {
-            let whole = self.resolved(body, p, q) + near.points[point as usize].own;
+            let whole = self.resolved(ground, p, q) + near.points[point as usize].own;
             return (whole + whole.transpose()) * 0.5;
         }
         let normals = [p.normal, q.normal];
         let share = near.share(point, other, normals);
         let mut sum = DMat3::ZERO;
         if share < 1.0 {
-            sum += self.resolved(body, p, q) * (1.0 - share);
+            sum += self.resolved(ground, p, q) * (1.0 - share);
         }
         if share > 0.0 {
             let offset = p.position - q.position;
             let half_space = near.between_points(point, other, offset, normals);
-            sum += (self.beyond(body, near, p, q) + half_space) * share;
+            sum += (self.beyond(ground, near, p, q) + half_space) * share;
         }
         sum
     }
 
     /// What the finite elements have between the point that enters and another.
-    fn resolved(&mut self, body: &Body, entered: &Point, other: &Point) -> DMat3 {
+    fn resolved(&mut self, ground: &Ground<'_>, entered: &Point, other: &Point) -> DMat3 {
         let (blocks, kept) = (&mut self.blocks, &mut self.of_nodes[0]);
-        let mut found = |node: u32| kept.of(node, || entered.mean(|a| blocks.get(body, a, node)));
+        let mut found = |node: u32| kept.of(node, || entered.mean(|a| blocks.get(ground, a, node)));
         other.mean(&mut found)
     }
 
     /// What the body does beyond a half-space between the point that enters and another.
-    fn beyond(&mut self, body: &Body, near: &NearField, entered: &Point, other: &Point) -> DMat3 {
+    fn beyond(
+        &mut self,
+        ground: &Ground<'_>,
+        near: &NearField,
+        entered: &Point,
+        other: &Point,
+    ) -> DMat3 {
         let (blocks, kept) = (&mut self.beyond, &mut self.of_nodes[1]);
+        let body = ground.body;
         let resolved = |a: u32, b: u32| body.block(a, b).unwrap_or(DMat3::ZERO);
         let mut block = |a: u32, b: u32| {
-            blocks.kept(a, b, |a, b| {
+            blocks.kept(ground.number, a, b, |a, b| {
                 let offset = body.nodes[a as usize] - body.nodes[b as usize];
                 near.beyond(a, b, offset, resolved)
             })

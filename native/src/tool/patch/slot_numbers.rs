@@ -1,4 +1,4 @@
-//! Which slot a contact point of a tool has: a small table with open addressing (Knuth 6.4).
+//! Which slot a contact point of a tool on a body has: a small table with open addressing (Knuth 6.4).
 
 use crate::algebra::MOST_POINTS;
 
@@ -6,14 +6,14 @@ use crate::algebra::MOST_POINTS;
 const PLACES: usize = (2 * MOST_POINTS).next_power_of_two();
 const EMPTY: u64 = u64::MAX;
 
-/// Slots by tool and contact point.
+/// Slots by tool, body and contact point.
 #[derive(Debug, Clone)]
 pub(super) struct SlotNumbers {
     places: [(u64, u16); PLACES],
 }
 
-fn key(tool: u8, point: u32) -> u64 {
-    u64::from(tool) << 32 | u64::from(point)
+fn key([tool, body]: [u8; 2], point: u32) -> u64 {
+    u64::from(tool) << 40 | u64::from(body) << 32 | u64::from(point)
 }
 
 fn home(key: u64) -> usize {
@@ -38,20 +38,20 @@ impl SlotNumbers {
     }
 
     #[inline]
-    pub(super) fn of(&self, tool: u8, point: u32) -> Option<usize> {
-        let (key, number) = (key(tool, point), self.place(key(tool, point)));
+    pub(super) fn of(&self, pair: [u8; 2], point: u32) -> Option<usize> {
+        let (key, number) = (key(pair, point), self.place(key(pair, point)));
         let found = self.places[number];
         (found.0 == key).then(|| usize::from(found.1))
     }
 
-    pub(super) fn set(&mut self, tool: u8, point: u32, slot: usize) {
-        let key = key(tool, point);
+    pub(super) fn set(&mut self, pair: [u8; 2], point: u32, slot: usize) {
+        let key = key(pair, point);
         self.places[self.place(key)] = (key, slot as u16);
     }
 
     /// Those behind move up as far as they may, so that all are still found.
-    pub(super) fn remove(&mut self, tool: u8, point: u32) {
-        let mut hole = self.place(key(tool, point));
+    pub(super) fn remove(&mut self, pair: [u8; 2], point: u32) {
+        let mut hole = self.place(key(pair, point));
         let mut next = hole;
         loop {
             next = (next + 1) % PLACES;
