@@ -7,9 +7,9 @@ use crate::algebra::MOST_POINTS;
 use crate::body::closest::closest_point;
 use crate::contact::ground::Ground;
 use crate::fingers::press::Press;
-use crate::tool::collider::MOST_NEAR;
 use crate::tool::collider::side::Side;
 use crate::tool::shape::{Pose, Tool};
+use crate::tool::slot::MOST_NEAR;
 
 /// Points within so many spacings of the tool are looked at.
 pub(super) const MARGIN: f64 = 1.0;
@@ -20,9 +20,10 @@ const MOST_FETCHED: usize = 256;
 /// Points that may enter in one tick times those that are looked at, whose response to each of them
 /// is reckoned.
 const MOST_RESPONSES: usize = 2000;
-/// Points that may take the place of farther ones in one tick: which of two is nearer turns to and fro
-/// where both are about to be touched.
+/// Points that may take the place of farther ones in one tick, and by which share of the margin they
+/// are nearer: which of two is nearer turns to and fro where both are about to be touched.
 const MOST_REPLACED: usize = 4;
+const NEARER: f64 = 0.25;
 /// Points that may be let go in one tick.
 const MOST_LEAVING: usize = 24;
 
@@ -151,7 +152,8 @@ impl Joint {
                 return false;
             }
             if let Err(among) = self.has_room(pair[0], 1) {
-                if replaced == MOST_REPLACED || !self.make_room(distance, among) {
+                let beyond = distance + NEARER * MARGIN * side.surface().spacing();
+                if replaced == MOST_REPLACED || !self.make_room(beyond, among) {
                     return false;
                 }
                 replaced += 1;

@@ -3,7 +3,8 @@
 
 use glam::DVec3;
 
-use crate::tool::collider::{Collider, MOST_NEAR, MOST_NODES};
+use crate::tool::collider::Collider;
+use crate::tool::slot::{MOST_NEAR, MOST_NODES};
 
 /// A point of the surface that a tool presses.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

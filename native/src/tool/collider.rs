@@ -14,14 +14,10 @@ use side::Side;
 use super::effort::Effort;
 use super::points::ToolSurface;
 use super::shape::{Pose, Tool};
-use super::slot::Slot;
+use super::slot::{MOST_NEAR, Slot};
 use crate::body::surface::Body;
 use crate::contact::ground::MOST_BODIES;
 
-/// Contact points that a tool can have near it at once.
-pub const MOST_NEAR: usize = 160;
-/// Nodes that can carry its force.
-pub const MOST_NODES: usize = 3 * MOST_NEAR;
 /// Strides within which any tool is outside of any body.
 const MOST_STRIDES_OUT: u32 = 2000;
 

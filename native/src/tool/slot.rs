@@ -4,6 +4,11 @@ use glam::DVec3;
 
 use super::points::Point;
 
+/// Contact points that a tool can have near it at once.
+pub const MOST_NEAR: usize = 160;
+/// Nodes that can carry its force.
+pub const MOST_NODES: usize = 3 * MOST_NEAR;
+
 /// A contact point near a tool; where two tools share one, each has a slot for it.
 #[derive(Debug, Clone, Copy)]
 pub struct Slot {

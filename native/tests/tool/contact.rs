@@ -9,10 +9,11 @@ use crate::on_cube::{
 use glam::{DMat3, DVec3};
 use palpate_servo::engine::lone::LoneTool;
 use palpate_servo::tool::coefficients::Friction;
-use palpate_servo::tool::collider::{MOST_NEAR, NotANumber};
+use palpate_servo::tool::collider::NotANumber;
 use palpate_servo::tool::near_field::NearField;
 use palpate_servo::tool::points::{Point, ToolSurface};
 use palpate_servo::tool::shape::{Pose, Tool};
+use palpate_servo::tool::slot::MOST_NEAR;
 use std::f64::consts::TAU;
 
 /// The largest jump of the force from tick to tick along a path of so many ticks.

@@ -4,12 +4,11 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::MOST_NODES;
 use super::marks::Marks;
 use crate::body::closest::closest_point;
 use crate::tool::points::ToolSurface;
 use crate::tool::shape::{Pose, Tool};
-use crate::tool::slot::Slot;
+use crate::tool::slot::{MOST_NODES, Slot};
 
 /// A point counts as in the tool below this share of its reach: one that is just touched is not.
 const IN_TOOL: f64 = 1e-9;
