@@ -16,6 +16,12 @@ pub struct Line {
     pub decoder: Decoder,
     pub gone: bool,
     pub full: bool,
+    /// How often the line was read, and opened.
+    pub reads: u64,
+    pub opened: u64,
+    /// What the driver says that it has not sent, bytes; and how often it threw that away.
+    pub queued: usize,
+    pub discarded: u64,
 }
 
 /// The device's end of the wire.
@@ -84,19 +90,23 @@ impl Bench {
 }
 
 impl Wire for Bench {
+    fn waiting(&mut self) -> io::Result<usize> {
+        let line = self.line();
+        match line.gone {
+            true => Err(io::Error::from_raw_os_error(libc::EIO)),
+            false => Ok(line.to_host.len()),
+        }
+    }
+
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let mut line = self.line();
-        if line.gone {
-            return Ok(0);
+        // A terminal would wait for somebody who brings more.
+        assert!((1..=line.to_host.len()).contains(&buffer.len()));
+        line.reads += 1;
+        for byte in buffer.iter_mut() {
+            *byte = line.to_host.pop_front().expect("it is there");
         }
-        if line.to_host.is_empty() {
-            return Err(ErrorKind::WouldBlock.into());
-        }
-        let length = buffer.len().min(line.to_host.len());
-        for (byte, arrived) in buffer.iter_mut().zip(line.to_host.drain(..length)) {
-            *byte = arrived;
-        }
-        Ok(length)
+        Ok(buffer.len())
     }
 
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
@@ -113,12 +123,23 @@ impl Wire for Bench {
         }
         Ok(piece.len())
     }
+
+    fn queued(&mut self) -> usize {
+        self.line().queued
+    }
+
+    fn discard(&mut self) {
+        let mut line = self.line();
+        line.discarded += 1;
+        line.queued = 0;
+    }
 }
 
 impl Opener for Bench {
     type Wire = Self;
 
     fn open(&mut self) -> io::Result<Self> {
+        self.line().opened += 1;
         if self.line().gone {
             Err(ErrorKind::NotFound.into())
         } else {

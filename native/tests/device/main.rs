@@ -7,6 +7,7 @@ mod counting;
 mod damage;
 mod fuzz_link;
 mod haply;
+mod line;
 mod link;
 mod link_bench;
 mod link_document;

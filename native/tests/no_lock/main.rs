@@ -20,7 +20,8 @@ use palpate_servo::control::safety::Limits;
 use palpate_servo::device::link::LinkDevice;
 use palpate_servo::device::link::codec::{MAX_FRAME, encode};
 use palpate_servo::device::serial::port::SerialPort;
-use palpate_servo::device::{Device, DeviceFrame, LinkReport, Probe, Reading};
+use palpate_servo::device::serial::reopening::Reopening;
+use palpate_servo::device::{Device, DeviceFrame, Fault, LinkReport, Probe, Reading};
 use palpate_servo::servo::settings::{Options, Settings};
 use palpate_servo::servo::stages::Stage;
 use palpate_servo::servo::thread::Running;
@@ -257,17 +258,14 @@ fn a_servo_with_a_serial_device_only_sleeps_reads_and_writes() {
     let (path, line) = terminal();
     // Keeps the line up after the board has ended: a port that hangs up is closed, with calls.
     let _line_up = line.try_clone().expect("a descriptor");
-    let device = LinkDevice::open(SerialPort {
-        path,
-        baud: 115_200,
-    })
-    .expect("a port");
+    let port = SerialPort { path, baud: None };
+    let device = LinkDevice::open(Reopening::of(port).expect("a thread")).expect("a port");
     let ends = Arc::new(AtomicBool::new(false));
     let boarding = std::thread::spawn({
         let ends = ends.clone();
         move || board(line, &ends)
     });
-    let permitted = [libc::SYS_read, libc::SYS_write];
+    let permitted = [libc::SYS_read, libc::SYS_write, libc::SYS_ioctl];
     let calls = calls_of(device, Vec::new(), &permitted, |running| {
         hammer(running, 3000);
         let seen = running.published();
@@ -279,6 +277,52 @@ fn a_servo_with_a_serial_device_only_sleeps_reads_and_writes() {
         ends.store(true, Relaxed);
         boarding.join().expect("the board ends");
     });
+    assert_eq!(calls, BTreeMap::new());
+}
+
+#[test]
+fn a_port_that_goes_is_closed_and_opened_again_by_another_thread() {
+    let (gone, line) = terminal();
+    let path = std::env::temp_dir().join(format!("palpate-port-{}", std::process::id()));
+    let lead_to = |terminal: &str| {
+        let _ = std::fs::remove_file(&path);
+        std::os::unix::fs::symlink(terminal, &path).expect("a link");
+    };
+    lead_to(&gone);
+    let port = SerialPort {
+        path: path.to_str().expect("a path").to_owned(),
+        baud: None,
+    };
+    let device = LinkDevice::open(Reopening::of(port).expect("a thread")).expect("a port");
+    let permitted = [
+        libc::SYS_read,
+        libc::SYS_write,
+        libc::SYS_ioctl,
+        // Wakes the other thread.
+        libc::SYS_futex,
+    ];
+    let calls = calls_of(device, Vec::new(), &permitted, |running| {
+        let comes = |what: &dyn Fn(&LinkReport, Option<Fault>) -> bool| {
+            for _ in 0..2000 {
+                let first = *running.published().first();
+                if what(&first.link, first.snapshot.fault) {
+                    return;
+                }
+                sleep(Duration::from_millis(5));
+            }
+            panic!("{:?}", running.published().first());
+        };
+        drop(line);
+        comes(&|_, fault| fault == Some(Fault::Unplugged));
+        // Time to try in vain.
+        sleep(Duration::from_millis(500));
+        let (back, _line) = terminal();
+        lead_to(&back);
+        comes(&|link, _| link.reopened == 1);
+        let hellos = running.published().first().link.hellos;
+        comes(&|link, _| link.hellos > hellos);
+    });
+    std::fs::remove_file(&path).expect("the link");
     assert_eq!(calls, BTreeMap::new());
 }
 

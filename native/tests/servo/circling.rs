@@ -3,7 +3,7 @@
 use glam::DVec3;
 use palpate_servo::device::link::codec::{Decoder, MAX_FRAME, encode};
 use palpate_servo::device::serial::port::{Opener, Wire};
-use std::io::{self, ErrorKind};
+use std::io;
 
 /// A device in memory that answers HELLO and then circles over the body, in and out; now and then
 /// it loses a frame, damages one, sends too much, or nothing.
@@ -64,7 +64,7 @@ impl Circling {
 }
 
 impl Wire for Circling {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+    fn waiting(&mut self) -> io::Result<usize> {
         if self.taken == self.filled {
             (self.taken, self.filled) = (0, 0);
             self.tick += 1;
@@ -75,8 +75,12 @@ impl Wire for Circling {
                 self.out[self.filled..self.filled + 200].fill(0x55);
                 self.filled += 200;
             }
-            return Err(ErrorKind::WouldBlock.into());
+            return Ok(0);
         }
+        Ok(self.filled - self.taken)
+    }
+
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let length = buffer.len().min(self.filled - self.taken);
         buffer[..length].copy_from_slice(&self.out[self.taken..self.taken + length]);
         self.taken += length;

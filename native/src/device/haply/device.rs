@@ -269,7 +269,7 @@ impl<O: Opener> Device for HaplyDevice<O> {
             std::thread::sleep(Duration::from_millis(2));
         }
         self.line.flush();
-        self.line.close(self.now);
+        self.line.end();
     }
 
     fn report(&self) -> LinkReport {

@@ -6,6 +6,7 @@ use crate::device::arrival::Arrivals;
 use crate::device::link::codec::{Decoder, MAX_FRAME, encode};
 use crate::device::link::messages::{DeviceState, PROTOCOL, force_payload, hello_payload};
 use crate::device::link::orientation::Orientations;
+use crate::device::link::pacing::Pacing;
 use crate::device::reason;
 use crate::device::serial::line::Line;
 use crate::device::serial::port::Opener;
@@ -18,6 +19,9 @@ const HELLO_SECONDS: f64 = 0.05;
 const STALE_SECONDS: f64 = 0.02;
 /// Zero forces sent when parking: one may be lost on the wire.
 const PARKING_FRAMES: u32 = 3;
+const PARKING_PAUSE: std::time::Duration = std::time::Duration::from_millis(2);
+/// Waits for a slow line to carry them, at most.
+const PARKING_PAUSES: u32 = 50;
 /// Reads in one tick at most, so that a flood of bytes cannot hold it up.
 const READS_PER_TICK: usize = 16;
 
@@ -47,7 +51,14 @@ pub struct LinkDevice<O: Opener> {
     pub(super) speedometer: Speedometer,
     pub(super) orientations: Orientations,
     pub(super) arrivals: Arrivals,
+    pub(super) pacing: Pacing,
     pub(super) sequence: u16,
+    /// The last FORCE that was to be said had *enable*.
+    pushes: bool,
+    /// Since when the port takes no FORCE, s.
+    refused: Option<f64>,
+    pub(super) now: f64,
+    pub(super) dt: f64,
     pub(super) report: LinkReport,
 }
 
@@ -71,7 +82,12 @@ impl<O: Opener> LinkDevice<O> {
             speedometer: Speedometer::default(),
             orientations: Orientations::default(),
             arrivals: Arrivals::default(),
+            pacing: Pacing::default(),
             sequence: 0,
+            pushes: false,
+            refused: None,
+            now: 0.0,
+            dt: 0.0,
             report: LinkReport::default(),
         })
     }
@@ -92,6 +108,8 @@ impl<O: Opener> LinkDevice<O> {
         self.orientations.dismiss();
         self.orientations.forget();
         self.arrivals.forget();
+        self.pacing = Pacing::default();
+        self.refused = None;
     }
 
     /// Tries the port again now and then.
@@ -121,7 +139,36 @@ impl<O: Opener> LinkDevice<O> {
     /// Puts a frame on the line; false when it does not fit or the line is gone.
     fn send(&mut self, payload: &[u8]) -> bool {
         let mut frame = [0; MAX_FRAME];
-        encode(payload, &mut frame).is_some_and(|length| self.line.send(&frame[..length]))
+        let length = encode(payload, &mut frame);
+        let sent = length.is_some_and(|length| self.line.send(&frame[..length]));
+        if sent {
+            self.carry(length.unwrap_or(0));
+        }
+        sent
+    }
+
+    fn carry(&mut self, bytes: usize) {
+        let speed = self.line.bits_per_second();
+        self.pacing.carry(bytes, speed, self.now);
+    }
+
+    /// Says a FORCE in spite of all that may still wait, which is thrown away where it can be.
+    fn send_at_once(&mut self, payload: &[u8]) -> bool {
+        if self.line.queued() == 0 && self.refused.is_none() {
+            return self.send(payload);
+        }
+        let mut frame = [0; MAX_FRAME];
+        let Some(length) = encode(payload, &mut frame) else {
+            return false;
+        };
+        self.line.send_at_once(&frame[..length]);
+        self.carry(length);
+        true
+    }
+
+    /// Whether a message would leave at once instead of waiting behind another one.
+    fn is_free(&mut self) -> bool {
+        self.pacing.is_free(self.now, self.dt) && self.line.queued() == 0
     }
 
     fn greet(&mut self, now: f64) {
@@ -133,12 +180,14 @@ impl<O: Opener> LinkDevice<O> {
 }
 
 impl<O: Opener> Device for LinkDevice<O> {
-    fn read(&mut self, now: f64, _dt: f64, frame: &DeviceFrame) -> Reading {
+    fn read(&mut self, now: f64, dt: f64, frame: &DeviceFrame) -> Reading {
+        (self.now, self.dt) = (now, dt);
         if !self.line.is_open() {
             self.reopen(now);
         }
         if self.line.is_open() {
             self.drain(now);
+            self.line.flush();
         }
         self.arrivals.end_of_tick(now);
         if !self.line.is_open() {
@@ -193,23 +242,49 @@ impl<O: Opener> Device for LinkDevice<O> {
         if !self.line.is_open() || !self.is_greeted() {
             return;
         }
+        let lets_go = std::mem::replace(&mut self.pushes, enable) && !enable;
+        if !lets_go && !self.pacing.is_due(enable, self.now, self.dt) {
+            return;
+        }
         let payload = force_payload(self.sequence, frame.force_to_device(force), enable);
-        if self.send(&payload) {
+        let sent = if lets_go {
+            self.send_at_once(&payload)
+        } else {
+            self.is_free() && self.send(&payload)
+        };
+        if sent {
             self.sequence = self.sequence.wrapping_add(1);
             self.report.forces += 1;
+            self.pacing.send(self.now);
+            self.refused = None;
         } else {
             self.report.unsent += 1;
+            self.refused.get_or_insert(self.now);
         }
     }
 
     fn park(&mut self) {
-        for _ in 0..PARKING_FRAMES {
-            self.write(DVec3::ZERO, false, &DeviceFrame::default());
+        for number in 0..PARKING_FRAMES {
+            if self.line.is_open() && self.is_greeted() {
+                let payload = force_payload(self.sequence, DVec3::ZERO, false);
+                self.sequence = self.sequence.wrapping_add(1);
+                if number == 0 {
+                    self.send_at_once(&payload);
+                } else {
+                    self.send(&payload);
+                }
+            }
             // Time for the device to read before the line closes.
-            std::thread::sleep(std::time::Duration::from_millis(2));
+            std::thread::sleep(PARKING_PAUSE);
         }
-        self.line.flush();
-        self.line.close(0.0);
+        for _ in 0..PARKING_PAUSES {
+            self.line.flush();
+            if self.line.queued() == 0 {
+                break;
+            }
+            std::thread::sleep(PARKING_PAUSE);
+        }
+        self.line.end();
     }
 
     fn report(&self) -> LinkReport {

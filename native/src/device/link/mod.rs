@@ -4,6 +4,7 @@ pub mod codec;
 mod device;
 pub mod messages;
 mod orientation;
+mod pacing;
 mod session;
 
 pub use device::LinkDevice;

@@ -83,6 +83,7 @@ impl<O: Opener> LinkDevice<O> {
             self.unseen = true;
         }
         let speed = speed.max(swing);
+        self.pacing.hear(now, self.dt);
         self.newest = Some(Newest { state, speed });
         self.heard = now;
         self.stale = false;

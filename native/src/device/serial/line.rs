@@ -1,19 +1,26 @@
-//! A port that may be unplugged and come back, with the bytes not sent yet. Never blocks.
+//! A port that may be unplugged and come back, with the bytes not sent yet. Never waits.
 
 use std::io::ErrorKind;
+use std::task::Poll;
 
 use crate::device::serial::port::{Opener, Wire};
 
 /// A port that is gone is tried again this often, s.
 const REOPEN_SECONDS: f64 = 0.2;
-/// Longest message, bytes.
+/// Longest message and the byte that ends the one before it, bytes.
 const OUTBOX: usize = 64;
+/// Ends whatever was cut short, in each of the protocols that have ends.
+const END: u8 = 0;
 
 /// A line to a device.
 #[derive(Debug)]
 pub struct Line<O: Opener> {
     opener: O,
     wire: Option<O::Wire>,
+    /// Not closed yet: that may take its time, and is left to the opener.
+    gone: Option<O::Wire>,
+    /// The opener owes an answer.
+    is_asked: bool,
     retry_at: f64,
     pending: [u8; OUTBOX],
     pending_from: usize,
@@ -30,6 +37,8 @@ impl<O: Opener> Line<O> {
         Ok(Self {
             opener,
             wire: Some(wire),
+            gone: None,
+            is_asked: false,
             retry_at: 0.0,
             pending: [0; OUTBOX],
             pending_from: 0,
@@ -42,32 +51,61 @@ impl<O: Opener> Line<O> {
         self.wire.is_some()
     }
 
-    /// Leaves the port, until `now` has gone on a while.
+    /// Leaves a port that is gone, until `now` has gone on a while.
     pub fn close(&mut self, now: f64) {
-        self.wire = None;
+        self.gone = self.wire.take();
         self.retry_at = now + REOPEN_SECONDS;
         (self.pending_from, self.pending_to) = (0, 0);
     }
 
-    /// Tries the port again now and then; true when it is back. Opening takes time and memory:
-    /// nothing is in contact.
+    /// Leaves the port for good, when no tick comes any more: closing may take its time.
+    pub fn end(&mut self) {
+        self.close(f64::INFINITY);
+        self.gone = None;
+    }
+
+    /// Asks for the port again now and then; true when it is back.
     pub fn reopen(&mut self, now: f64) -> bool {
-        if now < self.retry_at {
-            return false;
+        if !self.is_asked {
+            if now < self.retry_at {
+                return false;
+            }
+            self.opener.ask(self.gone.take());
+            self.is_asked = true;
         }
-        self.wire = self.opener.open().ok();
+        let Poll::Ready(wire) = self.opener.answer() else {
+            return false;
+        };
+        self.wire = wire;
+        self.is_asked = false;
         self.retry_at = now + REOPEN_SECONDS;
         self.is_open()
     }
 
     /// The next bytes that have come, as many as fit; None when the line is gone.
     pub fn read(&mut self, buffer: &mut [u8]) -> Option<usize> {
-        match self.wire.as_mut()?.read(buffer) {
+        let wire = self.wire.as_mut()?;
+        let length = wire.waiting().ok()?.min(buffer.len());
+        if length == 0 {
+            return Some(0);
+        }
+        match wire.read(&mut buffer[..length]) {
             Ok(0) => None,
             Ok(length) => Some(length),
             Err(e) if matches!(e.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted) => Some(0),
             Err(_) => None,
         }
+    }
+
+    /// Bytes of messages that have not left this computer, as far as the driver tells.
+    pub fn queued(&mut self) -> usize {
+        let wire = self.wire.as_mut().map_or(0, Wire::queued);
+        self.pending_to - self.pending_from + wire
+    }
+
+    /// Bits that the line takes a second, where that is known.
+    pub fn bits_per_second(&self) -> Option<u32> {
+        self.wire.as_ref().and_then(Wire::bits_per_second)
     }
 
     /// Puts a message on the line; false when it is longer than any may be, when it does not fit now,
@@ -89,6 +127,20 @@ impl<O: Opener> Line<O> {
             return false;
         }
         true
+    }
+
+    /// Throws away what has not left and says this instead: now, or before all that comes later.
+    pub fn send_at_once(&mut self, message: &[u8]) {
+        let Some(wire) = &mut self.wire else { return };
+        wire.discard();
+        // Where the driver cuts is not known.
+        self.pending[0] = END;
+        let Some(pending) = self.pending.get_mut(1..=message.len()) else {
+            return;
+        };
+        pending.copy_from_slice(message);
+        (self.pending_from, self.pending_to) = (0, 1 + message.len());
+        self.flush();
     }
 
     /// Sends the rest of a message that did not fit.

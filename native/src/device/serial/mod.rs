@@ -2,3 +2,4 @@
 
 pub(crate) mod line;
 pub mod port;
+pub mod reopening;

@@ -1,54 +1,108 @@
-//! A serial port that never blocks: it reads what is there and writes what fits.
+//! A serial port that never waits: it reads what is there and writes what fits.
 
 use std::io;
+use std::task::Poll;
 use std::time::Duration;
 
-/// An open line to a device.
+/// An open line to a device. Nothing here may wait or, while the line is there, allocate.
 pub trait Wire: Send {
-    /// Takes what has arrived. `WouldBlock` when nothing has; zero bytes or any other error mean
-    /// that the line is gone.
+    /// Bytes that have arrived.
     ///
     /// # Errors
-    /// See above; must not allocate for `WouldBlock`.
+    /// When the line is gone.
+    fn waiting(&mut self) -> io::Result<usize>;
+    /// Takes as many bytes as the buffer holds, which is no more than are [`waiting`](Self::waiting):
+    /// asked for more than there are, a system may wait for somebody who is to bring them, however
+    /// it was told not to.
+    ///
+    /// # Errors
+    /// `WouldBlock` when there is nothing after all; zero bytes or any other error mean that the line
+    /// is gone.
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize>;
     /// Sends as much as fits at once.
     ///
     /// # Errors
     /// `WouldBlock` when nothing fits; any other error means that the line is gone.
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize>;
+    /// Bytes written that have not left this computer, as far as the driver tells.
+    fn queued(&mut self) -> usize {
+        0
+    }
+    /// Throws these away, where the driver can.
+    fn discard(&mut self) {}
+    /// Bits that the line takes a second, where that is known and its own.
+    fn bits_per_second(&self) -> Option<u32> {
+        None
+    }
 }
 
-/// Opens a line, at the start and again after unplugging. May take time and memory.
+/// Opens a line, at the start and again after unplugging.
 pub trait Opener: Send {
     /// Kind of wire that it opens.
     type Wire: Wire;
-    /// Opens the line.
+    /// Opens the line, which may take time and memory: outside of the tick only.
     ///
     /// # Errors
     /// When there is none.
     fn open(&mut self) -> io::Result<Self::Wire>;
+    /// Asks for the line again, and gives back the one that is gone. Does not wait.
+    ///
+    /// Here and in [`answer`](Self::answer) as is right for a line in memory, which opens at once.
+    fn ask(&mut self, gone: Option<Self::Wire>) {
+        drop(gone);
+    }
+    /// What came of it, once for each time that it was asked; None when there is no line. Does not
+    /// wait.
+    fn answer(&mut self) -> Poll<Option<Self::Wire>> {
+        Poll::Ready(self.open().ok())
+    }
 }
 
-/// A serial port by name.
+/// A serial port by name. [`Reopening`](super::reopening::Reopening) opens it again.
 #[derive(Debug, Clone)]
 pub struct SerialPort {
     /// Path or name for the system.
     pub path: String,
-    /// Bits a second; without meaning on USB and pseudo-terminals.
-    pub baud: u32,
+    /// Bits a second, if somebody has said so; without meaning on USB and pseudo-terminals.
+    pub baud: Option<u32>,
 }
 
-impl Opener for SerialPort {
-    type Wire = SerialWire;
+/// Speed of a port whose speed nobody has said, bits a second.
+const USUAL_BAUD: u32 = 115_200;
 
-    fn open(&mut self) -> io::Result<SerialWire> {
+impl SerialPort {
+    /// Opens the port. May take seconds: a driver waits for what it likes.
+    ///
+    /// # Errors
+    /// When there is none, or somebody else has it.
+    pub fn open(&self) -> io::Result<SerialWire> {
+        let baud = self.baud.unwrap_or(USUAL_BAUD);
         // Boards with USB of their own send nothing before they see DTR.
-        let port = serialport::new(&self.path, self.baud)
+        let port = serialport::new(&self.path, baud)
             .dtr_on_open(true)
             .timeout(Duration::from_millis(1))
             .open_native()?;
-        SerialWire::new(port)
+        let is_its_own = self.baud.is_some() || is_wired(&self.path);
+        SerialWire::new(port, is_its_own.then_some(baud))
     }
+}
+
+/// Whether the port of this path is a chip that sends bit by bit, at the speed that it was told.
+fn is_wired(path: &str) -> bool {
+    // A path may lead to the port by a link with a name that lasts.
+    let real = std::fs::canonicalize(path).unwrap_or_else(|_| path.into());
+    let name = real.to_string_lossy();
+    const CHIPS: [&str; 8] = [
+        "/dev/ttyUSB",
+        "/dev/ttyS",
+        "/dev/ttyAMA",
+        "/dev/ttyTHS",
+        "/dev/ttymxc",
+        "/dev/ttyO",
+        "/dev/cu.usbserial",
+        "/dev/tty.usbserial",
+    ];
+    CHIPS.iter().any(|chip| name.starts_with(chip))
 }
 
 #[cfg(unix)]
@@ -72,10 +126,11 @@ mod on_unix {
     #[derive(Debug)]
     pub struct SerialWire {
         port: TTYPort,
+        baud: Option<u32>,
     }
 
     impl SerialWire {
-        pub(super) fn new(port: TTYPort) -> io::Result<Self> {
+        pub(super) fn new(port: TTYPort, baud: Option<u32>) -> io::Result<Self> {
             let fd = port.as_raw_fd();
             // SAFETY: the descriptor is open while `port` lives; these calls touch no memory.
             let done = unsafe {
@@ -84,9 +139,20 @@ mod on_unix {
             };
             if done {
                 shorten_latency(fd);
-                Ok(Self { port })
+                Ok(Self { port, baud })
             } else {
                 Err(io::Error::last_os_error())
+            }
+        }
+
+        /// A number of bytes that the terminal tells.
+        #[allow(clippy::useless_conversion)] // The request's type differs between systems.
+        fn told(&self, request: libc::c_ulong) -> io::Result<usize> {
+            let mut bytes: libc::c_int = 0;
+            // SAFETY: the descriptor is open, and both requests write one integer.
+            match unsafe { libc::ioctl(self.port.as_raw_fd(), request as _, &raw mut bytes) } {
+                0 => Ok(usize::try_from(bytes).unwrap_or(0)),
+                _ => Err(io::Error::last_os_error()),
             }
         }
     }
@@ -130,6 +196,28 @@ mod on_unix {
     }
 
     impl Wire for SerialWire {
+        /// Linux' terminals wait in `read` and `poll` for a worker of the kernel whenever they are
+        /// empty, and a worker gets its turn when busy processes let it: this asks without. A terminal
+        /// that has hung up answers EIO.
+        fn waiting(&mut self) -> io::Result<usize> {
+            self.told(libc::FIONREAD as _)
+        }
+
+        fn queued(&mut self) -> usize {
+            // What knows no queue has none that could be thrown away.
+            self.told(libc::TIOCOUTQ as _).unwrap_or(0)
+        }
+
+        fn discard(&mut self) {
+            // SAFETY: the descriptor is open; the call touches no memory. A terminal that is gone has
+            // no queue, and what is gone is found by `waiting`.
+            let _ = unsafe { libc::tcflush(self.port.as_raw_fd(), libc::TCOFLUSH) };
+        }
+
+        fn bits_per_second(&self) -> Option<u32> {
+            self.baud
+        }
+
         fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
             // SAFETY: the buffer is valid for writing its length; the descriptor is open.
             count(unsafe {
@@ -152,30 +240,43 @@ mod on_unix {
 mod on_windows {
     use std::io::{self, Read, Write};
 
-    use serialport::{COMPort, SerialPort};
+    use serialport::{COMPort, ClearBuffer, SerialPort};
 
     use super::Wire;
 
-    /// A COM port, asked first how much has arrived.
+    /// A COM port.
     #[derive(Debug)]
     pub struct SerialWire {
         port: COMPort,
+        baud: Option<u32>,
     }
 
     impl SerialWire {
-        pub(super) fn new(port: COMPort) -> io::Result<Self> {
-            Ok(Self { port })
+        pub(super) fn new(port: COMPort, baud: Option<u32>) -> io::Result<Self> {
+            Ok(Self { port, baud })
         }
     }
 
     impl Wire for SerialWire {
+        fn waiting(&mut self) -> io::Result<usize> {
+            Ok(self.port.bytes_to_read()? as usize)
+        }
+
+        fn queued(&mut self) -> usize {
+            self.port.bytes_to_write().map_or(0, |bytes| bytes as usize)
+        }
+
+        fn discard(&mut self) {
+            // A port that is gone has no queue, and what is gone is found by `waiting`.
+            let _ = self.port.clear(ClearBuffer::Output);
+        }
+
+        fn bits_per_second(&self) -> Option<u32> {
+            self.baud
+        }
+
         fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-            let waiting = self.port.bytes_to_read()? as usize;
-            if waiting == 0 {
-                return Err(io::ErrorKind::WouldBlock.into());
-            }
-            let length = waiting.min(buffer.len());
-            self.port.read(&mut buffer[..length])
+            self.port.read(buffer)
         }
 
         fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {

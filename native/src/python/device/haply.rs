@@ -29,7 +29,7 @@ pub fn haply_setup(
     model: &str,
     angles: Option<[f32; 2]>,
     recalibrate: bool,
-    baud: u32,
+    baud: Option<u32>,
 ) -> PyResult<(&'static Model, Calibration)> {
     let model = known_model(model)?;
     if angles.is_some_and(|angles| angles.iter().any(|a| a.is_nan() || a.abs() > 360.0)) {
@@ -37,7 +37,7 @@ pub fn haply_setup(
             "angles must be between -360 and 360 degrees",
         ));
     }
-    if baud == PROGRAMMING_BAUD {
+    if baud == Some(PROGRAMMING_BAUD) {
         return Err(PyValueError::new_err(
             "baud 1200 makes a hAPI board wait for new firmware; leave it at 115200",
         ));

@@ -1,7 +1,7 @@
 //! `Pointer`, `LinkDevice`, `HaplyDevice`: what moves a finger, described before it is opened.
 
 use glam::DVec3;
-use pyo3::exceptions::PyOSError;
+use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
 use triple_buffer::{Input, triple_buffer};
 
@@ -10,6 +10,7 @@ use crate::device::haply::model::Model;
 use crate::device::link::LinkDevice;
 use crate::device::pointer::{Pointer, Target};
 use crate::device::serial::port::SerialPort;
+use crate::device::serial::reopening::Reopening;
 use crate::device::{Device, DeviceFrame};
 use crate::python::device::haply::haply_setup;
 use crate::python::servo::settings::device_frame;
@@ -29,6 +30,20 @@ impl PointerSetup {
     }
 }
 
+/// Speeds at which a line can carry anything, bits a second.
+const BAUDS: std::ops::RangeInclusive<u32> = 300..=12_000_000;
+
+fn check_baud(baud: Option<u32>) -> PyResult<()> {
+    match baud {
+        Some(baud) if !BAUDS.contains(&baud) => Err(PyValueError::new_err(format!(
+            "baud is {baud}; it must be from {} to {}, or None for a port whose speed has no meaning",
+            BAUDS.start(),
+            BAUDS.end()
+        ))),
+        _ => Ok(()),
+    }
+}
+
 #[pyclass(frozen, name = "LinkDevice", module = "palpate_servo")]
 pub struct LinkSetup {
     port: SerialPort,
@@ -38,14 +53,15 @@ pub struct LinkSetup {
 #[pymethods]
 impl LinkSetup {
     #[new]
-    #[pyo3(signature = (port, *, baud=115_200, rotation=IDENTITY, translation=[0.0; 3], scale=1.0))]
+    #[pyo3(signature = (port, *, baud=None, rotation=IDENTITY, translation=[0.0; 3], scale=1.0))]
     fn new(
         port: String,
-        baud: u32,
+        baud: Option<u32>,
         rotation: Rows,
         translation: Triple,
         scale: f64,
     ) -> PyResult<Self> {
+        check_baud(baud)?;
         Ok(Self {
             port: SerialPort { path: port, baud },
             frame: device_frame(rotation, translation, scale)?,
@@ -65,7 +81,7 @@ pub struct HaplySetup {
 impl HaplySetup {
     #[new]
     #[pyo3(signature = (
-        port, *, model="2diy-3.1", angles=None, recalibrate=false, baud=115_200,
+        port, *, model="2diy-3.1", angles=None, recalibrate=false, baud=None,
         rotation=IDENTITY, translation=[0.0; 3], scale=1.0
     ))]
     #[allow(clippy::too_many_arguments)] // Keywords in Python.
@@ -74,11 +90,12 @@ impl HaplySetup {
         model: &str,
         angles: Option<[f32; 2]>,
         recalibrate: bool,
-        baud: u32,
+        baud: Option<u32>,
         rotation: Rows,
         translation: Triple,
         scale: f64,
     ) -> PyResult<Self> {
+        check_baud(baud)?;
         let (model, calibration) = haply_setup(model, angles, recalibrate, baud)?;
         Ok(Self {
             port: SerialPort { path: port, baud },
@@ -142,9 +159,10 @@ impl DeviceSetup<'_> {
 fn opened<D: Device + 'static>(
     py: Python<'_>,
     port: &SerialPort,
-    open: impl FnOnce(SerialPort) -> std::io::Result<D> + Send,
+    open: impl FnOnce(Reopening) -> std::io::Result<D> + Send,
 ) -> PyResult<Box<dyn Device>> {
-    let device = py.detach(|| open(port.clone())).map_err(|e| {
+    let opener = || Reopening::of(port.clone()).and_then(open);
+    let device = py.detach(opener).map_err(|e| {
         PyOSError::new_err(format!(
             "{}: cannot be opened ({e}); close the program that uses it, or see 'palpate devices'",
             port.path

@@ -35,14 +35,16 @@ impl InMemory {
 }
 
 impl Wire for InMemory {
+    fn waiting(&mut self) -> io::Result<usize> {
+        let line = self.line();
+        match line.is_unplugged {
+            true => Err(ErrorKind::NotConnected.into()),
+            false => Ok(line.to_host.len()),
+        }
+    }
+
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let mut line = self.line();
-        if line.is_unplugged {
-            return Ok(0);
-        }
-        if line.to_host.is_empty() {
-            return Err(ErrorKind::WouldBlock.into());
-        }
         let length = buffer.len().min(line.to_host.len());
         buffer[..length].copy_from_slice(&line.to_host[..length]);
         line.to_host.drain(..length);

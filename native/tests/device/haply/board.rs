@@ -137,14 +137,16 @@ impl Cable {
 }
 
 impl Wire for Cable {
+    fn waiting(&mut self) -> io::Result<usize> {
+        let board = self.board();
+        match board.gone {
+            true => Err(io::Error::from_raw_os_error(libc::EIO)),
+            false => Ok(board.to_host.len()),
+        }
+    }
+
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let mut board = self.board();
-        if board.gone {
-            return Ok(0);
-        }
-        if board.to_host.is_empty() {
-            return Err(ErrorKind::WouldBlock.into());
-        }
         let length = buffer.len().min(board.to_host.len());
         for (byte, arrived) in buffer.iter_mut().zip(board.to_host.drain(..length)) {
             *byte = arrived;
