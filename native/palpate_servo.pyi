@@ -73,6 +73,8 @@ class DeviceGreeting(TypedDict):
     max_force: float
     half_extents: list[float]
     rate_hz: int
+    largest_damping: float
+    """N s/m; 0 for none."""
 
 class StateInterval(TypedDict):
     """Time between STATE messages, us."""
@@ -107,6 +109,12 @@ class LinkCounters(TypedDict):
     device_faults: int
     unsent: int
     reopened: int
+    forces_in_flight: int
+    """FORCE messages of which no STATE has told that they were taken; 0 in protocol 1."""
+    round_trip_ms: float | None
+    """From a FORCE to the STATE that tells that it was taken, averaged; None in protocol 1."""
+    state_age_ms: float | None
+    """Time since the last STATE; None while there was none."""
     state_interval_us: StateInterval
     bursts: int
     """Pauses of more than 3.5 ms that ended with STATE messages made all along: held back."""
@@ -143,7 +151,7 @@ class ServoCounters(TimingCounters):
     in which a stage had nothing to do.
     """
     faults: dict[str, int]
-    """Times each fault began: nan, too fast, stale, unplugged, wrong protocol, device fault,
+    """Times each fault began: nan, too fast, stale, deaf, unplugged, wrong protocol, device fault,
     suspended, internal error."""
     link: LinkCounters
     samples_lost: int

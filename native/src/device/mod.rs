@@ -70,6 +70,8 @@ pub enum Fault {
     TooFast,
     /// No sound STATE for 20 ms.
     Stale,
+    /// The device does not take force in time: none of it was taken for 20 ms, or what it says is old.
+    Deaf,
     /// The port is gone.
     Unplugged,
     /// The device speaks another version of the link.
@@ -84,10 +86,11 @@ pub enum Fault {
 
 impl Fault {
     /// All faults, in the order of their numbers.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Nan,
         Self::TooFast,
         Self::Stale,
+        Self::Deaf,
         Self::Unplugged,
         Self::Protocol,
         Self::Device,
@@ -101,6 +104,7 @@ impl Fault {
             Self::Nan => "nan",
             Self::TooFast => "too fast",
             Self::Stale => "stale",
+            Self::Deaf => "deaf",
             Self::Unplugged => "unplugged",
             Self::Protocol => "wrong protocol",
             Self::Device => "device fault",
@@ -180,6 +184,8 @@ pub trait Device: Send {
     /// Gives the device its force (N, body axes); `enable` is false whenever it must go limp.
     /// Never left out by accident: one without motors says that it does nothing.
     fn write(&mut self, force: DVec3, enable: bool, frame: &DeviceFrame);
+    /// Whether the device shall brake by itself, from the next `write` on, if it can.
+    fn brake(&mut self, _wanted: bool) {}
     /// Leaves the device without force for good.
     fn park(&mut self);
     /// Counters for the user.

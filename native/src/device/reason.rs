@@ -71,6 +71,7 @@ pub const fn after(fault: Fault) -> &'static str {
         Fault::Nan => "after nan",
         Fault::TooFast => "after too fast",
         Fault::Stale => "after stale",
+        Fault::Deaf => "after deaf",
         Fault::Unplugged => "after unplugged",
         Fault::Protocol => "after wrong protocol",
         Fault::Device => "after device fault",

@@ -17,6 +17,8 @@ pub struct Greeting {
     pub half_extents: [f32; 3],
     /// Rate of the STATE stream, Hz.
     pub rate_hz: u16,
+    /// Largest damping that the host may ask for, N s/m; zero where there is none.
+    pub largest_damping: f32,
 }
 
 impl Greeting {
@@ -66,6 +68,12 @@ pub struct LinkReport {
     pub unsent: u64,
     /// Times the port was opened again.
     pub reopened: u64,
+    /// Time from a FORCE until a STATE told that it was taken, averaged, s; None in protocol 1.
+    pub round_trip: Option<f64>,
+    /// FORCE messages of which no STATE has told yet.
+    pub in_flight: u64,
+    /// Time since the last STATE came, s; none was heard if None.
+    pub state_age: Option<f64>,
     /// Code and detail of the device's last FAULT.
     pub last_fault: Option<(u8, u16)>,
     /// Arrivals of STATE messages.

@@ -5,7 +5,7 @@ use palpate_servo::device::link::codec::{
     DecodeErrors, Decoder, MAX_FRAME, MAX_PAYLOAD, checksum, encode,
 };
 use palpate_servo::device::link::messages::{
-    DeviceState, Message, force_payload, hello_payload, parse,
+    Answer, DeviceState, Message, Taken, answering_payload, force_payload, hello_payload, parse,
 };
 use proptest::prelude::*;
 
@@ -31,8 +31,11 @@ fn checksum_has_the_catalogues_check_value() {
 
 #[test]
 fn hello_and_force_are_these_bytes() {
-    let sum = checksum(&[1, 1]).to_le_bytes();
-    assert_eq!(frame(&hello_payload()), [5, 1, 1, sum[0], sum[1], 0]);
+    for protocol in [1, 2] {
+        let sum = checksum(&[1, protocol]).to_le_bytes();
+        let hello = frame(&hello_payload(protocol));
+        assert_eq!(hello, [5, 1, protocol, sum[0], sum[1], 0]);
+    }
     let force = force_payload(0x0102, DVec3::new(1.0, -0.5, 0.0004), true);
     assert_eq!(force, [3, 2, 1, 0xE8, 3, 0x0C, 0xFE, 0, 0, 1]);
     assert_eq!(
@@ -44,6 +47,26 @@ fn hello_and_force_are_these_bytes() {
             b
         }
     );
+}
+
+#[test]
+fn a_force_of_protocol_2_says_what_it_answers_how_old_it_is_and_how_to_brake() {
+    let force = force_payload(0x0102, DVec3::new(1.0, -0.5, 0.0004), true);
+    let answer = Answer {
+        time_us: 0x0403_0201,
+        age: 1.5e-3,
+        damping: 2.5,
+    };
+    let said = answering_payload(force, &answer);
+    assert_eq!(said[..9], force[..9]);
+    assert_eq!(said[9..], [3, 1, 2, 3, 4, 150, 0, 250, 0]);
+    let old = Answer {
+        age: 3.0,
+        damping: 0.0,
+        ..answer
+    };
+    let said = answering_payload(force, &old);
+    assert_eq!(said[9..], [1, 1, 2, 3, 4, 0xFF, 0xFF, 0, 0]);
 }
 
 #[test]
@@ -60,8 +83,20 @@ fn state_and_hello_are_read_field_by_field() {
         buttons: 5,
         ready: true,
         fault: true,
+        taken: None,
     };
     assert_eq!(parse(&state), Some(Message::State(expected)));
+    state.push(0x34);
+    assert_eq!(parse(&state), None);
+    state.push(0x12);
+    for (flags, taken) in [(3, Taken::Nothing), (7, Taken::Force(0x1234))] {
+        state[20] = flags;
+        let expected = DeviceState {
+            taken: Some(taken),
+            ..expected
+        };
+        assert_eq!(parse(&state), Some(Message::State(expected)));
+    }
     state.push(0);
     assert_eq!(parse(&state), None);
 
@@ -79,6 +114,14 @@ fn state_and_hello_are_read_field_by_field() {
     assert_eq!(greeting.max_force, 3.5);
     assert_eq!(greeting.half_extents, [0.1, 0.2, 0.3]);
     assert_eq!((greeting.axes, greeting.rate_hz), (3, 1000));
+    assert_eq!(greeting.largest_damping, 0.0);
+    hello[1] = 2;
+    assert_eq!(parse(&hello), None);
+    hello.extend(250_u16.to_le_bytes());
+    let Some(Message::Hello(greeting)) = parse(&hello) else {
+        panic!("HELLO of protocol 2 not understood");
+    };
+    assert_eq!((greeting.protocol, greeting.largest_damping), (2, 2.5));
     let fault = Message::Fault {
         code: 7,
         detail: 256,

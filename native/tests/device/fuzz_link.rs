@@ -2,8 +2,8 @@
 //! checksum of 16 bits lets through, and each sound frame after damage is read.
 
 use std::collections::VecDeque;
-use std::io::{self, ErrorKind};
-use std::sync::{Arc, Mutex};
+use std::io;
+use std::sync::{Arc, Mutex, MutexGuard};
 
 use crate::damage::{Dice, Digest, frame, stream};
 use glam::DVec3;
@@ -119,15 +119,30 @@ fn ten_million_bytes_are_read_as_sent_and_as_cpp_reads_them() {
 
 /// The device's end: the test puts bytes in, and throws away what the host says.
 #[derive(Clone, Default)]
-struct Bench(Arc<Mutex<VecDeque<u8>>>);
+struct Bench(Arc<Mutex<Line>>);
+
+#[derive(Default)]
+struct Line {
+    bytes: VecDeque<u8>,
+    host: Decoder,
+    /// Protocol of the host's last HELLO, and its last FORCE.
+    asked: u8,
+    taken: u16,
+}
+
+impl Bench {
+    fn line(&self) -> MutexGuard<'_, Line> {
+        self.0.lock().unwrap()
+    }
+}
 
 impl Wire for Bench {
     fn waiting(&mut self) -> io::Result<usize> {
-        Ok(self.0.lock().unwrap().len())
+        Ok(self.line().bytes.len())
     }
 
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let mut line = self.0.lock().unwrap();
+        let line = &mut self.line().bytes;
         let length = buffer.len().min(line.len());
         for (place, byte) in buffer.iter_mut().zip(line.drain(..length)) {
             *place = byte;
@@ -136,6 +151,14 @@ impl Wire for Bench {
     }
 
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let mut line = self.line();
+        for &byte in bytes {
+            match line.host.push(byte) {
+                Some(&[1, protocol]) => line.asked = protocol,
+                Some(&[3, low, high, ..]) => line.taken = u16::from_le_bytes([low, high]),
+                _ => {}
+            }
+        }
         Ok(bytes.len())
     }
 }
@@ -148,12 +171,13 @@ impl Opener for Bench {
     }
 }
 
-fn hello() -> Vec<u8> {
-    let mut hello = vec![1, 1];
+fn hello(protocol: u8) -> Vec<u8> {
+    let mut hello = vec![1, protocol];
     hello.extend([0; 16]);
     hello.push(3);
     hello.extend(2.5_f32.to_le_bytes());
     hello.extend([0; 14]);
+    hello.resize(if protocol == 1 { 37 } else { 39 }, 0);
     frame(&hello)
 }
 
@@ -163,7 +187,7 @@ fn orientation(sequence: u16) -> Vec<u8> {
     frame(&[5, low, high, 0, 0, 0, 0, 0, 0, 0xFF, 0x7F])
 }
 
-fn state(sequence: u16, micrometres: i32) -> Vec<u8> {
+fn state(sequence: u16, micrometres: i32, taken: Option<u16>) -> Vec<u8> {
     let mut state = vec![2];
     state.extend(sequence.to_le_bytes());
     state.extend(0_u32.to_le_bytes());
@@ -171,6 +195,10 @@ fn state(sequence: u16, micrometres: i32) -> Vec<u8> {
         state.extend(um.to_le_bytes());
     }
     state.extend([0, 1]);
+    if let Some(taken) = taken {
+        state[20] = 5;
+        state.extend(taken.to_le_bytes());
+    }
     frame(&state)
 }
 
@@ -184,7 +212,7 @@ fn a_device_that_sends_rubbish_is_survived_and_believed_again() {
     let mut dice = Dice::new(4711);
     let (mut now, mut returns) = (0.0, 0_u64);
     let put = |decoder: &mut Decoder, bytes: &[u8]| {
-        bench.0.lock().unwrap().extend(bytes);
+        bench.line().bytes.extend(bytes);
         for &byte in bytes {
             decoder.push(byte);
         }
@@ -212,19 +240,22 @@ fn a_device_that_sends_rubbish_is_survived_and_believed_again() {
                 // takes 4 KB at most, and chunks have gathered. The silence makes any sequence
                 // number the next one.
                 put(&mut alone, &[0]);
-                while !bench.0.lock().unwrap().is_empty() {
+                while !bench.line().bytes.is_empty() {
                     device.read(now, 1e-3, &frame);
                 }
                 device.read(now, 1e-3, &frame);
-                now += 0.03;
+                // And a device that was deaf has been forgotten.
+                now += 0.13;
                 if let Reading::Fault(fault) = device.read(now, 1e-3, &frame) {
                     faults[fault as usize] += 1;
                 }
                 let micrometres = number as i32;
-                put(&mut alone, &hello());
+                let asked = bench.line().asked;
+                let taken = (asked == 2).then(|| bench.line().taken);
+                put(&mut alone, &hello(asked));
                 let sequence = dice.below(65_536) as u16;
                 put(&mut alone, &orientation(sequence));
-                put(&mut alone, &state(sequence, micrometres));
+                put(&mut alone, &state(sequence, micrometres, taken));
                 now += 1e-3;
                 let mut reading = device.read(now, 1e-3, &frame);
                 if reading == Reading::Waiting(reason::NO_STATE) {

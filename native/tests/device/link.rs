@@ -14,8 +14,8 @@ fn hello_is_repeated_until_it_is_answered() {
         assert!(matches!(reading, Reading::Waiting(_)));
         device.write(DVec3::ZERO, false, &FRAME());
     }
-    assert_eq!(bench.received(), vec![vec![1, 1]; 4]);
-    bench.hello(1, 2.5);
+    assert_eq!(bench.received(), vec![vec![1, 2]; 4]);
+    bench.hello(2, 2.5);
     bench.state(0, 1000, 0, 1);
     let Reading::At(probe) = read(&mut device, 0.2) else {
         panic!("not greeted");
@@ -26,6 +26,8 @@ fn hello_is_repeated_until_it_is_answered() {
     let mut expected = vec![3, 0, 0];
     expected.extend(1000_i16.to_le_bytes());
     expected.extend([0, 0, 0, 0, 1]);
+    // The time of the STATE that it answers, its age, no damping.
+    expected.extend([0, 0, 0, 0, 0, 0, 0, 0]);
     assert_eq!(bench.received(), [expected]);
 }
 
@@ -69,7 +71,7 @@ fn silence_is_stale_and_the_return_takes_any_sequence() {
     assert_eq!(read(&mut device, 0.0600), Reading::Fault(Fault::Stale));
     assert_eq!(
         bench.received(),
-        [[1, 1]],
+        [[1, 2]],
         "a device that was reset needs HELLO"
     );
     bench.state_at(65_594_000, 40, 2000, 0, 1);
@@ -85,7 +87,7 @@ fn a_device_whose_clock_began_anew_in_a_silence_was_reset_and_is_set_down_anew()
     let (bench, mut device) = greeted();
     assert!(matches!(read(&mut device, 0.001), Reading::At(p) if p.restart));
     assert_eq!(read(&mut device, 0.300), Reading::Fault(Fault::Stale));
-    bench.hello(1, 2.5);
+    bench.hello(2, 2.5);
     assert_eq!(read(&mut device, 0.301), Reading::Fault(Fault::Stale));
     bench.state_at(20_000, 0, -20_000, 0, 1);
     assert!(matches!(read(&mut device, 0.302), Reading::Waiting(_)));
@@ -99,9 +101,9 @@ fn a_device_whose_clock_began_anew_in_a_silence_was_reset_and_is_set_down_anew()
 fn a_hello_with_other_figures_ends_the_session_and_one_with_the_same_does_not() {
     let (bench, mut device) = greeted();
     assert!(matches!(read(&mut device, 0.001), Reading::At(p) if p.max_force == 2.5));
-    bench.hello(1, 2.5);
+    bench.hello(2, 2.5);
     assert!(matches!(read(&mut device, 0.002), Reading::At(p) if !p.restart));
-    bench.hello(1, 30.0);
+    bench.hello(2, 30.0);
     bench.state(3, 9000, 0, 1);
     assert!(matches!(read(&mut device, 0.003), Reading::Waiting(_)));
     assert!(matches!(read(&mut device, 0.004), Reading::At(p) if p.restart && p.max_force == 30.0));
@@ -122,8 +124,8 @@ fn unplugging_is_found_and_the_same_port_opened_again() {
     );
     bench.received();
     assert!(matches!(read(&mut device, 0.404), Reading::Waiting(_)));
-    assert_eq!(bench.received(), [[1, 1]]);
-    bench.hello(1, 2.5);
+    assert_eq!(bench.received(), [[1, 2]]);
+    bench.hello(2, 2.5);
     bench.state(0, 500, 0, 1);
     let Reading::At(probe) = read(&mut device, 0.405) else {
         panic!("did not come back");
@@ -136,7 +138,7 @@ fn unplugging_is_found_and_the_same_port_opened_again() {
 fn another_version_gets_no_force() {
     let bench = Bench::default();
     let mut device = LinkDevice::open(bench.clone()).unwrap();
-    bench.hello(2, 2.5);
+    bench.hello(3, 2.5);
     bench.state(0, 0, 0, 1);
     assert_eq!(read(&mut device, 0.0), Reading::Fault(Fault::Protocol));
     bench.received();
@@ -148,9 +150,9 @@ fn another_version_gets_no_force() {
 fn another_version_is_told_whatever_its_hello_looks_like() {
     let bench = Bench::default();
     let mut device = LinkDevice::open(bench.clone()).unwrap();
-    bench.send(&[1, 2, 42]);
+    bench.send(&[1, 3, 42]);
     assert_eq!(read(&mut device, 0.0), Reading::Fault(Fault::Protocol));
-    assert_eq!(device.report().greeting.unwrap().protocol, 2);
+    assert_eq!(device.report().greeting.unwrap().protocol, 3);
 }
 
 #[test]
@@ -159,11 +161,11 @@ fn a_greeting_with_figures_that_cannot_be_gets_no_force() {
         let (bench, mut device) = greeted();
         assert!(matches!(read(&mut device, 0.001), Reading::At(_)));
         bench.received();
-        bench.hello(1, max_force);
+        bench.hello(2, max_force);
         bench.state(0, 0, 0, 1);
         assert!(matches!(read(&mut device, 0.002), Reading::Waiting(_)));
         device.write(DVec3::X, true, &FRAME());
-        assert!(bench.received().iter().all(|payload| payload == &[1, 1]));
+        assert!(bench.received().iter().all(|payload| payload == &[1, 2]));
         assert_eq!(device.report().greeting.unwrap().max_force, 2.5);
         assert_eq!(device.report().unknown, 1);
     }
@@ -176,7 +178,7 @@ fn a_new_session_knows_nothing_of_the_last_one() {
     bench.send(&[4, 2, 7, 0]);
     bench.hello(7, 2.5);
     assert_eq!(read(&mut device, 0.002), Reading::Fault(Fault::Protocol));
-    bench.hello(1, 2.5);
+    bench.hello(2, 2.5);
     // Neither the place of 498 ms ago nor the fault of the session before.
     assert!(matches!(read(&mut device, 0.500), Reading::Waiting(_)));
     // Its sequence is behind that of the session before.
@@ -248,7 +250,7 @@ fn parking_sends_zero_without_enable() {
     device.park();
     let received = bench.received();
     assert_eq!(received.len(), 3);
-    assert!(received.iter().all(|p| p[3..] == [0; 7]));
+    assert!(received.iter().all(|p| p[3..10] == [0; 7]));
     device.write(DVec3::X, true, &FRAME());
     assert!(bench.received().is_empty());
 }
@@ -269,4 +271,52 @@ fn the_frame_maps_positions_and_forces() {
     bench.received();
     device.write(DVec3::Y, true, &frame);
     assert_eq!(bench.received()[0][3..5], 1000_i16.to_le_bytes());
+}
+
+#[test]
+fn an_older_device_is_spoken_to_in_its_own_words() {
+    let bench = Bench::default();
+    let mut device = LinkDevice::open(bench.clone()).unwrap();
+    read(&mut device, 0.0);
+    assert_eq!(bench.received(), [[1, 2]]);
+    bench.is_older();
+    // That it is older is no fault of it.
+    assert!(matches!(read(&mut device, 0.001), Reading::Waiting(_)));
+    assert_eq!(bench.received(), [[1, 1]]);
+    assert_eq!(device.report().device_faults, 0);
+    bench.hello(1, 2.5);
+    bench.state(0, 1000, 0, 1);
+    assert_eq!(position(read(&mut device, 0.002)), 1e-3);
+    device.write(DVec3::X, true, &FRAME());
+    assert_eq!(bench.received()[0].len(), 10);
+    assert_eq!(device.report().round_trip, None);
+    // It says so again when the port was away.
+    bench.line().gone = true;
+    read(&mut device, 0.003);
+    bench.line().gone = false;
+    read(&mut device, 0.3);
+    assert_eq!(bench.received(), [[1, 2]]);
+}
+
+#[test]
+fn a_device_that_turns_out_to_be_older_in_a_session_begins_a_new_one() {
+    let (bench, mut device) = greeted();
+    assert!(matches!(read(&mut device, 0.001), Reading::At(_)));
+    bench.is_older();
+    bench.state(0, 1000, 0, 1);
+    assert!(matches!(read(&mut device, 0.002), Reading::Waiting(_)));
+    bench.hello(1, 2.5);
+    bench.state(1, 1000, 0, 1);
+    let readings = [0.003, 0.004].map(|now| read(&mut device, now));
+    assert!(matches!(readings[1], Reading::At(_)), "{readings:?}");
+}
+
+#[test]
+fn a_state_in_the_layout_of_another_protocol_is_unknown() {
+    let (bench, mut device) = greeted();
+    read(&mut device, 0.001);
+    bench.line().protocol = 1;
+    bench.state(65_535, 9000, 0, 1);
+    assert_eq!(position(read(&mut device, 0.002)), 1e-3);
+    assert_eq!(device.report().unknown, 1);
 }

@@ -14,6 +14,11 @@ pub struct Line {
     pub to_host: VecDeque<u8>,
     pub payloads: Vec<Vec<u8>>,
     pub decoder: Decoder,
+    /// Of the last HELLO.
+    pub protocol: u8,
+    /// Last FORCE taken.
+    pub taken: Option<u16>,
+    pub deaf: bool,
     pub gone: bool,
     pub full: bool,
     /// How often the line was read, and opened.
@@ -23,6 +28,9 @@ pub struct Line {
     pub queued: usize,
     pub discarded: u64,
 }
+
+/// Largest damping of the bench, 0.01 N s/m.
+pub const DAMPING: u16 = 250;
 
 /// The device's end of the wire.
 #[derive(Clone, Default)]
@@ -45,7 +53,17 @@ impl Bench {
         payload.push(3);
         payload.extend(max_force.to_le_bytes());
         payload.extend([0; 14]);
+        if protocol == 2 {
+            payload.extend(DAMPING.to_le_bytes());
+        }
         self.send(&payload);
+        self.line().protocol = protocol;
+    }
+
+    /// Protocol 1 from now on: the host asks in protocol 2 first.
+    pub fn is_older(&self) {
+        self.hello(1, 2.5);
+        self.send(&[4, 2, 2, 0]);
     }
 
     pub fn state(&self, sequence: u16, micrometres: i32, buttons: u8, flags: u8) {
@@ -65,7 +83,13 @@ impl Bench {
         for um in [micrometres, 0, 0] {
             payload.extend(um.to_le_bytes());
         }
+        let taken = self.line().taken;
+        let told = if taken.is_some() { 4 } else { 0 };
         payload.extend([buttons, flags]);
+        if self.line().protocol == 2 {
+            *payload.last_mut().expect("flags") |= told;
+            payload.extend(taken.unwrap_or(0).to_le_bytes());
+        }
         self.send(&payload);
     }
 
@@ -118,6 +142,9 @@ impl Wire for Bench {
         let piece = &bytes[..bytes.len().min(5)];
         for &byte in piece {
             if let Some(payload) = line.decoder.push(byte).map(<[u8]>::to_vec) {
+                if payload[0] == 3 && !line.deaf {
+                    line.taken = Some(u16::from_le_bytes([payload[1], payload[2]]));
+                }
                 line.payloads.push(payload);
             }
         }
@@ -165,8 +192,8 @@ pub fn greeted() -> (Bench, LinkDevice<Bench>) {
     let bench = Bench::default();
     let mut device = LinkDevice::open(bench.clone()).unwrap();
     assert!(matches!(read(&mut device, 0.0), Reading::Waiting(_)));
-    assert_eq!(bench.received(), [[1, 1]]);
-    bench.hello(1, 2.5);
+    assert_eq!(bench.received(), [[1, 2]]);
+    bench.hello(2, 2.5);
     bench.state(65_534, 1000, 0, 1);
     (bench, device)
 }

@@ -4,7 +4,7 @@ use glam::DVec3;
 use palpate_servo::device::Greeting;
 use palpate_servo::device::link::codec::{Decoder, MAX_FRAME, checksum, encode};
 use palpate_servo::device::link::messages::{
-    DeviceOrientation, DeviceState, Message, PROTOCOL, force_payload, hello_payload, parse,
+    DeviceOrientation, DeviceState, FIRST_PROTOCOL, Message, force_payload, hello_payload, parse,
 };
 
 const PAGE: &str = include_str!("../../../docs/link.md");
@@ -55,12 +55,13 @@ fn framed(payload: &[u8]) -> Vec<u8> {
 
 fn simulated() -> Message {
     Message::Hello(Greeting {
-        protocol: PROTOCOL,
+        protocol: FIRST_PROTOCOL,
         name: *b"Simulated\0\0\0\0\0\0\0",
         axes: 3,
         max_force: 3.0,
         half_extents: [0.125, 0.125, 0.0625],
         rate_hz: 1000,
+        largest_damping: 0.0,
     })
 }
 
@@ -72,6 +73,7 @@ fn on_its_way(sequence: u16, time_us: u32) -> DeviceState {
         buttons: 0,
         ready: true,
         fault: false,
+        taken: None,
     }
 }
 
@@ -79,7 +81,7 @@ const PUSH: DVec3 = DVec3::new(0.0, -0.5, 1.0);
 
 #[test]
 fn the_hosts_examples_are_what_the_host_says() {
-    assert_eq!(example("The host asks who is there"), hello_payload());
+    assert_eq!(example("The host asks who is there"), hello_payload(1));
     assert_eq!(
         example("A newton up, half a newton back"),
         force_payload(513, PUSH, true)
@@ -151,7 +153,7 @@ fn the_conversation_is_what_both_say() {
         .collect();
     let force = |sequence| force_payload(sequence, PUSH, true).to_vec();
     let expected = [
-        (0, hello_payload().to_vec()),
+        (0, hello_payload(1).to_vec()),
         (1_200, force(65_535)),
         (2_200, force(0)),
         (2_300, force(0)),

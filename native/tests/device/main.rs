@@ -5,6 +5,7 @@ mod codec;
 #[path = "../counting/mod.rs"]
 mod counting;
 mod damage;
+mod deaf;
 mod fuzz_link;
 mod haply;
 mod line;

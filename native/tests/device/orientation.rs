@@ -12,7 +12,7 @@ fn turned() -> (Bench, LinkDevice<Bench>) {
     bench.turned(7, 2.0);
     read(&mut device, 0.0);
     bench.received();
-    bench.hello(1, 2.5);
+    bench.hello(2, 2.5);
     bench.turned(65_534, 1.0);
     bench.state(65_534, 1000, 0, 1);
     (bench, device)
@@ -102,7 +102,7 @@ fn damaged_lost_and_late_orientations_leave_the_last_one_for_20_ms() {
     bench.state(19, 1000, 0, 1);
     assert_eq!(read(&mut device, 0.0222), Reading::Fault(Fault::Stale));
     assert!(
-        !bench.received().contains(&vec![1, 1]),
+        !bench.received().contains(&vec![1, 2]),
         "the device is there"
     );
     bench.turned(20, 1.02);
@@ -149,12 +149,12 @@ fn what_was_told_before_a_break_is_not_for_the_state_after_it() {
     assert_eq!(orientations(&device), [1, 1, 0, 0], "unplugged");
     bench.line().gone = false;
     read(&mut device, 0.3);
-    bench.hello(1, 2.5);
+    bench.hello(2, 2.5);
     bench.state(65_535, 1000, 0, 1);
     assert_eq!(pointing(read(&mut device, 0.301)), DVec3::X);
 
     let (bench, mut device) = told();
-    bench.hello(1, 30.0);
+    bench.hello(2, 30.0);
     bench.state(65_535, 1000, 0, 1);
     assert!(matches!(read(&mut device, 0.003), Reading::Waiting(_)));
     assert_eq!(orientations(&device), [1, 1, 0, 0], "another device");
@@ -179,7 +179,7 @@ fn a_device_that_begins_to_tell_its_orientation_is_set_down_anew() {
 fn another_session_may_be_one_without_orientation() {
     let (bench, mut device) = turned();
     read(&mut device, 0.001);
-    bench.hello(1, 30.0);
+    bench.hello(2, 30.0);
     bench.state(0, 1000, 0, 1);
     assert!(matches!(read(&mut device, 0.002), Reading::Waiting(_)));
     assert_eq!(pointing(read(&mut device, 0.003)), DVec3::X);

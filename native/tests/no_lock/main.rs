@@ -18,7 +18,7 @@ use std::time::Duration;
 use glam::{DMat3, DVec3};
 use palpate_servo::control::safety::Limits;
 use palpate_servo::device::link::LinkDevice;
-use palpate_servo::device::link::codec::{MAX_FRAME, encode};
+use palpate_servo::device::link::codec::{Decoder, MAX_FRAME, encode};
 use palpate_servo::device::serial::port::SerialPort;
 use palpate_servo::device::serial::reopening::Reopening;
 use palpate_servo::device::{Device, DeviceFrame, Fault, LinkReport, Probe, Reading};
@@ -230,13 +230,14 @@ fn board(mut line: File, ends: &AtomicBool) {
     };
     let mut heard = [0; 1024];
     assert!(line.read(&mut heard).expect("HELLO") > 0);
-    let mut greeting = [0; 37];
-    greeting[..2].copy_from_slice(&[1, 1]);
+    let mut greeting = [0; 39];
+    greeting[..2].copy_from_slice(&[1, 2]);
     greeting[18] = 3;
     greeting[19..23].copy_from_slice(&2.5_f32.to_le_bytes());
     say(&mut line, &greeting);
-    let mut state = [0; 21];
+    let mut state = [0; 23];
     (state[0], state[20]) = (2, 1);
+    let mut ears = Decoder::default();
     for tick in 0_u32.. {
         if ends.load(Relaxed) {
             break;
@@ -249,7 +250,13 @@ fn board(mut line: File, ends: &AtomicBool) {
         }
         say(&mut line, &state);
         // The servo answers each state, so there is always something to read.
-        let _ = line.read(&mut heard).expect("the host is there");
+        let count = line.read(&mut heard).expect("the host is there");
+        for &byte in &heard[..count] {
+            if let Some(&[3, low, high, ..]) = ears.push(byte) {
+                state[20] = 5;
+                state[21..].copy_from_slice(&[low, high]);
+            }
+        }
     }
 }
 

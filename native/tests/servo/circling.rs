@@ -15,6 +15,8 @@ pub struct Circling {
     tick: u32,
     greeted: bool,
     forces: u64,
+    /// Last FORCE that it took.
+    named: u16,
 }
 
 impl Circling {
@@ -49,7 +51,7 @@ impl Circling {
             0.025 + 0.02 * (t * 1.3).sin(),
             height,
         );
-        let mut payload = [0; 21];
+        let mut payload = [0; 23];
         payload[0] = 2;
         payload[1..3].copy_from_slice(&(self.tick as u16).to_le_bytes());
         payload[3..7].copy_from_slice(&(self.tick.wrapping_mul(1000)).to_le_bytes());
@@ -57,7 +59,8 @@ impl Circling {
             let um = (x * 1e6).round() as i32;
             payload[7 + 4 * i..11 + 4 * i].copy_from_slice(&um.to_le_bytes());
         }
-        payload[20] = 1;
+        payload[20] = 5;
+        payload[21..].copy_from_slice(&self.named.to_le_bytes());
         self.orientation();
         self.put(&payload);
     }
@@ -91,19 +94,21 @@ impl Wire for Circling {
         let mut hello = false;
         for &byte in bytes {
             match self.heard.push(byte) {
-                Some([1, 1]) => hello = true,
-                Some([3, ..]) => self.forces += 1,
+                Some([1, 2]) => hello = true,
+                Some([3, low, high, ..]) => {
+                    self.forces += 1;
+                    self.named = u16::from_le_bytes([*low, *high]);
+                }
                 _ => {}
             }
         }
         if hello && !self.greeted {
             self.greeted = true;
-            let mut payload = [0; 38];
-            payload[..2].copy_from_slice(&[1, 1]);
+            let mut payload = [0; 39];
+            payload[..2].copy_from_slice(&[1, 2]);
             payload[18] = 3;
             payload[19..23].copy_from_slice(&2.5_f32.to_le_bytes());
-            let length = 1 + 1 + 16 + 1 + 4 + 12 + 2;
-            self.put(&payload[..length]);
+            self.put(&payload);
         }
         Ok(bytes.len())
     }
@@ -123,6 +128,7 @@ impl Opener for InMemory {
             tick: 0,
             greeted: false,
             forces: 0,
+            named: 0,
         })
     }
 }

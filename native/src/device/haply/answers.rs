@@ -162,6 +162,7 @@ fn greeting(model: &Model) -> Greeting {
     let middle = model.largest_force_in_the_middle();
     let [x, y] = model.half_extents.to_array();
     Greeting {
+        largest_damping: 0.0,
         protocol: 0,
         name,
         axes: 2,

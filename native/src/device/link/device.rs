@@ -3,8 +3,9 @@
 use glam::DVec3;
 
 use crate::device::arrival::Arrivals;
-use crate::device::link::codec::{Decoder, MAX_FRAME, encode};
-use crate::device::link::messages::{DeviceState, PROTOCOL, force_payload, hello_payload};
+use crate::device::link::codec::Decoder;
+use crate::device::link::freshness::Freshness;
+use crate::device::link::messages::{DeviceState, PROTOCOL};
 use crate::device::link::orientation::Orientations;
 use crate::device::link::pacing::Pacing;
 use crate::device::reason;
@@ -13,8 +14,6 @@ use crate::device::serial::port::Opener;
 use crate::device::speedometer::Speedometer;
 use crate::device::{Device, DeviceFrame, Fault, Greeting, LinkReport, Probe, Reading};
 
-/// HELLO is repeated this often until it is answered, s.
-const HELLO_SECONDS: f64 = 0.05;
 /// Without a STATE for this long there is no force, s.
 const STALE_SECONDS: f64 = 0.02;
 /// Zero forces sent when parking: one may be lost on the wire.
@@ -52,11 +51,16 @@ pub struct LinkDevice<O: Opener> {
     pub(super) orientations: Orientations,
     pub(super) arrivals: Arrivals,
     pub(super) pacing: Pacing,
+    pub(super) freshness: Freshness,
+    /// The one that is spoken, or tried.
+    pub(super) protocol: u8,
     pub(super) sequence: u16,
     /// The last FORCE that was to be said had *enable*.
-    pushes: bool,
+    pub(super) pushes: bool,
+    /// The device shall brake.
+    pub(super) brakes: bool,
     /// Since when the port takes no FORCE, s.
-    refused: Option<f64>,
+    pub(super) refused: Option<f64>,
     pub(super) now: f64,
     pub(super) dt: f64,
     pub(super) report: LinkReport,
@@ -83,8 +87,11 @@ impl<O: Opener> LinkDevice<O> {
             orientations: Orientations::default(),
             arrivals: Arrivals::default(),
             pacing: Pacing::default(),
+            freshness: Freshness::default(),
+            protocol: PROTOCOL,
             sequence: 0,
             pushes: false,
+            brakes: false,
             refused: None,
             now: 0.0,
             dt: 0.0,
@@ -93,7 +100,7 @@ impl<O: Opener> LinkDevice<O> {
     }
 
     pub(super) fn is_greeted(&self) -> bool {
-        self.greeting.is_some_and(|g| g.protocol == PROTOCOL)
+        self.greeting.is_some_and(|g| g.protocol == self.protocol)
     }
 
     /// Closes the line and forgets what was known of the device behind it.
@@ -109,7 +116,20 @@ impl<O: Opener> LinkDevice<O> {
         self.orientations.forget();
         self.arrivals.forget();
         self.pacing = Pacing::default();
+        self.freshness = Freshness::default();
+        self.protocol = PROTOCOL;
         self.refused = None;
+    }
+
+    /// Whether force would come too late: what was said is not taken in time, or does not leave.
+    fn is_deaf(&mut self, now: f64) -> bool {
+        if self
+            .refused
+            .is_some_and(|since| now - since > STALE_SECONDS)
+        {
+            self.freshness.refuse(now);
+        }
+        self.freshness.is_deaf(now)
     }
 
     /// Tries the port again now and then.
@@ -135,52 +155,14 @@ impl<O: Opener> LinkDevice<O> {
             }
         }
     }
-
-    /// Puts a frame on the line; false when it does not fit or the line is gone.
-    fn send(&mut self, payload: &[u8]) -> bool {
-        let mut frame = [0; MAX_FRAME];
-        let length = encode(payload, &mut frame);
-        let sent = length.is_some_and(|length| self.line.send(&frame[..length]));
-        if sent {
-            self.carry(length.unwrap_or(0));
-        }
-        sent
-    }
-
-    fn carry(&mut self, bytes: usize) {
-        let speed = self.line.bits_per_second();
-        self.pacing.carry(bytes, speed, self.now);
-    }
-
-    /// Says a FORCE in spite of all that may still wait, which is thrown away where it can be.
-    fn send_at_once(&mut self, payload: &[u8]) -> bool {
-        if self.line.queued() == 0 && self.refused.is_none() {
-            return self.send(payload);
-        }
-        let mut frame = [0; MAX_FRAME];
-        let Some(length) = encode(payload, &mut frame) else {
-            return false;
-        };
-        self.line.send_at_once(&frame[..length]);
-        self.carry(length);
-        true
-    }
-
-    /// Whether a message would leave at once instead of waiting behind another one.
-    fn is_free(&mut self) -> bool {
-        self.pacing.is_free(self.now, self.dt) && self.line.queued() == 0
-    }
-
-    fn greet(&mut self, now: f64) {
-        if now >= self.next_hello {
-            self.next_hello = now + HELLO_SECONDS;
-            self.report.hellos += u64::from(self.send(&hello_payload()));
-        }
-    }
 }
 
 impl<O: Opener> Device for LinkDevice<O> {
     fn read(&mut self, now: f64, dt: f64, frame: &DeviceFrame) -> Reading {
+        if now - self.now > STALE_SECONDS {
+            // What the host did not look for is not late.
+            self.freshness.forget();
+        }
         (self.now, self.dt) = (now, dt);
         if !self.line.is_open() {
             self.reopen(now);
@@ -210,9 +192,13 @@ impl<O: Opener> Device for LinkDevice<O> {
             self.stale = true;
             self.speedometer.reset();
             self.orientations.interrupt();
+            self.freshness.forget();
             // A device that was reset waits for HELLO.
             self.greet(now);
             return Reading::Fault(Fault::Stale);
+        }
+        if self.is_deaf(now) {
+            return Reading::Fault(Fault::Deaf);
         }
         let (Some(Newest { state, speed }), Some(greeting)) = (self.newest, self.greeting) else {
             return Reading::Waiting(reason::NO_STATE);
@@ -242,37 +228,17 @@ impl<O: Opener> Device for LinkDevice<O> {
         if !self.line.is_open() || !self.is_greeted() {
             return;
         }
-        let lets_go = std::mem::replace(&mut self.pushes, enable) && !enable;
-        if !lets_go && !self.pacing.is_due(enable, self.now, self.dt) {
-            return;
-        }
-        let payload = force_payload(self.sequence, frame.force_to_device(force), enable);
-        let sent = if lets_go {
-            self.send_at_once(&payload)
-        } else {
-            self.is_free() && self.send(&payload)
-        };
-        if sent {
-            self.sequence = self.sequence.wrapping_add(1);
-            self.report.forces += 1;
-            self.pacing.send(self.now);
-            self.refused = None;
-        } else {
-            self.report.unsent += 1;
-            self.refused.get_or_insert(self.now);
-        }
+        self.say_force(frame.force_to_device(force), enable);
+    }
+
+    fn brake(&mut self, wanted: bool) {
+        self.brakes = wanted;
     }
 
     fn park(&mut self) {
         for number in 0..PARKING_FRAMES {
             if self.line.is_open() && self.is_greeted() {
-                let payload = force_payload(self.sequence, DVec3::ZERO, false);
-                self.sequence = self.sequence.wrapping_add(1);
-                if number == 0 {
-                    self.send_at_once(&payload);
-                } else {
-                    self.send(&payload);
-                }
+                self.say_zero(number > 0);
             }
             // Time for the device to read before the line closes.
             std::thread::sleep(PARKING_PAUSE);
@@ -297,6 +263,9 @@ impl<O: Opener> Device for LinkDevice<O> {
             orientations_refused: self.orientations.report.refused,
             orientations_lost: self.orientations.report.lost,
             arrivals: self.arrivals.report,
+            round_trip: self.freshness.round_trip(),
+            in_flight: self.freshness.in_flight() as u64,
+            state_age: self.newest.map(|_| self.now - self.heard),
             ..self.report
         }
     }

@@ -1,11 +1,13 @@
-//! Messages of the link, version 1: what a payload says.
+//! Messages of the link, protocols 1 and 2: what a payload says.
 
 use glam::{DQuat, DVec3};
 
 use crate::device::report::Greeting;
 
-/// Version of the link spoken here.
-pub const PROTOCOL: u8 = 1;
+/// Protocol in which neither end tells of freshness.
+pub const FIRST_PROTOCOL: u8 = 1;
+/// Protocol that is spoken with whoever knows it.
+pub const PROTOCOL: u8 = 2;
 
 const HELLO: u8 = 0x01;
 const STATE: u8 = 0x02;
@@ -15,6 +17,9 @@ const ORIENTATION: u8 = 0x05;
 
 /// Steps of a quaternion's component of 1 in an ORIENTATION.
 const QUATERNION_UNIT: f64 = 32_767.0;
+/// Step of a damping, N s/m, and of an age, s.
+const DAMPING_STEP: f64 = 0.01;
+const AGE_STEP: f64 = 1e-5;
 /// Shortest and longest quaternion that is believed, in its own steps: within 1 % of a unit's.
 const QUATERNION_LENGTHS: [i64; 2] = [32_440, 33_094];
 
@@ -33,6 +38,28 @@ pub struct DeviceState {
     pub ready: bool,
     /// The device has a fault of its own.
     pub fault: bool,
+    /// What it tells of FORCE, in protocol 2.
+    pub taken: Option<Taken>,
+}
+
+/// The last FORCE that a device took in this session.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Taken {
+    /// None yet.
+    Nothing,
+    /// The one of this sequence.
+    Force(u16),
+}
+
+/// What a FORCE of protocol 2 says of itself.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Answer {
+    /// Device time of the STATE that it answers, us.
+    pub time_us: u32,
+    /// Time since that came, s.
+    pub age: f64,
+    /// Damping that is asked for, N s/m.
+    pub damping: f64,
 }
 
 impl DeviceState {
@@ -88,7 +115,7 @@ pub fn parse(payload: &[u8]) -> Option<Message> {
     let mut fields = Fields(rest);
     let message = match kind {
         // Type and protocol stay where they are in every version; all else may change.
-        HELLO if *rest.first()? != PROTOCOL => {
+        HELLO if !matches!(*rest.first()?, FIRST_PROTOCOL | PROTOCOL) => {
             return Some(Message::Hello(Greeting {
                 protocol: rest[0],
                 ..Greeting::default()
@@ -105,6 +132,11 @@ pub fn parse(payload: &[u8]) -> Option<Message> {
                 f32::from_le_bytes(fields.take()?),
             ],
             rate_hz: u16::from_le_bytes(fields.take()?),
+            largest_damping: if rest[0] == FIRST_PROTOCOL {
+                0.0
+            } else {
+                f32::from(u16::from_le_bytes(fields.take()?)) * DAMPING_STEP as f32
+            },
         }),
         STATE => {
             let sequence = u16::from_le_bytes(fields.take()?);
@@ -122,6 +154,11 @@ pub fn parse(payload: &[u8]) -> Option<Message> {
                 buttons,
                 ready: flags & 1 != 0,
                 fault: flags & 2 != 0,
+                taken: match fields.take() {
+                    None => None,
+                    Some(_) if flags & 4 == 0 => Some(Taken::Nothing),
+                    Some(sequence) => Some(Taken::Force(u16::from_le_bytes(sequence))),
+                },
             })
         }
         FAULT => Message::Fault {
@@ -153,11 +190,11 @@ impl Fields<'_> {
 }
 
 /// The host's HELLO.
-pub const fn hello_payload() -> [u8; 2] {
-    [HELLO, PROTOCOL]
+pub const fn hello_payload(protocol: u8) -> [u8; 2] {
+    [HELLO, protocol]
 }
 
-/// The host's FORCE: millinewtons, rounded, cut to what fits.
+/// The host's FORCE in protocol 1: millinewtons, rounded, cut to what fits.
 pub fn force_payload(sequence: u16, force: DVec3, enable: bool) -> [u8; 10] {
     let mut payload = [0; 10];
     payload[0] = FORCE;
@@ -168,5 +205,22 @@ pub fn force_payload(sequence: u16, force: DVec3, enable: bool) -> [u8; 10] {
         payload[3 + 2 * axis..5 + 2 * axis].copy_from_slice(&millinewtons.to_le_bytes());
     }
     payload[9] = u8::from(enable);
+    payload
+}
+
+/// The same in protocol 2: a FORCE and what it says of itself.
+pub fn answering_payload(force: [u8; 10], answer: &Answer) -> [u8; 18] {
+    const DAMP: u8 = 2;
+    // Casts from float to integer saturate.
+    let damping = (answer.damping / DAMPING_STEP).round() as u16;
+    let age = (answer.age / AGE_STEP).ceil() as u16;
+    let mut payload = [0; 18];
+    payload[..10].copy_from_slice(&force);
+    if damping > 0 {
+        payload[9] |= DAMP;
+    }
+    payload[10..14].copy_from_slice(&answer.time_us.to_le_bytes());
+    payload[14..16].copy_from_slice(&age.to_le_bytes());
+    payload[16..].copy_from_slice(&damping.to_le_bytes());
     payload
 }

@@ -1,10 +1,12 @@
-//! The link, version 1: the project's own protocol of serial devices (`docs/link.md`).
+//! The link: the project's own protocol of serial devices (`docs/link.md`).
 
 pub mod codec;
 mod device;
+mod freshness;
 pub mod messages;
 mod orientation;
 mod pacing;
+mod sending;
 mod session;
 
 pub use device::LinkDevice;

@@ -1,9 +1,13 @@
 //! Sessions of a device on the link: where one begins, and which STATE counts.
 
 use crate::device::link::device::{LinkDevice, Newest};
-use crate::device::link::messages::{DeviceState, Message, parse};
+use crate::device::link::freshness::Freshness;
+use crate::device::link::messages::{DeviceState, FIRST_PROTOCOL, Message, PROTOCOL, Taken, parse};
 use crate::device::serial::port::Opener;
 use crate::device::speedometer::has_begun_anew;
+
+/// Code of a FAULT: the host's HELLO was of another protocol.
+const OTHER_PROTOCOL: u8 = 2;
 
 impl<O: Opener> LinkDevice<O> {
     pub(super) fn take(&mut self, byte: u8, now: f64) {
@@ -15,6 +19,18 @@ impl<O: Opener> LinkDevice<O> {
                 self.greeting = None;
                 self.report.unknown += 1;
             }
+            // An older device: it says so, with a FAULT, and waits to be asked in its own words.
+            Some(Message::Hello(greeting))
+                if greeting.protocol == FIRST_PROTOCOL && self.protocol > FIRST_PROTOCOL =>
+            {
+                self.begin_session(now);
+                (self.greeting, self.protocol) = (None, FIRST_PROTOCOL);
+                self.next_hello = now;
+            }
+            Some(Message::Fault {
+                code: OTHER_PROTOCOL,
+                detail,
+            }) if detail == u16::from(PROTOCOL) && self.protocol == FIRST_PROTOCOL => {}
             Some(Message::Hello(greeting)) => {
                 // One that says the same was only asked twice; another figure is another device.
                 if self.greeting != Some(greeting) {
@@ -25,7 +41,13 @@ impl<O: Opener> LinkDevice<O> {
                 self.report.greeting = Some(greeting);
             }
             // A device that streams before it was greeted may speak another version.
-            Some(Message::State(state)) if self.is_greeted() => self.take_state(state, now),
+            Some(Message::State(state)) if self.is_greeted() => {
+                if state.taken.is_some() == (self.protocol == PROTOCOL) {
+                    self.take_state(state, now);
+                } else {
+                    self.report.unknown += 1;
+                }
+            }
             Some(Message::Orientation(orientation)) if self.is_greeted() => {
                 self.orientations.tell(orientation);
             }
@@ -48,6 +70,8 @@ impl<O: Opener> LinkDevice<O> {
         self.device_fault = false;
         self.speedometer.reset();
         self.orientations.forget();
+        self.freshness = Freshness::default();
+        self.refused = None;
     }
 
     fn take_state(&mut self, state: DeviceState, now: f64) {
@@ -84,6 +108,9 @@ impl<O: Opener> LinkDevice<O> {
         }
         let speed = speed.max(swing);
         self.pacing.hear(now, self.dt);
+        if let Some(Taken::Force(sequence)) = state.taken {
+            self.freshness.hear(sequence, now);
+        }
         self.newest = Some(Newest { state, speed });
         self.heard = now;
         self.stale = false;

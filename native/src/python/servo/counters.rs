@@ -87,9 +87,12 @@ pub fn link_counters<'py>(py: Python<'py>, link: &LinkReport) -> PyResult<Bound<
         ("device_faults", link.device_faults),
         ("unsent", link.unsent),
         ("reopened", link.reopened),
+        ("forces_in_flight", link.in_flight),
     ]
     .into_py_dict(py)?;
     counters.set_item("last_fault", link.last_fault)?;
+    counters.set_item("round_trip_ms", link.round_trip.map(|s| s * 1e3))?;
+    counters.set_item("state_age_ms", link.state_age.map(|s| s * 1e3))?;
     let arrivals = &link.arrivals;
     let mean = |sum: f64, count: u64, unit: f64| sum * unit / count.max(1) as f64;
     let by_device = mean(arrivals.device_seconds, arrivals.states, 1e6);
@@ -112,6 +115,7 @@ pub fn link_counters<'py>(py: Python<'py>, link: &LinkReport) -> PyResult<Bound<
         device.set_item("max_force", g.max_force)?;
         device.set_item("half_extents", g.half_extents)?;
         device.set_item("rate_hz", g.rate_hz)?;
+        device.set_item("largest_damping", g.largest_damping)?;
         Ok(device)
     });
     counters.set_item("device", device.transpose()?)?;
