@@ -21,9 +21,9 @@ def terminal():
 
 @pytest.fixture
 def foreign_device(terminal):
-    """The path of a device that answers whatever it hears in protocol 2."""
+    """The path of a device that answers whatever it hears in protocol 3."""
     device_end, path = terminal
-    answer = link.frame(b"\x01\x02 of a later time")
+    answer = link.frame(b"\x01\x03 of a later time")
     over = threading.Event()
 
     def speak():

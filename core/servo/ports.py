@@ -182,10 +182,13 @@ def _exchange(path: str, port: serial.Serial, seconds: float) -> link.DeviceHell
     while (now := time.monotonic()) < deadline:
         if now >= next_hello:
             next_hello = now + HELLO_EVERY_SECONDS
-            port.write(link.encode(link.HostHello()))
+            port.write(link.encode(link.HostHello(link.PROTOCOL)))
         for message in decoder.feed(port.read(max(1, port.in_waiting))):
             match message:
-                case link.DeviceHello():
+                case link.DeviceHello(protocol=protocol):
+                    if protocol != link.PROTOCOL:
+                        # It streams to whoever asks in its own words.
+                        port.write(link.encode(link.HostHello(protocol)))
                     return message
                 case link.OtherHello(protocol):
                     raise PortError(

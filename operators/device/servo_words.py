@@ -50,6 +50,8 @@ STATES = {
 FAULTS = {
     "unplugged": "The device is unplugged; plug it in again and pressing goes on",
     "stale": "The device is silent; check its cable and power, pressing goes on when it speaks",
+    "deaf": "The device hears the force too late and was let go; close what keeps the computer "
+    "busy, or raise the line's speed at both ends, and pressing goes on",
     "too fast": "The device moved too fast and was let go; hold still and pressing goes on",
     "nan": "The device sent a position that is no number; pressing goes on when it recovers",
     "wrong protocol": "The device speaks another version of the link; update its firmware",
@@ -62,6 +64,7 @@ FAULTS = {
 FAULT_NAMES = {
     "unplugged": "Unplugged",
     "stale": "Silent",
+    "deaf": "Hears Too Late",
     "too fast": "Too Fast",
     "nan": "Invalid Number",
     "wrong protocol": "Other Version",

@@ -6,13 +6,16 @@ No clock and no port of its own: times and bytes are arguments, so that every ru
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 from ...core.servo import link
 from ..hand.plant import ZERO, Vector
 from ..hand.quaternion import Quaternion
 
 WATCHDOG_SECONDS = 0.020
+FRESH_US = 20_000
+"""A force that answers an older STATE is refused, us."""
 
 FAULT_LIMP = 1
 FAULT_PROTOCOL = 2
@@ -30,6 +33,8 @@ class FirmwareCounters:
     """Gaps in the sequence of FORCE."""
     duplicates: int = 0
     out_of_order: int = 0
+    refused: int = 0
+    """FORCE of protocol 2 that came too late to be obeyed."""
     unexpected: int = 0
     """Valid frames that no host may send, or FORCE before any HELLO."""
     clamped: int = 0
@@ -43,16 +48,22 @@ class FirmwareCounters:
 
 
 class Firmware:
-    """Device's side of the link."""
+    """Device's side of the link; `hello` has the newest protocol that it speaks."""
 
     def __init__(self, hello: link.DeviceHello) -> None:
         self.hello = hello
+        self.clock: Callable[[float], float] = float
+        """What its own clock shows at a time, s."""
+        self._protocol = hello.protocol
+        """Protocol of the session."""
         self.counters = FirmwareCounters()
         self.decoder = link.Decoder()
         self.streaming = False
         self._sequence = 0
         self._force = ZERO
         self._braked = False
+        self._taken: int | None = None
+        """Last FORCE taken in this session."""
         self._looked_at = -math.inf
         self._heard_at: float | None = None
         """When the last valid FORCE came; None while limp."""
@@ -102,8 +113,13 @@ class Firmware:
         """Next STATE, or nothing before the first HELLO."""
         if not self.streaming:
             return b""
-        time_us = round(now * 1e6) % (1 << 32)
-        message = link.State(self._sequence, time_us, position_um, buttons, link.StateFlag.READY)
+        flags, taken = link.StateFlag.READY, None
+        if self._protocol > link.FIRST_PROTOCOL:
+            taken = self._taken or 0
+            flags |= link.StateFlag.TAKEN if self._taken is not None else 0
+        message = link.State(
+            self._sequence, self._clock_us(now), position_um, buttons, flags, taken
+        )
         self._sequence = (self._sequence + 1) % link.SEQUENCES
         self.counters.states += 1
         return link.encode(message)
@@ -118,27 +134,42 @@ class Firmware:
 
     def _obey(self, message: link.Message, now: float) -> bytes:
         match message:
-            case link.HostHello():
-                self.counters.hellos += 1
-                self.streaming = True
-                # A new session: earlier commands are void.
-                self._heard_at = None
-                return link.encode(self.hello)
-            case link.OtherHello():
-                self.counters.hellos += 1
-                # A host of another protocol cannot read STATE, and its messages may mean anything.
-                self.streaming = False
-                self._heard_at = None
-                fault = link.Fault(FAULT_PROTOCOL, message.protocol)
-                return link.encode(self.hello) + link.encode(fault)
-            case link.Force() if self.streaming:
+            case link.HostHello() | link.OtherHello():
+                return self._answer(message.protocol)
+            case link.Force() if self.streaming and self._is_of_session(message):
                 self._take(message, now)
             case _:
                 self.counters.unexpected += 1
         return b""
 
+    def _answer(self, protocol: int) -> bytes:
+        self.counters.hellos += 1
+        # A new session, or none: earlier commands are void.
+        self._heard_at = self._taken = None
+        self.streaming = link.FIRST_PROTOCOL <= protocol <= self.hello.protocol
+        if self.streaming:
+            self._protocol = protocol
+            return link.encode(replace(self.hello, protocol=protocol))
+        # A host of another protocol cannot read STATE, and its messages may mean anything.
+        return link.encode(self.hello) + link.encode(link.Fault(FAULT_PROTOCOL, protocol))
+
+    def _clock_us(self, now: float) -> int:
+        return round(self.clock(now) * 1e6) % (1 << 32)
+
+    def _is_of_session(self, message: link.Force) -> bool:
+        return (message.answer is not None) == (self._protocol > link.FIRST_PROTOCOL)
+
+    def _is_old(self, message: link.Force, now: float) -> bool:
+        """Whether it drives, and answers a STATE that was made too long ago."""
+        if message.answer is None or not message.flags:
+            return False
+        return (self._clock_us(now) - message.answer.state_time_us) % (1 << 32) > FRESH_US
+
     def _take(self, message: link.Force, now: float) -> None:
         counters = self.counters
+        if self._is_old(message, now):
+            counters.refused += 1
+            return
         if not self.limp:
             ahead = (message.sequence - self._heard_sequence) % link.SEQUENCES
             if ahead == 0:
@@ -150,7 +181,9 @@ class Firmware:
             counters.lost += ahead - 1
         counters.forces += 1
         self._heard_at, self._heard_sequence = now, message.sequence
-        self._braked = bool(message.flags & link.ForceFlag.DAMP)
+        self._taken = message.sequence
+        asked = message.answer is None or message.answer.damping > 0
+        self._braked = bool(message.flags & link.ForceFlag.DAMP) and asked
         self._force = ZERO
         if message.flags & link.ForceFlag.ENABLE:
             self._force = self._within_limit(message.force_mn)

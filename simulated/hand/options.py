@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ...core.errors import PalpateError
-from ...core.servo.link import DeviceHello
+from ...core.servo.link import DAMPING_STEP, FIRST_PROTOCOL, PROTOCOL, DeviceHello
 from .hand_script import HandScript, TurnScript, press_script, read_script, tilt_script
 from .plant import Impedance, Vector
 
@@ -28,6 +28,7 @@ class SimulatedOptions:
     """
 
     name: str = _option("Simulated", "TEXT", "name told in HELLO, at most 16 bytes")
+    protocol: int = _option(PROTOCOL, "1|2", "newest protocol of the link that it speaks")
     rate_hz: int = _option(1000, "HZ", "rate of the device's own loop and of STATE")
     largest_force: float = _option(3.0, "N", "largest force of the motors")
     workspace: Vector = _option(
@@ -88,6 +89,8 @@ class SimulatedOptions:
         for name in ("loss", "noise"):
             if not 0.0 <= getattr(self, name) <= 1.0:
                 raise PalpateError(f"simulated device: {_flag(name)} is a fraction from 0 to 1")
+        if self.protocol not in (FIRST_PROTOCOL, PROTOCOL):
+            raise PalpateError("simulated device: --protocol is 1 or 2")
         if self.rate_hz > 0xFFFF:
             raise PalpateError("simulated device: --rate-hz must be at most 65535")
         if self.unplug_at is not None and math.isfinite(self.unplug_for) and not self.link:
@@ -96,7 +99,16 @@ class SimulatedOptions:
     @property
     def hello(self) -> DeviceHello:
         """HELLO of the device."""
-        return DeviceHello(self.name, 3, self.largest_force, self.workspace, self.rate_hz)
+        brake = min(0xFFFF, round(self.brake / DAMPING_STEP))
+        return DeviceHello(
+            self.name,
+            3,
+            self.largest_force,
+            self.workspace,
+            self.rate_hz,
+            self.protocol,
+            0 if self.protocol == FIRST_PROTOCOL else brake,
+        )
 
     @property
     def impedance(self) -> Impedance:

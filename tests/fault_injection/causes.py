@@ -101,14 +101,14 @@ def _fast(clock: Callable[[float], Callable[[float], float]]) -> Inject:
     """At 3 to 8 m/s out of the body, by a clock that is wrong since the tick before."""
 
     def inject(press: VirtualPress, dice: Random) -> list[Shot]:
-        press.clock = clock(press.now)
+        press.device.clock = clock(press.now)
         press.tick()
         step = dice.uniform(3e-3, 8e-3)
         shots = []
         for _ in range(5):
             press.position = press.position + np.array([0.0, 0.0, step])
             shots.append(press.tick())
-        press.clock = float
+        press.device.clock = float
         press.position = np.array(ABOVE)
         return shots
 
@@ -152,7 +152,7 @@ def _damaged_for_long(press: VirtualPress, dice: Random) -> list[Shot]:
 
 
 def _other_protocol(press: VirtualPress, dice: Random) -> list[Shot]:
-    hello = link.frame(bytes([1, dice.randint(2, 255)]))
+    hello = link.frame(bytes([1, dice.randint(3, 255)]))
     return [press.tick(lambda sent: sent + hello)]
 
 
@@ -173,7 +173,7 @@ def _reset(press: VirtualPress, dice: Random) -> list[Shot]:
     """Silence, and then clock and encoders begin anew: it seems to be deep inside."""
     shots = _mute(press, dice)
     begun = press.now
-    press.clock = lambda time: time - begun
+    press.device.clock = lambda time: time - begun
     press.position = press.position - np.array([0.0, 0.0, dice.uniform(0.001, 0.03)])
     return shots
 

@@ -66,15 +66,14 @@ class VirtualPress:
             max_slew=MAX_SLEW,
             ramp_seconds=RAMP_SECONDS,
         )
-        hello = link.DeviceHello("Scripted", 3, largest_force, (0.1, 0.1, 0.1), 1000)
+        extents = (0.1, 0.1, 0.1)
+        hello = link.DeviceHello("Scripted", 3, largest_force, extents, 1000, link.PROTOCOL)
         self.device = Firmware(hello)
         self.position = np.array(ABOVE)
         self.buttons = 0
         self.flags = link.StateFlag.READY
         self.turned: Quaternion | None = None
         """How the stylus is turned; None for a device that does not tell."""
-        self.clock: Callable[[float], float] = float
-        """What the device's clock shows at a time, s."""
         self.now = 0.0
         self._output = np.zeros(3)
         self._answers = b""
@@ -141,9 +140,11 @@ class VirtualPress:
     def _state(self) -> bytes:
         x, y, z = (round(metres * 1e6) for metres in self.position)
         turn = b"" if self.turned is None else self.device.orientation(self.turned)
-        frame = self.device.state(self.clock(self.now), (x, y, z), self.buttons)
+        frame = self.device.state(self.now, (x, y, z), self.buttons)
         if self.flags != link.StateFlag.READY and frame:
-            frame = link.encode(replace(state_in(frame), flags=self.flags))
+            state = state_in(frame)
+            told = state.flags & link.StateFlag.TAKEN
+            frame = link.encode(replace(state, flags=self.flags | told))
         return turn + frame
 
 

@@ -88,6 +88,7 @@ def test_hello_states_and_forces_go_through(press, board, servo, eventually):
         "max_force": 3.0,
         "half_extents": pytest.approx([0.1, 0.1, 0.1]),
         "rate_hz": 1000,
+        "largest_damping": 0.0,
     }
 
 

@@ -1,11 +1,15 @@
-"""Serial link, version 1, as defined in `docs/link.md`: messages to frames and back."""
+"""Serial link, protocols 1 and 2, as defined in `docs/link.md`: messages to frames and back."""
 
 from .codec import Decoder, encode
 from .frames import MAX_FRAME, MAX_PAYLOAD, LinkError, cobs_decode, cobs_encode, crc16, frame
 from .messages import (
+    AGE_STEP,
+    DAMPING_STEP,
+    FIRST_PROTOCOL,
     NAME_BYTES,
     PROTOCOL,
     SEQUENCES,
+    Answer,
     DeviceHello,
     Fault,
     Force,
@@ -22,11 +26,15 @@ from .messages import (
 )
 
 __all__ = [
+    "AGE_STEP",
+    "DAMPING_STEP",
+    "FIRST_PROTOCOL",
     "MAX_FRAME",
     "MAX_PAYLOAD",
     "NAME_BYTES",
     "PROTOCOL",
     "SEQUENCES",
+    "Answer",
     "Decoder",
     "DeviceHello",
     "Fault",

@@ -198,7 +198,7 @@ def test_a_sound_payload_without_a_meaning_is_counted_as_unknown(payload):
 
 def test_a_hello_of_another_protocol_is_told_from_nonsense():
     assert link.unpack(b"\x01\x07 and whatever version seven says") == link.OtherHello(7)
-    assert link.unpack(b"\x01\x02") == link.OtherHello(2)
+    assert link.unpack(b"\x01\x03") == link.OtherHello(3)
 
 
 @pytest.mark.parametrize(

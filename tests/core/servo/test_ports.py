@@ -75,7 +75,7 @@ def test_what_may_be_a_2diy_is_asked_only_when_it_is_named(device, monkeypatch):
 
 
 def test_a_device_of_another_protocol_is_refused_with_both_versions(foreign_device):
-    with pytest.raises(PortError, match=r"speaks version 2 .* speaks version 1"):
+    with pytest.raises(PortError, match=r"speaks version 3 .* speaks version 2"):
         say_hello(foreign_device, 20.0)
 
 

@@ -17,12 +17,12 @@ from palpate.simulated.hand.quaternion import about
 from palpate.simulated.simulated_process import SimulatedDevice
 
 TOLD = [vector for vector in VECTORS["messages"] if vector["type"] == "orientation"]
-HELLO = link.DeviceHello("Turning", 3, 3.0, (0.1, 0.1, 0.1), 1000)
+HELLO = link.DeviceHello("Turning", 3, 3.0, (0.1, 0.1, 0.1), 1000, link.PROTOCOL)
 
 
 def state(sequence):
     x, y, z = (round(metres * 1e6) for metres in ABOVE)
-    return link.encode(link.State(sequence, 1000 * sequence, (x, y, z)))
+    return link.encode(link.State(sequence, 1000 * sequence, (x, y, z), taken=0))
 
 
 @pytest.fixture

@@ -3,8 +3,10 @@
 //! A FORCE is shorter than a STATE. A line that is as fast in both directions is therefore never
 //! overfilled by one FORCE for each STATE, whatever its speed, which need not be known.
 
-/// Without STATE, zero is said this often at most, s.
-const ZERO_SECONDS: f64 = 0.01;
+/// Without STATE the last word is said again this often at most, s: half of what a device waits for.
+const REPEAT_SECONDS: f64 = 0.01;
+/// And not before a STATE is late by half of the usual time.
+const REPEAT_INTERVALS: f64 = 1.5;
 /// Time between STATE as long as nothing is known of it, and the longest that is believed, s.
 const UNKNOWN_SECONDS: f64 = 0.025;
 const LONGEST_SECONDS: f64 = 0.05;
@@ -62,13 +64,14 @@ impl Pacing {
             .is_none_or(|seconds| seconds <= DENSE_TICKS * dt)
     }
 
-    /// Whether a FORCE may leave now: one for each STATE, and zero also without.
-    pub fn is_due(&self, pushes: bool, now: f64, dt: f64) -> bool {
+    /// Whether a FORCE may leave now: one for each STATE, and now and then without one, or a device
+    /// whose STATE are lost would take the host for lost.
+    pub fn is_due(&self, now: f64, dt: f64) -> bool {
         let since = now - self.sent;
         let interval = self.interval.unwrap_or(UNKNOWN_SECONDS);
         let is_carried = self.is_dense(dt) || since >= FORCE_SHARE * interval - 0.5 * dt;
-        let is_late = since >= interval.max(ZERO_SECONDS);
-        (self.credit > 0 && is_carried) || (!pushes && is_late)
+        let is_late = since >= (REPEAT_INTERVALS * interval).max(REPEAT_SECONDS);
+        (self.credit > 0 && is_carried) || is_late
     }
 
     /// Whether the line has carried what was sent, to half a tick.
@@ -114,7 +117,7 @@ mod tests {
                 pacing.hear(now, DT);
                 arrives += seconds(STATE_BYTES).max(1.0 / rate_hz);
             }
-            if pacing.is_due(true, now, DT) {
+            if pacing.is_due(now, DT) {
                 pacing.send(now);
                 sent += 1;
                 longest = longest.max(line_free - now);
@@ -146,7 +149,7 @@ mod tests {
             for _ in 0..[2, 0, 1, 1][tick as usize % 4] {
                 pacing.hear(now, DT);
             }
-            if pacing.is_due(true, now, DT) {
+            if pacing.is_due(now, DT) {
                 pacing.send(now);
                 sent += 1;
             }
@@ -155,25 +158,25 @@ mod tests {
     }
 
     #[test]
-    fn without_state_nothing_but_zero_is_said_and_not_often() {
+    fn without_state_the_last_word_is_said_again_and_not_often() {
         let mut pacing = Pacing::default();
         for tick in 0..1000_u32 {
             pacing.hear(f64::from(tick) * DT, DT);
         }
         pacing.send(1.0);
         pacing.send(1.0);
-        assert!(!pacing.is_due(true, 5.0, DT) && pacing.is_due(false, 5.0, DT));
-        let zeros = (0..1000_u32)
+        assert!(!pacing.is_due(1.005, DT) && pacing.is_due(1.011, DT));
+        let said = (0..1000_u32)
             .filter(|tick| {
                 let now = 5.0 + f64::from(*tick) * DT;
-                let is_due = pacing.is_due(false, now, DT);
+                let is_due = pacing.is_due(now, DT);
                 if is_due {
                     pacing.send(now);
                 }
                 is_due
             })
             .count();
-        assert!((90..=100).contains(&zeros), "{zeros}");
+        assert!((90..=100).contains(&said), "{said}");
     }
 
     #[test]

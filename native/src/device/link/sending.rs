@@ -26,7 +26,7 @@ impl<O: Opener> LinkDevice<O> {
     pub(super) fn say_force(&mut self, force: DVec3, enable: bool) {
         let lets_go = std::mem::replace(&mut self.pushes, enable) && !enable;
         let (now, dt) = (self.now, self.dt);
-        let is_due = self.pacing.is_due(enable, now, dt) && self.freshness.may_send(enable, now);
+        let is_due = self.pacing.is_due(now, dt) && self.freshness.may_send(enable, now);
         if lets_go || is_due {
             let payload = force_payload(self.sequence, force, enable);
             let said = if lets_go {
