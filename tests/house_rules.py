@@ -15,7 +15,7 @@ LAYERS = {
 # A file imports from its own room and from rooms before it here. Each word is a folder or a single
 # file; the longest that fits a file is its room.
 ROOMS_OF_PYTHON = """
-core/sentence.py core/errors.py core/progress.py
+core/sentence.py core/errors.py core/progress.py core/quantities.py
 core/machine
 core/files
 core/mesh

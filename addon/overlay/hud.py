@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 
 import bpy
 
+from ...core.quantities import area, pressure
 from ...operators.device.servo_words import REASONS, Signal, standing
 from ...operators.reporting.translated import shown
-from ...operators.scene.quantities import area, pressure
 from ...operators.session.press_events import Source
 from ...operators.session.press_session import PressSession
 from ...operators.session.press_state import Phase

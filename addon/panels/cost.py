@@ -3,10 +3,10 @@
 import bpy
 
 from ...core.errors import PalpateError
+from ...core.quantities import about, duration, length, memory, percent
 from ...core.sentence import Sentence
 from ...operators.bake.bake_prediction import Prediction
 from ...operators.reporting.translated import shown
-from ...operators.scene.quantities import about, duration, memory, percent
 from .. import known_status
 from .base import draw_box, draw_rows
 from .sentence import say
@@ -63,6 +63,9 @@ def draw_figures(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
     if baked.baked_form == "compressed":
         rows.append(("Uncompressed", memory(36.0 * baked.free_surface_count**2)))
         rows.append(("Largest Error", percent(baked.column_error / 100)))
+    if baked.body_to_mesh or baked.mesh_to_body:
+        rows.append(("Body to Mesh, at Most", length(baked.body_to_mesh)))
+        rows.append(("Mesh to Body, at Most", length(baked.mesh_to_body)))
     rows.append(("Bake Time", f"{baked.bake_seconds:.1f} s"))
     draw_rows(box, rows)
     for warning in filter(None, baked.bake_warnings.split("\n")):

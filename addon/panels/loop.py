@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 import bpy
 
+from ...core.quantities import microseconds
 from ...core.servo import latency_timer
 from ...operators.device.servo_words import FAULT_NAMES
-from ...operators.scene.quantities import microseconds
 from ...operators.session import press_session
 from .base import PalpatePanel, draw_box, draw_rows, named_properties, while_idle
 from .sentence import say

@@ -2,9 +2,9 @@
 
 import bpy
 
+from ...core.quantities import memory
 from ...operators.record import recording, recording_writer
 from ...operators.record.recording import BYTES_A_TICK
-from ...operators.scene.quantities import memory
 from ...operators.session import press_session
 from ...operators.session.press_session import PressSession
 from .base import PalpatePanel, named_properties

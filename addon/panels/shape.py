@@ -5,11 +5,11 @@ from typing import Any
 
 import bpy
 
+from ...core.quantities import duration, memory, waiting
 from ...core.shape.force_at_depth.softening_table import whole_table_seconds
 from ...core.shape.shape_cost import BodySize, ShapeCost, shape_cost
 from ...core.shape.shapes import shape_name
 from ...operators.reporting.translated import shown
-from ...operators.scene.quantities import duration, memory, waiting
 from ...operators.session import press_session
 from ...operators.session.press_session import PressSession
 from ...operators.shape.drawn_shape import chosen_shape

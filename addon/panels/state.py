@@ -2,6 +2,7 @@
 
 import bpy
 
+from ...core.quantities import duration
 from ...operators.bake import bake_words
 from ...operators.bake.bake_session import BakeSession
 from ...operators.object import soft_object
@@ -9,7 +10,6 @@ from ...operators.object.drawn_body import restores_quickly
 from ...operators.object.pin_change import PinFit
 from ...operators.object.soft_object import BodyStatus, Fit
 from ...operators.reporting.translated import shown
-from ...operators.scene.quantities import duration
 from ...operators.session.press_events import Source
 from ...operators.session.press_session import PressSession
 from ...operators.session.press_state import Phase

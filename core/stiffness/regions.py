@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from ..errors import PalpateError
 from ..mesh.closest_point import ClosestPoints
 from ..mesh.surface import Surface
-from ..mesh.surface_parts import nested_parts
 from ..mesh.tet_mesh import LARGEST_SCALE, TetMesh, young_scale_checked
+from .surface_parts import nested_parts
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,8 +1,8 @@
 """Progress of a bake as translated text."""
 
 from ...core.bake.job import JobProgress
+from ...core.quantities import duration
 from ..reporting.translated import shown
-from ..scene.quantities import duration
 
 WAITING = "The body is ready; leave Edit Mode to receive it"
 

@@ -77,7 +77,7 @@ def test_figures_are_those_of_the_prediction_with_their_units(panel, thing):
         getattr(part("core.shape.shape_cost"), name) for name in ("shape_cost", "BodySize")
     )
     expected = cost("paper", size(*LARGE))
-    quantities = part("operators.scene.quantities")
+    quantities = part("core.quantities")
     said = drawn(panel, thing).lines
     rows = dict(pairwise(said))
     assert rows["A Frame, About"] == f"{1000 * expected.frame_seconds:.2g} ms"

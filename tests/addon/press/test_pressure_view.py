@@ -78,7 +78,7 @@ def test_a_tool_is_as_deep_as_the_surface_is_in_it(palpate):
 
 
 def test_small_quantities_keep_their_digits(palpate):
-    quantities = part("operators.scene.quantities")
+    quantities = part("core.quantities")
     assert quantities.area(12.34e-6) == "12.3 mm²"
     assert quantities.area(4.56e-4) == "4.56 cm²"
     assert quantities.pressure(1234.5) == "1.23 kPa"

@@ -9,12 +9,12 @@ from palpate.core.errors import PalpateError
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.mesh.read_mesh import read_tets
 from palpate.core.mesh.surface import Surface
-from palpate.core.mesh.surface_parts import nested_parts
 from palpate.core.mesh.tet_mesh import TetMesh
 from palpate.core.mesh.tetrahedralize import tetrahedralize
 from palpate.core.mesh.winding_volume import is_inside
 from palpate.core.stiffness.assembly import assemble
 from palpate.core.stiffness.regions import StiffRegion, TetScale, young_scale
+from palpate.core.stiffness.surface_parts import nested_parts
 
 FLESH, BONE = 0.05, 0.02
 

@@ -8,10 +8,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from .decimate import decimate
-from .surface import Surface
-from .tet_mesh import pieces
-from .winding_volume import is_inside
+from ..mesh.decimate import decimate
+from ..mesh.surface import Surface
+from ..mesh.tet_mesh import pieces
+from ..mesh.winding_volume import is_inside
 
 # Triangles of a part at most for deciding inside or outside.
 TRIANGLES_FOR_SIDES = 400

@@ -56,3 +56,19 @@ def area(square_metres: float) -> str:
 def pressure(pascal: float) -> str:
     """Pressure in kPa, three digits."""
     return f"{pascal / 1000:.3g} kPa"
+
+
+def length(metres: float) -> str:
+    """Length, three digits: ``2.5 µm``, ``33 mm``, ``1.2 m``, ``2 km``."""
+    for unit, size in (("km", 1e3), ("m", 1.0), ("mm", 1e-3)):
+        if metres >= 0.9995 * size:
+            return f"{metres / size:.3g} {unit}"
+    return f"{1e6 * metres:.3g} µm"
+
+
+def volume(cubic_metres: float) -> str:
+    """Volume, three digits: ``0.5 mm³``, ``65.4 cm³``, ``2 m³``."""
+    for unit, size in (("km³", 1e9), ("m³", 1.0), ("cm³", 1e-6)):
+        if cubic_metres >= 0.1 * size:
+            return f"{cubic_metres / size:.3g} {unit}"
+    return f"{1e9 * cubic_metres:.3g} mm³"
