@@ -207,6 +207,9 @@ class PalpateObject(ShapeProperties, bpy.types.PropertyGroup):
     tet_count: result(0)
     free_surface_count: result(0)
     compliance_megabytes: result(0.0)
+    # Largest distances of the body's surface from the drawn mesh and back, m; 0 if unknown.
+    body_to_mesh: result(0.0)
+    mesh_to_body: result(0.0)
     bake_seconds: result(0.0)
     bake_warnings: result("")
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
+
 import numpy as np
 
 from ...core.body.soft_body import SoftBody
@@ -33,6 +35,7 @@ def body_figures(body: SoftBody) -> dict[str, object]:
         "form": body.compliance.form,
         **_compression(body.compliance),
         "compliance_bytes": body.compliance.nbytes,
+        **({} if body.fit is None else {"fit": asdict(body.fit)}),
         "key": body.key,
     }
 

@@ -21,10 +21,10 @@ from ..errors import PalpateError
 from ..files.atomic_file import refuse_unwritable
 from ..machine import run_module
 from ..machine.remaining_time import RemainingTime
+from ..mesh.fit import THICKNESS_DOUBTFUL, Fit, refuse_thin
 from ..mesh.ftetwild_log import stage
 from ..mesh.surface import Surface
 from ..mesh.tet_mesh import TetMesh
-from ..mesh.tetrahedralize import Fit
 from ..progress import unwatched
 from ..sentence import Sentence
 from .child import BODY_FILE, OUTCOME_FILE, PROGRESS_FILE
@@ -87,6 +87,7 @@ class BakeJob:
         python: Sequence[str] = (sys.executable,),
     ) -> None:
         settings.checked()
+        self._source, self._epsilon = source, settings.epsilon
         self._time_limit = settings.time_limit
         self._started = time.monotonic()
         self._remaining = RemainingTime()
@@ -208,6 +209,9 @@ class BakeJob:
     def _report(self) -> BakeReport:
         file = self._folder / OUTCOME_FILE
         if not file.exists():
+            # A frequent reason for fTetWild to crash, which it cannot tell itself.
+            if isinstance(self._source, Surface):
+                refuse_thin(self._source.welded(), self._epsilon, THICKNESS_DOUBTFUL)
             last = " | ".join(self._log().strip().splitlines()[-3:])
             words = Sentence(", last words: {words}", words=last) if last else ""
             raise PalpateError(
@@ -223,7 +227,7 @@ class BakeJob:
         if "crash" in outcome:
             raise RuntimeError(f"the bake process failed:\n{outcome['crash']}")
         report = outcome["report"]
-        fit = Fit(**report["fit"]) if report["fit"] else None
+        fit = Fit.of_dict(report["fit"]) if report["fit"] else None
         return BakeReport(report["seconds"], fit, [*map(Sentence.of_line, report["warnings"])])
 
 

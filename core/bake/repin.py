@@ -101,7 +101,9 @@ def pin_more(body: SoftBody, added_nodes: ArrayLike) -> SoftBody:
     compliance: Compliance | None = None
     if isinstance(body.compliance, (DenseCompliance, MappedCompliance)):
         compliance = _downdated(body.compliance, body.free_index(added))
-    return replace(body, fixed=fixed, compliance=compliance or _computed(body, fixed))
+    return replace(
+        body, fixed=fixed, older_key=None, compliance=compliance or _computed(body, fixed)
+    )
 
 
 def pin_more_seconds(

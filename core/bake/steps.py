@@ -16,17 +16,20 @@ from ..compliance.elimination.plan import EliminationPlan, plan_surface_inverse
 from ..compliance.elimination.surface_columns import planned_columns
 from ..compliance.protocol import Compliance
 from ..compliance.surface_compliance import planned_compliance
+from ..errors import CancelledError, PalpateError
 from ..machine.available_memory import available_memory
 from ..machine.blas_threads import blas_threads
 from ..machine.machine_speed import dgemm_rate
 from ..mesh.decimate import decimate
+from ..mesh.fit import Fit, fit_warnings, measured_fit, refuse_misfit, size_warnings
 from ..mesh.surface import Surface
 from ..mesh.tet_mesh import TetMesh
-from ..mesh.tetrahedralize import Fit, check_fit, tetrahedralize
+from ..mesh.tetrahedralize import tetrahedralize
 from ..progress import unwatched
 from ..sentence import Sentence
 from ..stiffness.assembly import assemble
 from ..stiffness.formulation import formulation_for
+from ..stiffness.held_pins import pins_checked
 from ..stiffness.pins import pinned_nodes
 from ..stiffness.regions import StiffRegion, TetScale, young_scale
 from .cost.memory import affordable_form
@@ -36,10 +39,6 @@ from .settings import BakeSettings
 from .work import BakeProgress, BakeWork
 
 __all__ = ["BakeProgress", "BakeReport", "BakeSettings", "bake"]
-
-# Beyond these the drawn shape and the body differ visibly, and the user is warned.
-NOTABLE_DISTANCE = 0.02
-NOTABLE_VOLUME_ERROR = 0.1
 
 # Below this arithmetic (operations, a second of one thread) one thread is used: several would wait
 # for each other on a busy machine.
@@ -95,14 +94,28 @@ def bake(
     settings.checked()
     report = BakeReport({}, None, [])
     work = BakeWork(progress)
+    shell: Surface | None = None
     if isinstance(source, Surface):
-        mesh, fit = _tetrahedra(source, settings, work, report.seconds)
-        report = replace(report, fit=fit, warnings=_fit_warnings(fit, mesh))
         surface = source
+        shell, mesh = _tetrahedra(source, settings, work, report.seconds)
     else:
         mesh = source
+        if surface is not None:
+            shell = decimate(surface.welded(), settings.decimate_above)
         work.expect(rest_seconds(MeshSize.of(mesh), settings))
-    fixed = pinned_nodes(settings.pins, mesh, surface)
+    fit = None
+    if surface is not None and shell is not None:
+        work.expect({"check": check_seconds(surface, mesh)})
+        with _timed(report.seconds, "check"):
+            work.begin("check")
+            fit = measured_fit(mesh, surface, shell)
+        if isinstance(source, Surface):
+            refuse_misfit(fit, mesh, shell, settings.epsilon)
+    misfit = (
+        [] if fit is None or shell is None else fit_warnings(fit, mesh, shell, settings.epsilon)
+    )
+    with _explained(misfit):
+        fixed = pins_checked(mesh, pinned_nodes(settings.pins, mesh, surface))
     formulation = formulation_for(settings.formulation, settings.poisson_ratio)
     scale = _young_scale(settings.stiffness, mesh, surface)
     with _timed(report.seconds, "stiffness"):
@@ -113,36 +126,47 @@ def bake(
     with _timed(report.seconds, "plan"):
         plan = plan_surface_inverse(mesh, stiffness, fixed, progress=work.begin("plan"))
         form, warnings = affordable_form(plan, settings, available())
-    with _timed(report.seconds, "compliance"):
+    with _timed(report.seconds, "compliance"), _explained(misfit):
         compliance = _compliance(plan, form, mesh, settings, work)
     body = SoftBody(
         mesh,
-        np.unique(fixed),
+        fixed,
         settings.poisson_ratio,
         compliance,
         settings.young_modulus,
         formulation,
         scale,
+        fit,
     )
-    return body, replace(report, warnings=[*report.warnings, *warnings])
+    told = [*size_warnings(mesh), *misfit, *warnings]
+    return body, replace(report, fit=fit, warnings=told)
 
 
 def _tetrahedra(
     source: Surface, settings: BakeSettings, work: BakeWork, seconds: dict[str, float]
-) -> tuple[TetMesh, Fit]:
-    """Tetrahedra of the surface, and their fit."""
+) -> tuple[Surface, TetMesh]:
+    """The surface as handed to fTetWild, and its tetrahedra."""
     with _timed(seconds, "tetrahedralize"):
         work.unknown("tetrahedralize")
-        welded = source.welded()
-        shell = decimate(welded, settings.decimate_above)
+        shell = decimate(source.welded(), settings.decimate_above)
         mesh = tetrahedralize(shell, settings.edge_length, settings.epsilon)
-    work.expect(
-        {"check": check_seconds(welded, mesh), **rest_seconds(MeshSize.of(mesh), settings)},
-        spent=seconds["tetrahedralize"],
-    )
-    with _timed(seconds, "check"):
-        work.begin("check")
-        return mesh, check_fit(mesh, welded, shell)
+    work.expect(rest_seconds(MeshSize.of(mesh), settings), spent=seconds["tetrahedralize"])
+    return shell, mesh
+
+
+@contextmanager
+def _explained(misfit: list[Sentence]) -> Iterator[None]:
+    """Say in errors what is known to be wrong with the body's shape."""
+    try:
+        yield
+    except CancelledError:
+        raise
+    except PalpateError as problem:
+        if not misfit:
+            raise
+        raise PalpateError(
+            "{problem}; a likely reason: {warning}", problem=problem, warning=misfit[-1]
+        ) from problem
 
 
 def _compliance(
@@ -170,28 +194,6 @@ def _young_scale(
         return None
     scale = young_scale(stiffness, mesh, surface)
     return None if np.array_equal(scale, np.ones_like(scale)) else scale
-
-
-def _fit_warnings(fit: Fit, mesh: TetMesh) -> list[Sentence]:
-    diagonal = float(np.linalg.norm(np.ptp(mesh.nodes, axis=0)))
-    found = []
-    if abs(fit.volume_ratio - 1) > NOTABLE_VOLUME_ERROR:
-        found.append(
-            Sentence(
-                "the body has {share:.0f} % of the volume that the mesh encloses; a smaller edge "
-                "length or epsilon follows it more closely",
-                share=100 * fit.volume_ratio,
-            )
-        )
-    if fit.input_to_body > NOTABLE_DISTANCE * diagonal:
-        found.append(
-            Sentence(
-                "parts of the mesh lie up to {distance:.2g} mm from the body, being open or too "
-                "thin; they follow its nearest place",
-                distance=1000 * fit.input_to_body,
-            )
-        )
-    return found
 
 
 @contextmanager

@@ -8,7 +8,8 @@ key : hex digest of all that the compliance depends on; see :func:`.body_key.bod
 checksum : hex digest over all other arrays but ``compliance``, which has its own.
 nodes (N, 3) f64, tets (M, 4) i64, surface_triangles (S, 3) i64, fixed (p,) i64, poisson_ratio f64,
 formulation text, young_modulus f64 (what the maker chose; not part of the key),
-young_scale (M,) f64 where the body is not equally stiff everywhere.
+young_scale (M,) f64 where the body is not equally stiff everywhere,
+fit (11,) f64 where the surface that it was made from was known; see :class:`..mesh.fit.Fit`.
 form : of the compliance, for a modulus of 1 Pa: ``dense`` or ``compressed``.
 free_surface (n,) i64.
 dense : compliance (n, 3, 3n) f32, compliance_diagonal (n, 3, 3) f32,
@@ -21,6 +22,7 @@ from __future__ import annotations
 import hashlib
 import os
 import shutil
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -34,10 +36,11 @@ from ..compliance.protocol import Compliance
 from ..errors import BodyFileError, PalpateError
 from ..files.atomic_file import atomic_file
 from ..files.npz_archive import Archive, ArchiveError, opened, write_arrays
+from ..mesh.fit import Fit
 from ..mesh.tet_mesh import TetMesh, young_scale_checked
 from ..stiffness.assembly import lame_parameters
 from ..stiffness.formulation import formulation_checked
-from .body_key import body_key
+from .body_key import body_key, is_key_of
 from .soft_body import SoftBody
 
 __all__ = ["BodyFileError", "adopt", "body_key", "load", "save"]
@@ -102,6 +105,8 @@ def save(body: SoftBody, path: str | os.PathLike[str]) -> None:
     }
     if body.young_scale is not None:
         arrays["young_scale"] = body.young_scale
+    if body.fit is not None:
+        arrays["fit"] = body.fit.as_array()
     arrays |= _compliance_arrays(body.compliance)
     head = {
         "format": np.array(FORMAT),
@@ -252,9 +257,15 @@ def _body(stored: Arrays, compliance: Compliance) -> SoftBody:
         young_scale_checked(stored["young_scale"], len(mesh.tets))
         if "young_scale" in stored
         else None,
+        Fit.of_array(stored["fit"]) if "fit" in stored else None,
     )
+    key = str(stored["key"])
+    if key != body.key and is_key_of(
+        key, mesh, body.fixed, poisson_ratio, body.formulation, body.young_scale
+    ):
+        body = replace(body, older_key=key)
     free_surface = np.setdiff1d(mesh.surface_nodes, body.fixed)
-    if str(stored["key"]) != body.key or not np.array_equal(compliance.free_surface, free_surface):
+    if key != body.key or not np.array_equal(compliance.free_surface, free_surface):
         raise PalpateError("its compliance does not belong to its mesh, pins or material")
     return body
 

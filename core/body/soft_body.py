@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..compliance.protocol import Compliance
 from ..errors import PalpateError
 from ..mesh.closest_point import ClosestPoints
+from ..mesh.fit import Fit
 from ..mesh.tet_mesh import TetMesh
 from .body_key import body_key
 
@@ -29,6 +30,8 @@ class SoftBody:
     young_modulus : pascal; the default of a touch. Not baked in.
     formulation : of the stiffness; see :mod:`..stiffness.formulation`.
     young_scale : float64 (M,), factor of Young's modulus per tetrahedron; None where all are 1.
+    fit : to the surface that the mesh was made from; None where that is not known.
+    older_key : of a body file from before -0.0 was 0.0 for the key; else None.
     """
 
     mesh: TetMesh
@@ -38,11 +41,13 @@ class SoftBody:
     young_modulus: float
     formulation: str = "linear"
     young_scale: NDArray[np.float64] | None = None
+    fit: Fit | None = None
+    older_key: str | None = None
 
     @cached_property
     def key(self) -> str:
         """Digest of all that the compliance depends on; see :func:`.body_key.body_key`."""
-        return body_key(
+        return self.older_key or body_key(
             self.mesh, self.fixed, self.poisson_ratio, self.formulation, self.young_scale
         )
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import fast_simplification
 import numpy as np
 
+from .coordinates import UnitBox
 from .surface import Surface
 
 # Diagonal that a surface is scaled to: fast_simplification's thresholds are absolute, and at a size
@@ -20,11 +21,10 @@ def decimate(surface: Surface, most_triangles: int) -> Surface:
     """
     if len(surface.triangles) <= most_triangles:
         return surface
-    middle = 0.5 * (surface.vertices.min(axis=0) + surface.vertices.max(axis=0))
-    scale = DIAGONAL / np.linalg.norm(np.ptp(surface.vertices, axis=0))
+    box = UnitBox.of(surface.vertices)
     vertices, triangles = fast_simplification.simplify(
-        (scale * (surface.vertices - middle)).astype(np.float32),
+        (DIAGONAL * box.enter(surface.vertices)).astype(np.float32),
         surface.triangles.astype(np.int32),
         target_count=most_triangles,
     )
-    return Surface(vertices.astype(np.float64) / scale + middle, triangles.astype(np.int64))
+    return Surface(box.leave(vertices.astype(np.float64) / DIAGONAL), triangles.astype(np.int64))

@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 
 from ..errors import PalpateError
 from ..files.npz_archive import ArchiveError, read_arrays
+from ..sentence import Sentence
+from .coordinates import refuse_rounded
 from .surface import Surface
 from .tet_mesh import TetMesh, young_scale_checked
 
@@ -32,7 +34,9 @@ def read_surface(path: Path, metres_per_unit: float = 1.0) -> Surface:
             f"{path}: cannot be read as {path.suffix[1:]} ({problem}); export it again"
         ) from problem
     try:
-        return Surface.checked(vertices * metres_per_unit, triangles)
+        # In the file's own precision, of which float64 keeps no trace.
+        refuse_rounded(Sentence("mesh"), vertices)
+        return Surface.checked(vertices.astype(np.float64) * metres_per_unit, triangles)
     except PalpateError as problem:
         raise PalpateError(f"{path}: {problem}") from problem
 
@@ -75,6 +79,7 @@ def read_tets(path: Path, metres_per_unit: float = 1.0) -> TetFile:
             "T (tetrahedra) and optionally fixed (pinned nodes) and young_scale (stiffness)"
         )
     try:
+        refuse_rounded(Sentence("tetrahedral mesh"), arrays["X"])
         mesh = TetMesh.checked(_metres(arrays["X"], metres_per_unit), arrays["T"])
         fixed = _node_numbers(arrays["fixed"], len(mesh.nodes)) if "fixed" in arrays else None
         scale = None
@@ -102,17 +107,18 @@ def _node_numbers(fixed: NDArray[Any], node_count: int) -> NDArray[np.int64]:
     return fixed.astype(np.int64).ravel()
 
 
-def _read_obj(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def _read_obj(path: Path) -> tuple[NDArray[Any], NDArray[np.int64]]:
     # Object names may be in any encoding; they are not used.
     text = path.read_text(encoding="utf-8", errors="replace")
     return _by_trimesh(io.StringIO(text), "obj", skip_materials=True)
 
 
-def _read_stl(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def _read_stl(path: Path) -> tuple[NDArray[Any], NDArray[np.int64]]:
     content = path.read_bytes()
     # Binary files may begin with "solid" too; only the length is decisive.
     if len(content) == 84 + 50 * int.from_bytes(content[80:84], "little"):
-        return _by_trimesh(io.BytesIO(content), "stl")
+        vertices, triangles = _by_trimesh(io.BytesIO(content), "stl")
+        return vertices.astype(np.float32), triangles
     text = content.decode("utf-8", errors="replace")
     if "facet" not in text:
         raise ValueError("neither text nor as long as its binary header says")
@@ -128,13 +134,13 @@ def _by_trimesh(
     return np.asarray(mesh.vertices, dtype=np.float64), np.asarray(mesh.faces, dtype=np.int64)
 
 
-def _read_ply(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def _read_ply(path: Path) -> tuple[NDArray[Any], NDArray[np.int64]]:
     """Surface read by plyfile, which takes mixed triangles, quads and larger polygons."""
     from plyfile import PlyData, PlyListProperty
 
     data = PlyData.read(path)
     vertex = data["vertex"]
-    vertices = np.column_stack([vertex[axis] for axis in "xyz"]).astype(np.float64)
+    vertices = np.column_stack([vertex[axis] for axis in "xyz"])
     if "face" not in data:
         return vertices, np.empty((0, 3), dtype=np.int64)
     lists = [entry.name for entry in data["face"].properties if isinstance(entry, PlyListProperty)]

@@ -10,11 +10,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import PalpateError
 from ..sentence import Sentence
-from .coordinates import refuse_unusable
+from .coordinates import refuse_rounded, refuse_unusable
 from .tet_mesh import pieces
 
 # Vertices closer than this share of the diagonal are one: seams that only look open are closed.
 WELD_TOLERANCE = 1e-6
+
+# Beyond, a vertex that belongs to no face is as good as any other.
+FARTHEST_STEP = 2.0**62
 
 # A shape thinner than this share of its diagonal everywhere is a sheet, not a solid.
 FLATTEST = 1e-3
@@ -53,6 +56,7 @@ class Surface:
                 faces=len(faces),
             )
         refuse_unusable(Sentence("mesh"), points)
+        refuse_rounded(Sentence("mesh"), np.asarray(vertices))
         if faces.min() < 0 or faces.max() >= len(points):
             wrong = int(faces.min()) if faces.min() < 0 else int(faces.max())
             raise PalpateError(
@@ -81,7 +85,9 @@ class Surface:
     @property
     def signed_volume(self) -> float:
         """Enclosed volume by the divergence theorem, cubic metres; for closed surfaces only."""
-        i, j, k = (self.vertices[self.triangles[:, corner]] for corner in range(3))
+        # From a point of its own: far from the origin the terms would cancel to rounding.
+        corners = self.vertices[self.triangles] - self.vertices[self.triangles[0, 0]]
+        i, j, k = (corners[:, corner] for corner in range(3))
         return float(np.einsum("fx,fx->", i, np.cross(j, k)) / 6.0)
 
     @cached_property
@@ -100,16 +106,22 @@ class Surface:
 
     def coinciding(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """One vertex of each place, (P,), and for every vertex the number of its place, (V,)."""
-        grid = np.round(self.vertices / (WELD_TOLERANCE * self.diagonal)).astype(np.int64)
+        low = self.vertices[np.unique(self.triangles)].min(axis=0)
+        steps = (self.vertices - low) / (WELD_TOLERANCE * self.diagonal)
+        # Vertices of no face may lie anywhere.
+        grid = np.clip(np.round(steps), -FARTHEST_STEP, FARTHEST_STEP).astype(np.int64)
         _, first, place = np.unique(grid, axis=0, return_index=True, return_inverse=True)
         return first, place.reshape(-1)
 
     def welded(self) -> Surface:
-        """The same surface with coinciding vertices merged and collapsed triangles removed."""
+        """The same surface with coinciding vertices merged, and without collapsed triangles and
+        vertices of none.
+        """
         first, place = self.coinciding()
         faces = place[self.triangles]
         proper = (faces != np.roll(faces, 1, axis=1)).all(axis=1)
-        return Surface(self.vertices[first], faces[proper])
+        used, corners = np.unique(faces[proper], return_inverse=True)
+        return Surface(self.vertices[first[used]], corners.reshape(-1, 3))
 
     def _refuse_sheet(self) -> None:
         used = self.vertices[np.unique(self.triangles)]
@@ -119,6 +131,12 @@ class Surface:
                 "an inside"
             )
         extents = np.linalg.svd(used - used.mean(axis=0), compute_uv=False)
+        if extents[1] < FLATTEST * extents[0]:
+            raise PalpateError(
+                "mesh: it is a needle more than {times:.0f} times as long as thick, too thin to be "
+                "a solid; make it thicker or shorter",
+                times=1 / FLATTEST,
+            )
         if extents[2] < FLATTEST * extents[0]:
             raise PalpateError(
                 "mesh: it is flat, so it has no inside to be soft; give it thickness (for example "

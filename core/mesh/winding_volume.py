@@ -31,10 +31,14 @@ def sampled_volume(surface: Surface) -> float:
     either orientation counts, as normals may all point inward.
     """
     used = surface.vertices[np.unique(surface.triangles)]
-    low, size = used.min(axis=0), np.ptp(used, axis=0)
+    middle = used.mean(axis=0)
+    # Along its own axes a slanted thin shape fills its box as well as an upright one.
+    axes = np.linalg.svd(used - middle, full_matrices=False)[2]
+    along = (used - middle) @ axes.T
+    low, size = along.min(axis=0), np.ptp(along, axis=0)
     cells = np.indices((CELLS, CELLS, CELLS)).reshape(3, -1).T
-    points = low + (cells + np.random.default_rng(1999).random(cells.shape)) / CELLS * size
-    return float(is_inside(points, surface).mean() * size.prod())
+    places = low + (cells + np.random.default_rng(1999).random(cells.shape)) / CELLS * size
+    return float(is_inside(middle + places @ axes, surface).mean() * size.prod())
 
 
 def is_inside(points: NDArray[np.float64], surface: Surface) -> NDArray[np.bool_]:

@@ -87,8 +87,10 @@ def fraction_checked(fraction: float) -> float:
 def _below(pins: PinBelow, mesh: TetMesh) -> NDArray[np.int64]:
     fraction_checked(pins.fraction)
     height = mesh.nodes[mesh.surface_nodes, pins.axis]
-    # The last term makes sure that all of a level bottom is pinned despite rounding.
-    limit = height.min() + (pins.fraction + 1e-9) * np.ptp(height)
+    # The last terms make sure that all of a level bottom is pinned despite rounding, which is of
+    # the coordinates themselves far from the origin.
+    rounding = max(1e-9 * np.ptp(height), 4 * np.spacing(np.abs(height).max()))
+    limit = height.min() + pins.fraction * np.ptp(height) + rounding
     low: NDArray[np.int64] = mesh.surface_nodes[height <= limit]
     return low
 

@@ -35,5 +35,8 @@ def record(
     baked.tet_count = len(body.mesh.tets)
     baked.free_surface_count = compliance.node_count
     baked.compliance_megabytes = compliance.nbytes / 1e6
+    if body.fit is not None:
+        baked.body_to_mesh = body.fit.body_to_input
+        baked.mesh_to_body = body.fit.input_to_body
     if baked.pin_mode == "BELOW":
         pin_group.mark_below(thing, surface, baked.pin_fraction)

@@ -12,7 +12,9 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.mesh.coordinates import refuse_rounded
 from ...core.mesh.surface import Surface
+from ...core.sentence import Sentence
 from . import fingerprint
 from .body_frame import BodyFrame
 from .fingerprint import Fingerprint
@@ -47,8 +49,10 @@ class DrawnSurface:
         Raises
         ------
         PalpateError
-            Nothing there, not finite, or flat.
+            Nothing there, not finite, flat, or too far from the object's origin.
         """
+        # Blender's own precision, of which float64 keeps no trace.
+        refuse_rounded(Sentence("mesh"), self.local.astype(np.float32))
         return Surface.checked(self.body, self.frame.wind(self.triangles))
 
     @cached_property

@@ -8,9 +8,9 @@ from mouse_shape import Part, QuadMesh, mouse
 from surface_net import surface_net
 
 from palpate.core.mesh.decimate import decimate
+from palpate.core.mesh.fit import measured_fit
 from palpate.core.mesh.surface import Surface
 from palpate.core.mesh.tet_mesh import TetMesh
-from palpate.core.mesh.tetrahedralize import check_fit
 
 SCENES = Path(__file__).resolve().parents[2] / "sample_scenes"
 # Table 1 of the paper.
@@ -73,7 +73,7 @@ def test_stored_tetrahedra_fill_the_mouse(
     surface: Surface, stored: tuple[TetMesh, np.ndarray]
 ) -> None:
     mesh, fixed = stored
-    fit = check_fit(mesh, surface, decimate(surface.welded(), 6000))
+    fit = measured_fit(mesh, surface, decimate(surface.welded(), 6000))
     assert fit.volume_ratio == pytest.approx(1.0, abs=0.02)
     assert fit.body_to_input < 0.0015
     assert mesh.nodes[fixed, 2].max() < 0.003
