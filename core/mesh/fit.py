@@ -35,6 +35,9 @@ NOTABLE_VOLUME_ERROR = 0.1
 SAMPLE_DISTANCE = 0.04
 MOST_ALONG_A_SIDE = 24
 
+# Points whose side is asked for at once, from the farthest on.
+POINTS_AT_ONCE = 256
+
 # Thickness, in tolerances, below which fTetWild keeps nothing, and below which it may lose parts.
 THICKNESS_LOST, THICKNESS_DOUBTFUL = 1.0, 4.0
 
@@ -118,15 +121,14 @@ def measured_fit(mesh: TetMesh, surface: Surface, shell: Surface) -> Fit:
     from_body = ClosestPoints(surface.vertices, surface.triangles).query(own).distance
     others = _samples(surface)
     from_input = ClosestPoints(body.vertices, body.triangles).query(others).distance
-    far = np.flatnonzero(from_input > BURIED_DISTANCE * surface.diagonal)
-    from_input[far[is_inside(others[far], body)]] = 0.0
-    worst_own, worst_other = own[from_body.argmax()], others[from_input.argmax()]
+    worst_own = int(from_body.argmax())
+    worst_other = _farthest_outside(others, from_input, body, BURIED_DISTANCE * surface.diagonal)
     return Fit(
         float(ratio),
-        float(from_body.max()),
-        float(from_input.max()),
-        _place(worst_own, surface),
-        _place(worst_other, surface),
+        float(from_body[worst_own]),
+        float(from_input[worst_other]),
+        _place(own[worst_own], surface),
+        _place(others[worst_other], surface),
     )
 
 
@@ -256,6 +258,20 @@ def _thickness(surface: Surface) -> float:
     if not surface.is_closed:
         return width
     return min(width, 4 * abs(surface.signed_volume) / float(surface.areas.sum()))
+
+
+def _farthest_outside(
+    points: NDArray[np.float64], distance: NDArray[np.float64], body: Surface, buried: float
+) -> int:
+    """Number of the farthest of the ``points``, without those farther than ``buried`` inside."""
+    order = np.argsort(-distance, kind="stable")
+    near = int(np.searchsorted(-distance[order], -buried))
+    for first in range(0, near, POINTS_AT_ONCE):
+        some = order[first : min(first + POINTS_AT_ONCE, near)]
+        outside = some[~is_inside(points[some], body)]
+        if len(outside):
+            return int(outside[0])
+    return int(order[min(near, len(order) - 1)])
 
 
 def _place(point: NDArray[np.float64], surface: Surface) -> Place:
