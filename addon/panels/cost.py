@@ -64,8 +64,8 @@ def draw_figures(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
         rows.append(("Uncompressed", memory(36.0 * baked.free_surface_count**2)))
         rows.append(("Largest Error", percent(baked.column_error / 100)))
     if baked.body_to_mesh or baked.mesh_to_body:
-        rows.append(("Body to Mesh, at Most", length(baked.body_to_mesh)))
-        rows.append(("Mesh to Body, at Most", length(baked.mesh_to_body)))
+        rows.append(("Body to Mesh", length(baked.body_to_mesh)))
+        rows.append(("Mesh to Body", length(baked.mesh_to_body)))
     rows.append(("Bake Time", f"{baked.bake_seconds:.1f} s"))
     draw_rows(box, rows)
     for warning in filter(None, baked.bake_warnings.split("\n")):

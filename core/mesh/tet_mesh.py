@@ -12,7 +12,7 @@ from scipy.sparse.csgraph import connected_components
 
 from ..errors import PalpateError
 from ..sentence import Sentence
-from .coordinates import refuse_unusable
+from .coordinates import refuse_rounded, refuse_unusable
 
 # The four faces of a positively oriented tetrahedron, wound so that normals point outward.
 OUTWARD_FACES = np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])
@@ -154,6 +154,7 @@ def _nodes_checked(nodes: ArrayLike) -> NDArray[np.float64]:
         )
     array = given.astype(np.float64, order="C")
     refuse_unusable(Sentence("tetrahedral mesh"), array)
+    refuse_rounded(Sentence("tetrahedral mesh"), given)
     return array
 
 

@@ -6,6 +6,10 @@ import pytetwild.pytetwild
 import trimesh
 from bodies.fan_blade import fan_blade
 
+from palpate.core.bake.settings import BakeSettings
+from palpate.core.bake.steps import bake
+from palpate.core.contact.press import ContactSettings
+from palpate.core.contact.single_press import touch_nearest
 from palpate.core.errors import PalpateError
 from palpate.core.mesh.coordinates import refuse_rounded
 from palpate.core.mesh.decimate import decimate
@@ -15,7 +19,7 @@ from palpate.core.mesh.surface import Surface
 from palpate.core.mesh.tet_mesh import TetMesh
 from palpate.core.mesh.tetrahedralize import tetrahedralize
 from palpate.core.mesh.winding_volume import sampled_volume
-from palpate.core.stiffness.pins import PinBelow, pinned_nodes
+from palpate.core.stiffness.pins import PinBelow, PinNodes, pinned_nodes
 
 UNITS = [10.0**power for power in range(-6, 7)]
 OFFSETS = [1e2, 1e5, 1e8]
@@ -116,6 +120,36 @@ def test_all_of_a_level_bottom_is_pinned_far_from_the_origin():
     nodes[fixed[::2], 2] = np.nextafter(nodes[fixed[::2], 2], np.inf)
     far = TetMesh.checked(nodes, cube.tets)
     np.testing.assert_array_equal(pinned_nodes(PinBelow(0.0), far, None), fixed)
+
+
+@pytest.mark.parametrize("form", ["dense", "compressed"])
+@pytest.mark.parametrize(
+    ("unit", "offset"), [(1e-6, 0.0), (1e-3, 0.0), (1e3, 0.0), (1e6, 0.0), (1.0, 1e5), (1e6, 1e8)]
+)
+def test_a_press_feels_the_same_in_every_unit_and_at_every_origin(form, unit, offset):
+    """Force is Young's modulus times length squared times a number of the shape alone."""
+    cube, fixed = paper_cube()
+
+    def pressed(unit, away):
+        mesh = TetMesh.checked(cube.nodes * unit + away, cube.tets)
+        settings = BakeSettings(0.45, 1e5, PinNodes(fixed), form=form)
+        touch = touch_nearest(
+            bake(mesh, settings)[0],
+            at=np.array([0.021, 0.027, 0.05]) * unit + away,
+            by=np.array([0.001, 0.0, -0.004]) * unit,
+            settings=ContactSettings(friction=0.5),
+        )
+        return touch.force / unit**2
+
+    here = pressed(1.0, np.zeros(3))
+    there = pressed(unit, offset * np.array([1.0, -0.7, 0.3]))
+    np.testing.assert_allclose(there, here, rtol=0, atol=1e-6 * np.linalg.norm(here))
+
+
+def test_a_body_that_its_place_has_left_no_shape_is_refused_with_the_reason():
+    cube, _ = paper_cube()
+    with pytest.raises(PalpateError, match="detail is lost"):
+        TetMesh.checked(cube.nodes * 1e-6 + 1e8, cube.tets)
 
 
 def test_what_single_precision_has_lost_is_refused():
