@@ -163,7 +163,7 @@ def refuse_thin(surface: Surface, epsilon: float, tolerances: float = THICKNESS_
     PalpateError
         It is thinner: fTetWild, free to move each side by the tolerance, loses it.
     """
-    thickness = _thickness(surface)
+    thickness = surface.thickness
     allowed = epsilon * surface.diagonal
     if thickness >= tolerances * allowed:
         return
@@ -246,18 +246,6 @@ def size_warnings(mesh: TetMesh) -> list[Sentence]:
             size=length(diagonal),
         )
     ]
-
-
-def _thickness(surface: Surface) -> float:
-    """About the thickness of a rod, and twice that of a closed plate, metres; at most the second
-    largest extent.
-    """
-    used = surface.vertices[np.unique(surface.triangles)]
-    axes = np.linalg.svd(used - used.mean(axis=0), full_matrices=False)[2]
-    width = float(np.ptp(used @ axes[1]))
-    if not surface.is_closed:
-        return width
-    return min(width, 4 * abs(surface.signed_volume) / float(surface.areas.sum()))
 
 
 def _farthest_outside(

@@ -16,6 +16,9 @@ from .tet_mesh import pieces
 # Vertices closer than this share of the diagonal are one: seams that only look open are closed.
 WELD_TOLERANCE = 1e-6
 
+# A rod is less than so many times as wide as its volume is to half its area; a plate is wider.
+ROD_WIDTH = 6.0
+
 # Beyond, a vertex that belongs to no face is as good as any other.
 FARTHEST_STEP = 2.0**62
 
@@ -103,6 +106,19 @@ class Surface:
         """Number of parts that share no vertex."""
         used, corners = np.unique(self.triangles, return_inverse=True)
         return int(pieces(corners.reshape(-1, 3), len(used)).max()) + 1
+
+    @property
+    def thickness(self) -> float:
+        """About the thickness as of a rod or a plate, metres; of an open surface its second largest
+        extent.
+        """
+        used = self.vertices[np.unique(self.triangles)]
+        axes = np.linalg.svd(used - used.mean(axis=0), full_matrices=False)[2]
+        width = float(np.ptp(used @ axes[1]))
+        if not self.is_closed:
+            return width
+        plate = 2 * abs(self.signed_volume) / float(self.areas.sum())
+        return 2 * plate if width < ROD_WIDTH * plate else plate
 
     def coinciding(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """One vertex of each place, (P,), and for every vertex the number of its place, (V,)."""

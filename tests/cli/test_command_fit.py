@@ -23,7 +23,7 @@ def written(tmp_path):
 
 @pytest.mark.parametrize("edge_length", [0.05, 0.02])
 def test_a_needle_is_told_its_tolerance_not_holes_or_pins(written, refusal, tmp_path, edge_length):
-    needle = trimesh.creation.cylinder(radius=0.0004, height=0.2, sections=12)
+    needle = trimesh.creation.cylinder(radius=0.00025, height=0.2, sections=12)
     needle.apply_transform(trimesh.transformations.rotation_matrix(0.5, [0.3, 0.8, 0.1]))
     words = ["--edge-length", edge_length, "-o", tmp_path / "body.npz"]
     said = refusal("bake", written(needle), *words)

@@ -230,6 +230,15 @@ def test_a_crashed_child_is_reported(tmp_path, temporary, ball):
     assert not list(temporary.iterdir())
 
 
+def test_a_crash_over_a_mesh_too_thin_for_its_tolerance_is_explained(tmp_path, temporary):
+    plate = trimesh.creation.box((0.1, 0.1, 0.0006))
+    abort = (sys.executable, "-c", "import os; os.abort()")
+    job = BakeJob(surface_of(plate), BakeSettings(), python=abort)
+    with pytest.raises(PalpateError, match="µm thick, too thin for a tolerance"):
+        job.result(tmp_path / "body.npz")
+    assert not list(temporary.iterdir())
+
+
 def test_a_python_that_cannot_start_is_reported(temporary, ball):
     with pytest.raises(PalpateError, match="cannot be started"):
         BakeJob(surface_of(ball), COARSE, python=("no-such-python",))

@@ -118,6 +118,21 @@ def test_a_needle_is_told_that_it_is_thinner_than_the_tolerance(scale, sections,
     refuse_thin(surface_of(needle, scale), told.value.sentence.values["fitting"], 3.5)
 
 
+@pytest.mark.parametrize("scale", SCALES)
+@pytest.mark.parametrize(
+    ("extents", "thickness"), [((0.2, 0.15, 0.0005), 0.0005), ((0.2, 0.0005, 0.0005), 0.0005)]
+)
+def test_plates_and_rods_are_as_thick_as_they_are(scale, extents, thickness):
+    thin = trimesh.creation.box(extents)
+    thin.apply_transform(trimesh.transformations.rotation_matrix(0.6, [0.2, -0.5, 0.4]))
+    surface = surface_of(thin, scale)
+    assert surface.thickness == pytest.approx(thickness * scale, rel=0.01)
+    share = thickness * scale / surface.diagonal
+    refuse_thin(surface, 0.98 * share)
+    with pytest.raises(PalpateError, match="too thin"):
+        refuse_thin(surface, 1.02 * share)
+
+
 def test_a_needle_in_pieces_is_not_told_about_pins():
     # Two beads where the mesh is a rod.
     rod = surface_of(trimesh.creation.box((0.2, 0.001, 0.001)))
