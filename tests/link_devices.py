@@ -20,7 +20,7 @@ class Device:
         x, y, z = hello.half_extents
         self.ask(
             f"device {hello.protocol} {name} {hello.axes} {hello.largest_force} {x} {y} {z} "
-            f"{hello.rate_hz}"
+            f"{hello.rate_hz} {hello.largest_damping}"
         )
 
     def hear(self, message, now_us):

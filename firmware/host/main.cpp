@@ -286,10 +286,10 @@ struct Board {
            limp_after_us, limp_look_us);
     printf("\"states\": %" PRIu64 ", \"dropped\": %" PRIu64 ", \"hellos\": %" PRIu32
            ", \"forces\": %" PRIu32 ", \"lost\": %" PRIu32 ", \"duplicates\": %" PRIu32
-           ", \"late\": %" PRIu32 ", \"unknown\": %" PRIu32 ", \"unexpected\": %" PRIu32
+           ", \"late\": %" PRIu32 ", \"refused\": %" PRIu32 ", \"unknown\": %" PRIu32 ", \"unexpected\": %" PRIu32
            ", \"limp\": %" PRIu32 ", \"crc_errors\": %" PRIu32 ", \"malformed\": %" PRIu32 "}\n",
            states, dropped, seen.hellos, seen.forces, seen.lost, seen.duplicates, seen.late,
-           seen.unknown, seen.unexpected, seen.limp, device.receiver().crc_errors,
+           seen.refused, seen.unknown, seen.unexpected, seen.limp, device.receiver().crc_errors,
            device.receiver().malformed);
   }
 

@@ -30,6 +30,7 @@ inline palpate::DeviceHello make_hello() {
   hello.largest_force_n = largest_force_n;
   for (uint8_t axis = 0; axis < 3; ++axis) hello.half_extents_m[axis] = half_extents_m[axis];
   hello.rate_hz = rate_hz;
+  hello.largest_damping = static_cast<uint16_t>(damping_ns_per_m * 100.0F + 0.5F);
   return hello;
 }
 
@@ -70,9 +71,11 @@ inline bool find_tip(int32_t (&counts)[3]) {
 
 inline void push_tip(const palpate::Drive& drive, const int32_t (&counts)[3]) {
   float force_n[3];
+  const float asked = static_cast<float>(drive.damping) * 0.01F;
+  const float damping = drive.damping > 0 ? asked : damping_ns_per_m;
   for (uint8_t axis = 0; axis < 3; ++axis) {
     force_n[axis] = drive.force_n[axis];
-    if (drive.damp) force_n[axis] -= damping_ns_per_m * velocity_m_s[axis];
+    if (drive.damp) force_n[axis] -= damping * velocity_m_s[axis];
   }
   palpate::shorten(force_n, largest_force_n);
   if (!push(force_n, counts)) {

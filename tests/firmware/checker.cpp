@@ -39,6 +39,13 @@ const char* next_word() {
 
 long long next_number() { return strtoll(next_word(), nullptr, 10); }
 
+// False at the end of the line.
+bool next_if_any(long long& number) {
+  const char* word = strtok(nullptr, " \n");
+  if (word != nullptr) number = strtoll(word, nullptr, 10);
+  return word != nullptr;
+}
+
 float next_float() { return strtof(next_word(), nullptr); }
 
 void next_bytes(Bytes& bytes) {
@@ -79,6 +86,8 @@ void next_hello(palpate::DeviceHello& hello) {
   hello.largest_force_n = next_float();
   for (float& extent : hello.half_extents_m) extent = next_float();
   hello.rate_hz = static_cast<uint16_t>(next_number());
+  long long damping = 0;
+  if (next_if_any(damping)) hello.largest_damping = static_cast<uint16_t>(damping);
 }
 
 // Fields of a message to its frame.
@@ -100,12 +109,22 @@ void answer_pack() {
     for (int32_t& um : state.position_um) um = static_cast<int32_t>(next_number());
     state.buttons = static_cast<uint8_t>(next_number());
     state.flags = static_cast<uint8_t>(next_number());
+    long long taken = 0;
+    state.tells = next_if_any(taken);
+    state.taken = static_cast<uint16_t>(taken);
     size = palpate::pack(state, payload);
   } else if (strcmp(kind, "force") == 0) {
     palpate::Force force;
     force.sequence = static_cast<uint16_t>(next_number());
     for (int16_t& mn : force.force_mn) mn = static_cast<int16_t>(next_number());
     force.flags = static_cast<uint8_t>(next_number());
+    long long time = 0;
+    force.answers = next_if_any(time);
+    if (force.answers) {
+      force.state_time_us = static_cast<uint32_t>(time);
+      force.age = static_cast<uint16_t>(next_number());
+      force.damping = static_cast<uint16_t>(next_number());
+    }
     size = palpate::pack(force, payload);
   } else if (strcmp(kind, "fault") == 0) {
     palpate::Fault fault;
@@ -137,16 +156,22 @@ void answer_unpack(const Bytes& payload) {
     printf(" %u %.9g", hello.axes, static_cast<double>(hello.largest_force_n));
     for (const float extent : hello.half_extents_m) printf(" %.9g", static_cast<double>(extent));
     printf(" %u", hello.rate_hz);
+    if (hello.protocol != palpate::first_protocol) printf(" %u", hello.largest_damping);
   } else if (palpate::read_protocol(payload.data, payload.size, protocol) &&
-             (payload.size == palpate::host_hello_size || protocol != palpate::protocol_version)) {
+             (payload.size == palpate::host_hello_size || protocol < palpate::first_protocol ||
+              protocol > palpate::protocol_version)) {
     printf("host-hello %u", protocol);
   } else if (palpate::unpack(payload.data, payload.size, state)) {
     printf("state %u %" PRIu32, state.sequence, state.time_us);
     for (const int32_t um : state.position_um) printf(" %" PRId32, um);
     printf(" %u %u", state.buttons, state.flags);
+    if (state.tells) printf(" %u", state.taken);
   } else if (palpate::unpack(payload.data, payload.size, force)) {
     printf("force %u %d %d %d %u", force.sequence, force.force_mn[0], force.force_mn[1],
            force.force_mn[2], force.flags);
+    if (force.answers) {
+      printf(" %" PRIu32 " %u %u", force.state_time_us, force.age, force.damping);
+    }
   } else if (palpate::unpack(payload.data, payload.size, fault)) {
     printf("fault %u %u", fault.code, fault.detail);
   } else if (palpate::unpack(payload.data, payload.size, orientation)) {
@@ -224,9 +249,9 @@ void answer_device(palpate::Device& device, const char* verb) {
   } else if (strcmp(verb, "counters") == 0) {
     const palpate::Counters& seen = device.counters();
     printf("hellos %" PRIu32 " forces %" PRIu32 " lost %" PRIu32 " duplicates %" PRIu32
-           " late %" PRIu32 " unknown %" PRIu32 " unexpected %" PRIu32 " limp %" PRIu32
+           " late %" PRIu32 " refused %" PRIu32 " unknown %" PRIu32 " unexpected %" PRIu32 " limp %" PRIu32
            " crc_errors %" PRIu32 " malformed %" PRIu32,
-           seen.hellos, seen.forces, seen.lost, seen.duplicates, seen.late, seen.unknown,
+           seen.hellos, seen.forces, seen.lost, seen.duplicates, seen.late, seen.refused, seen.unknown,
            seen.unexpected, seen.limp, device.receiver().crc_errors, device.receiver().malformed);
   } else {
     give_up("no such request");
@@ -376,6 +401,7 @@ size_t random_frame(Dice& dice, uint16_t& sequence, uint8_t (&frame)[max_frame])
         mn = static_cast<int16_t>(static_cast<int32_t>(dice.below(65536)) - 32768);
       }
       force.flags = static_cast<uint8_t>(dice.below(4));
+      force.answers = dice.below(2) == 0;
       size = palpate::pack(force, payload);
     }
   }

@@ -47,8 +47,13 @@ def start_board(board_program, start_talk):
 
 
 @pytest.fixture
-def board(start_board):
-    return start_board()
+def protocol():
+    return 2
+
+
+@pytest.fixture
+def board(start_board, protocol):
+    return start_board("--protocol", str(protocol))
 
 
 @pytest.fixture(scope="module")
@@ -74,7 +79,8 @@ def press(board, servo, eventually):
     eventually(lambda: board.report()["force"][2] > 0.3, board.report)
 
 
-def test_hello_states_and_forces_go_through(press, board, servo, eventually):
+@pytest.mark.parametrize("protocol", [1, 2])
+def test_hello_states_and_forces_go_through(press, board, servo, eventually, protocol):
     eventually(lambda: np.allclose(servo.snapshot().probe, DEEP, atol=1e-6), servo.snapshot)
     eventually(lambda: np.allclose(servo.snapshot().output_force, servo.snapshot().contact_force))
     force = servo.snapshot().output_force
@@ -83,13 +89,16 @@ def test_hello_states_and_forces_go_through(press, board, servo, eventually):
     assert not board.report()["damp"]
     assert servo.counters()["link"]["device"] == {
         "name": "Reference",
-        "protocol": 1,
+        "protocol": protocol,
         "axes": 3,
         "max_force": 3.0,
         "half_extents": pytest.approx([0.1, 0.1, 0.1]),
         "rate_hz": 1000,
         "largest_damping": 0.0,
     }
+    round_trip = servo.counters()["link"]["round_trip_ms"]
+    assert (round_trip is None) == (protocol == 1)
+    assert board.report()["refused"] == 0
 
 
 def test_a_clean_line_loses_nothing_either_way(press, board, servo, eventually):

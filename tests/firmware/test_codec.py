@@ -21,6 +21,10 @@ def hexed(data):
 def words_of(vector):
     """A vector's message as the checker writes it."""
     fields = vector["fields"]
+
+    def told(*names):
+        return [fields[name] for name in names if name in fields]
+
     match vector["direction"], vector["type"]:
         case "host to device", "hello":
             return ["host-hello", fields["protocol"]]
@@ -33,12 +37,14 @@ def words_of(vector):
                 fields["largest_force"],
                 *fields["half_extents"],
                 fields["rate_hz"],
+                *told("largest_damping"),
             ]
         case _, "state":
             numbers = fields["sequence"], fields["device_time_us"], *fields["position_um"]
-            return ["state", *numbers, fields["buttons"], fields["flags"]]
+            return ["state", *numbers, fields["buttons"], fields["flags"], *told("taken")]
         case _, "force":
-            return ["force", fields["sequence"], *fields["force_mn"], fields["flags"]]
+            answer = told("state_time_us", "age", "damping")
+            return ["force", fields["sequence"], *fields["force_mn"], fields["flags"], *answer]
         case _, "fault":
             return ["fault", fields["code"], fields["detail"]]
         case _, "orientation":

@@ -110,8 +110,8 @@ def test_another_protocol_ends_stream_and_force(greeted):
 
 def test_a_device_of_another_protocol_says_so_to_this_host(checker):
     device = Device(checker)
-    device.new(link.DeviceHello("Later", 3, 1.0, (0, 0, 0), 1000, protocol=2))
-    assert device.hear(link.HostHello(), 0) == [link.OtherHello(2), link.Fault(2, 1)]
+    device.new(link.DeviceHello("Later", 3, 1.0, (0, 0, 0), 1000, protocol=3))
+    assert device.hear(link.HostHello(9), 0) == [link.OtherHello(3), link.Fault(2, 9)]
     assert device.state(0) == []
 
 
@@ -309,7 +309,7 @@ def test_it_behaves_as_the_simulated_device_does(checker):
     assert (seen["forces"], seen["lost"], seen["limp"]) == (
         expected.forces,
         expected.lost,
-        expected.limp,
+        expected.limp_count,
     )
     assert (seen["duplicates"], seen["late"]) == (expected.duplicates, expected.out_of_order)
     assert min(seen["limp"], seen["duplicates"], seen["late"], seen["lost"]) > 20

@@ -33,10 +33,22 @@ rotations = (
     .map(lambda q: tuple(part / math.hypot(*q) for part in q))
 )
 messages = st.one_of(
-    st.just(link.HostHello()),
+    st.builds(link.HostHello, st.sampled_from([1, 2])),
     st.builds(link.DeviceHello, names, bits(8), amounts, triples(amounts), bits(16)),
-    st.builds(link.State, bits(16), bits(32), triples(bits(32, signed=True)), bits(8), bits(8)),
-    st.builds(link.Force, bits(16), triples(bits(16, signed=True)), bits(8)),
+    st.builds(
+        link.DeviceHello,
+        *(names, bits(8), amounts, triples(amounts), bits(16), st.just(2), bits(16)),
+    ),
+    st.builds(
+        link.State,
+        *(bits(16), bits(32), triples(bits(32, signed=True)), bits(8), bits(8)),
+        st.none() | bits(16),
+    ),
+    st.builds(
+        link.Force,
+        *(bits(16), triples(bits(16, signed=True)), bits(8)),
+        st.none() | st.builds(link.Answer, bits(32), bits(16), bits(16)),
+    ),
     st.builds(link.Fault, bits(8), bits(16)),
     st.builds(link.orientation, bits(16), rotations),
 )
@@ -47,6 +59,9 @@ def message_of(vector):
         name: tuple(value) if isinstance(value, list) else value
         for name, value in vector["fields"].items()
     }
+    if "state_time_us" in fields:
+        names = ("state_time_us", "age", "damping")
+        fields["answer"] = link.Answer(*(fields.pop(name) for name in names))
     kinds = {
         ("host to device", "hello"): link.HostHello,
         ("device to host", "hello"): link.DeviceHello,

@@ -1,4 +1,4 @@
-// What a device does with the link: answer, stream, obey, let go.
+// What a device does with the link, in both protocols: answer, stream, obey, let go.
 #pragma once
 
 #include "frame.h"
@@ -7,6 +7,7 @@
 namespace palpate {
 
 constexpr uint32_t watchdog_us = 20000;
+constexpr uint32_t fresh_us = 20000;  // What answers an older STATE is too late to be obeyed.
 
 enum class Mode : uint8_t {
   waiting,  // No host has said HELLO: silence, no force.
@@ -20,6 +21,7 @@ struct Drive {
   float force_n[3] = {0.0F, 0.0F, 0.0F};
   bool enabled = false;
   bool damp = false;
+  uint16_t damping = 0;  // 0.01 N s/m, at most what HELLO offers; zero: the device's own choice.
 };
 
 // Shortens a vector to `limit`, keeping its direction. What is no number becomes zero.
@@ -39,6 +41,7 @@ struct Counters {
   uint32_t lost = 0;        // Gaps in the sequence.
   uint32_t duplicates = 0;  // Not used.
   uint32_t late = 0;        // Not used.
+  uint32_t refused = 0;     // Not used: it answers a STATE of too long ago.
   uint32_t unknown = 0;     // Sound frames of no known type or length.
   uint32_t unexpected = 0;  // FORCE of a host that has not said HELLO.
   uint32_t limp = 0;        // Times the watchdog ran out.
@@ -54,7 +57,7 @@ class Device {
   void restart() {
     receiver_.forget();
     streaming_ = false;
-    heard_ = false;
+    heard_ = any_taken_ = false;
     hello_due_ = limp_due_ = protocol_due_ = false;
   }
 
@@ -92,7 +95,9 @@ class Device {
     uint8_t payload[max_payload];
     if (hello_due_) {
       hello_due_ = false;
-      return write_frame(payload, pack(hello_, payload), frame);
+      DeviceHello said = hello_;
+      if (streaming_) said.protocol = protocol_;
+      return write_frame(payload, pack(said, payload), frame);
     }
     Fault fault;
     if (protocol_due_) {
@@ -126,6 +131,11 @@ class Device {
       state.flags = state_fault;
     } else if (ready && hello_.is_sound()) {
       state.flags = state_ready;
+    }
+    state.tells = protocol_ != first_protocol;
+    if (state.tells && any_taken_) {
+      state.flags = static_cast<uint8_t>(state.flags | state_taken);
+      state.taken = heard_sequence_;
     }
     uint8_t payload[max_payload];
     return write_frame(payload, pack(state, payload), frame);
@@ -180,7 +190,7 @@ class Device {
   }
 
   void take_hello(uint8_t protocol, size_t size) {
-    const bool ours = protocol == hello_.protocol;
+    const bool ours = protocol >= first_protocol && protocol <= hello_.protocol;
     if (ours && size != host_hello_size) {
       ++counters_.unknown;
       return;
@@ -188,16 +198,28 @@ class Device {
     ++counters_.hellos;
     hello_due_ = true;
     // A new session, or none: whatever was asked for before is void.
-    heard_ = false;
+    heard_ = any_taken_ = false;
     drive_ = Drive();
     streaming_ = ours;
-    if (!ours) {
+    if (ours) {
+      protocol_ = protocol;
+    } else {
       protocol_due_ = true;
       other_protocol_ = protocol;
     }
   }
 
   void take_force(const Force& force, uint32_t now_us) {
+    if (force.answers != (protocol_ != first_protocol)) {
+      ++counters_.unexpected;
+      return;
+    }
+    // Letting go is never too late.
+    if (force.answers && force.flags != 0 &&
+        static_cast<uint32_t>(now_us - force.state_time_us) > fresh_us) {
+      ++counters_.refused;
+      return;
+    }
     if (heard_) {
       const uint16_t ahead = static_cast<uint16_t>(force.sequence - heard_sequence_);
       if (ahead == 0) {
@@ -214,8 +236,14 @@ class Device {
     heard_ = true;
     heard_at_us_ = now_us;
     heard_sequence_ = force.sequence;
+    any_taken_ = true;
     drive_ = Drive();
-    drive_.damp = (force.flags & force_damp) != 0;
+    drive_.damp = (force.flags & force_damp) != 0 && (!force.answers || force.damping > 0);
+    if (drive_.damp && force.answers) {
+      const uint16_t most = hello_.largest_damping;
+      drive_.damping = force.damping < most ? force.damping : most;
+      drive_.damp = drive_.damping > 0;
+    }
     drive_.enabled = (force.flags & force_enable) != 0 && hello_.is_sound();
     if (!drive_.enabled) return;
     for (uint8_t axis = 0; axis < 3; ++axis) {
@@ -232,9 +260,11 @@ class Device {
   uint32_t heard_at_us_ = 0;
   uint16_t heard_sequence_ = 0;
   uint16_t sequence_ = 0;
+  uint8_t protocol_ = first_protocol;
   uint8_t other_protocol_ = 0;
   bool streaming_ = false;
   bool heard_ = false;
+  bool any_taken_ = false;
   bool failed_ = false;
   bool hello_due_ = false;
   bool protocol_due_ = false;

@@ -8,12 +8,14 @@
 
 namespace palpate {
 
-constexpr uint8_t protocol_version = 1;
+constexpr uint8_t first_protocol = 1;    // No end tells how fresh its words are.
+constexpr uint8_t protocol_version = 2;  // The newest one; a device that speaks it speaks both.
 
 enum class Type : uint8_t { hello = 1, state = 2, force = 3, fault = 4, orientation = 5 };
 
 constexpr uint8_t state_ready = 1;
 constexpr uint8_t state_fault = 2;
+constexpr uint8_t state_taken = 4;  // Protocol 2: a FORCE was taken in this session.
 constexpr uint8_t force_enable = 1;
 constexpr uint8_t force_damp = 2;
 
@@ -25,6 +27,10 @@ constexpr size_t host_hello_size = 2;
 constexpr size_t device_hello_size = 37;
 constexpr size_t state_size = 21;
 constexpr size_t force_size = 10;
+// What protocol 2 has behind these.
+constexpr size_t device_hello_more = 2;
+constexpr size_t state_more = 2;
+constexpr size_t force_more = 8;
 constexpr size_t fault_size = 4;
 constexpr size_t orientation_size = 11;
 
@@ -40,6 +46,7 @@ struct DeviceHello {
   float largest_force_n = 0.0F;  // Zero: the device only measures.
   float half_extents_m[3] = {0.0F, 0.0F, 0.0F};
   uint16_t rate_hz = 1000;
+  uint16_t largest_damping = 0;  // 0.01 N s/m, protocol 2; zero: the host asks for none.
 
   // Whether its figures can be those of a device. NaN compares false.
   bool is_sound() const {
@@ -57,12 +64,18 @@ struct State {
   int32_t position_um[3] = {0, 0, 0};
   uint8_t buttons = 0;
   uint8_t flags = 0;
+  bool tells = false;  // Protocol 2: the next is there.
+  uint16_t taken = 0;  // Sequence of the last FORCE taken; nothing without state_taken.
 };
 
 struct Force {
   uint16_t sequence = 0;
   int16_t force_mn[3] = {0, 0, 0};
   uint8_t flags = 0;
+  bool answers = false;        // Protocol 2: the next are there.
+  uint32_t state_time_us = 0;  // Device time of the STATE that it answers.
+  uint16_t age = 0;            // 10 us since that came to the host.
+  uint16_t damping = 0;        // 0.01 N s/m.
 };
 
 struct Fault {
@@ -171,6 +184,7 @@ inline size_t pack(const DeviceHello& hello, uint8_t* payload) {
   out.f32(hello.largest_force_n);
   for (const float extent : hello.half_extents_m) out.f32(extent);
   out.u16(hello.rate_hz);
+  if (hello.protocol != first_protocol) out.u16(hello.largest_damping);
   return out.size();
 }
 
@@ -182,6 +196,7 @@ inline size_t pack(const State& state, uint8_t* payload) {
   for (const int32_t um : state.position_um) out.u32(static_cast<uint32_t>(um));
   out.u8(state.buttons);
   out.u8(state.flags);
+  if (state.tells) out.u16(state.taken);
   return out.size();
 }
 
@@ -191,6 +206,11 @@ inline size_t pack(const Force& force, uint8_t* payload) {
   out.u16(force.sequence);
   for (const int16_t mn : force.force_mn) out.u16(static_cast<uint16_t>(mn));
   out.u8(force.flags);
+  if (force.answers) {
+    out.u32(force.state_time_us);
+    out.u16(force.age);
+    out.u16(force.damping);
+  }
   return out.size();
 }
 
@@ -223,7 +243,9 @@ inline bool read_protocol(const uint8_t* payload, size_t size, uint8_t& protocol
 }
 
 inline bool unpack(const uint8_t* payload, size_t size, DeviceHello& hello) {
-  if (!is(payload, size, Type::hello, device_hello_size)) return false;
+  const bool is_first = size > 1 && payload[1] == first_protocol;
+  const size_t wanted = device_hello_size + (is_first ? 0 : device_hello_more);
+  if (!is(payload, size, Type::hello, wanted)) return false;
   Unpacker in(payload + 1);
   hello.protocol = in.u8();
   for (char& letter : hello.name) letter = static_cast<char>(in.u8());
@@ -231,26 +253,35 @@ inline bool unpack(const uint8_t* payload, size_t size, DeviceHello& hello) {
   hello.largest_force_n = in.f32();
   for (float& extent : hello.half_extents_m) extent = in.f32();
   hello.rate_hz = in.u16();
-  return hello.protocol == protocol_version && hello.is_sound();
+  hello.largest_damping = is_first ? uint16_t{0} : in.u16();
+  return (is_first || hello.protocol == protocol_version) && hello.is_sound();
 }
 
 inline bool unpack(const uint8_t* payload, size_t size, State& state) {
-  if (!is(payload, size, Type::state, state_size)) return false;
+  state.tells = size == state_size + state_more;
+  if (!is(payload, size, Type::state, state_size + (state.tells ? state_more : 0))) return false;
   Unpacker in(payload + 1);
   state.sequence = in.u16();
   state.time_us = in.u32();
   for (int32_t& um : state.position_um) um = in.i32();
   state.buttons = in.u8();
   state.flags = in.u8();
+  state.taken = state.tells ? in.u16() : uint16_t{0};
   return true;
 }
 
 inline bool unpack(const uint8_t* payload, size_t size, Force& force) {
-  if (!is(payload, size, Type::force, force_size)) return false;
+  force.answers = size == force_size + force_more;
+  if (!is(payload, size, Type::force, force_size + (force.answers ? force_more : 0))) return false;
   Unpacker in(payload + 1);
   force.sequence = in.u16();
   for (int16_t& mn : force.force_mn) mn = in.i16();
   force.flags = in.u8();
+  if (force.answers) {
+    force.state_time_us = in.u32();
+    force.age = in.u16();
+    force.damping = in.u16();
+  }
   return true;
 }
 
