@@ -178,7 +178,7 @@ def worked_examples():
 
 
 def test_the_worked_examples_are_found():
-    assert len(worked_examples()) == 9
+    assert len(worked_examples()) == 14
 
 
 @pytest.mark.parametrize(("payload", "crc", "frame", "prose"), worked_examples())

@@ -4,7 +4,8 @@ use glam::DVec3;
 use palpate_servo::device::Greeting;
 use palpate_servo::device::link::codec::{Decoder, MAX_FRAME, checksum, encode};
 use palpate_servo::device::link::messages::{
-    DeviceOrientation, DeviceState, FIRST_PROTOCOL, Message, force_payload, hello_payload, parse,
+    Answer, DeviceOrientation, DeviceState, FIRST_PROTOCOL, Message, Taken, answering_payload,
+    force_payload, hello_payload, parse,
 };
 
 const PAGE: &str = include_str!("../../../docs/link.md");
@@ -125,10 +126,50 @@ fn the_devices_examples_are_read_field_by_field() {
 }
 
 #[test]
+fn the_examples_of_protocol_2_are_what_the_host_says_and_reads() {
+    assert_eq!(example("The host asks in protocol 2"), hello_payload(2));
+    let answer = Answer {
+        time_us: 1000,
+        age: 0.25e-3,
+        damping: 0.0,
+    };
+    assert_eq!(
+        example("A newton up, in answer to a STATE"),
+        answering_payload(force_payload(513, PUSH, true), &answer)
+    );
+    let brakes = Answer {
+        time_us: 2000,
+        age: 0.0,
+        damping: 20.0,
+    };
+    assert_eq!(
+        example("No force, but brake"),
+        answering_payload(force_payload(514, DVec3::ZERO, false), &brakes)
+    );
+    let Message::Hello(older) = simulated() else {
+        unreachable!("it is a HELLO")
+    };
+    let hello = Message::Hello(Greeting {
+        protocol: 2,
+        largest_damping: 20.0,
+        ..older
+    });
+    assert_eq!(
+        parse(&example("A device answers in protocol 2")),
+        Some(hello)
+    );
+    let named = Message::State(DeviceState {
+        taken: Some(Taken::Force(513)),
+        ..on_its_way(259, 2000)
+    });
+    assert_eq!(parse(&example("A device that took it")), Some(named));
+}
+
+#[test]
 fn no_example_is_left_out() {
     let examples = PAGE.split("## Worked examples").nth(1).unwrap();
-    assert_eq!(examples.matches("\nCRC ").count(), 9);
-    assert_eq!(examples.matches("\n### ").count(), 11);
+    assert_eq!(examples.matches("\nCRC ").count(), 14);
+    assert_eq!(examples.matches("\n### ").count(), 16);
 }
 
 #[test]
