@@ -118,6 +118,11 @@ def _draw_link(layout: bpy.types.UILayout, link: LinkCounters) -> None:
         ("Not Sent", f"{link['unsent']:,}"),
         ("Opened Again", f"{link['reopened']:,}"),
     ]
+    if link["state_age_ms"] is not None:
+        rows.append(("Age of Position", f"{link['state_age_ms']:.1f} ms"))
+    if link["round_trip_ms"] is not None:
+        rows.append(("Round Trip", f"{link['round_trip_ms']:.1f} ms"))
+        rows.append(("On the Way", f"{link['forces_in_flight']:,}"))
     device = link["device"]
     if device is not None:
         rows.insert(0, ("Device", device["name"]))

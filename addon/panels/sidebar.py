@@ -123,6 +123,8 @@ class PALPATE_PT_press(PalpatePanel, bpy.types.Panel):
             row = column.row(align=True)
             row.prop(chosen, "port")
             row.operator("palpate.refresh_devices", text="", icon="FILE_REFRESH")
+        if chosen.source == "SERIAL":
+            column.prop(chosen, "baud")
         if is_planar(context.scene):
             column.prop(chosen, "haply_model")
         if chosen.source == "HAPLY":

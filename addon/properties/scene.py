@@ -39,6 +39,13 @@ class PalpateScene(FingerProperties, bpy.types.PropertyGroup):
         search=_suggest_ports,
         search_options={"SUGGESTION"},
     )
+    baud: number(
+        "Line Speed",
+        "Bits a second of a device on a serial line, as it has them. 0 for USB of the device's "
+        "own, where speed has no meaning, and for 115200",
+        0,
+        span(0, 12_000_000, step=9600),
+    )
     device_frame: chosen_object(
         "Device Frame",
         "Empty that says where the device's origin and axes are. Without one they are the object's",

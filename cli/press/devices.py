@@ -6,7 +6,7 @@ import argparse
 import dataclasses
 import json
 
-from ...core.servo.ports import Port, list_ports
+from ...core.servo.ports import BAUD, Port, check_baud, list_ports
 from ...simulated import device_process
 from ...simulated.hand.options import add_simulated_options, simulated_options
 
@@ -24,6 +24,13 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         metavar="PATH",
         help="ask these ports too, whatever they are",
     )
+    parser.add_argument(
+        "--baud",
+        type=int,
+        default=BAUD,
+        metavar="BITS",
+        help="speed of the lines, as the devices have it (default: %(default)s)",
+    )
     below = parser.add_subparsers(title="without hardware", metavar="COMMAND")
     simulate = below.add_parser(
         "simulate",
@@ -40,7 +47,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """List all ports and their devices."""
-    ports = list_ports(arguments.port)
+    check_baud(arguments.baud)
+    ports = list_ports(arguments.port, baud=arguments.baud)
     if arguments.json:
         print(json.dumps({"ports": [dataclasses.asdict(port) for port in ports]}))
         return 0
@@ -69,4 +77,6 @@ def _line(port: Port) -> str:
         answer = f"{hello.name}: {hello.axes} axes, {hello.largest_force:g} N, {hello.rate_hz} Hz"
         if port.tells_orientation:
             answer += ", tells its orientation"
+        if port.round_trip_ms is not None:
+            answer += f", round trip {port.round_trip_ms:.1f} ms"
     return f"{port.path}  {f'[{what}]  ' if what else ''}{answer}"

@@ -19,7 +19,7 @@ from ...core.body import body_file
 from ...core.body.soft_body import SoftBody
 from ...core.errors import PalpateError
 from ...core.machine.stop_signals import stopped_by_signals
-from ...core.servo.ports import PortError, check_port
+from ...core.servo.ports import BAUD, PortError, check_baud, check_port
 from ...core.servo.recording import check_recording_path, check_room, write_recording
 from ...core.servo.session import STATES, LinkDevice, native_body, servo_on
 from ...core.servo.settings import Settings
@@ -59,6 +59,13 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     )
     add_haply_options(parser, device)
     parser.add_argument(
+        "--baud",
+        type=int,
+        metavar="BITS",
+        help="speed of the line, as the device has it; leave it out for USB of the device's own, "
+        f"where it has no meaning (default: {BAUD})",
+    )
+    parser.add_argument(
         "--second-port",
         action="append",
         default=[],
@@ -93,6 +100,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Load, connect, touch for some seconds, report."""
+    check_baud(arguments.baud)
     if not 0.0 < arguments.seconds < math.inf:
         raise PalpateError("--seconds: the time must be more than 0 s and have an end")
     if arguments.record is not None:
@@ -121,14 +129,14 @@ def run(arguments: argparse.Namespace) -> int:
             table = stack.enter_context(softening_table(body, arguments.body))
             table.listen(surface.set_softenings)
         stack.callback(servo.stop)
-        _add_fingers(servo, others)
+        _add_fingers(servo, others, arguments.baud)
         if arguments.record is not None:
             _start_recording(servo, arguments.record, arguments.seconds)
         if arguments.haply:
             _, at, _ = _highest_place(body)
             connect_haply(servo, arguments, _vector(at), stopped)
         else:
-            _connect(servo, port, stopped)
+            _connect(servo, port, arguments.baud, stopped)
         for finger, other in enumerate(others, start=1):
             _await_greeting(servo, finger, other, stopped)
         report = _touch(servo, port, arguments.seconds, stopped, table)
@@ -213,9 +221,9 @@ def _vector(values: NDArray[np.float64]) -> tuple[float, float, float]:
     return (x, y, z)
 
 
-def _connect(servo: Servo, port: str, stopped: Sequence[int]) -> None:
+def _connect(servo: Servo, port: str, baud: int | None, stopped: Sequence[int]) -> None:
     try:
-        servo.start(LinkDevice(port))
+        servo.start(LinkDevice(port, baud=baud))
     except OSError as error:
         raise PalpateError(str(error)) from error
     _await_greeting(servo, 0, port, stopped)
@@ -228,10 +236,10 @@ def _check_ports(ports: Sequence[str]) -> None:
         raise PalpateError("--second-port: a port is named twice; give each device its own")
 
 
-def _add_fingers(servo: Servo, ports: Sequence[str]) -> None:
+def _add_fingers(servo: Servo, ports: Sequence[str], baud: int | None) -> None:
     for port in ports:
         try:
-            servo.add(LinkDevice(port))
+            servo.add(LinkDevice(port, baud=baud))
         except (OSError, ValueError) as error:
             raise PalpateError(f"--second-port: {error}") from error
 

@@ -20,8 +20,12 @@ from ..sentence import Sentence
 from . import link
 from .haply_models import HAPI_USB_IDS
 from .latency_timer import ask_for_low_latency, explain_readings
+from .round_trip import RoundTrip
 
 BAUD = 115200
+"""Speed of a port whose speed nobody has said, bits a second."""
+BAUDS = (300, 12_000_000)
+"""Slowest and fastest that can be said."""
 ANSWER_SECONDS = 2.5
 """Wait for HELLO: boards that restart when opened need up to two seconds."""
 HELLO_EVERY_SECONDS = 0.1
@@ -67,13 +71,24 @@ class Port:
     """The device's answer."""
     tells_orientation: bool = False
     """Whether an ORIENTATION was heard."""
+    round_trip_ms: float | None = None
+    """From a FORCE to the STATE that names it, on average; None in protocol 1."""
     reason: str = ""
     """Reason why there is no answer."""
     warning: str = ""
     """Problem of the connection, with its remedy."""
 
 
-def list_ports(extra: Sequence[str] = (), seconds: float = ANSWER_SECONDS) -> list[Port]:
+def check_baud(baud: int | None) -> None:
+    """Raise PalpateError for a speed that no line has; None is one that nobody has said."""
+    slowest, fastest = BAUDS
+    if baud is not None and not slowest <= baud <= fastest:
+        raise PalpateError(f"--baud: a line has {slowest} to {fastest} bits a second, not {baud}")
+
+
+def list_ports(
+    extra: Sequence[str] = (), seconds: float = ANSWER_SECONDS, baud: int = BAUD
+) -> list[Port]:
     """All ports of this computer, then `extra` paths, each asked for HELLO for up to `seconds`.
 
     Ports that are no USB devices, and possible Haply 2DIYs, are asked only if among `extra`: they
@@ -93,11 +108,12 @@ def list_ports(extra: Sequence[str] = (), seconds: float = ANSWER_SECONDS) -> li
     known = {port.path for port in found}
     found += [Port(path) for path in dict.fromkeys(extra) if path not in known]
     with ThreadPoolExecutor(max_workers=8) as pool:
-        return list(pool.map(lambda port: _asked(port, port.path in extra, seconds), found))
+        return list(pool.map(lambda port: _asked(port, port.path in extra, seconds, baud), found))
 
 
-def _asked(port: Port, named: bool, seconds: float) -> Port:
+def _asked(port: Port, named: bool, seconds: float, baud: int) -> Port:
     hello, turns, reason, warning = None, False, "", ""
+    trip = RoundTrip()
     if port.usb_id in HAPI_USB_IDS and not named:
         # A byte of HELLO resets a hAPI board's device.
         reason = (
@@ -106,7 +122,8 @@ def _asked(port: Port, named: bool, seconds: float) -> Port:
         )
     elif port.usb_id or named:
         try:
-            hello, heard = _ask(port.path, seconds, LISTEN_SECONDS if named else 0.0)
+            listen_seconds = LISTEN_SECONDS if named else 0.0
+            hello, heard = _ask(port.path, seconds, baud, listen_seconds, trip)
             turns = any(isinstance(m, link.Orientation) for _, said in heard for m in said)
             warning = explain_readings(list(_readings(heard)), port.path) or ""
         except PortError as error:
@@ -114,7 +131,12 @@ def _asked(port: Port, named: bool, seconds: float) -> Port:
     else:
         reason = "not asked, as it is no USB device; name it with --port to ask it"
     return dataclasses.replace(
-        port, hello=hello, tells_orientation=turns, reason=reason, warning=warning
+        port,
+        hello=hello,
+        tells_orientation=turns,
+        round_trip_ms=trip.milliseconds,
+        reason=reason,
+        warning=warning,
     )
 
 
@@ -124,19 +146,21 @@ def say_hello(path: str, seconds: float = ANSWER_SECONDS) -> link.DeviceHello:
     Raises PortError when the port cannot be opened or is in use, when nothing answers within
     `seconds`, and when the device speaks another version of the link.
     """
-    return _ask(path, seconds, 0.0)[0]
+    return _ask(path, seconds, BAUD, 0.0, RoundTrip())[0]
 
 
 Heard = list[tuple[float, list[link.Message]]]
 """Time of a reading, s, and its messages."""
 
 
-def _ask(path: str, seconds: float, listen_seconds: float) -> tuple[link.DeviceHello, Heard]:
+def _ask(
+    path: str, seconds: float, baud: int, listen_seconds: float, trip: RoundTrip
+) -> tuple[link.DeviceHello, Heard]:
     """Answer to HELLO, and what was heard after it."""
     _look_at(path, even_if_taken=False)
     try:
-        with serial.Serial(path, BAUD, timeout=0.02, write_timeout=0.5, exclusive=True) as port:
-            return _exchange(path, port, seconds), list(_listen(port, listen_seconds))
+        with serial.Serial(path, baud, timeout=0.02, write_timeout=0.5, exclusive=True) as port:
+            return _exchange(path, port, seconds), list(_listen(port, listen_seconds, trip))
     except serial.SerialTimeoutException as error:
         raise PortError(path, _silence(seconds)) from error
     except serial.SerialException as error:
@@ -203,14 +227,19 @@ def _exchange(path: str, port: serial.Serial, seconds: float) -> link.DeviceHell
     raise PortError(path, _silence(seconds))
 
 
-def _listen(port: serial.Serial, seconds: float) -> Iterator[tuple[float, list[link.Message]]]:
-    """Messages with their times; readings without bytes have none."""
+def _listen(
+    port: serial.Serial, seconds: float, trip: RoundTrip
+) -> Iterator[tuple[float, list[link.Message]]]:
+    """Messages with their times; readings without bytes have none. Each STATE is answered."""
     decoder = link.Decoder()
     port.timeout = 1e-3
     deadline = time.monotonic() + seconds
     while time.monotonic() < deadline:
         data = port.read(max(1, port.in_waiting))
         messages = decoder.feed(data)
+        states = [message for message in messages if isinstance(message, link.State)]
+        if states:
+            port.write(trip.answer(states[-1], time.monotonic()))
         # Part of a frame: neither a message nor an empty reading.
         if messages or not data:
             yield time.monotonic(), messages

@@ -111,7 +111,9 @@ class ForceLoop:
             port = second_port(scene)
         haply = chosen.second_haply_model if chosen.second == "HAPLY" else None
         with servo_errors():
-            self.servo.add(_device_at(port, frame, haply, chosen.second_haply_at_rest))
+            at_rest = chosen.second_haply_at_rest
+            baud = chosen.baud if chosen.second == "SERIAL" else 0
+            self.servo.add(_device_at(port, baud, frame, haply, at_rest))
 
     def lead(self, finger: int, place: Point | None, turn: Turn | None) -> None:
         """Set a finger's target and its tool's rotation, where given and new."""
@@ -148,7 +150,8 @@ class ForceLoop:
         # A simulated one always begins in its rest pose.
         at_rest = chosen.haply_at_rest or self.simulated is not None
         with servo_errors():
-            self.servo.start(_device_at(self.port, frame, haply, at_rest))
+            baud = chosen.baud if chosen.source == "SERIAL" else 0
+            self.servo.start(_device_at(self.port, baud, frame, haply, at_rest))
 
     def follow(self, settings: LiveSettings) -> None:
         """Apply changed settings.
@@ -206,14 +209,18 @@ class ForceLoop:
 
 
 def _device_at(
-    port: str, frame: device_source.DeviceFrame, haply_model: str | None, at_rest: bool
+    port: str, baud: int, frame: device_source.DeviceFrame, haply_model: str | None, at_rest: bool
 ) -> LinkDevice | HaplyDevice:
     """Device at a port: a 2DIY of a model, ``at_rest`` if its handle is in the rest pose, or a
-    device that speaks the link.
+    device that speaks the link at ``baud``, 0 if that has no meaning.
     """
     if haply_model is None:
         return LinkDevice(
-            port, rotation=frame.rotation, translation=frame.translation, scale=frame.scale
+            port,
+            baud=baud or None,
+            rotation=frame.rotation,
+            translation=frame.translation,
+            scale=frame.scale,
         )
     return HaplyDevice(
         port,

@@ -46,6 +46,8 @@ pub struct Finger {
     frame_epoch: u32,
     /// Time of the last tick after a gap, s.
     interrupted_at: f64,
+    /// Time for which the device has been too fast without a break, s.
+    fast_for: f64,
     /// From 0 to 1 after a fault: how much it acts on the others.
     presence: f64,
     point: Point,
@@ -74,6 +76,7 @@ impl Finger {
             },
             frame_epoch: settings.frame.epoch,
             interrupted_at: f64::NEG_INFINITY,
+            fast_for: 0.0,
             presence: 1.0,
             point: Point::fresh(),
             tool: ToolTouch::default(),

@@ -13,6 +13,10 @@ use crate::servo::settings::Moment;
 use crate::servo::snapshot::{FingerReport, Snapshot};
 use crate::servo::tip::Tip;
 
+/// A device that is too fast for so long is really on its way, s: an encoder that lost its place looks
+/// so for a moment, and shall not be braked with what it tells.
+const RUNAWAY_SECONDS: f64 = 0.02;
+
 impl Finger {
     /// State and safety, then the device.
     pub fn send(&mut self, followed: &Followed<'_>, touch: &Touch) -> Snapshot {
@@ -30,6 +34,7 @@ impl Finger {
             output_force = self.safety.silence();
         }
         self.coupler.sent(output_force);
+        self.brake(found.calm, dt);
         self.device
             .write(output_force, may_push, &followed.own.frame);
         Snapshot {
@@ -40,6 +45,13 @@ impl Finger {
             reason: self.standing.reason,
             ..touch.shot
         }
+    }
+
+    /// Has a device that is too fast, and has been for a while, brake by itself.
+    fn brake(&mut self, calm: bool, dt: f64) {
+        let is_fast = self.standing.fault == Some(Fault::TooFast) && !calm;
+        self.fast_for = if is_fast { self.fast_for + dt } else { 0.0 };
+        self.device.brake(self.fast_for >= RUNAWAY_SECONDS);
     }
 
     /// The tick with its counters, for others to read.
