@@ -26,8 +26,10 @@ class RoundTrip:
             return b""
         if state.flags & link.StateFlag.TAKEN and state.taken in self._sent:
             self._seconds.append(now - self._sent[state.taken])
-            # It names all before it, too.
-            self._sent.clear()
+            sent = list(self._sent)
+            # Those before it were lost.
+            for named in sent[: sent.index(state.taken) + 1]:
+                del self._sent[named]
         sequence = self._sequence
         self._sequence = (sequence + 1) % link.SEQUENCES
         self._sent[sequence] = now
