@@ -18,7 +18,7 @@ from ...core.bake.job import run_bake
 from ...core.bake.steps import BakeSettings
 from ...core.body import body_file
 from ...core.body.body_file import BodyFileError
-from ...core.body.body_key import body_key
+from ...core.body.body_key import is_key_of
 from ...core.body.soft_body import SoftBody
 from ...core.errors import PalpateError
 from ...core.mesh.tet_mesh import TetMesh
@@ -48,9 +48,9 @@ class EmbeddedBody:
         """Factors for a bake."""
         return None if self.young_scale is None else TetScale(self.young_scale)
 
-    def key(self, poisson_ratio: float, formulation: str) -> str:
-        """Key of the body with a material."""
-        return body_key(self.mesh, self.fixed, poisson_ratio, formulation, self.young_scale)
+    def has_key(self, key: str, poisson_ratio: float, formulation: str) -> bool:
+        """Whether ``key`` is that of the body with a material, also an older one."""
+        return is_key_of(key, self.mesh, self.fixed, poisson_ratio, formulation, self.young_scale)
 
 
 # Damaged files and their modification times: the panel offers to rebuild them.
@@ -162,7 +162,7 @@ def restore(thing: bpy.types.Object) -> SoftBody:
     baked = thing.palpate
     within = embedded(thing)
     ratio = round(baked.baked_poisson_ratio, 6)
-    if within.key(ratio, baked.baked_formulation) != baked.body_key:
+    if not within.has_key(baked.body_key, ratio, baked.baked_formulation):
         raise PalpateError(
             "{name}: the tetrahedra in this file are not those of its body; press Make Soft",
             name=thing.name,
@@ -178,7 +178,9 @@ def restore(thing: bpy.types.Object) -> SoftBody:
     )
     target = folder_for_new_files() / baked.body_file
     python = (sys.executable, *bpy.app.python_args)
-    return run_bake(within.mesh, settings, target, python=python)[0]
+    body, _ = run_bake(within.mesh, settings, target, python=python)
+    baked.body_key = body.key
+    return body
 
 
 def embed(thing: bpy.types.Object, body: SoftBody) -> None:
