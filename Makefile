@@ -186,7 +186,12 @@ translations: $(VENV)/.installed ## new texts into addon/translations/*.po, and 
 .PHONY: bench
 bench: $(VENV)/.servo-installed | build/reports ## how long things take on this machine, beside others; see build/reports/bench.txt
 	$(BIN)/pip install --quiet --editable '.[dev,bench]'
+	$(BIN)/palpate devices attack simulated --times 1000 $(REPORT)
 	for script in $(filter-out benchmarks/measuring/%,$(wildcard benchmarks/*/*.py)); do $(BIN)/python "$$script"; done $(REPORT)
+
+.PHONY: attack
+attack: $(VENV)/.servo-installed ## the table of docs/safety.md: a hostile device at the servo
+	$(BIN)/palpate devices attack simulated --times 200 --publish docs/safety.md
 
 # ------------------------------------------------------------------------------------------ rest
 

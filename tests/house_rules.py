@@ -29,6 +29,8 @@ core/servo/link core/servo
 core/softness/scales core/softness
 core
 simulated/wire simulated/hand simulated/board simulated
+simulated/attack/table.py simulated/attack/target.py
+simulated/attack/virtual simulated/attack/real simulated/attack/port simulated/attack
 operators/reporting
 operators/scene
 operators/pins

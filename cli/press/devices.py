@@ -9,8 +9,9 @@ import json
 from ...core.servo.ports import BAUD, Port, check_baud, list_ports
 from ...simulated import device_process
 from ...simulated.hand.options import add_simulated_options, simulated_options
+from . import attack
 
-HELP = "list haptic devices, or simulate one"
+HELP = "list haptic devices, simulate one, or attack"
 DESCRIPTION = "List the serial ports and the haptic devices that answer there."
 
 
@@ -31,7 +32,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         metavar="BITS",
         help="speed of the lines, as the devices have it (default: %(default)s)",
     )
-    below = parser.add_subparsers(title="without hardware", metavar="COMMAND")
+    below = parser.add_subparsers(title="simulate and attack", metavar="COMMAND")
     simulate = below.add_parser(
         "simulate",
         help="be a device on a pseudo-terminal until Ctrl-C",
@@ -43,6 +44,11 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "--json", action="store_true", default=argparse.SUPPRESS, help="print as JSON lines"
     )
     simulate.set_defaults(run=run_simulate)
+    hostile = below.add_parser("attack", help=attack.HELP, description=attack.DESCRIPTION)
+    attack.add_options(hostile)
+    hostile.add_argument(
+        "--json", action="store_true", default=argparse.SUPPRESS, help="print the tables as JSON"
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -5,11 +5,11 @@ import json
 
 import numpy as np
 import pytest
-from fault_injection.processes import Host
-from fault_injection.servo_host import cube
 from palpate_servo import LinkDevice, Servo
 
 from palpate.core.servo.settings import Settings
+from palpate.simulated.attack.real.processes import Host
+from palpate.simulated.attack.target import cube
 
 ABOVE = (0.026, 0.024, 0.06)
 DEEP = (0.026, 0.024, 0.044)

@@ -3,7 +3,9 @@
 import os
 
 import pytest
-from fault_injection import processes as fault_processes
+
+from palpate.simulated.attack.real import processes as fault_processes
+from palpate.simulated.attack.real.stalled_reader import stalled_reader_row
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "openpty"), reason="needs pseudo-terminals")
 
@@ -31,4 +33,4 @@ def test_the_device_of_a_host_that_was_killed_is_limp_within_20_ms_of_its_own_cl
 
 
 def test_readers_that_stall_hold_up_nothing():
-    assert fault_processes.stalled_reader_row(0.5).broken == ()
+    assert stalled_reader_row(0.5).broken == ()

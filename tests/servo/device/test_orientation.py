@@ -6,12 +6,12 @@ from types import SimpleNamespace
 import numpy as np
 import palpate_servo
 import pytest
-from fault_injection.servo_host import ABOVE, YOUNG_MODULUS, cube
 from link_vectors import VECTORS
 from palpate_servo import harness
 
 from palpate.core.servo import link
 from palpate.core.servo.settings import Settings
+from palpate.simulated.attack.target import ABOVE, YOUNG_MODULUS, cube
 from palpate.simulated.hand.options import SimulatedOptions
 from palpate.simulated.hand.quaternion import about
 from palpate.simulated.simulated_process import SimulatedDevice

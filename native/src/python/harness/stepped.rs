@@ -6,15 +6,21 @@ use std::sync::{Arc, Mutex, MutexGuard};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
+use crate::device::Device;
+use crate::device::haply::device::HaplyDevice;
 use crate::device::link::LinkDevice;
 use crate::device::serial::port::{Opener, Wire};
 use crate::python::body::surface::Body;
+use crate::python::device::haply::haply_setup;
 use crate::python::harness::stepping::Stepping;
 use crate::python::servo::counters::{fault_counters, link_counters};
 use crate::python::servo::settings::{Chosen, Given, options};
 use crate::python::servo::snapshot::Snapshot;
 use crate::servo::paced::locked;
 use crate::servo::settings::Settings;
+
+/// What a driver keeps of what its line has not taken yet, bytes.
+const DRIVER_BYTES: usize = 4096;
 
 /// Bytes on the line in either direction.
 #[derive(Debug, Default)]
@@ -52,8 +58,22 @@ impl Wire for InMemory {
     }
 
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.line().from_host.extend(bytes);
-        Ok(bytes.len())
+        let mut line = self.line();
+        let room = DRIVER_BYTES.saturating_sub(line.from_host.len());
+        if room == 0 {
+            return Err(ErrorKind::WouldBlock.into());
+        }
+        let length = room.min(bytes.len());
+        line.from_host.extend(&bytes[..length]);
+        Ok(length)
+    }
+
+    fn queued(&mut self) -> usize {
+        self.line().from_host.len()
+    }
+
+    fn discard(&mut self) {
+        self.line().from_host.clear();
     }
 }
 
@@ -72,7 +92,9 @@ impl Opener for InMemory {
 /// The ticks of a Servo, by hand and in virtual time, with a device on a line in memory.
 ///
 /// Nothing waits, and the same input gives the same output. Methods are as of Servo; `tick(received,
-/// seconds)` ticks `seconds` (default: a period) after the last time and returns what is sent.
+/// seconds, taken)` ticks `seconds` (default: a period) after the last time and returns what is sent, at
+/// most `taken` bytes of it (default: all): the rest waits in the driver, which has room for 4096. The
+/// device speaks the link, or is the Haply 2DIY of a model, its handle at rest when it is first heard.
 #[pyclass(frozen, module = "palpate_servo.harness")]
 pub struct SteppedServo {
     wire: InMemory,
@@ -83,7 +105,7 @@ pub struct SteppedServo {
 impl SteppedServo {
     #[new]
     #[pyo3(signature = (body, settings, *, rate_hz=1000, max_force=3.0, max_slew=1000.0,
-        ramp_seconds=0.25, max_speed=2.0))]
+        ramp_seconds=0.25, max_speed=2.0, haply=None))]
     #[allow(clippy::too_many_arguments)] // Keywords in Python.
     fn new(
         body: &Body,
@@ -93,24 +115,34 @@ impl SteppedServo {
         max_slew: f64,
         ramp_seconds: f64,
         max_speed: f64,
+        haply: Option<&str>,
     ) -> PyResult<Self> {
         let options = options(rate_hz, max_force, max_slew, ramp_seconds, max_speed)?;
         let wire = InMemory::default();
-        let device = Box::new(LinkDevice::open(wire.clone())?);
+        let device: Box<dyn Device> = match haply {
+            None => Box::new(LinkDevice::open(wire.clone())?),
+            Some(model) => {
+                let (model, calibration) = haply_setup(model, None, true, None)?;
+                Box::new(HaplyDevice::open(wire.clone(), model, calibration)?)
+            }
+        };
         let stepped = Mutex::new(Stepping::new(body, vec![device], &settings, options)?);
         Ok(Self { wire, stepped })
     }
 
-    #[pyo3(signature = (received=None, seconds=None))]
+    #[pyo3(signature = (received=None, seconds=None, taken=None))]
     fn tick<'py>(
         &self,
         py: Python<'py>,
         received: Option<&[u8]>,
         seconds: Option<f64>,
+        taken: Option<usize>,
     ) -> Bound<'py, PyBytes> {
         self.wire.line().to_host.extend(received.unwrap_or(&[]));
         locked(&self.stepped).tick(seconds);
-        let sent = std::mem::take(&mut self.wire.line().from_host);
+        let waiting = &mut self.wire.line().from_host;
+        let most = taken.unwrap_or(usize::MAX).min(waiting.len());
+        let sent: Vec<u8> = waiting.drain(..most).collect();
         PyBytes::new(py, &sent)
     }
 

@@ -13,27 +13,22 @@ import time
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
-from palpate_servo import Pointer, Servo
+from ....core.machine import run_module
+from ...hand.options import SimulatedOptions
+from ...simulated_process import SimulatedDevice
+from ..table import Row, counted
+from ..target import ABOVE, DEEP
+from .servo_host import RAMP_SECONDS
 
-from palpate.core.servo.settings import Settings
-from palpate.simulated.hand.options import SimulatedOptions
-from palpate.simulated.simulated_process import SimulatedDevice
-
-from .rows import Row
-from .servo_host import ABOVE, DEEP, RAMP_SECONDS, YOUNG_MODULUS, cube
-
-HOST = Path(__file__).with_name("servo_host.py")
 PATIENCE_SECONDS = 20.0
 STOPPED_SECONDS = 1.0
 STEADY_TICKS = 20
 BURST_SECONDS = 0.050
 RELEASE_SECONDS = 0.6
 PERIOD = 1e-3
-RING_TICKS = 100
 WATCHDOG_SECONDS = 0.020
 ROUNDING = 1e-9
 DAMPING = 5e-3
@@ -41,11 +36,11 @@ DAMPING = 5e-3
 
 
 class Host:
-    """`servo_host.py` as a process of its own."""
+    """`servo_host.py` as a process of its own, in a session of its own."""
 
     def __init__(self, port: str) -> None:
-        self.process = subprocess.Popen(
-            [sys.executable, str(HOST), port],
+        self.process = subprocess.Popen(  # noqa: S603 - our own module, no shell
+            [sys.executable, *run_module.command("simulated.attack.real.servo_host"), port],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             text=True,
@@ -238,13 +233,12 @@ def suspended_row(times: int) -> Row:
     return Row(
         injected=f"SIGSTOP for {STOPPED_SECONDS:g} s, SIGCONT",
         times=times,
-        seen="suspended",
-        at_cause=max(one.after[0]["output"] for one in all_of_them),
-        after=max(t["output"] for one in all_of_them for t in one.after if t["state"] == "fault"),
-        ticks_to_zero=0,
+        told="suspended",
+        force=max(t["output"] for one in all_of_them for t in one.after if t["state"] == "fault"),
+        zero_ms=0.0,
         back_ms=max(one.ramp[-1]["time"] - one.after[0]["time"] for one in all_of_them) * 1e3,
-        device=_limp([one.device for one in all_of_them]),
-        broken=tuple(f"{rule} ({count})" for rule, count in broken.items()),
+        note=_limp([one.device for one in all_of_them]),
+        broken=counted(broken),
     )
 
 
@@ -260,9 +254,9 @@ def killed_row(times: int) -> Row:
     return Row(
         injected="SIGKILL",
         times=times,
-        seen="(no host)",
-        device=_limp(reports),
-        broken=tuple(f"{rule} ({count})" for rule, count in broken.items()),
+        told="(no host)",
+        note=_limp(reports),
+        broken=counted(broken),
     )
 
 
@@ -281,41 +275,13 @@ def unplugged_row(times: int) -> Row:
     return Row(
         injected="the plug pulled, and put back",
         times=times,
-        seen="unplugged",
-        after=most,
-        device=_limp(reports),
-        broken=tuple(f"{rule} ({count})" for rule, count in broken.items()),
+        told="unplugged",
+        force=most,
+        note=_limp(reports),
+        broken=counted(broken),
     )
 
 
-def stalled_reader_row(seconds: float = STOPPED_SECONDS) -> Row:
-    """Nobody takes snapshots or samples, and the ring is full; then the reader is there again."""
-    with Servo(cube(), Settings(YOUNG_MODULUS), record_seconds=0.1) as servo:
-        servo.start(Pointer(ABOVE))
-        eventually(lambda: servo.snapshot().tick > 0, "the servo runs")
-        first = servo.counters()
-        time.sleep(seconds)
-        last, shot = servo.counters(), servo.snapshot()
-        newest_is_seen = shot.tick >= last["ticks"] - 1
-    # Once the thread stands: while it runs, a tick has begun that has not been counted as lost.
-    end = servo.counters()
-    gone = last["ticks"] + last["missed"] - first["ticks"] - first["missed"]
-    broken = []
-    if gone < 0.9 * seconds / PERIOD:
-        broken.append("ticks were held up")
-    if not newest_is_seen:
-        broken.append("an old snapshot")
-    if end["samples_lost"] != end["ticks"] - RING_TICKS:
-        broken.append("samples not counted")
-    return Row(
-        injected=f"no reader for {seconds:g} s, ring full",
-        times=1,
-        seen=shot.state,
-        device=f"{gone} periods, longest tick {last['busy_us']['max']:.0f} us",
-        broken=tuple(broken),
-    )
-
-
-def process_rows() -> list[Row]:
-    """All rows; about a quarter of a minute."""
-    return [suspended_row(4), killed_row(4), unplugged_row(4), stalled_reader_row()]
+def process_rows(times: int = 4) -> list[Row]:
+    """Rows of hosts that are stopped, killed and unplugged; some seconds for each of `times`."""
+    return [suspended_row(times), killed_row(times), unplugged_row(times)]

@@ -1,0 +1,79 @@
+"""Attacks on the servo: which kinds of device, which bodies, which injections, how often."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from ...core.errors import PalpateError
+from .real.processes import process_rows
+from .real.stalled_reader import stalled_reader_row
+from .table import Table
+from .target import Target, baked_target, cube_target
+from .virtual.cause import Cause
+from .virtual.causes import CAUSES, HAPLY_CAUSES
+from .virtual.episodes import attacked, unheard
+from .virtual.haply_press import HaplyPress
+from .virtual.virtual_press import MAX_FORCE, MAX_SLEW, RAMP_SECONDS, VirtualPress
+
+KINDS = ("link1", "link2", "haply")
+
+
+@dataclass(frozen=True)
+class Attack:
+    """What is tried; `bodies` are touched beside the cube, `only` is a part of a cause's name."""
+
+    kinds: tuple[str, ...] = KINDS
+    times: int = 40
+    seed: int = 1
+    bodies: tuple[Path, ...] = ()
+    only: str = ""
+
+
+def virtual_tables(attack: Attack, say: Callable[[str], None]) -> Iterator[Table]:
+    """Attack in virtual time, a table for each kind of device and body.
+
+    Raises PalpateError where the servo cannot be stepped, and for what is no body.
+    """
+    causes = {kind: _chosen(kind, attack.only) for kind in attack.kinds}
+    if not any(causes.values()):
+        raise PalpateError(
+            "no injection has {only} in its name; leave out --only for all", only=repr(attack.only)
+        )
+    for target in [cube_target(), *map(baked_target, attack.bodies)]:
+        for kind in attack.kinds:
+            yield _virtual_table(kind, target, causes[kind], attack, say)
+
+
+def _chosen(kind: str, only: str) -> list[Cause]:
+    causes = HAPLY_CAUSES if kind == "haply" else CAUSES
+    return [cause for cause in causes if only in cause.name]
+
+
+def _virtual_table(
+    kind: str, target: Target, causes: list[Cause], attack: Attack, say: Callable[[str], None]
+) -> Table:
+    def make(rate_hz: int) -> VirtualPress:
+        if kind == "haply":
+            return HaplyPress(target)
+        return VirtualPress(target, rate_hz=rate_hz, protocol=int(kind[-1]))
+
+    rows = []
+    for cause in causes:
+        say(f"{kind}, {target.name}: {cause.name}")
+        rows.append(attacked(make, cause, attack.times, attack.seed))
+    if kind != "haply" and not attack.only:
+        rows.append(unheard(make, attack.times, attack.seed))
+    limits = f"ramp {RAMP_SECONDS * 1e3:.0f} ms, {MAX_FORCE:g} N, {MAX_SLEW:.0f} N/s"
+    title = (
+        f"A hostile device ({kind}) at a servo on {target.name}, in virtual time; 1 kHz, {limits}"
+    )
+    return Table(title, tuple(rows))
+
+
+def real_table(attack: Attack, say: Callable[[str], None]) -> Table:
+    """Attack processes on pseudo-terminals: signals, the plug, a reader that stalls."""
+    say("processes on a pseudo-terminal")
+    rows = [*process_rows(attack.times), stalled_reader_row()]
+    return Table("Real processes on a pseudo-terminal", tuple(rows))

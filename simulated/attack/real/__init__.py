@@ -1,0 +1,1 @@
+"""Attacks on real processes: stopped, killed, unplugged, starved of readers."""

@@ -1,0 +1,1 @@
+"""Attacks in virtual time: the servo's own ticks, and the line in memory."""

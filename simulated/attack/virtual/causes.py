@@ -1,0 +1,8 @@
+"""All that devices can do to a servo."""
+
+from .device_causes import DEVICE_CAUSES
+from .hidden_causes import HIDDEN_CAUSES
+from .line_causes import LINE_CAUSES
+
+CAUSES = (*DEVICE_CAUSES, *LINE_CAUSES, *HIDDEN_CAUSES)
+HAPLY_CAUSES = tuple(cause for cause in CAUSES if cause.anywhere)
