@@ -10,15 +10,17 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from ...core.errors import PalpateError
+from ...core.servo.ports import BAUD
 from ...simulated.attack.attack import KINDS, Attack, real_table, virtual_tables
+from ...simulated.attack.port.host_attack import HostAttack, host_table
 from ...simulated.attack.published import publish
 from ...simulated.attack.table import Table
 
 HELP = "attack the servo as a hostile device, or a device as a hostile host"
 DESCRIPTION = (
     "Attack the servo as a hostile device ('simulated'), in virtual time and with --real on a real "
-    "pseudo-terminal, and print what came of each injection. Exits with 1 if a rule of "
-    "docs/safety.md is broken."
+    "pseudo-terminal, or as a hostile host the device at a port, and print what came of each "
+    "injection. Exits with 1 if a rule of docs/safety.md or docs/link.md is broken."
 )
 SIMULATED = "simulated"
 EXIT_BROKEN = 1
@@ -29,8 +31,9 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "target",
         metavar="TARGET",
-        help=f"{SIMULATED}, or one kind of device only: "
-        + ", ".join(f"{SIMULATED}:{kind}" for kind in KINDS),
+        help=f"{SIMULATED}, or one kind of device only ("
+        + ", ".join(f"{SIMULATED}:{kind}" for kind in KINDS)
+        + "), or the port of a device that speaks the link",
     )
     parser.add_argument("--times", type=int, default=40, help="of each kind (default: 40)")
     parser.add_argument("--seed", type=int, default=1, help="same seed, same table (default: 1)")
@@ -52,6 +55,29 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--publish", type=Path, metavar="FILE", help="put the tables into this document"
     )
+    at_port = parser.add_argument_group("a device at a port")
+    at_port.add_argument(
+        "--max-force",
+        type=float,
+        default=0.2,
+        metavar="N",
+        help="ask for no more than this (default: %(default)s)",
+    )
+    at_port.add_argument(
+        "--allowance",
+        type=float,
+        default=10.0,
+        metavar="MS",
+        help="what line and computer may take of the device's 20 ms (default: %(default)s)",
+    )
+    at_port.add_argument(
+        "--baud",
+        type=int,
+        default=BAUD,
+        metavar="BITS",
+        help="speed of the line, as the device has it (default: %(default)s)",
+    )
+    at_port.add_argument("--yes", action="store_true", help="begin without asking")
     parser.set_defaults(run=run)
 
 
@@ -73,8 +99,18 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _tables(arguments: argparse.Namespace) -> Iterator[Table]:
+    name, _, kind = arguments.target.partition(":")
+    if name != SIMULATED:
+        return iter([_at_port(arguments)])
+    if kind not in ("", *KINDS):
+        raise PalpateError(
+            "{target}: no such kind of device; take one of {known}, or {simulated} for all",
+            target=arguments.target,
+            known=", ".join(f"{SIMULATED}:{known}" for known in KINDS),
+            simulated=SIMULATED,
+        )
     attack = Attack(
-        kinds=_kinds(arguments.target),
+        kinds=(kind,) if kind else KINDS,
         times=arguments.times,
         seed=arguments.seed,
         bodies=tuple(arguments.body),
@@ -85,17 +121,30 @@ def _tables(arguments: argparse.Namespace) -> Iterator[Table]:
     return virtual_tables(attack, _say)
 
 
-def _kinds(target: str) -> tuple[str, ...]:
-    name, _, kind = target.partition(":")
-    if name == SIMULATED and (kind in KINDS or target == SIMULATED):
-        return (kind,) if kind else KINDS
-    known = ", ".join(f"{SIMULATED}:{kind}" for kind in KINDS)
-    raise PalpateError(
-        "{target}: not a target of an attack; take {known}, or {simulated} for all",
-        target=target,
-        known=known,
-        simulated=SIMULATED,
+def _at_port(arguments: argparse.Namespace) -> Table:
+    attack = HostAttack(
+        path=arguments.target,
+        times=arguments.times,
+        seed=arguments.seed,
+        only=arguments.only,
+        largest_force=arguments.max_force,
+        allowance_ms=arguments.allowance,
+        baud=arguments.baud,
     )
+    warning = (
+        f"{attack.path}: its motors will push for some minutes, in all directions and by jerks, "
+        f"with up to {attack.largest_force:g} N as told. Hold nothing that matters; pull the plug "
+        "to end it"
+    )
+    if not arguments.yes:
+        if not sys.stdin.isatty():
+            raise PalpateError("{warning}. Give --yes to begin", warning=warning)
+        print(warning, file=sys.stderr)
+        if input("begin? [y/N] ").strip().lower() not in ("y", "yes"):
+            raise PalpateError("not begun")
+    else:
+        print(warning, file=sys.stderr)
+    return host_table(attack, _say)
 
 
 def _say(line: str) -> None:
