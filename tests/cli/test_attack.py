@@ -40,7 +40,7 @@ def test_every_kind_of_device_has_a_table_of_its_own(capsys):
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["simulated:mouse"], "simulated:mouse: not a target"),
+        (["simulated:mouse"], "simulated:mouse: no such kind"),
         (["simulated", "--only", "no such thing"], "no injection has 'no such thing'"),
         (["simulated", "--times", "0"], "--times must be at least 1"),
         (["simulated", "--body", "missing.npz"], "missing.npz"),
