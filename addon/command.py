@@ -72,13 +72,13 @@ def bake(arguments: argparse.Namespace) -> dict[str, object]:
     """Make an object soft and save the file."""
     thing = opened_object(arguments.file, arguments.object)
     _set_up(thing.palpate, arguments)
-    before = body_store.new_files()
+    before = body_store.present()
     body, report = bake_session.run(thing, bpy.context.scene)
     try:
         save(arguments.file)
     except PalpateError:
         # The body of an unsaved scene has no owner.
-        body_store.take_back(before)
+        body_store.take_back(thing, before)
         raise
     for warning in report.warnings:
         print(f"palpate: warning: {warning}", file=sys.stderr)

@@ -1,9 +1,12 @@
-"""Preferences of the extension, for all files."""
+"""Preferences of the extension, for all files.
+
+What guards the hand that holds a device is kept here, never in a .blend: that may be a stranger's.
+"""
 
 import bpy
 
 from ..operators.scene.package_preferences import PACKAGE
-from .properties.kinds import choice, number, span, text
+from .properties.kinds import choice, number, span, switch, text
 from .properties.scene import SOURCE_ITEMS
 
 
@@ -23,6 +26,34 @@ class PalpatePreferences(bpy.types.AddonPreferences):
         "A device never gives more than this, in newtons, nor more than it says itself",
         3.0,
         span(0.1, 40.0, precision=1, step=10),
+    )
+    stable_contact: switch(
+        "Stable Contact",
+        "Let the motors feel no contact that is too stiff for them and your hand to "
+        "hold without shaking. The shape stays as it is",
+        on=True,
+    )
+    own_coupling: switch(
+        "Own Values",
+        "Choose yourself what keeps the contact stable, for a device that you know",
+    )
+    coupling_stiffness: number(
+        "Largest Stiffness",
+        "The stiffest contact that the motors feel, in newtons per metre",
+        800.0,
+        span(1.0, 100_000.0, soft_max=5_000.0, precision=0, step=10000),
+    )
+    coupling_damping: number(
+        "Damping",
+        "What brakes the device in a contact of that stiffness, in newton seconds per "
+        "metre; softer contacts get their share",
+        3.2,
+        span(0.0, 100.0, soft_max=20.0, precision=1, step=10),
+    )
+    passivity_control: switch(
+        "Passivity Control",
+        "Watch the energy that the motors give, and brake away what no soft body could have stored",
+        on=True,
     )
     sensitivity: number(
         "Pointer Sensitivity",
@@ -54,6 +85,12 @@ class PalpatePreferences(bpy.types.AddonPreferences):
         column = layout.column(heading="Pressing")
         column.prop(self, "default_source")
         column.prop(self, "max_force")
+        column.prop(self, "stable_contact")
+        if self.stable_contact:
+            column.prop(self, "own_coupling")
+        if self.stable_contact and self.own_coupling:
+            for name in ("coupling_stiffness", "coupling_damping", "passivity_control"):
+                column.prop(self, name)
         column.prop(self, "sensitivity")
         column = layout.column(heading="Files")
         column.prop(self, "body_folder")

@@ -3,10 +3,16 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
+from string import Formatter
 from typing import Any, Self, TypeAlias
 
 import numpy as np
+
+LONGEST_LINE = 10_000
+# Thousands, digits and kind; no width.
+USUAL_FORMAT = re.compile(r",?(\.\d)?[defgs%]?")
 
 Value: TypeAlias = str | int | float
 
@@ -52,8 +58,24 @@ class Sentence(str):
 
     @classmethod
     def of_line(cls, line: str) -> Self:
-        """Sentence from a line of :meth:`as_line`; any other line is plain text."""
-        return cls._of_parts(*json.loads(line)) if line.startswith("[") else cls(line)
+        """Sentence from a line of :meth:`as_line`; any other line is plain text.
+
+        The line may come with a stranger's file: a template that asks for more than its values in
+        usual formats, such as their attributes or a billion blanks, is plain text, too.
+        """
+        if not line.startswith("["):
+            return cls(line)
+        try:
+            return cls._of_parts(*json.loads(line[:LONGEST_LINE]))
+        except (
+            ValueError,
+            TypeError,
+            LookupError,
+            AttributeError,
+            ArithmeticError,
+            RecursionError,
+        ):
+            return cls(line[:LONGEST_LINE])
 
     @classmethod
     def _of_parts(cls, template: str, values: dict[str, Any]) -> Self:
@@ -61,6 +83,17 @@ class Sentence(str):
             name: cls._of_parts(*value) if isinstance(value, list) else value
             for name, value in values.items()
         }
+        if not isinstance(template, str):
+            raise TypeError(f"{template!r} is no text")
+        if not known:
+            return cls(template)
+        for _, name, form, conversion in Formatter().parse(template):
+            if name is None:
+                continue
+            if name not in known or conversion or not USUAL_FORMAT.fullmatch(form or ""):
+                raise ValueError(f"{template!r} is no sentence's")
+            if not isinstance(known[name], str | int | float):
+                raise TypeError(f"{name} is neither text nor a number")
         return cls(template, **known)
 
 

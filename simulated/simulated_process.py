@@ -7,15 +7,14 @@ import os
 import selectors
 import subprocess
 import sys
-import tempfile
 import time
 from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 from types import TracebackType
 from typing import IO, Any, Self
 
 from ..core.errors import PalpateError
+from ..core.files.scratch_folder import ScratchFolder
 from ..core.machine import run_module
 from ..core.sentence import Sentence
 from .hand.options import SimulatedOptions
@@ -47,11 +46,11 @@ class SimulatedDevice:
     ) -> None:
         require_pseudo_terminals()
         options = options or SimulatedOptions()
-        self._folder: tempfile.TemporaryDirectory[str] | None = None
+        self._folder: ScratchFolder | None = None
         if not options.link:
             # A link, so that it comes back at the same path after unplugging.
-            self._folder = tempfile.TemporaryDirectory(prefix="palpate-device-")
-            options = replace(options, link=str(Path(self._folder.name) / "port"))
+            self._folder = ScratchFolder("device")
+            options = replace(options, link=str(self._folder.path / "port"))
         self.options = options
         model = [] if haply is None else [f"--haply={haply}"]
         self._unread = b""
@@ -145,7 +144,7 @@ class SimulatedDevice:
 
     def _remove_folder(self) -> None:
         if self._folder:
-            self._folder.cleanup()
+            self._folder.remove()
 
     def _end(self) -> dict[str, Any]:
         try:

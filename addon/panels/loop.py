@@ -9,6 +9,7 @@ import bpy
 from ...core.quantities import microseconds
 from ...core.servo import latency_timer
 from ...operators.device.servo_words import FAULT_NAMES
+from ...operators.scene.package_preferences import preferences
 from ...operators.session import press_session
 from .base import PalpatePanel, draw_box, draw_rows, named_properties, while_idle
 from .sentence import say
@@ -46,8 +47,8 @@ class PALPATE_PT_loop(PalpatePanel, bpy.types.Panel):
 
 def _draw_coupling(layout: bpy.types.UILayout, scene: bpy.types.Scene) -> None:
     """Draw the virtual coupling, which keeps contact with motors stable."""
-    chosen = scene.palpate
-    if chosen.source == "POINTER" or not chosen.stable_contact:
+    chosen = preferences()
+    if scene.palpate.source == "POINTER" or not chosen.stable_contact:
         return
     column = layout.column(align=True)
     column.prop(chosen, "own_coupling")

@@ -5,6 +5,7 @@ import bpy
 from ...operators.bake import bake_session
 from ...operators.device.device_source import is_planar
 from ...operators.object import soft_object
+from ...operators.scene.package_preferences import preferences
 from ...operators.session import press_session
 from . import cost, finger, loop, recording, shape, softness, state
 from .base import PalpatePanel, named_properties, while_idle
@@ -134,7 +135,7 @@ class PALPATE_PT_press(PalpatePanel, bpy.types.Panel):
                 say(layout, context, text, "INFO")
         layout.prop(chosen, "device_frame")
         layout.prop(chosen, "device_scale")
-        layout.prop(chosen, "stable_contact")
+        layout.prop(preferences(), "stable_contact")
         layout.prop(chosen, "show_workspace")
         loop.draw_adapter_warning(layout, context)
 

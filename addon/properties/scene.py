@@ -58,34 +58,6 @@ class PalpateScene(FingerProperties, bpy.types.PropertyGroup):
         span(0.01, 100.0),
     )
     show_workspace: switch("Show Workspace", "Draw in the view where the device reaches", on=True)
-    stable_contact: switch(
-        "Stable Contact",
-        "Let the motors feel no contact that is too stiff for them and your hand to "
-        "hold without shaking. The shape stays as it is",
-        on=True,
-    )
-    own_coupling: switch(
-        "Own Values",
-        "Choose yourself what keeps the contact stable, for a device that you know",
-    )
-    coupling_stiffness: number(
-        "Largest Stiffness",
-        "The stiffest contact that the motors feel, in newtons per metre",
-        800.0,
-        span(1.0, 100_000.0, soft_max=5_000.0, precision=0, step=10000),
-    )
-    coupling_damping: number(
-        "Damping",
-        "What brakes the device in a contact of that stiffness, in newton seconds per "
-        "metre; softer contacts get their share",
-        3.2,
-        span(0.0, 100.0, soft_max=20.0, precision=1, step=10),
-    )
-    passivity_control: switch(
-        "Passivity Control",
-        "Watch the energy that the motors give, and brake away what no soft body could have stored",
-        on=True,
-    )
     record_from_start: switch(
         "Record from Start", "Record every tick from the beginning of a press"
     )

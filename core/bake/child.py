@@ -82,6 +82,9 @@ def main() -> int:
     # fTetWild writes files into the working directory.
     os.chdir(folder)
     sys.path[:] = context["path"]
+    from ..files.scratch_folder import held
+
+    held(folder)
     try:
         outcome = run(folder)
     except MemoryError:

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import json
-import shutil
 import subprocess
 import sys
-import tempfile
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -18,7 +16,9 @@ from ..body import body_file
 from ..body.soft_body import SoftBody
 from ..compliance.mapped import MappedCompliance
 from ..errors import PalpateError
+from ..files import scratch_folder
 from ..files.atomic_file import refuse_unwritable
+from ..files.scratch_folder import ScratchFolder
 from ..machine import run_module
 from ..machine.remaining_time import RemainingTime
 from ..mesh.fit import THICKNESS_DOUBTFUL, Fit, refuse_thin
@@ -34,6 +34,8 @@ from .steps import BakeReport, BakeSettings
 # More than the longest line of progress.
 LINE_BYTES = 200
 LOG_FILE = "log.txt"
+# Of folders that killed processes may have left.
+SCRATCH_WORDS = ("bake", "worker", "device")
 STEP_TEXTS = {
     "start": "Starting",
     "tetrahedralize": "Filling with tetrahedra",
@@ -91,12 +93,14 @@ class BakeJob:
         self._time_limit = settings.time_limit
         self._started = time.monotonic()
         self._remaining = RemainingTime()
-        self._folder = Path(tempfile.mkdtemp(prefix="palpate-bake-"))
+        scratch_folder.sweep(SCRATCH_WORDS)
+        self._scratch = ScratchFolder("bake")
+        self._folder = self._scratch.path
         try:
             BakeRequest(source, settings, surface).write(self._folder)
             self._child = self._start(python)
         except BaseException:
-            shutil.rmtree(self._folder)
+            self._scratch.remove()
             raise
 
     def poll(self) -> JobProgress:
@@ -157,8 +161,7 @@ class BakeJob:
         if self._child.poll() is None:
             self._child.kill()
         self._child.wait()
-        if self._folder.exists():
-            shutil.rmtree(self._folder)
+        self._scratch.remove()
 
     def __enter__(self) -> Self:
         return self

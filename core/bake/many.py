@@ -10,7 +10,6 @@ common file system) it returns the file, and this process writes it.
 from __future__ import annotations
 
 import sys
-import tempfile
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
@@ -20,6 +19,7 @@ from pathlib import Path
 
 from ..errors import CancelledError, PalpateError
 from ..files.atomic_file import UnwritableError, atomic_file
+from ..files.scratch_folder import ScratchFolder
 from ..mesh.surface import Surface
 from ..mesh.tet_mesh import TetMesh
 from ..progress import unwatched
@@ -201,8 +201,8 @@ def _bake(
     """Run a bake in the worker."""
     reaches_folder = sign.is_seen()
     stop = _stopping(sign.is_seen if reaches_folder else wanted)
-    with tempfile.TemporaryDirectory(prefix="palpate-worker-") as scratch:
-        target = (folder if reaches_folder else Path(scratch)) / task.file_name
+    with ScratchFolder("worker") as scratch:
+        target = (folder if reaches_folder else scratch.path) / task.file_name
         try:
             body, report = run_bake(
                 task.source,

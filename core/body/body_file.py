@@ -30,8 +30,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compliance.compression.compressed_compliance import CompressedCompliance
+from ..compliance.definite import refuse_indefinite
 from ..compliance.dense import DenseCompliance
-from ..compliance.mapped import CHECKSUM_BYTES, MappedCompliance, node_checksums
+from ..compliance.mapped import MappedCompliance, node_checksums
 from ..compliance.protocol import Compliance
 from ..errors import BodyFileError, PalpateError
 from ..files.atomic_file import atomic_file
@@ -40,7 +41,9 @@ from ..mesh.fit import Fit
 from ..mesh.tet_mesh import TetMesh, young_scale_checked
 from ..stiffness.assembly import lame_parameters
 from ..stiffness.formulation import formulation_checked
+from ..stiffness.held_pins import pins_checked
 from .body_key import body_key, is_key_of
+from .body_layout import HEAD, NEEDED_BY_FORM, TABLE, refuse_no_text, refuse_wrong_layout
 from .soft_body import SoftBody
 
 __all__ = ["BodyFileError", "adopt", "body_key", "load", "save"]
@@ -49,24 +52,7 @@ Arrays = dict[str, NDArray[Any]]
 
 FORMAT = "palpate-body"
 VERSION = 2
-HEAD = ("format", "version", "checksum")
-TABLE = "compliance"
-NEEDED = (
-    "key",
-    "nodes",
-    "tets",
-    "surface_triangles",
-    "fixed",
-    "poisson_ratio",
-    "formulation",
-    "young_modulus",
-    "form",
-    "free_surface",
-)
-NEEDED_BY_FORM = {
-    "dense": (TABLE, "compliance_diagonal", "compliance_checksums"),
-    "compressed": ("tolerance",),
-}
+FORMS = tuple(NEEDED_BY_FORM)
 
 # Bytes from which tables are memory-mapped. Not on Windows, where a mapped file can be neither
 # replaced nor deleted: a new bake would fail while the old body is in use.
@@ -175,6 +161,24 @@ def _compliance_arrays(compliance: Compliance) -> Arrays:
 
 
 def _read(archive: Archive, source: Path, mapped_from_bytes: int | None) -> SoftBody:
+    try:
+        refuse_no_text(archive.heads)
+        form = _form(archive, source)
+        refuse_wrong_layout(archive.heads, form)
+        stored = {name: archive.read(name) for name in archive.names if name != TABLE}
+        if str(stored["checksum"]) != _checksum(stored):
+            raise _damaged()
+        return _body(stored, _compliance(stored, archive, source, mapped_from_bytes))
+    except PalpateError as problem:
+        if isinstance(problem, (ArchiveError, BodyFileError)):
+            raise
+        raise BodyFileError(
+            "{source}: {problem}; bake again", source=source, problem=problem
+        ) from problem
+
+
+def _form(archive: Archive, source: Path) -> str:
+    """Form of the compliance of a body file in this version of the format."""
     names = archive.names
     if "format" not in names or str(archive.read("format")) != FORMAT:
         raise BodyFileError(
@@ -189,57 +193,32 @@ def _read(archive: Archive, source: Path, mapped_from_bytes: int | None) -> Soft
             held=version,
             own=VERSION,
         )
-    stored = {name: archive.read(name) for name in names if name != TABLE}
-    needed = (*NEEDED, "checksum", *NEEDED_BY_FORM.get(str(stored.get("form")), ()))
-    missing = [name for name in needed if name not in names]
-    if missing:
-        raise BodyFileError(
-            "{source}: damaged ({missing} missing); bake again",
-            source=source,
-            missing=", ".join(missing),
-        )
-    if str(stored["checksum"]) != _checksum(stored):
-        raise BodyFileError(
-            "{source}: damaged (its checksum does not match); bake again", source=source
-        )
-    try:
-        return _body(stored, _compliance(stored, archive, source, mapped_from_bytes))
-    except PalpateError as problem:
-        if isinstance(problem, (ArchiveError, BodyFileError)):
-            raise
-        raise BodyFileError(
-            "{source}: {problem}; bake again", source=source, problem=problem
-        ) from problem
+    form = str(archive.read("form")) if "form" in names else "dense"
+    if form not in FORMS:
+        raise PalpateError("its compliance has the unknown form '{form}'", form=form)
+    return form
 
 
 def _compliance(
     stored: Arrays, archive: Archive, source: Path, mapped_from_bytes: int | None
 ) -> Compliance:
-    """Compliance in the stored form; a dense table that is read is checked completely."""
+    """Compliance in the stored form, checked; a mapped table where it is used."""
     free_surface = stored["free_surface"].astype(np.int64)
-    count = len(free_surface)
     if str(stored["form"]) == "compressed":
         return CompressedCompliance.from_arrays(free_surface, stored, float(stored["tolerance"]))
-    if str(stored["form"]) != "dense":
-        raise PalpateError("its compliance has the unknown form '{form}'", form=stored["form"])
     checksums, diagonal = stored["compliance_checksums"], stored["compliance_diagonal"]
-    is_mapped = mapped_from_bytes is not None and archive.bytes_of(TABLE) >= mapped_from_bytes
-    mapped = archive.map(TABLE) if is_mapped else None
-    table = archive.read(TABLE) if mapped is None else mapped.array
-    if not (
-        table.shape == (count, 3, 3 * count)
-        and table.dtype == np.float32
-        and diagonal.shape == (count, 3, 3)
-        and checksums.shape == (count, CHECKSUM_BYTES)
-    ):
-        raise PalpateError("its compliance does not belong to its mesh, pins or material")
-    if mapped is not None:
+    is_mapped = mapped_from_bytes is not None and archive.heads[TABLE].nbytes >= mapped_from_bytes
+    if is_mapped:
+        mapped = archive.map(TABLE)
         return MappedCompliance(free_surface, mapped, diagonal, checksums, str(source))
+    table = archive.read(TABLE)
     if not np.array_equal(node_checksums(table), checksums):
-        raise BodyFileError(
-            "{source}: damaged (its checksum does not match); bake again", source=source
-        )
+        raise _damaged()
     return DenseCompliance(free_surface, table)
+
+
+def _damaged() -> PalpateError:
+    return PalpateError("damaged (its checksum does not match)")
 
 
 def _body(stored: Arrays, compliance: Compliance) -> SoftBody:
@@ -249,7 +228,7 @@ def _body(stored: Arrays, compliance: Compliance) -> SoftBody:
     lame_parameters(young_modulus, poisson_ratio)
     body = SoftBody(
         mesh,
-        stored["fixed"].astype(np.int64),
+        pins_checked(mesh, stored["fixed"]),
         poisson_ratio,
         compliance,
         young_modulus,
@@ -267,6 +246,7 @@ def _body(stored: Arrays, compliance: Compliance) -> SoftBody:
     free_surface = np.setdiff1d(mesh.surface_nodes, body.fixed)
     if key != body.key or not np.array_equal(compliance.free_surface, free_surface):
         raise PalpateError("its compliance does not belong to its mesh, pins or material")
+    refuse_indefinite(compliance)
     return body
 
 

@@ -123,12 +123,27 @@ class MappedCompliance:
         if self._is_checked[nodes].all():
             return
         for node in np.unique(nodes[~self._is_checked[nodes]]):
-            found = hashlib.sha256(self.mapped_table.array[node].data).digest()
-            if found != self.checksums[node].tobytes():
+            if not self._is_as_stored(node):
                 raise BodyFileError(
                     "{file}: damaged (the compliance of node {node} does not match its checksum); "
                     "bake again",
                     file=self.file,
                     node=self.free_surface[node],
                 )
+            if not np.isfinite(self.mapped_table.array[node]).all():
+                raise BodyFileError(
+                    "{file}: the compliance of node {node} has numbers that are not finite; bake "
+                    "again",
+                    file=self.file,
+                    node=self.free_surface[node],
+                )
             self._is_checked[node] = True
+
+    def undamaged(self, nodes: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Those of ``nodes`` whose columns are what was stored; others are refused when used."""
+        self.check_length()
+        return nodes[[self._is_as_stored(node) for node in nodes.tolist()]]
+
+    def _is_as_stored(self, node: int) -> bool:
+        found = hashlib.sha256(self.mapped_table.array[node].data).digest()
+        return bool(found == self.checksums[node].tobytes())

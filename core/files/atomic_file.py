@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import glob
 import os
+import re
 import secrets
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -11,6 +13,10 @@ from typing import IO
 
 from ..errors import PalpateError
 from ..sentence import Sentence
+from .held_lock import abandoned, hold, is_same_file
+
+UNFINISHED = ".tmp"
+UNFINISHED_WORD = re.compile(r"\.[0-9a-f]{8}\.tmp")
 
 
 class UnwritableError(PalpateError):
@@ -60,10 +66,13 @@ def refuse_missing_folder(target: Path) -> None:
 
 
 @contextmanager
-def atomic_file(target: Path, *, make_folders: bool = False) -> Iterator[IO[bytes]]:
+def atomic_file(
+    target: Path, *, make_folders: bool = False, follows_links: bool = True
+) -> Iterator[IO[bytes]]:
     """New file that replaces ``target`` when the block succeeds, and is deleted otherwise.
 
-    A symbolic link is followed.
+    A symbolic link is followed, unless told otherwise: then the file takes the link's place.
+    Unfinished files that killed processes left of the same target are removed.
 
     Raises
     ------
@@ -71,12 +80,14 @@ def atomic_file(target: Path, *, make_folders: bool = False) -> Iterator[IO[byte
         As for :func:`refuse_unwritable`, and when writing fails; an older file stays as it was.
     """
     refuse_unwritable(target)
-    target = _followed(target)
-    unfinished = target.with_name(f".{target.name}.{secrets.token_hex(4)}.tmp")
+    target = _followed(target) if follows_links else target
+    unfinished = None
     try:
         if make_folders:
             target.parent.mkdir(parents=True, exist_ok=True)
-        with unfinished.open("xb") as file:
+        _sweep(target)
+        unfinished, begun = _begun(target)
+        with begun as file:
             yield file
             file.flush()
             os.fsync(file.fileno())
@@ -89,7 +100,28 @@ def atomic_file(target: Path, *, make_folders: bool = False) -> Iterator[IO[byte
             reason=problem.strerror or problem,
         ) from problem
     finally:
-        unfinished.unlink(missing_ok=True)
+        if unfinished is not None:
+            unfinished.unlink(missing_ok=True)
+
+
+def _begun(target: Path) -> tuple[Path, IO[bytes]]:
+    """A new file beside the target, held against :func:`_sweep`."""
+    while True:
+        path = target.with_name(f".{target.name}.{secrets.token_hex(4)}{UNFINISHED}")
+        file = path.open("xb")
+        hold(file.fileno())
+        if is_same_file(file.fileno(), path):
+            return path, file
+        file.close()
+
+
+def _sweep(target: Path) -> None:
+    """Remove what killed processes left unfinished of the target; a living one holds its file."""
+    for unfinished in target.parent.glob(f".{glob.escape(target.name)}.*{UNFINISHED}"):
+        if UNFINISHED_WORD.fullmatch(unfinished.name.removeprefix(f".{target.name}")):
+            with abandoned(unfinished) as nobody:
+                if nobody:
+                    unfinished.unlink(missing_ok=True)
 
 
 def _followed(target: Path) -> Path:

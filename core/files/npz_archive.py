@@ -20,6 +20,7 @@ from numpy.lib import format as npy
 from numpy.typing import NDArray
 
 from ..errors import PalpateError
+from .npz_members import MembersError, array_head, listed
 
 # Alignment to which numpy pads the header of an array.
 ALIGNMENT = 64
@@ -59,21 +60,24 @@ class MappedArray:
 
 
 class Archive:
-    """Open archive; made by :func:`opened`."""
+    """Open archive, its list and the heads of its arrays checked; made by :func:`opened`.
+
+    Attributes
+    ----------
+    heads : shape and type of each array, by name; nothing of the arrays has been read.
+    """
 
     def __init__(self, stream: IO[bytes], path: Path) -> None:
         self._stream = stream
         self._path = path
-        self._zip = zipfile.ZipFile(stream)
+        self._zip = listed(stream)
+        names = [name[:-4] for name in self._zip.namelist() if name.endswith(".npy")]
+        self.heads = {name: array_head(self._zip, f"{name}.npy") for name in names}
 
     @property
     def names(self) -> list[str]:
         """Names of the arrays."""
-        return [name[:-4] for name in self._zip.namelist() if name.endswith(".npy")]
-
-    def bytes_of(self, name: str) -> int:
-        """Size of an array in the file."""
-        return self._zip.getinfo(f"{name}.npy").file_size
+        return list(self.heads)
 
     def read(self, name: str) -> NDArray[Any]:
         """The array, copied into memory; pickled objects are refused."""
@@ -137,6 +141,10 @@ def opened(path: Path) -> Iterator[Archive]:
             yield Archive(stream, path)
         except PalpateError:
             raise
+        except MembersError as problem:
+            raise ArchiveError(
+                "{path}: refused before it was read ({reason})", path=path, reason=str(problem)
+            ) from problem
         except Exception as problem:  # zip, its packers and numpy's headers: each fails its own way
             raise ArchiveError(
                 "{path}: damaged, cut short or not an npz archive ({problem})",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 import time
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import bpy
 
@@ -16,6 +17,7 @@ from ...core.mesh.surface import Surface
 from ...core.sentence import Sentence
 from ...core.stiffness.pins import PinNodes
 from ..object import baked_record, body_store, soft_object
+from ..object.embedded_body import embedded
 from ..pins import pin_group, stiff_region
 from ..reporting.acting import Acting
 from ..scene import drawn_surface
@@ -76,11 +78,14 @@ class BakeSession:
         """
         try:
             thing = self._unchanged_object(scene)
-            folder = body_store.folder_for_new_files()
-            body, report = self.job.result(
-                lambda found: folder / body_store.file_name(thing, found.key)
-            )
-            name = body_store.file_name(thing, body.key)
+            places: list[Path] = []
+
+            def place_for(found: SoftBody) -> Path:
+                places.append(body_store.place_for(thing, found.key))
+                return places[0]
+
+            body, report = self.job.result(place_for)
+            name = places[0].name
             baked_record.record(thing, body, name, self.surface, self.fingerprint)
             if not self.rebuild:
                 thing.palpate.baked_edge_length = self.settings.edge_length
@@ -186,7 +191,7 @@ def _rebuild_job(
     python: tuple[str, ...],
 ) -> BakeJob:
     """Job with the same tetrahedra; with unchanged rules also the same nodes, for an equal key."""
-    within = body_store.embedded(thing)
+    within = embedded(thing)
     old = Fingerprint.from_text(thing.palpate.fingerprint)
     change = changed_body(old, now)
     if change:

@@ -9,7 +9,7 @@ from ...core.compliance.compression.compressed_compliance import CompressedCompl
 from ..pins import pin_group
 from ..scene.drawn_surface import DrawnSurface
 from ..scene.fingerprint import Fingerprint
-from . import body_store
+from . import embedded_body
 
 
 def record(
@@ -21,7 +21,7 @@ def record(
 ) -> None:
     """Make ``body``, stored under ``file_name``, the object's: tetrahedra, key and figures."""
     baked, compliance = thing.palpate, body.compliance
-    body_store.embed(thing, body)
+    embedded_body.embed(thing, body)
     baked.body_key = body.key
     baked.body_file = file_name
     baked.fingerprint = fingerprint.to_text()

@@ -1,72 +1,71 @@
-"""Storage of an object's body: a file next to the .blend, and its tetrahedra inside the .blend.
+"""Files of objects' bodies: next to the .blend, or in the user's folder before there is one.
 
-The file holds the compliance and may be large. If it is missing or damaged, the tetrahedra stored
+A file holds the compliance and may be large. If it is missing or damaged, the tetrahedra stored
 with the object give the same body in seconds, without a new tetrahedralization.
+
+The .blend may be a stranger's, and so is the name that it gives its body. It is looked up by
+:func:`locate` only, if it is a name that Palpate gives (:mod:`...core.body.body_name`), and only in
+these folders. What is no body file of Palpate's is never copied, replaced or deleted.
 """
 
 from __future__ import annotations
 
+import itertools
+import os
 import sys
-from dataclasses import dataclass
 from pathlib import Path
 
 import bpy
-import numpy as np
-from numpy.typing import NDArray
 
 from ...core.bake.job import run_bake
-from ...core.bake.steps import BakeSettings
 from ...core.body import body_file
 from ...core.body.body_file import BodyFileError
-from ...core.body.body_key import is_key_of
+from ...core.body.body_name import KEY_LETTERS, body_name, is_body_name
 from ...core.body.soft_body import SoftBody
 from ...core.errors import PalpateError
-from ...core.mesh.tet_mesh import TetMesh
-from ...core.stiffness.pins import PinNodes
-from ...core.stiffness.regions import TetScale
+from ...core.files.own_file import is_free, is_ordinary, is_own, stays_within
 from ..scene.package_preferences import PACKAGE, preferences
+from . import baked_settings, embedded_body
 
 FOLDER = "palpate"
-KEY_LETTERS = 12
-EMBEDDED = ("nodes", "tets", "fixed")
-# Only where the stiffness varies.
-EMBEDDED_SCALE = "young_scale"
-
-
-@dataclass(frozen=True, eq=False)
-class EmbeddedBody:
-    """Body inside the .blend: the tetrahedra, the pinned nodes (p,), and the factor on Young's
-    modulus of each tetrahedron (M,), None where all are 1.
-    """
-
-    mesh: TetMesh
-    fixed: NDArray[np.int64]
-    young_scale: NDArray[np.float64] | None
-
-    @property
-    def stiffness(self) -> TetScale | None:
-        """Factors for a bake."""
-        return None if self.young_scale is None else TetScale(self.young_scale)
-
-    def has_key(self, key: str, poisson_ratio: float, formulation: str) -> bool:
-        """Whether ``key`` is that of the body with a material, also an older one."""
-        return is_key_of(key, self.mesh, self.fixed, poisson_ratio, formulation, self.young_scale)
-
 
 # Damaged files and their modification times: the panel offers to rebuild them.
 _damaged: dict[Path, int] = {}
 
 
-def file_name(thing: bpy.types.Object, key: str) -> str:
-    """``<object>-<start of the key>.npz``."""
-    return f"{bpy.path.clean_name(thing.name)}-{key[:KEY_LETTERS]}.npz"
+def place_for(thing: bpy.types.Object, key: str) -> Path:
+    """Where the object's body of this ``key`` is written: ``<object>-<start of the key>.npz``.
+
+    Nothing is there, or a body file of Palpate's; if something else is, the next name is taken.
+
+    Raises
+    ------
+    PalpateError
+        The folder beside the .blend leads elsewhere.
+    """
+    folder, word = folder_for_new_files(), bpy.path.clean_name(thing.name)
+    places = (folder / body_name(word, key, number) for number in itertools.count(1))
+    return next(place for place in places if is_free(place, body_file.FORMAT))
 
 
 def folder_for_new_files() -> Path:
-    """Folder next to the saved .blend; before saving that of the preferences, or the user's."""
-    if bpy.data.filepath:
-        return Path(bpy.data.filepath).parent / FOLDER
-    return _unsaved_folder()
+    """Folder next to the saved .blend; before saving that of the preferences, or the user's.
+
+    Raises
+    ------
+    PalpateError
+        The folder next to the .blend is a link to somewhere else.
+    """
+    return _folder_beside(Path(bpy.data.filepath)) if bpy.data.filepath else _unsaved_folder()
+
+
+def _folder_beside(blend: Path) -> Path:
+    folder = blend.parent / FOLDER
+    if not stays_within(folder, blend.parent):
+        raise PalpateError(
+            "{folder}: is a link to another place; put a folder there instead", folder=folder
+        )
+    return folder
 
 
 def _unsaved_folder() -> Path:
@@ -79,22 +78,29 @@ def _unsaved_folder() -> Path:
 
 
 def locate(thing: bpy.types.Object) -> Path | None:
-    """Body file of the object, searched in all known folders."""
-    name = thing.palpate.body_file
-    if not name:
+    """Body file of the object, searched in all known folders.
+
+    None also where the .blend gives a name that Palpate does not give.
+    """
+    baked = thing.palpate
+    if not is_body_name(baked.body_file, baked.body_key):
         return None
-    return next((place / name for place in _places() if (place / name).is_file()), None)
+    found = (place / baked.body_file for place in _places())
+    return next(filter(is_ordinary, found), None)
 
 
 def locate_key(key: str) -> Path | None:
     """Body file with this key, of any object."""
     found = (path for place in _places() for path in place.glob(f"*-{key[:KEY_LETTERS]}.npz"))
-    return next((path for path in found if not is_known_damaged(path)), None)
+    bodies = (path for path in found if is_own(path, body_file.FORMAT))
+    return next((path for path in bodies if not is_known_damaged(path)), None)
 
 
 def _places() -> list[Path]:
-    beside = [Path(bpy.data.filepath).parent / FOLDER] if bpy.data.filepath else []
-    return [*beside, _unsaved_folder()]
+    """Folders in which bodies are looked up."""
+    blend = Path(bpy.data.filepath)
+    is_beside = bpy.data.filepath and stays_within(blend.parent / FOLDER, blend.parent)
+    return [*([blend.parent / FOLDER] if is_beside else []), _unsaved_folder()]
 
 
 def load(thing: bpy.types.Object) -> SoftBody:
@@ -115,7 +121,7 @@ def load(thing: bpy.types.Object) -> SoftBody:
         raise BodyFileError(
             "{name}: its body file '{file}' is missing; press Rebuild Body",
             name=thing.name,
-            file=baked.body_file,
+            file=baked.body_file if is_body_name(baked.body_file, baked.body_key) else "?",
         )
     return load_file(path, baked.body_key)
 
@@ -159,65 +165,17 @@ def restore(thing: bpy.types.Object) -> SoftBody:
     PalpateError
         There are no tetrahedra, or they are not those of the body that was baked.
     """
-    baked = thing.palpate
-    within = embedded(thing)
-    ratio = round(baked.baked_poisson_ratio, 6)
-    if not within.has_key(baked.body_key, ratio, baked.baked_formulation):
+    within, settings = embedded_body.embedded(thing), baked_settings.settings_of(thing)
+    if not within.has_key(thing.palpate.body_key, settings):
         raise PalpateError(
             "{name}: the tetrahedra in this file are not those of its body; press Make Soft",
             name=thing.name,
         )
-    settings = BakeSettings(
-        ratio,
-        baked.young_modulus,
-        PinNodes(within.fixed),
-        formulation=baked.baked_formulation,
-        form=baked.baked_form,
-        tolerance=baked.baked_tolerance / 100,
-        stiffness=within.stiffness,
-    )
-    target = folder_for_new_files() / baked.body_file
+    target = place_for(thing, within.key(settings))
     python = (sys.executable, *bpy.app.python_args)
-    body, _ = run_bake(within.mesh, settings, target, python=python)
-    baked.body_key = body.key
+    body, _ = run_bake(within.mesh, within.baked_with(settings), target, python=python)
+    thing.palpate.body_key, thing.palpate.body_file = body.key, target.name
     return body
-
-
-def embed(thing: bpy.types.Object, body: SoftBody) -> None:
-    """Store the tetrahedra on the object, in the .blend."""
-    _remove_embedded(thing)
-    thing.palpate["nodes"] = body.mesh.nodes.ravel()
-    thing.palpate["tets"] = body.mesh.tets.astype(np.int32).ravel()
-    thing.palpate["fixed"] = body.fixed.astype(np.int32)
-    if body.young_scale is not None:
-        thing.palpate[EMBEDDED_SCALE] = body.young_scale.astype(np.float64)
-
-
-def _remove_embedded(thing: bpy.types.Object) -> None:
-    # Also before writing: overwriting an array property corrupts memory (Blender 4.5 to 5.2).
-    for name in (*EMBEDDED, EMBEDDED_SCALE):
-        if name in thing.palpate:
-            del thing.palpate[name]
-
-
-def embedded(thing: bpy.types.Object) -> EmbeddedBody:
-    """Tetrahedra, pins and stiffness stored with the object.
-
-    Raises
-    ------
-    PalpateError
-        There are none.
-    """
-    baked = thing.palpate
-    if any(name not in baked for name in EMBEDDED):
-        raise PalpateError(
-            "{name}: there are no tetrahedra in this file to rebuild from; press Make Soft",
-            name=thing.name,
-        )
-    nodes, tets, fixed = (np.array(baked[name]) for name in EMBEDDED)
-    scale = np.array(baked[EMBEDDED_SCALE]) if EMBEDDED_SCALE in baked else None
-    mesh = TetMesh.checked(nodes.reshape(-1, 3), tets.reshape(-1, 4))
-    return EmbeddedBody(mesh, fixed.astype(np.int64), scale)
 
 
 def forget(thing: bpy.types.Object) -> None:
@@ -225,25 +183,35 @@ def forget(thing: bpy.types.Object) -> None:
     name, path = thing.palpate.body_file, locate(thing)
     shared = any(o != thing and o.palpate.body_file == name for o in bpy.data.objects)
     if path is not None and not shared:
-        path.unlink()
-    _remove_embedded(thing)
+        _delete(path)
+    embedded_body.remove(thing)
     for setting in ("body_key", "body_file", "fingerprint", "baked_formulation", "baked_form"):
         thing.palpate.property_unset(setting)
 
 
-def new_files() -> set[Path]:
+def _delete(path: Path) -> None:
+    """Delete a body file of Palpate's; leave anything else."""
+    if is_own(path, body_file.FORMAT):
+        path.unlink()
+
+
+def present() -> set[Path]:
     """Folder for new body files, and its contents."""
     folder = folder_for_new_files()
     return {folder, *folder.iterdir()} if folder.is_dir() else set()
 
 
-def take_back(before: set[Path]) -> None:
-    """Remove files that are new in the folder since :func:`new_files`."""
-    for path in sorted(new_files() - before, reverse=True):
-        if path.is_dir():
-            path.rmdir()
-        else:
-            path.unlink()
+def take_back(thing: bpy.types.Object, before: set[Path]) -> None:
+    """Remove the object's body file, and the folder, if they are new since :func:`present`.
+
+    Files that others put there meanwhile stay, and the folder with them.
+    """
+    path = locate(thing)
+    if path is None or path in before:
+        return
+    _delete(path)
+    if path.parent not in before and not any(path.parent.iterdir()):
+        path.parent.rmdir()
 
 
 def gather_beside(blend: Path, found: dict[str, Path], *, is_open_file: bool) -> None:
@@ -253,14 +221,13 @@ def gather_beside(blend: Path, found: dict[str, Path], *, is_open_file: bool) ->
 
     Raises
     ------
-    BodyFileError
-        The folder cannot be written.
+    PalpateError
+        The folder cannot be written, or leads elsewhere.
     """
-    folder = blend.parent / FOLDER
     for name, source in found.items():
-        target = folder / name
-        if target == source or target.is_file():
+        target = _folder_beside(blend) / name
+        if os.path.lexists(target) or not is_own(source, body_file.FORMAT):
             continue
         body_file.adopt(source, target)
         if is_open_file and source.parent == _unsaved_folder():
-            source.unlink()
+            _delete(source)

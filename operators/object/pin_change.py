@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from ...core.bake.cost.size import MeshSize
 from ...core.bake.repin import pin_more, pin_more_seconds, pins_change
-from ...core.bake.settings import BakeSettings
 from ...core.body import body_file
 from ...core.body.body_key import body_key
 from ...core.body.soft_body import SoftBody
@@ -25,8 +24,8 @@ from ..pins import pin_group
 from ..scene.drawn_surface import DrawnSurface
 from ..scene.fingerprint import Fingerprint
 from ..scene.object_handle import ObjectHandle
-from . import baked_record, body_store
-from .body_store import EmbeddedBody
+from . import baked_record, baked_settings, body_store
+from .embedded_body import EmbeddedBody, embedded
 
 # Seconds; longer downdates are left to Rebuild Body, which has progress and Escape.
 LONGEST_SECONDS = 5.0
@@ -115,7 +114,7 @@ def take_over(thing: bpy.types.Object, drawn: DrawnSurface) -> SoftBody:
         body = body_store.load_file(path, _key(thing, within.body, new))
     else:
         body = pin_more(body_store.load(thing), np.setdiff1d(new, within.body.fixed))
-        path = body_store.folder_for_new_files() / body_store.file_name(thing, body.key)
+        path = body_store.place_for(thing, body.key)
         body_file.save(body, path)
     # Stiff regions are not applied here, so their record stays.
     old = Fingerprint.from_text(thing.palpate.fingerprint)
@@ -137,7 +136,7 @@ class _PlacedBody:
 @lru_cache(maxsize=1)
 def _placed(drawn: DrawnSurface, handle: ObjectHandle, key: str) -> _PlacedBody:
     thing = handle.find()
-    body, surface = body_store.embedded(thing), drawn.surface()
+    body, surface = embedded(thing), drawn.surface()
     return _PlacedBody(body, surface, places_on(surface, body.mesh))
 
 
@@ -148,19 +147,12 @@ def _nodes(thing: bpy.types.Object, drawn: DrawnSurface, within: _PlacedBody) ->
 
 
 def _key(thing: bpy.types.Object, body: EmbeddedBody, fixed: NDArray[np.int64]) -> str:
-    baked = thing.palpate
-    ratio = round(baked.baked_poisson_ratio, 6)
-    return body_key(body.mesh, fixed, ratio, baked.baked_formulation, body.young_scale)
+    baked = baked_settings.settings_of(thing)
+    return body_key(body.mesh, fixed, baked.poisson_ratio, baked.formulation, body.young_scale)
 
 
 def _seconds(thing: bpy.types.Object, mesh: TetMesh, added: int) -> float:
     """Estimated seconds of :func:`take_over`."""
-    baked = thing.palpate
-    settings = BakeSettings(
-        poisson_ratio=round(baked.baked_poisson_ratio, 6),
-        formulation=baked.baked_formulation,
-        form=baked.baked_form,
-        tolerance=baked.baked_tolerance / 100,
-    )
+    baked, settings = thing.palpate, baked_settings.settings_of(thing)
     computing = pin_more_seconds(MeshSize.of(mesh), settings, baked.free_surface_count, added)
     return computing + 1e6 * baked.compliance_megabytes / BYTES_PER_SECOND

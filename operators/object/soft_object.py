@@ -15,7 +15,7 @@ from ..pins import pin_group, stiff_region
 from ..scene import drawn_surface, fingerprint
 from ..scene.drawn_surface import DrawnSurface
 from ..scene.fingerprint import Fingerprint
-from . import body_store, pin_change
+from . import baked_settings, body_store, pin_change
 from .pin_change import PinChange
 
 
@@ -101,7 +101,11 @@ def mesh_status(thing: bpy.types.Object, drawn: DrawnSurface) -> BodyStatus:
     baked = thing.palpate
     if not baked.body_key:
         return BodyStatus(Fit.NEVER_BAKED)
-    old = Fingerprint.from_text(baked.fingerprint)
+    try:
+        old = Fingerprint.from_text(baked.fingerprint)
+        baked_settings.settings_of(thing)
+    except PalpateError:
+        return BodyStatus(Fit.CHANGED, Sentence("what this file says of its body cannot be true"))
     new = drawn.fingerprint(pin_group.pin_rule(thing), stiff_region.stiff_rule(thing))
     change = fingerprint.changed_body(old, new)
     if change:

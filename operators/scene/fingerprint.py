@@ -14,12 +14,15 @@ from dataclasses import asdict, dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.errors import PalpateError
 from ...core.sentence import Sentence
 
 PROJECTIONS = 8
 # Between the rounding of a float32 matrix, about 1e-7 of the size, and real edits.
 TOLERANCE = 2e-6
 SEED = 19980331
+# Bounds of a text from a file: longer ones, and more or farther vertices than a mesh has, are none.
+LONGEST_TEXT, MOST_VERTICES, FARTHEST = 10_000, 2**31, 1e100
 
 
 @dataclass(frozen=True)
@@ -45,10 +48,39 @@ class Fingerprint:
 
     @classmethod
     def from_text(cls, text: str) -> Fingerprint:
-        """Read what :meth:`to_text` wrote."""
-        fields = json.loads(text)
-        fields["local"], fields["body"] = tuple(fields["local"]), tuple(fields["body"])
-        return cls(**fields)
+        """Read what :meth:`to_text` wrote.
+
+        Raises
+        ------
+        PalpateError
+            It is something else.
+        """
+        try:
+            fields = json.loads(text[:LONGEST_TEXT])
+            fields["local"], fields["body"] = tuple(fields["local"]), tuple(fields["body"])
+            read = cls(**fields)
+        except (ValueError, TypeError, LookupError, RecursionError) as problem:
+            raise _damaged() from problem
+        if not read._is_sound:
+            raise _damaged()
+        return read
+
+    @property
+    def _is_sound(self) -> bool:
+        """Whether every value is of its type, and finite."""
+        counts = (self.vertices, self.faces)
+        numbers = (*self.local, *self.body, self.size, self.local_size)
+        texts = (self.topology, self.pins, self.stiffness)
+        return (
+            len(self.local) == len(self.body) == PROJECTIONS
+            and all(type(count) is int and 0 <= count < MOST_VERTICES for count in counts)
+            and all(type(number) in {int, float} and abs(number) <= FARTHEST for number in numbers)
+            and all(type(text) is str for text in texts)
+        )
+
+
+def _damaged() -> PalpateError:
+    return PalpateError("what this file says of its body cannot be true; press Make Soft")
 
 
 def take(

@@ -109,8 +109,13 @@ def _live(mesh: bpy.types.Mesh) -> bpy.types.ShapeKey | None:
 
 
 def _found(mesh: bpy.types.Mesh) -> FoundKeys:
-    had_basis, active_index, showed_only_one = mesh.shape_keys.get(FOUND_MARK, (1, 0, 0))
-    return FoundKeys(bool(had_basis), int(active_index), bool(showed_only_one))
+    mark = mesh.shape_keys.get(FOUND_MARK)
+    # A stranger's file may hold anything under this name.
+    if getattr(mark, "typecode", "") != "i" or len(mark) != 3:
+        return FoundKeys(had_basis=True, active_index=0, showed_only_one=False)
+    had_basis, active_index, showed_only_one = mark
+    within = min(max(active_index, 0), len(mesh.shape_keys.key_blocks) - 1)
+    return FoundKeys(bool(had_basis), within, bool(showed_only_one))
 
 
 def leave_edit_mode(thing: bpy.types.Object) -> None:

@@ -16,16 +16,16 @@ from ..shape.felt_table import chosen_felt
 
 
 def coupling_of(scene: bpy.types.Scene) -> Coupling:
-    """Virtual coupling, as chosen in the scene."""
-    chosen = scene.palpate
-    if not chosen.stable_contact:
+    """Virtual coupling, as chosen in the preferences, for the scene's devices and rate."""
+    kept, chosen = preferences(), scene.palpate
+    if not kept.stable_contact:
         return Coupling(math.inf, 0.0, passivity_control=False)
-    if not chosen.own_coupling:
+    if not kept.own_coupling:
         models = [chosen.haply_model] if is_planar(scene) else []
         models += [chosen.second_haply_model] if chosen.second == "HAPLY" else []
         step = max(map(haply_encoder_step, models), default=0.0)
         return Coupling(**device_coupling(chosen.rate, encoder_step=step))
-    return Coupling(chosen.coupling_stiffness, chosen.coupling_damping, chosen.passivity_control)
+    return Coupling(kept.coupling_stiffness, kept.coupling_damping, kept.passivity_control)
 
 
 def contact_mode(scene: bpy.types.Scene) -> ContactMode:

@@ -69,7 +69,7 @@ def _give_body(thing: bpy.types.Object, kept: Path) -> None:
     """What Make Soft leaves on an object and beside it, without its bake."""
     store, scene = part("operators.object.body_store"), bpy.context.scene
     body = part("core.body.body_file").load(kept)
-    file = store.folder_for_new_files() / store.file_name(thing, body.key)
+    file = store.place_for(thing, body.key)
     file.parent.mkdir(exist_ok=True)
     shutil.copyfile(kept, file)
     drawn = part("operators.scene.drawn_surface").read(thing, scene)

@@ -18,8 +18,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import PalpateError
-from ...files.atomic_file import atomic_file
+from ...files.atomic_file import UnwritableError, atomic_file
 from ...files.npz_archive import ArchiveError, read_arrays, write_arrays
+from ...files.own_file import is_free
+from ...sentence import Sentence
 
 FORMAT = "palpate-table"
 VERSION = 1
@@ -41,8 +43,14 @@ def write_table(path: Path, kind: str, key: str, arrays: Mapping[str, NDArray[An
     Raises
     ------
     UnwritableError
-        The place cannot be written; an older file stays as it was.
+        The place cannot be written, or holds something else than a table; that stays as it was.
     """
+    if not is_free(path, FORMAT):
+        raise UnwritableError(
+            "{target}: cannot be written ({reason}); choose a folder you may write to",
+            target=path,
+            reason=Sentence("it is no table of Palpate's"),
+        )
     head = {
         "format": np.array(FORMAT),
         "version": np.array(VERSION),
@@ -50,7 +58,7 @@ def write_table(path: Path, kind: str, key: str, arrays: Mapping[str, NDArray[An
         "key": np.array(key),
         "checksum": np.array(_checksum(kind, key, arrays)),
     }
-    with atomic_file(path, make_folders=True) as file:
+    with atomic_file(path, make_folders=True, follows_links=False) as file:
         write_arrays(file, head | dict(arrays))
 
 

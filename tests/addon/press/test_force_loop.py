@@ -72,7 +72,16 @@ def test_an_adapter_that_holds_bytes_back_is_explained_in_the_panel(sessions, st
     assert "62.5 Hz" in layout.written.text
 
 
-def test_the_coupling_is_the_default_of_the_rate_until_own_values_are_chosen(palpate):
+@pytest.fixture
+def kept(palpate):
+    """The preferences, put back afterwards."""
+    kept = part("operators.scene.package_preferences").preferences()
+    yield kept
+    for name in ("stable_contact", "own_coupling", "coupling_stiffness"):
+        kept.property_unset(name)
+
+
+def test_the_coupling_is_the_default_of_the_rate_until_own_values_are_chosen(kept):
     scene, of = bpy.context.scene, part("operators.session.live_settings").coupling_of
     scene.palpate.rate = 2000
     default = of(scene)
@@ -83,12 +92,30 @@ def test_the_coupling_is_the_default_of_the_rate_until_own_values_are_chosen(pal
     servo = part("core.servo.session")
     step = servo.haply_encoder_step(scene.palpate.haply_model)
     assert vars(of(scene)) == servo.device_coupling(2000, encoder_step=step) != vars(default)
-    scene.palpate.own_coupling = True
-    scene.palpate.coupling_stiffness = 300.0
+    kept.own_coupling = True
+    kept.coupling_stiffness = 300.0
     assert of(scene).stiffness == 300.0
-    scene.palpate.stable_contact = False
+    kept.stable_contact = False
     assert of(scene).stiffness == np.inf
     assert not of(scene).passivity_control
+
+
+GUARDS = ("stable_contact", "own_coupling", "coupling_stiffness", "passivity_control", "max_force")
+
+
+def test_no_file_switches_off_what_guards_the_hand(kept, tmp_path):
+    of, scene = part("operators.session.live_settings").coupling_of, bpy.context.scene
+    default = of(scene)
+    for name in GUARDS:
+        assert not hasattr(scene.palpate, name)
+        # As files of before have it, or strangers write it.
+        scene.palpate[name] = 0
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "stranger.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "stranger.blend"))
+    scene = bpy.context.scene
+    scene.palpate.rate = 1000
+    assert of(scene) == default
+    assert kept.max_force == 3.0
 
 
 def test_the_pointer_has_no_force_to_switch_off(sessions, states):

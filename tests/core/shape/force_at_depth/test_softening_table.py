@@ -141,8 +141,8 @@ def test_another_bodys_or_a_damaged_file_is_never_used(body, tmp_path):
     value = first.values[first.values != 0].flat[0].tobytes()
     for wrong, reason in (
         (whole[: len(whole) // 2], "cut short"),
-        (whole.replace(value, value[::-1], 1), "damaged"),
         (b"no archive", "not an npz"),
+        (whole.replace(value, value[::-1], 1), "damaged"),
     ):
         path.write_bytes(wrong)
         damaged = SofteningTable(body, file)
