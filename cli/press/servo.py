@@ -110,7 +110,7 @@ def run(arguments: argparse.Namespace) -> int:
     lame_parameters(young_modulus, body.poisson_ratio)
     with ExitStack() as stack:
         simulated = None
-        port = arguments.port or arguments.haply
+        port = arguments.haply if arguments.port is None else arguments.port
         if arguments.simulate:
             hand = press_from_above(body, young_modulus)
             simulated = stack.enter_context(SimulatedDevice(hand))
@@ -132,7 +132,7 @@ def run(arguments: argparse.Namespace) -> int:
         _add_fingers(servo, others, arguments.baud)
         if arguments.record is not None:
             _start_recording(servo, arguments.record, arguments.seconds)
-        if arguments.haply:
+        if arguments.haply is not None:
             _, at, _ = _highest_place(body)
             connect_haply(servo, arguments, _vector(at), stopped)
         else:
@@ -231,6 +231,10 @@ def _connect(servo: Servo, port: str, baud: int | None, stopped: Sequence[int]) 
 
 def _check_ports(ports: Sequence[str]) -> None:
     for port in ports:
+        if not port.strip():
+            raise PalpateError(
+                "--port: its name is empty; give a path, such as 'palpate devices' prints"
+            )
         check_port(port)
     if len(set(ports)) < len(ports):
         raise PalpateError("--second-port: a port is named twice; give each device its own")

@@ -214,17 +214,17 @@ def test_a_copied_object_brings_its_body(saved):
 
 def test_a_body_from_before_minus_zero_was_zero_is_restored(thing):
     store, keys = part("operators.object.body_store"), part("core.body.body_key")
-    within = store.embedded(thing)
+    within = part("operators.object.embedded_body").embedded(thing)
     nodes = within.mesh.nodes.copy()
     nodes.flat[np.abs(nodes).argmin()] = -0.0
     older = keys._digest(
         nodes, within.mesh.tets, within.fixed, 0.3, thing.palpate.baked_formulation, None
     )
+    store.locate(thing).unlink()
     del thing.palpate["nodes"]
     thing.palpate["nodes"] = nodes.ravel()
     thing.palpate.baked_poisson_ratio = 0.3
     thing.palpate.body_key = older
-    store.locate(thing).unlink()
     body = store.restore(thing)
     assert body.key == thing.palpate.body_key != older
     assert store.load(thing).key == body.key
