@@ -17,8 +17,11 @@ _HARNESS = "palpate_servo.harness"
 class SteppedServo(Protocol):
     """A servo whose ticks are made by hand, its line in memory; else as ``palpate_servo.Servo``."""
 
-    def tick(self, received: bytes, seconds: float) -> bytes:
-        """One tick so long after the last; returns what is sent to the device."""
+    def tick(self, received: bytes, seconds: float, taken: int | None) -> bytes:
+        """One tick so long after the last; returns what the device takes of what was sent.
+
+        That is at most ``taken`` bytes (None: all); the rest waits in a driver.
+        """
 
     def unplug(self) -> None:
         """Take the line away, with what is on it."""

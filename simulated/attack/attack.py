@@ -47,7 +47,10 @@ def virtual_tables(attack: Attack, say: Callable[[str], None]) -> Iterator[Table
 
 
 def _chosen(kind: str, only: str) -> list[Cause]:
-    causes = HAPLY_CAUSES if kind == "haply" else CAUSES
+    if kind == "haply":
+        causes = HAPLY_CAUSES
+    else:
+        causes = tuple(cause for cause in CAUSES if int(kind[-1]) in cause.protocols)
     return [cause for cause in causes if only in cause.name]
 
 

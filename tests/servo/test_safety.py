@@ -75,7 +75,7 @@ def rows(make, causes):
     ("make", "cause"),
     [
         *rows(link_press, CAUSES),
-        *rows(press_of_protocol_1, CAUSES),
+        *rows(press_of_protocol_1, [c for c in CAUSES if link.FIRST_PROTOCOL in c.protocols]),
         *rows(haply_press, HAPLY_CAUSES),
     ],
 )

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from enum import Enum
 from random import Random
 
+from ....core.servo import link
 from .virtual_press import Shot, VirtualPress
 
 STALE_TICKS = 21
@@ -39,13 +40,17 @@ class Cause:
     inject: Inject
     outcome: Outcome
     named: str = ""
-    """The fault or state that the user must read."""
+    """The fault or state that the user must read; empty where it may be one of several."""
     zero_within: int = 0
     """Ticks from the cause to zero force; 0 is the same tick."""
     line_gone: bool = False
     """Nothing reaches the device any more: its own watchdog must do."""
     counter: str = ""
     """Counter of the link that must rise."""
+    felt_within: int = 1
+    """Ticks from zero force to the motors' zero: what the line takes."""
+    protocols: tuple[int, ...] = (link.FIRST_PROTOCOL, link.PROTOCOL)
+    """Those in which it can be found."""
     rates: tuple[int, ...] = (1000,)
     """STATE a second of the devices that do this."""
     anywhere: bool = False

@@ -3,6 +3,7 @@
 from .device_causes import DEVICE_CAUSES
 from .hidden_causes import HIDDEN_CAUSES
 from .line_causes import LINE_CAUSES
+from .slow_causes import SLOW_CAUSES
 
-CAUSES = (*DEVICE_CAUSES, *LINE_CAUSES, *HIDDEN_CAUSES)
+CAUSES = (*DEVICE_CAUSES, *LINE_CAUSES, *HIDDEN_CAUSES, *SLOW_CAUSES)
 HAPLY_CAUSES = tuple(cause for cause in CAUSES if cause.anywhere)

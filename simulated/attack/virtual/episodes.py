@@ -133,16 +133,19 @@ def _silence_problems(cause: Cause, one: Episode) -> list[str]:
     found = []
     if one.ticks_to_zero > cause.zero_within:
         found.append("force after the cause")
-    if any(shot.output > 0.0 or shot.said.driving for shot in one.silent):
+    if any(shot.output > 0.0 for shot in one.silent) or any(
+        shot.said.driving for shot in one.silent[cause.felt_within - 1 :]
+    ):
         found.append("force while there must be none")
-    if not cause.line_gone and not (one.silent and one.silent[0].said.released):
+    first = one.silent[: cause.felt_within]
+    if not cause.line_gone and not any(shot.said.released for shot in first):
         found.append("zero is not said")
     # One tick later the device has it, or its watchdog finds that there is nothing.
-    heard = one.ticks_to_zero + (WATCHDOG_TICKS if cause.line_gone else 1)
+    heard = one.ticks_to_zero + (WATCHDOG_TICKS if cause.line_gone else cause.felt_within)
     felt = one.all[heard : one.ticks_to_zero + len(one.silent)]
     if any(shot.felt > 0.0 for shot in felt):
         found.append("the motors go on")
-    if cause.named not in {shot.name for shot in one.all}:
+    if cause.named and cause.named not in {shot.name for shot in one.all}:
         found.append(f"never called {cause.named!r}")
     for tick, shot in enumerate(one.returning, start=1):
         gain = min(1.0, (tick + 1) * PERIOD / RAMP_SECONDS)
@@ -163,7 +166,7 @@ def _limit_problems(cause: Cause, one: Episode) -> list[str]:
     ]
     if max(grown, default=0.0) > MAX_SLEW * PERIOD + ROUNDING:
         found.append("beyond the slew limit")
-    if cause.named not in {shot.limited for shot in one.all}:
+    if cause.named and cause.named not in {shot.limited for shot in one.all}:
         found.append(f"never limited by {cause.named!r}")
     return found
 

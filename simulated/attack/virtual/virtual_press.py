@@ -109,7 +109,12 @@ class VirtualPress:
         self.rate_hz = rate_hz
         self.arrival: Callable[[float], float] = float
         """When the line hands over what is said at a time, s; never before what was said before."""
+        self.deaf = False
+        """Whether the device reads nothing."""
+        self.baud: int | None = None
+        """Speed of the line to the device, bits a second; None for one without bounds."""
         self.now = 0.0
+        self._room = 0.0
         self._made_until = 0.0
         self._in_flight: deque[tuple[float, bytes]] = deque()
         self._output = np.zeros(3)
@@ -163,7 +168,7 @@ class VirtualPress:
             if stored < STORED_BYTES:
                 self._put(said)
         self.now = end
-        sent = self.servo.tick(spoil(self._arrived()), seconds)
+        sent = self.servo.tick(spoil(self._arrived()), seconds, self._taken(seconds))
         if device_hears:
             self._hear(sent)
         return self._shot(sent)
@@ -210,6 +215,17 @@ class VirtualPress:
     def faults(self) -> int:
         """How many faults were counted."""
         return sum(self.servo.counters()["faults"].values())
+
+    def _taken(self, seconds: float) -> int | None:
+        """How many bytes the device takes in a tick."""
+        if self.deaf:
+            return 0
+        if self.baud is None:
+            return None
+        self._room = min(self._room, 1.0) + self.baud / 10.0 * seconds
+        whole = int(self._room)
+        self._room -= whole
+        return whole
 
     def _put(self, said: bytes) -> None:
         arrival = max(self._made_until, self.arrival(self._made_until))
