@@ -27,7 +27,7 @@ def test_the_same_seed_prints_the_same_table(capsys):
 
 
 def test_every_kind_of_device_has_a_table_of_its_own(capsys):
-    assert attack("simulated", "--times", "1", "--only", "switched off", "--json") == 0
+    assert attack("simulated", "--times", "1", "--only", "switched off by", "--json") == 0
     tables = json.loads(capsys.readouterr().out)["tables"]
     assert [table["title"].partition(")")[0] for table in tables] == [
         "A hostile device (link1",

@@ -18,7 +18,8 @@ from palpate.simulated.attack.virtual import episodes
 from palpate.simulated.attack.virtual.cause import Outcome
 from palpate.simulated.attack.virtual.causes import CAUSES, HAPLY_CAUSES
 from palpate.simulated.attack.virtual.haply_press import HaplyPress
-from palpate.simulated.attack.virtual.virtual_press import Said, VirtualPress
+from palpate.simulated.attack.virtual.shot import Said
+from palpate.simulated.attack.virtual.virtual_press import VirtualPress
 
 DOCUMENT = Path(__file__).resolve().parents[2] / "docs" / "safety.md"
 SILENT = next(cause for cause in CAUSES if cause.outcome is Outcome.SILENT)

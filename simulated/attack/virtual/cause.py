@@ -8,7 +8,8 @@ from enum import Enum
 from random import Random
 
 from ....core.servo import link
-from .virtual_press import Shot, VirtualPress
+from .shot import Shot
+from .virtual_press import VirtualPress
 
 STALE_TICKS = 21
 """20 ms without STATE, and the tick that finds it."""

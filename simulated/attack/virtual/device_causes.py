@@ -13,7 +13,8 @@ import numpy as np
 from ....core.servo import link
 from .cause import STALE_TICKS, Cause, Inject, Outcome, anywhere, held, silent
 from .line_causes import mute
-from .virtual_press import Shot, VirtualPress
+from .shot import Shot
+from .virtual_press import VirtualPress
 
 
 def _button(press: VirtualPress, dice: Random) -> list[Shot]:

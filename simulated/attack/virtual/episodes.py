@@ -9,15 +9,8 @@ from random import Random
 
 from ..table import Row, counted
 from .cause import Cause, Outcome
-from .virtual_press import (
-    MAX_FORCE,
-    MAX_SLEW,
-    PERIOD,
-    RAMP_SECONDS,
-    NotFeltError,
-    Shot,
-    VirtualPress,
-)
+from .shot import Shot
+from .virtual_press import MAX_FORCE, MAX_SLEW, PERIOD, RAMP_SECONDS, NotFeltError, VirtualPress
 
 ROUNDING = 1e-9
 DEVICE_ROUNDING = 1e-3

@@ -13,7 +13,8 @@ from ....core.servo.haply_models import DEFAULT_MODEL, haply_model
 from ....core.servo.stepped import SteppedServo
 from ...board.haply_firmware import PORTS, TORQUES, HaplyFirmware
 from ..target import Target
-from .virtual_press import Place, Said, VirtualPress
+from .shot import Said
+from .virtual_press import Place, VirtualPress
 
 UPRIGHT_PLANE = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 """The device's plane stands on its edge: away from the user is up."""

@@ -17,7 +17,8 @@ from ....core.servo import link
 from ...hand.quaternion import UPRIGHT, Quaternion, about
 from .cause import Cause, Inject, Outcome, anywhere, silent, unfelt
 from .line_causes import hold_upright, without_orientation
-from .virtual_press import Place, Shot, VirtualPress, flagged
+from .shot import Shot
+from .virtual_press import Place, VirtualPress, flagged
 
 SMALLEST, LARGEST = 0.005, 0.040
 """Of jumps, m."""

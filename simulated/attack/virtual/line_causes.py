@@ -9,7 +9,8 @@ from random import Random
 from ....core.servo import link
 from ...hand.quaternion import UPRIGHT, about
 from .cause import STALE_TICKS, Inject, anywhere, harmless, silent
-from .virtual_press import Shot, VirtualPress, state_in
+from .shot import Shot
+from .virtual_press import VirtualPress, state_in
 
 
 def mute(press: VirtualPress, dice: Random) -> list[Shot]:

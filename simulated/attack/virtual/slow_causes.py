@@ -8,7 +8,8 @@ from random import Random
 
 from ....core.servo import link
 from .cause import STALE_TICKS, Cause, Inject, Outcome
-from .virtual_press import Shot, VirtualPress
+from .shot import Shot
+from .virtual_press import VirtualPress
 
 FORCE_BITS = 230
 """Of the longest FORCE, and the zero before it, with a start and a stop bit each."""

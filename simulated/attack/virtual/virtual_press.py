@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,7 @@ from ....core.servo.stepped import SteppedServo, stepped_servo
 from ...board.simulated_firmware import Firmware
 from ...hand.quaternion import Quaternion
 from ..target import Target
+from .shot import Said, Shot
 
 PERIOD = 1e-3
 RAMP_SECONDS = 0.05
@@ -35,46 +36,6 @@ Place = NDArray[np.float64]
 
 class NotFeltError(RuntimeError):
     """The servo does not come to where it can be attacked (again)."""
-
-
-@dataclass(frozen=True)
-class Said:
-    """What was said to the device in a tick, counted by a codec that is not the servo's."""
-
-    driving: int = 0
-    """Forces, with the motors on."""
-    released: int = 0
-    """Motors off, and no force."""
-    hollow: int = 0
-    """Forces with the motors off: whoever looks at one of the two alone is misled."""
-
-
-@dataclass(frozen=True)
-class Shot:
-    """One tick: what the servo says, wants and sends (N), and what the device's motors make (N)."""
-
-    state: str
-    fault: str
-    reason: str
-    limited: str
-    wanted: float
-    output: float
-    change: float
-    """Between this output and the one before, N."""
-    felt: float
-    felt_slew: float
-    """By which the motors' force grew or turned since it was told last, N/s."""
-    said: Said
-
-    @property
-    def name(self) -> str:
-        """The fault, or the state with its reason."""
-        return self.fault or (f"{self.state}: {self.reason}" if self.reason else self.state)
-
-    @property
-    def whole(self) -> bool:
-        """The body is felt as it is."""
-        return self.state == "touching" and not self.limited
 
 
 class VirtualPress:
