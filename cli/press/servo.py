@@ -232,9 +232,7 @@ def _connect(servo: Servo, port: str, baud: int | None, stopped: Sequence[int]) 
 def _check_ports(ports: Sequence[str]) -> None:
     for port in ports:
         if not port.strip():
-            raise PalpateError(
-                "--port: its name is empty; give a path, such as 'palpate devices' prints"
-            )
+            raise PalpateError("--port: its name is empty; see 'palpate devices' for names")
         check_port(port)
     if len(set(ports)) < len(ports):
         raise PalpateError("--second-port: a port is named twice; give each device its own")

@@ -14,4 +14,5 @@ from hypothesis import settings
 # For all that is drawn: the same examples in every run, so that a red test means a changed program,
 # and no limit of time, which a busy machine would break.
 settings.register_profile("repeatable", derandomize=True, deadline=None)
+settings.register_profile("long", max_examples=20_000, deadline=None, database=None)
 settings.load_profile("repeatable")
