@@ -1,6 +1,8 @@
-//! Speed of a device, by its own clock as long as that can be believed.
+//! Speed of a device, by its own clock as far as the host's allows.
 
 use glam::DVec3;
+
+use crate::device::course::{Course, Step};
 
 /// A device's clock is compared with the host's over this time, s.
 const CLOCK_SECONDS: f64 = 0.25;
@@ -9,12 +11,13 @@ const CLOCK_SECONDS: f64 = 0.25;
 const CLOCK_FACTOR: f64 = 2.0;
 /// After silence for so long, or a host that was held up, clocks are compared afresh, s.
 const GAP_SECONDS: f64 = 0.02;
-/// Longest delay of messages that come together, s: more time than that and what the host
-/// saw go by, the device cannot have taken.
+/// Longest delay of messages of which the shortest is not known yet, s.
 const DELAY_SECONDS: f64 = 0.05;
+/// Longest time between two messages of one device, s. More is a clock that ran backwards.
+const BACKWARDS_SECONDS: f64 = 2000.0;
 
-/// Time between messages that came together where the device's clock does not tell, s: a jump
-/// is found, while the small steps of an ordinary hand are none.
+/// Time between messages that came together where the clocks do not tell, s: a jump is found, while
+/// the small steps of an ordinary hand are none.
 const TOGETHER_SECONDS: f64 = 5e-4;
 
 /// Position of a device, with its time by both clocks.
@@ -28,29 +31,41 @@ struct Seen {
     before: (DVec3, f64),
 }
 
-/// Measures a device's speed from its own clock, as long as that can be believed.
+/// Measures a device's speed: a step took as long as its own clock says, and no longer than the host's
+/// allows.
 ///
-/// The device's clock knows nothing of delays on the line; but one that stands still, runs backwards
-/// or too fast would hide a speed that is too large. Then the host's clock serves: a jump on the line
-/// may look faster by it than it was, never slower.
+/// The device's clock knows nothing of delays on the line; but one that stands still, runs backwards,
+/// leaps or runs too fast would hide a speed that is too large. So none is believed that says that a
+/// message was made after it came, and one that tells nothing gives way to the host's: a jump on the
+/// line may look faster by it than it was, never slower.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Speedometer {
     last: Option<Seen>,
+    course: Course,
+    transit: Transit,
     compared: Option<Seen>,
     /// Comparisons in a row that were out of bounds.
     strikes: u32,
 }
 
 impl Speedometer {
-    /// Forgets the last position, for after a gap; not what was found of the clock.
+    /// Forgets the last position, for another session; not what was found of the clock.
     pub fn reset(&mut self) {
-        self.last = None;
-        self.compared = None;
+        self.interrupt();
+        self.course.reset();
     }
 
-    /// Speed (m/s) at `position` (m), reached at `device_us` by the device's clock and `now`
-    /// seconds by the host's.
-    pub fn speed(&mut self, position: DVec3, device_us: u32, now: f64) -> f64 {
+    /// The device is out of sight.
+    pub fn interrupt(&mut self) {
+        self.last = None;
+        self.compared = None;
+        self.transit = Transit::default();
+        self.course.interrupt();
+    }
+
+    /// The step to `position` (m), reached at `device_us` by the device's clock and `now` seconds by
+    /// the host's.
+    pub fn step(&mut self, position: DVec3, device_us: u32, now: f64) -> Step {
         let here = Seen {
             position,
             device_us,
@@ -63,19 +78,22 @@ impl Speedometer {
         };
         self.compare_clocks(&here);
         let Some(last) = self.last.replace(here) else {
-            return 0.0;
+            self.transit.goes_on(now, 0.0);
+            return self.course.resume(position);
         };
+        let (device, host) = elapsed(&last, &here);
+        let tells = device > 0.0 && device < BACKWARDS_SECONDS && self.strikes < 2;
         let way = position.distance(last.position);
-        if way == 0.0 {
-            return 0.0;
-        }
-        let (device, _) = elapsed(&last, &here);
-        let can_be = device > 0.0 && device <= now - last.before.1 + DELAY_SECONDS;
-        if can_be && self.strikes < 2 {
-            way / device
+        let (seconds, measured) = if tells {
+            let since = now - last.before.1;
+            let allowed = self.transit.allows(now).unwrap_or(since + DELAY_SECONDS);
+            let seconds = device.min(allowed.max(TOGETHER_SECONDS));
+            (seconds, way / seconds)
         } else {
-            by_host(&here, &last)
-        }
+            (host.max(TOGETHER_SECONDS), by_host(&here, &last))
+        };
+        self.transit.goes_on(now, seconds);
+        self.course.step(position, seconds, measured)
     }
 
     fn compare_clocks(&mut self, here: &Seen) {
@@ -95,6 +113,60 @@ impl Speedometer {
                 self.strikes.saturating_add(1)
             };
             self.compared = Some(*here);
+        }
+    }
+}
+
+/// The shortest time that a message took lately: none was made later than that before it came.
+#[derive(Debug, Clone, Copy)]
+struct Transit {
+    /// The device's time as far as it is believed, s.
+    made: f64,
+    /// Arrival of the messages that came last, and the shortest time from `made` until then, s.
+    last: Option<(f64, f64)>,
+    /// The shortest of those before, in this quarter of a second and in the one before it.
+    shortest: [f64; 2],
+    /// How long this quarter has lasted, s; a host that was held up looks like a moment.
+    lasts: f64,
+}
+
+impl Default for Transit {
+    fn default() -> Self {
+        Self {
+            made: 0.0,
+            last: None,
+            shortest: [f64::INFINITY; 2],
+            lasts: 0.0,
+        }
+    }
+}
+
+impl Transit {
+    /// Longest time since the last message that one which comes at `now` (s) can tell of. What comes
+    /// together says nothing of itself.
+    fn allows(&self, now: f64) -> Option<f64> {
+        let [this, before] = self.shortest;
+        let last = self.last.filter(|(came, _)| *came != now);
+        let shortest = last.map_or(f64::INFINITY, |(_, shortest)| shortest);
+        let shortest = shortest.min(this).min(before);
+        shortest.is_finite().then_some(now - shortest - self.made)
+    }
+
+    /// The message that came at `now` (s) was made `seconds` after the last one.
+    fn goes_on(&mut self, now: f64, seconds: f64) {
+        self.made += seconds;
+        let taken = now - self.made;
+        match self.last.replace((now, taken)) {
+            Some((came, shortest)) if came == now => self.last = Some((now, taken.min(shortest))),
+            Some((came, shortest)) => {
+                self.shortest[0] = self.shortest[0].min(shortest);
+                self.lasts += (now - came).clamp(0.0, GAP_SECONDS);
+            }
+            None => {}
+        }
+        if self.lasts > CLOCK_SECONDS {
+            self.shortest = [f64::INFINITY, self.shortest[0]];
+            self.lasts = 0.0;
         }
     }
 }
@@ -135,6 +207,10 @@ pub fn has_begun_anew(from_us: u32, to_us: u32, host_seconds: f64) -> bool {
 mod tests {
     use super::*;
 
+    fn speed(meter: &mut Speedometer, position: DVec3, device_us: u32, now: f64) -> f64 {
+        meter.step(position, device_us, now).speed
+    }
+
     #[test]
     fn a_clock_that_does_not_tell_moments_apart_is_no_speed() {
         // 1 kHz at 50 mm/s; which STATE come together is chance; the clock stands or counts in ms.
@@ -145,13 +221,13 @@ mod tests {
                     let now = f64::from(state.div_ceil(together) * together) * 1e-3;
                     let jitter = if state % 7 == 0 { 999 } else { 0 };
                     let us = clock(1000 * state + jitter);
-                    let speed = meter.speed(DVec3::X * 5e-5 * f64::from(state), us, now);
-                    assert!(speed < 0.2, "{together} {state}: {speed}");
+                    let found = speed(&mut meter, DVec3::X * 5e-5 * f64::from(state), us, now);
+                    assert!(found < 0.2, "{together} {state}: {found}");
                 }
                 // A jump of 2 mm is one, wherever it comes.
                 let there = DVec3::X * (5e-5 * 1999.0 + 2e-3);
                 let now = f64::from(1999_u32.div_ceil(together) * together) * 1e-3;
-                assert!(meter.speed(there, clock(1_999_000), now) > 2.0);
+                assert!(speed(&mut meter, there, clock(1_999_000), now) > 2.0);
             }
         }
     }
@@ -168,10 +244,10 @@ mod tests {
     #[test]
     fn speed_uses_the_devices_clock_and_survives_its_wrap() {
         let mut meter = Speedometer::default();
-        assert_eq!(meter.speed(DVec3::ZERO, u32::MAX - 499, 0.0), 0.0);
-        let speed = meter.speed(DVec3::X * 1e-3, 500, 0.005);
-        assert!((speed - 1.0).abs() < 1e-9);
-        let by_host = meter.speed(DVec3::X * 3e-3, 500, 0.006);
+        assert_eq!(speed(&mut meter, DVec3::ZERO, u32::MAX - 499, 0.0), 0.0);
+        let found = speed(&mut meter, DVec3::X * 1e-3, 500, 0.005);
+        assert!((found - 1.0).abs() < 1e-9);
+        let by_host = speed(&mut meter, DVec3::X * 3e-3, 500, 0.006);
         assert!((by_host - 2.0).abs() < 1e-6);
     }
 
@@ -181,7 +257,7 @@ mod tests {
         (0..2000)
             .map(|ms| {
                 let position = DVec3::X * 5e-3 * f64::from(ms);
-                meter.speed(position, clock(ms), f64::from(ms) * 1e-3)
+                speed(&mut meter, position, clock(ms), f64::from(ms) * 1e-3)
             })
             .collect()
     }
@@ -195,10 +271,9 @@ mod tests {
         for speeds in [stands_still, backwards] {
             assert!(speeds[1..].iter().all(|v| (v - 5.0).abs() < 1e-6));
         }
-        // A clock that only goes too fast is found out after half a second.
+        // The host's clock allows no more than went by on it.
         let too_fast = measured(|ms| 30_000 * ms);
-        assert!(too_fast[..500].iter().all(|v| *v < 1.0));
-        assert!(too_fast[502..].iter().all(|v| (v - 5.0).abs() < 1e-6));
+        assert!(too_fast[1..].iter().all(|v| *v > 5.0 - 1e-6));
     }
 
     #[test]
@@ -212,9 +287,9 @@ mod tests {
                 1900..2000 => continue,
                 _ => f64::from(ms) * 1e-3 + if ms < 2010 && ms > 1999 { 0.006 } else { 0.0 },
             };
-            let speed = meter.speed(DVec3::X * 5e-4 * f64::from(ms), 1000 * ms, now);
+            let found = speed(&mut meter, DVec3::X * 5e-4 * f64::from(ms), 1000 * ms, now);
             if ms != 2000 {
-                worst = worst.max(speed);
+                worst = worst.max(found);
             }
         }
         assert!(worst < 0.5 + 1e-6, "{worst}");
@@ -224,15 +299,16 @@ mod tests {
     fn a_machine_that_holds_up_both_ends_makes_no_speed() {
         let mut meter = Speedometer::default();
         for ms in 0..100_u32 {
-            meter.speed(
+            speed(
+                &mut meter,
                 DVec3::X * 1e-4 * f64::from(ms),
                 1000 * ms,
                 f64::from(ms) * 1e-3,
             );
         }
         // Both stand still for 80 ms: one STATE of before and one of after come together.
-        let before = meter.speed(DVec3::X * 1e-2, 100_000, 0.18);
-        let after = meter.speed(DVec3::X * 1.8e-2, 180_000, 0.18);
+        let before = speed(&mut meter, DVec3::X * 1e-2, 100_000, 0.18);
+        let after = speed(&mut meter, DVec3::X * 1.8e-2, 180_000, 0.18);
         assert!(before.max(after) < 0.1 + 1e-9, "{before} {after}");
     }
 
@@ -242,8 +318,8 @@ mod tests {
         for ms in 0..2000_u32 {
             // A line that hands over what it has every 16 ms.
             let now = f64::from(ms.div_ceil(16) * 16) * 1e-3;
-            let speed = meter.speed(DVec3::X * 1e-3 * f64::from(ms), 1000 * ms, now);
-            assert!(speed < 1.0 + 1e-6, "{ms}: {speed}");
+            let found = speed(&mut meter, DVec3::X * 1e-3 * f64::from(ms), 1000 * ms, now);
+            assert!(found < 1.0 + 1e-6, "{ms}: {found}");
         }
     }
 }

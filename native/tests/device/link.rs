@@ -78,8 +78,14 @@ fn silence_is_stale_and_the_return_takes_any_sequence() {
     let Reading::At(probe) = read(&mut device, 0.061) else {
         panic!("did not come back");
     };
-    assert!(!probe.restart, "the way it went unseen is swept");
+    assert!(!probe.restart, "the little way it went unseen is swept");
     assert_eq!(device.report().lost, 0);
+    assert_eq!(read(&mut device, 0.0821), Reading::Fault(Fault::Stale));
+    bench.state_at(65_616_000, 41, 7000, 0, 1);
+    let Reading::At(probe) = read(&mut device, 0.083) else {
+        panic!("did not come back");
+    };
+    assert!(probe.restart, "nobody knows how it came so far");
 }
 
 #[test]
@@ -164,11 +170,71 @@ fn a_greeting_with_figures_that_cannot_be_gets_no_force() {
         bench.hello(2, max_force);
         bench.state(0, 0, 0, 1);
         assert!(matches!(read(&mut device, 0.002), Reading::Waiting(_)));
-        device.write(DVec3::X, true, &FRAME());
-        assert!(bench.received().iter().all(|payload| payload == &[1, 2]));
+        is_let_go(&bench, &mut device);
         assert_eq!(device.report().greeting.unwrap().max_force, 2.5);
         assert_eq!(device.report().unknown, 1);
     }
+}
+
+/// A device that may hold a force of a session that is over hears zero without enable, in the same tick
+/// and for as long as its own watchdog waits, and then nothing.
+fn is_let_go(bench: &Bench, device: &mut LinkDevice<Bench>) {
+    let mut sequences = Vec::new();
+    for tick in 0..30 {
+        device.write(DVec3::X, true, &FRAME());
+        for payload in bench.received() {
+            if payload[0] == 3 {
+                assert_eq!(payload[3..10], [0; 7], "{tick}");
+                sequences.push(u16::from_le_bytes([payload[1], payload[2]]));
+            }
+        }
+    }
+    let first = sequences[0];
+    assert!(sequences.iter().copied().eq(first..first + 20));
+}
+
+#[test]
+fn a_device_that_turns_out_to_be_foreign_is_let_go() {
+    for foreign in [vec![1, 7], vec![1, 0, 42]] {
+        let (bench, mut device) = greeted();
+        read(&mut device, 0.001);
+        device.write(DVec3::X, true, &FRAME());
+        bench.received();
+        bench.send(&foreign);
+        assert_eq!(read(&mut device, 0.002), Reading::Fault(Fault::Protocol));
+        is_let_go(&bench, &mut device);
+    }
+}
+
+#[test]
+fn a_later_state_hides_nothing_of_the_tick() {
+    let (bench, mut device) = greeted();
+    read(&mut device, 0.001);
+    // A jump of 30 mm, a button, a fault, no readiness: each in the first of three.
+    bench.state(65_535, 31_000, 0, 1);
+    bench.state(0, 31_000, 0, 1);
+    bench.state(1, 31_000, 0, 1);
+    let Reading::At(probe) = read(&mut device, 0.002) else {
+        panic!("no position");
+    };
+    assert!(probe.speed > 10.0 && probe.restart);
+    assert!(matches!(read(&mut device, 0.003), Reading::At(p) if !p.restart));
+    bench.state(2, 31_000, 4, 1);
+    bench.state(3, 31_000, 1, 1);
+    bench.state(4, 31_000, 0, 1);
+    assert!(matches!(read(&mut device, 0.004), Reading::At(p) if p.buttons == 5 && p.speed == 0.0));
+    bench.state(5, 31_000, 0, 0);
+    bench.state(6, 31_000, 0, 1);
+    assert!(matches!(read(&mut device, 0.005), Reading::Passive(..)));
+    bench.state(7, 31_000, 0, 3);
+    bench.state(8, 31_000, 0, 1);
+    assert_eq!(read(&mut device, 0.006), Reading::Fault(Fault::Device));
+    // Nor does the fault hide a jump.
+    bench.state(9, 31_000, 0, 3);
+    bench.state(10, 61_000, 0, 3);
+    assert_eq!(read(&mut device, 0.007), Reading::Fault(Fault::Device));
+    bench.state(11, 61_000, 0, 1);
+    assert!(matches!(read(&mut device, 0.008), Reading::At(p) if p.speed > 10.0 && p.restart));
 }
 
 #[test]

@@ -9,6 +9,7 @@ mod coupled;
 mod faults_of_fingers;
 mod fingers;
 mod interrupted;
+mod jumps;
 mod no_allocation;
 mod recorder;
 mod scripted;

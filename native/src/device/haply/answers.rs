@@ -3,12 +3,14 @@
 use glam::DVec3;
 
 use crate::device::Greeting;
-use crate::device::haply::device::{HaplyDevice, Newest, Phase};
+use crate::device::haply::device::{HaplyDevice, Phase};
 use crate::device::haply::flight::Flight;
 use crate::device::haply::message::{
     ANSWER_BYTES, FILL, TORQUE_BYTES, parse_answer, setup_message, torque_message,
 };
 use crate::device::haply::model::Model;
+use crate::device::haply::newest::Newest;
+use crate::device::haply::pantograph::Pose;
 use crate::device::serial::port::Opener;
 
 /// A board is asked whether it knows this device this often, s.
@@ -80,11 +82,18 @@ impl<O: Opener> HaplyDevice<O> {
         let pose = self.model.pantograph.pose(degrees.map(f64::to_radians));
         let last = self.newest.map_or(DVec3::ZERO, |newest| newest.position);
         let position = pose.map_or(last, |pose| self.model.to_device(pose.position));
-        self.newest = Some(Newest {
+        let step = self.speed.step(position, self.now);
+        self.unseen |= step.has_strayed;
+        let newest = Newest {
             position,
             pose,
-            speed: self.speed.speed(position, self.now),
-        });
+            speed: step.speed,
+            is_impossible: pose.is_none(),
+            is_stretched: pose.as_ref().is_some_and(Pose::is_stretched),
+            came: self.now,
+            is_told: false,
+        };
+        self.newest = Some(self.newest.map_or(newest, |before| newest.after(&before)));
     }
 
     /// Sets up a board that has forgotten its device, by the angles of a moment ago if there are any.

@@ -12,7 +12,7 @@ use crate::device::haply::flight::Flight;
 use crate::device::haply::inbox::Inbox;
 use crate::device::haply::message::torque_message;
 use crate::device::haply::model::{Model, TORQUE_LIMIT};
-use crate::device::haply::pantograph::Pose;
+use crate::device::haply::newest::Newest;
 use crate::device::haply::speed::WindowSpeed;
 use crate::device::reason;
 use crate::device::serial::line::Line;
@@ -23,8 +23,6 @@ use crate::device::{Device, DeviceFrame, Fault, LinkReport, Probe, Reading};
 const LONE_ADDRESSES: usize = 3;
 /// Without an answer for this long there is no force, s.
 const STALE_SECONDS: f64 = 0.02;
-/// Below this sine between the forearms the handle can hardly be held.
-const LEAST_SINE: f64 = 0.1;
 /// Requests without torque when parking: one may be lost on the wire.
 const PARKING_REQUESTS: u32 = 3;
 /// Reads in one tick at most, so that a flood of bytes cannot hold it up.
@@ -45,14 +43,6 @@ pub(super) enum Phase {
     Asking { asked: Option<f64>, in_vain: u32 },
     /// Requests and answers.
     Running,
-}
-
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Newest {
-    pub(super) position: DVec3,
-    /// None where the arms cannot be.
-    pub(super) pose: Option<Pose>,
-    pub(super) speed: f64,
 }
 
 impl Phase {
@@ -185,7 +175,7 @@ impl<O: Opener> HaplyDevice<O> {
     fn torques(&self, force: DVec3) -> Option<[f64; 2]> {
         let fresh = self.calibrated && self.now - self.heard <= STALE_SECONDS;
         let pose = self.newest.filter(|_| fresh)?.pose?;
-        if pose.sine < LEAST_SINE {
+        if pose.is_stretched() {
             return None;
         }
         let [first, second] = pose.torques(self.model.to_pantograph(force));
@@ -222,9 +212,10 @@ impl<O: Opener> Device for HaplyDevice<O> {
             return Reading::Waiting(reason::LOST_PLACE);
         }
         if now - self.heard > STALE_SECONDS {
+            self.speed.interrupt();
             return Reading::Fault(Fault::Stale);
         }
-        let Some(newest) = self.newest else {
+        let Some(newest) = &mut self.newest else {
             let settled = !self.unproven;
             return Reading::Waiting(if settled {
                 reason::NO_ANGLES
@@ -232,10 +223,11 @@ impl<O: Opener> Device for HaplyDevice<O> {
                 reason::SETTING_UP
             });
         };
-        let Some(pose) = newest.pose else {
+        let Some(pose) = newest.pose.filter(|_| !newest.is_impossible) else {
             return Reading::Fault(Fault::Device);
         };
-        let stretched = pose.sine < LEAST_SINE;
+        newest.is_told = true;
+        let stretched = newest.is_stretched;
         let probe = Probe {
             position: frame.to_body(newest.position),
             orientation: frame.turn_to_body(DMat3::IDENTITY),

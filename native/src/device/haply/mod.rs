@@ -10,5 +10,6 @@ pub mod flight;
 pub mod inbox;
 pub mod message;
 pub mod model;
+mod newest;
 pub mod pantograph;
 pub mod speed;

@@ -7,6 +7,9 @@
 
 use glam::DVec2;
 
+/// Below this sine between the forearms the handle can hardly be held.
+const LEAST_SINE: f64 = 0.1;
+
 /// Lengths, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pantograph {
@@ -74,6 +77,11 @@ impl Pantograph {
 }
 
 impl Pose {
+    /// Whether the handle can hardly be held: the forearms lie nearly on a line.
+    pub fn is_stretched(&self) -> bool {
+        self.sine < LEAST_SINE
+    }
+
     /// Torques of the motors that give `force` (N) at the handle, N m: the Jacobian's transpose.
     pub fn torques(&self, force: DVec2) -> [f64; 2] {
         self.columns.map(|column| column.dot(force))

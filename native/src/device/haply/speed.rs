@@ -2,6 +2,10 @@
 
 use glam::DVec3;
 
+use crate::device::course::{Course, Step};
+
+/// Answers that come together were made this long after each other at least, s.
+const TOGETHER_SECONDS: f64 = 5e-4;
 /// Speeds are measured over at least this time, s.
 const WINDOW_SECONDS: f64 = 0.005;
 
@@ -9,16 +13,36 @@ const WINDOW_SECONDS: f64 = 0.005;
 #[derive(Debug, Clone, Copy, Default)]
 pub struct WindowSpeed {
     marks: Option<[(f64, DVec3); 2]>,
+    course: Course,
+    /// Time of the last place, s.
+    then: f64,
 }
 
 impl WindowSpeed {
-    /// Forgets the past, for after a gap.
+    /// Forgets the past.
     pub fn reset(&mut self) {
-        self.marks = None;
+        *self = Self::default();
     }
 
-    /// Speed (m/s) at `position` (m) and time `now` (s).
-    pub fn speed(&mut self, position: DVec3, now: f64) -> f64 {
+    /// The handle is out of sight.
+    pub fn interrupt(&mut self) {
+        self.marks = None;
+        self.course.interrupt();
+    }
+
+    /// The step to `position` (m) at the time `now` (s).
+    pub fn step(&mut self, position: DVec3, now: f64) -> Step {
+        let is_first = self.marks.is_none();
+        let measured = self.speed(position, now);
+        let seconds = (now - std::mem::replace(&mut self.then, now)).max(TOGETHER_SECONDS);
+        if is_first {
+            self.course.resume(position)
+        } else {
+            self.course.step(position, seconds, measured)
+        }
+    }
+
+    fn speed(&mut self, position: DVec3, now: f64) -> f64 {
         let [_, recent] = *self.marks.get_or_insert([(now, position); 2]);
         if now - recent.0 >= WINDOW_SECONDS {
             self.marks = Some([recent, (now, position)]);

@@ -5,7 +5,8 @@ use glam::DVec3;
 use crate::device::arrival::Arrivals;
 use crate::device::link::codec::Decoder;
 use crate::device::link::freshness::Freshness;
-use crate::device::link::messages::{DeviceState, PROTOCOL};
+use crate::device::link::messages::PROTOCOL;
+use crate::device::link::newest::Newest;
 use crate::device::link::orientation::Orientations;
 use crate::device::link::pacing::Pacing;
 use crate::device::reason;
@@ -24,13 +25,6 @@ const PARKING_PAUSES: u32 = 50;
 /// Reads in one tick at most, so that a flood of bytes cannot hold it up.
 const READS_PER_TICK: usize = 16;
 
-/// The newest STATE and when it came.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Newest {
-    pub(super) state: DeviceState,
-    pub(super) speed: f64,
-}
-
 /// A device on a line that speaks the link.
 pub struct LinkDevice<O: Opener> {
     pub(super) line: Line<O>,
@@ -47,6 +41,8 @@ pub struct LinkDevice<O: Opener> {
     /// The session before ended in this tick, so there is no force in it, whatever came since.
     pub(super) begun_anew: bool,
     pub(super) device_fault: bool,
+    /// Zero forces still to be sent to a device whose session has ended.
+    pub(super) farewells: u32,
     pub(super) speedometer: Speedometer,
     pub(super) orientations: Orientations,
     pub(super) arrivals: Arrivals,
@@ -83,6 +79,7 @@ impl<O: Opener> LinkDevice<O> {
             unseen: true,
             begun_anew: false,
             device_fault: false,
+            farewells: 0,
             speedometer: Speedometer::default(),
             orientations: Orientations::default(),
             arrivals: Arrivals::default(),
@@ -107,6 +104,7 @@ impl<O: Opener> LinkDevice<O> {
     fn unplug(&mut self, now: f64) {
         self.line.close(now);
         self.greeting = None;
+        self.farewells = 0;
         self.newest = None;
         self.stale = false;
         self.unseen = true;
@@ -190,7 +188,7 @@ impl<O: Opener> Device for LinkDevice<O> {
         }
         if now - self.heard > STALE_SECONDS {
             self.stale = true;
-            self.speedometer.reset();
+            self.speedometer.interrupt();
             self.orientations.interrupt();
             self.freshness.forget();
             // A device that was reset waits for HELLO.
@@ -200,15 +198,17 @@ impl<O: Opener> Device for LinkDevice<O> {
         if self.is_deaf(now) {
             return Reading::Fault(Fault::Deaf);
         }
-        let (Some(Newest { state, speed }), Some(greeting)) = (self.newest, self.greeting) else {
+        let (Some(newest), Some(greeting)) = (&mut self.newest, self.greeting) else {
             return Reading::Waiting(reason::NO_STATE);
         };
+        let Newest { state, speed, .. } = *newest;
         if state.fault {
             return Reading::Fault(Fault::Device);
         }
         if self.orientations.is_stale(now) {
             return Reading::Fault(Fault::Stale);
         }
+        newest.is_told = true;
         let probe = Probe {
             position: frame.to_body(state.position()),
             orientation: frame.turn_to_body(self.orientations.rotation()),
@@ -225,10 +225,14 @@ impl<O: Opener> Device for LinkDevice<O> {
     }
 
     fn write(&mut self, force: DVec3, enable: bool, frame: &DeviceFrame) {
-        if !self.line.is_open() || !self.is_greeted() {
+        if !self.line.is_open() {
             return;
         }
-        self.say_force(frame.force_to_device(force), enable);
+        if self.is_greeted() {
+            self.say_force(frame.force_to_device(force), enable);
+        } else {
+            self.say_farewell();
+        }
     }
 
     fn brake(&mut self, wanted: bool) {

@@ -4,6 +4,7 @@ pub mod codec;
 mod device;
 mod freshness;
 pub mod messages;
+mod newest;
 mod orientation;
 mod pacing;
 mod sending;

@@ -2,6 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
+use crate::device::course::Step;
 use crate::device::link::messages::DeviceOrientation;
 use crate::device::speedometer::Speedometer;
 
@@ -58,18 +59,18 @@ impl Orientations {
     }
 
     /// A STATE is used that came at `now` (s) and was made at `time_us` by the device's clock. The
-    /// speed (m/s) of points that turn with the stylus, 50 mm from the tip; 0 without an orientation.
-    pub fn pair(&mut self, sequence: u16, time_us: u32, now: f64) -> f64 {
+    /// step of points that turn with the stylus, 50 mm from the tip; none without an orientation.
+    pub fn pair(&mut self, sequence: u16, time_us: u32, now: f64) -> Step {
         let Some((_, rotation)) = self.told.take_if(|(told, _)| *told == sequence) else {
             self.dismiss();
             self.report.lost += u64::from(self.is_known());
-            return 0.0;
+            return Step::default();
         };
         self.report.paired += 1;
         self.newest = Some(Turned { rotation, at: now });
         let [x, z] = &mut self.levers;
-        x.speed(rotation * LEVERS[0], time_us, now)
-            .max(z.speed(rotation * LEVERS[1], time_us, now))
+        x.step(rotation * LEVERS[0], time_us, now)
+            .or(z.step(rotation * LEVERS[1], time_us, now))
     }
 
     /// Whether this session has had an orientation.
@@ -89,20 +90,18 @@ impl Orientations {
             .map_or(DMat3::IDENTITY, |newest| newest.rotation)
     }
 
-    /// After silence: what was told before it belongs to no STATE, and no way leads across it.
+    /// In silence: what was told before it belongs to no STATE.
     pub fn interrupt(&mut self) {
         self.dismiss();
-        self.reset_levers();
+        for lever in &mut self.levers {
+            lever.interrupt();
+        }
     }
 
     /// Another session: the device may be one that tells no orientation. What it has told of the STATE
     /// to come stays.
     pub fn forget(&mut self) {
         self.newest = None;
-        self.reset_levers();
-    }
-
-    fn reset_levers(&mut self) {
         for lever in &mut self.levers {
             lever.reset();
         }
@@ -176,7 +175,8 @@ mod tests {
                     let steps = [q.w, q.x, q.y, q.z].map(|c| (c * 32_767.0).round() as i16);
                     told(&mut orientations, ms, steps);
                 }
-                let speed = orientations.pair(ms, 1000 * u32::from(ms), 1e-3 * f64::from(ms));
+                let step = orientations.pair(ms, 1000 * u32::from(ms), 1e-3 * f64::from(ms));
+                let speed = step.speed;
                 let expected = if ms % 3 > 0 && ms > 1 { 0.5 } else { 0.0 };
                 assert!((speed - expected).abs() < 0.01, "{ms} {speed}");
             }
@@ -194,7 +194,8 @@ mod tests {
         orientations.pair(1, 1_000_000, 1.0);
         assert!(orientations.is_known() && orientations.is_stale(1.0));
         told(&mut orientations, 2, QUARTER);
-        assert_eq!(orientations.pair(2, 1_001_000, 1.001), 0.0, "no way across");
+        let step = orientations.pair(2, 1_001_000, 1.001);
+        assert!(step.speed == 0.0 && step.has_strayed, "turned out of sight");
         assert_eq!(counts(&orientations), [2, 1, 0, 1]);
     }
 }

@@ -12,6 +12,9 @@ use crate::device::serial::port::Opener;
 /// HELLO is repeated this often until it is answered, s.
 const HELLO_SECONDS: f64 = 0.05;
 
+/// Ticks in which a device hears zero after its session has ended: as long as a watchdog waits.
+pub(super) const FAREWELLS: u32 = 20;
+
 impl<O: Opener> LinkDevice<O> {
     /// Says HELLO, now and then.
     pub(super) fn greet(&mut self, now: f64) {
@@ -50,6 +53,15 @@ impl<O: Opener> LinkDevice<O> {
             Self::send_at_once
         };
         self.send_numbered(&payload, send)
+    }
+
+    /// Zero to a device whose session has ended, for some ticks: it may hold a force of that.
+    pub(super) fn say_farewell(&mut self) {
+        let is_first = self.farewells == FAREWELLS;
+        if self.farewells > 0 && (is_first || self.is_free()) {
+            self.say_zero(!is_first);
+        }
+        self.farewells = self.farewells.saturating_sub(1);
     }
 
     /// A FORCE in the layout of this session; true when it has left.

@@ -1,8 +1,10 @@
 //! Sessions of a device on the link: where one begins, and which STATE counts.
 
-use crate::device::link::device::{LinkDevice, Newest};
+use crate::device::link::device::LinkDevice;
 use crate::device::link::freshness::Freshness;
 use crate::device::link::messages::{DeviceState, FIRST_PROTOCOL, Message, PROTOCOL, Taken, parse};
+use crate::device::link::newest::Newest;
+use crate::device::link::sending::FAREWELLS;
 use crate::device::serial::port::Opener;
 use crate::device::speedometer::has_begun_anew;
 
@@ -16,15 +18,16 @@ impl<O: Opener> LinkDevice<O> {
         };
         match parse(payload) {
             Some(Message::Hello(greeting)) if !greeting.is_sound() => {
-                self.greeting = None;
+                self.end_session();
                 self.report.unknown += 1;
             }
             // An older device: it says so, with a FAULT, and waits to be asked in its own words.
             Some(Message::Hello(greeting))
                 if greeting.protocol == FIRST_PROTOCOL && self.protocol > FIRST_PROTOCOL =>
             {
+                self.end_session();
                 self.begin_session(now);
-                (self.greeting, self.protocol) = (None, FIRST_PROTOCOL);
+                self.protocol = FIRST_PROTOCOL;
                 self.next_hello = now;
             }
             Some(Message::Fault {
@@ -35,6 +38,7 @@ impl<O: Opener> LinkDevice<O> {
                 // One that says the same was only asked twice; another figure is another device.
                 if self.greeting != Some(greeting) {
                     self.orientations.dismiss();
+                    self.end_session();
                     self.begin_session(now);
                 }
                 self.greeting = Some(greeting);
@@ -59,6 +63,15 @@ impl<O: Opener> LinkDevice<O> {
             }
             None => self.report.unknown += 1,
         }
+    }
+
+    /// The device is another one, or none that can be: it is told to let go as long as it may still
+    /// hold a force of the session that it has left.
+    fn end_session(&mut self) {
+        if self.is_greeted() {
+            self.farewells = FAREWELLS;
+        }
+        self.greeting = None;
     }
 
     /// Forgets where the device was before, and its sequence.
@@ -98,20 +111,20 @@ impl<O: Opener> LinkDevice<O> {
         }
         self.report.states += 1;
         self.arrivals.take(state.time_us);
-        let speed = self.speedometer.speed(state.position(), state.time_us, now);
+        let step = self.speedometer.step(state.position(), state.time_us, now);
         let was_turned = self.orientations.is_known();
-        let swing = self.orientations.pair(state.sequence, state.time_us, now);
+        let step = step.or(self.orientations.pair(state.sequence, state.time_us, now));
+        self.unseen |= step.has_strayed;
         if !was_turned && self.orientations.is_known() {
             // Until now it was taken for upright: no sweep leads from there to how it is turned.
             self.begun_anew |= self.newest.is_some();
             self.unseen = true;
         }
-        let speed = speed.max(swing);
         self.pacing.hear(now, self.dt);
         if let Some(Taken::Force(sequence)) = state.taken {
             self.freshness.hear(sequence, now);
         }
-        self.newest = Some(Newest { state, speed });
+        self.newest = Some(Newest::of(state, step.speed, now, self.newest.as_ref()));
         self.heard = now;
         self.stale = false;
     }
