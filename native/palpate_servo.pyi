@@ -114,6 +114,7 @@ class LinkCounters(TypedDict):
     round_trip_ms: float | None
     """From a FORCE to the STATE that tells that it was taken, averaged; None in protocol 1."""
     state_age_ms: float | None
+    guarded: bool
     """Time since the last STATE; None while there was none."""
     state_interval_us: StateInterval
     bursts: int

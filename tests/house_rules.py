@@ -56,6 +56,7 @@ ROOMS_OF_RUST = """
 algebra
 body/compliance body
 clock
+guardian
 device/serial device device/link device/haply
 control
 contact

@@ -15,6 +15,7 @@ pub mod control;
 pub mod device;
 pub mod engine;
 pub mod fingers;
+pub mod guardian;
 #[cfg(feature = "harness")]
 pub mod harness;
 pub mod proxy;

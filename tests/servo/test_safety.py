@@ -26,27 +26,6 @@ SILENT = next(cause for cause in CAUSES if cause.outcome is Outcome.SILENT)
 HARMLESS = next(cause for cause in CAUSES if cause.outcome is Outcome.HARMLESS)
 
 
-UNMENDED = {
-    "another protocol",
-    "a HELLO that cannot be",
-    "a far place in a burst",
-    "a turn in a burst",
-    "a fault flag in a burst",
-    "not ready in a burst",
-    "a button in a burst",
-    "jump, plain",
-    "jump in a burst of 2 to 16 STATE",
-    "jump on a line with jitter",
-    "jump, its clock leaps 5 to 100 ms",
-    "jump in a burst, its clock leaps",
-    "jump, its clock stands or runs back",
-    "jump, its clock 1.5 to 20 times as fast",
-    "jump in 2 to 4 parts",
-    "jump after 1 to 8 lost STATE",
-    "jump while the host is held up",
-}
-"""Injections that the servo does not stand yet: shorter with every change, until it is empty."""
-
 TARGET = cube_target()
 
 
@@ -68,8 +47,7 @@ def haply_press(_):
 
 def rows(make, causes):
     for cause in causes:
-        marks = [pytest.mark.xfail(strict=False)] if cause.name in UNMENDED else []
-        yield pytest.param(make, cause, id=f"{make.__name__}: {cause.name}", marks=marks)
+        yield pytest.param(make, cause, id=f"{make.__name__}: {cause.name}")
 
 
 @pytest.mark.parametrize(

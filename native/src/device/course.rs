@@ -8,9 +8,9 @@ use glam::DVec3;
 /// Farther off its course than this, at once or in parts, a device has not gone: it seems to have, m.
 const STRAY: f64 = 4e-3;
 /// The course is that of the last steps within about this time, s.
-const COURSE_SECONDS: f64 = 5e-3;
+const COURSE_SECONDS: f64 = 2e-3;
 /// Longest time for which a course is held to, unless a single step takes longer, s.
-const LONGEST_SECONDS: f64 = 3.1 * COURSE_SECONDS;
+const LONGEST_SECONDS: f64 = 3.0 * COURSE_SECONDS;
 /// The first step of all tells a course of this speed at most, m/s.
 const FIRST_SPEED: f64 = 1.0;
 /// What is off the course was gone within this time at most, s: [`STRAY`] is then as fast as a device
@@ -167,9 +167,21 @@ mod tests {
             let mut strayed = false;
             for ms in 0..50 {
                 let gone = 7.5e-3 / f64::from(parts) * f64::from((ms - 30).clamp(0, parts));
-                strayed |= course.step(DVec3::X * gone, 2e-3, 0.0).has_strayed;
+                strayed |= course.step(DVec3::X * gone, 1e-3, 0.0).has_strayed;
             }
             assert!(strayed, "{parts}");
+        }
+    }
+
+    #[test]
+    fn a_hand_that_starts_at_once_keeps_its_course() {
+        for period in [2.5e-4, 1e-3, 2.5e-3, 5e-3] {
+            let mut course = Course::default();
+            course.resume(DVec3::ZERO);
+            for k in 0..100 {
+                let place = DVec3::X * 0.6 * period * f64::from((k - 40).max(0));
+                assert!(!course.step(place, period, 0.0).has_strayed, "{period}");
+            }
         }
     }
 

@@ -9,6 +9,7 @@ pub mod reason;
 pub mod report;
 pub mod serial;
 mod speedometer;
+mod transit;
 
 use glam::{DMat3, DVec3};
 

@@ -78,6 +78,8 @@ pub struct LinkReport {
     pub last_fault: Option<(u8, u16)>,
     /// Arrivals of STATE messages.
     pub arrivals: ArrivalReport,
+    /// Another process says zero should this one end.
+    pub guarded: bool,
     /// The device's greeting.
     pub greeting: Option<Greeting>,
 }

@@ -19,6 +19,7 @@ use glam::{DMat3, DVec3};
 use palpate_servo::control::safety::Limits;
 use palpate_servo::device::link::LinkDevice;
 use palpate_servo::device::link::codec::{Decoder, MAX_FRAME, encode};
+use palpate_servo::device::serial::guarded::GuardedPort;
 use palpate_servo::device::serial::port::SerialPort;
 use palpate_servo::device::serial::reopening::Reopening;
 use palpate_servo::device::{Device, DeviceFrame, Fault, LinkReport, Probe, Reading};
@@ -260,13 +261,20 @@ fn board(mut line: File, ends: &AtomicBool) {
     }
 }
 
+fn guarded(port: SerialPort) -> GuardedPort {
+    GuardedPort {
+        port,
+        needs_guardian: true,
+    }
+}
+
 #[test]
 fn a_servo_with_a_serial_device_only_sleeps_reads_and_writes() {
     let (path, line) = terminal();
     // Keeps the line up after the board has ended: a port that hangs up is closed, with calls.
     let _line_up = line.try_clone().expect("a descriptor");
     let port = SerialPort { path, baud: None };
-    let device = LinkDevice::open(Reopening::of(port).expect("a thread")).expect("a port");
+    let device = LinkDevice::open(Reopening::of(guarded(port)).expect("a thread")).expect("a port");
     let ends = Arc::new(AtomicBool::new(false));
     let boarding = std::thread::spawn({
         let ends = ends.clone();
@@ -300,7 +308,7 @@ fn a_port_that_goes_is_closed_and_opened_again_by_another_thread() {
         path: path.to_str().expect("a path").to_owned(),
         baud: None,
     };
-    let device = LinkDevice::open(Reopening::of(port).expect("a thread")).expect("a port");
+    let device = LinkDevice::open(Reopening::of(guarded(port)).expect("a thread")).expect("a port");
     let permitted = [
         libc::SYS_read,
         libc::SYS_write,

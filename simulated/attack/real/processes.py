@@ -38,9 +38,9 @@ DAMPING = 5e-3
 class Host:
     """`servo_host.py` as a process of its own, in a session of its own."""
 
-    def __init__(self, port: str) -> None:
+    def __init__(self, port: str, kind: str = "link") -> None:
         self.process = subprocess.Popen(  # noqa: S603 - our own module, no shell
-            [sys.executable, *run_module.command("simulated.attack.real.servo_host"), port],
+            [sys.executable, *run_module.command("simulated.attack.real.servo_host"), port, kind],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             text=True,

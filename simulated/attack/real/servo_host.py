@@ -1,7 +1,8 @@
 """A process that touches a small cube with the device at a port: to be stopped, or killed.
 
-It is told the port, reads lines: ``report`` prints state and fault counters, ``samples`` all ticks
-since the last time, a line of JSON each. It ends with its standard input.
+It is told the port and the kind of device, link or haply, and reads lines: ``report`` prints state
+and fault counters, ``samples`` all ticks since the last time, a line of JSON each. It ends with its
+standard input.
 """
 
 from __future__ import annotations
@@ -12,11 +13,14 @@ from typing import Any
 
 import numpy as np
 
-from ....core.servo.session import STATES, LinkDevice, Servo
+from ....core.servo.session import STATES, HaplyDevice, LinkDevice, Servo
 from ....core.servo.settings import Settings
 from ..target import YOUNG_MODULUS, cube
 
 RAMP_SECONDS = 0.1
+TOP = (0.026, 0.024, 0.05)
+UPRIGHT = ((1.0, 0.0, 0.0), (0.0, 0.0, -1.0), (0.0, 1.0, 0.0))
+"""A 2DIY that stands: its y is the body's z."""
 
 
 def samples(servo: Servo) -> list[dict[str, Any]]:
@@ -51,7 +55,10 @@ def report(servo: Servo) -> dict[str, Any]:
 def main() -> int:
     """Touch until standard input ends."""
     with Servo(cube(), Settings(YOUNG_MODULUS), ramp_seconds=RAMP_SECONDS) as servo:
-        servo.start(LinkDevice(sys.argv[1]))
+        if "haply" in sys.argv[2:]:
+            servo.start(HaplyDevice(sys.argv[1], rotation=UPRIGHT, translation=TOP))
+        else:
+            servo.start(LinkDevice(sys.argv[1]))
         for line in sys.stdin:
             answer = samples(servo) if line.strip() == "samples" else report(servo)
             print(json.dumps(answer), flush=True)

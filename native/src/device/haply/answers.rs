@@ -134,6 +134,27 @@ impl<O: Opener> HaplyDevice<O> {
         }
     }
 
+    /// Completes whatever the board still waits for, and asks for no torque.
+    fn limp_request(&self, address: u8) -> [u8; FILL_BYTES + TORQUE_BYTES] {
+        let mut message = [FILL; FILL_BYTES + TORQUE_BYTES];
+        let request = torque_message(self.model, address, [0.0; 2]);
+        message[FILL_BYTES..].copy_from_slice(&request);
+        message
+    }
+
+    /// Tells that the servo lives, and what lets the board go should it end. False if that was said since
+    /// the last tick: the servo did not run for too long.
+    pub(super) fn live(&mut self) -> bool {
+        let message = self.limp_request(self.address());
+        let is_known = self.phase != Phase::BEGIN;
+        let lived = self.line.live(if is_known { &message } else { &[] });
+        if !lived {
+            self.inbox.clear();
+            self.flight = Flight::default();
+        }
+        lived
+    }
+
     /// Finds out whether the board knows this device, and sets it up if not.
     pub(super) fn ask(&mut self, asked: Option<f64>, in_vain: u32) {
         let waited = asked.map_or(f64::INFINITY, |then| self.now - then);
@@ -153,9 +174,7 @@ impl<O: Opener> HaplyDevice<O> {
         let in_vain = if heard { in_vain + 1 } else { 0 };
         self.inbox.clear();
         self.flight = Flight::default();
-        let request = torque_message(self.model, self.model.address, [0.0; 2]);
-        let mut message = [FILL; FILL_BYTES + TORQUE_BYTES];
-        message[FILL_BYTES..].copy_from_slice(&request);
+        let message = self.limp_request(self.model.address);
         self.report.hellos += u64::from(self.line.send(&message));
         self.phase = Phase::Asking {
             asked: Some(self.now),

@@ -199,6 +199,7 @@ impl<O: Opener> Device for HaplyDevice<O> {
         if !self.line.is_open() {
             return Reading::Fault(Fault::Unplugged);
         }
+        let lived = self.live();
         if let Phase::Asking { asked, in_vain } = self.phase {
             self.ask(asked, in_vain);
             return Reading::Waiting(reason::NO_BOARD);
@@ -210,6 +211,9 @@ impl<O: Opener> Device for HaplyDevice<O> {
         }
         if !self.calibrated {
             return Reading::Waiting(reason::LOST_PLACE);
+        }
+        if !lived {
+            return Reading::Fault(Fault::Suspended);
         }
         if now - self.heard > STALE_SECONDS {
             self.speed.interrupt();
@@ -265,7 +269,10 @@ impl<O: Opener> Device for HaplyDevice<O> {
     }
 
     fn report(&self) -> LinkReport {
-        self.report
+        LinkReport {
+            guarded: self.line.is_guarded(),
+            ..self.report
+        }
     }
 }
 

@@ -173,6 +173,7 @@ impl<O: Opener> Device for LinkDevice<O> {
         if !self.line.is_open() {
             return Reading::Fault(Fault::Unplugged);
         }
+        let lived = self.live();
         if !self.is_greeted() {
             self.greet(now);
             return match self.greeting {
@@ -180,7 +181,12 @@ impl<O: Opener> Device for LinkDevice<O> {
                 None => Reading::Waiting(reason::NO_ANSWER),
             };
         }
-        if std::mem::take(&mut self.device_fault) {
+        let device_fault = std::mem::take(&mut self.device_fault);
+        if !lived {
+            // What the device says of it is the same news.
+            return Reading::Fault(Fault::Suspended);
+        }
+        if device_fault {
             return Reading::Fault(Fault::Device);
         }
         if std::mem::take(&mut self.begun_anew) {
@@ -269,6 +275,7 @@ impl<O: Opener> Device for LinkDevice<O> {
             arrivals: self.arrivals.report,
             round_trip: self.freshness.round_trip(),
             in_flight: self.freshness.in_flight() as u64,
+            guarded: self.line.is_guarded(),
             state_age: self.newest.map(|_| self.now - self.heard),
             ..self.report
         }

@@ -15,6 +15,17 @@ const HELLO_SECONDS: f64 = 0.05;
 /// Ticks in which a device hears zero after its session has ended: as long as a watchdog waits.
 pub(super) const FAREWELLS: u32 = 20;
 
+/// Number of the last word, counted from the next FORCE: ahead of all that a tick may still say.
+const AHEAD: u16 = 64;
+
+/// A frame after the end of whatever was cut short; its length.
+fn encode_after_end(payload: &[u8], message: &mut [u8; 1 + MAX_FRAME]) -> Option<usize> {
+    let mut frame = [0; MAX_FRAME];
+    let length = encode(payload, &mut frame)?;
+    message[1..].copy_from_slice(&frame);
+    Some(1 + length)
+}
+
 impl<O: Opener> LinkDevice<O> {
     /// Says HELLO, now and then.
     pub(super) fn greet(&mut self, now: f64) {
@@ -53,6 +64,30 @@ impl<O: Opener> LinkDevice<O> {
             Self::send_at_once
         };
         self.send_numbered(&payload, send)
+    }
+
+    /// Tells that the servo lives, and the zero to be said should it end. False if that was said since
+    /// the last tick: the servo did not run for too long.
+    pub(super) fn live(&mut self) -> bool {
+        let mut frame = [0; 1 + MAX_FRAME];
+        let mut length = 0;
+        if self.is_greeted() || self.farewells > 0 {
+            let sequence = self.sequence.wrapping_add(AHEAD);
+            let zero = force_payload(sequence, DVec3::ZERO, false);
+            let said = if self.protocol == PROTOCOL {
+                encode_after_end(&answering_payload(zero, &self.answer()), &mut frame)
+            } else {
+                encode_after_end(&zero, &mut frame)
+            };
+            length = said.unwrap_or(0);
+        }
+        let lived = self.line.live(&frame[..length]);
+        if !lived {
+            // Its number is used up.
+            self.sequence = self.sequence.wrapping_add(AHEAD + 1);
+            self.freshness.forget();
+        }
+        lived
     }
 
     /// Zero to a device whose session has ended, for some ticks: it may hold a force of that.

@@ -103,6 +103,21 @@ impl<O: Opener> Line<O> {
         self.pending_to - self.pending_from + wire
     }
 
+    /// Whether somebody says the last word should this process end.
+    pub fn is_guarded(&self) -> bool {
+        self.wire.as_ref().is_some_and(Wire::is_guarded)
+    }
+
+    /// Says that the servo lives, and what is to be said should it end. False if that was said since
+    /// the last time, and all that waited before it is gone.
+    pub fn live(&mut self, last_word: &[u8]) -> bool {
+        let lived = self.wire.as_mut().is_none_or(|wire| wire.live(last_word));
+        if !lived {
+            (self.pending_from, self.pending_to) = (0, 0);
+        }
+        lived
+    }
+
     /// Bits that the line takes a second, where that is known.
     pub fn bits_per_second(&self) -> Option<u32> {
         self.wire.as_ref().and_then(Wire::bits_per_second)

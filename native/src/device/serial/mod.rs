@@ -1,5 +1,7 @@
 //! Serial ports that may be unplugged and come back.
 
+pub mod guarded;
 pub(crate) mod line;
 pub mod port;
 pub mod reopening;
+mod wired;

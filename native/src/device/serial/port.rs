@@ -4,6 +4,8 @@ use std::io;
 use std::task::Poll;
 use std::time::Duration;
 
+use crate::device::serial::wired::is_wired;
+
 /// An open line to a device. Nothing here may wait or, while the line is there, allocate.
 pub trait Wire: Send {
     /// Bytes that have arrived.
@@ -33,6 +35,15 @@ pub trait Wire: Send {
     /// Bits that the line takes a second, where that is known and its own.
     fn bits_per_second(&self) -> Option<u32> {
         None
+    }
+    /// Whether somebody says the last word should this process end.
+    fn is_guarded(&self) -> bool {
+        false
+    }
+    /// Says that the servo lives, and what is to be said should it end. False if that was said since the
+    /// last time: the servo did not run for too long.
+    fn live(&mut self, _last_word: &[u8]) -> bool {
+        true
     }
 }
 
@@ -87,24 +98,6 @@ impl SerialPort {
     }
 }
 
-/// Whether the port of this path is a chip that sends bit by bit, at the speed that it was told.
-fn is_wired(path: &str) -> bool {
-    // A path may lead to the port by a link with a name that lasts.
-    let real = std::fs::canonicalize(path).unwrap_or_else(|_| path.into());
-    let name = real.to_string_lossy();
-    const CHIPS: [&str; 8] = [
-        "/dev/ttyUSB",
-        "/dev/ttyS",
-        "/dev/ttyAMA",
-        "/dev/ttyTHS",
-        "/dev/ttymxc",
-        "/dev/ttyO",
-        "/dev/cu.usbserial",
-        "/dev/tty.usbserial",
-    ];
-    CHIPS.iter().any(|chip| name.starts_with(chip))
-}
-
 #[cfg(unix)]
 pub use on_unix::SerialWire;
 #[cfg(windows)]
@@ -113,11 +106,12 @@ pub use on_windows::SerialWire;
 #[cfg(unix)]
 mod on_unix {
     use std::io;
-    use std::os::fd::AsRawFd;
+    use std::os::fd::{AsRawFd, BorrowedFd};
 
     use serialport::TTYPort;
 
     use super::Wire;
+    use crate::guardian::Guardian;
 
     /// A terminal in raw mode, read and written without waiting.
     ///
@@ -143,6 +137,12 @@ mod on_unix {
             } else {
                 Err(io::Error::last_os_error())
             }
+        }
+
+        /// Starts a guardian for this port.
+        pub(in crate::device::serial) fn guardian(&self) -> io::Result<Guardian> {
+            // SAFETY: the descriptor is open for as long as it is borrowed.
+            Guardian::of(&unsafe { BorrowedFd::borrow_raw(self.port.as_raw_fd()) })
         }
 
         /// A number of bytes that the terminal tells.
@@ -243,6 +243,7 @@ mod on_windows {
     use serialport::{COMPort, ClearBuffer, SerialPort};
 
     use super::Wire;
+    use crate::guardian::Guardian;
 
     /// A COM port.
     #[derive(Debug)]
@@ -254,6 +255,10 @@ mod on_windows {
     impl SerialWire {
         pub(super) fn new(port: COMPort, baud: Option<u32>) -> io::Result<Self> {
             Ok(Self { port, baud })
+        }
+
+        pub(in crate::device::serial) fn guardian(&self) -> io::Result<Guardian> {
+            Guardian::of(&self.port)
         }
     }
 

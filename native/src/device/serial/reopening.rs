@@ -7,7 +7,8 @@ use std::thread::{Builder, Thread};
 
 use rtrb::{Consumer, Producer, RingBuffer};
 
-use crate::device::serial::port::{Opener, SerialPort, SerialWire};
+use crate::device::serial::guarded::{GuardedPort, GuardedWire};
+use crate::device::serial::port::Opener;
 
 /// What opens one port, at the start and whenever it was away.
 ///
@@ -15,10 +16,10 @@ use crate::device::serial::port::{Opener, SerialPort, SerialWire};
 /// it likes.
 #[derive(Debug)]
 pub struct Reopening {
-    port: SerialPort,
+    port: GuardedPort,
     /// Taken when this is dropped, which ends the thread.
-    requests: Option<Producer<Option<SerialWire>>>,
-    answers: Consumer<Option<SerialWire>>,
+    requests: Option<Producer<Option<GuardedWire>>>,
+    answers: Consumer<Option<GuardedWire>>,
     thread: Thread,
 }
 
@@ -27,7 +28,7 @@ impl Reopening {
     ///
     /// # Errors
     /// When the system gives no thread.
-    pub fn of(port: SerialPort) -> io::Result<Self> {
+    pub fn of(port: GuardedPort) -> io::Result<Self> {
         let (requests, asked) = RingBuffer::new(1);
         let (answer, answers) = RingBuffer::new(1);
         let opens = port.clone();
@@ -45,9 +46,9 @@ impl Reopening {
 
 /// Closes what is gone, opens the port, and hands it over, until nobody can ask any more.
 fn serve(
-    port: &SerialPort,
-    mut asked: Consumer<Option<SerialWire>>,
-    mut answer: Producer<Option<SerialWire>>,
+    port: &GuardedPort,
+    mut asked: Consumer<Option<GuardedWire>>,
+    mut answer: Producer<Option<GuardedWire>>,
 ) {
     loop {
         let Ok(gone) = asked.pop() else {
@@ -65,13 +66,13 @@ fn serve(
 }
 
 impl Opener for Reopening {
-    type Wire = SerialWire;
+    type Wire = GuardedWire;
 
-    fn open(&mut self) -> io::Result<SerialWire> {
+    fn open(&mut self) -> io::Result<GuardedWire> {
         self.port.open()
     }
 
-    fn ask(&mut self, gone: Option<SerialWire>) {
+    fn ask(&mut self, gone: Option<GuardedWire>) {
         // There is room: whoever asks has had the answer to what was asked before.
         let Some(Ok(())) = self.requests.as_mut().map(|r| r.push(gone)) else {
             return;
@@ -79,7 +80,7 @@ impl Opener for Reopening {
         self.thread.unpark();
     }
 
-    fn answer(&mut self) -> Poll<Option<SerialWire>> {
+    fn answer(&mut self) -> Poll<Option<GuardedWire>> {
         self.answers.pop().map_or(Poll::Pending, Poll::Ready)
     }
 }

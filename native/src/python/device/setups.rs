@@ -9,6 +9,7 @@ use crate::device::haply::device::{Calibration, HaplyDevice};
 use crate::device::haply::model::Model;
 use crate::device::link::LinkDevice;
 use crate::device::pointer::{Pointer, Target};
+use crate::device::serial::guarded::GuardedPort;
 use crate::device::serial::port::SerialPort;
 use crate::device::serial::reopening::Reopening;
 use crate::device::{Device, DeviceFrame};
@@ -44,9 +45,17 @@ fn check_baud(baud: Option<u32>) -> PyResult<()> {
     }
 }
 
+fn guarded(path: String, baud: Option<u32>, needs_guardian: bool) -> GuardedPort {
+    let port = SerialPort { path, baud };
+    GuardedPort {
+        port,
+        needs_guardian,
+    }
+}
+
 #[pyclass(frozen, name = "LinkDevice", module = "palpate_servo")]
 pub struct LinkSetup {
-    port: SerialPort,
+    port: GuardedPort,
     frame: DeviceFrame,
 }
 
@@ -63,7 +72,7 @@ impl LinkSetup {
     ) -> PyResult<Self> {
         check_baud(baud)?;
         Ok(Self {
-            port: SerialPort { path: port, baud },
+            port: guarded(port, baud, false),
             frame: device_frame(rotation, translation, scale)?,
         })
     }
@@ -71,7 +80,7 @@ impl LinkSetup {
 
 #[pyclass(frozen, name = "HaplyDevice", module = "palpate_servo")]
 pub struct HaplySetup {
-    port: SerialPort,
+    port: GuardedPort,
     frame: DeviceFrame,
     model: &'static Model,
     calibration: Calibration,
@@ -98,7 +107,7 @@ impl HaplySetup {
         check_baud(baud)?;
         let (model, calibration) = haply_setup(model, angles, recalibrate, baud)?;
         Ok(Self {
-            port: SerialPort { path: port, baud },
+            port: guarded(port, baud, true),
             frame: device_frame(rotation, translation, scale)?,
             model,
             calibration,
@@ -158,14 +167,14 @@ impl DeviceSetup<'_> {
 
 fn opened<D: Device + 'static>(
     py: Python<'_>,
-    port: &SerialPort,
+    port: &GuardedPort,
     open: impl FnOnce(Reopening) -> std::io::Result<D> + Send,
 ) -> PyResult<Box<dyn Device>> {
     let opener = || Reopening::of(port.clone()).and_then(open);
     let device = py.detach(opener).map_err(|e| {
         PyOSError::new_err(format!(
             "{}: cannot be opened ({e}); close the program that uses it, or see 'palpate devices'",
-            port.path
+            port.port.path
         ))
     })?;
     Ok(Box::new(device))

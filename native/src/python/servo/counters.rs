@@ -92,6 +92,7 @@ pub fn link_counters<'py>(py: Python<'py>, link: &LinkReport) -> PyResult<Bound<
     .into_py_dict(py)?;
     counters.set_item("last_fault", link.last_fault)?;
     counters.set_item("round_trip_ms", link.round_trip.map(|s| s * 1e3))?;
+    counters.set_item("guarded", link.guarded)?;
     counters.set_item("state_age_ms", link.state_age.map(|s| s * 1e3))?;
     let arrivals = &link.arrivals;
     let mean = |sum: f64, count: u64, unit: f64| sum * unit / count.max(1) as f64;

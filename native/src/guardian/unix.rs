@@ -1,0 +1,159 @@
+//! The host's end: starts the guardian, tells it every tick that the host lives, and dismisses it.
+
+use std::ffi::OsStr;
+use std::fs::File;
+use std::io::{self, Write};
+use std::os::fd::{AsFd, AsRawFd, OwnedFd};
+use std::os::unix::net::UnixStream;
+use std::os::unix::process::CommandExt;
+use std::process::{Child, Command, Stdio};
+use std::sync::atomic::Ordering::{Relaxed, Release, SeqCst};
+use std::time::Duration;
+
+use crate::guardian::program::{DISMISSED, GUARDIAN, HOST, MOST_BYTES, Sheet, map_sheet, now_ns};
+use crate::guardian::refusal::refused;
+
+static PROGRAM: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/guardian"));
+const NAME: &str = "palpate-guardian";
+/// Waits for its end, of [`PAUSE`] each; a driver may keep it longer.
+const PAUSES: u32 = 50;
+const PAUSE: Duration = Duration::from_millis(2);
+
+/// A process that watches this one, for one open port.
+#[derive(Debug)]
+pub struct Guardian {
+    sheet: &'static Sheet,
+    /// Breaks when this process ends, or drops it.
+    tie: Option<UnixStream>,
+    child: Option<Child>,
+    process: u32,
+}
+
+impl Guardian {
+    /// Starts one for this port. Takes some milliseconds: never in a tick.
+    ///
+    /// # Errors
+    /// When the system does not let it run.
+    pub fn of(port: &impl AsFd) -> io::Result<Self> {
+        if PROGRAM.is_empty() {
+            return Err(refused("this build has none"));
+        }
+        let (tie, its_end) = UnixStream::pair().map_err(refused)?;
+        let paper = memory(c"palpate-sheet", size_of::<Sheet>()).map_err(refused)?;
+        let sheet =
+            map_sheet(paper.as_raw_fd()).ok_or_else(|| refused(io::Error::last_os_error()))?;
+        let port = port.as_fd().try_clone_to_owned().map_err(refused)?;
+        let child = with_program(|path| {
+            Command::new(path)
+                .arg0(NAME)
+                .env_clear()
+                .stdin(Stdio::from(OwnedFd::from(its_end.try_clone()?)))
+                .stdout(Stdio::from(port.try_clone()?))
+                .stderr(Stdio::from(paper.try_clone()?))
+                .spawn()
+        })
+        .map_err(refused)?;
+        Ok(Self {
+            sheet,
+            tie: Some(tie),
+            child: Some(child),
+            process: std::process::id(),
+        })
+    }
+
+    /// Says that the host lives, and what is to be said should it end: at most [`MOST_BYTES`]. False if
+    /// it was taken for dead since the last time, and the word before was said. Never waits.
+    pub fn live(&self, last_word: &[u8]) -> bool {
+        let next = (self.sheet.newest.load(Relaxed) + 1) % 2;
+        let word = &self.sheet.words[next as usize];
+        let length = last_word.len().min(MOST_BYTES);
+        word.length.store(length as u32, Relaxed);
+        for (stored, byte) in word.bytes.iter().zip(last_word) {
+            stored.store(*byte, Relaxed);
+        }
+        self.sheet.newest.store(next, Release);
+        self.sheet.alive_ns.store(now_ns(), Release);
+        self.sheet.holder.swap(HOST, SeqCst) != GUARDIAN
+    }
+}
+
+impl Drop for Guardian {
+    /// The device was let go: nothing is left to say. In a fork the guardian is the parent's.
+    fn drop(&mut self) {
+        let Some(mut child) = self.child.take() else {
+            return;
+        };
+        if self.process != std::process::id() {
+            return;
+        }
+        self.sheet.holder.store(DISMISSED, SeqCst);
+        self.tie = None;
+        for _ in 0..PAUSES {
+            if !matches!(child.try_wait(), Ok(None)) {
+                break;
+            }
+            std::thread::sleep(PAUSE);
+        }
+        let at = std::ptr::from_ref(self.sheet).cast_mut();
+        // SAFETY: mapped by `map_sheet` for this one alone, and used no more.
+        let _ = unsafe { libc::munmap(at.cast(), size_of::<Sheet>()) };
+    }
+}
+
+/// Memory as a file, all zero, that no other program can name.
+#[cfg(target_os = "linux")]
+fn memory(name: &std::ffi::CStr, bytes: usize) -> io::Result<File> {
+    use std::os::fd::FromRawFd;
+    // SAFETY: the name ends with a zero; what is returned is a new descriptor or an error.
+    let file = unsafe {
+        match libc::memfd_create(name.as_ptr(), libc::MFD_CLOEXEC) {
+            -1 => return Err(io::Error::last_os_error()),
+            descriptor => File::from_raw_fd(descriptor),
+        }
+    };
+    file.set_len(bytes as u64)?;
+    Ok(file)
+}
+
+#[cfg(not(target_os = "linux"))]
+fn memory(name: &std::ffi::CStr, bytes: usize) -> io::Result<File> {
+    use std::os::fd::FromRawFd;
+    let name = format!("/{}-{}\0", name.to_string_lossy(), std::process::id());
+    let flags = libc::O_RDWR | libc::O_CREAT | libc::O_EXCL;
+    // SAFETY: the name ends with a zero and is given back at once; what is returned is a new descriptor,
+    // closed when another program is started, or an error.
+    let file = unsafe {
+        let descriptor = libc::shm_open(name.as_ptr().cast(), flags, 0o600);
+        if descriptor == -1 {
+            return Err(io::Error::last_os_error());
+        }
+        libc::shm_unlink(name.as_ptr().cast());
+        libc::fcntl(descriptor, libc::F_SETFD, libc::FD_CLOEXEC);
+        File::from_raw_fd(descriptor)
+    };
+    file.set_len(bytes as u64)?;
+    Ok(file)
+}
+
+/// Starts something with a path to the program, which is nowhere on the disk.
+#[cfg(target_os = "linux")]
+fn with_program<T>(start: impl FnOnce(&OsStr) -> io::Result<T>) -> io::Result<T> {
+    let mut file = memory(c"palpate-guardian", 0)?;
+    file.write_all(PROGRAM)?;
+    start(format!("/proc/self/fd/{}", file.as_raw_fd()).as_ref())
+}
+
+/// Starts something with a path to the program, which is on the disk only as long as that takes.
+#[cfg(not(target_os = "linux"))]
+fn with_program<T>(start: impl FnOnce(&OsStr) -> io::Result<T>) -> io::Result<T> {
+    use std::os::unix::fs::OpenOptionsExt;
+    let name = format!("{NAME}-{}-{}", std::process::id(), now_ns());
+    let path = std::env::temp_dir().join(name);
+    let mut open = std::fs::OpenOptions::new();
+    let mut file = open.write(true).create_new(true).mode(0o700).open(&path)?;
+    let written = file.write_all(PROGRAM);
+    drop(file);
+    let started = written.and_then(|()| start(path.as_ref()));
+    std::fs::remove_file(&path)?;
+    started
+}

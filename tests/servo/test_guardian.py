@@ -1,0 +1,42 @@
+"""The guardian: whatever ends a host, the last word on the line is zero."""
+
+import os
+import signal
+import sys
+
+import pytest
+
+from palpate.simulated.attack.real import guardians, processes
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="looks for processes in /proc")
+
+
+@pytest.mark.parametrize("kind", guardians.KINDS)
+@pytest.mark.parametrize("number", guardians.SIGNALS, ids=lambda number: number.name)
+def test_the_last_word_is_zero(number, kind):
+    last = guardians.end_by(number, kind)
+    assert last.pushed
+    assert last.words
+    assert not last.words[-1].pushes
+
+
+def test_it_ends_with_its_host_and_hears_nothing_that_the_group_is_told():
+    known = set(guardians.guardians())
+    with processes.device() as hand, processes.Host(hand.port) as host:
+        processes.press(host, hand)
+        (own,) = set(guardians.guardians()) - known
+        assert os.getsid(own) == own != os.getsid(host.process.pid)
+        for number in (signal.SIGHUP, signal.SIGINT, signal.SIGTERM):
+            os.kill(own, number)
+        processes.press(host, hand)
+        assert own in guardians.guardians()
+        host.process.communicate()
+        assert host.process.returncode == 0
+        assert own not in guardians.guardians()
+
+
+def test_a_host_that_goes_on_has_its_port_back():
+    with processes.device() as hand, processes.Host(hand.port) as host:
+        suspension = processes.suspend(host, hand, 0.1)
+        assert suspension.problems() == []
+        processes.press(host, hand)
