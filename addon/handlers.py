@@ -6,7 +6,9 @@ from pathlib import Path
 import bpy
 from bpy.app.handlers import persistent
 
+from ..core.bake.job import SCRATCH_WORDS
 from ..core.errors import PalpateError
+from ..core.files import scratch_folder
 from ..operators.bake import bake_session
 from ..operators.object import body_store, kept_body
 from ..operators.scene import live_shape
@@ -116,7 +118,8 @@ HANDLERS = {
 
 
 def register() -> None:
-    """Add the handlers."""
+    """Add the handlers, and remove what a Blender that was killed left behind."""
+    scratch_folder.sweep(SCRATCH_WORDS)
     for name, handler in HANDLERS.items():
         getattr(bpy.app.handlers, name).append(handler)
     atexit.register(_before_exit)
