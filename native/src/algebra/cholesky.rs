@@ -1,6 +1,8 @@
 //! A = L L^T of a small symmetric positive definite matrix, in memory that is already there; kept up
 //! to date while rows come and go (Golub and Van Loan 2013, 6.5.4).
 
+use std::ops::Range;
+
 use super::{MOST_POINTS, ROW, room};
 use crate::algebra::wide::widely;
 
@@ -39,17 +41,37 @@ fn total(lanes: &[f64; LANES], a: &[f64], b: &[f64]) -> f64 {
         + tail
 }
 
-/// The sums of products of four rows with one, each as [`dot`] has it, to the bit: what is loaded of
+/// The sum of products of three pairs together, in a fixed order of additions.
+#[inline(always)]
+pub fn dot_three(a: [&[f64]; 3], b: [&[f64]; 3]) -> f64 {
+    let n = a[0].len();
+    let [a, b] = [a, b].map(|rows| rows.map(|row| &row[..n]));
+    let mut lanes = [0.0; LANES];
+    let mut k = 0;
+    while k + LANES <= n {
+        let end = k + LANES;
+        let (a0, a1, a2) = (&a[0][k..end], &a[1][k..end], &a[2][k..end]);
+        let (b0, b1, b2) = (&b[0][k..end], &b[1][k..end], &b[2][k..end]);
+        for l in 0..LANES {
+            lanes[l] += a0[l] * b0[l] + a1[l] * b1[l] + a2[l] * b2[l];
+        }
+        k += LANES;
+    }
+    let rest = |r: usize| total(&[0.0; LANES], &a[r][k..], &b[r][k..]);
+    total(&lanes, &[], &[]) + rest(0) + rest(1) + rest(2)
+}
+
+/// The sums of products of some rows with one, each as [`dot`] has it, to the bit: what is loaded of
 /// the one serves all.
 #[inline(always)]
-fn dots(rows: [&[f64]; 4], head: &[f64]) -> [f64; 4] {
+fn dots<const N: usize>(rows: [&[f64]; N], head: &[f64]) -> [f64; N] {
     let n = head.len();
-    let rows = [&rows[0][..n], &rows[1][..n], &rows[2][..n], &rows[3][..n]];
-    let mut lanes = [[0.0; LANES]; 4];
+    let rows = rows.map(|row| &row[..n]);
+    let mut lanes = [[0.0; LANES]; N];
     let mut k = 0;
     while k + LANES <= n {
         let y = &head[k..k + LANES];
-        for r in 0..4 {
+        for r in 0..N {
             let x = &rows[r][k..k + LANES];
             for l in 0..LANES {
                 lanes[r][l] += x[l] * y[l];
@@ -57,8 +79,11 @@ fn dots(rows: [&[f64]; 4], head: &[f64]) -> [f64; 4] {
         }
         k += LANES;
     }
-    let rest = |r: usize| total(&lanes[r], &rows[r][k..], &head[k..]);
-    [rest(0), rest(1), rest(2), rest(3)]
+    let mut sums = [0.0; N];
+    for r in 0..N {
+        sums[r] = total(&lanes[r], &rows[r][k..], &head[k..]);
+    }
+    sums
 }
 
 /// The lower factor, row by row.
@@ -136,6 +161,11 @@ impl Factor {
         solve_lower(&self.rows, &self.inverse_pivots, self.size, b);
     }
 
+    /// The same for three columns that are zero before row `first`.
+    pub fn solve_lower_three(&self, columns: &mut [[f64; MOST_POINTS]; 3], first: usize) {
+        solve_lower_three(&self.rows, &self.inverse_pivots, first..self.size, columns);
+    }
+
     /// x with A x = b, in place of b.
     pub fn solve(&self, b: &mut [f64]) {
         self.solve_lower(b);
@@ -148,6 +178,25 @@ widely! {
         for i in 0..size {
             let row = &rows[i * ROW..][..i];
             b[i] = (b[i] - dot(row, &b[..i])) * inverse_pivots[i];
+        }
+    }
+}
+
+widely! {
+    fn solve_lower_three(
+        rows: &[f64],
+        inverse_pivots: &[f64],
+        range: Range<usize>,
+        columns: &mut [[f64; MOST_POINTS]; 3],
+    ) {
+        let first = range.start;
+        for i in range {
+            let row = &rows[i * ROW..][first..i];
+            let [x, y, z] = [0, 1, 2].map(|k: usize| &columns[k][first..i]);
+            let sums = dots([x, y, z], row);
+            for (column, sum) in columns.iter_mut().zip(sums) {
+                column[i] = (column[i] - sum) * inverse_pivots[i];
+            }
         }
     }
 }

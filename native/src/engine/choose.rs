@@ -20,10 +20,10 @@ const MOST_FETCHED: usize = 256;
 /// Points that may enter in one tick times those that are looked at, whose response to each of them
 /// is reckoned.
 const MOST_RESPONSES: usize = 2000;
-/// Points that may take the place of farther ones in one tick, and by which share of the margin they
+/// Points of a tool on a body that may take the place of farther ones in one tick, and by which share of the margin they
 /// are nearer: which of two is nearer turns to and fro where both are about to be touched.
-const MOST_REPLACED: usize = 4;
-const NEARER: f64 = 0.25;
+const MOST_REPLACED: usize = 2;
+const NEARER: f64 = 0.5;
 /// Points that may be let go in one tick.
 const MOST_LEAVING: usize = 24;
 
@@ -60,13 +60,13 @@ impl Joint {
             return true;
         };
         self.offer(pair, collider.tool(), side, &pose);
+        self.rank(pair, collider.tool(), side, &pose);
         self.let_in(pair, collider.tool(), side, &pose, grounds, beside)
     }
 
     /// Lets points go that are far.
     fn let_leave(&mut self, pair: [u8; 2], tool: &Tool, side: &Side, pose: &Pose) {
-        let margin = MARGIN * side.surface().spacing();
-        let could_fill = self.has_room(pair[0], MOST_ENTERING).is_err();
+        let limit = FORGOTTEN * MARGIN * side.surface().spacing();
         let mut left = 0;
         for place in (0..self.patch.slots().len()).rev() {
             let slot = &mut self.patch.slots_mut()[place];
@@ -75,17 +75,8 @@ impl Joint {
             }
             let rest = slot.at.position;
             slot.free = tool.distance(pose.to_tool(rest + slot.moved));
-            slot.nearest = slot.free.0;
-            if slot.force != DVec3::ZERO {
-                continue;
-            }
-            let is_gone = slot.nearest > FORGOTTEN * margin;
-            if is_gone || could_fill {
-                let at_rest = tool.distance(pose.to_tool(rest)).0;
-                slot.nearest = slot.nearest.min(at_rest);
-            }
-            let is_far = is_gone && slot.nearest > FORGOTTEN * margin;
-            if is_far && left < MOST_LEAVING && !self.is_beside_pressed(place, tool, side, pose) {
+            let is_gone = slot.force == DVec3::ZERO && slot.free.0 > limit && left < MOST_LEAVING;
+            if is_gone && self.nearest_elsewhere(place, tool, side, pose) > limit {
                 self.patch.leave(place);
                 left += 1;
             }
@@ -129,6 +120,22 @@ impl Joint {
                 }
             }
         }
+    }
+
+    /// Points go as far back among those that enter as they are if moved like any neighbour that is
+    /// looked at: one that only seems near would take the place of another again and again.
+    fn rank(&mut self, pair: [u8; 2], tool: &Tool, side: &Side, pose: &Pose) {
+        let (surface, patch) = (side.surface(), &self.patch);
+        for (distance, point) in &mut self.entering {
+            let position = surface.points()[*point as usize].position;
+            for &other in surface.neighbours(*point) {
+                if let Some(other) = patch.slot(pair, other) {
+                    let place = pose.to_tool(position + other.moved);
+                    *distance = distance.max(tool.distance(place).0);
+                }
+            }
+        }
+        self.entering.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
     }
 
     /// Takes in what was offered; whether it was all there is.
@@ -210,20 +217,22 @@ impl Joint {
             + self.moved_by_points(ground, beside, nodes, closest.alpha)
     }
 
-    /// Whether a point would be near the tool if it went where a pressed neighbour went.
-    fn is_beside_pressed(&self, place: usize, tool: &Tool, side: &Side, pose: &Pose) -> bool {
+    /// How near a point would be to the tool where it is offered from: at rest, carried by others, or
+    /// moved like a pressed neighbour. One that was let go for being farther would come back at once.
+    fn nearest_elsewhere(&self, place: usize, tool: &Tool, side: &Side, pose: &Pose) -> f64 {
         let slot = &self.patch.slots()[place];
-        let surface = side.surface();
-        let limit = FORGOTTEN * MARGIN * surface.spacing();
-        let mut others = surface.neighbours(slot.point).iter();
-        others.any(|&other| {
-            self.patch
-                .slot([slot.tool, slot.body], other)
-                .is_some_and(|other| {
-                    let place = pose.to_tool(slot.at.position + other.moved);
-                    other.force != DVec3::ZERO && tool.distance(place).0 <= limit
-                })
-        })
+        let moved_by = |moved: DVec3| tool.distance(pose.to_tool(slot.at.position + moved)).0;
+        let mut nearest = moved_by(DVec3::ZERO);
+        if side.carried != DVec3::ZERO {
+            nearest = nearest.min(moved_by(side.carried));
+        }
+        for &other in side.surface().neighbours(slot.point) {
+            let other = self.patch.slot([slot.tool, slot.body], other);
+            if let Some(other) = other.filter(|other| other.force != DVec3::ZERO) {
+                nearest = nearest.min(moved_by(other.moved));
+            }
+        }
+        nearest
     }
 
     /// Whether there is room for some more points of a tool.
@@ -245,7 +254,7 @@ impl Joint {
     fn make_room(&mut self, distance: f64, among: Option<u8>) -> bool {
         let mut farthest: Option<(f64, usize)> = None;
         for (number, slot) in self.patch.slots().iter().enumerate() {
-            let near = slot.nearest;
+            let near = slot.free.0;
             let counts = slot.force == DVec3::ZERO && among.is_none_or(|tool| tool == slot.tool);
             if counts && near > farthest.map_or(distance, |(d, _)| d) {
                 farthest = Some((near, number));
@@ -257,10 +266,11 @@ impl Joint {
     }
 }
 
-/// Keeps the nearest points, nearest first.
+/// Keeps the nearest points, nearest first; one that was offered from several places by the farthest.
 fn insert(entering: &mut Vec<(f64, u32)>, distance: f64, point: u32) {
-    if entering.iter().any(|&(_, other)| other == point) {
-        return;
+    let mut distance = distance;
+    if let Some(before) = entering.iter().position(|&(_, other)| other == point) {
+        distance = distance.max(entering.remove(before).0);
     }
     let place = entering.partition_point(|&(d, _)| d <= distance);
     if place < MOST_ENTERING {

@@ -170,15 +170,17 @@ impl Joint {
     /// The complementarity problem of the distances linearised about the displacements.
     fn linearise(&mut self, led: &AllLed<'_>, rubs: bool) {
         self.chosen.clear();
-        let mut normals = [DVec3::ZERO; MOST_POINTS];
+        let mut normals = [[0.0; MOST_POINTS]; 3];
         for (number, slot) in self.patch.slots_mut().iter_mut().enumerate() {
             (slot.distance, slot.normal) = slot.seen;
+            for (axis, along) in normals.iter_mut().zip(slot.normal.to_array()) {
+                axis[number] = along;
+            }
             if slot.distance < watched(led, [slot.tool, slot.body]) || slot.force != DVec3::ZERO {
                 let place = self.chosen.len();
                 self.problem.forces[place] = slot.push;
                 let given = slot.moved - slot.offset;
                 self.problem.gaps[place] = slot.distance - slot.normal.dot(given);
-                normals[place] = slot.normal;
                 self.chosen.push(number);
             }
         }
@@ -189,21 +191,23 @@ impl Joint {
             }
         }
         self.problem.begin(self.chosen.len());
-        self.patch.begin_sum();
-        for (j, &loaded) in self.chosen.iter().enumerate() {
-            self.patch.add(loaded, self.patch.slots()[loaded].aside);
-            let [x, y, z] = self.patch.moved_by(loaded, normals[j]);
-            for (i, &seen) in self.chosen.iter().enumerate().skip(j) {
-                let moved = DVec3::new(x[seen], y[seen], z[seen]);
-                self.problem.set(i, j, normals[i].dot(moved));
+        self.patch.begin_sum(|slot| slot.aside, |_| DVec3::ZERO);
+        let mut along = [0.0; MOST_POINTS];
+        for (i, &loaded) in self.chosen.iter().enumerate() {
+            if rubs {
+                self.patch.add(loaded);
+            }
+            let normal = self.patch.slots()[loaded].normal;
+            self.patch.moved_along(loaded, normal, &normals, &mut along);
+            for (j, &seen) in self.chosen[..=i].iter().enumerate() {
+                self.problem.set(i, j, along[seen]);
             }
         }
         self.add_springs(led);
         if rubs {
-            let [x, y, z] = self.patch.sum();
             for (place, &number) in self.chosen.iter().enumerate() {
-                let given = DVec3::new(x[number], y[number], z[number]);
-                self.problem.gaps[place] += normals[place].dot(given);
+                let normal = self.patch.slots()[number].normal;
+                self.problem.gaps[place] += normal.dot(self.patch.summed(number));
             }
         }
     }

@@ -44,19 +44,23 @@ impl Joint {
         }
         let (face, factor) = self.problem.on_face();
         let mut columns = [[0.0; MOST_POINTS]; 3];
+        let mut first = face.len();
         for (place, &i) in face.iter().enumerate() {
             let slot = &self.patch.slots()[self.chosen[i]];
             if slot.is_of(pair) {
+                first = first.min(place);
                 for (column, n) in columns.iter_mut().zip(slot.normal.to_array()) {
                     column[place] = n;
                 }
             }
         }
-        for column in &mut columns {
-            factor.solve_lower(&mut column[..face.len()]);
-        }
-        let product =
-            |a: usize, b: usize| dot(&columns[a][..face.len()], &columns[b][..face.len()]);
+        factor.solve_lower_three(&mut columns, first);
+        let product = |a: usize, b: usize| {
+            dot(
+                &columns[a][first..face.len()],
+                &columns[b][first..face.len()],
+            )
+        };
         let [xy, yz, zx] = [product(0, 1), product(1, 2), product(2, 0)];
         DMat3::from_cols(
             DVec3::new(product(0, 0), xy, zx),

@@ -1,6 +1,6 @@
 //! All tools in one tick: one problem of contact, with the points beside them.
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
 use crate::algebra::MOST_POINTS;
 use crate::contact::cones::MAX_FINGERS;
@@ -114,7 +114,6 @@ impl Joint {
                 linearisations,
                 exact: exact && all_in[number],
                 effort: self.effort,
-                stiffness: DMat3::ZERO,
                 ..Felt::default()
             };
             let mut nearest = [None; MOST_BODIES];

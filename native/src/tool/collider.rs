@@ -1,5 +1,6 @@
 //! A rigid tool on one or more bodies: where it is, and what it felt in the last tick.
 
+mod felt;
 mod marks;
 pub(crate) mod side;
 
@@ -9,9 +10,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use glam::{DMat3, DQuat, DVec3};
 
 use super::coefficients::{Friction, Posed};
+pub use felt::{Felt, NotANumber};
 use side::Side;
 
-use super::effort::Effort;
 use super::points::ToolSurface;
 use super::shape::{Pose, Tool};
 use super::slot::{MOST_NEAR, Slot};
@@ -20,29 +21,6 @@ use crate::contact::ground::MOST_BODIES;
 
 /// Strides within which any tool is outside of any body.
 const MOST_STRIDES_OUT: u32 = 2000;
-
-/// What the tool feels, and how it was found.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Felt {
-    /// Force on the tool, N.
-    pub force: DVec3,
-    /// Torque on the tool about its reference point, N m.
-    pub torque: DVec3,
-    /// How the force resists a small move of the tool while other tools stay, N/m.
-    pub stiffness: DMat3,
-    /// Points that are pressed.
-    pub pressed: usize,
-    /// Linearisations it took.
-    pub linearisations: usize,
-    /// All points near were looked at, and displacements stopped changing within the bound.
-    pub exact: bool,
-    /// What the tick took, of all tools.
-    pub effort: Effort,
-}
-
-/// What came out is no number: no force may be made of it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct NotANumber;
 
 /// A tool's contact points on each body that it may touch, by the body's place in the list.
 pub type Surfaces = [Option<Arc<ToolSurface>>; MOST_BODIES];

@@ -7,6 +7,8 @@
 //! forces before; pushes and forces aside take turns, once a linearisation (P. D. Panagiotopoulos,
 //! 1975). What a tick leaves to be found the next ones find; the discs hold at any moment.
 
+mod in_place;
+
 use glam::{DVec2, DVec3};
 
 use super::coefficients::{AllPosed, Posed};
@@ -19,6 +21,8 @@ use crate::algebra::{MOST_POINTS, room};
 const MOST_SWEEPS: usize = 16;
 /// Multiplications of the sweeps in one linearisation, about; one sweep there is always.
 const MOST_WORK: usize = 80_000;
+/// For fewer sweeps than these no matrix is set up.
+const WORTH_A_MATRIX: usize = 2;
 /// Forces that move their points by less than this share of the tool's reach have been found.
 const CONVERGED: f64 = 1e-6;
 /// A force aside within this share of its limit slips.
@@ -81,17 +85,23 @@ impl Rubbing {
             slot.force = slot.normal * slot.push + slot.aside;
             pressed += usize::from(slot.push > 0.0);
         }
-        self.set_up(patch, tools);
         let rubbed = self.rubbed.len();
         self.work = 9 * pressed * near;
         if rubbed == 0 {
+            patch.displace();
             return true;
         }
-        let sweep = 4 * rubbed * rubbed;
-        let sweeps = (MOST_WORK / sweep).clamp(1, MOST_SWEEPS);
         let present = || tools.iter().flatten();
         let reach = present().fold(f64::INFINITY, |least, tool| least.min(tool.reach));
-        let (rubbing, least) = (&mut *self, CONVERGED * reach);
+        let least = CONVERGED * reach;
+        let sweep = 4 * rubbed * rubbed;
+        let sweeps = (MOST_WORK / sweep).min(MOST_SWEEPS);
+        if sweeps < WORTH_A_MATRIX {
+            self.work += 9 * (rubbed + near) * near;
+            return self.rub_in_place(patch, tools) <= least;
+        }
+        self.set_up(patch, tools);
+        let rubbing = &mut *self;
         let (made, found) = sweep_through(rubbing, sweeps, least);
         for (&(number, [first, second], limit), force) in
             self.rubbed.iter().zip(self.forces.chunks_exact(2))
@@ -107,10 +117,10 @@ impl Rubbing {
 
     /// Moves the slots as their forces ask for, and sets up Tresca's problem about these.
     fn set_up(&mut self, patch: &mut Patch, tools: &AllPosed) {
-        patch.begin_displacing();
+        patch.begin_sum(|slot| slot.force, |slot| slot.offset);
         let mut first = 0;
         for number in 0..patch.slots().len() {
-            patch.add(number, patch.slots()[number].force);
+            patch.add(number);
             if self.rubbed.get(first).is_some_and(|&(k, ..)| k == number) {
                 self.set_rows(patch, first);
                 first += 1;
@@ -130,12 +140,12 @@ impl Rubbing {
         }
     }
 
-    /// The matrix between a point and those behind it.
+    /// The matrix between a point and those before it.
     fn set_rows(&mut self, patch: &mut Patch, k: usize) {
         let (number, directions, _) = self.rubbed[k];
         for (a, direction) in directions.into_iter().enumerate() {
             let [x, y, z] = patch.moved_by(number, direction);
-            for (l, &(seen, across, _)) in self.rubbed.iter().enumerate().skip(k) {
+            for (l, &(seen, across, _)) in self.rubbed[..=k].iter().enumerate() {
                 let moved = DVec3::new(x[seen], y[seen], z[seen]);
                 for (b, other) in across.into_iter().enumerate() {
                     let entry = other.dot(moved);

@@ -1,36 +1,38 @@
 //! The contact points near all tools, and how each gives way to a force on each other.
 
+mod products;
 mod response;
 mod slot_numbers;
 
-use std::ops::Range;
-
 use glam::{DMat3, DVec3};
 
+use products::{Vectors, add_along, add_moved, at, gather, set};
 use slot_numbers::SlotNumbers;
 
 use super::blocks::{Blocks, Recent};
 use super::points::ToolSurface;
 use super::slot::Slot;
-use crate::algebra::wide::widely;
 use crate::algebra::{MOST_POINTS, room};
 use crate::contact::cones::MAX_FINGERS;
 use crate::contact::ground::Ground;
 
-/// Numbers of a column: how all slots give way to a force on one, an entry of the blocks after the
-/// other, row by row, each for all slots.
-const COLUMN: usize = 9 * MOST_POINTS;
+/// Numbers of a slot: how those up to it give way to a force on it, an entry of the blocks after the
+/// other, row by row, each for all of them. How others do follows by symmetry: a processor can keep
+/// half of a full patch at hand, but not all of it.
+const BLOCKS: usize = 9 * MOST_POINTS;
 
 /// Slots in use and the compliance between them.
 #[derive(Debug, Clone)]
 pub struct Patch {
     slots: Vec<Slot>,
     numbers: SlotNumbers,
-    /// C_ij at unit modulus, a column for each loaded slot j.
+    /// C_ij at unit modulus, [`BLOCKS`] for each loaded slot j.
     compliance: Vec<f64>,
-    /// Displacements under all forces, an axis after the other, and under one.
-    moved: [[f64; MOST_POINTS]; 3],
-    by_one: [[f64; MOST_POINTS]; 3],
+    /// Forces whose displacements are summed up, and these.
+    forces: Vectors,
+    moved: Vectors,
+    /// Displacements under one force.
+    by_one: Vectors,
     blocks: Blocks,
     /// The same beyond a half-space.
     beyond: Blocks,
@@ -43,7 +45,8 @@ impl Patch {
         Self {
             slots: Vec::with_capacity(MOST_POINTS),
             numbers: SlotNumbers::new(),
-            compliance: room(COLUMN * MOST_POINTS),
+            compliance: room(BLOCKS * MOST_POINTS),
+            forces: [[0.0; MOST_POINTS]; 3],
             moved: [[0.0; MOST_POINTS]; 3],
             by_one: [[0.0; MOST_POINTS]; 3],
             blocks: Blocks::new(),
@@ -71,65 +74,98 @@ impl Patch {
             .map(|number| &self.slots[number])
     }
 
-    /// How a slot gives way to a force on another, m/N at unit modulus.
+    /// How slots up to one give way to a force on it.
     #[inline]
-    fn compliance(&self, i: usize, j: usize) -> DMat3 {
-        let entry =
-            |r: usize, c: usize| self.compliance[j * COLUMN + (3 * r + c) * MOST_POINTS + i];
-        DMat3::from_cols_array_2d(&[0, 1, 2].map(|c| [0, 1, 2].map(|r| entry(r, c))))
+    fn blocks_of(&self, slot: usize) -> &[f64] {
+        &self.compliance[slot * BLOCKS..][..BLOCKS]
     }
 
-    /// How far slots move under a force on one of them, m at unit modulus, an axis after the other:
-    /// that one and those behind it, by symmetry enough for a matrix.
+    /// How a slot gives way to a force on another, m/N at unit modulus.
     #[inline]
-    pub(crate) fn moved_by(&mut self, slot: usize, force: DVec3) -> &[[f64; MOST_POINTS]; 3] {
-        let range = slot..self.slots.len();
+    pub(crate) fn compliance(&self, i: usize, j: usize) -> DMat3 {
+        let (low, high) = (i.min(j), i.max(j));
+        let blocks = self.blocks_of(high);
+        let entry = |r: usize, c: usize| blocks[(3 * r + c) * MOST_POINTS + low];
+        let block = DMat3::from_cols_array_2d(&[0, 1, 2].map(|c| [0, 1, 2].map(|r| entry(r, c))));
+        if i <= j { block } else { block.transpose() }
+    }
+
+    /// How far slots move under a force on one of them, m at unit modulus: that one and those before
+    /// it, by symmetry enough for a matrix.
+    #[inline]
+    pub(crate) fn moved_by(&mut self, slot: usize, force: DVec3) -> &Vectors {
         for axis in &mut self.by_one {
-            axis[range.clone()].fill(0.0);
+            axis[..=slot].fill(0.0);
         }
-        let column = &self.compliance[slot * COLUMN..][..COLUMN];
-        let moved = &mut self.by_one;
-        add_moved(column, force, moved, &range);
+        let blocks = &self.compliance[slot * BLOCKS..][..BLOCKS];
+        add_moved(blocks, force, &mut self.by_one, slot + 1);
         &self.by_one
     }
 
-    /// Begins to sum up how far all slots move, from zero.
-    pub(crate) fn begin_sum(&mut self) {
-        for axis in &mut self.moved {
+    /// How far they move along a way of each.
+    #[inline]
+    pub(crate) fn moved_along(&self, slot: usize, force: DVec3, ways: &Vectors, along: &mut [f64]) {
+        add_along(self.blocks_of(slot), force, ways, &mut along[..=slot]);
+    }
+
+    /// Begins to sum up how far forces move all slots, from a displacement of each.
+    pub(crate) fn begin_sum(
+        &mut self,
+        force: impl Fn(&Slot) -> DVec3,
+        from: impl Fn(&Slot) -> DVec3,
+    ) {
+        for (i, slot) in self.slots.iter().enumerate() {
+            set(&mut self.forces, i, force(slot));
+            set(&mut self.moved, i, from(slot));
+        }
+    }
+
+    /// Adds what a slot and those before it do to each other. Once for each slot that is loaded or
+    /// asked about, in their order, this makes the sum: what is kept of a slot is read once for all
+    /// that it is needed for.
+    #[inline]
+    pub(crate) fn add(&mut self, slot: usize) {
+        self.see(slot);
+        self.load(slot, at(&self.forces, slot));
+    }
+
+    /// Adds how far the forces on the slots before one move it; how far it moves so far.
+    #[inline]
+    pub(crate) fn see(&mut self, slot: usize) -> DVec3 {
+        let by_others = DVec3::from_array(gather(self.blocks_of(slot), &self.forces, slot));
+        let moved = self.summed(slot) + by_others;
+        set(&mut self.moved, slot, moved);
+        moved
+    }
+
+    /// Adds how far a slot and those before it move under a force on it, which those behind have yet
+    /// to [`Self::see`].
+    #[inline]
+    pub(crate) fn load(&mut self, slot: usize, force: DVec3) {
+        set(&mut self.forces, slot, force);
+        if force != DVec3::ZERO {
+            let blocks = &self.compliance[slot * BLOCKS..][..BLOCKS];
+            add_moved(blocks, force, &mut self.moved, slot + 1);
+        }
+    }
+
+    /// Goes on with the sum from other forces than those that it has: none so far.
+    pub(crate) fn begin_changes(&mut self) {
+        for axis in &mut self.forces {
             axis[..self.slots.len()].fill(0.0);
         }
     }
 
-    /// The same from what points do.
-    pub(crate) fn begin_displacing(&mut self) {
-        for (i, slot) in self.slots.iter().enumerate() {
-            for (axis, offset) in self.moved.iter_mut().zip(slot.offset.to_array()) {
-                axis[i] = offset;
-            }
-        }
-    }
-
-    /// Adds how far all slots move under a force on one of them. The columns of a full patch are more
-    /// than a processor keeps at hand, so each is read once for all that it is needed for: this, and
-    /// [`Self::moved_by`].
+    /// How far a slot moves by the sum, m at unit modulus.
     #[inline]
-    pub(crate) fn add(&mut self, slot: usize, force: DVec3) {
-        if force != DVec3::ZERO {
-            let column = &self.compliance[slot * COLUMN..][..COLUMN];
-            add_moved(column, force, &mut self.moved, &(0..self.slots.len()));
-        }
-    }
-
-    /// The sum, m at unit modulus, an axis after the other.
-    #[inline]
-    pub(crate) fn sum(&self) -> &[[f64; MOST_POINTS]; 3] {
-        &self.moved
+    pub(crate) fn summed(&self, slot: usize) -> DVec3 {
+        at(&self.moved, slot)
     }
 
     /// Displaces the slots by the sum.
     pub(crate) fn end_displacing(&mut self) {
         for (i, slot) in self.slots.iter_mut().enumerate() {
-            slot.moved = DVec3::from_array([0, 1, 2].map(|axis| self.moved[axis][i]));
+            slot.moved = at(&self.moved, i);
         }
     }
 
@@ -178,15 +214,10 @@ impl Patch {
 
     /// How far the forces on some slots move one, m.
     pub(crate) fn moved_of(&self, slot: usize, counts: impl Fn(&Slot) -> bool) -> DVec3 {
-        // By symmetry its own column tells how it moves under forces on the others.
-        let column = &self.compliance[slot * COLUMN..][..COLUMN];
         let mut moved = DVec3::ZERO;
         for (j, other) in self.slots.iter().enumerate() {
             if other.force != DVec3::ZERO && counts(other) {
-                let entry = |r: usize, c: usize| column[(3 * r + c) * MOST_POINTS + j];
-                let along = |c: usize| DVec3::new(entry(0, c), entry(1, c), entry(2, c));
-                let along = [0, 1, 2].map(|c| along(c).dot(other.force));
-                moved += DVec3::from_array(along);
+                moved += self.compliance(slot, j) * other.force;
             }
         }
         moved
@@ -194,11 +225,12 @@ impl Patch {
 
     #[inline]
     fn put(&mut self, i: usize, j: usize, block: DMat3) {
+        let (low, high) = (i.min(j), i.max(j));
+        let block = if i <= j { block } else { block.transpose() };
+        let blocks = &mut self.compliance[high * BLOCKS..][..BLOCKS];
         for c in 0..3 {
             for r in 0..3 {
-                let entry = block.col(c)[r];
-                self.compliance[j * COLUMN + (3 * r + c) * MOST_POINTS + i] = entry;
-                self.compliance[i * COLUMN + (3 * c + r) * MOST_POINTS + j] = entry;
+                blocks[(3 * r + c) * MOST_POINTS + low] = block.col(c)[r];
             }
         }
     }
@@ -233,31 +265,10 @@ impl Patch {
 
     /// Moves every slot as its forces and the offset ask for.
     pub(crate) fn displace(&mut self) {
-        self.begin_displacing();
+        self.begin_sum(|slot| slot.force, |slot| slot.offset);
         for number in 0..self.slots.len() {
-            self.add(number, self.slots[number].force);
+            self.add(number);
         }
         self.end_displacing();
-    }
-}
-
-widely! {
-    /// Adds how far some slots move under a force on one of them.
-    fn add_moved(
-        column: &[f64],
-        force: DVec3,
-        moved: &mut [[f64; MOST_POINTS]; 3],
-        range: &Range<usize>,
-    ) {
-        for (r, axis) in moved.iter_mut().enumerate() {
-            let rows = &column[3 * r * MOST_POINTS..][..3 * MOST_POINTS];
-            let x = &rows[range.start..range.end];
-            let y = &rows[MOST_POINTS + range.start..MOST_POINTS + range.end];
-            let z = &rows[2 * MOST_POINTS + range.start..2 * MOST_POINTS + range.end];
-            let sums = &mut axis[range.start..range.end];
-            for i in 0..sums.len() {
-                sums[i] += x[i] * force.x + y[i] * force.y + z[i] * force.z;
-            }
-        }
     }
 }

@@ -46,8 +46,6 @@ pub struct Slot {
     pub(crate) free: (f64, DVec3),
     /// The same as pushes are held, in the body's frame: what the next linearisation begins with.
     pub(crate) seen: (f64, DVec3),
-    /// Of the distances now and, where it was asked for, at rest the lesser, m.
-    pub(crate) nearest: f64,
     /// How far the point moves along an axis under a force along it, at most, m/N at unit modulus.
     pub(crate) gives: f64,
 }
@@ -78,7 +76,6 @@ impl Slot {
             distance: 0.0,
             free: (0.0, DVec3::ZERO),
             seen: (0.0, DVec3::ZERO),
-            nearest: 0.0,
             gives: 0.0,
         }
     }

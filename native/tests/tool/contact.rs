@@ -245,3 +245,13 @@ fn surfaces_that_do_not_fit_are_refused() {
     let bare = ToolSurface::new(crate::bodies::cube(), good.points().to_vec(), None);
     assert!(bare.expect_err("no compliance").0.contains("whole"));
 }
+
+#[test]
+fn a_tool_in_the_air_has_no_stiffness() {
+    let mut contact = on_cube(sphere(0.01), 3);
+    assert_eq!(contact.felt().stiffness, DMat3::ZERO);
+    force(&mut contact, &at(0.025, 0.025, TOP + LIFT));
+    assert_eq!(contact.felt().stiffness, DMat3::ZERO);
+    assert!(contact.follow(&at(f64::NAN, 0.0, 0.0), MODULUS).is_err());
+    assert_eq!(contact.felt().stiffness, DMat3::ZERO);
+}

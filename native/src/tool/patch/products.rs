@@ -1,0 +1,71 @@
+//! Products of what is kept of one slot of a patch with vectors of all slots before it.
+
+use glam::DVec3;
+
+use crate::algebra::MOST_POINTS;
+use crate::algebra::cholesky::dot_three;
+use crate::algebra::wide::widely;
+
+/// A vector for each slot, an axis after the other.
+pub(in crate::tool) type Vectors = [[f64; MOST_POINTS]; 3];
+
+#[inline]
+pub(super) fn at(vectors: &Vectors, i: usize) -> DVec3 {
+    DVec3::new(vectors[0][i], vectors[1][i], vectors[2][i])
+}
+
+#[inline]
+pub(super) fn set(vectors: &mut Vectors, i: usize, vector: DVec3) {
+    for (axis, number) in vectors.iter_mut().zip(vector.to_array()) {
+        axis[i] = number;
+    }
+}
+
+widely! {
+    /// Adds how far the first slots move under a force on the one whose blocks these are.
+    pub(super) fn add_moved(blocks: &[f64], force: DVec3, moved: &mut Vectors, count: usize) {
+        for (r, axis) in moved.iter_mut().enumerate() {
+            let rows = &blocks[3 * r * MOST_POINTS..][..3 * MOST_POINTS];
+            let x = &rows[..count];
+            let y = &rows[MOST_POINTS..][..count];
+            let z = &rows[2 * MOST_POINTS..][..count];
+            let sums = &mut axis[..count];
+            for i in 0..sums.len() {
+                sums[i] += x[i] * force.x + y[i] * force.y + z[i] * force.z;
+            }
+        }
+    }
+}
+
+widely! {
+    /// How far the one whose blocks these are moves under forces on the first slots.
+    pub(super) fn gather(blocks: &[f64], forces: &Vectors, count: usize) -> [f64; 3] {
+        let mut moved = [0.0; 3];
+        for (c, sum) in moved.iter_mut().enumerate() {
+            let part = |r: usize| &blocks[(3 * r + c) * MOST_POINTS..][..count];
+            let [x, y, z] = forces;
+            let forces = [&x[..count], &y[..count], &z[..count]];
+            *sum = dot_three([part(0), part(1), part(2)], forces);
+        }
+        moved
+    }
+}
+
+widely! {
+    /// How far the first slots move, each along its own way, under a force on the one whose blocks
+    /// these are.
+    pub(super) fn add_along(blocks: &[f64], force: DVec3, ways: &Vectors, along: &mut [f64]) {
+        let count = along.len();
+        along.fill(0.0);
+        for (r, way) in ways.iter().enumerate() {
+            let rows = &blocks[3 * r * MOST_POINTS..][..3 * MOST_POINTS];
+            let x = &rows[..count];
+            let y = &rows[MOST_POINTS..][..count];
+            let z = &rows[2 * MOST_POINTS..][..count];
+            let way = &way[..count];
+            for i in 0..count {
+                along[i] += way[i] * (x[i] * force.x + y[i] * force.y + z[i] * force.z);
+            }
+        }
+    }
+}
