@@ -136,6 +136,13 @@ impl Relation {
         self.softened(u).force(self.stiffness * u, slope)
     }
 
+    /// Energy of the body with its contact point moved by `u`: its slope is [`force`](Self::force).
+    #[inline]
+    pub fn energy(&self, u: DVec3) -> f64 {
+        let linear = 0.5 * (self.stiffness * u).dot(u);
+        linear * LEAST_SHARE + self.softened(u).energy * (1.0 - LEAST_SHARE)
+    }
+
     /// Derivative of [`force`](Self::force): symmetric, positive definite.
     #[inline]
     pub fn tangent(&self, u: DVec3) -> DMat3 {
@@ -254,6 +261,12 @@ impl Blend {
         (self.shares.iter().zip(alpha))
             .map(|(share, a)| choice * share * a)
             .sum()
+    }
+
+    /// Whether all that was chosen and is known is in.
+    pub fn is_settled(&self) -> bool {
+        let is_whole = |share: f64| share == 0.0 || share == 1.0;
+        self.choice.is_none_or(is_whole) && self.shares.into_iter().all(is_whole)
     }
 
     /// A tick of `dt` seconds on a triangle with these nodes; their softenings as they are felt.

@@ -4,3 +4,4 @@ pub mod coupling;
 pub mod passivity;
 pub mod safety;
 pub mod state;
+pub mod toll;

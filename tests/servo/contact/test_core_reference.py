@@ -21,6 +21,9 @@ def random_alpha(rng):
     return alpha / alpha.sum()
 
 
+REST_TICKS = 50
+
+
 @pytest.mark.parametrize("mode", ["paper", "consistent"])
 def test_native_force_equals_the_reference_at_random_presses(body, mode):
     rng = np.random.default_rng(1999)
@@ -45,6 +48,12 @@ def test_the_running_servo_publishes_what_the_reference_computes(body, mode):
         snapshot = servo.snapshot()
         deadline = time.monotonic() + 20
         while not (snapshot.touching and np.allclose(snapshot.probe, above - [0, 0, 0.02])):
+            assert time.monotonic() < deadline, snapshot
+            time.sleep(0.01)
+            snapshot = servo.snapshot()
+        # At rest no brake is left of the way (`native/src/control/toll.rs`).
+        arrived = snapshot.tick
+        while snapshot.tick < arrived + REST_TICKS:
             assert time.monotonic() < deadline, snapshot
             time.sleep(0.01)
             snapshot = servo.snapshot()

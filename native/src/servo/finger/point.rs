@@ -9,8 +9,11 @@ use crate::algebra::series_share;
 use crate::body::face::closest_on_face;
 use crate::body::softening::{Blend, Relation, Softening};
 use crate::body::surface::Body;
-use crate::contact::touch::{contact_relation, softened_touch, surface_displacement, touch};
+use crate::contact::touch::{
+    ContactMode, contact_relation, softened_touch, surface_displacement, touch,
+};
 use crate::control::coupling::{Contact, Coupled, Coupler, series_compliance};
+use crate::control::toll::{Pressed, Toll};
 use crate::fingers::press::{Answer, Press};
 use crate::proxy::{Proxy, SurfacePoint};
 use crate::servo::settings::Moment;
@@ -21,6 +24,7 @@ pub(super) struct Point {
     pub proxy: Option<Proxy>,
     pub among: Among,
     pub blend: Blend,
+    toll: Toll,
 }
 
 impl Point {
@@ -30,6 +34,7 @@ impl Point {
             proxy: None,
             among: Among::fresh(),
             blend: Blend::default(),
+            toll: Toll::default(),
         }
     }
 
@@ -37,6 +42,7 @@ impl Point {
     pub fn turn_to(&mut self, body: &Body, place: DVec3) {
         self.among = Among::default();
         self.blend.let_go();
+        self.toll.forget();
         if let Some(proxy) = &mut self.proxy {
             proxy.restart(body, place);
         }
@@ -114,9 +120,14 @@ impl Point {
             }
         };
         let Some(hold) = followed.hold else {
+            if followed.is_sound {
+                let modulus = followed.moment.settings.young_modulus;
+                self.toll.lift(followed.shot.probe, modulus);
+            }
             return Touch::none(followed);
         };
         if let Some(answer) = answer.filter(|_| acts) {
+            self.toll.forget();
             return self.feel_others(followed, &hold, answer, coupler);
         }
         let mut touch = self.feel_alone(followed, &hold, coupler);
@@ -153,9 +164,12 @@ impl Point {
             body_displacement: displacement,
             force: whole.force,
         };
-        if followed.motors.is_some() {
+        let (mut push, mut energy) = (-whole.force, -0.5 * whole.force.dot(displacement));
+        if is_softened || followed.motors.is_some() {
             let relation = contact_relation(body, mode, triangle, alpha, &felt);
-            coupled = if is_softened {
+            coupled = if followed.motors.is_none() {
+                coupled
+            } else if is_softened {
                 drive_softened(followed, &relation, coupler)
             } else {
                 let contact = Contact {
@@ -165,10 +179,28 @@ impl Point {
                 };
                 followed.couple(coupler, &contact)
             };
+            let moved = coupled.body_displacement;
+            push = relation.force(moved) * young_modulus;
+            // The coupling's spring holds what it is pressed together by.
+            energy = relation.energy(moved) * young_modulus + 0.5 * push.dot(displacement - moved);
         }
+        let brake = if mode == ContactMode::Consistent {
+            let pressed = Pressed {
+                finger: followed.shot.probe,
+                place: followed.shot.proxy,
+                push,
+                energy,
+                modulus: young_modulus,
+                is_settled: self.blend.is_settled(),
+            };
+            self.toll.take(pressed, followed.moment.dt)
+        } else {
+            self.toll.forget();
+            DVec3::ZERO
+        };
         let reached = coupled.body_displacement;
         let shot = Snapshot {
-            contact_force: whole.force,
+            contact_force: whole.force + brake,
             nodal_forces: if !is_softened && reached == displacement {
                 whole.nodal_forces
             } else {
@@ -178,7 +210,7 @@ impl Point {
             ..followed.shot
         };
         let shot = self.on_surface(followed, hold, shot, DVec3::ZERO);
-        Touch::of(followed, shot, coupled.force)
+        Touch::of(followed, shot, coupled.force + brake)
     }
 
     /// The contact of a finger among others.

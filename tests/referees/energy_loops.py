@@ -1,0 +1,123 @@
+"""Closed paths of a finger in a body, and the work that goes round them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+Vectors = NDArray[np.float64]
+Follow = Callable[[Vectors], tuple[Vectors, Vectors]]
+
+# Depths and radii, in edges of the mesh.
+DEPTHS = (0.1, 4.0)
+RADII = (0.1, 4.0)
+# Rounds are at most so many depths wide: wider ones leave the body as a rule.
+WIDEST = 3.0
+# Share of loops that begin on an edge or a node of the mesh.
+ON_BORDERS = 0.5
+# Ticks of a way in, and of a round.
+PRESS = 200
+ROUND = 1600
+# Ticks at rest before the first round and after the last one.
+REST = 20
+# Contact points so near to each other, in depths, are the same.
+SAME = 0.02
+
+
+@dataclass(frozen=True)
+class Loop:
+    """A way in from the air, along a normal, and a round that begins and ends there.
+
+    Attributes
+    ----------
+    depth : metres.
+    press : (k, 3), metres.
+    round : (n, 3), metres; the last place is the first one.
+    """
+
+    depth: float
+    press: Vectors
+    round: Vectors
+
+    @property
+    def path(self) -> Vectors:
+        """In, at rest, round twice, at rest, and out as it came, (ticks, 3)."""
+        begin = np.repeat(self.round[:1], REST, axis=0)
+        rounds = (self.round[1:], self.round[1:])
+        return np.concatenate([self.press, begin, *rounds, begin, self.press[::-1]])
+
+
+@dataclass(frozen=True)
+class Books:
+    """What a loop gave, each as a share of F d / 2: its largest force, the depth of the press.
+
+    Attributes
+    ----------
+    rounds : energy that came out of each round. Only of those that touched throughout, and whose
+        contact point ended where it began: past a ridge it may lie on the other side, where less of
+        what the press has put in is held.
+    path : of the whole path, from air to air.
+    """
+
+    rounds: tuple[float, ...]
+    path: float
+
+
+def random_loops(
+    nodes: Vectors, triangles: NDArray[np.int64], free: NDArray[np.bool_], count: int, seed: int
+) -> Iterator[Loop]:
+    """Ellipses in any plane, at any place of a surface whose triangles are free to move.
+
+    ``nodes`` (n, 3) in metres, ``triangles`` (t, 3), ``free`` (n,).
+    """
+    random = np.random.default_rng(seed)
+    triangles = triangles[free[triangles].all(axis=1)]
+    a, b, c = (nodes[triangles[:, k]] for k in range(3))
+    normals = np.cross(b - a, c - a)
+    areas = np.linalg.norm(normals, axis=1)
+    normals /= areas[:, None]
+    edge = float(np.sqrt(2.0 / np.sqrt(3.0) * np.median(areas)))
+    angle = np.linspace(0.0, 2.0 * np.pi, ROUND + 1)[:, None]
+    for _ in range(count):
+        triangle = random.choice(len(triangles), p=areas / areas.sum())
+        alpha = random.dirichlet(np.ones(3))
+        if random.random() < ON_BORDERS:
+            alpha *= random.permutation([1.0, random.integers(2), 0.0])
+            alpha /= alpha.sum()
+        depth = edge * np.exp(random.uniform(*np.log(DEPTHS)))
+        wide = min(edge * np.exp(random.uniform(*np.log(RADII))), WIDEST * depth)
+        narrow = wide * random.uniform(0.3, 1.0)
+        plane = np.linalg.qr(random.normal(size=(3, 3)))[0]
+        start = alpha @ nodes[triangles[triangle]] - depth * normals[triangle]
+        heights = np.linspace(1.05 * depth, 0.0, PRESS)[:, None]
+        ellipse = (1.0 - np.cos(angle)) * plane[0] * wide + np.sin(angle) * plane[1] * narrow
+        ellipse[-1] = 0.0
+        yield Loop(float(depth), start + heights * normals[triangle], start + 0.5 * ellipse)
+
+
+def books(loop: Loop, follow: Follow) -> Books | None:
+    """The work of a loop by the trapezoidal rule; None where nothing was felt.
+
+    ``follow`` leads a finger on and gives forces on it, newton, and at the end its contact point.
+    """
+    path = loop.path
+    ends = [0, *(PRESS + REST + number * ROUND for number in range(3)), len(path)]
+    parts = [follow(path[begin:end]) for begin, end in pairwise(ends)]
+    forces = np.concatenate([part[0] for part in parts])
+    places = [part[1] for part in parts]
+    size = np.linalg.norm(forces, axis=1)
+    if size.max() == 0.0:
+        return None
+    work = np.einsum("tx,tx->t", 0.5 * (forces[1:] + forces[:-1]), np.diff(path, axis=0))
+    work /= 0.5 * size.max() * loop.depth
+    rounds = []
+    for number in range(2):
+        begin = PRESS + REST - 1 + number * ROUND
+        moved = np.linalg.norm(places[number + 1] - places[number])
+        if size[begin : begin + ROUND + 1].min() > 0.0 and moved < SAME * loop.depth:
+            rounds.append(float(work[begin : begin + ROUND].sum()))
+    return Books(tuple(rounds), float(work.sum()))
