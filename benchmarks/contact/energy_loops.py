@@ -2,14 +2,14 @@
 
     python benchmarks/contact/energy_loops.py [--loops N] [--seed S] [--body NAME]
 
-A finger comes from the air, goes in along a normal, twice round an ellipse in any plane, and out as
-it came: over facets, edges, corners and thin parts of the sample bodies, 0.1 to 4 edges of the mesh
-deep and wide, in steps of less than a hundredth of the depth, by the servo's own ticks. Work is that
-of the contact force by the trapezoidal rule, as a share of F d / 2 (largest force, depth of the
-press). Columns: rounds that touched throughout and ended where they began, the share of them that gave
-more than 0.1 and 1 %, the most that one gave, and the mean loss of the others; the same of whole paths,
-from air to air. ``paper`` is as published, without a claim. Exit status 1 where another mode gave more
-than 0.1 %.
+A finger comes from the air, goes in along a normal, twice round an ellipse in any plane, and out
+as it came: over facets, edges, corners and thin parts of the sample bodies, 0.1 to 4 edges of the
+mesh deep and wide, in steps of less than a hundredth of the depth, by the servo's own ticks. Work
+is that of the contact force by the trapezoidal rule, as a share of F d / 2 (largest force, depth of
+the press). Columns: rounds that touched throughout and ended where they began, the share of them
+that gave more than 0.1 and 1 %, the most that one gave, and the mean loss of the others; the same
+of whole paths, from air to air. ``paper`` is as published, without a claim. Exit status 1 where
+another mode gave more than 0.1 %.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ import argparse
 import sys
 
 import numpy as np
-from palpate.benchmarks.contact.continuity import BODIES, YOUNG_MODULUS, soft_body
 from numpy.typing import NDArray
 from palpate_servo import Body
 from palpate_servo.harness import SteppedFingers
 
+from palpate.benchmarks.contact.continuity import BODIES, YOUNG_MODULUS, soft_body
 from palpate.core.body.soft_body import SoftBody
 from palpate.core.servo.session import native_body
 from palpate.core.servo.settings import Settings

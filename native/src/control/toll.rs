@@ -15,9 +15,9 @@
 use glam::DVec3;
 
 /// Debts are paid within about this share of the depth,
-const PAYING: f64 = 0.02;
+const PAYING: f64 = 0.008;
 /// the brake turns within this one,
-const TURNING: f64 = 0.02;
+const TURNING: f64 = 0.01;
 /// and grows as large as the push, or falls from there, within this one.
 const GROWING: f64 = 0.1;
 /// This share of the energy may be owed: work adds up from tick to tick to rounding and bends.
@@ -25,6 +25,8 @@ const FREE: f64 = 1.0e-4;
 /// A contact point that moved by less than this share of the depth has stayed: then the work of the law
 /// is what the energy gains, however long the step.
 const SAME_PLACE: f64 = 1.0e-9;
+/// No depth, m: less cannot be divided by.
+const SHALLOWEST: f64 = 1.0e-100;
 /// A finger at rest loses the brake within this time, s.
 const REST: f64 = 0.02;
 
@@ -92,7 +94,7 @@ impl Toll {
         };
         let most = pressed.push.length();
         let depth = 2.0 * pressed.energy / most;
-        let is_pressed = most > 0.0 && depth > 0.0 && depth.is_finite();
+        let is_pressed = most > 0.0 && depth > SHALLOWEST && depth.is_finite();
         if !is_pressed {
             (self.debt, self.brake) = (0.0, 0.0);
             self.against = DVec3::ZERO;

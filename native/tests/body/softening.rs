@@ -2,7 +2,8 @@
 
 use crate::bodies::Dice;
 use glam::{DMat3, DVec3};
-use palpate_servo::body::softening::{BLEND_SECONDS, Blend, Felt, Relation, Softening, Softenings};
+use palpate_servo::body::softening::blend::Blend;
+use palpate_servo::body::softening::{BLEND_SECONDS, Felt, Relation, Softening, Softenings};
 
 fn relation(dice: &mut Dice) -> Relation {
     let columns = [0, 1, 2].map(|_| dice.direction());

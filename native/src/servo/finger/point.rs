@@ -7,7 +7,8 @@ use super::followed::Followed;
 use super::touch::Touch;
 use crate::algebra::series_share;
 use crate::body::face::closest_on_face;
-use crate::body::softening::{Blend, Relation, Softening};
+use crate::body::softening::blend::Blend;
+use crate::body::softening::{Relation, Softening};
 use crate::body::surface::Body;
 use crate::contact::touch::{
     ContactMode, contact_relation, softened_touch, surface_displacement, touch,
