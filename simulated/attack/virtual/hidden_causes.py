@@ -15,7 +15,7 @@ import numpy as np
 
 from ....core.servo import link
 from ...hand.quaternion import UPRIGHT, Quaternion, about
-from .cause import Cause, Inject, Outcome, anywhere, silent, unfelt
+from .cause import Inject, anywhere, silent, unfelt
 from .line_causes import hold_upright, without_orientation
 from .shot import Shot
 from .virtual_press import Place, VirtualPress, flagged
@@ -47,7 +47,7 @@ def _jumping(press: VirtualPress, jumps: list[tuple[float, Place]]) -> Callable[
     return lambda time: start + sum((by for at, by in jumps if time >= at), np.zeros(3))
 
 
-def _play(press: VirtualPress, ticks: int = AFTER_TICKS) -> list[Shot]:
+def play(press: VirtualPress, ticks: int = AFTER_TICKS) -> list[Shot]:
     """Some ticks of what was prepared; then path, line and clock go on as usual."""
     shots = [press.tick() for _ in range(ticks)]
     ahead = press.clock(press.now) - press.now
@@ -113,7 +113,7 @@ def _jump(
             press.arrival = _held_back(press, dice, at)
         elif jitter:
             press.arrival = _jittering(dice)
-        return _play(press)
+        return play(press)
 
     return inject
 
@@ -122,7 +122,7 @@ def _after_loss(press: VirtualPress, dice: Random) -> list[Shot]:
     lost = dice.randint(1, 8)
     least = max(SMALLEST, NO_HAND * (lost + 1) / press.rate_hz)
     press.path = _jumping(press, [(press.now, _inwards(press, dice, least))])
-    return [*(press.tick(lambda _: b"") for _ in range(lost)), *_play(press)]
+    return [*(press.tick(lambda _: b"") for _ in range(lost)), *play(press)]
 
 
 def _after_being_held_up(press: VirtualPress, dice: Random) -> list[Shot]:
@@ -130,13 +130,13 @@ def _after_being_held_up(press: VirtualPress, dice: Random) -> list[Shot]:
     seconds = dice.randint(2, 8) / press.rate_hz
     by = _inwards(press, dice, SMALLEST)
     press.path = _jumping(press, [(press.now + dice.uniform(0.0, seconds), by)])
-    return [press.tick(seconds=seconds), *_play(press)]
+    return [press.tick(seconds=seconds), *play(press)]
 
 
 def _with_a_session(press: VirtualPress, dice: Random) -> list[Shot]:
     figures = replace(press.device.hello, largest_force=dice.uniform(5.0, 50.0))
     press.path = _jumping(press, [(press.now, _inwards(press, dice))])
-    return [press.tick(lambda sent: link.encode(figures) + sent), *_play(press)]
+    return [press.tick(lambda sent: link.encode(figures) + sent), *play(press)]
 
 
 def _with_the_plug(press: VirtualPress, dice: Random) -> list[Shot]:
@@ -145,7 +145,7 @@ def _with_the_plug(press: VirtualPress, dice: Random) -> list[Shot]:
     press.path = _jumping(press, [(press.now, _inwards(press, dice))])
     press.servo.plug_in()
     press.device.plug_in()
-    return shots + _play(press, 2 * AFTER_TICKS)
+    return shots + play(press, 2 * AFTER_TICKS)
 
 
 def _with_flipped_bits(press: VirtualPress, dice: Random) -> list[Shot]:
@@ -167,7 +167,7 @@ def _without_turn(press: VirtualPress, dice: Random) -> list[Shot]:
     lost = dice.randint(1, 18)
     at = press.now + dice.randint(0, lost) / press.rate_hz
     press.path = _jumping(press, [(at, _inwards(press, dice))])
-    return [*(press.tick(without_orientation) for _ in range(lost)), *_play(press)]
+    return [*(press.tick(without_orientation) for _ in range(lost)), *play(press)]
 
 
 def _in_a_burst(alter: Callable[[link.State, Random], link.State], turned: bool = False) -> Inject:
@@ -205,25 +205,6 @@ def _far(state: link.State, dice: Random) -> link.State:
     most = (1 << 31) - 1
     place = (dice.randint(-most, most), dice.randint(-most, most), dice.randint(-most, most))
     return replace(state, position_um=place)
-
-
-def _honest(timer: float = 0.0, jitter: float = 0.0) -> Inject:
-    """A hand at up to 1 m/s, off the body and back."""
-
-    def inject(press: VirtualPress, dice: Random) -> list[Shot]:
-        start, begun = press.position.copy(), press.now
-        way = 0.5 * dice.uniform(0.01, 0.06)
-        pace = dice.uniform(0.3, 1.0) / way
-        press.path = lambda time: (
-            start - press.target.inward * way * (1.0 - np.cos(pace * (time - begun)))
-        )
-        if timer:
-            press.arrival = lambda time: np.ceil(time / timer) * timer
-        elif jitter:
-            press.arrival = lambda time: time + dice.uniform(0.0, jitter)
-        return _play(press, 300)
-
-    return inject
 
 
 def _flagged(flags: link.StateFlag) -> Inject:
@@ -266,6 +247,4 @@ HIDDEN_CAUSES = (
         _in_a_burst(lambda state, dice: replace(state, buttons=1 << dice.randrange(8))),
         "disabled: device button",
     ),
-    Cause("an honest hand, jitter of 3 ms", _honest(jitter=0.003), Outcome.UNNOTICED, rates=RATES),
-    Cause("an honest hand, latency timer of 16 ms", _honest(timer=0.016), Outcome.UNNOTICED),
 )
