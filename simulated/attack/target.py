@@ -65,8 +65,8 @@ def baked_target(path: Path) -> Target:
     native = native_body(body)
     nodes = body.mesh.nodes[body.mesh.surface_nodes]
     size = float(np.linalg.norm(np.ptp(nodes, axis=0)))
-    top = nodes[np.argmax(nodes[:, 2])]
-    triangle, alpha, place, _ = native.closest_point(top)
+    middles = nodes[body.mesh.surface_local_triangles].mean(axis=1)
+    triangle, alpha, place, _ = native.closest_point(middles[np.argmax(middles[:, 2])])
     inward = np.array([0.0, 0.0, -1.0])
     depth = DEPTH_SHARE * size
     _, felt = native.contact(triangle, alpha, depth * inward, 1.0)
