@@ -118,6 +118,7 @@ def _draw_link(layout: bpy.types.UILayout, link: LinkCounters) -> None:
         ("Out of Order", f"{link['duplicates'] + link['out_of_order']:,}"),
         ("Not Sent", f"{link['unsent']:,}"),
         ("Opened Again", f"{link['reopened']:,}"),
+        ("Guardian", "\N{CHECK MARK}" if link["guarded"] else "\N{EN DASH}"),
     ]
     if link["state_age_ms"] is not None:
         rows.append(("Age of Position", f"{link['state_age_ms']:.1f} ms"))

@@ -14,7 +14,7 @@ use std::time::Duration;
 
 /// A host that has given no sign of life for so long has stopped, ns: the zero that follows is there
 /// within 20 ms, when a device's own watchdog would wait no longer either.
-pub const SILENCE_NS: u64 = 15_000_000;
+pub const SILENCE_NS: u64 = 12_000_000;
 /// Longest last word, bytes.
 pub const MOST_BYTES: usize = 64;
 /// Times that it is said: one may be lost on the line.
