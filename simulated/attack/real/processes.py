@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from types import TracebackType
 from typing import Any, Self
 
+from ....core.errors import PalpateError
 from ....core.machine import run_module
 from ...hand.options import SimulatedOptions
 from ...simulated_process import SimulatedDevice
@@ -82,11 +83,16 @@ class Host:
 
 
 def eventually(condition: Callable[[], bool], what: str) -> None:
-    """Wait for something; RuntimeError when it does not come."""
+    """Wait for something; PalpateError when it does not come."""
     deadline = time.monotonic() + PATIENCE_SECONDS
     while not condition():
         if time.monotonic() > deadline:
-            raise RuntimeError(f"{what}: did not happen within {PATIENCE_SECONDS:g} s")
+            raise PalpateError(
+                "attack: waited {seconds:g} s in vain until {what}; give this computer less to do, "
+                "and try again",
+                seconds=PATIENCE_SECONDS,
+                what=what,
+            )
         time.sleep(0.005)
 
 
