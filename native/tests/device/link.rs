@@ -289,7 +289,7 @@ fn a_jump_is_measured_as_speed() {
 #[test]
 fn a_full_line_drops_new_forces_and_never_tears_a_frame() {
     let (bench, mut device) = greeted();
-    read(&mut device, 0.001);
+    read(&mut device, 0.010);
     bench.line().full = true;
     for _ in 0..10 {
         device.write(DVec3::X, true, &FRAME());
@@ -330,7 +330,7 @@ fn the_frame_maps_positions_and_forces() {
         scale: 2.0,
         epoch: 0,
     };
-    let Reading::At(probe) = device.read(0.001, 1e-3, &frame) else {
+    let Reading::At(probe) = device.read(0.010, 1e-3, &frame) else {
         panic!("not greeted");
     };
     assert!(probe.position.distance(DVec3::new(0.0, 2e-3, 0.5)) < 1e-12);
@@ -352,13 +352,13 @@ fn an_older_device_is_spoken_to_in_its_own_words() {
     assert_eq!(device.report().device_faults, 0);
     bench.hello(1, 2.5);
     bench.state(0, 1000, 0, 1);
-    assert_eq!(position(read(&mut device, 0.002)), 1e-3);
+    assert_eq!(position(read(&mut device, 0.012)), 1e-3);
     device.write(DVec3::X, true, &FRAME());
     assert_eq!(bench.received()[0].len(), 10);
     assert_eq!(device.report().round_trip, None);
     // It says so again when the port was away.
     bench.line().gone = true;
-    read(&mut device, 0.003);
+    read(&mut device, 0.013);
     bench.line().gone = false;
     read(&mut device, 0.3);
     assert_eq!(bench.received(), [[1, 2]]);

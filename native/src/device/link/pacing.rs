@@ -15,8 +15,8 @@ const SHARE: f64 = 0.05;
 /// A STATE that comes this many ticks after the one before, on average, or sooner, may share a tick
 /// with it and leave the next one without.
 const DENSE_TICKS: f64 = 1.5;
-/// Longest FORCE, as part of the shortest STATE: the line may still carry the one before, sent late.
-const FORCE_SHARE: f64 = 0.85;
+/// Of the shortest STATE on the line.
+const STATE_BYTES: f64 = 25.0;
 /// Bits that a byte takes on the line.
 const BITS: f64 = 10.0;
 
@@ -31,6 +31,7 @@ pub struct Pacing {
     sent: f64,
     /// Until then the line carries what was sent, s.
     busy_until: f64,
+    is_speed_known: bool,
 }
 
 impl Default for Pacing {
@@ -41,6 +42,7 @@ impl Default for Pacing {
             heard: f64::NEG_INFINITY,
             sent: f64::NEG_INFINITY,
             busy_until: f64::NEG_INFINITY,
+            is_speed_known: false,
         }
     }
 }
@@ -57,26 +59,25 @@ impl Pacing {
         self.heard = now;
         let most = if self.is_dense(dt) { 2 } else { 1 };
         self.credit = (self.credit + 1).min(most);
+        if self.is_dense(dt) && !self.is_speed_known {
+            // What was reckoned while little was known of the line.
+            self.busy_until = f64::NEG_INFINITY;
+        }
     }
 
     fn is_dense(&self, dt: f64) -> bool {
         self.interval
-            .is_none_or(|seconds| seconds <= DENSE_TICKS * dt)
+            .is_some_and(|seconds| seconds <= DENSE_TICKS * dt)
     }
 
     /// Whether a FORCE may leave now: one for each STATE, and now and then without one, or a device
-    /// whose STATE are lost would take the host for lost.
+    /// whose STATE are lost would take the host for lost; not before the line has carried what it was
+    /// given, to half a tick.
     pub fn is_due(&self, now: f64, dt: f64) -> bool {
-        let since = now - self.sent;
         let interval = self.interval.unwrap_or(UNKNOWN_SECONDS);
-        let is_carried = self.is_dense(dt) || since >= FORCE_SHARE * interval - 0.5 * dt;
-        let is_late = since >= (REPEAT_INTERVALS * interval).max(REPEAT_SECONDS);
-        (self.credit > 0 && is_carried) || is_late
-    }
-
-    /// Whether the line has carried what was sent, to half a tick.
-    pub fn is_free(&self, now: f64, dt: f64) -> bool {
-        self.busy_until <= now + 0.5 * dt
+        let is_late = now - self.sent >= (REPEAT_INTERVALS * interval).max(REPEAT_SECONDS);
+        let is_free = self.busy_until <= now + 0.5 * dt;
+        is_free && (self.credit > 0 || is_late)
     }
 
     /// A FORCE left.
@@ -85,12 +86,16 @@ impl Pacing {
         self.sent = now;
     }
 
-    /// So many bytes were given to a line of `bits_per_second`, if that is known.
-    pub fn carry(&mut self, bytes: usize, bits_per_second: Option<u32>, now: f64) {
-        if let Some(speed) = bits_per_second {
-            let seconds = bytes as f64 * BITS / f64::from(speed);
-            self.busy_until = self.busy_until.max(now) + seconds;
-        }
+    /// So many bytes were given to a line of `bits_per_second`. Where that is not known, the line is
+    /// at least as fast as STATE comes.
+    pub fn carry(&mut self, bytes: usize, bits_per_second: Option<u32>, now: f64, dt: f64) {
+        self.is_speed_known = bits_per_second.is_some();
+        let a_byte = match bits_per_second {
+            Some(speed) => BITS / f64::from(speed),
+            None if self.is_dense(dt) => 0.0,
+            None => self.interval.unwrap_or(UNKNOWN_SECONDS) / STATE_BYTES,
+        };
+        self.busy_until = self.busy_until.max(now) + bytes as f64 * a_byte;
     }
 }
 
@@ -99,7 +104,6 @@ mod tests {
     use super::*;
 
     const DT: f64 = 1e-3;
-    const STATE_BYTES: f64 = 25.0;
     const FORCE_BYTES: usize = 14;
 
     /// Longest wait of a FORCE behind others on a line of this speed that carries both directions
@@ -119,6 +123,7 @@ mod tests {
             }
             if pacing.is_due(now, DT) {
                 pacing.send(now);
+                pacing.carry(FORCE_BYTES, None, now, DT);
                 sent += 1;
                 longest = longest.max(line_free - now);
                 line_free = line_free.max(now) + seconds(FORCE_BYTES as f64);
@@ -182,10 +187,10 @@ mod tests {
     #[test]
     fn a_line_whose_speed_is_known_is_given_one_message_at_a_time() {
         let mut pacing = Pacing::default();
-        pacing.carry(14, None, 0.0);
-        assert!(pacing.is_free(0.0, DT));
+        pacing.hear(0.0, DT);
+        assert!(pacing.is_due(0.0, DT));
         // 14 bytes at 9600 baud are 14.6 ms.
-        pacing.carry(14, Some(9_600), 0.0);
-        assert!(!pacing.is_free(0.014, DT) && pacing.is_free(0.0142, DT));
+        pacing.carry(FORCE_BYTES, Some(9_600), 0.0, DT);
+        assert!(!pacing.is_due(0.014, DT) && pacing.is_due(0.0142, DT));
     }
 }

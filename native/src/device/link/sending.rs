@@ -46,7 +46,7 @@ impl<O: Opener> LinkDevice<O> {
             let said = if lets_go {
                 self.send_numbered(&payload, Self::send_at_once)
             } else {
-                self.is_free() && self.send_numbered(&payload, Self::send)
+                self.line.queued() == 0 && self.send_numbered(&payload, Self::send)
             };
             if !said {
                 self.report.unsent += 1;
@@ -159,11 +159,6 @@ impl<O: Opener> LinkDevice<O> {
 
     fn carry(&mut self, bytes: usize) {
         let speed = self.line.bits_per_second();
-        self.pacing.carry(bytes, speed, self.now);
-    }
-
-    /// Whether a message would leave at once instead of waiting behind another one.
-    fn is_free(&mut self) -> bool {
-        self.pacing.is_free(self.now, self.dt) && self.line.queued() == 0
+        self.pacing.carry(bytes, speed, self.now, self.dt);
     }
 }
