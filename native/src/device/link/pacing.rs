@@ -51,6 +51,10 @@ impl Pacing {
     /// A STATE came at `now`, s; ticks come every `dt`.
     pub fn hear(&mut self, now: f64, dt: f64) {
         let gap = (now - self.heard).clamp(0.0, LONGEST_SECONDS);
+        if self.interval.is_none() && !self.is_speed_known {
+            // What was reckoned before is too much: FORCE takes less time than a STATE.
+            self.busy_until = self.sent + gap;
+        }
         self.interval = match self.interval {
             _ if self.heard == f64::NEG_INFINITY => None,
             None => Some(gap),
