@@ -3,24 +3,29 @@
     python benchmarks/servo/servo_timing.py [--seconds S] [--rate HZ] [--load ROW]
 
 Both threads run at once, half a period apart, so that whatever else the machine does hits both and
-neither waits for the other. The bare thread only sleeps, by ``clock_nanosleep`` to the deadline, at
-the same priority. The servo is led over a body the size of the paper's mouse while Python is idle,
-deforms at 60 Hz, keeps the interpreter, or other processes keep every core.
+neither waits for the other. The bare thread only sleeps and wakes as early as the servo does, at
+the same priority. With ``--link`` a device on a real pseudo-terminal speaks the link, and tells how
+long its STATE waits for the FORCE that answers it; to see what an ordinary user gets who has no
+real-time priority, start it by ``setpriv --bounding-set=-sys_nice`` on Linux. The servo is led
+over a body the size of the paper's mouse while Python is idle, deforms at 60 Hz, keeps the
+interpreter, or other processes keep every core.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
 import os
 import subprocess
 import sys
 import time
 from collections.abc import Callable
 from contextlib import ExitStack
-from typing import Any
+from pathlib import Path
+from typing import Any, Self
 
 import numpy as np
-from palpate_servo import Body, Pointer, Servo
+from palpate_servo import Body, LinkDevice, Pointer, Servo
 from palpate_servo.harness import BareTimer
 from scipy.stats import binom
 
@@ -39,7 +44,9 @@ def ball() -> Body:
 
 
 def lead(servo: Servo, seconds: float) -> None:
-    """A target that circles 3 mm deep."""
+    """A target that circles 3 mm deep; a device leads itself."""
+    if servo.counters()["link"]["hellos"]:
+        return
     angle = 4.0 * seconds
     direction = np.array([0.5 * np.cos(angle), 0.5 * np.sin(angle), 1.0])
     servo.set_target(direction / np.linalg.norm(direction) * (RADIUS - 0.003))
@@ -92,17 +99,63 @@ def beside_busy_processes(servo: Servo, seconds: float) -> None:
         at_60_hz(servo, lambda: None, seconds)
 
 
+class AnsweredBoard:
+    """The board of ``answered_board.py``, until the end of the ``with`` block."""
+
+    def __init__(self) -> None:
+        self._process = subprocess.Popen(
+            [sys.executable, str(Path(__file__).with_name("answered_board.py"))],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+        self.port = self._line()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._process.kill()
+        self._process.communicate()
+
+    def waits(self) -> dict[str, float]:
+        """Times from STATE to FORCE, us."""
+        if self._process.stdin is None:
+            raise RuntimeError("the board was started without pipes")
+        self._process.stdin.close()
+        self._process.stdin = None
+        told: dict[str, float] = json.loads(self._line())
+        return told
+
+    def _line(self) -> str:
+        if self._process.stdout is None:
+            raise RuntimeError("the board was started without pipes")
+        return self._process.stdout.readline().strip()
+
+
 def measure(
-    body: Body, rate_hz: int, run: Callable[[Servo], None]
-) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Counters of the servo and of the bare thread while `run` goes on."""
-    with Servo(body, Settings(1000.0), rate_hz=rate_hz, record_seconds=1.0) as servo:
-        servo.start(Pointer([0.0, 0.0, 0.03]))
-        bare = BareTimer(rate_hz)
+    body: Body, rate_hz: int, run: Callable[[Servo], None], *, by_link: bool
+) -> tuple[dict[str, Any], dict[str, Any], dict[str, float]]:
+    """Counters of the servo and of the bare thread while `run` goes on; and how long STATE waited
+    for FORCE, us, of a device on the link.
+    """
+    with ExitStack() as stack:
+        board = stack.enter_context(AnsweredBoard()) if by_link else None
+        servo = stack.enter_context(
+            Servo(body, Settings(1000.0), rate_hz=rate_hz, record_seconds=1.0)
+        )
+        if board is None:
+            servo.start(Pointer([0.0, 0.0, 0.03]))
+        else:
+            servo.start(LinkDevice(board.port))
+            while servo.counters()["link"]["device"] is None:
+                time.sleep(0.01)
+        bare = BareTimer(rate_hz, early_waking=True)
         run(servo)
         bare_counters = bare.stop()
+        waits = {} if board is None else board.waits()
         servo.stop()
-        return dict(servo.counters()), dict(bare_counters)
+        return dict(servo.counters()), dict(bare_counters), waits
 
 
 def ratio(one: float, other: float) -> float:
@@ -145,6 +198,7 @@ def cells_of(counters: dict[str, Any]) -> list[str]:
     processor = 100.0 * (counters["busy_us"]["mean"] + counters["spun_us"]["mean"])
     processor *= ticks / (ticks + counters["missed"]) * counters["rate_hz"] * 1e-6
     return [
+        f"{counters['longest_gap_us'] * 1e-3:.1f}",
         *(str(counters[key]) for key in ("ticks", "missed", "late_ticks")),
         *(f"{lateness[key]:.1f}" for key in ("p50", "p99", "p99_9", "max")),
         f"{counters['busy_us']['mean']:.1f}",
@@ -152,7 +206,18 @@ def cells_of(counters: dict[str, Any]) -> list[str]:
     ]
 
 
-COLUMNS = ["ticks", "missed", "late", "p50 us", "p99 us", "p99.9 us", "max us", "work us", "cpu %"]
+COLUMNS = [
+    "gap ms",
+    "ticks",
+    "missed",
+    "late",
+    "p50 us",
+    "p99 us",
+    "p99.9 us",
+    "max us",
+    "work us",
+    "cpu %",
+]
 
 
 def stages(counters: dict[str, Any]) -> str:
@@ -169,6 +234,7 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=32.0, help="for each row")
     parser.add_argument("--rate", type=int, default=1000, help="Hz")
     parser.add_argument("--load", help="part of a row's name; all rows unless given")
+    parser.add_argument("--link", action="store_true", help="a device on a pseudo-terminal")
     arguments = parser.parse_args()
     seconds = arguments.seconds
     body = ball()
@@ -185,7 +251,7 @@ def main() -> None:
     print(line("load", "thread", COLUMNS))
     measured: dict[str, dict[str, Any]] = {}
     for name, run in loads.items():
-        servo, bare = measure(body, arguments.rate, run)
+        servo, bare, waits = measure(body, arguments.rate, run, by_link=arguments.link)
         measured[name] = servo
         enough = min(servo["ticks"], bare["ticks"]) >= 30_000
         late = ratio(servo["late_ticks"], bare["late_ticks"])
@@ -196,7 +262,10 @@ def main() -> None:
         far = MOST * bare["lateness_us"]["p99_9"]
         few_far = is_chance(beyond(servo, far), beyond(bare, far / MOST), 1.0)
         verdicts = [in_words(late, enough, few_late), "", "", in_words(tail, enough, few_far)]
-        print(line("", "ratio", ["", "", *verdicts]), flush=True)
+        print(line("", "ratio", ["", "", "", *verdicts]), flush=True)
+        if waits:
+            told = ", ".join(f"{name} {value:.0f}" for name, value in waits.items())
+            print(f"{'':<20}STATE to FORCE, us: {told}", flush=True)
     print("\nstages of the tick, us")
     for name, servo in measured.items():
         print(f"{name:<20}{stages(servo)}")

@@ -51,10 +51,15 @@ impl Paced {
     ///
     /// # Errors
     /// When the system gives no thread.
-    pub fn bare(rate_hz: u32) -> std::io::Result<Self> {
-        Self::spawn("palpate-bare", rate_hz, Waking::Timer, |wake| {
-            while wake().is_some() {}
-        })
+    pub fn bare(rate_hz: u32, waking: Waking) -> std::io::Result<Self> {
+        Self::spawn(
+            "palpate-bare",
+            rate_hz,
+            waking,
+            |wake| {
+                while wake().is_some() {}
+            },
+        )
     }
 
     /// Its timing counters.

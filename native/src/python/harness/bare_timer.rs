@@ -3,11 +3,13 @@
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::clock::timing::Waking;
 use crate::python::servo::counters::timing_counters;
 use crate::python::vectors::check_rate;
 use crate::servo::paced::Paced;
 
-/// A native thread that only sleeps and wakes: what the machine can do at best.
+/// A native thread that only sleeps and wakes, early as the servo's if asked to: what the machine can
+/// do at best.
 #[pyclass(frozen, module = "palpate_servo.harness")]
 pub struct BareTimer {
     paced: Paced,
@@ -16,11 +18,16 @@ pub struct BareTimer {
 #[pymethods]
 impl BareTimer {
     #[new]
-    #[pyo3(signature = (rate_hz=1000))]
-    fn new(rate_hz: u32) -> PyResult<Self> {
+    #[pyo3(signature = (rate_hz=1000, *, early_waking=false))]
+    fn new(rate_hz: u32, early_waking: bool) -> PyResult<Self> {
         check_rate(rate_hz)?;
+        let waking = if early_waking {
+            Waking::BusyWait
+        } else {
+            Waking::Timer
+        };
         Ok(Self {
-            paced: Paced::bare(rate_hz)?,
+            paced: Paced::bare(rate_hz, waking)?,
         })
     }
 
