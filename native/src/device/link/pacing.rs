@@ -80,8 +80,12 @@ impl Pacing {
     pub fn is_due(&self, now: f64, dt: f64) -> bool {
         let interval = self.interval.unwrap_or(UNKNOWN_SECONDS);
         let is_late = now - self.sent >= (REPEAT_INTERVALS * interval).max(REPEAT_SECONDS);
-        let is_free = self.busy_until <= now + 0.5 * dt;
-        is_free && (self.credit > 0 || is_late)
+        self.is_free(now, dt) && (self.credit > 0 || is_late)
+    }
+
+    /// Whether the line has carried what it was given, to half a tick, as far as is known.
+    pub fn is_free(&self, now: f64, dt: f64) -> bool {
+        self.busy_until <= now + 0.5 * dt
     }
 
     /// A FORCE left.

@@ -99,6 +99,11 @@ impl<O: Opener> LinkDevice<O> {
         self.farewells = self.farewells.saturating_sub(1);
     }
 
+    /// Whether a message would leave at once instead of waiting behind another one.
+    fn is_free(&mut self) -> bool {
+        self.pacing.is_free(self.now, self.dt) && self.line.queued() == 0
+    }
+
     /// A FORCE in the layout of this session; true when it has left.
     fn send_numbered(
         &mut self,
