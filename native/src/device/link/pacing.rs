@@ -83,8 +83,12 @@ impl Pacing {
         self.is_free(now, dt) && (self.credit > 0 || is_late)
     }
 
-    /// Whether the line has carried what it was given, to half a tick, as far as is known.
-    pub fn is_free(&self, now: f64, dt: f64) -> bool {
+    /// Whether a line of known speed has carried what it was given; any other is believed to.
+    pub fn has_carried(&self, now: f64, dt: f64) -> bool {
+        !self.is_speed_known || self.is_free(now, dt)
+    }
+
+    fn is_free(&self, now: f64, dt: f64) -> bool {
         self.busy_until <= now + 0.5 * dt
     }
 

@@ -101,7 +101,7 @@ impl<O: Opener> LinkDevice<O> {
 
     /// Whether a message would leave at once instead of waiting behind another one.
     fn is_free(&mut self) -> bool {
-        self.pacing.is_free(self.now, self.dt) && self.line.queued() == 0
+        self.pacing.has_carried(self.now, self.dt) && self.line.queued() == 0
     }
 
     /// A FORCE in the layout of this session; true when it has left.
