@@ -11,6 +11,8 @@ const STRAY: f64 = 4e-3;
 const COURSE_SECONDS: f64 = 2e-3;
 /// Longest time for which a course is held to, unless a single step takes longer, s.
 const LONGEST_SECONDS: f64 = 3.0 * COURSE_SECONDS;
+/// So long a course is held to by a device that is out of sight: what a hand may go on until it turns, s.
+const UNSEEN_SECONDS: f64 = 0.1;
 /// The first step of all tells a course of this speed at most, m/s.
 const FIRST_SPEED: f64 = 1.0;
 /// What is off the course was gone within this time at most, s: [`STRAY`] is then as fast as a device
@@ -76,19 +78,29 @@ impl Course {
         *self = Self::default();
     }
 
-    /// The device is out of sight: where it went meanwhile nobody knows, but where it was.
+    /// The device is out of sight: it may have gone on as it went, and have stopped on the way.
     pub fn interrupt(&mut self) {
-        (self.velocity, self.marks) = (DVec3::ZERO, None);
+        self.marks = None;
     }
 
-    /// First place after an interruption: no speed, and strayed if it is far from the last one.
-    pub fn resume(&mut self, position: DVec3) -> Step {
-        let last = self.place.replace(position).unwrap_or(position);
-        self.interrupt();
+    /// First place after `seconds` out of sight: no speed, and strayed if it is far from the way that
+    /// led on from the last one.
+    pub fn resume(&mut self, position: DVec3, seconds: f64) -> Step {
+        let last = Mark {
+            place: self.place.replace(position).unwrap_or(position),
+            velocity: self.velocity,
+            age: seconds.min(UNSEEN_SECONDS),
+        };
+        self.stand();
         Step {
             speed: 0.0,
-            has_strayed: position.distance(last) > STRAY,
+            has_strayed: last.off(position) > STRAY,
         }
+    }
+
+    /// Nothing is known of where it goes.
+    fn stand(&mut self) {
+        (self.velocity, self.marks) = (DVec3::ZERO, None);
     }
 
     /// A step to `position` (m), within `seconds`, above zero, at the speed `measured` (m/s).
@@ -110,7 +122,7 @@ impl Course {
         let off = offs.fold(0.0, f64::max);
         let has_strayed = off > STRAY;
         if has_strayed {
-            self.interrupt();
+            self.stand();
             return Step {
                 speed: measured.max(off / STRAY_SECONDS),
                 has_strayed,
@@ -147,7 +159,7 @@ mod tests {
     #[test]
     fn a_hand_that_goes_on_is_on_its_course_and_one_that_jumps_is_not() {
         let mut course = Course::default();
-        course.resume(DVec3::ZERO);
+        course.resume(DVec3::ZERO, 0.0);
         for ms in 1..50 {
             let step = course.step(DVec3::X * 1e-3 * f64::from(ms), 1e-3, 1.0);
             assert!(step.speed < 1.0 + 1e-9 && !step.has_strayed);
@@ -177,7 +189,7 @@ mod tests {
     fn a_hand_that_starts_at_once_keeps_its_course() {
         for period in [2.5e-4, 1e-3, 2.5e-3, 5e-3] {
             let mut course = Course::default();
-            course.resume(DVec3::ZERO);
+            course.resume(DVec3::ZERO, 0.0);
             for k in 0..100 {
                 let place = DVec3::X * 0.6 * period * f64::from((k - 40).max(0));
                 assert!(!course.step(place, period, 0.0).has_strayed, "{period}");
@@ -190,7 +202,7 @@ mod tests {
         // To and fro by 150 mm, at 1.0 m/s and 7 m/s^2; at each rate.
         for period in [2.5e-4, 1e-3, 2.5e-3, 5e-3, 1e-2] {
             let mut course = Course::default();
-            course.resume(DVec3::X * 0.15);
+            course.resume(DVec3::X * 0.15, 0.0);
             for k in 1..10_000 {
                 let place = DVec3::X * 0.15 * (7.0 * period * f64::from(k)).cos();
                 let step = course.step(place, period, 0.0);
@@ -202,12 +214,39 @@ mod tests {
     #[test]
     fn after_an_interruption_only_what_is_near_has_been_reached() {
         let mut course = Course::default();
-        assert_eq!(course.resume(DVec3::Y), Step::default(), "set down");
+        assert_eq!(course.resume(DVec3::Y, 0.0), Step::default(), "set down");
         course.interrupt();
-        assert!(!course.resume(DVec3::Y * 1.003).has_strayed);
+        assert!(!course.resume(DVec3::Y * 1.003, 0.03).has_strayed);
         course.interrupt();
-        assert!(course.resume(DVec3::Y * 1.008).has_strayed);
+        assert!(course.resume(DVec3::Y * 1.008, 0.03).has_strayed);
         course.reset();
-        assert!(!course.resume(DVec3::ZERO).has_strayed);
+        assert!(!course.resume(DVec3::ZERO, 0.03).has_strayed);
+    }
+
+    #[test]
+    fn a_hand_out_of_sight_goes_on_or_stops_but_does_not_turn() {
+        let mut course = Course::default();
+        course.resume(DVec3::ZERO, 0.0);
+        for ms in 1..50 {
+            course.step(DVec3::X * 5e-4 * f64::from(ms), 1e-3, 0.5);
+        }
+        course.interrupt();
+        // 0.5 m/s for 30 ms; for a second no way of 0.5 m is believed.
+        for (millimetres, seconds, strays) in [
+            (39.0, 0.03, false),
+            (26.0, 0.03, false),
+            (45.0, 0.03, true),
+            (14.5, 0.03, true),
+            (74.0, 1.0, false),
+            (80.0, 1.0, true),
+        ] {
+            let place = DVec3::X * 1e-3 * millimetres;
+            let step = course.clone().resume(place, seconds);
+            assert_eq!(step.has_strayed, strays, "{millimetres} {seconds}");
+        }
+        // Who knows where it goes when it is back.
+        course.resume(DVec3::X * 0.03, 0.03);
+        course.interrupt();
+        assert!(course.resume(DVec3::X * 0.04, 0.03).has_strayed);
     }
 }

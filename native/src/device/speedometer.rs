@@ -42,6 +42,8 @@ struct Seen {
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Speedometer {
     last: Option<Seen>,
+    /// Time of the last message, s.
+    heard: f64,
     course: Course,
     transit: Transit,
     compared: Option<Seen>,
@@ -78,9 +80,10 @@ impl Speedometer {
             },
         };
         self.compare_clocks(&here);
+        let silence = now - std::mem::replace(&mut self.heard, now);
         let Some(last) = self.last.replace(here) else {
             self.transit.goes_on(now, 0.0);
-            return self.course.resume(position);
+            return self.course.resume(position, silence);
         };
         let (device, host) = elapsed(&last, &here);
         let tells = device > 0.0 && device < BACKWARDS_SECONDS && self.strikes < 2;

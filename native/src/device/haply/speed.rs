@@ -36,7 +36,7 @@ impl WindowSpeed {
         let measured = self.speed(position, now);
         let seconds = (now - std::mem::replace(&mut self.then, now)).max(TOGETHER_SECONDS);
         if is_first {
-            self.course.resume(position)
+            self.course.resume(position, seconds)
         } else {
             self.course.step(position, seconds, measured)
         }
