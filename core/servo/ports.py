@@ -83,7 +83,12 @@ def check_baud(baud: int | None) -> None:
     """Raise PalpateError for a speed that no line has; None is one that nobody has said."""
     slowest, fastest = BAUDS
     if baud is not None and not slowest <= baud <= fastest:
-        raise PalpateError(f"--baud: a line has {slowest} to {fastest} bits a second, not {baud}")
+        raise PalpateError(
+            "--baud: a line has {slowest} to {fastest} bits a second, not {baud}",
+            slowest=slowest,
+            fastest=fastest,
+            baud=baud,
+        )
 
 
 def list_ports(
