@@ -8,7 +8,7 @@ import pytest
 from palpate_servo import LinkDevice, Servo
 
 from palpate.core.servo.settings import Settings
-from palpate.simulated.attack.real.processes import Host
+from palpate.simulated.attack.real.host import Host
 from palpate.simulated.attack.target import cube
 
 ABOVE = (0.026, 0.024, 0.06)

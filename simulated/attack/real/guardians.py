@@ -15,8 +15,9 @@ from ...board.haply_firmware import TORQUES
 from ...hand.options import SimulatedOptions
 from ...simulated_process import SimulatedDevice
 from ..table import Row
+from .host import Host, device
 from .overheard import Overheard
-from .processes import Host, device, eventually, press
+from .pressing import INTO_THE_CUBE, Way, press
 
 SIGNALS = (
     signal.SIGKILL,
@@ -27,13 +28,11 @@ SIGNALS = (
     signal.SIGSTOP,
 )
 KINDS = ("link", "haply")
-DEEP_IN_THE_PLANE = (0.002, -0.012, 0.0)
-"""In the 2DIY's own axes: 12 mm below the cube's top."""
-REST = haply_model(DEFAULT_MODEL).rest
-FELT = 0.3
-"""N."""
-PRESSES = 5
-"""Tries: a machine that is held up in one has the probe set down inside of the body."""
+WAYS = {
+    "link": INTO_THE_CUBE,
+    "haply": Way(haply_model(DEFAULT_MODEL).rest, (0.002, -0.012, 0.0), 0.3),
+}
+"""In the 2DIY's own axes 12 mm below the cube's top."""
 SETTLING_SECONDS = 0.3
 FILL = 0x10
 NO_TORQUE = bytes([FILL] * 4)
@@ -107,7 +106,7 @@ def end_by(number: signal.Signals, kind: str) -> LastWords:
         hand = stack.enter_context(_hand(kind))
         line = stack.enter_context(Overheard(hand.port))
         host = stack.enter_context(Host(line.port, kind))
-        _press(host, hand, kind)
+        press(host, hand, WAYS[kind])
         before = [w for w in WORDS[kind](list(line.said)) if w.pushes]
         sent = time.monotonic()
         host.signal(number)
@@ -120,19 +119,6 @@ def _hand(kind: str) -> SimulatedDevice:
     if kind == "link":
         return device()
     return SimulatedDevice(SimulatedOptions(), haply=DEFAULT_MODEL)
-
-
-def _press(host: Host, hand: SimulatedDevice, kind: str) -> None:
-    if kind == "link":
-        return press(host, hand)
-    for _ in range(PRESSES):
-        hand.move_hand(REST, 0.2)
-        eventually(lambda: bool(host.report()["state"] == "free"), "nothing is touched")
-        hand.move_hand(DEEP_IN_THE_PLANE, 0.3)
-        time.sleep(0.6)
-        if host.report()["output"] > FELT:
-            return None
-    raise RuntimeError(f"the cube is not felt in {PRESSES} presses: {host.report()}")
 
 
 def guardians() -> list[int]:

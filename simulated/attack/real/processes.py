@@ -3,28 +3,18 @@
 from __future__ import annotations
 
 import itertools
-import json
-import math
-import os
 import signal
-import subprocess
-import sys
 import time
 from collections import Counter
-from collections.abc import Callable
 from dataclasses import dataclass
-from types import TracebackType
-from typing import Any, Self
+from typing import Any
 
-from ....core.errors import PalpateError
-from ....core.machine import run_module
-from ...hand.options import SimulatedOptions
 from ...simulated_process import SimulatedDevice
 from ..table import Row, counted
-from ..target import ABOVE, DEEP
+from .host import Host, device, eventually
+from .pressing import press, strength
 from .servo_host import RAMP_SECONDS
 
-PATIENCE_SECONDS = 20.0
 STOPPED_SECONDS = 1.0
 STEADY_TICKS = 20
 BURST_SECONDS = 0.050
@@ -34,89 +24,6 @@ WATCHDOG_SECONDS = 0.020
 ROUNDING = 1e-9
 DAMPING = 5e-3
 """What the coupling of devices with motors adds to the body's own force while nobody moves, N."""
-
-
-class Host:
-    """`servo_host.py` as a process of its own, in a session of its own."""
-
-    def __init__(self, port: str, kind: str = "link") -> None:
-        self.process = subprocess.Popen(  # noqa: S603 - our own module, no shell
-            [sys.executable, *run_module.command("simulated.attack.real.servo_host"), port, kind],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            text=True,
-        )
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.process.kill()
-        self.process.communicate()
-
-    def ask(self, line: str) -> Any:
-        """The answer to a line."""
-        if self.process.stdin is None or self.process.stdout is None:
-            raise RuntimeError("the host was started without pipes")
-        self.process.stdin.write(line + "\n")
-        self.process.stdin.flush()
-        return json.loads(self.process.stdout.readline())
-
-    def report(self) -> dict[str, Any]:
-        """Where the servo stands now."""
-        answer: dict[str, Any] = self.ask("report")
-        return answer
-
-    def samples(self) -> list[dict[str, Any]]:
-        """All ticks since the last time."""
-        answer: list[dict[str, Any]] = self.ask("samples")
-        return answer
-
-    def signal(self, number: int) -> None:
-        """Send the process a signal."""
-        os.kill(self.process.pid, number)
-
-
-def eventually(condition: Callable[[], bool], what: str) -> None:
-    """Wait for something; PalpateError when it does not come."""
-    deadline = time.monotonic() + PATIENCE_SECONDS
-    while not condition():
-        if time.monotonic() > deadline:
-            raise PalpateError(
-                "attack: waited {seconds:g} s in vain until {what}; give this computer less to do, "
-                "and try again",
-                seconds=PATIENCE_SECONDS,
-                what=what,
-            )
-        time.sleep(0.005)
-
-
-def device() -> SimulatedDevice:
-    """A simulated device with a hand above the cube."""
-    return SimulatedDevice(SimulatedOptions(rest=ABOVE, hand_stiffness=800.0))
-
-
-def press(host: Host, hand: SimulatedDevice) -> None:
-    """Bring the hand into the cube, out of it first."""
-    hand.move_hand(ABOVE, 0.05)
-    eventually(lambda: host.report()["state"] == "free", "nothing is touched")
-    hand.move_hand(DEEP, 0.1)
-
-    def is_felt() -> bool:
-        report = host.report()
-        return bool(report["state"] == "touching" and not report["limited"])
-
-    eventually(is_felt, "the cube is felt")
-    eventually(lambda: _strength(hand.report()) > 0.3, "the device pushes")
-
-
-def _strength(report: dict[str, Any]) -> float:
-    return math.hypot(*report["felt_force"])
 
 
 @dataclass(frozen=True)
@@ -175,7 +82,7 @@ class Suspension:
 def device_problems(report: dict[str, Any]) -> list[str]:
     """Whether the device went limp as soon as it could see that nothing came."""
     found = []
-    if not report["limp"] or _strength(report) > 0.0:
+    if not report["limp"] or strength(report) > 0.0:
         found.append("the device goes on")
     if report["limp_after"] > WATCHDOG_SECONDS + report["limp_look"] + ROUNDING:
         found.append("the watchdog is late")

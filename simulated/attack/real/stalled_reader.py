@@ -8,7 +8,7 @@ from ....core.servo.session import Pointer, Servo
 from ....core.servo.settings import Settings
 from ..table import Row
 from ..target import ABOVE, YOUNG_MODULUS, cube
-from .processes import eventually
+from .host import eventually
 
 PERIOD = 1e-3
 RING_TICKS = 100
