@@ -93,14 +93,22 @@ def test_a_table_file_that_is_no_good_is_told_once_and_made_anew(sessions, state
 def test_a_table_that_cannot_be_used_is_a_warning_of_the_operator(palpate, monkeypatch, thing):
     thing.palpate.shape = "TABLE"
     file = table_file(thing, "newton-table")
-    file.write_bytes(b"nothing")
+    # That of the test before may still hold something else.
+    file.unlink(missing_ok=True)
     once = part("operators.press.press_once").press_once
+    once(thing, bpy.context.scene, BESIDE, (0.0, 0.0, -DEPTH), keep=False)
+    file.write_bytes(file.read_bytes()[:1000])
     pressed = once(thing, bpy.context.scene, BESIDE, (0.0, 0.0, -DEPTH), keep=False)
     assert len(pressed.remarks) == 1
     assert str(file) in pressed.remarks[0]
     # By now it is whole again.
     pressed = once(thing, bpy.context.scene, BESIDE, (0.0, 0.0, -DEPTH), keep=False)
     assert pressed.remarks == ()
+    # What is not Palpate's stays, and is told each time.
+    file.write_bytes(b"nothing")
+    pressed = once(thing, bpy.context.scene, BESIDE, (0.0, 0.0, -DEPTH), keep=False)
+    assert pressed.remarks
+    assert file.read_bytes() == b"nothing"
 
 
 def test_two_troubles_are_told_once_each_not_in_turns(sessions, states, thing):
