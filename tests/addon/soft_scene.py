@@ -99,10 +99,16 @@ def begin(
 
 
 def press_in(session: Any, states: ModuleType) -> None:
-    """Touch the middle of the cube's top and go in, until the thread has answered."""
+    """Touch the middle of the cube's top and go in, until the finger rests there."""
     session.post(states.SetDown(TOP))
     session.post(states.Move(DEEP))
     wait(session, lambda: session.snapshot.touching and session.snapshot.probe[2] < DEEP[2] + 1e-9)
+    wait(session, lambda: unbraked(session.snapshot))
+
+
+def unbraked(shot: Any) -> bool:
+    """Whether the force is that of the nodes alone, without what brakes a moving finger."""
+    return np.allclose(shot.contact_force, -shot.nodal_forces.sum(axis=0), rtol=1e-12, atol=0.0)
 
 
 def wait(session: Any, condition: Callable[[], bool], seconds: float = 20.0) -> None:

@@ -21,6 +21,7 @@ from soft_scene import (
     press_in,
     select,
     soft_cube,
+    unbraked,
     wait,
 )
 
@@ -127,20 +128,19 @@ def test_friction_set_while_pressing_is_felt_sideways(sessions, states, thing):
     session = begin(sessions, states, thing)
     press_in(session, states)
 
-    def slope():
+    def slope_at_rest(x):
+        place = (x, 0.0, DEEP[2])
+        session.post(states.Move(place))
+        wait(session, lambda: np.allclose(session.snapshot.probe, place, atol=1e-6))
+        wait(session, lambda: unbraked(session.snapshot))
         x, y, z = session.snapshot.contact_force
         return np.hypot(x, y) / z
 
-    aside = (0.002, 0.0, DEEP[2])
-    session.post(states.Move(aside))
-    wait(session, lambda: np.allclose(session.snapshot.probe, aside, atol=1e-6))
-    smooth = slope()
+    smooth = slope_at_rest(0.002)
     thing.palpate.dynamic_friction = 0.5
     session.tick()
     time.sleep(0.05)
-    session.post(states.Move((0.006, 0.0, DEEP[2])))
-    wait(session, lambda: session.snapshot.probe[0] > 0.006 - 1e-6)
-    assert slope() > smooth + 0.1
+    assert slope_at_rest(0.006) > smooth + 0.1
 
 
 def test_sliding_never_holds_better_than_resting(palpate):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import bpy
 import numpy as np
 import pytest
-from soft_scene import begin, empty, key_names, locate, mesh_state, part, soft_cube, wait
+from soft_scene import begin, empty, key_names, locate, mesh_state, part, soft_cube, unbraked, wait
 
 LEFT, RIGHT = (-0.02501, 0.0, 0.01), (0.02501, 0.0, 0.01)
 LEFT_IN, RIGHT_IN = (-0.022, 0.0, 0.01), (0.022, 0.0, 0.01)
@@ -108,7 +108,7 @@ def test_the_mode_is_felt_while_pressing(sessions, states, thing):
     place, deep = (0.004, 0.001, 0.02501), (0.004, 0.001, 0.021)
     session.post(states.SetDown(place))
     session.post(states.Move(deep))
-    wait(session, lambda: arrived(session, deep))
+    wait(session, lambda: arrived(session, deep) and unbraked(session.snapshot))
     consistent = np.linalg.norm(session.snapshot.contact_force)
     bpy.context.scene.palpate.contact_mode = "PAPER"
     wait(

@@ -14,7 +14,7 @@ from shown import all_panels_open, replaced
 from stage import Stage, Wait
 
 from bl_ext.user_default.palpate.addon import known_status
-from bl_ext.user_default.palpate.addon.panels import cost, sentence
+from bl_ext.user_default.palpate.addon.panels import base, sentence
 from bl_ext.user_default.palpate.operators.bake import bake_prediction, bake_session, bake_words
 from bl_ext.user_default.palpate.operators.object import body_store
 from bl_ext.user_default.palpate.operators.session import press_session
@@ -115,14 +115,14 @@ def _any_has(said: list[str], words: str) -> bool:
 def _rows_shown() -> Iterator[dict[str, str]]:
     """Names and values of the figures that the panel draws."""
     shown: dict[str, str] = {}
-    original = cost.draw_rows
+    original = base.draw_rows
 
     def draw(layout: bpy.types.UILayout, rows: list[tuple[str, str]]) -> None:
         if any(name == "Peak Memory" for name, _ in rows):
             shown.update(rows)
         original(layout, rows)
 
-    with replaced(cost, "draw_rows", draw):
+    with replaced(base, "draw_rows", draw):
         yield shown
 
 
