@@ -25,6 +25,9 @@ FARTHEST_STEP = 2.0**62
 # A shape thinner than this share of its diagonal everywhere is a sheet, not a solid.
 FLATTEST = 1e-3
 
+# Of a closed surface the area vectors add up to nothing, of half a sphere to half its area.
+OPENEST = 0.9
+
 
 @dataclass(frozen=True, eq=False)
 class Surface:
@@ -84,6 +87,13 @@ class Surface:
         i, j, k = (self.vertices[self.triangles[:, corner]] for corner in range(3))
         area: NDArray[np.float64] = 0.5 * np.linalg.norm(np.cross(j - i, k - i), axis=1)
         return area
+
+    @property
+    def openness(self) -> float:
+        """Sum of the area vectors, as a share of the area: 0 where closed, 1 of a plane piece."""
+        i, j, k = (self.vertices[self.triangles[:, corner]] for corner in range(3))
+        open_area = float(np.linalg.norm(0.5 * np.cross(j - i, k - i).sum(axis=0)))
+        return open_area / float(self.areas.sum())
 
     @property
     def signed_volume(self) -> float:
@@ -157,4 +167,9 @@ class Surface:
             raise PalpateError(
                 "mesh: it is flat, so it has no inside to be soft; give it thickness (for example "
                 "apply a Solidify modifier) or choose a closed mesh"
+            )
+        if self.openness > OPENEST:
+            raise PalpateError(
+                "mesh: it is an open sheet that encloses no volume; give it thickness (for example "
+                "apply a Solidify modifier) or close its holes"
             )

@@ -94,7 +94,7 @@ def test_what_artists_have_becomes_a_body(name, tmp_path, temporary):
 def test_an_open_sheet_is_refused_with_a_remedy(tmp_path, temporary, ball):
     bowl = ball.copy()
     bowl.update_faces(bowl.triangles_center[:, 2] < -0.045)
-    with pytest.raises(PalpateError, match=r"thickness|encloses"):
+    with pytest.raises(PalpateError, match="open sheet that encloses no volume"):
         run_bake(surface_of(bowl), COARSE, tmp_path / "body.npz")
     assert [path.name for path in tmp_path.iterdir()] == ["temporary"]
     assert not list(temporary.iterdir())

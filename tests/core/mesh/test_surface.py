@@ -40,6 +40,15 @@ def test_what_cannot_become_a_solid_is_refused_with_the_reason(vertices, triangl
         Surface.checked(vertices, triangles)
 
 
+def test_openness_is_net_area_over_area(ball):
+    assert surface_of(ball).openness == pytest.approx(0, abs=1e-12)
+    height, radius = np.cos(np.pi / 6), 0.5
+    cone = trimesh.creation.cone(radius, height, sections=200)
+    side = cone.submesh([np.flatnonzero(cone.triangles_center[:, 2] > 1e-9)], append=True)
+    # Of a cone without its base: radius over slant.
+    assert surface_of(side).openness == pytest.approx(radius / np.hypot(radius, height), rel=1e-3)
+
+
 def test_welding_closes_seams_that_only_look_open(ball):
     soup = soup_of(ball)
     assert not soup.is_closed
