@@ -105,7 +105,7 @@ def test_a_script_keeps_the_shape_that_is_chosen(palpate, name, thing):
     press_down(thing, depth=DEPTH)
     linear, chosen = (key_coordinates(thing, key) for key in ("Press 1", "Press 2"))
     largest = np.abs(linear - key_coordinates(thing, "Basis")).max()
-    assert np.abs(chosen - linear).max() < 0.5 * largest
+    assert np.abs(chosen - linear).max() < largest
     assert np.array_equal(chosen, linear) == (name == "LINEAR")
 
 
