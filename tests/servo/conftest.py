@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
@@ -21,6 +22,9 @@ if TYPE_CHECKING:
     from palpate.core.body.soft_body import SoftBody
 
 YOUNG_MODULUS = 10_000.0
+FELT = 0.3
+"""N."""
+PRESSES = 5
 
 
 @dataclass(frozen=True)
@@ -71,3 +75,27 @@ def body(request: pytest.FixtureRequest) -> SoftBody:
 def surface(body: SoftBody) -> Body:
     """The baked body as native code holds it, with its whole compliance."""
     return native_body(body, whole=True)
+
+
+@pytest.fixture(scope="session")
+def press_into(eventually: Callable[..., Any]) -> Callable[..., None]:
+    """Lead a simulated device's hand from where it is free to where more than ``felt`` N are sent.
+
+    A machine that is held up meanwhile has the probe set down inside of the body: then again.
+    """
+
+    def go(device: Any, servo: Any, free: Any, deep: Any, felt: float = FELT) -> None:
+        def stands() -> str:
+            shot = servo.snapshot()
+            return "felt" if np.linalg.norm(shot.output_force) > felt else shot.reason
+
+        for _ in range(PRESSES):
+            device.move_hand(deep, 0.3)
+            eventually(lambda: stands() in ("felt", "inside the body"), servo.snapshot)
+            if stands() == "felt":
+                return
+            device.move_hand(free, 0.3)
+            eventually(lambda: servo.snapshot().reason != "inside the body", servo.snapshot)
+        pytest.fail(f"not felt: {servo.snapshot()}")
+
+    return go

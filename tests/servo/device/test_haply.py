@@ -41,6 +41,7 @@ PLANES = {
         (0.0, math.cos(LEAN), math.sin(LEAN)),
     ),
 }
+FREE = (0.002, 0.012, 0.0)
 DEEP = (0.002, -0.012, 0.0)
 SHALLOW = (0.002, -0.003, 0.0)
 TORQUE_ROUNDING = 0.016
@@ -64,15 +65,8 @@ def loop(cube, started, eventually):
 
 
 @pytest.fixture
-def press(eventually):
-    def go(device, servo):
-        device.move_hand(DEEP, 0.3)
-        eventually(
-            lambda: np.linalg.norm(servo.snapshot().output_force) > 0.3,
-            lambda: (servo.snapshot(), servo.counters()["link"]),
-        )
-
-    return go
+def press(press_into):
+    return lambda device, servo: press_into(device, servo, FREE, DEEP)
 
 
 def corners(degrees):
@@ -85,7 +79,9 @@ def corners(degrees):
         )
 
 
-def test_coarse_encoders_soften_the_coupling_unless_another_was_chosen(cube, eventually):
+def test_coarse_encoders_soften_the_coupling_unless_another_was_chosen(
+    cube, eventually, press_into
+):
     """On a body of some 10,000 N/m, by what is felt at rest for each metre pressed."""
     limit = device_coupling(encoder_step=haply_encoder_step(DEFAULT_MODEL))["stiffness"]
     own = device_coupling()
@@ -95,8 +91,7 @@ def test_coarse_encoders_soften_the_coupling_unless_another_was_chosen(cube, eve
         with device, servo_on(native_body(cube), settings) as servo:
             servo.start(HaplyDevice(device.port, rotation=PLANES["upright"], translation=TOP))
             eventually(lambda: servo.snapshot().state == "free", servo.snapshot)
-            device.move_hand(SHALLOW, 0.3)
-            eventually(lambda: np.linalg.norm(servo.snapshot().output_force) > 0.15, servo.snapshot)
+            press_into(device, servo, FREE, SHALLOW, felt=0.15)
             felt = eventually(lambda: resting_stiffness(servo), servo.snapshot)
         assert felt == pytest.approx(stiffest, rel=0.3)
         assert felt <= stiffest * 1.001

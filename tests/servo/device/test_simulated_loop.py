@@ -40,12 +40,8 @@ def loop(cube, started, eventually):
 
 
 @pytest.fixture
-def press(eventually):
-    def go(device, servo):
-        device.move_hand(DEEP, 0.3)
-        eventually(lambda: np.linalg.norm(servo.snapshot().output_force) > 0.3)
-
-    return go
+def press(press_into):
+    return lambda device, servo: press_into(device, servo, ABOVE, DEEP)
 
 
 def undisturbed(device, servo, settled, eventually):
