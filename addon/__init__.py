@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..operators.animation import bake_animation
 from ..operators.bake import (
     cancel_bake,
     fit_memory,
@@ -12,7 +13,7 @@ from ..operators.bake import (
     update_pins,
 )
 from ..operators.device import refresh_devices
-from ..operators.press import pinch, press, press_frames, record, save_recording, switch_force
+from ..operators.press import pinch, press, record, save_recording, switch_force
 from ..operators.record import recording_writer
 from ..operators.softness import force_curve, read_durometer, softness_colours
 from . import command, handlers, preferences, translations
@@ -33,7 +34,7 @@ modules = (
     fit_memory,
     press,
     pinch,
-    press_frames,
+    bake_animation,
     switch_force,
     record,
     recording_writer,

@@ -43,6 +43,7 @@ operators/shape
 operators/session
 operators/bake
 operators/press
+operators/animation
 operators/softness
 operators
 addon/translations addon/known_status.py

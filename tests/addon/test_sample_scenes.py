@@ -102,6 +102,8 @@ def test_the_fingertip_s_animation_presses_the_mouse(palpate, tmp_path):
     assert scene.palpate.tip == "SPHERE"
     # Fewer contact points than the finger of the scene has, for time.
     scene.palpate.tip_radius = 0.016
-    assert bpy.ops.palpate.press_frames(frame_start=1, frame_end=21, step=5) == {"FINISHED"}
+    assert bpy.ops.palpate.press_frames(frame_start=1, frame_end=21, step=5, keep="KEYS") == {
+        "FINISHED"
+    }
     names = key_names(thing)[1:]
     assert names == ["Press at 16", "Press at 21"]

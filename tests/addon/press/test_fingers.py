@@ -224,57 +224,6 @@ def test_the_paper_mode_differs_within_a_triangle(chosen, thing):
     assert not np.isclose(pressed(thing, [place], [DOWN]).force[2], paper, rtol=0.01)
 
 
-def test_an_animated_tool_leaves_a_shape_key_in_every_frame_it_touches(chosen):
-    thing, guide = soft_cube(), empty()
-    scene = bpy.context.scene
-    for frame, height in ((1, 0.05), (4, 0.042), (7, 0.05)):
-        guide.location.z = height
-        guide.keyframe_insert("location", frame=frame)
-    scene.frame_start, scene.frame_end = 1, 7
-    scene.frame_set(2)
-    chosen.tip, chosen.source, chosen.source_empty = "SPHERE", "EMPTY", guide
-    assert bpy.ops.palpate.press_frames() == {"FINISHED"}
-    assert scene.frame_current == 2
-    names = key_names(thing)
-    assert "Press at 4" in names
-    assert "Press at 1" not in names
-    keys = thing.data.shape_keys.key_blocks
-    scene.frame_set(4)
-    assert keys["Press at 4"].value == pytest.approx(1.0)
-    scene.frame_set(1)
-    assert sum(key.value for key in keys if key.name.startswith("Press at")) == 0.0
-    deepest = key_coordinates(thing, "Press at 4") - key_coordinates(thing, "Basis")
-    assert deepest[:, 2].min() < -1e-4
-    assert bpy.ops.palpate.press_frames() == {"FINISHED"}
-    assert key_names(thing) == names
-
-
-def test_the_current_frame_alone_is_kept_as_a_press(chosen):
-    thing, guide = soft_cube(), empty(at=(0.0, 0.0, 0.05))
-    scene = bpy.context.scene
-    guide.keyframe_insert("location", frame=1)
-    guide.location.z = 0.042
-    guide.keyframe_insert("location", frame=5)
-    scene.frame_start = 1
-    scene.frame_set(5)
-    chosen.tip, chosen.source, chosen.source_empty = "SPHERE", "EMPTY", guide
-    assert bpy.ops.palpate.press_frames(current_only=True) == {"FINISHED"}
-    assert key_names(thing) == ["Basis", "Press 1"]
-
-
-def test_animations_without_a_tool_or_a_leader_are_refused(chosen):
-    thing, guide = soft_cube(), empty()
-    assert "choose Fingertip" in error_of(bpy.ops.palpate.press_frames)
-    chosen.tip = "SPHERE"
-    assert "nothing leads the tool" in error_of(bpy.ops.palpate.press_frames)
-    chosen.source, chosen.source_empty = "EMPTY", guide
-    bpy.context.scene.frame_end = 2
-    assert "touches nothing" in error_of(bpy.ops.palpate.press_frames)
-    chosen.second, chosen.second_empty = "EMPTY", guide
-    assert "both fingers" in error_of(bpy.ops.palpate.press_frames)
-    assert key_names(thing) == []
-
-
 def test_who_leads_is_refused_in_words_where_nobody_does(chosen):
     leads = part("operators.session.finger_leads")
     source = part("operators.session.press_state").Source

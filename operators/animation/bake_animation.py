@@ -1,0 +1,251 @@
+"""Bake Animation: a tool that is animated presses frame by frame, and the file plays by itself."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Generator, Iterator
+from pathlib import Path
+
+import bpy
+
+from ...core.errors import PalpateError
+from ...core.files.atomic_file import refuse_unwritable
+from ...core.files.point_cache import CacheSize, point_cache
+from ...core.sentence import Sentence
+from ..object.drawn_body import DrawnBody, open_body
+from ..press.modal_press import Pressing
+from ..press.press_once import keep_shape, pressing_tools
+from ..reporting.translated import reported, shown
+from ..scene.viewport import redraw_views
+from ..shape.drawn_shape import closing_shape
+from . import frame_keys, mesh_cache
+from .force_table import FrameRows
+from .pressed_frames import PressedFrame, frame_kept, press_frames
+
+MOST_KEYS = 2000
+# Seconds of pressing between two looks at the keyboard.
+SLICE_SECONDS = 0.05
+
+Baking = Generator[float, None, None]
+"""Share of the frames that are pressed, after each."""
+
+
+class PALPATE_OT_press_frames(Pressing, bpy.types.Operator):
+    bl_idname = "palpate.press_frames"
+    bl_label = "Bake Animation"
+    bl_description = (
+        "Let the animated tool press through the frames of the scene, and keep what it does so "
+        "that it plays by itself. Escape cancels, and nothing is changed"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+
+    frame_start: bpy.props.IntProperty(
+        name="First Frame", description="Where it begins; -1 is the scene's first", default=-1
+    )
+    frame_end: bpy.props.IntProperty(
+        name="Last Frame", description="Where it ends; -1 is the scene's last", default=-1
+    )
+    step: bpy.props.IntProperty(
+        name="Step",
+        description="Keep every so many frames; the shape goes straight between them",
+        default=1,
+        min=1,
+    )
+    keep: bpy.props.EnumProperty(
+        name="Keep As",
+        description="What plays the animation",
+        items=(
+            ("CACHE", "Mesh Cache", "A PC2 file beside the .blend, played by a modifier"),
+            ("KEYS", "Shape Keys", "A shape key a frame, within the .blend"),
+        ),
+        default="CACHE",
+    )
+    forces: bpy.props.StringProperty(
+        name="Forces",
+        description="Table (CSV) of force, area, pressure and depth in each frame; empty for none",
+        subtype="FILE_PATH",
+    )
+    current_only: bpy.props.BoolProperty(
+        name="This Frame Only",
+        description="Press up to the current frame and keep only its shape",
+    )
+
+    _timer: bpy.types.Timer | None = None
+    _baking: Baking
+    _told: str = ""
+
+    def act(self, context: bpy.types.Context) -> None:
+        for _ in self._bake(context):
+            pass
+        self.report({"INFO"}, reported(self._told))
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        if bpy.app.background:
+            return self.execute(context)
+        return self.guarded(lambda: self._start(context))
+
+    def _start(self, context: bpy.types.Context) -> set[str]:
+        self._baking = self._bake(context)
+        # What cannot be baked is refused before the operator becomes modal.
+        share = next(self._baking, 1.0)
+        manager = context.window_manager
+        self._timer = manager.event_timer_add(SLICE_SECONDS, window=context.window)
+        manager.progress_begin(0, 100)
+        manager.modal_handler_add(self)
+        self._show(context, share)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        if event.type == "ESC" and event.value == "PRESS":
+            self.cancel(context)
+            self.report({"INFO"}, reported("The animation was not baked; nothing was changed"))
+            return {"CANCELLED"}
+        if event.type != "TIMER":
+            return {"RUNNING_MODAL"}
+        try:
+            share = self._go_on()
+        except PalpateError as problem:
+            self._leave(context)
+            self.report({"ERROR"}, reported(problem))
+            return {"CANCELLED"}
+        except BaseException:
+            self._leave(context)
+            raise
+        if share is not None:
+            self._show(context, share)
+            return {"RUNNING_MODAL"}
+        self._leave(context)
+        self.report({"INFO"}, reported(self._told))
+        return {"FINISHED"}
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        """End with the operator: another file, or exit."""
+        self._baking.close()
+        self._leave(context)
+
+    def _go_on(self) -> float | None:
+        """Press for a while; the share that is done, None at the end."""
+        end = time.monotonic() + SLICE_SECONDS
+        for share in self._baking:
+            if time.monotonic() > end:
+                return share
+        return None
+
+    def _show(self, context: bpy.types.Context, share: float) -> None:
+        context.workspace.status_text_set(
+            f"Palpate: {shown(self.bl_label)}: {100 * share:.0f} %     [Esc] {shown('Cancel')}"
+        )
+        context.window_manager.progress_update(100 * share)
+        redraw_views()
+
+    def _leave(self, context: bpy.types.Context) -> None:
+        if self._timer is not None:
+            context.window_manager.event_timer_remove(self._timer)
+            self._timer = None
+        context.window_manager.progress_end()
+        # None while Blender replaces its windows for another file.
+        if context.workspace is not None:
+            context.workspace.status_text_set(None)
+        redraw_views()
+
+    def _bake(self, context: bpy.types.Context) -> Baking:
+        """Press all frames, then keep what came of it; nothing is kept if it is closed before."""
+        thing, scene, frames = context.object, context.scene, self._frames(context.scene)
+        table = Path(bpy.path.abspath(self.forces)) if self.forces else None
+        if table is not None:
+            refuse_unwritable(table)
+        drawn = open_body(thing, scene)
+        rows = FrameRows(drawn, scene.render.fps / scene.render.fps_base)
+        pressed = self._press(thing, scene, drawn, frames, rows)
+        if self.current_only:
+            yield from self._keep_last(thing, drawn, pressed, len(frames))
+        elif self.keep == "KEYS":
+            yield from self._keep_keys(thing, drawn, pressed, len(frames))
+        else:
+            size = CacheSize(len(drawn.rest) // 3, len(frames), frames[0], self.step)
+            yield from self._keep_cache(thing, drawn, pressed, size)
+        if table is not None:
+            rows.write(table)
+
+    def _press(
+        self,
+        thing: bpy.types.Object,
+        scene: bpy.types.Scene,
+        drawn: DrawnBody,
+        frames: list[int],
+        rows: FrameRows,
+    ) -> Iterator[PressedFrame]:
+        touched = False
+        with frame_kept(scene), closing_shape(thing, drawn) as shape:
+            for here in press_frames(thing, scene, drawn, frames, shape):
+                rows.add(here)
+                touched |= here.displacements is not None
+                yield here
+            if shape.notice:
+                self.report({"WARNING"}, reported(shape.notice))
+        if not touched:
+            raise PalpateError(
+                "The tool touches nothing in these frames; move its keyframes to the surface"
+            )
+        self._told = Sentence(
+            "{count} frames, up to {largest:.3g} N", count=len(frames), largest=rows.largest_force
+        )
+
+    def _keep_cache(
+        self,
+        thing: bpy.types.Object,
+        drawn: DrawnBody,
+        pressed: Iterator[PressedFrame],
+        size: CacheSize,
+    ) -> Baking:
+        place = mesh_cache.place_for(thing)
+        with point_cache(place, size) as cache:
+            for here in pressed:
+                cache.write(here.coordinates(drawn))
+                yield cache.written / size.samples
+        mesh_cache.play(thing, place, size)
+
+    def _keep_keys(
+        self, thing: bpy.types.Object, drawn: DrawnBody, pressed: Iterator[PressedFrame], count: int
+    ) -> Baking:
+        kept: list[PressedFrame] = []
+        for here in pressed:
+            kept.append(here)
+            yield len(kept) / count
+        frame_keys.keep_frames(thing, drawn, kept)
+
+    def _keep_last(
+        self, thing: bpy.types.Object, drawn: DrawnBody, pressed: Iterator[PressedFrame], count: int
+    ) -> Baking:
+        kept: list[PressedFrame] = []
+        for here in pressed:
+            kept.append(here)
+            yield len(kept) / count
+        last = kept[-1]
+        if last.displacements is None:
+            raise PalpateError("The tool touches nothing in this frame; choose another")
+        name = keep_shape(thing, drawn, last.displacements, pressing_tools(last.fingers))
+        self._told = Sentence("Kept as shape key '{key}'", key=name)
+
+    def _frames(self, scene: bpy.types.Scene) -> list[int]:
+        first = scene.frame_start if self.frame_start < 0 else self.frame_start
+        last = scene.frame_end if self.frame_end < 0 else self.frame_end
+        if self.current_only:
+            return list(range(min(first, scene.frame_current), scene.frame_current + 1))
+        frames = list(range(first, last + 1, self.step))
+        if not frames:
+            raise PalpateError(
+                "frames: {first} to {last} is none; let the last frame follow the first",
+                first=first,
+                last=last,
+            )
+        if self.keep == "KEYS" and len(frames) > MOST_KEYS:
+            raise PalpateError(
+                "frames: {count} shape keys are more than {most}; take a larger step",
+                count=len(frames),
+                most=MOST_KEYS,
+            )
+        return frames
+
+
+classes = (PALPATE_OT_press_frames,)

@@ -1,0 +1,67 @@
+"""Shape keys of an animation: each at full value in its frame, fading to its neighbours."""
+
+from __future__ import annotations
+
+import bpy
+
+from ..object.drawn_body import DrawnBody
+from .pressed_frames import PressedFrame
+
+FRAME_NAME = "Press at"
+
+
+def keep_frames(thing: bpy.types.Object, drawn: DrawnBody, pressed: list[PressedFrame]) -> int:
+    """Keep the frames as shape keys that fade into each other; returns how many."""
+    if thing.data.shape_keys is None:
+        thing.shape_key_add(name="Basis", from_mix=False)
+    _remove_frames(thing)
+    count = 0
+    for number, here in enumerate(pressed):
+        if here.displacements is None:
+            continue
+        key = thing.shape_key_add(name=f"{FRAME_NAME} {here.frame}", from_mix=False)
+        key.relative_key = thing.data.shape_keys.reference_key
+        key.points.foreach_set("co", here.coordinates(drawn))
+        for other, value in ((number - 1, 0.0), (number, 1.0), (number + 1, 0.0)):
+            if 0 <= other < len(pressed):
+                key.value = value
+                key.keyframe_insert("value", frame=pressed[other].frame)
+        count += 1
+    _go_straight(thing.data.shape_keys)
+    thing.data.update()
+    return count
+
+
+def _remove_frames(thing: bpy.types.Object) -> None:
+    """Remove the remains of an earlier press along an animation."""
+    keys = thing.data.shape_keys
+    for key in [key for key in keys.key_blocks if key.name.startswith(f"{FRAME_NAME} ")]:
+        path = f'key_blocks["{key.name}"].value'
+        for bag in _bags(keys):
+            curve = bag.find(path)
+            if curve is not None:
+                bag.remove(curve)
+        thing.shape_key_remove(key)
+
+
+def _go_straight(keys: bpy.types.Key) -> None:
+    """Values that go in straight lines add up to one between two frames."""
+    for curve in (curve for bag in _bags(keys) for curve in bag):
+        if curve.data_path.startswith(f'key_blocks["{FRAME_NAME} '):
+            for point in curve.keyframe_points:
+                point.interpolation = "LINEAR"
+
+
+def _bags(keys: bpy.types.Key) -> list[bpy.types.bpy_prop_collection]:
+    """The animation curves of shape keys, in bundles, in files of all Blenders that we know."""
+    data = keys.animation_data
+    if data is None or data.action is None:
+        return []
+    if hasattr(data.action, "fcurves"):
+        return [data.action.fcurves]
+    return [
+        bag.fcurves
+        for layer in data.action.layers
+        for strip in layer.strips
+        for bag in strip.channelbags
+    ]
