@@ -18,7 +18,7 @@ ROOMS_OF_PYTHON = """
 core/sentence.py core/errors.py core/progress.py core/quantities.py
 core/machine
 core/files
-core/mesh
+core/mesh/formats core/mesh
 core/stiffness
 core/compliance/ordering core/compliance/elimination core/compliance/compression core/compliance
 core/body

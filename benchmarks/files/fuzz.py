@@ -1,4 +1,4 @@
-"""Ten minutes of bytes that nobody meant: body files and the link, by the tests' own properties.
+"""Ten minutes of bytes that nobody meant, by the tests' own properties: bodies, meshes, the link.
 
     python benchmarks/files/fuzz.py [--seconds 600]
 
@@ -19,7 +19,9 @@ ROOT = Path(__file__).resolve().parents[2]
 PROPERTIES = (
     "tests/core/files/test_fuzzed_bodies.py",
     "tests/core/files/test_own_files.py",
+    "tests/core/mesh/test_mesh_formats.py",
     "tests/core/servo/test_codecs_agree.py",
+    "tests/core/servo/test_hostile_recordings.py",
     "tests/core/servo/test_link.py",
 )
 # Examples of a property in one round: a few minutes on a usual machine.

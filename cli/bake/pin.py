@@ -15,6 +15,8 @@ from ...core.body import body_file
 from ...core.body.soft_body import SoftBody
 from ...core.errors import PalpateError
 from ...core.files.atomic_file import refuse_missing_folder
+from ...core.files.npz_archive import ArchiveError, read_array
+from ...core.files.small_text import read_small_text
 from ...core.stiffness.pins import PinBelow, pinned_nodes
 from ..body.body_argument import add_body
 from ..body.body_figures import body_figures
@@ -22,6 +24,8 @@ from ..body.figure_lines import as_lines
 from .bake_options import AXES
 
 HELP = "pin more of a body, without a new bake"
+# A million node numbers.
+MOST_TEXT_BYTES = 10_000_000
 DESCRIPTION = "Write the body file that a bake with these nodes pinned besides would give."
 
 
@@ -82,10 +86,13 @@ def _read_numbers(file: Path) -> NDArray[np.int64]:
         raise PalpateError(f"{file}: there is no such file; give node numbers in a text file")
     try:
         if file.suffix.lower() == ".npy":
-            numbers = np.load(file, allow_pickle=False)
+            numbers = read_array(file)
         else:
-            numbers = np.array([int(word) for word in file.read_text(encoding="utf-8").split()])
-    except (ValueError, EOFError) as problem:
+            words = read_small_text(file, MOST_TEXT_BYTES).split()
+            numbers = np.array([int(word) for word in words])
+    except ArchiveError as problem:
+        raise PalpateError(f"{problem}; save node numbers with numpy.save") from problem
+    except (ValueError, OverflowError) as problem:
         raise PalpateError(
             f"{file}: cannot be read as node numbers ({problem}); give whole numbers with blanks "
             "or lines between them"

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import importlib.metadata
-import json
+import ipaddress
 import logging
 import secrets
+import sys
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager, suppress
@@ -15,11 +16,14 @@ from typing import TYPE_CHECKING
 
 from ...core.bake.many import always
 from ...core.errors import PalpateError
+from ...core.files.small_text import json_value, read_small_text
 
 if TYPE_CHECKING:
     from distributed import Client
 
 CONNECT_SECONDS = 10
+# Of a scheduler file.
+MOST_FILE_BYTES = 10_000_000
 
 
 @dataclass(frozen=True)
@@ -68,6 +72,7 @@ def cluster(address: str) -> Iterator[Workers]:
         another one.
     """
     with _connected(address) as client:
+        _warn_if_open(client)
         _refuse_other_palpates(client, address)
         from distributed import Event
 
@@ -121,13 +126,40 @@ def _connected(address: str) -> Iterator[Client]:
 def _address_in(file: Path) -> str:
     """Address in a scheduler file, as ``dask scheduler --scheduler-file`` writes it."""
     try:
-        address = json.loads(file.read_text(encoding="utf-8"))["address"]
+        address = json_value(read_small_text(file, MOST_FILE_BYTES))["address"]
     except (ValueError, LookupError, TypeError) as problem:
         raise PalpateError(
             f"--scheduler: {file} is no scheduler file; give the one that "
             "'dask scheduler --scheduler-file' wrote, or the address it prints"
         ) from problem
     return str(address)
+
+
+def _warn_if_open(client: Client) -> None:
+    """Say who may run programs, where a network reaches the scheduler or its workers."""
+    told = client.scheduler_info(n_workers=-1)
+    for address in (told["address"], *told["workers"]):
+        if is_open(address):
+            print(
+                f"palpate: warning: --scheduler: {address} can be reached from the network, and "
+                "whoever reaches it can run any program there; start it with --host 127.0.0.1, on "
+                "a closed network, or with TLS (docs/farm.md)",
+                file=sys.stderr,
+            )
+            return
+
+
+def is_open(address: str) -> bool:
+    """Whether more than this computer reaches ``protocol://host:port`` without a certificate."""
+    protocol, _, place = address.rpartition("://")
+    host = place.rpartition(":")[0].strip("[]")
+    if protocol in {"tls", "wss", "inproc"} or host == "localhost":
+        return False
+    try:
+        return not ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        # A name: what it stands for elsewhere is not known here.
+        return True
 
 
 def _refuse_other_palpates(client: Client, address: str) -> None:

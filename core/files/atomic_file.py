@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import IO
 
 from ..errors import PalpateError
-from ..sentence import Sentence
 from .held_lock import abandoned, hold, is_same_file
 
 UNFINISHED = ".tmp"
@@ -34,20 +33,22 @@ def refuse_unwritable(target: Path) -> None:
     target = _followed(target)
     folder = next(parent for parent in target.parents if parent.exists())
     if target.is_dir():
-        reason = Sentence("it is a folder")
-    elif target.exists() and not target.is_file():
-        reason = Sentence("it is no ordinary file")
-    elif not folder.is_dir():
-        reason = Sentence("{folder} is not a folder", folder=folder)
-    elif not os.access(folder, os.W_OK | os.X_OK):
-        reason = Sentence("{folder} may not be written", folder=folder)
-    else:
-        return
-    raise UnwritableError(
-        "{target}: cannot be written ({reason}); choose a folder you may write to",
-        target=target,
-        reason=reason,
-    )
+        raise UnwritableError("{target}: is a folder; name a file in it", target=target)
+    if target.exists() and not target.is_file():
+        raise UnwritableError("{target}: is no ordinary file; choose another name", target=target)
+    if not folder.is_dir():
+        raise UnwritableError(
+            "{target}: cannot be written ({folder} is not a folder); choose another folder",
+            target=target,
+            folder=folder,
+        )
+    if not os.access(folder, os.W_OK | os.X_OK):
+        raise UnwritableError(
+            "{target}: cannot be written ({folder} may not be written); choose a folder you may "
+            "write to",
+            target=target,
+            folder=folder,
+        )
 
 
 def refuse_missing_folder(target: Path) -> None:

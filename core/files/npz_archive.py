@@ -20,7 +20,7 @@ from numpy.lib import format as npy
 from numpy.typing import NDArray
 
 from ..errors import PalpateError
-from .npz_members import MembersError, array_head, listed
+from .npz_members import MOST_HEAD_BYTES, MembersError, array_head, head_of, listed
 
 # Alignment to which numpy pads the header of an array.
 ALIGNMENT = 64
@@ -163,6 +163,26 @@ def read_arrays(path: Path) -> dict[str, NDArray[Any]]:
     """
     with opened(path) as archive:
         return {name: archive.read(name) for name in archive.names}
+
+
+def read_array(path: Path) -> NDArray[Any]:
+    """The only array of a ``.npy`` file.
+
+    Raises
+    ------
+    ArchiveError
+        It cannot be opened, is no array, one of objects, or not as long as its shape.
+    """
+    try:
+        with path.open("rb") as stream:
+            head_of(stream.read(MOST_HEAD_BYTES), path.stat().st_size, "it")
+            stream.seek(0)
+            array: NDArray[Any] = npy.read_array(stream, allow_pickle=False)
+    except (OSError, MembersError, ValueError) as problem:
+        raise ArchiveError(
+            "{path}: cannot be read as npy ({reason})", path=path, reason=str(problem)
+        ) from problem
+    return array
 
 
 def write_arrays(stream: IO[bytes], arrays: Mapping[str, NDArray[Any]]) -> None:

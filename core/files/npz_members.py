@@ -138,19 +138,30 @@ def array_head(archive: zipfile.ZipFile, member: str) -> ArrayHead:
     """
     with archive.open(member) as stream:
         head = stream.read(MOST_HEAD_BYTES)
+    return head_of(head, archive.getinfo(member).file_size, repr(member))
+
+
+def head_of(head: bytes, size: int, what: str) -> ArrayHead:
+    """Shape and type of an array in ``npy`` form of ``size`` bytes that begins with ``head``.
+
+    Raises
+    ------
+    MembersError
+        ``what`` is no array, one of objects or structures, or not as long as its shape.
+    """
     try:
         start = io.BytesIO(head)
         version = npy.read_magic(start)
         read = npy.read_array_header_1_0 if version == (1, 0) else npy.read_array_header_2_0
         shape, _, dtype = read(start, max_header_size=MOST_HEAD_BYTES)
     except (ValueError, SyntaxError, TypeError, RecursionError, MemoryError) as problem:
-        raise MembersError(f"{member!r} is no array") from problem
+        raise MembersError(f"{what} is no array") from problem
     is_text = dtype.kind == "U" and dtype.itemsize <= 4 * MOST_LETTERS
     if not (dtype.kind in KINDS_OF_NUMBERS or is_text) or dtype.hasobject:
-        raise MembersError(f"{member!r} holds {dtype.name}, neither numbers nor text")
+        raise MembersError(f"{what} holds {dtype.name}, neither numbers nor text")
     if any(type(count) is not int or count < 0 for count in shape):
-        raise MembersError(f"{member!r} has the shape {shape}")
+        raise MembersError(f"{what} has the shape {shape}")
     nbytes = math.prod(shape) * dtype.itemsize
-    if start.tell() + nbytes != archive.getinfo(member).file_size:
-        raise MembersError(f"{member!r} is not as long as its shape")
+    if start.tell() + nbytes != size:
+        raise MembersError(f"{what} is not as long as its shape")
     return ArrayHead(shape, dtype, nbytes)

@@ -89,13 +89,13 @@ def refuse_rounded(what: str, points: NDArray[Any]) -> None:
     """
     if points.dtype.kind != "f" or points.ndim != 2 or not points.size:
         return
-    if not np.isfinite(points).all():
+    farthest = np.abs(points).max()
+    # What is not finite, out of range or without size is refused as such.
+    if not farthest <= LARGEST_COORDINATE:
         return
     size = float(np.linalg.norm(np.ptp(points.astype(np.float64), axis=0)))
-    farthest = np.abs(points).max()
     step = float(np.spacing(farthest))
-    # A shape without size is refused as such, and so is one that is out of range.
-    if step > LARGEST_STEP * size > 0.0 and farthest <= LARGEST_COORDINATE:
+    if step > LARGEST_STEP * size > 0.0:
         raise PalpateError(
             "{what}: it lies {times:.2g} times its size from the origin, where coordinates are "
             "rounded to {share:.2g} % of its size, so that detail is lost; model it at the origin, "

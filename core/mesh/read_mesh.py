@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,8 +13,15 @@ from ..errors import PalpateError
 from ..files.npz_archive import ArchiveError, read_arrays
 from ..sentence import Sentence
 from .coordinates import refuse_rounded
+from .formats.obj import read_obj
+from .formats.ply import read_ply
+from .formats.polygons import MeshFormatError
+from .formats.stl import read_stl
 from .surface import Surface
 from .tet_mesh import TetMesh, young_scale_checked
+
+# Ten million triangles and more, of which a bake keeps some thousands.
+MOST_BYTES = 1_000_000_000
 
 
 def read_surface(path: Path, metres_per_unit: float = 1.0) -> Surface:
@@ -24,12 +30,20 @@ def read_surface(path: Path, metres_per_unit: float = 1.0) -> Surface:
     Raises
     ------
     PalpateError
-        No such file, an unknown kind, contents that cannot be read or cannot become a solid.
+        No such file, an unknown kind, one too large, contents that cannot be read or cannot become
+        a solid.
     """
     _refuse_missing(path)
+    size = path.stat().st_size
+    if size > MOST_BYTES:
+        raise PalpateError(
+            f"{path}: has {size / 1e9:.1f} GB, and a surface at most {MOST_BYTES / 1e9:g} GB; "
+            "decimate it before you export it"
+        )
     try:
-        vertices, triangles = READERS[path.suffix.lower()](path)
-    except Exception as problem:  # readers raise many kinds for a damaged file; all mean the same
+        with path.open("rb") as stream:
+            vertices, triangles = READERS[path.suffix.lower()](stream, size)
+    except MeshFormatError as problem:
         raise PalpateError(
             f"{path}: cannot be read as {path.suffix[1:]} ({problem}); export it again"
         ) from problem
@@ -107,55 +121,7 @@ def _node_numbers(fixed: NDArray[Any], node_count: int) -> NDArray[np.int64]:
     return fixed.astype(np.int64).ravel()
 
 
-def _read_obj(path: Path) -> tuple[NDArray[Any], NDArray[np.int64]]:
-    # Object names may be in any encoding; they are not used.
-    text = path.read_text(encoding="utf-8", errors="replace")
-    return _by_trimesh(io.StringIO(text), "obj", skip_materials=True)
-
-
-def _read_stl(path: Path) -> tuple[NDArray[Any], NDArray[np.int64]]:
-    content = path.read_bytes()
-    # Binary files may begin with "solid" too; only the length is decisive.
-    if len(content) == 84 + 50 * int.from_bytes(content[80:84], "little"):
-        vertices, triangles = _by_trimesh(io.BytesIO(content), "stl")
-        return vertices.astype(np.float32), triangles
-    text = content.decode("utf-8", errors="replace")
-    if "facet" not in text:
-        raise ValueError("neither text nor as long as its binary header says")
-    return _by_trimesh(io.StringIO(text), "stl_ascii")
-
-
-def _by_trimesh(
-    content: io.StringIO | io.BytesIO, kind: str, **options: bool
-) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    import trimesh
-
-    mesh = trimesh.load_mesh(content, file_type=kind, process=False, **options)
-    return np.asarray(mesh.vertices, dtype=np.float64), np.asarray(mesh.faces, dtype=np.int64)
-
-
-def _read_ply(path: Path) -> tuple[NDArray[Any], NDArray[np.int64]]:
-    """Surface read by plyfile, which takes mixed triangles, quads and larger polygons."""
-    from plyfile import PlyData, PlyListProperty
-
-    data = PlyData.read(path)
-    vertex = data["vertex"]
-    vertices = np.column_stack([vertex[axis] for axis in "xyz"])
-    if "face" not in data:
-        return vertices, np.empty((0, 3), dtype=np.int64)
-    lists = [entry.name for entry in data["face"].properties if isinstance(entry, PlyListProperty)]
-    name = next(name for name in ("vertex_indices", "vertex_index", *lists) if name in lists)
-    fans = [_fan(np.asarray(polygon, dtype=np.int64)) for polygon in data["face"][name]]
-    return vertices, np.concatenate(fans) if fans else np.empty((0, 3), dtype=np.int64)
-
-
-READERS = {".obj": _read_obj, ".ply": _read_ply, ".stl": _read_stl}
-
-
-def _fan(polygon: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Triangles (k - 2, 3) of a polygon of k corners."""
-    first = np.repeat(polygon[:1], len(polygon) - 2)
-    return np.column_stack([first, polygon[1:-1], polygon[2:]])
+READERS = {".obj": lambda stream, _: read_obj(stream), ".ply": read_ply, ".stl": read_stl}
 
 
 def _refuse_missing(path: Path) -> None:

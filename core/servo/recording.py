@@ -1,15 +1,14 @@
-"""Recordings of the servo as files: every tick in CSV or npz, written atomically.
+"""Recordings of the servo as files: every tick in CSV or npz, written atomically; read by
+:mod:`.read_recording`.
 
 `docs/recording.md` describes both formats.
 """
 
 from __future__ import annotations
 
-import itertools
 import json
 import shutil
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import IO
 
@@ -19,7 +18,7 @@ from numpy.typing import NDArray
 
 from ..errors import PalpateError
 from ..files.atomic_file import atomic_file, refuse_missing_folder, refuse_unwritable
-from ..files.npz_archive import ArchiveError, read_arrays, write_arrays
+from ..files.npz_archive import write_arrays
 
 FORMAT = "palpate recording 1"
 SUFFIXES = (".csv", ".npz")
@@ -58,27 +57,10 @@ FINGER_COLUMN = ",finger"
 CSV_GROWTH = 3.0
 """Largest ratio of a CSV line's bytes to those of its tick in memory."""
 _ROWS_AT_ONCE = 10_000
-_CSV_FIELDS = [("tick", "=u8"), ("numbers", "=f8", (16,)), ("state", "U32")]
 
 
 class RecordingError(PalpateError):
     """Recording that cannot be written or read."""
-
-
-@dataclass(frozen=True, eq=False)
-class Recording:
-    """Recorded ticks from a file.
-
-    Attributes
-    ----------
-    samples : structured array (n,) of `DTYPE`; a row for each finger of each tick.
-    states : names of the states that `samples["state"]` counts.
-    rate_hz : of the servo; None from a CSV file.
-    """
-
-    samples: NDArray[np.void]
-    states: tuple[str, ...]
-    rate_hz: int | None
 
 
 def check_recording_path(path: Path) -> None:
@@ -152,25 +134,6 @@ def write_recording(
             _write_npz(file, samples, states, rate_hz)
 
 
-def read_recording(path: Path) -> Recording:
-    """Read what `write_recording` has written, to the last bit.
-
-    Raises
-    ------
-    RecordingError
-        The file is not there, is damaged, or is no recording.
-    """
-    match path.suffix.lower():
-        case ".csv":
-            return _read_csv(path)
-        case ".npz":
-            return _read_npz(path)
-        case _:
-            raise RecordingError(
-                "{path}: a recording ends in {suffixes}", path=path, suffixes=" or ".join(SUFFIXES)
-            )
-
-
 def _write_csv(file: IO[bytes], samples: NDArray[np.void], states: Sequence[str]) -> None:
     fingers = samples["finger"]
     is_alone = not fingers.any()
@@ -205,66 +168,3 @@ def _write_npz(
             "about": np.array(json.dumps(about)),
         },
     )
-
-
-def _read_npz(path: Path) -> Recording:
-    try:
-        arrays = read_arrays(path)
-    except ArchiveError as problem:
-        raise RecordingError("{problem}; record again", problem=problem) from problem
-    try:
-        about = json.loads(str(arrays["about"]))
-        if about["format"] != FORMAT:
-            raise RecordingError(
-                "{path}: is of the format {format}, this Palpate reads {own}; update Palpate",
-                path=path,
-                format=repr(about["format"]),
-                own=repr(FORMAT),
-            )
-        samples = np.zeros(len(arrays["tick"]), DTYPE)
-        for name in UNITS:
-            # Old recordings of one finger have no column for it.
-            if name != "finger" or name in arrays:
-                samples[name] = arrays[name]
-        return Recording(samples, tuple(arrays["states"].tolist()), int(about["rate_hz"]))
-    except (KeyError, ValueError, TypeError) as problem:
-        raise RecordingError(
-            "{path}: is no recording ({problem}); choose another file", path=path, problem=problem
-        ) from None
-
-
-def _read_csv(path: Path) -> Recording:
-    try:
-        with path.open(encoding="utf-8") as file:
-            header = file.readline().rstrip("\n")
-            if header not in (CSV_HEADER, CSV_HEADER + FINGER_COLUMN):
-                raise RecordingError(
-                    "{path}: is no recording (another first line); choose another file", path=path
-                )
-            is_alone = header == CSV_HEADER
-            fields = np.dtype(_CSV_FIELDS + ([] if is_alone else [("finger", "=u4")]))
-            rows = np.empty(0, fields)
-            # numpy warns of files without lines.
-            if first := file.readline():
-                lines = itertools.chain([first], file)
-                rows = np.loadtxt(lines, fields, delimiter=",", comments=None, ndmin=1)
-    except OSError as problem:
-        raise RecordingError(
-            "{path}: cannot be read ({reason}); choose another file",
-            path=path,
-            reason=problem.strerror,
-        ) from problem
-    except ValueError as problem:
-        raise RecordingError(
-            "{path}: is damaged ({problem}); record again", path=path, problem=problem
-        ) from problem
-    samples = np.zeros(len(rows), DTYPE)
-    if not is_alone:
-        samples["finger"] = rows["finger"]
-    samples["tick"], samples["time"] = rows["tick"], rows["numbers"][:, 0]
-    for place, name in enumerate(VECTORS):
-        samples[name] = rows["numbers"][:, 1 + 3 * place : 4 + 3 * place]
-    names, found = np.unique(rows["state"], return_inverse=True)
-    states = tuple(dict.fromkeys((*palpate_servo.STATES, *names.tolist())))
-    samples["state"] = np.array([states.index(name) for name in names], np.uint32)[found]
-    return Recording(samples, states, None)

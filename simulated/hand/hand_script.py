@@ -7,7 +7,6 @@ from __future__ import annotations
 import bisect
 import csv
 import io
-import json
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -15,8 +14,12 @@ from itertools import pairwise
 from pathlib import Path
 
 from ...core.errors import PalpateError
+from ...core.files.small_text import json_value, read_small_text
 from .plant import Vector
 from .quaternion import UPRIGHT, Quaternion, about, between, unit
+
+# Of a script's file: a hundred thousand keyframes.
+MOST_BYTES = 10_000_000
 
 
 def minimum_jerk(s: float) -> float:
@@ -147,25 +150,30 @@ def read_script(path: Path) -> HandScript:
     Raises PalpateError for an unreadable or invalid file.
     """
     try:
-        text = path.read_text(encoding="utf-8")
-        if text.lstrip().startswith("{"):
-            content = json.loads(text)
-            rows, repeat_from = content["keyframes"], content.get("repeat_from")
-        else:
-            rows = [row for row in csv.reader(io.StringIO(text)) if row and row[0].strip() != "t"]
-            repeat_from = None
-        repeat = None if repeat_from is None else float(repeat_from)
-        times = tuple(float(row[0]) for row in rows)
-        places = tuple((float(x), float(y), float(z)) for _, x, y, z, *_ in rows)
-        turns = _turns([[float(part) for part in row[4:]] for row in rows])
-    except OSError as error:
-        raise PalpateError(f"{path}: {error.strerror}; give the path of a script") from error
-    except (ValueError, KeyError, TypeError) as error:
+        return _script(read_small_text(path, MOST_BYTES))
+    except (ValueError, LookupError, TypeError, OverflowError, csv.Error) as error:
         raise PalpateError(
             f"{path}: not a script of the hand ({error}); write CSV lines t,x,y,z "
             "or t,x,y,z,qw,qx,qy,qz, or JSON "
             '{"keyframes": [[t, x, y, z], ...]}'
         ) from error
+    except PalpateError as error:
+        if str(path) in str(error):
+            raise
+        raise PalpateError(f"{path}: {error}; correct its keyframes") from error
+
+
+def _script(text: str) -> HandScript:
+    if text.lstrip().startswith("{"):
+        content = json_value(text)
+        rows, repeat_from = content["keyframes"], content.get("repeat_from")
+    else:
+        rows = [row for row in csv.reader(io.StringIO(text)) if row and row[0].strip() != "t"]
+        repeat_from = None
+    repeat = None if repeat_from is None else float(repeat_from)
+    times = tuple(float(row[0]) for row in rows)
+    places = tuple((float(x), float(y), float(z)) for _, x, y, z, *_ in rows)
+    turns = _turns([[float(part) for part in row[4:]] for row in rows])
     turning = TurnScript(times, turns, repeat) if turns else None
     return HandScript(times, places, repeat, turning)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import pkgutil
 import sys
 from pathlib import Path
 
@@ -18,6 +19,23 @@ def test_import_comes_from_the_wheel_inside_the_package(name, palpate):
     module = importlib.import_module(name)
     user_folder = Path(bpy.utils.resource_path("USER"))
     assert Path(module.__file__).is_relative_to(user_folder)
+
+
+def test_every_module_of_the_package_can_be_imported(palpate):
+    """With nothing but Blender, its Python and the wheels inside the package."""
+    names = [
+        module.name for module in pkgutil.walk_packages(palpate.__path__, f"{palpate.__name__}.")
+    ]
+    assert f"{MODULE}.cli.main" in names
+    assert len(names) > 300
+    for name in names:
+        importlib.import_module(name)
+
+
+def test_the_command_line_works_in_the_package(palpate, capsys):
+    main = importlib.import_module(f"{MODULE}.cli.main").main
+    assert main(["shore", "00-30"]) == 0
+    assert "young" in capsys.readouterr().out.lower()
 
 
 def test_the_servo_brings_nothing_that_only_tests_need(palpate):

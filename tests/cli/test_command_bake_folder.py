@@ -220,3 +220,32 @@ def test_a_file_that_is_no_schedulers_is_refused_in_one_line(meshes, refusal, co
 def test_pins_that_no_bake_would_take_are_not_predicted(meshes, refusal, fraction):
     words = ["cube.npz", "--predict", "--pin-below", fraction]
     assert "must lie between 0" in refusal("bake", *words)
+
+
+@pytest.mark.parametrize(
+    ("address", "is_open"),
+    [
+        ("tcp://127.0.0.1:8786", False),
+        ("tcp://localhost:8786", False),
+        ("tcp://[::1]:8786", False),
+        ("tls://farm:8786", False),
+        ("inproc://192.168.1.9/12/1", False),
+        ("tcp://192.168.1.9:8786", True),
+        ("tcp://0.0.0.0:8786", True),
+        ("tcp://[::]:8786", True),
+        ("tcp://farm:8786", True),
+        ("farm:8786", True),
+    ],
+)
+def test_a_scheduler_that_a_network_reaches_is_known(address, is_open):
+    assert scheduler.is_open(address) == is_open
+
+
+def test_an_open_scheduler_is_told_once(meshes, palpate, start_cluster):
+    """It listens on all interfaces, though it is reached by the loopback."""
+    everywhere = start_cluster(n_workers=1, scheduler_kwargs={"host": "tcp://0.0.0.0:0"})
+    port = everywhere.scheduler_address.rpartition(":")[2]
+    words = ["--output-folder", "bodies", "--scheduler", f"tcp://127.0.0.1:{port}"]
+    status, _, said = palpate("bake", "cube.npz", *words)
+    assert status == 0
+    assert said.count("can be reached from the network") == 1

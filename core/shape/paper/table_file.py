@@ -21,7 +21,6 @@ from ...errors import PalpateError
 from ...files.atomic_file import UnwritableError, atomic_file
 from ...files.npz_archive import ArchiveError, read_arrays, write_arrays
 from ...files.own_file import is_free
-from ...sentence import Sentence
 
 FORMAT = "palpate-table"
 VERSION = 1
@@ -47,9 +46,8 @@ def write_table(path: Path, kind: str, key: str, arrays: Mapping[str, NDArray[An
     """
     if not is_free(path, FORMAT):
         raise UnwritableError(
-            "{target}: cannot be written ({reason}); choose a folder you may write to",
+            "{target}: is no table of Palpate's, so it is not replaced; move it or rename it",
             target=path,
-            reason=Sentence("it is no table of Palpate's"),
         )
     head = {
         "format": np.array(FORMAT),

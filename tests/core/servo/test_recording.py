@@ -8,6 +8,7 @@ import palpate_servo
 import pytest
 
 from palpate.core.errors import PalpateError
+from palpate.core.servo.read_recording import read_recording
 from palpate.core.servo.recording import (
     CSV_GROWTH,
     CSV_HEADER,
@@ -16,7 +17,6 @@ from palpate.core.servo.recording import (
     RecordingError,
     check_recording_path,
     check_room,
-    read_recording,
     write_recording,
 )
 from palpate.core.servo.settings import Settings
@@ -118,7 +118,7 @@ def test_an_unknown_state_in_csv_keeps_its_name(tmp_path, samples):
         ("press.txt", "let the name end in .csv or .npz"),
         ("press", "let the name end in .csv or .npz"),
         ("nowhere/press.csv", "there is no folder"),
-        ("folder.npz", "it is a folder"),
+        ("folder.npz", "is a folder; name a file in it"),
     ],
 )
 def test_places_that_cannot_be_are_refused_beforehand(tmp_path, samples, place, words):
