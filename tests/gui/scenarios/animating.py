@@ -1,0 +1,67 @@
+"""A tool's animation, baked in the window: with a bar, and Escape."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+from mouse_scene import own_copy, type_key
+from stage import Stage, Wait
+
+NAME = "Mouse"
+
+
+def escape_ends_the_baking_of_an_animation_and_changes_nothing(stage: Stage) -> Wait:
+    yield from _begin(stage)
+    frame = bpy.context.scene.frame_current
+    yield from _bake(stage)
+    # Some frames on: the timer presses a slice at a time, and the window is drawn in between.
+    yield from stage.until(lambda: bpy.context.scene.frame_current > frame, "a frame")
+    yield from stage.picture("bar")
+    yield from type_key(stage, "ESC")
+    yield from stage.until(lambda: bpy.context.scene.frame_current == frame, "the old frame")
+    assert not _thing().modifiers
+    assert not list((stage.output / "scene" / "palpate").glob("*.pc2*"))
+
+
+def a_baked_animation_plays_by_its_modifier(stage: Stage) -> Wait:
+    yield from _begin(stage)
+    yield from _bake(stage)
+    yield from stage.until(lambda: _thing().modifiers, "the mesh cache")
+    heights = {}
+    for frame in (21, 1):
+        bpy.context.scene.frame_set(frame)
+        yield from stage.picture(f"frame-{frame}")
+        heights[frame] = _places()
+    assert np.abs(heights[21] - heights[1]).max() > 1e-3
+    with stage.view():
+        bpy.ops.ed.undo()
+    yield
+    assert not _thing().modifiers
+
+
+def _begin(stage: Stage) -> Wait:
+    stage.open_scene(own_copy(stage, "sample_scenes/fingertip.blend"))
+    yield 0.5
+    yield from stage.open_sidebar("Palpate")
+    bpy.context.view_layer.objects.active = _thing()
+    # Fewer contact points than the finger of the scene has, for time.
+    bpy.context.scene.palpate.tip_radius = 0.016
+    bpy.ops.ed.undo_push(message="Opened")
+    yield
+
+
+def _bake(stage: Stage) -> Wait:
+    with stage.view():
+        bpy.ops.palpate.press_frames("INVOKE_DEFAULT", frame_start=11, frame_end=21)
+    yield
+
+
+def _thing() -> bpy.types.Object:
+    return bpy.data.objects[NAME]
+
+
+def _places() -> np.ndarray:
+    evaluated = _thing().evaluated_get(bpy.context.evaluated_depsgraph_get())
+    places = np.empty(3 * len(evaluated.data.vertices), np.float32)
+    evaluated.data.vertices.foreach_get("co", places)
+    return places
