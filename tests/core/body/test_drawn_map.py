@@ -24,9 +24,40 @@ def test_vertices_off_the_surface_move_as_the_nearest_place(cube):
     np.testing.assert_allclose(hung.displacements(x), top * [1, 1, 0] + [0, 0, 0.05], atol=1e-12)
 
 
-def test_weights_of_a_vertex_sum_to_one_where_nothing_is_pinned(mouse, rng):
-    free = ~np.isin(mouse.mesh.surface_triangles, mouse.fixed).any(axis=1)
-    centres = mouse.mesh.nodes[mouse.mesh.surface_triangles[free]].mean(axis=1)
-    weights = DrawnMap.hang(centres, mouse).weights
-    np.testing.assert_allclose(weights.sum(axis=1), 1)
-    assert weights.nnz == 3 * len(centres)
+def test_a_smooth_dent_is_drawn_much_nearer_than_by_flat_triangles(mouse):
+    """A dent of the size of some cells, at places within the triangles of the back."""
+    mesh, middle = mouse.mesh, np.array([-0.027, -0.014, 0.057])
+
+    def dent(places):
+        return np.exp(-0.5 * np.sum((places - middle) ** 2, axis=1) / 0.02**2)[:, None] * [0, 0, 1]
+
+    free = ~np.isin(mesh.surface_triangles, mouse.fixed).any(axis=1)
+    corners = mesh.surface_triangles[free]
+    places = np.einsum("c,tcx->tx", [0.5, 0.3, 0.2], mesh.nodes[corners])
+    flat = np.einsum("c,tcx->tx", [0.5, 0.3, 0.2], dent(mesh.nodes.reshape(-1, 3))[corners])
+    u = dent(mesh.nodes[mouse.compliance.free_surface])
+    drawn = DrawnMap.hang(places, mouse).displacements(u)
+    off_flat = np.linalg.norm(flat - dent(places), axis=1).mean()
+    assert np.linalg.norm(drawn - dent(places), axis=1).mean() < 0.4 * off_flat
+
+
+def test_no_seam_is_drawn_along_the_edges_of_triangles(mouse, rng):
+    mesh = mouse.mesh
+    u = rng.normal(size=(mouse.compliance.node_count, 3))
+    ends = mesh.nodes[mesh.surface_triangles[:, :2]]
+    apex = mesh.nodes[mesh.surface_triangles[:, 2]]
+    on_edge = ends.mean(axis=1)
+    hung = [
+        DrawnMap.hang(on_edge + share * (apex - on_edge), mouse).displacements(u)
+        for share in (0.0, 1e-6)
+    ]
+    np.testing.assert_allclose(hung[1], hung[0], atol=1e-4)
+
+
+def test_vertices_of_triangles_far_from_pins_move_with_all_nodes(mouse):
+    corners, fixed = mouse.mesh.surface_triangles, mouse.fixed
+    beside_pins = np.unique(corners[np.isin(corners, fixed).any(axis=1)])
+    inside = corners[~np.isin(corners, beside_pins).any(axis=1)]
+    hung = DrawnMap.hang(mouse.mesh.nodes[inside].mean(axis=1), mouse)
+    together = np.ones((mouse.compliance.node_count, 3))
+    np.testing.assert_allclose(hung.displacements(together), 1)
