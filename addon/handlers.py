@@ -15,6 +15,7 @@ from ..operators.scene import live_shape
 from ..operators.scene.package_preferences import preferences
 from ..operators.session import press_session
 from ..operators.session.press_events import Moment
+from ..operators.tool.tool_sizes import keep_exact_sizes
 from . import known_status
 
 # Body files before a save that may change the .blend's folder.
@@ -39,8 +40,9 @@ def _after_load(*_: object) -> None:
     known_status.forget()
     kept_body.forget()
     live_shape.remove_leftovers()
-    if not bpy.data.filepath:
-        for scene in bpy.data.scenes:
+    for scene in bpy.data.scenes:
+        keep_exact_sizes(scene)
+        if not bpy.data.filepath:
             scene.palpate.source = preferences().default_source
 
 

@@ -22,8 +22,7 @@ def draw_summary(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
         return
     cost = prediction.cost
     if prediction.fits:
-        nodes, time = about(cost.nodes), duration(cost.seconds)
-        say(layout, context, "About {nodes} nodes in {time}", "TIME", nodes=nodes, time=time)
+        say(layout, context, "Takes about {time}", "TIME", time=duration(cost.seconds))
     else:
         _draw_alarm(layout, context, prediction)
 

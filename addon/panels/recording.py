@@ -13,7 +13,7 @@ from .sentence import say
 
 class PALPATE_PT_recording(PalpatePanel, bpy.types.Panel):
     bl_label = "Recording"
-    bl_parent_id = "PALPATE_PT_main"
+    bl_parent_id = "PALPATE_PT_press"
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:

@@ -24,7 +24,8 @@ SMOOTH_SECONDS = 0.012
 class PALPATE_PT_shape(PalpatePanel, bpy.types.Panel):
     bl_idname = "PALPATE_PT_shape"
     bl_label = "Large Deformation"
-    bl_parent_id = "PALPATE_PT_main"
+    bl_parent_id = "PALPATE_PT_advanced"
+    bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
         layout, thing = named_properties(self), context.object

@@ -5,6 +5,7 @@ import bpy
 from ...core.quantities import duration
 from ...operators.bake import bake_words
 from ...operators.bake.bake_session import BakeSession
+from ...operators.device.servo_words import FORCEFUL, Signal, Standing, standing
 from ...operators.object import soft_object
 from ...operators.object.drawn_body import restores_quickly
 from ...operators.object.pin_change import PinFit
@@ -15,9 +16,18 @@ from ...operators.session.press_session import PressSession
 from ...operators.session.press_state import Phase
 from .. import known_status
 from ..overlay.reading import readings
-from . import cost, force
+from . import cost
 from .sentence import say
 
+# Coloured squares: green, orange and red mean motors on, about to come, and something wrong.
+ICONS = {
+    Signal.OFF: "COLORSET_10_VEC",
+    Signal.WAITING: "COLORSET_10_VEC",
+    Signal.READY: "COLORSET_03_VEC",
+    Signal.FORCE: "COLORSET_02_VEC",
+    Signal.RETURNING: "COLORSET_09_VEC",
+    Signal.FAULT: "COLORSET_01_VEC",
+}
 # Reasons for the work that changed pins need.
 PIN_TEXTS = {
     PinFit.KNOWN: "These pins were computed before: no bake needed",
@@ -42,7 +52,7 @@ def draw_press(layout: bpy.types.UILayout, context: bpy.types.Context, press: Pr
     """Draw a running press."""
     layout.label(text=press.handle.name, icon="MOD_SOFT", translate=False)
     if press.state.source is Source.DEVICE:
-        force.draw(layout, context, press)
+        _draw_force(layout, context, press)
     elif press.state.message:
         say(layout, context, press.state.message, "ERROR")
     for figures in readings(press):
@@ -53,20 +63,50 @@ def draw_press(layout: bpy.types.UILayout, context: bpy.types.Context, press: Pr
         say(layout, context, "Enter keeps the shape, Escape restores it", "INFO")
 
 
+def _draw_force(
+    layout: bpy.types.UILayout, context: bpy.types.Context, press: PressSession
+) -> None:
+    """Draw the force at the top of the panel while a device presses."""
+    row = layout.row()
+    row.scale_y = 2.0
+    text, icon = ("Force Off", "COLORSET_01_VEC") if press.state.force_on else ("Force On", "PLAY")
+    # In the light theme dark letters are unreadable on red.
+    row.alert = press.state.force_on and _has_bright_letters(context)
+    row.operator("palpate.switch_force", text=text, icon=icon)
+    if press.snapshot is not None:
+        _draw_standing(layout, context, standing(press.snapshot))
+    if press.state.message and press.state.phase is not Phase.LOST:
+        say(layout, context, press.state.message, "INFO")
+
+
+def _draw_standing(layout: bpy.types.UILayout, context: bpy.types.Context, now: Standing) -> None:
+    column = layout.column(align=True)
+    column.alert = now.signal is Signal.FAULT
+    column.label(text=now.word, icon=ICONS[now.signal])
+    # Too frequent a change for the panel, which would jump; the view shows it.
+    if now.why and now.signal not in FORCEFUL:
+        say(column, context, now.why, "BLANK1")
+
+
+def _has_bright_letters(context: bpy.types.Context) -> bool:
+    red, green, blue = context.preferences.themes[0].user_interface.wcol_tool.text
+    return bool(red + green + blue > 1.5)
+
+
 def draw_idle(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """Draw the possible actions on the object."""
     thing = context.object
     refusal = soft_object.refusal(thing)
-    column = layout.column(align=True)
-    column.scale_y = 1.5
     if refusal:
         say(layout, context, refusal, "INFO")
         return
+    layout.prop(thing.palpate, "material", text="")
+    column = layout.column(align=True)
+    column.scale_y = 1.5
     status = known_status.body_status(thing, context.scene)
     if status.fit is Fit.NEVER_BAKED:
         column.operator("palpate.make_soft", icon="MOD_SOFT")
         cost.draw_summary(layout, context)
-        say(layout, context, "Choose a material and pins, then press Make Soft", "INFO")
         return
     row = column.row()
     row.enabled = status.fit is Fit.READY or _press_restores(thing, status)

@@ -1,6 +1,11 @@
 """Properties of a scene's fingers: contact mode, tip, and the second finger."""
 
-from .kinds import choice, chosen_object, length, switch, text
+import bpy
+
+from ...core.errors import PalpateError
+from ...operators.scene.drawn_surface import metres_per_unit, size_of
+from ...operators.tool.tool_sizes import ToolSizes, has_exact_sizes
+from .kinds import choice, chosen_object, length, number, span, switch, text
 
 # Files hold the numbers of these items: add new ones at the end only.
 MODE_ITEMS = [
@@ -42,6 +47,31 @@ HAPLY_ITEMS = [
 ]
 
 
+def _take_length(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    """Sizes are lengths from now on: one was set, by hand or by a script."""
+    if not settings.own_sizes:
+        settings.own_sizes = True
+
+
+def _begin_with_share(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    """Lengths begin as those of the active object's share, unless one was ever set."""
+    thing = context.object
+    if not settings.own_sizes or has_exact_sizes(settings) or thing is None:
+        return
+    scene = settings.id_data
+    try:
+        sizes = ToolSizes.of_share(settings.tip_share, size_of(thing, scene))
+    except PalpateError:
+        # A flattened object has no size; Press reports it with its remedy.
+        return
+    for name, metres in sizes.lengths.items():
+        setattr(settings, name, metres / metres_per_unit(scene))
+
+
+def _tool_length(name: str, description: str, default: float, **more: object) -> object:
+    return length(name, description, default, update=_take_length, **more)
+
+
 def haply_model() -> object:
     """Model of a finger's Haply 2DIY."""
     return choice("Model", "Which of the 2DIYs it is", HAPLY_ITEMS, "2diy-3.1")
@@ -62,12 +92,23 @@ class FingerProperties:
     contact_mode: choice(
         "Contact", "How the force follows from the depth", MODE_ITEMS, "CONSISTENT"
     )
-    tip: choice("Finger", "What touches the surface", TIP_ITEMS, "POINT")
-    tip_radius: length("Radius", "Radius of the fingertip or rod", 0.008)
-    rod_length: length("Length", "Length of the rod without its round ends", 0.03)
-    plate_width: length("Width", "Width of the plate", 0.02)
+    tip: choice("Finger", "What touches the surface", TIP_ITEMS, "SPHERE")
+    tip_share: number(
+        "Size",
+        "Radius of the fingertip as a share of the body's size; rod and plate are in proportion",
+        5.0,
+        span(0.5, 100.0, soft_max=20.0, precision=1, step=50, subtype="PERCENTAGE"),
+    )
+    own_sizes: switch(
+        "Exact Size",
+        "Give the tool's size in lengths, the same for every object",
+        update=_begin_with_share,
+    )
+    tip_radius: _tool_length("Radius", "Radius of the fingertip or rod", 0.008)
+    rod_length: _tool_length("Length", "Length of the rod without its round ends", 0.03)
+    plate_width: _tool_length("Width", "Width of the plate", 0.02)
     # Not the depth of a press: some languages have two words.
-    plate_depth: length(
+    plate_depth: _tool_length(
         "Depth", "Depth of the plate, across its width", 0.02, translation_context="Palpate"
     )
     tip_object: chosen_object(

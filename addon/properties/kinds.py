@@ -36,9 +36,9 @@ def length(name: str, description: str, default: float, **more: object) -> objec
     return number(name, description, default, LENGTHS, **more)
 
 
-def switch(name: str, description: str, *, on: bool = False) -> object:
+def switch(name: str, description: str, *, on: bool = False, **more: object) -> object:
     """Something that is on or off."""
-    return bpy.props.BoolProperty(name=name, description=description, default=on)
+    return bpy.props.BoolProperty(name=name, description=description, default=on, **more)
 
 
 def choice(

@@ -50,7 +50,7 @@ def press_frames(
     PalpateError
         The finger is a point, or nothing leads it.
     """
-    tool, guides = pressers.tool_of(scene, thing), pressers.leading_objects(scene)
+    tool, guides = pressers.tool_of(scene, thing, drawn.size), pressers.leading_objects(scene)
     modulus = thing.palpate.young_modulus
     settings = ContactSettings(modulus, thing.palpate.static_friction)
     press = Press(drawn.body, [tool] * len(guides), settings)

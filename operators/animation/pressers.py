@@ -13,15 +13,15 @@ from ..tool import tool_turn
 from ..tool.finger_tip import chosen_tip
 
 
-def tool_of(scene: bpy.types.Scene, thing: bpy.types.Object) -> Tool:
-    """The tool that presses.
+def tool_of(scene: bpy.types.Scene, thing: bpy.types.Object, size: float) -> Tool:
+    """The tool that presses, on a body of this ``size``, metres.
 
     Raises
     ------
     PalpateError
         The finger is a point.
     """
-    tool = chosen_tip(scene, thing).tool
+    tool = chosen_tip(scene, thing, size).tool
     if tool is None:
         raise PalpateError(
             "finger: a point has no shape to press along an animation; choose Fingertip, Plate, "

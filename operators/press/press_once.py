@@ -91,7 +91,7 @@ def press_several(
     """
     drawn = open_body(thing, scene)
     frame, young_modulus = drawn.frame, thing.palpate.young_modulus
-    tip = chosen_tip(scene, thing)
+    tip = chosen_tip(scene, thing, drawn.size)
     places = np.array([_point(frame.body_from_world(_point(at, "at")), "at") for at in ats])
     inward = np.array([frame.turn_to_body(_point(by, "by")) * frame.metres_per_unit for by in bys])
     made = _touches(thing, scene, drawn, tip.tool, places, inward)

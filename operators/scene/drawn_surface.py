@@ -113,6 +113,18 @@ def frame_of(thing: bpy.types.Object, scene: bpy.types.Scene) -> BodyFrame:
     return BodyFrame.of_matrix(np.array(thing.matrix_world), metres_per_unit(scene))
 
 
+def size_of(thing: bpy.types.Object, scene: bpy.types.Scene) -> float:
+    """Diagonal of the object's bounding box, metres.
+
+    Raises
+    ------
+    PalpateError
+        As of :func:`frame_of`.
+    """
+    corners = frame_of(thing, scene).body_from_local(np.array(thing.bound_box))
+    return float(np.linalg.norm(np.ptp(corners, axis=0)))
+
+
 def metres_per_unit(scene: bpy.types.Scene) -> float:
     """Metres per Blender unit; 1 without a unit system."""
     units = scene.unit_settings

@@ -278,8 +278,8 @@ def begin(
         busy = _current.handle.name
         raise PalpateError("{name} is being pressed; end that first (Escape)", name=busy)
     leads = BOTH_POINTER if pinch else leads_of(scene, source)
-    tip = chosen_tip(scene, thing)
     drawn = open_body(thing, scene)
+    tip = chosen_tip(scene, thing, drawn.size)
     home = device_source.home_of_device(thing, scene, drawn.frame)
     session = PressSession(ObjectHandle.of(thing), scene.name, drawn, home, leads, tip)
     if tip.remark:

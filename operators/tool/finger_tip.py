@@ -13,8 +13,8 @@ from ...core.contact.tool.tool_dent import PressingTool
 from ...core.contact.tool.tools import Tool
 from ...core.errors import PalpateError
 from ...core.servo.session import Snapshot
-from ..scene.drawn_surface import metres_per_unit
 from . import hull
+from .tool_sizes import chosen_sizes
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,22 +35,22 @@ class FingerTip:
         )
 
 
-def chosen_tip(scene: bpy.types.Scene, pressed: bpy.types.Object) -> FingerTip:
-    """Finger tip that the scene chooses for ``pressed``.
+def chosen_tip(scene: bpy.types.Scene, pressed: bpy.types.Object, size: float) -> FingerTip:
+    """Finger tip that the scene chooses for ``pressed``, a body of this ``size``, metres.
 
     Raises
     ------
     PalpateError
         No tool object is chosen, or it cannot press, or it is what is pressed.
     """
-    chosen, metres = scene.palpate, metres_per_unit(scene)
+    chosen, sizes = scene.palpate, chosen_sizes(scene, size)
     match chosen.tip:
         case "SPHERE":
-            return FingerTip(tools.sphere(metres * chosen.tip_radius))
+            return FingerTip(tools.sphere(sizes.tip_radius))
         case "PLATE":
-            return FingerTip(tools.plate(metres * chosen.plate_width, metres * chosen.plate_depth))
+            return FingerTip(tools.plate(sizes.plate_width, sizes.plate_depth))
         case "ROD":
-            return FingerTip(tools.rod(metres * chosen.tip_radius, metres * chosen.rod_length))
+            return FingerTip(tools.rod(sizes.tip_radius, sizes.rod_length))
         case "MESH":
             if chosen.tip_object == pressed:
                 raise PalpateError(

@@ -169,18 +169,67 @@ def test_no_sentence_of_any_panel_is_wider_than_the_sidebar(palpate, name, width
                 assert len(line) <= max(sentence.FEWEST_LETTERS, across - 3), (cls.__name__, line)
 
 
-@pytest.mark.parametrize("tip", ["POINT", "SPHERE", "PLATE", "ROD", "MESH"])
-def test_the_finger_panel_asks_a_point_for_its_contact_and_a_tool_for_its_sizes(palpate, tip):
-    bpy.context.scene.palpate.tip = tip
-    asked = set(drawn(part("addon.panels.finger").PALPATE_PT_finger, soft_cube()).properties)
-    assert ("contact_mode" in asked) == (tip == "POINT")
+SIZES = {
+    "POINT": set(),
+    "SPHERE": {"tip_radius"},
+    "PLATE": {"plate_width", "plate_depth"},
+    "ROD": {"tip_radius", "rod_length"},
+    "MESH": set(),
+}
+
+
+@pytest.mark.parametrize("tip", SIZES)
+def test_the_finger_panel_asks_a_tool_for_its_size_as_a_share_or_as_lengths(palpate, tip):
+    chosen, panel = bpy.context.scene.palpate, part("addon.panels.finger").PALPATE_PT_finger
+    thing, known = soft_cube(), set().union(*SIZES.values())
+    chosen.tip = tip
+    asked = set(drawn(panel, thing).properties)
+    assert ("tip_share" in asked) == bool(SIZES[tip])
+    assert ("tip_object" in asked) == (tip == "MESH")
     assert ("show_pressure" in asked) == (tip != "POINT")
-    sizes = {
-        "POINT": set(),
-        "SPHERE": {"tip_radius"},
-        "PLATE": {"plate_width", "plate_depth"},
-        "ROD": {"tip_radius", "rod_length"},
-        "MESH": {"tip_object"},
-    }
-    known = set().union(*sizes.values())
-    assert asked & known == sizes[tip]
+    assert not asked & known
+    chosen.own_sizes = True
+    assert set(drawn(panel, thing).properties) & known == SIZES[tip]
+
+
+@pytest.mark.parametrize("tip", SIZES)
+def test_only_a_point_is_asked_for_its_contact_and_only_under_advanced(palpate, tip):
+    bpy.context.scene.palpate.tip = tip
+    asked = drawn(part("addon.panels.advanced").PALPATE_PT_advanced, soft_cube()).properties
+    assert ("contact_mode" in asked) == (tip == "POINT")
+
+
+def open_panels():
+    """Panels of the tab that are open at first, with all above them."""
+    classes = part("addon.panels.sidebar").classes
+    by_name = {getattr(cls, "bl_idname", cls.__name__): cls for cls in classes}
+
+    def is_open(cls):
+        above = by_name.get(getattr(cls, "bl_parent_id", ""))
+        closed = "DEFAULT_CLOSED" in getattr(cls, "bl_options", ())
+        return not closed and (above is None or is_open(above))
+
+    return [cls for cls in classes if is_open(cls)]
+
+
+def test_at_first_three_panels_are_open_and_ask_nothing_that_takes_reading(palpate):
+    assert [cls.bl_label for cls in open_panels()] == ["Palpate", "Finger", "Pins"]
+    thing = cube()
+    bpy.context.scene.palpate.tip = "SPHERE"
+    shown = [drawn(cls, thing) for cls in open_panels()]
+    asked = [name for said in shown for name in said.properties if name != "tip"]
+    assert asked == [
+        "material",
+        "tip_share",
+        "own_sizes",
+        "show_pressure",
+        "pin_mode",
+        "pin_fraction",
+    ]
+    assert [name for said in shown for name in said.operators] == [
+        "palpate.make_soft",
+        "palpate.pin_below",
+    ]
+    words = " ".join(said.text for said in shown).lower()
+    for word in ("paper", "point", "formulation", "compliance", "node", "loop", "newton"):
+        assert word not in words, word

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 import bpy
-import numpy as np
 from stage import Pixel, Stage, Wait
 
+from bl_ext.user_default.palpate.addon.overlay.reading import reading
 from bl_ext.user_default.palpate.operators.session import press_session
 from bl_ext.user_default.palpate.operators.session.press_state import Phase
 
@@ -29,10 +29,7 @@ def phase() -> Phase | None:
 
 def depth() -> float:
     """How deep the probe is, in metres."""
-    snapshot = press_session.current().snapshot
-    if snapshot is None or not snapshot.touching:
-        return 0.0
-    return float(np.linalg.norm(snapshot.probe - snapshot.proxy))
+    return reading(press_session.current()).depth
 
 
 def open_mouse(stage: Stage) -> Wait:

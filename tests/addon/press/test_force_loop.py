@@ -58,7 +58,7 @@ def test_force_off_is_zero_at_once_and_force_on_rises_from_nothing(sessions, sta
 
 
 def test_an_adapter_that_holds_bytes_back_is_explained_in_the_panel(sessions, states, monkeypatch):
-    panel = part("addon.panels.loop")
+    panel = part("addon.panels.device")
     session = begin(sessions, states, soft_cube())
     session.tick()
     scaled = SimpleNamespace(system=SimpleNamespace(ui_scale=1.0))
@@ -157,7 +157,7 @@ def test_the_loop_runs_at_the_chosen_rate_and_tells_its_times(sessions, states):
     session.tick()
     counters = session.loop.figures.counters
     assert counters["rate_hz"] == 500
-    assert set(part("addon.panels.loop").STAGE_NAMES) == set(counters["stages_us"])
+    assert set(part("addon.panels.device").STAGE_NAMES) == set(counters["stages_us"])
 
 
 def test_a_recording_misses_no_tick_while_blender_is_busy_and_outlives_the_press(

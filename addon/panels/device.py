@@ -1,4 +1,4 @@
-"""Force loop: its rate, and its timing during a press."""
+"""Device: what presses instead of the pointer, a second finger, and the force loop."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import bpy
 
 from ...core.quantities import microseconds
 from ...core.servo import latency_timer
+from ...operators.device.device_source import is_planar
 from ...operators.device.servo_words import FAULT_NAMES
 from ...operators.scene.package_preferences import preferences
 from ...operators.session import press_session
@@ -19,6 +20,65 @@ if TYPE_CHECKING:
 
 STAGE_NAMES = {"read": "Read", "proxy": "Proxy", "contact": "Contact", "write": "Write"}
 NO_PRIORITY = "none: "
+
+
+class PALPATE_PT_press(PalpatePanel, bpy.types.Panel):
+    bl_idname = "PALPATE_PT_press"
+    bl_label = "Device"
+    bl_parent_id = "PALPATE_PT_main"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = named_properties(self)
+        chosen = context.scene.palpate
+        column = while_idle(layout)
+        column.prop(chosen, "source")
+        if chosen.source == "POINTER":
+            return
+        if chosen.source == "EMPTY":
+            column.prop(chosen, "source_empty")
+            return
+        if chosen.source == "SIMULATED":
+            column.prop(chosen, "simulated_kind")
+        else:
+            row = column.row(align=True)
+            row.prop(chosen, "port")
+            row.operator("palpate.refresh_devices", text="", icon="FILE_REFRESH")
+        if chosen.source == "SERIAL":
+            column.prop(chosen, "baud")
+        if is_planar(context.scene):
+            column.prop(chosen, "haply_model")
+        if chosen.source == "HAPLY":
+            column.prop(chosen, "haply_at_rest")
+            if press_session.current() is None:
+                text = "Before Press, put the handle in its rest pose and leave it there"
+                say(layout, context, text, "INFO")
+        layout.prop(chosen, "device_frame")
+        layout.prop(chosen, "device_scale")
+        layout.prop(preferences(), "stable_contact")
+        layout.prop(chosen, "show_workspace")
+        draw_adapter_warning(layout, context)
+
+
+class PALPATE_PT_second_finger(PalpatePanel, bpy.types.Panel):
+    bl_label = "Second Finger"
+    bl_parent_id = "PALPATE_PT_press"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout, chosen = named_properties(self), context.scene.palpate
+        layout.enabled = press_session.current() is None
+        layout.prop(chosen, "second")
+        if chosen.second == "EMPTY":
+            layout.prop(chosen, "second_empty")
+        elif chosen.second != "NONE":
+            if chosen.second in {"SERIAL", "HAPLY"}:
+                layout.prop(chosen, "second_port")
+            if chosen.second == "HAPLY":
+                layout.prop(chosen, "second_haply_model")
+                layout.prop(chosen, "second_haply_at_rest")
+            layout.prop(chosen, "second_frame")
+        say(layout, context, "Pinch leads two fingers with the pointer", "INFO")
 
 
 class PALPATE_PT_loop(PalpatePanel, bpy.types.Panel):
@@ -131,4 +191,4 @@ def _draw_link(layout: bpy.types.UILayout, link: LinkCounters) -> None:
     draw_box(layout, "Connection", rows)
 
 
-classes = (PALPATE_PT_loop,)
+classes = (PALPATE_PT_press, PALPATE_PT_second_finger, PALPATE_PT_loop)
