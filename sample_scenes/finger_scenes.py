@@ -39,7 +39,8 @@ def pinch_scene() -> list[bpy.types.Object]:
             keyframes(empty, here, (inward, 0.0, 0.0), lift=0.004, depth=DEPTH)
         cubes.append(cube)
     chosen = scene.palpate
-    chosen.source, chosen.second = "EMPTY", "EMPTY"
+    # The paper presses nodes, so with points.
+    chosen.tip, chosen.source, chosen.second = "POINT", "EMPTY", "EMPTY"
     chosen.source_empty = scene.objects["Nodes Left"]
     chosen.second_empty = scene.objects["Nodes Right"]
     scene.frame_start, scene.frame_end = FRAMES[0], FRAMES[-1]

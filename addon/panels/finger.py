@@ -23,6 +23,7 @@ class PALPATE_PT_finger(PalpatePanel, bpy.types.Panel):
         layout, chosen = named_properties(self), context.scene.palpate
         column = while_idle(layout)
         choices = column.column(align=True)
+        choices.use_property_split = False
         for tips in TIPS:
             row = choices.row(align=True)
             for tip in tips:
