@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..operators.animation import bake_animation
+from ..operators.animation import animate_recording, bake_animation
 from ..operators.bake import (
     cancel_bake,
     fit_memory,
@@ -35,6 +35,7 @@ modules = (
     press,
     pinch,
     bake_animation,
+    animate_recording,
     switch_force,
     record,
     recording_writer,

@@ -27,6 +27,7 @@ core/grip
 core/shape/solid core/shape/paper core/shape/rotation_strain core/shape/force_at_depth core/shape
 core/bake/settings.py core/bake/cost core/bake
 core/servo/link core/servo
+core/record
 core/softness/scales core/softness
 core
 simulated/wire simulated/hand simulated/board simulated

@@ -5,6 +5,7 @@ from __future__ import annotations
 import bpy
 
 from ..object.drawn_body import DrawnBody
+from . import curves
 from .pressed_frames import PressedFrame
 
 FRAME_NAME = "Press at"
@@ -37,7 +38,7 @@ def _remove_frames(thing: bpy.types.Object) -> None:
     keys = thing.data.shape_keys
     for key in [key for key in keys.key_blocks if key.name.startswith(f"{FRAME_NAME} ")]:
         path = f'key_blocks["{key.name}"].value'
-        for bag in _bags(keys):
+        for bag in curves.bags(keys):
             curve = bag.find(path)
             if curve is not None:
                 bag.remove(curve)
@@ -46,22 +47,7 @@ def _remove_frames(thing: bpy.types.Object) -> None:
 
 def _go_straight(keys: bpy.types.Key) -> None:
     """Values that go in straight lines add up to one between two frames."""
-    for curve in (curve for bag in _bags(keys) for curve in bag):
+    for curve in curves.curves(keys):
         if curve.data_path.startswith(f'key_blocks["{FRAME_NAME} '):
             for point in curve.keyframe_points:
                 point.interpolation = "LINEAR"
-
-
-def _bags(keys: bpy.types.Key) -> list[bpy.types.bpy_prop_collection]:
-    """The animation curves of shape keys, in bundles, in files of all Blenders that we know."""
-    data = keys.animation_data
-    if data is None or data.action is None:
-        return []
-    if hasattr(data.action, "fcurves"):
-        return [data.action.fcurves]
-    return [
-        bag.fcurves
-        for layer in data.action.layers
-        for strip in layer.strips
-        for bag in strip.channelbags
-    ]

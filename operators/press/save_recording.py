@@ -5,7 +5,7 @@ from pathlib import Path
 import bpy
 
 from ...core.errors import PalpateError
-from ...core.servo.recording import SUFFIXES
+from ...core.record.recording import SUFFIXES
 from ..record import recording, recording_writer
 from ..record.recording import Kept, Recorder
 from ..reporting.acting import Acting

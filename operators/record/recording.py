@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.errors import PalpateError
-from ...core.servo.recording import DTYPE, write_recording
+from ...core.record.recording import DTYPE, write_recording
 from ...core.servo.session import STATES, Servo
 
 BYTES_A_TICK = DTYPE.itemsize
@@ -20,7 +20,7 @@ BYTES_A_TICK = DTYPE.itemsize
 
 @dataclass(frozen=True, eq=False)
 class Kept:
-    """Recorded ticks of an ended press, structured array (n,) of ``core.servo.recording.DTYPE``."""
+    """Recorded ticks of an ended press, structured array (n,) of ``DTYPE``."""
 
     samples: NDArray[np.void]
     rate_hz: int

@@ -12,7 +12,7 @@ from pathlib import Path
 import bpy
 
 from ...core.errors import PalpateError
-from ...core.servo.recording import check_recording_path
+from ...core.record.recording import check_recording_path
 from ..scene.viewport import redraw_views
 from . import recording
 from .recording import Kept

@@ -177,7 +177,7 @@ def test_a_recording_misses_no_tick_while_blender_is_busy_and_outlives_the_press
     for name in ("felt.csv", "felt.npz"):
         path = tmp_path / name
         assert bpy.ops.palpate.save_recording(filepath=str(path)) == {"FINISHED"}
-        samples = part("core.servo.read_recording").read_recording(path).samples
+        samples = part("core.record.read_recording").read_recording(path).samples
         assert len(samples) > 300
         assert np.array_equal(samples["tick"], np.arange(1, len(samples) + 1))
         assert np.linalg.norm(samples["force"], axis=1).max() > 0.01
@@ -193,7 +193,7 @@ def test_a_recording_is_begun_and_ended_while_pressing_and_saved_meanwhile(
     path = tmp_path / "meanwhile.npz"
     bpy.ops.palpate.save_recording(filepath=str(path))
     assert sessions.current() is session
-    samples = part("core.servo.read_recording").read_recording(path).samples
+    samples = part("core.record.read_recording").read_recording(path).samples
     assert samples["tick"][0] > 50
     bpy.ops.palpate.record()
     session.tick()
@@ -246,7 +246,7 @@ def test_a_long_recording_is_written_while_the_press_goes_on(
     finally:
         may_write.set()
         writer.unregister()
-    assert len(part("core.servo.read_recording").read_recording(path).samples) > 50
+    assert len(part("core.record.read_recording").read_recording(path).samples) > 50
     assert writer.latest().problem == ""
     session.post(states.Moment.CANCEL)
     monkeypatch.undo()

@@ -16,7 +16,7 @@ from palpate.core.errors import PalpateError
 from palpate.core.files import npz_archive, npz_members
 from palpate.core.files.npz_archive import ArchiveError, read_arrays
 from palpate.core.mesh.read_mesh import read_tets
-from palpate.core.servo.read_recording import read_recording
+from palpate.core.record.read_recording import read_recording
 
 MEGABYTE = 1_000_000
 

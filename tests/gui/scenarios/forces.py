@@ -8,7 +8,7 @@ from mouse_scene import depth, end_press, open_mouse, start_press, type_key
 from shown import all_panels_open
 from stage import Stage, Wait
 
-from bl_ext.user_default.palpate.core.servo.read_recording import read_recording
+from bl_ext.user_default.palpate.core.record.read_recording import read_recording
 from bl_ext.user_default.palpate.operators.session import press_session
 from bl_ext.user_default.palpate.operators.session.press_state import CALM_SECONDS
 

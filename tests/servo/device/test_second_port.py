@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from palpate.cli.main import main
-from palpate.core.servo.read_recording import read_recording
-from palpate.core.servo.recording import FINGER_COLUMN
+from palpate.core.record.read_recording import read_recording
+from palpate.core.record.recording import FINGER_COLUMN
 from palpate.simulated.hand.options import SimulatedOptions
 from palpate.simulated.simulated_process import SimulatedDevice
 

@@ -17,8 +17,8 @@ from palpate.cli.main import main
 from palpate.cli.press import servo as servo_command
 from palpate.cli.press.servo_report import for_people
 from palpate.core.files.npz_archive import read_arrays
+from palpate.core.record.read_recording import read_recording
 from palpate.core.servo import ports
-from palpate.core.servo.read_recording import read_recording
 from palpate.core.shape.paper.table_file import table_path
 from palpate.simulated.hand.options import SimulatedOptions
 from palpate.simulated.simulated_process import SimulatedDevice

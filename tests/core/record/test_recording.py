@@ -8,8 +8,8 @@ import palpate_servo
 import pytest
 
 from palpate.core.errors import PalpateError
-from palpate.core.servo.read_recording import read_recording
-from palpate.core.servo.recording import (
+from palpate.core.record.read_recording import read_recording
+from palpate.core.record.recording import (
     CSV_GROWTH,
     CSV_HEADER,
     DTYPE,

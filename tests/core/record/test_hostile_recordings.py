@@ -17,8 +17,8 @@ from palpate_servo import STATES
 
 from palpate.core.errors import PalpateError
 from palpate.core.files.npz_archive import ArchiveError, read_array, write_arrays
-from palpate.core.servo.read_recording import RecordingError, read_recording
-from palpate.core.servo.recording import DTYPE, write_recording
+from palpate.core.record.read_recording import RecordingError, read_recording
+from palpate.core.record.recording import DTYPE, write_recording
 
 TICKS = 50
 

@@ -1,0 +1,1 @@
+"""Recordings of the servo as files, and as frames of an animation."""

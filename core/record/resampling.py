@@ -1,0 +1,64 @@
+"""Frames of an animation from ticks of the servo: low-pass first, then a value a frame."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter1d
+
+Array = NDArray[np.float64]
+
+# Standard deviation of a Gaussian, times its frequency of half power (-3 dB).
+HALF_POWER = float(np.sqrt(np.log(2.0)) / (2.0 * np.pi))
+
+
+@dataclass(frozen=True, eq=False)
+class Frames:
+    """One finger's recording at an animation's rate, from the recording's first tick on.
+
+    Attributes
+    ----------
+    probe : float64 (n, 3), metres, body coordinates.
+    force : float64 (n, 3), the contact's force on the finger, newton, body axes.
+    depth : float64 (n,), from probe to proxy, metres.
+    """
+
+    probe: Array
+    force: Array
+    depth: Array
+
+
+def frames_of(samples: NDArray[np.void], finger: int, frames_per_second: float) -> Frames:
+    """Resample a finger's ticks, a structured array of ``recording.DTYPE``.
+
+    A Gaussian that halves the power at half the frame rate goes first, as a hand trembles and a
+    force jumps faster than frames can tell; it has no overshoot, so nothing is deeper or stronger
+    than it was. Ticks that are missing are bridged by straight lines.
+
+    Raises
+    ------
+    ValueError
+        The finger has no ticks.
+    """
+    own = samples[samples["finger"] == finger]
+    if not len(own):
+        message = f"finger {finger} has no ticks"
+        raise ValueError(message)
+    times = own["time"] - own["time"][0]
+    step = float(np.median(np.diff(times))) if len(times) > 1 else 1.0
+    even = np.arange(0.0, times[-1] + 0.5 * step, step)
+    wanted = np.arange(0.0, times[-1] + 0.5 / frames_per_second, 1.0 / frames_per_second)
+    spread = HALF_POWER / (0.5 * frames_per_second) / step
+    depth = np.linalg.norm(own["probe"] - own["proxy"], axis=1)
+
+    def resampled(values: Array) -> Array:
+        smooth = gaussian_filter1d(np.interp(even, times, values), spread, mode="nearest")
+        at: Array = np.interp(wanted, even, smooth)
+        return at
+
+    def each(vectors: Array) -> Array:
+        return np.column_stack([resampled(vectors[:, axis]) for axis in range(3)])
+
+    return Frames(each(own["probe"]), each(own["force"]), resampled(depth))

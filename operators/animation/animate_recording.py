@@ -1,0 +1,82 @@
+"""Recording to Animation: what was pressed by hand becomes an Empty with keyframes."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+
+from ...core.errors import PalpateError
+from ...core.record.resampling import Frames, frames_of
+from ..press.modal_press import Pressing
+from ..press.save_recording import recorded
+from ..reporting.translated import reported
+from ..scene import drawn_surface
+from ..scene.body_frame import BodyFrame
+from . import curves
+
+PROBE_NAME = "Palpate Probe"
+
+
+class PALPATE_OT_animate_recording(Pressing, bpy.types.Operator):
+    bl_idname = "palpate.animate_recording"
+    bl_label = "Recording to Animation"
+    bl_description = (
+        "Make an Empty that moves as the recorded finger did, from the current frame on, with its "
+        "force and depth as animated properties. It leads the tool of Bake Animation"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def refusal(cls, context: bpy.types.Context) -> str:
+        reason = super().refusal(context)
+        return reason or (
+            "" if recorded() else "Nothing is recorded yet; press Record while you press"
+        )
+
+    def act(self, context: bpy.types.Context) -> None:
+        thing, scene, kept = context.object, context.scene, recorded()
+        if kept is None or not len(kept.samples):
+            raise PalpateError("Nothing is recorded yet; press Record while you press")
+        frame = drawn_surface.frame_of(thing, scene)
+        rate = scene.render.fps / scene.render.fps_base
+        first = scene.frame_current
+        made = []
+        for finger in np.unique(kept.samples["finger"])[:2]:
+            frames = frames_of(kept.samples, int(finger), rate)
+            made.append(_probe(thing, scene, frame, frames))
+        chosen = scene.palpate
+        chosen.source, chosen.source_empty = "EMPTY", made[0]
+        if len(made) > 1:
+            chosen.second, chosen.second_empty = "EMPTY", made[1]
+        last = first + len(frames.depth) - 1
+        scene.frame_end = max(scene.frame_end, last)
+        self.report(
+            {"INFO"},
+            reported("{name}: frames {first} to {last}", name=made[0].name, first=first, last=last),
+        )
+
+
+def _probe(
+    thing: bpy.types.Object, scene: bpy.types.Scene, frame: BodyFrame, frames: Frames
+) -> bpy.types.Object:
+    """Empty that moves with the object as the finger did on its body; force in world axes."""
+    probe = bpy.data.objects.new(PROBE_NAME, None)
+    scene.collection.objects.link(probe)
+    probe.empty_display_type = "SPHERE"
+    # Its parent's scale would change a size in the scene's units.
+    stretch = float(np.cbrt(abs(np.linalg.det(frame.metric))))
+    probe.empty_display_size = scene.palpate.tip_radius / stretch
+    probe.parent = thing
+    force = frame.turn_to_world(frames.force)
+    probe["force_N"] = force[0].tolist()
+    probe["strength_N"] = 0.0
+    probe["depth_m"] = 0.0
+    start = scene.frame_current
+    curves.key_straight(probe, "location", start, frame.local_from_body(frames.probe))
+    curves.key_straight(probe, '["force_N"]', start, force)
+    curves.key_straight(probe, '["strength_N"]', start, np.linalg.norm(force, axis=1))
+    curves.key_straight(probe, '["depth_m"]', start, frames.depth)
+    return probe
+
+
+classes = (PALPATE_OT_animate_recording,)

@@ -1,0 +1,67 @@
+"""Recordings become Empties with keyframes, which lead a tool again."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+import pytest
+from soft_scene import error_of, part, soft_cube
+
+RATE = 1000
+
+
+@pytest.fixture
+def tap(palpate, monkeypatch):
+    """A second of a fingertip that goes 4 mm into the cube's top and comes out again."""
+    dtype = part("core.record.recording").DTYPE
+    samples = np.zeros(RATE + 1, dtype)
+    samples["time"] = np.arange(RATE + 1) / RATE
+    sunk = 0.004 * np.sin(np.pi * samples["time"]) ** 2
+    samples["probe"] = [0.004, 0.0, 0.045]
+    samples["probe"][:, 2] -= sunk
+    samples["proxy"] = samples["probe"]
+    samples["proxy"][:, 2] += sunk
+    samples["force"][:, 2] = 100 * sunk
+    recording = part("operators.record.recording")
+    monkeypatch.setattr(recording, "_last", recording.Kept(samples, RATE))
+    return sunk
+
+
+def test_the_probe_moves_as_the_finger_did_and_carries_its_force(tap):
+    thing, scene = soft_cube(), bpy.context.scene
+    thing.scale, thing.rotation_euler, thing.location = (1, 1, 1), (0, np.pi / 2, 0), (1, 2, 3)
+    bpy.context.view_layer.update()
+    scene.frame_set(11)
+    assert bpy.ops.palpate.animate_recording() == {"FINISHED"}
+    probe = scene.palpate.source_empty
+    fps = scene.render.fps
+    for seconds in (0.0, 0.25, 0.5, 1.0):
+        scene.frame_set(11 + round(seconds * fps))
+        depth = tap[round(seconds * RATE)]
+        # Turned by a right angle: the body's z is the world's x.
+        wanted = np.array([1 + 0.045 - depth, 2.0, 3 - 0.004])
+        np.testing.assert_allclose(probe.matrix_world.translation, wanted, atol=5e-5)
+        assert probe["depth_m"] == pytest.approx(depth, abs=5e-5)
+        np.testing.assert_allclose(probe["force_N"], [100 * depth, 0, 0], atol=5e-3)
+        assert probe["strength_N"] == pytest.approx(100 * depth, abs=5e-3)
+    assert scene.frame_end >= 11 + fps
+
+
+def test_a_recorded_tap_is_baked_into_a_cache(tap):
+    thing, scene = soft_cube(), bpy.context.scene
+    scene.frame_set(1)
+    assert bpy.ops.palpate.animate_recording() == {"FINISHED"}
+    scene.palpate.tip, scene.palpate.tip_radius = "SPHERE", 0.02
+    assert bpy.ops.palpate.press_frames(frame_start=1, frame_end=13, step=6) == {"FINISHED"}
+    heights = []
+    for frame in (1, 13):
+        scene.frame_set(frame)
+        evaluated = thing.evaluated_get(bpy.context.evaluated_depsgraph_get())
+        heights.append(max(vertex.co.z for vertex in evaluated.data.vertices))
+    assert heights[1] < heights[0] - 1e-4
+
+
+def test_without_a_recording_it_is_refused(palpate, monkeypatch):
+    soft_cube()
+    monkeypatch.setattr(part("operators.record.recording"), "_last", None)
+    assert "Nothing is recorded" in error_of(bpy.ops.palpate.animate_recording)
