@@ -12,7 +12,8 @@ const REST_NS: u64 = 2_000_000;
 /// computed anew from their number, so a period that is no whole number of ns adds up to no drift.
 #[derive(Debug, Clone, Copy)]
 pub struct Schedule {
-    start_ns: u64,
+    /// Before the clock's zero, where the clock began a moment ago.
+    start_ns: i64,
     rate_hz: u64,
 }
 
@@ -25,7 +26,7 @@ impl Schedule {
         let sixty_fourths = 8 * phase.eighths() + u64::from(std::process::id() % 9) - 4;
         let shift_ns = SECOND_NS / rate_hz * sixty_fourths / 64;
         Self {
-            start_ns: now_ns - now_ns % SECOND_NS - SECOND_NS + shift_ns,
+            start_ns: (now_ns - now_ns % SECOND_NS + shift_ns) as i64 - SECOND_NS as i64,
             rate_hz,
         }
     }
@@ -33,12 +34,13 @@ impl Schedule {
     /// When, ns.
     pub fn deadline_ns(&self, number: u64) -> u64 {
         let (seconds, rest) = (number / self.rate_hz, number % self.rate_hz);
-        self.start_ns + seconds * SECOND_NS + rest * SECOND_NS / self.rate_hz
+        let since_start = seconds * SECOND_NS + rest * SECOND_NS / self.rate_hz;
+        since_start.saturating_add_signed(self.start_ns)
     }
 
     /// Number of the last deadline that is not after `now_ns`.
     pub fn last_before(&self, now_ns: u64) -> u64 {
-        let elapsed = now_ns - self.start_ns;
+        let elapsed = (now_ns as i64 - self.start_ns) as u64;
         let (seconds, rest) = (elapsed / SECOND_NS, elapsed % SECOND_NS);
         seconds * self.rate_hz + ((rest + 1) * self.rate_hz - 1) / SECOND_NS
     }
@@ -102,7 +104,7 @@ mod tests {
                 rate_hz,
             };
             for seconds in [0, 1, 59, 86_400, YEAR_S] {
-                let exact = schedule.start_ns + seconds * SECOND_NS;
+                let exact = 123_456_789 + seconds * SECOND_NS;
                 assert_eq!(
                     schedule.deadline_ns(seconds * rate_hz),
                     exact,
@@ -131,6 +133,19 @@ mod tests {
                 let at = schedule.deadline_ns(n);
                 assert_eq!(schedule.last_before(at), n, "{rate_hz} Hz");
                 assert_eq!(schedule.last_before(schedule.deadline_ns(n + 1) - 1), n);
+            }
+        }
+    }
+
+    #[test]
+    fn a_clock_that_began_a_moment_ago_has_deadlines_too() {
+        for now in [0, 1, 999_999, 500_000_000, 999_999_999, SECOND_NS] {
+            for rate_hz in [100, 1000, 7999] {
+                let schedule = Schedule::new(rate_hz, now, &Phase(0));
+                let number = schedule.last_before(now);
+                assert!(schedule.deadline_ns(number) <= now);
+                let next = schedule.deadline_ns(schedule.after(number, now, now));
+                assert!(next > now && next - now <= SECOND_NS / u64::from(rate_hz) + 1);
             }
         }
     }

@@ -42,6 +42,7 @@ mod system {
 
 #[cfg(windows)]
 mod system {
+    use std::sync::LazyLock;
     use std::time::Instant;
 
     use windows_sys::Win32::Foundation::{CloseHandle, HANDLE};
@@ -50,10 +51,12 @@ mod system {
         TIMER_ALL_ACCESS, WaitForSingleObject,
     };
 
+    /// Zero of the clock, one for all threads: they hand each other times.
+    static ORIGIN: LazyLock<Instant> = LazyLock::new(Instant::now);
+
     /// A high-resolution waitable timer (Windows 10 1803 and later), else an ordinary one.
     #[derive(Debug)]
     pub struct Sleeper {
-        origin: Instant,
         timer: HANDLE,
     }
 
@@ -74,14 +77,11 @@ mod system {
             if timer.is_null() {
                 timer = create(0);
             }
-            Self {
-                origin: Instant::now(),
-                timer,
-            }
+            Self { timer }
         }
 
         pub fn now_ns(&self) -> u64 {
-            self.origin.elapsed().as_nanos() as u64
+            ORIGIN.elapsed().as_nanos() as u64
         }
 
         pub fn sleep_until(&self, deadline_ns: u64) {
