@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import os
 import secrets
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 from ..files.atomic_file import atomic_file, refuse_unwritable
+from ..files.patience import remove_file
 
 
 @dataclass(frozen=True)
@@ -30,8 +32,19 @@ class Lease:
         """Whether this process sees the same folder, and the results are still wanted."""
         try:
             return self.path.read_text(encoding="ascii") == self.word
-        except FileNotFoundError:
+        except (FileNotFoundError, PermissionError):
+            # The latter on Windows from the removal until the last reader has closed the file.
             return False
+
+
+def _withdraw(path: Path) -> None:
+    """Make the lease unseen, then remove it.
+
+    Windows lets nobody delete a file that a worker reads, but lets it be emptied.
+    """
+    with suppress(FileNotFoundError):
+        os.truncate(path, 0)
+        remove_file(path)
 
 
 @contextmanager
@@ -51,4 +64,4 @@ def lease(folder: Path) -> Iterator[Lease]:
     try:
         yield sign
     finally:
-        sign.path.unlink(missing_ok=True)
+        _withdraw(sign.path)

@@ -13,6 +13,7 @@ from typing import IO
 
 from ..errors import PalpateError
 from .held_lock import abandoned, hold, is_same_file
+from .patience import patiently, remove_file
 
 UNFINISHED = ".tmp"
 UNFINISHED_WORD = re.compile(r"\.[0-9a-f]{8}\.tmp")
@@ -92,7 +93,8 @@ def atomic_file(
             yield file
             file.flush()
             os.fsync(file.fileno())
-        unfinished.replace(target)
+        begun_file = unfinished
+        patiently(lambda: begun_file.replace(target))
     except OSError as problem:
         raise UnwritableError(
             "{target}: cannot be written ({reason}); choose a folder you may write to, with "
@@ -102,7 +104,7 @@ def atomic_file(
         ) from problem
     finally:
         if unfinished is not None:
-            unfinished.unlink(missing_ok=True)
+            remove_file(unfinished)
 
 
 def _begun(target: Path) -> tuple[Path, IO[bytes]]:

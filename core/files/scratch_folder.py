@@ -11,6 +11,7 @@ from types import TracebackType
 from typing import Self
 
 from .held_lock import abandoned, hold, is_same_file
+from .patience import remove_folder
 
 PREFIX = "palpate-"
 LOCK_FILE = "in-use.lock"
@@ -40,8 +41,7 @@ class ScratchFolder:
         if self._lock >= 0:
             os.close(self._lock)
             self._lock = -1
-        if self.path.exists():
-            shutil.rmtree(self.path)
+        remove_folder(self.path)
 
     def __enter__(self) -> Self:
         return self

@@ -7,18 +7,17 @@ cluster numbers and reduced columns, about a megabyte each, are sent.
 
 from __future__ import annotations
 
-import shutil
 import tempfile
 from collections.abc import Iterable, Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ...files.patience import remove_folder
 from ...machine.blas_threads import blas_threads
 from ..elimination.numeric import LoadRows
 from ..elimination.surface_columns import SurfaceColumns
@@ -26,6 +25,7 @@ from .cluster_columns import ClusterColumns, ClusterTask
 from .compress import MapClusters
 
 INDEX_FILE = "index.npz"
+ROWS_FILE = "rows.npy"
 
 
 @dataclass(frozen=True)
@@ -42,33 +42,50 @@ class StoredColumns:
     @property
     def free_surface(self) -> NDArray[np.int64]:
         """Node numbers (n,) of the body's free surface, ascending."""
-        return _opened(self.folder).free_surface
+        return self._opened().free_surface
 
     @property
     def node_count(self) -> int:
         """Number of free surface nodes, n."""
-        return _opened(self.folder).node_count
+        return self._opened().node_count
 
     def columns(self, nodes: NDArray[np.int64]) -> NDArray[np.float64]:
         """The columns of L for forces on ``nodes`` (k,), as a matrix (3n, 3k)."""
-        return _opened(self.folder).columns(nodes)
+        return self._opened().columns(nodes)
 
     def diagonal(self) -> NDArray[np.float64]:
         """All blocks L_ii, (n, 3, 3)."""
-        return _opened(self.folder).diagonal()
+        return self._opened().diagonal()
+
+    def _opened(self) -> SurfaceColumns:
+        """The source, its factor mapped while it is referred to: then the folder can be removed."""
+        with np.load(self.folder / INDEX_FILE, allow_pickle=False) as index:
+            free_surface, ranks, parts = index["free_surface"], index["ranks"], index["parts"]
+        rows = np.load(self.folder / ROWS_FILE, mmap_mode="r")
+        ends = np.cumsum((parts[:, 1] - parts[:, 0]) * parts[:, 2])
+        factor = tuple(
+            LoadRows(int(start), int(stop), piece.reshape((int(count), -1), order="F"))
+            for (start, stop, count), piece in zip(parts, np.split(rows, ends[:-1]), strict=True)
+        )
+        return SurfaceColumns(free_surface, factor, ranks)
 
 
 def store(columns: SurfaceColumns, folder: Path) -> StoredColumns:
-    """Write the factor into ``folder``, one array a file so that each can be mapped."""
+    """Write the factor into ``folder``, as one array that is mapped in a moment."""
+    parts = [(part.start, part.stop, len(part.rows)) for part in columns.factor]
     np.savez(
         folder / INDEX_FILE,
         allow_pickle=False,
         free_surface=columns.free_surface,
         ranks=columns.ranks,
-        spans=np.array([(part.start, part.stop) for part in columns.factor]),
+        parts=np.array(parts, dtype=np.int64),
     )
-    for number, part in enumerate(columns.factor):
-        np.save(_rows_file(folder, number), part.rows, allow_pickle=False)
+    count = sum(part.rows.size for part in columns.factor)
+    rows = np.lib.format.open_memmap(folder / ROWS_FILE, "w+", np.float64, (count,))
+    end = 0
+    for part in columns.factor:
+        begin, end = end, end + part.rows.size
+        rows[begin:end] = part.rows.ravel(order="F")
     return StoredColumns(folder)
 
 
@@ -94,8 +111,8 @@ def clusters_on(
 
         yield map_clusters
     finally:
-        # Windows keeps what a worker still maps; the folder's owner deletes it in the end.
-        shutil.rmtree(place, ignore_errors=True)
+        # A task still under way ends within seconds; until then Windows keeps what it maps.
+        remove_folder(place)
 
 
 @dataclass(frozen=True)
@@ -108,19 +125,3 @@ class _OnWorker:
     def __call__(self, cluster: int) -> ClusterColumns:
         with blas_threads(self.threads):
             return self.task(cluster)
-
-
-# Only the latest body stays open in a worker.
-@lru_cache(maxsize=1)
-def _opened(folder: Path) -> SurfaceColumns:
-    with np.load(folder / INDEX_FILE, allow_pickle=False) as index:
-        free_surface, ranks, spans = index["free_surface"], index["ranks"], index["spans"]
-    factor = tuple(
-        LoadRows(int(start), int(stop), np.load(_rows_file(folder, number), mmap_mode="r"))
-        for number, (start, stop) in enumerate(spans)
-    )
-    return SurfaceColumns(free_surface, factor, ranks)
-
-
-def _rows_file(folder: Path, number: int) -> Path:
-    return folder / f"rows-{number}.npy"
