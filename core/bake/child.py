@@ -22,7 +22,7 @@ LINUX_PR_SET_PDEATHSIG = 1
 
 
 def die_with_parent(longest_seconds: float) -> None:
-    """End with the parent: by the kernel on Linux, elsewhere by a timer."""
+    """End with the parent: by the kernel on Linux, elsewhere by a timer at the latest."""
     faulthandler.dump_traceback_later(longest_seconds, exit=True)
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(LINUX_PR_SET_PDEATHSIG, signal.SIGKILL)

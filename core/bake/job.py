@@ -20,6 +20,7 @@ from ..files import scratch_folder
 from ..files.atomic_file import refuse_unwritable
 from ..files.scratch_folder import ScratchFolder
 from ..machine import run_module
+from ..machine.ends_with_parent import end_with_this_process
 from ..machine.remaining_time import RemainingTime
 from ..mesh.fit import THICKNESS_DOUBTFUL, Fit, refuse_thin
 from ..mesh.ftetwild_log import stage
@@ -184,7 +185,7 @@ class BakeJob:
         command = [*python, *run_module.command("core.bake.child"), str(self._folder)]
         try:
             with (self._folder / LOG_FILE).open("wb") as log:
-                return subprocess.Popen(  # noqa: S603  our own script, by path
+                child = subprocess.Popen(  # noqa: S603  our own script, by path
                     command,
                     stdin=subprocess.DEVNULL,
                     stdout=log,
@@ -196,6 +197,8 @@ class BakeJob:
                 program=command[0],
                 problem=problem,
             ) from problem
+        end_with_this_process(child)
+        return child
 
     def _newest_progress(self) -> tuple[str, float | None]:
         file = self._folder / PROGRESS_FILE
