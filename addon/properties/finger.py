@@ -132,7 +132,7 @@ class FingerProperties:
         "Second Finger", "Who moves a second finger on the same body", SECOND_ITEMS, "NONE"
     )
     second_empty: chosen_object("Led By", "Empty whose place is the second finger's", "EMPTY")
-    second_port: text("Port", "Serial port of the second device: a path such as /dev/ttyACM1")
+    second_port: text("Port", "Serial port of the second device: such as /dev/ttyACM1 or COM4")
     second_haply_model: haply_model()
     second_haply_at_rest: haply_at_rest()
     second_frame: chosen_object(

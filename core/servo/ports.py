@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import errno
 import os
+import re
 import struct
 import sys
 import time
@@ -31,7 +32,6 @@ ANSWER_SECONDS = 2.5
 HELLO_EVERY_SECONDS = 0.1
 LISTEN_SECONDS = 0.4
 """Time to watch STATE: 25 bursts of an adapter with its default timer."""
-
 # Linux: whether another process has exclusive access; unnamed in Python 3.11.
 _TIOCGEXCL = 0x80045440
 
@@ -182,7 +182,8 @@ def check_port(path: str) -> None:
 
 def _look_at(path: str, *, even_if_taken: bool) -> None:
     if sys.platform == "win32":
-        # Ports are no files there; only opening one tells.
+        if even_if_taken:  # Else it is opened next; twice in a row is too much for some drivers.
+            _open_once(path)
         return
     import fcntl
 
@@ -202,6 +203,14 @@ def _look_at(path: str, *, even_if_taken: bool) -> None:
         ask_for_low_latency(descriptor)
     finally:
         os.close(descriptor)
+
+
+def _open_once(path: str) -> None:
+    """Open and close a COM port of Windows, where a name above COM9 needs the long form."""
+    try:
+        os.close(os.open(path if path.startswith("\\\\") else rf"\\.\{path}", os.O_RDWR))
+    except OSError as error:
+        raise _port_error(path, error) from error
 
 
 def _exchange(path: str, port: serial.Serial, seconds: float) -> link.DeviceHello:
@@ -267,11 +276,20 @@ def _silence(seconds: float) -> Sentence:
     )
 
 
+def _number_in_words(said: str) -> int | None:
+    """What pyserial says without an errno: a lock, on POSIX, or the error of Windows, as `repr`."""
+    of_windows = re.search(r"could not open port .*Error\((\d+), ", said)
+    if of_windows:
+        return int(of_windows[1])
+    return errno.EBUSY if "lock" in said else None
+
+
 def _port_error(path: str, error: OSError) -> PortError:
     number = error.errno
     if isinstance(error, serial.SerialException) and number in (None, errno.EAGAIN):
-        # pyserial's words: another program's lock has the errno of an empty read.
-        number = errno.EBUSY if "lock" in str(error) else None
+        number = _number_in_words(str(error))
+    if number == errno.EACCES and sys.platform == "win32":
+        number = errno.EBUSY  # Ports there have no rights, only one owner at a time.
     if number is None:
         return PortError(
             path, Sentence("cannot be used ({error}); plug the device in again", error=error)

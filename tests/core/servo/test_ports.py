@@ -1,6 +1,7 @@
 """Ports are listed with what answers there, or with the reason why nothing does."""
 
 import dataclasses
+import errno
 import fcntl
 import json
 import os
@@ -9,6 +10,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+import serial
 
 from palpate.cli.main import main
 from palpate.core.servo import ports
@@ -137,3 +139,42 @@ def test_command_prints_json(device, capsys):
 def test_command_says_what_to_do_when_there_is_nothing(capsys):
     assert main(["devices"]) == 0
     assert "palpate devices simulate" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("said", "reason"),
+    [
+        (
+            "FileNotFoundError(2, 'Die Datei wurde nicht gefunden', None, 2)",
+            "no such port",
+        ),
+        ("PermissionError(13, 'Zugriff verweigert', None, 5)", "in use by another program"),
+    ],
+)
+def test_a_com_port_that_is_missing_or_taken_is_told_in_any_language(monkeypatch, said, reason):
+
+    def refuse(path, *_, **__):
+        raise serial.SerialException(f"could not open port {path!r}: {said}")
+
+    monkeypatch.setattr(ports.sys, "platform", "win32")
+    monkeypatch.setattr(ports.serial, "Serial", refuse)
+    with pytest.raises(PortError, match=f"COM7: .*{reason}"):
+        say_hello("COM7")
+
+
+@pytest.mark.parametrize(
+    ("number", "reason"),
+    [(errno.ENOENT, "no such port"), (errno.EACCES, "in use by another program")],
+)
+def test_a_com_port_is_checked_by_opening_it_once(monkeypatch, number, reason):
+    asked = []
+
+    def refuse(path, _flags):
+        asked.append(path)
+        raise OSError(number, os.strerror(number))
+
+    monkeypatch.setattr(ports.sys, "platform", "win32")
+    monkeypatch.setattr(ports.os, "open", refuse)
+    with pytest.raises(PortError, match=f"COM12: .*{reason}"):
+        check_port("COM12")
+    assert asked == [r"\\.\COM12"]
