@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import fast_simplification
 import numpy as np
 
+from ..machine.absent_library import library
 from .coordinates import UnitBox
 from .surface import Surface
 
@@ -18,9 +18,15 @@ def decimate(surface: Surface, most_triangles: int) -> Surface:
 
     Returns the surface itself where it is small enough. Where only slivers are left, as at the
     poles of a fine sphere, more triangles remain.
+
+    Raises
+    ------
+    PalpateError
+        It has to be reduced, and there is no fast-simplification for this system.
     """
     if len(surface.triangles) <= most_triangles:
         return surface
+    fast_simplification = library("fast_simplification", "fast-simplification")
     box = UnitBox.of(surface.vertices)
     vertices, triangles = fast_simplification.simplify(
         (DIAGONAL * box.enter(surface.vertices)).astype(np.float32),

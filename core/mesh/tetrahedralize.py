@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import PalpateError
+from ..machine.absent_library import library
 from .coordinates import UnitBox
 from .fit import THICKNESS_DOUBTFUL, refuse_thin
 from .surface import Surface
@@ -34,10 +35,10 @@ def tetrahedralize(surface: Surface, edge_length: float, epsilon: float) -> TetM
     Raises
     ------
     PalpateError
-        The surface encloses nothing that fTetWild could fill, or is too thin for the tolerance.
+        The surface encloses nothing that fTetWild could fill, or is too thin for the tolerance;
+        or there is no fTetWild for this system.
     """
-    from pytetwild.pytetwild import tetrahedralize as ftetwild
-
+    ftetwild = library("pytetwild.pytetwild", "fTetWild").tetrahedralize
     refuse_thin(surface, epsilon)
     box = UnitBox.of(surface.vertices)
     nodes, tets = ftetwild(
