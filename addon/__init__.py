@@ -13,6 +13,7 @@ from ..operators.bake import (
     update_pins,
 )
 from ..operators.device import refresh_devices
+from ..operators.layer import apply_layers, convert_layers
 from ..operators.press import pinch, press, record, save_recording, switch_force
 from ..operators.record import recording_writer
 from ..operators.softness import force_curve, read_durometer, softness_colours
@@ -41,6 +42,8 @@ modules = (
     recording_writer,
     save_recording,
     refresh_devices,
+    convert_layers,
+    apply_layers,
     remove_softness,
     read_durometer,
     force_curve,

@@ -128,7 +128,7 @@ def press(arguments: argparse.Namespace) -> dict[str, object]:
         **(fingers[0] if len(fingers) == 1 else {"fingers": fingers}),
         "max_displacement": pressed.largest_displacement,
         "shape": shape_name(chosen_shape(thing)),
-        "shape_key": pressed.shape_key,
+        "layer": pressed.layer,
     }
 
 
@@ -229,7 +229,7 @@ def _parser() -> argparse.ArgumentParser:
     shapes = (*SHAPES, *FORMER_NAMES)
     two.add_argument("--shape", choices=shapes, help="how it deforms; else as the object says")
     two.add_argument("--felt", choices=FELT_CHOICES, help="force; else as the object says")
-    two.add_argument("--keep", action="store_true", help="keep a shape key and save the file")
+    two.add_argument("--keep", action="store_true", help="keep a layer and save the file")
     two.set_defaults(run=press)
     return parser
 

@@ -10,8 +10,8 @@ from ..core.bake.job import SCRATCH_WORDS
 from ..core.errors import PalpateError
 from ..core.files import scratch_folder
 from ..operators.bake import bake_session
+from ..operators.layer import live_layer
 from ..operators.object import body_store, kept_body
-from ..operators.scene import live_shape
 from ..operators.scene.package_preferences import preferences
 from ..operators.session import press_session
 from ..operators.session.press_events import Moment
@@ -39,7 +39,7 @@ def _before_load(*_: object) -> None:
 def _after_load(*_: object) -> None:
     known_status.forget()
     kept_body.forget()
-    live_shape.remove_leftovers()
+    live_layer.remove_leftovers()
     for scene in bpy.data.scenes:
         keep_exact_sizes(scene)
         if not bpy.data.filepath:
@@ -54,7 +54,7 @@ def _before_undo(*_: object) -> None:
 @persistent
 def _after_undo(*_: object) -> None:
     known_status.forget()
-    live_shape.remove_leftovers()
+    live_layer.remove_leftovers()
 
 
 @persistent

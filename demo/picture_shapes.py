@@ -141,19 +141,22 @@ def true_one(hare: Any) -> Pressed:
 
 
 def taken(hare: Any, title: str) -> Pressed:
-    """Take the latest shape key off again."""
-    key = hare.data.shape_keys.key_blocks[-1]
-    vertices, rest = places(key), places(hare.data.shape_keys.reference_key)
-    hare.shape_key_remove(key)
+    """Take the latest layer off again."""
+    from installed import palpate
+
+    layers, layer = palpate("operators.layer.layers"), hare.modifiers.active
+    rest = places(hare)
+    vertices = rest + layers.displacement(hare, layer)
+    layers.remove(hare, layer)
     return Pressed(title, vertices, volume(hare, vertices) / volume(hare, rest))
 
 
-def places(key: Any) -> Any:
-    """Vertices (p, 3) of a shape key, local units."""
+def places(thing: Any) -> Any:
+    """Vertices (p, 3) of a mesh at rest, local units."""
     import numpy as np
 
-    flat = np.empty(3 * len(key.points), dtype=np.float32)
-    key.points.foreach_get("co", flat)
+    flat = np.empty(3 * len(thing.data.vertices), dtype=np.float32)
+    thing.data.vertices.foreach_get("co", flat)
     return flat.astype(np.float64).reshape(-1, 3)
 
 
@@ -179,7 +182,7 @@ def distance(case: Pressed, other: Pressed | None, hare: Any = None) -> float:
     """Distance of two shapes, or from rest: root of the sum of squares over all vertices."""
     import numpy as np
 
-    origin = places(hare.data.shape_keys.reference_key) if other is None else other.vertices
+    origin = places(hare) if other is None else other.vertices
     return float(np.linalg.norm(case.vertices - origin))
 
 
@@ -218,11 +221,12 @@ def silhouette(hare: Any, case: Pressed) -> Any:
 
 def render(hare: Any, case: Pressed, off: float, picture: Path) -> None:
     """Render a picture of a shape, with its name."""
+    from installed import palpate
     from photographing import photograph
 
-    shown = hare.shape_key_add(name="Shown", from_mix=False)
-    shown.points.foreach_set("co", case.vertices.ravel())
-    shown.value = 1.0
+    layers = palpate("operators.layer.layers")
+    shown = layers.add(hare, "Shown")
+    layers.write(hare, shown, (case.vertices - places(hare)).astype("float32").ravel())
     change = round(100 * (case.volume - 1))
     second = "the truth" if case.title == TRUTH else f"{100 * off:.0f} % off"
     words = [
@@ -230,7 +234,7 @@ def render(hare: Any, case: Pressed, off: float, picture: Path) -> None:
         written(f"volume {f'{change:+d}' if change else 0} %, {second}", 0.0350, 0.0042),
     ]
     photograph(picture)
-    hare.shape_key_remove(shown)
+    layers.remove(hare, shown)
     import bpy
 
     for word in words:

@@ -15,7 +15,7 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
 SCENES = HERE.parent / "sample_scenes"
 
-from installed import install  # noqa: E402
+from installed import install, palpate  # noqa: E402
 
 
 def main() -> int:
@@ -67,8 +67,8 @@ def demo_cube(folder: Path) -> dict[str, Any]:
         say(f"cube: pressing the {name}")
         bpy.ops.palpate.press("EXEC_DEFAULT", at=at, by=by)
         pictures.append(photograph(folder / f"cube-{name}.png", 75))
-        kept = cube.data.shape_keys.key_blocks[-1]
-        moved = np.array([p.co for p in kept.points]) - np.array([v.co for v in cube.data.vertices])
+        layers, kept = palpate("operators.layer.layers"), cube.modifiers.active
+        moved = layers.displacement(cube, kept)
         presses.append(
             {
                 "name": name,
@@ -77,7 +77,7 @@ def demo_cube(folder: Path) -> dict[str, Any]:
                 "max_displacement_mm": 1e3 * float(np.linalg.norm(moved, axis=1).max()),
             }
         )
-        cube.shape_key_remove(kept)
+        layers.remove(cube, kept)
     return {
         "cube": figures,
         "cube_presses": presses,

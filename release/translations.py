@@ -33,6 +33,8 @@ COMMANDS = (
     *("addon/command.py", "addon/blend_file.py", "core/mesh/read_mesh.py"),
     "core/servo/haply_models.py",
     *("simulated/board", "simulated/hand", "simulated/device_process.py"),
+    # Names of nodes and of their inputs, by which files know them.
+    *("operators/layer/group_building.py", "operators/layer/layer_groups.py"),
 )
 LIKE_WORDS = re.compile(r"[A-Z][a-z]|[A-Z0-9]+ [A-Za-z]|\{\w")
 # The same in every language, in Blender's own dictionary, or names in files.
@@ -41,7 +43,7 @@ UNTRANSLATED = {
     *("Ecoflex 00-10", "Ecoflex 00-20", "Ecoflex 00-30", "Ecoflex 00-50", "Palpate"),
     *("Empty", "Format", "Group", "Height", "Material", "None", "Port", "Vertex Group"),
     *("Basis", "Body File", "Body Key", "Fingerprint", "Operator", "Palpate Softness"),
-    *("Palpate Animation", "Palpate Probe", "Palpate live", "Pinned", "Press at"),
+    *("Palpate Animation", "Palpate Probe", "Palpate Live", "Pinned", "Press at"),
 }
 
 

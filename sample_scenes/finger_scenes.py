@@ -55,14 +55,15 @@ def pinch_scene() -> list[bpy.types.Object]:
 
 
 def keep_pinches() -> None:
-    """Both cubes pinched as the paper's Figure 5 shows it, in shape keys that are off at first."""
+    """Both cubes pinched as the paper's Figure 5 shows it, in layers that are off at first."""
     press = palpate("operators.press.press_once").press_several
     for name, x, places in (("Nodes", -APART, ON_NODES), ("Triangles", APART, IN_TRIANGLES)):
         cube = bpy.data.objects[name]
         ats = list(np.array(places) + np.array([x, 0.0, 0.0]))
         press(cube, bpy.context.scene, ats, [(DEPTH, 0.0, 0.0), (-DEPTH, 0.0, 0.0)])
-        key = cube.data.shape_keys.key_blocks[-1]
-        key.name, key.value = "Pinched", 0.0
+        layers, layer = palpate("operators.layer.layers"), cube.modifiers.active
+        layers.rename(cube, layer, "Pinched")
+        layers.set_strength(cube, layer, 0.0)
 
 
 def fingertip_scene() -> list[bpy.types.Object]:

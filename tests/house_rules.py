@@ -35,6 +35,7 @@ simulated/attack/table.py simulated/attack/target.py
 simulated/attack/virtual simulated/attack/real simulated/attack/port simulated/attack
 operators/reporting
 operators/scene
+operators/layer
 operators/pins
 operators/object
 operators/device

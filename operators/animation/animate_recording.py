@@ -10,9 +10,8 @@ from ...core.record.resampling import Frames, frames_of
 from ..press.modal_press import Pressing
 from ..press.save_recording import recorded
 from ..reporting.translated import reported
-from ..scene import drawn_surface
+from ..scene import curves, drawn_surface
 from ..scene.body_frame import BodyFrame
-from . import curves
 
 PROBE_NAME = "Palpate Probe"
 

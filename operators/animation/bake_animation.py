@@ -225,7 +225,7 @@ class PALPATE_OT_press_frames(Pressing, bpy.types.Operator):
         if last.displacements is None:
             raise PalpateError("The tool touches nothing in this frame; choose another")
         name = keep_shape(thing, drawn, last.displacements, pressing_tools(last.fingers))
-        self._told = Sentence("Kept as shape key '{key}'", key=name)
+        self._told = Sentence("Kept as layer '{layer}'", layer=name)
 
     def _frames(self, scene: bpy.types.Scene) -> list[int]:
         first = scene.frame_start if self.frame_start < 0 else self.frame_start

@@ -5,7 +5,7 @@ from __future__ import annotations
 import bpy
 
 from ..object.drawn_body import DrawnBody
-from . import curves
+from ..scene import curves
 from .pressed_frames import PressedFrame
 
 FRAME_NAME = "Press at"

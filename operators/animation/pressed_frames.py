@@ -33,7 +33,8 @@ class PressedFrame:
         """Flat coordinates (3 p,) of the drawn vertices, local units."""
         if self.displacements is None:
             return drawn.rest
-        return drawn.local_coordinates(self.displacements, pressing_tools(self.fingers))
+        tools = pressing_tools(self.fingers)
+        return drawn.rest + drawn.drawn_displacement(self.displacements, tools)
 
 
 def press_frames(

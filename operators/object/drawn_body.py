@@ -1,4 +1,4 @@
-"""Body with its drawn mesh: from a contact to drawn coordinates."""
+"""Body with its drawn mesh: from a contact to drawn displacements."""
 
 from __future__ import annotations
 
@@ -72,11 +72,11 @@ class DrawnBody:
         """Drawn vertices at rest, (p, 3), metres, body coordinates."""
         return self.frame.body_from_local(self.rest.reshape(-1, 3).astype(np.float64))
 
-    def local_coordinates(
+    def drawn_displacement(
         self, displacements: Array, tools: Sequence[PressingTool] = ()
     ) -> NDArray[np.float32]:
-        """Flat coordinates (3 p,) of the drawn vertices, from the free surface nodes' (n, 3), none
-        of them within the tools.
+        """Flat displacements (3 p,) of the drawn vertices, local units, by those of the free
+        surface nodes (n, 3), metres; no vertex ends within the tools.
         """
         shift = self.hung.displacements(displacements)
         if tools:
@@ -84,9 +84,7 @@ class DrawnBody:
             for pressing in tools:
                 places = kept_out(places, self.hung.normals, pressing)
             shift = places - self.rest_places
-        moved = self.frame.local_from_body(shift)
-        coordinates: NDArray[np.float32] = (self.rest + moved.ravel()).astype(np.float32)
-        return coordinates
+        return self.frame.local_from_body(shift).ravel().astype(np.float32)
 
     def node_displacements(self, displacements: Array) -> Array:
         """Displacements of all nodes (N, 3), zero where pinned or inside."""

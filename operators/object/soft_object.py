@@ -53,13 +53,6 @@ def refusal(thing: bpy.types.Object | None) -> str:
             "{name} is linked from another file; make it local (Object > Relations)",
             name=thing.name,
         )
-    others = thing.data.users - thing.data.use_fake_user - 1
-    if others > 0:
-        return Sentence(
-            "{name} shares its mesh with {others} more; Object > Relations > Make Single User",
-            name=thing.name,
-            others=others,
-        )
     if thing.mode != "OBJECT":
         # The name of most modes is in Blender's own dictionary.
         mode = f"{thing.mode.replace('_', ' ').title()} Mode"

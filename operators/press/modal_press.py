@@ -115,7 +115,7 @@ class ModalPress(Pressing):
             self.report({"ERROR"}, reported(problem))
             return {"CANCELLED"}
         except BaseException:
-            # A bug must not leave a running servo and a live key in the mesh.
+            # A bug must not leave a running servo and a live layer on the mesh.
             press_session.give_way("Pressing has ended because of an error")
             self._leave(context)
             raise
@@ -128,7 +128,7 @@ class ModalPress(Pressing):
         self._leave(context)
         if not self._session.kept_name:
             return {"CANCELLED"}
-        self.report({"INFO"}, reported("Kept as shape key '{key}'", key=self._session.kept_name))
+        self.report({"INFO"}, reported("Kept as layer '{layer}'", layer=self._session.kept_name))
         return {"FINISHED"}
 
     def cancel(self, context: bpy.types.Context) -> None:

@@ -33,7 +33,7 @@ class PALPATE_OT_pinch(ModalPress, bpy.types.Operator):
     by_2: _place("By 2", "How far the second finger moves, world axes")
     keep: bpy.props.BoolProperty(
         name="Keep",
-        description="Keep the shape as a shape key",
+        description="Keep the shape as a layer, a modifier",
         default=True,
         options={"SKIP_SAVE"},
     )

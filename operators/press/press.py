@@ -34,7 +34,7 @@ class PALPATE_OT_press(ModalPress, bpy.types.Operator):
     )
     keep: bpy.props.BoolProperty(
         name="Keep",
-        description="Keep the shape as a shape key",
+        description="Keep the shape as a layer, a modifier",
         default=True,
         options={"SKIP_SAVE"},
     )

@@ -17,8 +17,8 @@ from ...core.contact.tool.tools import Tool
 from ...core.contact.touches import ToolTouch, Touch
 from ...core.errors import PalpateError
 from ...core.shape.meeting import FingerLoad, settled
+from ..layer import live_layer
 from ..object.drawn_body import DrawnBody, open_body
-from ..scene import live_shape
 from ..scene.body_frame import Point, as_point
 from ..session.live_settings import contact_mode
 from ..shape.drawn_shape import closing_shape
@@ -46,7 +46,7 @@ class Pressed:
 
     fingers: tuple[PressedFinger, ...]
     largest_displacement: float
-    shape_key: str
+    layer: str
     remarks: tuple[str, ...] = ()
 
     @property
@@ -63,7 +63,7 @@ def press_once(
     *,
     keep: bool = True,
 ) -> Pressed:
-    """Press the surface point nearest to ``at`` by ``by`` (3,), world units; keep a shape key.
+    """Press the surface point nearest to ``at`` by ``by`` (3,), world units; keep a layer.
 
     Raises
     ------
@@ -103,9 +103,7 @@ def press_several(
             for one, way in zip(made, inward, strict=True)
         ),
         largest_displacement=float(np.linalg.norm(met.displacements, axis=1).max()),
-        shape_key=(
-            keep_shape(thing, drawn, met.displacements, pressing_tools(made)) if keep else ""
-        ),
+        layer=(keep_shape(thing, drawn, met.displacements, pressing_tools(made)) if keep else ""),
         remarks=tuple(filter(None, (tip.remark, shape.notice))),
     )
 
@@ -117,11 +115,9 @@ def keep_shape(
     tools: Sequence[PressingTool] = (),
 ) -> str:
     """Keep displacements (n, 3) of the free surface nodes as the next "Press <n>", out of tools."""
-    live_shape.hang(thing)
-    live_shape.write(thing.data, drawn.local_coordinates(displacements, tools))
-    name = live_shape.keep(thing)
-    thing.data.update()
-    return name
+    live_layer.hang(thing)
+    live_layer.write(thing, drawn.drawn_displacement(displacements, tools))
+    return live_layer.keep(thing)
 
 
 def _touches(

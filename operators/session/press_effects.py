@@ -32,10 +32,10 @@ class Act(Enum):
     """Effect that needs no more words."""
 
     STOP_SERVO = "stop the servo: zero force, thread joined"
-    HANG_LIVE_SHAPE = "add the live shape key"
-    DRAW_REST = "write the rest shape into the live shape key"
-    REMOVE_LIVE_SHAPE = "restore the mesh as it was found, bit for bit"
-    KEEP_SHAPE = "turn the live shape key into a kept one"
+    HANG_LIVE_LAYER = "add the live layer"
+    DRAW_REST = "write no displacement into the live layer"
+    REMOVE_LIVE_LAYER = "restore the mesh as it was found, bit for bit"
+    KEEP_SHAPE = "turn the live layer into a kept one"
 
 
 # What the pointer does with a finger is carried out as it is told.

@@ -21,8 +21,9 @@ from ...core.sentence import Sentence
 from ...core.servo.session import Snapshot
 from ..device import device_source, servo_words
 from ..device.device_source import DeviceFrame
+from ..layer import live_layer
 from ..object.drawn_body import DrawnBody, open_body
-from ..scene import drawn_surface, live_shape
+from ..scene import drawn_surface
 from ..scene.object_handle import ObjectHandle
 from ..tool.finger_tip import FingerTip, chosen_tip
 from .finger_leads import BOTH_POINTER, FingerLead, Lead, leads_of
@@ -145,8 +146,8 @@ class PressSession:
 
     def _apply(self, effect: Effect) -> None:
         match effect:
-            case Act.HANG_LIVE_SHAPE:
-                self._with_object(live_shape.hang)
+            case Act.HANG_LIVE_LAYER:
+                self._with_object(live_layer.hang)
                 self.seen.drawn_contact = ()
             case StartServo(source):
                 self._start_loop(source)
@@ -156,9 +157,9 @@ class PressSession:
                 self.seen.draw_rest(self.handle.find())
             case Act.STOP_SERVO:
                 self._stop_loop()
-            case Act.REMOVE_LIVE_SHAPE:
-                self._with_object(live_shape.leave_edit_mode)
-                self._with_object(live_shape.remove)
+            case Act.REMOVE_LIVE_LAYER:
+                self._with_object(live_layer.leave_edit_mode)
+                self._with_object(live_layer.remove)
             case Act.KEEP_SHAPE:
                 self._with_object(self._keep)
             case Say():
@@ -177,8 +178,7 @@ class PressSession:
 
     def _keep(self, thing: bpy.types.Object) -> None:
         self.said += self.seen.finish(thing, self.snapshot)
-        self.kept_name = live_shape.keep(thing)
-        thing.data.update()
+        self.kept_name = live_layer.keep(thing)
 
     def _start_loop(self, source: Source) -> None:
         thing = self.handle.find()
@@ -208,6 +208,8 @@ class PressSession:
             reason = "{name} was edited; press Make Soft to bake it again"
         elif not self._follow_frame(thing):
             reason = "{name} was scaled; press Make Soft to bake it again"
+        elif not self.state.withdrawn and live_layer.find(thing) is None:
+            reason = "{name} has lost its live layer; pressing has ended"
         if reason:
             self.post(GiveWay(Sentence(reason, name=(thing or self.handle).name)))
             return None
@@ -282,8 +284,7 @@ def begin(
     tip = chosen_tip(scene, thing, drawn.size)
     home = device_source.home_of_device(thing, scene, drawn.frame)
     session = PressSession(ObjectHandle.of(thing), scene.name, drawn, home, leads, tip)
-    if tip.remark:
-        session.said.append(Say(tip.remark, warning=True))
+    session.said += [Say(tip.remark, warning=True)] if tip.remark else []
     _current = session
     try:
         session.post(Start(source, device=any(lead.lead is Lead.DEVICE for lead in leads)))

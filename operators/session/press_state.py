@@ -98,7 +98,7 @@ def _start(state: PressState, event: Start) -> Step:
     phase = Phase.READY if event.source is Source.POINTER else Phase.FEELING
     has_device = event.device or event.source is Source.DEVICE
     begun = PressState(phase, event.source, has_device=has_device)
-    return begun, (Act.HANG_LIVE_SHAPE, StartServo(event.source))
+    return begun, (Act.HANG_LIVE_LAYER, StartServo(event.source))
 
 
 def _pointer(state: PressState, event: SetDown | Move | Moment) -> Step:
@@ -141,7 +141,7 @@ def _save(state: PressState, event: Moment) -> Step:
     begins = event is Moment.SAVE_BEGINS
     if state.withdrawn == begins:
         return state, ()
-    effect = Act.REMOVE_LIVE_SHAPE if begins else Act.HANG_LIVE_SHAPE
+    effect = Act.REMOVE_LIVE_LAYER if begins else Act.HANG_LIVE_LAYER
     return replace(state, withdrawn=begins), (effect,)
 
 
@@ -155,7 +155,7 @@ def _keep(state: PressState, *, dented: bool) -> Step:
 def _end(state: PressState, reason: str) -> Step:
     effects: tuple[Effect, ...] = (Act.STOP_SERVO,)
     if not state.withdrawn:
-        effects += (Act.REMOVE_LIVE_SHAPE,)
+        effects += (Act.REMOVE_LIVE_LAYER,)
     if reason:
         effects += (Say(reason, warning=True),)
     return replace(state, phase=Phase.ENDED, withdrawn=False, message=reason), effects

@@ -1,4 +1,4 @@
-"""Body as drawn by a press: its shape under the fingers, written into the live shape key."""
+"""Body as drawn by a press: its shape under the fingers, written into the live layer."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from ...core.contact.tool.tool_surface import surface_and_correction
 from ...core.sentence import Sentence
 from ...core.servo.session import Snapshot
 from ...core.shape.meeting import FingerLoad
+from ..layer import live_layer
 from ..object.drawn_body import DrawnBody
-from ..scene import live_shape
 from ..shape.drawn_shape import DrawnShape, chosen_shape, loads_of
 from ..tool.finger_tip import FingerTip
 from .press_effects import Say
@@ -72,7 +72,7 @@ class SeenBody:
         self._loads, self._modulus = tuple(loads_of(self.drawn.body, snapshot)), young_modulus
         if not self._loads:
             self.displacements = self.linear = None
-            live_shape.write(thing.data, self.drawn.rest)
+            live_layer.write(thing, np.zeros_like(self.drawn.rest))
             return
         met = self.shape.draw(self._loads, young_modulus)
         if not met.settled or self.shape.ready < 1.0:
@@ -85,7 +85,7 @@ class SeenBody:
         """Draw the rest shape."""
         self.displacements, self.linear, self.drawn_contact = None, None, ()
         if thing is not None:
-            live_shape.write(thing.data, self.drawn.rest)
+            live_layer.write(thing, np.zeros_like(self.drawn.rest))
 
     def finish(self, thing: bpy.types.Object, snapshot: Snapshot | None) -> list[Say]:
         """Draw the shape to keep, as far as its tables are ready."""
@@ -102,4 +102,4 @@ class SeenBody:
         self, thing: bpy.types.Object, displacements: Array, snapshot: Snapshot | None
     ) -> None:
         tools = () if snapshot is None else self.tip.pressing(snapshot)
-        live_shape.write(thing.data, self.drawn.local_coordinates(displacements, tools))
+        live_layer.write(thing, self.drawn.drawn_displacement(displacements, tools))

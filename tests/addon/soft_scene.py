@@ -153,6 +153,26 @@ def status(thing: bpy.types.Object) -> Any:
     return part("operators.object.soft_object").body_status(thing, bpy.context.scene)
 
 
+def pose_by_bone(thing: bpy.types.Object, angle: float) -> bpy.types.Object:
+    """Turn a whole object by a bone along Z, about X, radians; returns the armature."""
+    armature = bpy.data.objects.new("Armature", bpy.data.armatures.new("Armature"))
+    bpy.context.collection.objects.link(armature)
+    armature.matrix_world = thing.matrix_world
+    select(armature)
+    bpy.ops.object.mode_set(mode="EDIT")
+    bone = armature.data.edit_bones.new("Bone")
+    bone.head, bone.tail = (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    group = thing.vertex_groups.new(name="Bone")
+    group.add(range(len(thing.data.vertices)), 1.0, "REPLACE")
+    modifier = thing.modifiers.new("Pose", "ARMATURE")
+    modifier.object = armature
+    armature.pose.bones["Bone"].rotation_mode = "XYZ"
+    armature.pose.bones["Bone"].rotation_euler.x = angle
+    select(thing)
+    return armature
+
+
 def locate(thing: bpy.types.Object) -> Any:
     """The path of an object's body file, None where it is missing."""
     return part("operators.object.body_store").locate(thing)
@@ -173,9 +193,17 @@ def error_of(operator: Any, **arguments: Any) -> str:
 
 
 def mesh_state(thing: bpy.types.Object) -> dict[str, Any]:
-    """Every coordinate, bit for bit, of the mesh and its shape keys, and which key is active."""
+    """Every coordinate, bit for bit, of the mesh and its shape keys, which key is active, its vector
+    attributes and all modifiers.
+    """
     mesh = thing.data
     state: dict[str, Any] = {"mesh": _bytes(mesh.vertices), "active": thing.active_shape_key_index}
+    vectors = [one.name for one in mesh.attributes if one.data_type == "FLOAT_VECTOR"]
+    state["attributes"] = sorted(vectors)
+    state["modifiers"] = [(one.name, one.type) for one in thing.modifiers]
+    layers = part("operators.layer.layers")
+    for layer in layers.layers_of(thing):
+        state["layer", layer.name] = layers.displacement(thing, layer).tobytes()
     state["only"] = thing.show_only_shape_key
     state["marks"] = sorted(mesh.shape_keys.keys()) if mesh.shape_keys else None
     for key in mesh.shape_keys.key_blocks if mesh.shape_keys else ():
@@ -191,9 +219,29 @@ def key_names(thing: bpy.types.Object) -> list[str]:
 def key_coordinates(thing: bpy.types.Object, name: str) -> NDArray[np.float32]:
     """Coordinates (p, 3) of a shape key, local units."""
     points = thing.data.shape_keys.key_blocks[name].points
-    flat = np.empty(3 * len(points), dtype=np.float32)
-    points.foreach_get("co", flat)
-    return flat.reshape(-1, 3)
+    return _flat(points).reshape(-1, 3)
+
+
+def layer_names(thing: bpy.types.Object) -> list[str]:
+    """Names of its layers, in their order."""
+    return [layer.name for layer in part("operators.layer.layers").layers_of(thing)]
+
+
+def moved(thing: bpy.types.Object, name: str) -> NDArray[np.float32]:
+    """Displacements (p, 3) of a layer, local units."""
+    return part("operators.layer.layers").displacement(thing, thing.modifiers[name])
+
+
+def rest_places(thing: bpy.types.Object) -> NDArray[np.float32]:
+    """Vertices (p, 3) of the base mesh, local units."""
+    return _flat(thing.data.vertices).reshape(-1, 3)
+
+
+def seen_places(thing: bpy.types.Object) -> NDArray[np.float32]:
+    """Vertices (p, 3) as Blender evaluates them for the view, local units."""
+    bpy.context.view_layer.update()
+    graph = bpy.context.evaluated_depsgraph_get()
+    return _flat(thing.evaluated_get(graph).data.vertices).reshape(-1, 3)
 
 
 def world_extents(thing: bpy.types.Object) -> NDArray[np.float64]:
@@ -204,6 +252,10 @@ def world_extents(thing: bpy.types.Object) -> NDArray[np.float64]:
 
 
 def _bytes(points: Any) -> bytes:
+    return _flat(points).tobytes()
+
+
+def _flat(points: Any) -> NDArray[np.float32]:
     flat = np.empty(3 * len(points), dtype=np.float32)
     points.foreach_get("co", flat)
-    return flat.tobytes()
+    return flat

@@ -51,8 +51,7 @@ def test_bake_saves_a_file_that_can_be_pressed(figures_of, scene):
     assert (softer["shape"], pressed["shape"]) == ("rotation-strain", "linear")
     assert softer["max_displacement"] != pressed["max_displacement"]
     bpy.ops.wm.open_mainfile(filepath=str(scene))
-    keys = bpy.data.objects["Prop"].data.shape_keys.key_blocks.keys()
-    assert keys == ["Basis", pressed["shape_key"]]
+    assert bpy.data.objects["Prop"].modifiers.keys() == [pressed["layer"]] == ["Press 1"]
 
 
 def test_form_formulation_and_stiff_region_are_chosen_by_options(figures_of, scene):

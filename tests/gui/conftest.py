@@ -12,7 +12,7 @@ Blender, stepped by a timer, and gets a `Stage` (see stage.py) with what a user'
         yield from stage.drag([here, (here[0], here[1] - 40)])
         yield from stage.picture("pressed")
         yield from stage.key("RET")
-        yield from stage.until(lambda: ..., "the shape key")
+        yield from stage.until(lambda: ..., "the kept layer")
         assert ...
 
 What it yields says how long to wait: `yield` until the viewport has been drawn again, `yield 0.5`

@@ -86,6 +86,6 @@ def over_the_view(stage: Stage) -> Pixel:
     return (region.x + region.width / 3, region.y + region.height / 3)
 
 
-def shape_keys() -> list[str]:
-    keys = mouse().data.shape_keys
-    return keys.key_blocks.keys() if keys else []
+def kept() -> list[str]:
+    """Names of the mouse's modifiers: it has none but layers."""
+    return list(mouse().modifiers.keys())

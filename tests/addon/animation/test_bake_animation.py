@@ -7,7 +7,16 @@ import csv
 import bpy
 import numpy as np
 import pytest
-from soft_scene import empty, error_of, key_coordinates, key_names, mesh_state, part, soft_cube
+from soft_scene import (
+    empty,
+    error_of,
+    key_coordinates,
+    key_names,
+    layer_names,
+    mesh_state,
+    part,
+    soft_cube,
+)
 
 
 @pytest.fixture
@@ -162,7 +171,7 @@ def test_the_current_frame_alone_is_kept_as_a_press(chosen):
     scene.frame_set(5)
     chosen.tip, chosen.source, chosen.source_empty = "SPHERE", "EMPTY", guide
     assert bpy.ops.palpate.press_frames(current_only=True) == {"FINISHED"}
-    assert key_names(thing) == ["Basis", "Press 1"]
+    assert layer_names(thing) == ["Press 1"]
 
 
 def test_animations_without_a_tool_or_a_leader_are_refused(chosen):

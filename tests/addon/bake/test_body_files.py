@@ -12,7 +12,7 @@ from soft_scene import (
     body_of,
     cube,
     error_of,
-    key_names,
+    layer_names,
     locate,
     part,
     press_down,
@@ -38,7 +38,7 @@ def test_save_reopen_press_again(saved, tmp_path):
     assert locate(saved).parent == tmp_path / "palpate"
     assert status(saved).fit.name == "READY"
     press_down(saved)
-    assert key_names(saved) == ["Basis", "Press 1"]
+    assert layer_names(saved) == ["Press 1"]
 
 
 def test_the_body_goes_along_when_the_file_is_saved_elsewhere(saved, tmp_path):
@@ -78,7 +78,7 @@ def test_a_damaged_body_file_is_never_used(saved, damage):
         path.write_text("not a body")
     message = error_of(bpy.ops.palpate.press, at=(0, 0, 0.03), by=(0, 0, -0.005))
     assert path.name in message
-    assert key_names(saved) == []
+    assert layer_names(saved) == []
     assert status(saved).fit.name == "FILE_DAMAGED", "the panel offers no Rebuild Body"
     assert bpy.ops.palpate.rebuild_body() == {"FINISHED"}
     assert status(saved).fit.name == "READY"
@@ -94,7 +94,7 @@ def test_tetrahedra_of_another_body_are_not_used_for_a_missing_one(saved):
     message = error_of(bpy.ops.palpate.press, at=(0, 0, 0.03), by=(0, 0, -0.005))
     assert "press Make Soft" in message
     assert locate(saved) is None
-    assert key_names(saved) == []
+    assert layer_names(saved) == []
 
 
 def test_the_body_of_something_else_under_the_right_name_is_not_used(saved):
@@ -207,7 +207,7 @@ def test_a_copied_object_brings_its_body(saved):
     select(copy)
     assert status(copy).fit.name == "READY"
     press_down(copy)
-    assert key_names(saved) == []
+    assert layer_names(saved) == []
     assert bpy.ops.palpate.remove_softness() == {"FINISHED"}
     assert locate(saved) is not None, "the file was still needed"
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 import pytest
-from soft_scene import error_of, key_names, locate, part, press_down, select, soft_cube, status
+from soft_scene import error_of, layer_names, locate, part, press_down, select, soft_cube, status
 
 KEY = "0123456789ab"
 
@@ -223,7 +223,7 @@ def test_hostile_tetrahedra_are_refused_and_nothing_changes(saved):
         status(saved)
         saved.palpate.pin_fraction = 0.1
         assert not path.exists()
-        assert key_names(saved) == []
+        assert layer_names(saved) == []
 
 
 def hostile_fingerprints(text: str) -> list[str]:

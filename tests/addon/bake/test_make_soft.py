@@ -13,10 +13,11 @@ from soft_scene import (
     body_of,
     cube,
     error_of,
-    key_coordinates,
+    layer_names,
     locate,
     mesh_object,
     mesh_state,
+    moved,
     part,
     press_down,
     select,
@@ -79,9 +80,9 @@ def test_a_body_is_as_large_as_it_looks_whatever_the_scale(palpate, scale, unit)
     top = thing.matrix_world @ thing.data.vertices[1].co
     middle = np.array(thing.matrix_world.translation)
     assert bpy.ops.palpate.press(at=top, by=0.1 * (middle - np.array(top))) == {"FINISHED"}
-    moved = key_coordinates(thing, "Press 1") - key_coordinates(thing, "Basis")
+    dent = moved(thing, "Press 1")
     linear = np.array(thing.matrix_world)[:3, :3]
-    pushed = moved @ linear.T
+    pushed = dent @ linear.T
     inward = 0.1 * (middle - np.array(top))
     share = pushed[1] @ inward / (inward @ inward)
     assert 0.2 < share < 1.1, "the pressed corner did not follow the finger"
@@ -157,7 +158,6 @@ def flattened(thing):
 
 UNFIT = {
     "scale": flattened,
-    "Make Single User": lambda thing: bpy.context.collection.objects.link(thing.copy()),
     "Edit Mode": lambda _: bpy.ops.object.mode_set(mode="EDIT"),
     "mesh": lambda _: bpy.ops.object.empty_add(),
 }
@@ -253,7 +253,7 @@ def test_remove_softness_takes_the_body_and_leaves_the_shapes(palpate, thing):
     assert not path.exists()
     assert not thing.palpate.body_key
     assert "nodes" not in thing.palpate
-    assert thing.data.shape_keys.key_blocks.keys() == ["Basis", "Press 1"]
+    assert layer_names(thing) == ["Press 1"]
 
 
 def test_a_preset_sets_the_material(palpate):

@@ -9,8 +9,8 @@ from soft_scene import (
     body_of,
     cube,
     error_of,
-    key_coordinates,
     locate,
+    moved,
     press_down,
     select,
     soft_cube,
@@ -90,7 +90,7 @@ def test_pins_that_hold_nothing_or_everything_are_refused_with_a_remedy(soft):
 
 def test_press_takes_more_pins_over_by_itself(soft):
     press_down(soft)
-    free = key_coordinates(soft, "Press 1") - key_coordinates(soft, "Basis")
+    free = moved(soft, "Press 1")
     top = [v.index for v in soft.data.vertices if v.co.z > 0]
     assert np.linalg.norm(free[top], axis=1).min() > 0
     group = soft.vertex_groups.new(name="Corner")
@@ -100,7 +100,7 @@ def test_press_takes_more_pins_over_by_itself(soft):
     away = (0.0125, 0.0125, 0.025)
     assert bpy.ops.palpate.press(at=away, by=(0.0, 0.0, -0.005)) == {"FINISHED"}
     assert fit(soft) == "SAME"
-    held = key_coordinates(soft, "Press 2") - key_coordinates(soft, "Basis")
+    held = moved(soft, "Press 2")
     assert np.abs(held[top[0]]).max() < 1e-7
     assert np.linalg.norm(held[top[1]]) > 0
 

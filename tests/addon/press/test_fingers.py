@@ -8,11 +8,12 @@ import pytest
 from soft_scene import (
     empty,
     error_of,
-    key_coordinates,
-    key_names,
+    layer_names,
     mesh_object,
     mesh_state,
+    moved,
     part,
+    rest_places,
     select,
     soft_cube,
 )
@@ -65,15 +66,15 @@ def test_a_kept_shape_lies_outside_the_tool(chosen, thing):
     drawn = part("operators.object.drawn_body").open_body(thing, bpy.context.scene)
     tools = part("operators.press.press_once").pressing_tools([touch])
 
-    def inside(coordinates):
-        places = drawn.frame.body_from_local(coordinates.reshape(-1, 3))
+    def inside(displacement):
+        places = drawn.frame.body_from_local(rest_places(thing) + displacement.reshape(-1, 3))
         return -touch.tool.distance(touch.pose.to_tool(places))[0].min()
 
-    moved = drawn.body.deform(touch.nodes, touch.nodal_forces, thing.palpate.young_modulus)
-    assert inside(drawn.local_coordinates(0.0 * moved)) > 4e-3
-    kept = key_coordinates(thing, press.shape_key)
+    nodes = drawn.body.deform(touch.nodes, touch.nodal_forces, thing.palpate.young_modulus)
+    assert inside(drawn.drawn_displacement(0.0 * nodes)) > 4e-3
+    kept = moved(thing, press.layer)
     assert inside(kept) < 1e-6
-    np.testing.assert_allclose(kept.ravel(), drawn.local_coordinates(moved, tools), atol=1e-6)
+    np.testing.assert_allclose(kept.ravel(), drawn.drawn_displacement(nodes, tools), atol=1e-6)
 
 
 def test_friction_of_the_material_holds_a_fingertip_back(chosen, thing):
@@ -173,7 +174,7 @@ def test_a_tool_without_volume_is_refused(chosen, vertices, faces, thing):
     select(thing)
     message = error_of(bpy.ops.palpate.press, at=TOP, by=DOWN)
     assert "Nothing has no volume" in message
-    assert key_names(thing) == []
+    assert layer_names(thing) == []
 
 
 def test_a_tool_that_is_not_there_or_is_the_body_is_refused(chosen):
@@ -193,7 +194,7 @@ def test_a_pinch_squeezes_from_both_sides(chosen, thing):
     assert bpy.ops.palpate.pinch(at_1=LEFT, by_1=(by, 0, 0), at_2=RIGHT, by_2=(-by, 0, 0)) == {
         "FINISHED"
     }
-    assert key_names(thing) == ["Basis", "Press 1"]
+    assert layer_names(thing) == ["Press 1"]
     left, right = forces(thing, [LEFT, RIGHT], [(by, 0, 0), (-by, 0, 0)])
     assert left[0] < 0 < right[0]
     alone = forces(thing, [LEFT], [(by, 0, 0)])[0]

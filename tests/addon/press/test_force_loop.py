@@ -15,7 +15,7 @@ from soft_scene import (
     begin,
     cube,
     error_of,
-    key_names,
+    layer_names,
     mesh_state,
     part,
     press_in,
@@ -302,7 +302,7 @@ def test_a_flattened_device_frame_is_said_and_the_press_goes_on(sessions, states
     sessions.give_way("")
     with pytest.raises(part("core.errors").PalpateError, match=empty.name):
         begin(sessions, states, thing, "DEVICE")
-    assert key_names(thing) == []
+    assert layer_names(thing) == []
 
 
 @pytest.mark.parametrize("problem", [ValueError, RuntimeError, OverflowError])

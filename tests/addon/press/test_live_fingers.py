@@ -5,7 +5,17 @@ from __future__ import annotations
 import bpy
 import numpy as np
 import pytest
-from soft_scene import begin, empty, key_names, locate, mesh_state, part, soft_cube, unbraked, wait
+from soft_scene import (
+    begin,
+    empty,
+    layer_names,
+    locate,
+    mesh_state,
+    part,
+    soft_cube,
+    unbraked,
+    wait,
+)
 
 LEFT, RIGHT = (-0.02501, 0.0, 0.01), (0.02501, 0.0, 0.01)
 LEFT_IN, RIGHT_IN = (-0.022, 0.0, 0.01), (0.022, 0.0, 0.01)
@@ -61,7 +71,7 @@ def test_empties_lead_both_fingers_and_one_may_be_deleted(sessions, states):
     assert [said.text for said in session.said if "Left was deleted" in said.text]
     wait(session, lambda: arrived(session, LEFT_IN, RIGHT_IN))
     session.post(states.Keep(session.seen.displacements is not None))
-    assert key_names(thing) == ["Basis", "Press 1"]
+    assert layer_names(thing) == ["Press 1"]
 
 
 def test_a_simulated_device_presses_beside_the_pointer(sessions, states, thing):
@@ -164,7 +174,7 @@ def test_a_tool_object_may_be_deleted_while_it_presses(sessions, states):
         session.tick()
     assert session.snapshot.fingers[0].touching
     session.post(states.Keep(session.seen.displacements is not None))
-    assert key_names(thing) == ["Basis", "Press 1"]
+    assert layer_names(thing) == ["Press 1"]
 
 
 def test_the_next_press_does_not_read_the_body_again_unless_its_file_changed(

@@ -35,7 +35,7 @@ def test_a_pointer_press_goes_from_touch_to_kept_shape(ps):
     )
     assert state.phase is ps.Phase.ENDED
     assert effects == [
-        ps.Act.HANG_LIVE_SHAPE,
+        ps.Act.HANG_LIVE_LAYER,
         ps.StartServo(ps.Source.POINTER),
         ps.SetDown(POINT),
         ps.Move((0.0, 0.0, 0.09)),
@@ -114,7 +114,7 @@ def test_a_save_sees_no_live_shape_and_the_press_goes_on(ps):
         ps.Moment.SAVE_ENDS,
     )
     assert state.phase is ps.Phase.DRAGGING
-    assert effects[-2:] == [ps.Act.REMOVE_LIVE_SHAPE, ps.Act.HANG_LIVE_SHAPE]
+    assert effects[-2:] == [ps.Act.REMOVE_LIVE_LAYER, ps.Act.HANG_LIVE_LAYER]
 
 
 def test_whatever_happened_giving_way_stops_the_servo_and_cleans_the_mesh(ps):
@@ -136,8 +136,8 @@ def test_whatever_happened_giving_way_stops_the_servo_and_cleans_the_mesh(ps):
             state, effects = play(ps, ps.Start(source), *walk, ps.GiveWay("end"))
             assert state.phase is ps.Phase.ENDED
             assert effects.count(ps.Act.STOP_SERVO) == 1
-            hung = effects.count(ps.Act.HANG_LIVE_SHAPE)
-            removed = effects.count(ps.Act.REMOVE_LIVE_SHAPE) + effects.count(ps.Act.KEEP_SHAPE)
+            hung = effects.count(ps.Act.HANG_LIVE_LAYER)
+            removed = effects.count(ps.Act.REMOVE_LIVE_LAYER) + effects.count(ps.Act.KEEP_SHAPE)
             assert hung == removed, f"{source}, {walk}"
 
 

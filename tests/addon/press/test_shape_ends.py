@@ -12,10 +12,10 @@ from soft_scene import (
     BESIDE,
     DEPTH,
     begin_pressed,
-    key_coordinates,
-    key_names,
+    layer_names,
     locate,
     mesh_state,
+    moved,
     part,
     press_down,
     wait,
@@ -50,11 +50,11 @@ def test_enter_keeps_what_every_shape_drew(sessions, states, name, thing):
     thing.palpate.shape = name
     session = begin_pressed(sessions, states, thing)
     wait(session, lambda: session.seen.shape.ready == 1.0 and session.seen.drawn_contact)
-    drawn = key_coordinates(thing, "Palpate live")
+    drawn = moved(thing, "Palpate Live")
     session.post(states.Keep())
-    assert key_names(thing) == ["Basis", "Press 1"]
-    kept = key_coordinates(thing, "Press 1")
-    assert not np.array_equal(kept, key_coordinates(thing, "Basis"))
+    assert layer_names(thing) == ["Press 1"]
+    kept = moved(thing, "Press 1")
+    assert kept.any()
     np.testing.assert_array_equal(kept, drawn)
 
 
@@ -62,7 +62,7 @@ def test_enter_keeps_what_every_shape_drew(sessions, states, name, thing):
 def test_a_table_file_that_is_no_good_is_told_once_and_made_anew(sessions, states, trouble, thing):
     thing.palpate.shape = "TABLE"
     press_down(thing, depth=DEPTH)
-    first = key_coordinates(thing, "Press 1")
+    first = moved(thing, "Press 1")
     file = table_file(thing, "newton-table")
     good = file.read_bytes()
     match trouble:
@@ -77,7 +77,7 @@ def test_a_table_file_that_is_no_good_is_told_once_and_made_anew(sessions, state
                 write(out, arrays | {"key": np.array("0" * 64)})
         case "no table":
             shutil.copyfile(locate(thing), file)
-    thing.shape_key_clear()
+    part("operators.layer.layers").remove(thing, thing.modifiers["Press 1"])
     session = begin_pressed(sessions, states, thing)
     wait(session, lambda: session.seen.shape.ready == 1.0)
     for _ in range(5):
@@ -87,7 +87,7 @@ def test_a_table_file_that_is_no_good_is_told_once_and_made_anew(sessions, state
     assert all(str(file) in text and "computed anew" in text for text in told)
     sessions.give_way("")
     press_down(thing, depth=DEPTH)
-    np.testing.assert_allclose(key_coordinates(thing, "Press 1"), first, rtol=0, atol=1e-7)
+    np.testing.assert_allclose(moved(thing, "Press 1"), first, rtol=0, atol=1e-7)
 
 
 def test_a_table_that_cannot_be_used_is_a_warning_of_the_operator(palpate, monkeypatch, thing):

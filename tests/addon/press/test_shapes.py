@@ -14,12 +14,13 @@ from soft_scene import (
     DEPTH,
     begin_pressed,
     depth,
-    key_coordinates,
-    key_names,
+    layer_names,
     locate,
     mesh_state,
+    moved,
     part,
     press_down,
+    rest_places,
     soft_cube,
     wait,
 )
@@ -56,8 +57,8 @@ class Narrower:
         self.closed.set()
 
 
-def drawn_depth(thing, key="Palpate live"):
-    return BESIDE[2] - key_coordinates(thing, key)[:, 2].max()
+def drawn_depth(thing, key="Palpate Live"):
+    return BESIDE[2] - (rest_places(thing) + moved(thing, key))[:, 2].max()
 
 
 def test_the_panel_offers_every_shape_with_its_sentence(palpate, shapes):
@@ -78,7 +79,7 @@ def test_scripts_that_name_the_former_series_get_paper_and_are_told(palpate, sha
         thing.palpate.shape = name
         pressed = once(thing, bpy.context.scene, BESIDE, (0.0, 0.0, -DEPTH), keep=True)
         assert pressed.remarks == ((shapes.SERIES_IS_PAPER,) if name == "SERIES" else ())
-        keys[name] = key_coordinates(thing, pressed.shape_key)
+        keys[name] = moved(thing, pressed.layer)
     np.testing.assert_array_equal(keys["SERIES"], keys["TABLE"])
     assert part("addon.panels.shape").cost_now(thing).table_seconds > 0.0
 
@@ -103,8 +104,8 @@ def test_a_script_keeps_the_shape_that_is_chosen(palpate, name, thing):
     press_down(thing, depth=DEPTH)
     thing.palpate.shape = name
     press_down(thing, depth=DEPTH)
-    linear, chosen = (key_coordinates(thing, key) for key in ("Press 1", "Press 2"))
-    largest = np.abs(linear - key_coordinates(thing, "Basis")).max()
+    linear, chosen = (moved(thing, key) for key in ("Press 1", "Press 2"))
+    largest = np.abs(linear).max()
     assert np.abs(chosen - linear).max() < largest
     assert np.array_equal(chosen, linear) == (name == "LINEAR")
 
@@ -173,7 +174,7 @@ def test_what_is_kept_waits_a_little_and_says_what_it_lacks(sessions, states, sh
     session = begin_pressed(sessions, states, thing)
     wait(session, lambda: session.seen.shape.ready == 0.5)
     session.post(states.Keep())
-    assert key_names(thing)[-1] == "Press 1"
+    assert layer_names(thing)[-1] == "Press 1"
     assert [said.text for said in session.said] == ["It is kept as far as it was computed, 50 %"]
     assert made[0].closed.wait(5.0)
 

@@ -26,6 +26,13 @@ def bags(animated: bpy.types.ID) -> list[bpy.types.bpy_prop_collection]:
     ]
 
 
+def is_animated(animated: bpy.types.ID, path: str) -> bool:
+    """Whether keyframes or a driver move a property of a datablock."""
+    data = animated.animation_data
+    driven = data is not None and data.drivers.find(path) is not None
+    return driven or any(bag.find(path) is not None for bag in bags(animated))
+
+
 def curves(animated: bpy.types.ID) -> Iterator[bpy.types.FCurve]:
     """All curves of a datablock."""
     for bag in bags(animated):

@@ -1,0 +1,1 @@
+"""Panels of what presses have left: layers and rigs."""

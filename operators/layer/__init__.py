@@ -1,0 +1,1 @@
+"""Dents as layers: displacements of the drawn vertices that a modifier adds."""

@@ -1,0 +1,66 @@
+"""Layer that follows a press: added, written each frame, then kept or removed.
+
+All else of the object and its mesh stays as it is, bit for bit.
+"""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from . import layers
+
+LIVE_NAME = "Palpate Live"
+
+
+def hang(thing: bpy.types.Object) -> None:
+    """Add the live layer."""
+    remove(thing)
+    layers.add(thing, LIVE_NAME)
+
+
+def write(thing: bpy.types.Object, vectors: NDArray[np.float32]) -> None:
+    """Write flat float32 displacements (3 p,), local units, and redraw; nothing without a layer."""
+    live = find(thing)
+    if live is not None:
+        layers.write(thing, live, vectors)
+
+
+def keep(thing: bpy.types.Object) -> str:
+    """Turn the live layer into the next free "Press <n>"; returns its name."""
+    live = find(thing)
+    if live is None:
+        raise RuntimeError(f"{thing.name} has no live layer to keep")
+    return layers.keep(thing, live)
+
+
+def remove(thing: bpy.types.Object) -> None:
+    """Remove the live layer, or what is left of it. Safe without one."""
+    live = find(thing)
+    if live is not None:
+        layers.remove(thing, live)
+    remains = thing.data.attributes.get(LIVE_NAME)
+    if remains is not None:
+        thing.data.attributes.remove(remains)
+
+
+def find(thing: bpy.types.Object) -> bpy.types.NodesModifier | None:
+    """The live layer, if there is one."""
+    live = thing.modifiers.get(LIVE_NAME)
+    return live if live is not None and layers.is_layer(live) else None
+
+
+def remove_leftovers() -> None:
+    """Remove live layers from all objects: undo and autosave may bring one back."""
+    for thing in bpy.data.objects:
+        if thing.type == "MESH" and thing.is_editable and thing.data.is_editable:
+            remove(thing)
+
+
+def leave_edit_mode(thing: bpy.types.Object) -> None:
+    """Leave edit mode, in which attributes cannot be removed."""
+    if thing.mode == "OBJECT":
+        return
+    with bpy.context.temp_override(active_object=thing, object=thing):
+        bpy.ops.object.mode_set(mode="OBJECT")
