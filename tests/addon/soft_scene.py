@@ -200,7 +200,7 @@ def mesh_state(thing: bpy.types.Object) -> dict[str, Any]:
     state: dict[str, Any] = {"mesh": _bytes(mesh.vertices), "active": thing.active_shape_key_index}
     vectors = [one.name for one in mesh.attributes if one.data_type == "FLOAT_VECTOR"]
     state["attributes"] = sorted(vectors)
-    state["modifiers"] = [(one.name, one.type) for one in thing.modifiers]
+    state["modifiers"] = [one.name for one in thing.modifiers if one.type == "NODES"]
     layers = part("operators.layer.layers")
     for layer in layers.layers_of(thing):
         state["layer", layer.name] = layers.displacement(thing, layer).tobytes()
