@@ -193,7 +193,7 @@ def error_of(operator: Any, **arguments: Any) -> str:
 
 
 def mesh_state(thing: bpy.types.Object) -> dict[str, Any]:
-    """Every coordinate, bit for bit, of the mesh and its shape keys, which key is active, its vector
+    """Every coordinate, bit for bit, of the mesh and its shape keys, the active key, its vector
     attributes and all modifiers.
     """
     mesh = thing.data
