@@ -88,7 +88,7 @@ def _after_save(path: str = "", *_: object) -> None:
 
 @persistent
 def _after_failed_save(*_: object) -> None:
-    known_status.forget()
+    known_status.forget_files()
     session = press_session.current()
     if session is not None:
         session.post(Moment.SAVE_ENDS)
@@ -96,9 +96,7 @@ def _after_failed_save(*_: object) -> None:
 
 @persistent
 def _after_change(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
-    updates = depsgraph.updates
-    if any(update.is_updated_geometry or update.is_updated_transform for update in updates):
-        known_status.forget()
+    known_status.changed(depsgraph)
 
 
 def _before_exit() -> None:
@@ -131,6 +129,7 @@ def unregister() -> None:
     """End everything and remove the handlers."""
     end_everything("Palpate was switched off; pressing has ended")
     kept_body.forget()
+    known_status.end()
     atexit.unregister(_before_exit)
     for name, handler in HANDLERS.items():
         getattr(bpy.app.handlers, name).remove(handler)

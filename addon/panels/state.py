@@ -104,6 +104,11 @@ def draw_idle(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     column = layout.column(align=True)
     column.scale_y = 1.5
     status = known_status.body_status(thing, context.scene)
+    if status is None:
+        column.enabled = False
+        column.operator("palpate.press", icon="FORCE_FORCE")
+        say(layout, context, "Comparing the mesh with its body", "TIME")
+        return
     if status.fit is Fit.NEVER_BAKED:
         column.operator("palpate.make_soft", icon="MOD_SOFT")
         cost.draw_summary(layout, context)

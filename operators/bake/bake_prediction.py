@@ -5,17 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import bpy
-import numpy as np
 
 from ...core.bake.cost.bake_cost import BakeCost
 from ...core.bake.cost.prediction import edge_length_that_fits, estimate_cost
-from ...core.bake.cost.size import ShapeSize, bending
+from ...core.bake.cost.size import ShapeSize
 from ...core.bake.settings import BakeSettings
 from ...core.errors import PalpateError
 from ...core.machine.available_memory import available_memory
 from ...core.stiffness.pins import PinBelow, Pins
 from ..pins import pin_group
-from ..scene.drawn_surface import DrawnSurface
 
 
 @dataclass(frozen=True)
@@ -41,30 +39,13 @@ class Prediction:
         return self.cost.peak_bytes <= self.available
 
 
-def shape_size(drawn: DrawnSurface) -> ShapeSize:
-    """Size of a drawn surface; quick also for several parts, whose overlaps count twice.
-
-
-    Raises
-    ------
-    PalpateError
-        What cannot be baked at all.
-    """
-    surface = drawn.surface()
-    middle = surface.vertices.mean(axis=0)
-    i, j, k = (surface.vertices[surface.triangles[:, corner]] - middle for corner in range(3))
-    volume = abs(float(np.einsum("fx,fx->", i, np.cross(j, k)))) / 6.0
-    area, triangles = float(surface.areas.sum()), len(surface.triangles)
-    return ShapeSize(area, volume, surface.diagonal, triangles, bending(surface))
-
-
-def pins_of(thing: bpy.types.Object, drawn: DrawnSurface) -> Pins:
+def pins_of(thing: bpy.types.Object) -> Pins:
     """Pins, as far as a cost depends on them; reads the vertex group if there is one."""
     settings = thing.palpate
     if settings.pin_mode == "BELOW":
         return PinBelow(settings.pin_fraction)
     try:
-        return pin_group.pins(thing, drawn)
+        return pin_group.painted(thing)
     except PalpateError:
         # Reported next to the pins; the cost is that of the whole surface then.
         return PinBelow(0.0)

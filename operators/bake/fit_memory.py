@@ -6,9 +6,10 @@ import bpy
 
 from ...core.errors import PalpateError
 from ..object import soft_object
+from ..object.mesh_look import shape_size
 from ..reporting.acting import Acting
 from ..scene import drawn_surface
-from .bake_prediction import Prediction, pins_of, predict, settings_of, shape_size
+from .bake_prediction import Prediction, pins_of, predict, settings_of
 
 
 class PALPATE_OT_fit_memory(Acting, bpy.types.Operator):
@@ -32,9 +33,9 @@ class PALPATE_OT_fit_memory(Acting, bpy.types.Operator):
 
     def act(self, context: bpy.types.Context) -> None:
         thing = context.object
-        drawn = drawn_surface.read(thing, context.scene)
-        settings = settings_of(thing, pins_of(thing, drawn))
-        self._change(thing, predict(shape_size(drawn), settings))
+        surface = drawn_surface.read(thing, context.scene).surface()
+        settings = settings_of(thing, pins_of(thing))
+        self._change(thing, predict(shape_size(surface), settings))
 
     def _change(self, thing: bpy.types.Object, now: Prediction) -> None:
         if self.by == "COMPRESSED":

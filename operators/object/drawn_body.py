@@ -135,7 +135,7 @@ def _body(thing: bpy.types.Object, surface: DrawnSurface, status: BodyStatus) ->
     """Body of the object, with its present pins if that needs no bake."""
     if status.fit is Fit.FILE_MISSING and restores_quickly(thing):
         body_store.restore(thing)
-        status = replace(status, fit=Fit.READY, pins=pin_change.look(thing, surface))
+        status = replace(status, fit=Fit.READY, pins=pin_change.look(thing, lambda: surface))
     # Other changed settings, and the pins with them, wait for Rebuild Body.
     if status.fit is Fit.READY and status.pins.quick and not status.changed:
         return pin_change.take_over(thing, surface)

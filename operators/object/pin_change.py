@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
 from functools import lru_cache
@@ -61,16 +62,19 @@ class PinChange:
 SAME = PinChange(PinFit.SAME)
 
 
-def look(thing: bpy.types.Object, drawn: DrawnSurface) -> PinChange:
+def look(thing: bpy.types.Object, drawn: Callable[[], DrawnSurface]) -> PinChange:
     """Compare the pins that are set with those of the body. Reads tetrahedra, not the body file.
+
+    ``drawn`` reads the mesh, which other pins are compared on.
 
     Only for an object whose mesh still fits its body.
     """
     if Fingerprint.from_text(thing.palpate.fingerprint).pins == pin_group.pin_rule(thing):
         return SAME
     try:
-        within = _placed(drawn, ObjectHandle.of(thing), thing.palpate.body_key)
-        new = _nodes(thing, drawn, within)
+        surface_now = drawn()
+        within = _placed(surface_now, ObjectHandle.of(thing), thing.palpate.body_key)
+        new = _nodes(thing, surface_now, within)
     except PalpateError as problem:
         return PinChange(PinFit.UNUSABLE, reason=problem.sentence)
     old, surface = within.body.fixed, within.body.mesh.surface_nodes
@@ -100,7 +104,7 @@ def take_over(thing: bpy.types.Object, drawn: DrawnSurface) -> SoftBody:
         The pins need a bake, cannot be used, or are those of the body already; the body's file is
         missing or damaged. Nothing is changed then.
     """
-    change = look(thing, drawn)
+    change = look(thing, lambda: drawn)
     if change.fit is PinFit.SAME:
         raise PalpateError("{name}: it is pinned like this already; press Press", name=thing.name)
     if change.fit is PinFit.UNUSABLE:

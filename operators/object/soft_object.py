@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import Enum
 
@@ -91,6 +92,13 @@ def with_file(thing: bpy.types.Object, status: BodyStatus) -> BodyStatus:
 
 def mesh_status(thing: bpy.types.Object, drawn: DrawnSurface) -> BodyStatus:
     """Whether the object was baked and its mesh is still the same; slow for large meshes."""
+    return shape_status(thing, drawn.shape, lambda: drawn)
+
+
+def shape_status(
+    thing: bpy.types.Object, shape: Fingerprint, drawn: Callable[[], DrawnSurface]
+) -> BodyStatus:
+    """:func:`mesh_status` by the fingerprint of a mesh; the mesh is read for changed pins only."""
     baked = thing.palpate
     if not baked.body_key:
         return BodyStatus(Fit.NEVER_BAKED)
@@ -99,7 +107,8 @@ def mesh_status(thing: bpy.types.Object, drawn: DrawnSurface) -> BodyStatus:
         baked_settings.settings_of(thing)
     except PalpateError:
         return BodyStatus(Fit.CHANGED, Sentence("what this file says of its body cannot be true"))
-    new = drawn.fingerprint(pin_group.pin_rule(thing), stiff_region.stiff_rule(thing))
+    pins, stiffness = pin_group.pin_rule(thing), stiff_region.stiff_rule(thing)
+    new = replace(shape, pins=pins, stiffness=stiffness)
     change = fingerprint.changed_body(old, new)
     if change:
         return BodyStatus(Fit.CHANGED, change)

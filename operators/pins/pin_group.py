@@ -41,6 +41,18 @@ def pins(thing: bpy.types.Object, surface: DrawnSurface) -> PinWeights:
     if settings.pin_mode == "BELOW":
         height = _relative_height(surface)
         return PinWeights(0.5 + settings.pin_fraction + LEVEL - height)
+    return painted(thing)
+
+
+def painted(thing: bpy.types.Object) -> PinWeights:
+    """Pins of the vertex group that is chosen.
+
+    Raises
+    ------
+    PalpateError
+        The vertex group is missing or empty.
+    """
+    settings = thing.palpate
     group = thing.vertex_groups.get(settings.pin_group)
     if group is None:
         raise PalpateError(

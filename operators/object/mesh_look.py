@@ -1,0 +1,88 @@
+"""Look at a mesh, taken in a moment and measured in any thread: what panels say of it.
+
+Reading the triangles of half a million vertices takes Blender a third of a second, and measuring
+them another; a panel cannot wait for either.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.bake.cost.size import ShapeSize, bending
+from ...core.errors import PalpateError
+from ...core.mesh.formats.polygons import triangulated
+from ...core.mesh.surface import Surface
+from ..scene import drawn_surface, fingerprint
+from ..scene.body_frame import BodyFrame
+from ..scene.fingerprint import Fingerprint
+
+
+@dataclass(frozen=True)
+class MeasuredMesh:
+    """What a status and a prediction need of a mesh.
+
+    Attributes
+    ----------
+    shape : its fingerprint, without rules.
+    size : of the surface; the reason where it cannot be baked.
+    """
+
+    shape: Fingerprint
+    size: ShapeSize | PalpateError
+
+
+@dataclass(frozen=True, eq=False)
+class MeshLook:
+    """Arrays of a mesh at rest, as Blender holds them.
+
+    Attributes
+    ----------
+    local : float32 (p, 3), vertex coordinates in local units.
+    corners, face_starts : int32, polygons as loops of vertex numbers.
+    frame : from local units to metres.
+    """
+
+    local: NDArray[np.float32]
+    corners: NDArray[np.int32]
+    face_starts: NDArray[np.int32]
+    frame: BodyFrame
+
+    @classmethod
+    def take(cls, thing: bpy.types.Object, scene: bpy.types.Scene) -> MeshLook:
+        """Copy the arrays of a mesh object: 20 ms for half a million vertices.
+
+        Raises
+        ------
+        PalpateError
+            An object whose transform flattens it.
+        """
+        frame = drawn_surface.frame_of(thing, scene)
+        corners, starts = drawn_surface.polygons(thing.data)
+        local = drawn_surface.rest_coordinates(thing.data).reshape(-1, 3)
+        return cls(local, corners, starts, frame)
+
+    def measured(self) -> MeasuredMesh:
+        """Measure it, without Blender. Polygons are taken as fans."""
+        local = self.local.astype(np.float64)
+        corners, starts = self.corners.astype(np.int64), self.face_starts.astype(np.int64)
+        body = self.frame.body_from_local(local)
+        shape = fingerprint.take(local, body, corners, starts)
+        try:
+            sizes = np.diff(starts, append=len(corners))
+            surface = Surface.checked(body, triangulated(corners, sizes))
+        except PalpateError as problem:
+            return MeasuredMesh(shape, problem)
+        return MeasuredMesh(shape, shape_size(surface))
+
+
+def shape_size(surface: Surface) -> ShapeSize:
+    """Size of a surface; quick also for several parts, whose overlaps count twice."""
+    middle = surface.vertices.mean(axis=0)
+    i, j, k = (surface.vertices[surface.triangles[:, corner]] - middle for corner in range(3))
+    volume = abs(float(np.einsum("fx,fx->", i, np.cross(j, k)))) / 6.0
+    area, triangles = float(surface.areas.sum()), len(surface.triangles)
+    return ShapeSize(area, volume, surface.diagonal, triangles, bending(surface))
