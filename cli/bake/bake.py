@@ -18,7 +18,8 @@ from ..body.body_figures import body_figures
 from ..body.figure_lines import as_lines
 from . import bake_folder, bake_prediction
 from .bake_options import add_bake_options, bake_input
-from .status_line import bake_status, show, status_line
+from .forecast import foretell
+from .status_line import bake_status, status_line
 
 HELP = "make body files from mesh files"
 DESCRIPTION = (
@@ -107,11 +108,12 @@ def _bake(arguments: argparse.Namespace, stopped: Sequence[int]) -> tuple[SoftBo
     _refuse_options_for_many(arguments)
     refuse_missing_folder(arguments.output)
     given = bake_input(arguments, arguments.meshes[0], arguments.threads)
+    foretell(arguments.meshes[0], given)
 
     def watch(progress: JobProgress) -> None:
         if stopped:
             raise KeyboardInterrupt
-        show(bake_status(progress))
+        line.show(bake_status(progress))
 
-    with status_line():
+    with status_line() as line:
         return run_bake(given.source, given.settings, arguments.output, watch)

@@ -15,8 +15,9 @@ from ...core.bake.many import BakeOutcome, BakeTask, bake_many
 from ...core.errors import PalpateError
 from ...core.machine.available_cores import available_cores
 from .bake_options import bake_input
+from .forecast import foretell
 from .scheduler import Workers, cluster
-from .status_line import clear, duration, show, status_line
+from .status_line import duration, status_line
 
 EXIT_ERROR = 2
 
@@ -29,18 +30,18 @@ def run(arguments: argparse.Namespace, stopped: Sequence[int]) -> int:
 
     def note(outcome: BakeOutcome) -> None:
         outcomes.append(outcome)
-        clear()
+        line.clear()
         _print_outcome(outcome, as_json=arguments.json)
 
     def watch(running: int) -> None:
         if stopped:
             raise KeyboardInterrupt
-        show(
+        line.show(
             f"{len(outcomes)} of {len(names)} done, {running} under way, "
             f"{duration(time.monotonic() - started)}"
         )
 
-    with _workers(arguments, len(names)) as workers, status_line():
+    with _workers(arguments, len(names)) as workers, status_line() as line:
         threads = workers.threads if arguments.threads is None else arguments.threads
         bake_many(
             _tasks(arguments, names, threads, note),
@@ -102,6 +103,8 @@ def _tasks(
     for mesh, file_name in names.items():
         try:
             given = bake_input(arguments, mesh, threads)
+            if arguments.scheduler is None:
+                foretell(mesh, given)
         except PalpateError as problem:
             note(BakeOutcome(str(mesh), error=str(problem).removeprefix(f"{mesh}: ")))
         else:

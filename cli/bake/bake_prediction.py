@@ -10,11 +10,9 @@ from pathlib import Path
 from ...core.bake.cost.bake_cost import BakeCost
 from ...core.bake.cost.memory import memory_refusal
 from ...core.bake.cost.prediction import estimate_cost
-from ...core.bake.cost.size import MeshSize, ShapeSize
 from ...core.machine.available_memory import available_memory
-from ...core.mesh.surface import Surface
 from .bake_options import bake_input
-from .status_line import duration
+from .forecast import sentence, size_of
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -26,7 +24,7 @@ def run(arguments: argparse.Namespace) -> int:
         print(json.dumps({"predictions": figures}))
         return 0
     for mesh, cost in predictions.items():
-        print(_sentence(mesh, cost))
+        print(sentence(mesh, cost))
         refusal = memory_refusal(cost, available)
         if refusal is not None:
             print(f"  {refusal}")
@@ -35,9 +33,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _predicted(arguments: argparse.Namespace, mesh: Path, available: int) -> BakeCost:
     given = bake_input(arguments, mesh, arguments.threads)
-    source = given.source
-    size = ShapeSize.of(source) if isinstance(source, Surface) else MeshSize.of(source)
-    return estimate_cost(size, given.settings, available)
+    return estimate_cost(size_of(given), given.settings, available)
 
 
 def _figures(mesh: Path, cost: BakeCost, available: int) -> dict[str, object]:
@@ -47,21 +43,3 @@ def _figures(mesh: Path, cost: BakeCost, available: int) -> dict[str, object]:
         "available_bytes": available,
         "refusal": memory_refusal(cost, available),
     }
-
-
-def _sentence(mesh: Path, cost: BakeCost) -> str:
-    return (
-        f"{mesh}: {cost.nodes:,} nodes, {cost.free_surface_nodes:,} free on the surface"
-        f"{_within(cost.spread)}; {cost.form}, about {duration(max(1.0, cost.seconds))}"
-        f"{_within(cost.seconds_spread)}, {_size(cost.peak_bytes)} of memory, "
-        f"a file of {_size(cost.file_bytes)}"
-    )
-
-
-def _within(spread: float) -> str:
-    return "" if spread == 1 else f" (within a factor of {spread:g})"
-
-
-def _size(count: int) -> str:
-    """Bytes in readable units, three digits."""
-    return f"{count / 1e9:.3g} GB" if count >= 1e9 else f"{count / 1e6:.3g} MB"

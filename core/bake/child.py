@@ -36,6 +36,11 @@ class ProgressLines:
         self._step = ""
         self._next = 0.0
 
+    def foresee(self, step: str, until: float, seconds: float) -> None:
+        """Write what the parent shows while a step reports nothing itself."""
+        self._step = ""
+        print(json.dumps([step, until, seconds]), file=self._lines)
+
     def add(self, step: str, share: float | None) -> None:
         """Write a line, unless one for the same step was just written."""
         now = time.monotonic()
@@ -53,9 +58,16 @@ def run(folder: Path) -> dict[str, object]:
 
     request = BakeRequest.read(folder)
     with (folder / PROGRESS_FILE).open("a", encoding="utf-8", buffering=1) as lines:
-        progress = ProgressLines(lines).add
+        told = ProgressLines(lines)
+        progress = told.add
         try:
-            body, report = bake(request.source, request.settings, progress, request.surface)
+            body, report = bake(
+                request.source,
+                request.settings,
+                progress,
+                request.surface,
+                foresee=told.foresee,
+            )
             progress("store", 1.0)
             body_file.save(body, folder / BODY_FILE)
         except PalpateError as problem:

@@ -29,6 +29,7 @@ from ..mesh.tet_mesh import TetMesh
 from ..progress import unwatched
 from ..sentence import Sentence
 from .child import BODY_FILE, OUTCOME_FILE, PROGRESS_FILE
+from .foreseen_share import ForeseenShare
 from .request import BakeRequest
 from .steps import BakeReport, BakeSettings
 
@@ -94,6 +95,7 @@ class BakeJob:
         self._time_limit = settings.time_limit
         self._started = time.monotonic()
         self._remaining = RemainingTime()
+        self._foreseen = ForeseenShare()
         scratch_folder.sweep(SCRATCH_WORDS)
         self._scratch = ScratchFolder("bake")
         self._folder = self._scratch.path
@@ -205,7 +207,9 @@ class BakeJob:
         complete_lines = _end_of(file, 2 * LINE_BYTES).split("\n")[:-1] if file.exists() else []
         if not complete_lines:
             return "start", None
-        step, share = json.loads(complete_lines[-1])
+        step, share, *expected = json.loads(complete_lines[-1])
+        if expected:
+            share = self._foreseen.update(time.monotonic(), share, expected[0])
         return step, share
 
     def _log(self) -> str:

@@ -33,10 +33,15 @@ from ..stiffness.held_pins import pins_checked
 from ..stiffness.pins import pinned_nodes
 from ..stiffness.regions import StiffRegion, TetScale, young_scale
 from .cost.memory import affordable_form
-from .cost.prediction import check_seconds, rest_seconds
-from .cost.size import MeshSize
+from .cost.prediction import (
+    check_seconds,
+    predicted_mesh,
+    rest_seconds,
+    tetrahedralize_seconds,
+)
+from .cost.size import MeshSize, ShapeSize
 from .settings import BakeSettings
-from .work import BakeProgress, BakeWork
+from .work import BakeProgress, BakeWork, Foresight
 
 __all__ = ["BakeProgress", "BakeReport", "BakeSettings", "bake"]
 
@@ -64,6 +69,7 @@ def bake(
     progress: BakeProgress = unwatched,
     surface: Surface | None = None,
     available: Callable[[], int] = available_memory,
+    foresee: Foresight = unwatched,
 ) -> tuple[SoftBody, BakeReport]:
     """Make a body, in this process.
 
@@ -85,6 +91,8 @@ def bake(
     progress : called with the step and the share of the bake done; may raise to cancel.
     surface : for tetrahedra with painted pins, the painted surface.
     available : bytes of available memory, called before the compliance is computed.
+    foresee : called before tetrahedralization, which reports nothing itself: its step, the share
+        of the bake that is done at its end, and its expected seconds.
 
     Raises
     ------
@@ -97,7 +105,7 @@ def bake(
     shell: Surface | None = None
     if isinstance(source, Surface):
         surface = source
-        shell, mesh = _tetrahedra(source, settings, work, report.seconds)
+        shell, mesh = _tetrahedra(source, settings, work, report.seconds, foresee)
     else:
         mesh = source
         if surface is not None:
@@ -143,13 +151,23 @@ def bake(
 
 
 def _tetrahedra(
-    source: Surface, settings: BakeSettings, work: BakeWork, seconds: dict[str, float]
+    source: Surface,
+    settings: BakeSettings,
+    work: BakeWork,
+    seconds: dict[str, float],
+    foresee: Foresight,
 ) -> tuple[Surface, TetMesh]:
     """The surface as handed to fTetWild, and its tetrahedra."""
     with _timed(seconds, "tetrahedralize"):
         work.unknown("tetrahedralize")
         shell = decimate(source.welded(), settings.decimate_above)
+        size = ShapeSize.of(shell)
+        expected = predicted_mesh(size, settings)
+        alone = tetrahedralize_seconds(size, settings, expected.nodes)
+        work.expect({"tetrahedralize": alone, **rest_seconds(expected, settings)})
+        foresee("tetrahedralize", work.until_end_of("tetrahedralize"), alone)
         mesh = tetrahedralize(shell, settings.edge_length, settings.epsilon)
+    work.forget("tetrahedralize")
     work.expect(rest_seconds(MeshSize.of(mesh), settings), spent=seconds["tetrahedralize"])
     return shell, mesh
 

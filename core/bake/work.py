@@ -8,6 +8,8 @@ from ..progress import Progress
 
 # (step, share of the bake done, or None if unknown)
 BakeProgress = Callable[[str, float | None], None]
+# (step that reports nothing itself, share of the bake done at its end, its expected seconds)
+Foresight = Callable[[str, float, float], None]
 
 
 class BakeWork:
@@ -40,6 +42,11 @@ class BakeWork:
     def forget(self, step: str) -> None:
         """Drop an expected step."""
         self._weights.pop(step, None)
+
+    def until_end_of(self, step: str) -> float:
+        """Share of the bake done once an expected first step has ended."""
+        total = self._done + sum(self._weights.values())
+        return (self._done + self._weights[step]) / total if total > 0 else 0.0
 
     def begin(self, step: str) -> Progress:
         """Begin an expected step, and end the one before; returns its progress callback."""

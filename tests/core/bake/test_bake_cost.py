@@ -8,7 +8,12 @@ import trimesh
 
 from palpate.core.bake.cost.bake_cost import BakeCost, planned_cost
 from palpate.core.bake.cost.memory import affordable_form, automatic_form, memory_refusal
-from palpate.core.bake.cost.prediction import edge_length_that_fits, estimate_cost
+from palpate.core.bake.cost.prediction import (
+    TETRAHEDRALIZE_SPREAD,
+    edge_length_that_fits,
+    estimate_cost,
+    tetrahedralize_seconds,
+)
 from palpate.core.bake.cost.size import MeshSize, ShapeSize, bending
 from palpate.core.bake.settings import BakeSettings
 from palpate.core.bake.steps import bake
@@ -184,3 +189,32 @@ def test_the_edge_length_that_is_offered_fits_and_none_finer_does():
 
 def test_the_machine_is_measured_once():
     assert dgemm_rate(1) == dgemm_rate(1) > 1e7
+
+
+# Triangles, bending as a share of the diagonal, edge length, epsilon, nodes, and processor seconds
+# of fTetWild, seen once on a busy machine.
+MESHED = {
+    "cube": (12, 0.0, 0.05, 0.003, 2162, 0.86),
+    "cube, fine": (12, 0.0, 0.025, 0.003, 15326, 4.66),
+    "cube, finer": (12, 0.0, 0.0175, 0.003, 45000, 19.6),
+    "plate": (12, 0.0, 0.02, 0.003, 5358, 3.43),
+    "bar": (12, 0.0, 0.02, 0.003, 2329, 0.85),
+    "ball, fine": (1280, 3.62, 0.025, 0.003, 9037, 4.25),
+    "ball, many triangles": (6000, 3.63, 0.05, 0.003, 1680, 2.82),
+    "torus": (4096, 6.31, 0.05, 0.003, 1384, 2.98),
+    "mouse": (2190, 5.18, 0.05, 0.003, 1334, 4.42),
+    "mouse, rough": (6000, 8.64, 0.05, 0.003, 1195, 19.74),
+    "monkey": (968, 9.26, 0.05, 0.003, 2320, 8.1),
+    "monkey, coarse": (968, 9.26, 0.1, 0.003, 1528, 2.99),
+    "monkey, smooth": (6000, 12.15, 0.05, 0.003, 2621, 13.93),
+}
+
+
+def test_seconds_of_tetrahedralization_lie_within_the_spread_nine_times_of_ten():
+    errors = []
+    for triangles, bending_share, edge_length, epsilon, nodes, seconds in MESHED.values():
+        settings = BakeSettings(edge_length=edge_length, epsilon=epsilon)
+        size = ShapeSize(1.0, 1.0, 1.0, triangles, bending_share)
+        errors.append(np.log(tetrahedralize_seconds(size, settings, nodes) / seconds))
+    assert np.quantile(np.abs(errors), 0.9) < np.log(TETRAHEDRALIZE_SPREAD)
+    assert np.abs(errors).max() < np.log(2.5)

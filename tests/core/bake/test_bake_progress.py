@@ -2,15 +2,20 @@
 
 import io
 import json
+import time
 
 import numpy as np
 import pytest
+import trimesh
 
 from palpate.core.bake.child import ProgressLines
+from palpate.core.bake.foreseen_share import ForeseenShare
+from palpate.core.bake.job import BakeJob
 from palpate.core.bake.settings import BakeSettings
 from palpate.core.bake.steps import bake
 from palpate.core.bake.work import BakeWork
 from palpate.core.machine.remaining_time import RemainingTime
+from palpate.core.mesh.surface import Surface
 from palpate.core.stiffness.pins import PinNodes
 
 
@@ -133,3 +138,44 @@ def test_progress_lines_are_few(monkeypatch):
     assert len(written) < 30
     assert written[0] == ["compliance", 0.0]
     assert written[-1] == ["store", 1.0]
+
+
+def test_a_step_that_reports_nothing_is_foreseen_and_moves_at_every_look():
+    foreseen = ForeseenShare()
+    shares = [foreseen.update(now, 0.5, 10.0) for now in np.arange(100.0, 200.0, 0.5)]
+    assert shares[0] == 0.0
+    assert np.all(np.diff(shares) > 0.0)
+    assert shares[20] == pytest.approx(0.4)
+    assert shares[-1] < 0.5
+
+
+def test_a_surface_has_a_share_before_there_are_tetrahedra(ball):
+    heard, ahead = Heard(), []
+    settings = BakeSettings(edge_length=0.15, epsilon=0.01)
+    bake(ball, settings, heard.tell, foresee=lambda *told: ahead.append((len(heard), *told)))
+    ((count, step, until, seconds),) = ahead
+    assert step == "tetrahedralize"
+    assert heard[:count] == [(step, None)]
+    assert 0.0 < until < 1.0
+    assert seconds > 0.0
+    assert heard.shares == sorted(heard.shares)
+    assert heard.shares[-1] == 1.0
+
+
+def test_the_bar_moves_while_tetrahedra_are_made(ball):
+    """What a window shows of a child process, looked at ten times a second."""
+    shares = []
+    with BakeJob(ball, BakeSettings(edge_length=0.03)) as job:
+        while not job.finished:
+            progress = job.poll()
+            if progress.step == "tetrahedralize" and progress.share is not None:
+                shares.append(progress.share)
+            time.sleep(0.02)
+    assert len(shares) > 3
+    assert np.all(np.diff(shares) > 0.0)
+
+
+@pytest.fixture
+def ball():
+    made = trimesh.creation.icosphere(subdivisions=3, radius=0.05)
+    return Surface.checked(made.vertices, made.faces)
