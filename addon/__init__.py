@@ -10,6 +10,7 @@ from ..operators.bake import (
     pin_below,
     rebuild_body,
     remove_softness,
+    show_problems,
     update_pins,
 )
 from ..operators.device import refresh_devices
@@ -18,6 +19,7 @@ from ..operators.press import pinch, press, record, save_recording, switch_force
 from ..operators.record import recording_writer
 from ..operators.softness import force_curve, read_durometer, softness_colours
 from . import command, handlers, preferences, translations
+from .inspection import body_view
 from .overlay import view
 from .panels import sidebar
 from .properties import soft_object, softness
@@ -33,6 +35,7 @@ modules = (
     pin_below,
     update_pins,
     fit_memory,
+    show_problems,
     press,
     pinch,
     bake_animation,
@@ -50,6 +53,7 @@ modules = (
     softness_colours,
     sidebar,
     view,
+    body_view,
     handlers,
     command,
     translations,

@@ -17,6 +17,7 @@ from ..operators.session import press_session
 from ..operators.session.press_events import Moment
 from ..operators.tool.tool_sizes import keep_exact_sizes
 from . import known_status
+from .inspection import body_view
 
 # Body files before a save that may change the .blend's folder.
 _found_before_save: dict[str, Path] = {}
@@ -30,6 +31,11 @@ def end_everything(reason: str) -> None:
         bake.end()
 
 
+def _forget() -> None:
+    known_status.forget()
+    body_view.forget()
+
+
 @persistent
 def _before_load(*_: object) -> None:
     end_everything("Another file is being opened; pressing has ended")
@@ -37,7 +43,7 @@ def _before_load(*_: object) -> None:
 
 @persistent
 def _after_load(*_: object) -> None:
-    known_status.forget()
+    _forget()
     kept_body.forget()
     live_layer.remove_leftovers()
     for scene in bpy.data.scenes:
@@ -53,7 +59,7 @@ def _before_undo(*_: object) -> None:
 
 @persistent
 def _after_undo(*_: object) -> None:
-    known_status.forget()
+    _forget()
     live_layer.remove_leftovers()
 
 
@@ -97,6 +103,9 @@ def _after_failed_save(*_: object) -> None:
 @persistent
 def _after_change(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     known_status.changed(depsgraph)
+    updates = depsgraph.updates
+    if any(update.is_updated_geometry or update.is_updated_transform for update in updates):
+        body_view.forget()
 
 
 def _before_exit() -> None:

@@ -38,8 +38,8 @@ operators/scene
 operators/layer
 operators/pins
 operators/object
-operators/device
 operators/tool
+operators/device
 operators/record
 operators/shape
 operators/session
@@ -51,6 +51,7 @@ operators
 addon/translations addon/known_status.py
 addon/properties
 addon/overlay
+addon/inspection
 addon/panels
 addon
 cli/body cli/press cli/softness cli/bake cli

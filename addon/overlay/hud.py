@@ -1,9 +1,12 @@
-"""Force, depth, state and keys, in the lower left of the view."""
+"""Force, depth, state and the colours of pressure, in a free corner of the view."""
 
 import re
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import bpy
+import numpy as np
+from numpy.typing import NDArray
 
 from ...core.quantities import area, pressure
 from ...operators.device.servo_words import REASONS, Signal, standing
@@ -11,12 +14,20 @@ from ...operators.reporting.translated import shown
 from ...operators.session.press_events import Source
 from ...operators.session.press_session import PressSession
 from ...operators.session.press_state import Phase
-from . import pixels
+from . import pixels, regions
+from .free_corner import free_corner
 from .pixels import BACKGROUND, BLACK, WHITE, Color
+from .pressure_colors import ANCHORS
 from .reading import Reading, readings
 
-MARGIN, PADDING, NARROWEST, BADGE_PADDING = 20, 14, 150, 8
-LARGE, BADGE, NORMAL, SMALL = 26, 20, 14, 12
+Array = NDArray[np.float64]
+
+# Unscaled pixels.
+PADDING, NARROWEST, WIDEST, BADGE_PADDING = 8, 90, 300, 5
+LARGE, BADGE, NORMAL, SMALL = 16, 14, 12, 11
+LEGEND_WIDTH, LEGEND_HEIGHT, BAR_HEIGHT = 170, 30, 8
+# Share of a tool's largest depth from which on that is said.
+DEEPEST = 0.97
 LINE = 1.5
 GREY, WARNING = (0.8, 0.8, 0.8, 1.0), (1.0, 0.72, 0.2, 1.0)
 
@@ -35,8 +46,6 @@ BREAKS = re.compile(r"(\S+(?:  \S+)*)( *)")
 
 STATES = {
     Phase.READY: "Press on the surface and drag",
-    Phase.DRAGGING: "Pressing",
-    Phase.HOLDING: "Held: look around, keep it, or press elsewhere",
 }
 PINCH_STATES = {
     Phase.READY: "Drag each handle inward",
@@ -46,9 +55,8 @@ PINCH_STATES = {
 EMPTY_STATES = {Phase.FEELING: "The Empty leads: move it, or play the animation"}
 SHAPE, FELT = "Shape {share} %", "Felt force {share} %"
 ABOVE = "Above the surface: drag inward, or turn the wheel"
+TOO_SMALL = "No deeper with this tool: a larger one goes on"
 KEYS = {
-    Phase.READY: "Esc  Leave",
-    Phase.DRAGGING: "Wheel  Deeper",
     Phase.HOLDING: "Enter  Keep shape      Esc  Restore",
     Phase.FEELING: "Enter  Keep shape      Esc  Restore",
     Phase.LOST: "Esc  Leave",
@@ -65,32 +73,75 @@ class Line:
     fill: Color | None = None
 
 
-def draw(context: bpy.types.Context, session: PressSession) -> None:
-    """Draw the HUD of a press in the current region."""
-    scale = context.preferences.system.ui_scale
-    left = pixels.covered(context, "TOOLS", "LEFT") + MARGIN * scale
-    padding = PADDING * scale
-    right = context.region.width - pixels.covered(context, "UI", "RIGHT") - MARGIN * scale
-    # In a view too narrow for words, they are cut rather than broken into letters.
-    width = max(NARROWEST * scale, right - left - 2 * padding)
-    lines = [
+def draw(
+    context: bpy.types.Context, session: PressSession, shown: Array, top: float | None
+) -> bool:
+    """Draw the HUD of a press in the current region, in a corner clear of the pixels ``shown``
+    (n, 2), with the colours of pressure up to ``top`` (Pa) where there is a tool's patch.
+
+    Where it finds none, only figures and what must be seen are drawn, and where these find none
+    either, the latter in the lower left. Returns whether there are figures.
+    """
+    scale, room = context.preferences.system.ui_scale, regions.room(context)
+    width = min(WIDEST * scale, room.right - room.left - 2 * PADDING * scale)
+    if width < NARROWEST * scale:
+        return False
+    whole = [
         replace(line, text=part, size=line.size * scale)
         for line in _lines(context, session)
         for part in _wrapped(line.text, line.size * scale, width)
     ]
-    heights = [line.size * LINE for line in lines]
-    widths = [pixels.width_of(line.text, line.size) for line in lines]
-    bottom = MARGIN * scale
-    pixels.rectangle(
-        left, bottom, max(widths) + 2 * padding, sum(heights) + 2 * padding, BACKGROUND
-    )
-    y = bottom + padding + sum(heights)
-    for line, height, across in zip(lines, heights, widths, strict=True):
-        y -= height
+    urgent = [line for line in whole if line.fill or line.color == WARNING]
+    short = [line for line in whole if line in urgent or line.size == LARGE * scale]
+    for lines, legend in ((whole, top), (short, None)):
+        place = free_corner(_size(lines, legend, scale), room, shown) if lines else None
+        if place is not None:
+            _draw_at(place, lines, legend, scale)
+            return True
+    if urgent:
+        _draw_at((room.left, room.bottom), urgent, None, scale)
+    return False
+
+
+def _size(lines: list[Line], top: float | None, scale: float) -> tuple[float, float]:
+    """Width and height of the HUD, pixels."""
+    legend = (0.0, 0.0) if top is None else (LEGEND_WIDTH * scale, LEGEND_HEIGHT * scale)
+    across = max([legend[0], *(pixels.width_of(line.text, line.size) for line in lines)])
+    up = legend[1] + sum(line.size * LINE for line in lines)
+    return across + 2 * PADDING * scale, up + 2 * PADDING * scale
+
+
+def _draw_at(
+    place: tuple[float, float], lines: list[Line], top: float | None, scale: float
+) -> None:
+    width, height = _size(lines, top, scale)
+    padding = PADDING * scale
+    pixels.rectangle(*place, width, height, BACKGROUND)
+    left, y = place[0] + padding, place[1] + height - padding
+    for line in lines:
+        y -= line.size * LINE
         if line.fill is not None:
-            beside = BADGE_PADDING * scale
-            pixels.rectangle(left + padding - beside, y, across + 2 * beside, height, line.fill)
-        pixels.write(line.text, left + padding, y + 0.28 * height, line.size, line.color)
+            beside, across = BADGE_PADDING * scale, pixels.width_of(line.text, line.size)
+            area = (left - beside, y, across + 2 * beside, line.size * LINE)
+            pixels.rectangle(*area, line.fill)
+        pixels.write(line.text, left, y + 0.28 * line.size * LINE, line.size, line.color)
+    if top is not None:
+        _draw_legend(left, place[1] + padding, top, scale)
+
+
+def _draw_legend(left: float, bottom: float, top: float, scale: float) -> None:
+    """Draw the colours of pressure from 0 to ``top`` (Pa)."""
+    size, width = SMALL * scale, LEGEND_WIDTH * scale
+    step = width / (len(ANCHORS) - 1)
+    for number, (lower, upper) in enumerate(pairwise(ANCHORS)):
+        before, after = (*lower.tolist(), 1.0), (*upper.tolist(), 1.0)
+        area = (left + number * step, bottom + 1.4 * size, step, BAR_HEIGHT * scale)
+        pixels.shaded(*area, [before, after, after, before])
+    figure = pressure(top)
+    pixels.write("0", left, bottom + 0.2 * size, size, GREY)
+    pixels.write(
+        figure, left + width - pixels.width_of(figure, size), bottom + 0.2 * size, size, GREY
+    )
 
 
 def _lines(context: bpy.types.Context, session: PressSession) -> list[Line]:
@@ -105,13 +156,18 @@ def _lines(context: bpy.types.Context, session: PressSession) -> list[Line]:
         about = [*_device_lines(session, measured), *_shape_lines(session)]
         return [*about, Line(keys, SMALL, GREY)]
     above = phase is Phase.DRAGGING and not touching
-    lines = [*measured, Line(shown(ABOVE if above else _state(session, phase)), NORMAL, WHITE)]
+    # A finger in the air measures nothing.
+    lines = measured if touching else []
+    say = shown(ABOVE if above else _state(session, phase))
+    lines += [Line(say, NORMAL, WHITE)] if say else []
     if session.state.message:
         lines.append(Line(shown(session.state.message), NORMAL, WARNING))
     lines += _shape_lines(session)
     lines += _buried_lines(session)
+    lines += _limit_lines(session, figures)
     lines += _second_lines(session)
-    return [*lines, Line(shown(KEYS.get(phase, "")), SMALL, GREY)]
+    keys = shown(KEYS.get(phase, ""))
+    return [*lines, Line(keys, SMALL, GREY)] if keys else lines
 
 
 def _measured(figures: tuple[Reading, ...], session: PressSession) -> list[Line]:
@@ -121,9 +177,9 @@ def _measured(figures: tuple[Reading, ...], session: PressSession) -> list[Line]
         name = f"{number}   " if len(figures) > 1 else ""
         lines.append(Line(f"{name}{one.force:.3f} N     {1000 * one.depth:.1f} mm", LARGE, WHITE))
         if session.tip.tool is not None and one.touching:
-            words = f"{shown('Contact Area')} {area(one.area)}      "
+            words = f"{shown('Contact Area')} {area(one.area)}     "
             words += f"{shown('Largest Pressure')} {pressure(one.largest_pressure)}"
-            lines.append(Line(words, NORMAL, WHITE))
+            lines.append(Line(words, SMALL, GREY))
     return lines
 
 
@@ -151,6 +207,15 @@ def _buried_lines(session: PressSession) -> list[Line]:
     if snapshot is None or all(finger.reason != inside for finger in snapshot.fingers):
         return []
     return [Line(shown(REASONS[inside]), NORMAL, WARNING)]
+
+
+def _limit_lines(session: PressSession, figures: tuple[Reading, ...]) -> list[Line]:
+    """Word that a tool is as deep as it may go: the pointer leads it no further, and deeper led by
+    others the body may let go of it.
+    """
+    if all(one.depth < DEEPEST * session.tip.deepest for one in figures):
+        return []
+    return [Line(shown(TOO_SMALL), NORMAL, WARNING)]
 
 
 def _second_lines(session: PressSession) -> list[Line]:

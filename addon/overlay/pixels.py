@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import blf
-import bpy
 import gpu
 from gpu_extras.batch import batch_for_shader
 
@@ -45,13 +44,3 @@ def shaded(x: float, y: float, width: float, height: float, colors: Sequence[Col
     gpu.state.blend_set("ALPHA")
     batch.draw(shader)
     gpu.state.blend_set("NONE")
-
-
-def covered(context: bpy.types.Context, kind: str, side: str) -> float:
-    """Pixels of the view covered by a region of this kind at its left or right."""
-    overlap = context.preferences.system.use_region_overlap
-    return sum(
-        region.width
-        for region in context.area.regions
-        if overlap and region.type == kind and region.width > 1 and region.alignment == side
-    )

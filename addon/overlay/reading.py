@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,10 +11,14 @@ from numpy.typing import NDArray
 from ...core.contact.tool.pose import Pose
 from ...core.contact.tool.tools import Tool
 from ...core.servo.session import FingerSnapshot
+from ...operators.scene import ray
 from ...operators.session.press_session import PressSession
 from ...operators.session.press_state import Phase
 
 Array = NDArray[np.float64]
+
+# Share of a tool's reach within which places of it are equally deep.
+FLAT = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,13 +62,31 @@ def reading(session: PressSession) -> Reading:
     return readings(session)[0]
 
 
+# By session: what the readings are of, and they. Panel and views ask several times a frame.
+_latest: WeakKeyDictionary[PressSession, tuple[tuple[object, ...], tuple[Reading, ...]]] = (
+    WeakKeyDictionary()
+)
+
+
 def readings(session: PressSession) -> tuple[Reading, ...]:
     """Readings of all fingers from the latest snapshot; none before the first, and while the
     device is disconnected.
     """
-    snapshot = session.snapshot
-    if snapshot is None or session.state.phase is Phase.LOST:
+    if session.snapshot is None or session.state.phase is Phase.LOST:
         return (NOTHING,) * len(session.leads)
+    # Compared by identity: each tick has its own.
+    now = (session.snapshot, session.drawn, session.seen.displacements)
+    before, known = _latest.get(session, ((), ()))
+    if len(before) != len(now) or any(a is not b for a, b in zip(before, now, strict=True)):
+        known = _readings(session)
+        _latest[session] = now, known
+    return known
+
+
+def _readings(session: PressSession) -> tuple[Reading, ...]:
+    snapshot = session.snapshot
+    if snapshot is None:
+        return ()
     tool = session.tip.tool
     if tool is None:
         return tuple(_of_point(session, finger) for finger in snapshot.fingers)
@@ -110,7 +133,7 @@ def _of_tool(session: PressSession, finger: FingerSnapshot, tool: Tool) -> Readi
     pose = Pose(np.asarray(finger.probe), rotation)
     return Reading(
         force=float(np.linalg.norm(force)),
-        depth=depth_of(tool, pose, session.seen.surface_samples),
+        depth=_depth(session, tool, pose, pushes.sum(axis=0)),
         touching=True,
         probe=probe,
         contact=sizes @ places / sizes.sum(),
@@ -139,13 +162,29 @@ def _as_drawn(session: PressSession, finger: FingerSnapshot, points: Array) -> A
     return moved
 
 
-def depth_of(tool: Tool, pose: Pose, surface: Array) -> float:
-    """Depth of a tool below the rest surface, given by places (n, 3), m."""
-    near = surface[np.linalg.norm(surface - pose.position, axis=1) <= tool.reach]
-    if not len(near):
-        return 0.0
-    distance, _ = tool.distance(pose.to_tool(near))
-    return max(0.0, -float(distance.min()))
+def _depth(session: PressSession, tool: Tool, pose: Pose, push: Array) -> float:
+    mesh, moved = session.drawn.body.mesh, session.seen.displacements
+    # Nothing is further in than the surface went, and the near field takes it as far as the tool.
+    farthest = 0.0 if moved is None else 1.5 * float(np.linalg.norm(moved, axis=1).max())
+    depth = depth_of(tool, pose, push / np.linalg.norm(push), mesh.nodes, mesh.surface_triangles)
+    return depth if depth <= farthest + tool.size else 0.0
+
+
+def depth_of(
+    tool: Tool, pose: Pose, inward: Array, nodes: Array, triangles: NDArray[np.int64]
+) -> float:
+    """How far a tool has gone along ``inward`` (3,), unit, from where it would touch the rest
+    surface, m: from its deepest place back to the first surface that faces it, however far
+    beyond a thin part that has given way. 0 where there is none.
+    """
+    core = tool.core @ pose.rotation.T
+    heights = core @ inward
+    # A face that lies across is deepest in its middle.
+    deepest = core[heights > heights.max() - FLAT * tool.reach].mean(axis=0)
+    tip = pose.position + deepest + tool.radius * inward
+    # From behind, seen from within, so with the triangles turned round.
+    hit = ray.first_hit(tip, -inward, nodes, triangles[:, ::-1])
+    return 0.0 if hit is None else hit.distance
 
 
 def _force(finger: FingerSnapshot) -> Array:

@@ -13,12 +13,14 @@ from ...core.contact.tool.tools import Tool
 # Vertices (v, 3), colours (v, 4) and triangles (t, 3).
 Lit = tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.int32]]
 
-RINGS, SEGMENTS = 10, 20
+RINGS, SEGMENTS = 16, 32
 # Light from the upper left before the viewer, and brightness of the far side.
 LIGHT = np.array([-0.4, 0.6, 0.7]) / np.linalg.norm([-0.4, 0.6, 0.7])
 AMBIENT = 0.45
 # Glass: opacity of a tool in its middle and at its rim.
-GLASS, RIM = 0.13, 0.75
+GLASS, RIM = 0.2, 0.95
+# Its highlight: how narrow, and how bright.
+SHINE, SHINING = 30, 0.7
 # A disc has its full colour up to this share of its radius.
 DISC_SEGMENTS, FULL_SHARE = 14, 0.6
 
@@ -59,10 +61,15 @@ def glass(
     view_axes: NDArray[np.float64],
     turn: NDArray[np.float64],
 ) -> Lit:
-    """Transparent shape, its outline stronger than its middle."""
+    """Transparent shape, its outline stronger than its middle, with a highlight."""
     vertices, rgba, triangles = lit(shape, place, size, color, view_axes, turn)
-    across = 1.0 - np.abs(shape.normals @ turn.T @ view_axes[2])
-    rgba[:, 3] *= (GLASS + (RIM - GLASS) * across**3).astype(np.float32)
+    normals = shape.normals @ turn.T @ view_axes.T
+    halfway = LIGHT + np.array([0.0, 0.0, 1.0])
+    halfway /= np.linalg.norm(halfway)
+    shine = SHINING * np.clip(normals @ halfway, 0.0, 1.0)[:, None] ** SHINE
+    opacity = GLASS + (RIM - GLASS) * (1.0 - np.abs(normals[:, 2:])) ** 3
+    rgba[:, :3] += shine * (1.0 - rgba[:, :3])
+    rgba[:, 3:] *= np.maximum(opacity, shine)
     return vertices, rgba, triangles
 
 

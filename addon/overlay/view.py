@@ -23,7 +23,7 @@ from ...operators.scene.package_preferences import preferences
 from ...operators.session import press_session
 from ...operators.session.press_session import PressSession
 from ...operators.session.press_state import Phase
-from . import hud, labels, workspace
+from . import hud, labels, regions, workspace
 from .labels import Label
 from .pressure_colors import PressureScale, color_of
 from .reading import Patch, Reading, readings
@@ -41,7 +41,7 @@ WORKSPACE_COLOR, WORKSPACE_PIXELS = (0.75, 0.85, 1.0, 0.4), 1.5
 HEAD_LENGTH, HEAD_WIDTH, SHAFT_PIXELS = 20.0, 7.0, 4.0
 # The patch is drawn this share of a disc's radius nearer to the viewer, since the drawn surface is
 # coarser than the contact.
-PATCH_LIFT, PATCH_SEEN_THROUGH = 0.5, 0.9
+PATCH_LIFT, PATCH_SEEN_THROUGH = 0.5, 0.15
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,6 +64,15 @@ class View:
         here, aside = (self.seen(point) for point in (place, place + step * self.axes[0]))
         pixels = (aside - here).length if here is not None and aside is not None else 0.0
         return self.scale * step / pixels if pixels > 0.0 else 0.0
+
+    def seen_all(self, places: Array) -> Array:
+        """Pixels (n, 2) in the region of those world places (p, 3) that are before the viewer."""
+        matrix = np.array(self.region_3d.perspective_matrix)
+        clip = places @ matrix[:, :3].T + matrix[:, 3]
+        before = clip[clip[:, 3] > 0.0]
+        half = 0.5 * np.array([self.region.width, self.region.height])
+        seen: Array = half * (1.0 + before[:, :2] / before[:, 3:])
+        return seen
 
     def seen(self, place: Array) -> Vector | None:
         """Position of a world place in the region, pixels."""
@@ -158,8 +167,8 @@ def arrow_tip(figures: Reading, pixel: float) -> tuple[Array, Array]:
 
 
 def _draw_patches(patches: list[Patch], top: float, view: View) -> None:
-    """Draw patches, also through the drawn surface, which follows a tool less closely than the
-    contact; but not those on the far side of the body.
+    """Draw patches, faintly also through the drawn surface; but not those on the far side of the
+    body.
     """
     toward = view.axes[2]
     for patch in patches:
@@ -221,24 +230,41 @@ def _draw(
 
 
 def draw_hud() -> None:
-    """Draw the HUD in pixels, on top of everything."""
+    """Draw the HUD in pixels, on top of everything, in the view where it is pressed."""
     session, view = press_session.current(), _view()
-    if session is None or view is None:
+    if session is None or view is None or not regions.is_main(bpy.context, session.area):
         return
-    if session.snapshot is not None:
-        shown = [one for one in readings(session) if _worth_drawing(session, one)]
-        labels.draw(_labels(session, shown, view), view.region, view.scale)
-        if any(one.patch for one in shown) and session.scene.palpate.show_pressure:
-            labels.draw_legend(bpy.context, _pressure_scale(session, shown))
-    hud.draw(bpy.context, session)
+    if session.snapshot is None:
+        hud.draw(bpy.context, session, np.zeros((0, 2)), None)
+        return
+    shown = [one for one in readings(session) if _worth_drawing(session, one)]
+    top = None
+    if any(one.patch for one in shown) and session.scene.palpate.show_pressure:
+        top = _pressure_scale(session, shown)
+    drawn = hud.draw(bpy.context, session, _looked_at(session, shown, view), top)
+    labels.draw(_labels(session, shown, view, figured=not drawn), view.region, view.scale)
 
 
-def _labels(session: PressSession, shown: list[Reading], view: View) -> list[Label]:
-    """Labels of the arrows' values and of the handles' numbers."""
+def _looked_at(session: PressSession, shown: list[Reading], view: View) -> Array:
+    """Pixels (n, 2) of the body and of all that is drawn of its fingers."""
+    frame, tool = session.drawn.frame, session.tip.tool
+    places = [frame.world_from_body(session.seen.nodes()[session.drawn.body.mesh.surface_nodes])]
+    for figures in shown:
+        around = np.zeros((1, 3)) if tool is None else _shape_of(tool).vertices
+        places.append(figures.probe + around @ figures.turn.T / frame.metres_per_unit)
+        if figures.force > 0.0:
+            places.append(arrow_tip(figures, view.pixel_at(figures.contact))[0][None])
+    return view.seen_all(np.concatenate(places))
+
+
+def _labels(
+    session: PressSession, shown: list[Reading], view: View, *, figured: bool
+) -> list[Label]:
+    """Numbers of several fingers, and ``figured`` the force at each arrow."""
     labels = []
     for number, figures in enumerate(shown, start=1):
         name = f"{number}  " if len(session.leads) > 1 else ""
-        if figures.force > 0.0:
+        if figures.force > 0.0 and (name or figured):
             tip, _ = arrow_tip(figures, view.pixel_at(figures.contact))
             labels.append(Label(f"{name}{figures.force:.3f} N", view.seen(tip)))
         elif name:

@@ -54,6 +54,7 @@ class PALPATE_PT_bake(PalpatePanel, bpy.types.Panel):
         if any(modifier.type == "MIRROR" for modifier in thing.modifiers):
             text = "Only the base mesh is baked: apply the Mirror modifier first"
             say(layout, context, text, "INFO")
+        column.operator("palpate.show_problems", icon="VIEWZOOM")
         if idle and not soft_object.refusal(thing):
             cost.draw_prediction(layout, context)
 
@@ -84,7 +85,12 @@ class PALPATE_PT_body(PalpatePanel, bpy.types.Panel):
         return super().poll(context) and bool(context.object.palpate.body_key)
 
     def draw(self, context: bpy.types.Context) -> None:
-        cost.draw_figures(self.layout, context)
+        layout, chosen = named_properties(self), context.scene.palpate
+        layout.prop(chosen, "show_tetrahedra")
+        if chosen.show_tetrahedra:
+            layout.prop(chosen, "cut_axis", expand=True)
+            layout.prop(chosen, "cut", slider=True)
+        cost.draw_figures(layout, context)
         self.layout.operator("palpate.remove_softness", icon="TRASH")
 
 

@@ -16,8 +16,13 @@ FORMULATION_NAMES = {"linear": "Linear", "smoothed": "Smoothed"}
 
 
 def draw_summary(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """Draw a line below Make Soft, and an alert if memory would not suffice."""
-    prediction = _prediction(context)
+    """Draw a line below Make Soft, an alert if memory would not suffice, or why it cannot be."""
+    try:
+        prediction = known_status.prediction(context.object, context.scene)
+    except PalpateError as problem:
+        say(layout, context, problem.sentence, "ERROR")
+        layout.operator("palpate.show_problems", icon="VIEWZOOM")
+        return
     if prediction is None:
         return
     cost = prediction.cost

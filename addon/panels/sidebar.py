@@ -97,6 +97,7 @@ class PALPATE_PT_pins(PalpatePanel, bpy.types.Panel):
         else:
             layout.prop(settings, "pin_fraction")
             layout.operator("palpate.pin_below", icon="GROUP_VERTEX")
+        layout.prop(context.scene.palpate, "show_pins")
 
 
 classes = (

@@ -28,6 +28,8 @@ ICONS = {
     Signal.RETURNING: "COLORSET_09_VEC",
     Signal.FAULT: "COLORSET_01_VEC",
 }
+# Drawn vertices a free surface node of the body, below which dents look faceted.
+COARSE = 0.25
 # Reasons for the work that changed pins need.
 PIN_TEXTS = {
     PinFit.KNOWN: "These pins were computed before: no bake needed",
@@ -164,6 +166,16 @@ def _draw_status(
         say(layout, context, status.text, "ERROR")
         say(layout, context, "Press Make Soft Again", "BLANK1")
     _draw_changes(layout, context, status)
+    _draw_resolution(layout, context)
+
+
+def _draw_resolution(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw a hint where the mesh has far fewer vertices than its body."""
+    thing = context.object
+    drawn, body = len(thing.data.vertices), thing.palpate.free_surface_count
+    if drawn < COARSE * body:
+        text = "Only {count} vertices are drawn: a dent needs more; subdivide the mesh"
+        say(layout, context, text, "INFO", count=f"{drawn:,}")
 
 
 def _draw_changes(

@@ -9,12 +9,14 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.contact.tool.pose import reach
 from ...core.errors import PalpateError
 from ...simulated.hand.options import SimulatedOptions
 from ...simulated.simulated_process import SimulatedDevice
 from ..object.drawn_body import DrawnBody
 from ..scene import ray
 from ..scene.body_frame import BodyFrame, as_point
+from ..tool.finger_tip import FingerTip
 from .device_plane import half_extents, upright_plane
 
 Array = NDArray[np.float64]
@@ -23,6 +25,7 @@ Array = NDArray[np.float64]
 SIMULATED_REST, SIMULATED_DEPTH = 0.15, 0.12
 # World directions from which the first and the second simulated hand come.
 FROM_ABOVE, FROM_THE_SIDE = np.array([0.0, 0.0, 1.0]), np.array([1.0, 0.0, 0.0])
+POINT = FingerTip()
 # Largest share of the arms' reach that is used in a plane.
 SIMULATED_REACH = 0.8
 
@@ -145,9 +148,10 @@ def start_simulated(
     frame: DeviceFrame,
     haply: str | None = None,
     towards: Array = FROM_ABOVE,
+    tip: FingerTip = POINT,
 ) -> SimulatedDevice:
     """Start the simulated device, whose hand presses the body from the world direction ``towards``
-    (3,) repeatedly, by default on its top.
+    (3,) repeatedly, by default on its top, with the surface of its ``tip``.
 
     ``haply`` is the model of a Haply 2DIY to simulate: it presses in the device's plane, within
     its arms' reach.
@@ -158,14 +162,16 @@ def start_simulated(
         It does not start, or this system has no pseudo-terminals.
     """
     up = drawn.frame.turn_to_body(towards)
-    above, deep = SIMULATED_REST * drawn.size, SIMULATED_DEPTH * drawn.size
+    above, deep = SIMULATED_REST * drawn.size, min(SIMULATED_DEPTH * drawn.size, tip.deepest)
+    lift = 0.0 if tip.tool is None else reach(tip.tool, np.eye(3), -up)
     if haply is None:
-        options = _hand(frame, _top(drawn, up), above * up, deep * up)
+        options = _hand(frame, _top(drawn, up) + lift * up, above * up, deep * up)
     else:
         # Its angles count from its rest pose, where it begins.
-        reach = SIMULATED_REACH * half_extents(haply)[1] * frame.scale
-        above, deep = min(above, reach), min(deep, reach)
-        hand = _hand(frame, frame.translation + above * up, 0.0 * up, (above + deep) * up)
+        reachable = SIMULATED_REACH * half_extents(haply)[1] * frame.scale
+        above, deep = min(above, reachable - lift), min(deep, reachable)
+        start = frame.translation + (lift + above) * up
+        hand = _hand(frame, start, 0.0 * up, (above + deep) * up)
         options = replace(hand, rest=SimulatedOptions.rest)
     return SimulatedDevice(
         options, haply=haply, python=sys.executable, python_args=bpy.app.python_args

@@ -12,6 +12,8 @@ from ..scene.drawn_surface import DrawnSurface
 from .group_weights import group_digest, group_weights
 
 GROUP_NAME = "Pinned"
+# Weight from which on a place is pinned.
+PINNED_FROM = 0.5
 # Tolerance for rounding of a level bottom, as a share of the height.
 LEVEL = 1e-5
 
@@ -40,7 +42,7 @@ def pins(thing: bpy.types.Object, surface: DrawnSurface) -> PinWeights:
     settings = thing.palpate
     if settings.pin_mode == "BELOW":
         height = _relative_height(surface)
-        return PinWeights(0.5 + settings.pin_fraction + LEVEL - height)
+        return PinWeights(PINNED_FROM + settings.pin_fraction + LEVEL - height)
     return painted(thing)
 
 
@@ -62,7 +64,7 @@ def painted(thing: bpy.types.Object) -> PinWeights:
             group=settings.pin_group,
         )
     weights = group_weights(thing, group)
-    if not (weights >= 0.5).any():
+    if not (weights >= PINNED_FROM).any():
         raise PalpateError(
             "{name}: no vertex has a weight of 0.5 or more in the group '{group}'; assign the "
             "vertices that shall not move",

@@ -91,6 +91,8 @@ class ModalPress(Pressing):
         try:
             self._session = press_session.begin(thing, context.scene, source, pinch=pinch)
             self._hand = PointerHand(self._session, (0, 1) if pinch else (0,))
+            if context.area is not None and context.area.type == "VIEW_3D":
+                self._session.area = context.area.as_pointer()
             if pinch:
                 self._hand.place_on_both_sides(context.space_data.region_3d)
         except PalpateError:

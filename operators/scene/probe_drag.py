@@ -36,13 +36,16 @@ class View:
 
 @dataclass(frozen=True, eq=False)
 class ProbeDrag:
-    """Probe set down at ``point`` on a surface with outward unit normal ``normal``."""
+    """Probe set down at ``point`` on a surface with outward unit normal ``normal``; it goes no
+    further in than ``deepest``, metres.
+    """
 
     point: Array
     normal: Array
     view: View
     size: float
     start: tuple[float, float]
+    deepest: float = np.inf
     sensitivity: float = 1.0
     cursor: tuple[float, float] | None = None
     notches: int = 0
@@ -67,11 +70,12 @@ class ProbeDrag:
     def depth(self) -> float:
         """Depth of the probe below the surface along the normal, metres; negative above."""
         along = self._pixels @ self.inward_on_screen
-        return float(
+        asked = float(
             along * self.view.metres_per_pixel * self.sensitivity
             + self.notches * WHEEL_STEP * self.size
             + self.pressure * PEN_DEPTH * self.size * self.sensitivity
         )
+        return min(asked, self.deepest)
 
     @property
     def target(self) -> Array:

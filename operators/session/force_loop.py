@@ -104,7 +104,7 @@ class ForceLoop:
         frame = device_source.second_frame(thing, scene, self.drawn.frame)
         if chosen.second == "SIMULATED":
             self.second_simulated = device_source.start_simulated(
-                self.drawn, frame, towards=device_source.FROM_THE_SIDE
+                self.drawn, frame, towards=device_source.FROM_THE_SIDE, tip=self.tip
             )
             port = self.second_simulated.port
         else:
@@ -143,7 +143,7 @@ class ForceLoop:
             raise PalpateError("device: nothing says where it is; press again")
         haply = chosen.haply_model if device_source.is_planar(scene) else None
         if chosen.source == "SIMULATED":
-            self.simulated = device_source.start_simulated(drawn, frame, haply)
+            self.simulated = device_source.start_simulated(drawn, frame, haply, tip=self.tip)
             self.port = self.simulated.port
         else:
             self.port = device_source.port_of(scene)

@@ -31,10 +31,13 @@ GRAB_PIXELS = 24.0
 
 @dataclass(frozen=True, eq=False)
 class Held:
-    """Finger that was set down: its target, and the outward normal there."""
+    """Finger that was set down: its target, the outward normal there, and how much deeper it may
+    go, metres.
+    """
 
     target: Array
     normal: Array
+    deeper: float
 
 
 @dataclass(eq=False)
@@ -57,7 +60,7 @@ class PointerHand:
         grabbed = self._handle_near(here)
         if grabbed is not None:
             held = self.held[grabbed]
-            if self._begin(here, event, grabbed, held.target, held.normal):
+            if self._begin(here, event, grabbed, held):
                 self.session.post(Moment.GRAB)
             return
         drawn = self.session.drawn
@@ -72,8 +75,9 @@ class PointerHand:
         view_axes = np.array(here.region_3d.view_matrix)[:3, :3]
         start, turn = self._at_rest(point, normal, view_axes)
         finger = self._free_finger(here)
-        if self._begin(here, event, finger, start, normal):
-            self.held[finger] = Held(start, normal)
+        held = Held(start, normal, self.session.tip.deepest)
+        if self._begin(here, event, finger, held):
+            self.held[finger] = held
             self._set_down(finger, turn)
 
     def follow(self, event: bpy.types.Event) -> None:
@@ -92,8 +96,8 @@ class PointerHand:
             self._drag = self._drag.dragged((event.mouse_x, event.mouse_y), _pressure(event))
         else:
             return
-        target = self._drag.target
-        self.held[self._finger] = Held(target, self._drag.normal)
+        drag, target = self._drag, self._drag.target
+        self.held[self._finger] = Held(target, drag.normal, drag.deepest - drag.depth)
         self.session.post(Move(as_point(target), self._finger))
 
     def place_on_both_sides(self, region_3d: bpy.types.RegionView3D) -> None:
@@ -112,7 +116,7 @@ class PointerHand:
             normal = hit.alpha @ drawn.node_normals[corners]
             normal /= np.linalg.norm(normal)
             start, turn = self._at_rest(hit.alpha @ nodes[corners], normal, axes)
-            self.held[finger] = Held(start, normal)
+            self.held[finger] = Held(start, normal, self.session.tip.deepest)
             self._set_down(finger, turn)
             self.session.post(Moment.RELEASE)
 
@@ -126,21 +130,20 @@ class PointerHand:
         pose = resting_on(tool, rotation, point, normal, session.seen.surface_samples)
         return pose.position, tool_turn.as_rows(rotation)
 
-    def _begin(
-        self, here: Viewport, event: bpy.types.Event, finger: int, start: Array, normal: Array
-    ) -> bool:
+    def _begin(self, here: Viewport, event: bpy.types.Event, finger: int, held: Held) -> bool:
         """Start to drag a finger; False behind the viewer, where there is no scale."""
-        view = here.view_at(start, self.session.drawn.frame)
+        view = here.view_at(held.target, self.session.drawn.frame)
         if view is None:
             return False
         cursor = (event.mouse_x, event.mouse_y)
         drag = ProbeDrag(
-            point=start,
-            normal=normal,
+            point=held.target,
+            normal=held.normal,
             view=view,
             size=self.session.drawn.size,
             start=cursor,
             sensitivity=preferences().sensitivity,
+            deepest=held.deeper,
         )
         self._drag, self._finger = drag.dragged(cursor, _pressure(event)), finger
         return True

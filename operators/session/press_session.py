@@ -13,8 +13,6 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import bpy
-import numpy as np
-from numpy.typing import NDArray
 
 from ...core.errors import PalpateError
 from ...core.sentence import Sentence
@@ -46,14 +44,13 @@ from .press_events import (
 from .press_state import Phase, PressState, transition
 from .seen_body import SeenBody
 
-Array = NDArray[np.float64]
-
 
 @dataclass(eq=False)
 class PressSession:
     """Press of one object. Make one with :func:`begin`; it is :func:`current` until it ends.
 
-    ``leads`` move the fingers, ``tip`` is their tool or point, ``seen`` the drawn body.
+    ``leads`` move the fingers, ``tip`` is their tool or point, ``seen`` the drawn body, ``area``
+    the address of the 3D view where it began, 0 for none.
     """
 
     handle: ObjectHandle
@@ -66,6 +63,7 @@ class PressSession:
     loop: ForceLoop | None = None
     snapshot: Snapshot | None = None
     kept_name: str = ""
+    area: int = 0
     said: list[Say] = field(default_factory=list)
     _problems: list[str] = field(default_factory=list)
     _reported: frozenset[str] = frozenset()

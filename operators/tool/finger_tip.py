@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import bpy
@@ -16,6 +17,9 @@ from ...core.servo.session import Snapshot
 from . import hull
 from .tool_sizes import chosen_sizes
 
+# Share of a tool's width that is pressed in at most.
+SEEN = 0.75
+
 
 @dataclass(frozen=True, eq=False)
 class FingerTip:
@@ -23,6 +27,13 @@ class FingerTip:
 
     tool: Tool | None = None
     remark: str = ""
+
+    @property
+    def deepest(self) -> float:
+        """How far in it is led by the pointer, metres: so far that the tool is still seen. Twice
+        as deep a linear body lets go of it.
+        """
+        return math.inf if self.tool is None else SEEN * self.tool.size
 
     def pressing(self, snapshot: Snapshot) -> tuple[PressingTool, ...]:
         """Tools pressing in a snapshot, for drawing."""

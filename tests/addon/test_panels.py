@@ -225,6 +225,7 @@ def test_at_first_three_panels_are_open_and_ask_nothing_that_takes_reading(palpa
         "show_pressure",
         "pin_mode",
         "pin_fraction",
+        "show_pins",
     ]
     assert [name for said in shown for name in said.operators] == [
         "palpate.make_soft",

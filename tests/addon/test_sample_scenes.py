@@ -25,6 +25,8 @@ def opened(name, folder):
 
 
 def force(thing, at):
+    # A needle's tip tells a narrow bone from the meat beside it.
+    bpy.context.scene.palpate.tip = "POINT"
     pressed = part("operators.press.press_once").press_once(
         thing, bpy.context.scene, at, (0.0, 0.0, -0.004), keep=False
     )

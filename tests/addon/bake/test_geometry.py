@@ -102,6 +102,14 @@ def test_wheel_and_pen_add_depth(installed):
     assert np.isclose(drag([0.0, 0.0, 1.0], sensitivity=2.0).dragged((100, 90)).depth, 0.02)
 
 
+def test_a_drag_goes_no_deeper_than_it_is_allowed_and_comes_back(installed):
+    limited = drag([0.0, 0.0, 1.0], deepest=0.008)
+    assert np.isclose(limited.dragged((100, 90)).depth, 0.008)
+    assert np.isclose(limited.wheeled(20).depth, 0.008)
+    assert np.allclose(limited.dragged((107, 60)).target, [0.007, 0.0, -0.008])
+    assert np.isclose(limited.dragged((100, 95)).depth, 0.005)
+
+
 @pytest.fixture
 def prints(installed):
     return part("operators.scene.fingerprint")

@@ -67,14 +67,36 @@ def test_discs_lie_across_the_pressure(palpate):
     assert triangles.max() == len(vertices) - 1
 
 
-def test_a_tool_is_as_deep_as_the_surface_is_in_it(palpate):
+SLAB = "456 467 021 032 015 054 126 165 237 276 304 347"
+SLAB_TRIANGLES = np.array([[int(corner) for corner in triangle] for triangle in SLAB.split()])
+
+
+def slab(thickness):
+    """Corners of a plate whose upper face is at height 0."""
+    square = np.array([[-9.0, -9.0], [9.0, -9.0], [9.0, 9.0], [-9.0, 9.0]])
+    heights = np.repeat([-thickness, 0.0], 4)[:, None]
+    return np.hstack([np.tile(square, (2, 1)), heights])
+
+
+@pytest.mark.parametrize("name", ["sphere", "plate", "rod"])
+@pytest.mark.parametrize("thickness", [0.5, 20.0])
+def test_a_tool_is_as_deep_as_it_has_travelled_however_far(palpate, name, thickness):
+    """Also beyond its own radius, and through a thin part that has given way."""
     tools, reading = part("core.contact.tool.tools"), part("addon.overlay.reading")
     Pose = part("core.contact.tool.pose").Pose  # noqa: N806
-    surface = np.array([[x, 0.0, 0.0] for x in np.linspace(-1.0, 1.0, 21)])
-    pose = Pose(np.array([0.0, 0.0, 0.7]), np.eye(3))
-    assert reading.depth_of(tools.sphere(1.0), pose, surface) == pytest.approx(0.3)
+    tool = {
+        "sphere": lambda: tools.sphere(1.0),
+        "plate": lambda: tools.plate(2.0, 3.0),
+        "rod": lambda: tools.rod(1.0, 4.0),
+    }[name]()
+    low = float(tool.core[:, 2].min()) - tool.radius
+    down, nodes = np.array([0.0, 0.0, -1.0]), slab(thickness)
+    for travelled in (0.01, 0.3, 1.0, 1.7, 4.0):
+        pose = Pose(np.array([0.02, 0.01, -low - travelled]), np.eye(3))
+        depth = reading.depth_of(tool, pose, down, nodes, SLAB_TRIANGLES)
+        assert depth == pytest.approx(travelled)
     away = Pose(np.array([0.0, 0.0, 9.0]), np.eye(3))
-    assert reading.depth_of(tools.sphere(1.0), away, surface) == 0.0
+    assert reading.depth_of(tool, away, down, nodes, SLAB_TRIANGLES) == 0.0
 
 
 def test_small_quantities_keep_their_digits(palpate):
@@ -84,16 +106,32 @@ def test_small_quantities_keep_their_digits(palpate):
     assert quantities.pressure(1234.5) == "1.23 kPa"
 
 
-@pytest.mark.parametrize("scale", [1.0, 2.0])
-@pytest.mark.parametrize("region_height", [250.0, 500.0, 700.0, 1500.0])
-def test_the_legend_keeps_clear_of_blenders_buttons_and_of_the_rim(palpate, region_height, scale):
-    labels = part("addon.overlay.labels")
-    height, size = labels.BAR_HEIGHT * scale, labels.SIZE * scale
-    bottom = labels.legend_bottom(region_height * scale, height, scale)
-    assert bottom - 0.5 * size >= labels.AROUND * scale
-    if region_height >= 500.0:
-        # The title stands above the bar.
-        top = bottom + height + 2.5 * size + labels.AROUND * scale
-        assert top <= (region_height - labels.NAVIGATION) * scale + 1e-9
-    if region_height == 1500.0:
-        assert bottom == 0.5 * (region_height * scale - height)
+ROOM = (10.0, 10.0, 790.0, 590.0)
+
+
+def places(*corners):
+    return np.array(corners, dtype=np.float64)
+
+
+@pytest.mark.parametrize(
+    ("shown", "corner"),
+    [
+        (places(), (10.0, 10.0)),
+        (places((300, 200), (500, 200), (400, 500)), (10.0, 10.0)),
+        (places((0, 0), (300, 0), (0, 300)), (590.0, 10.0)),
+        (places((0, 0), (800, 0), (400, 300)), (10.0, 490.0)),
+        (places((0, 0), (800, 0), (800, 600), (0, 600)), None),
+        # Its bounding box covers the corner, it does not.
+        (places((0, 600), (0, 400), (400, 0), (800, 0), (800, 600)), (10.0, 10.0)),
+    ],
+)
+def test_the_hud_takes_the_first_corner_where_nothing_is(palpate, shown, corner):
+    module = part("addon.overlay.free_corner")
+    found = module.free_corner((200.0, 100.0), module.Room(*ROOM), shown.reshape(-1, 2))
+    assert found == corner
+
+
+def test_in_a_view_smaller_than_the_hud_there_is_no_corner(palpate):
+    module = part("addon.overlay.free_corner")
+    small = module.Room(10.0, 10.0, 100.0, 590.0)
+    assert module.free_corner((200.0, 100.0), small, np.zeros((0, 2))) is None

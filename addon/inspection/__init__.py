@@ -1,0 +1,1 @@
+"""Pins and tetrahedra of the active object, drawn into the 3D view."""
