@@ -22,15 +22,10 @@ BIN := $(VENV)/bin
 # pyo3 asks this interpreter; the same for all cargo calls, or each would build everything anew.
 export PYO3_PYTHON := $(CURDIR)/$(BIN)/python
 
-# The bpy module for each Python, and the Blenders that `make test-all` tries.
-BPY_OF_3.11 := 5.0.1
-BPY_OF_3.13 := 5.2.3
-PYTHON_OF_4.5.15 := 3.11
-PYTHON_OF_5.0.1 := 3.11
-PYTHON_OF_5.2.3 := 3.13
-ALL_BPY := 4.5.15 5.0.1 5.2.3
+# The Blenders, and of those with this Python the last: the one that `make test` takes as a module.
+include release/blenders.mk
 PYTHON_VERSION := $(shell $(PYTHON) -c 'import sys; print("%d.%d" % sys.version_info[:2])')
-BPY ?= $(BPY_OF_$(PYTHON_VERSION))
+BPY ?= $(lastword $(foreach blender,$(BLENDERS),$(if $(filter $(PYTHON_VERSION),$(PYTHON_OF_$(blender))),$(blender))))
 BPY_VENV := .venv-bpy-$(BPY)
 
 # Without make's flags: its own jobs are not make's.
@@ -40,7 +35,7 @@ NATIVE_SOURCES := $(wildcard native/*.toml native/*.lock native/*.pyi native/bui
   $(shell find native/src -name '*.rs' 2>/dev/null)
 EXTENSION_SOURCES := __init__.py LICENSE blender_manifest.toml \
   $(shell find addon operators core simulated cli -type f -not -path '*/__pycache__/*' 2>/dev/null) \
-  $(shell find release -name '*.py' -o -name '*.txt')
+  $(shell find release -name '*.py' -o -name '*.txt' -o -name '*.mk')
 
 .PHONY: help
 help: ## this list
@@ -58,12 +53,21 @@ $(VENV)/.installed: pyproject.toml
 	touch $@
 
 # Of the servo there are two: the one of the package, and one that tests and benchmarks can step.
-build/servo/.built: FEATURES := python
-build/servo-harness/.built: FEATURES := python,harness
-build/servo/.built build/servo-harness/.built: $(NATIVE_SOURCES) $(VENV)/.installed
+build/servo-harness/.built: $(NATIVE_SOURCES) $(VENV)/.installed
 	rm -rf $(@D)
 	mkdir -p $(@D)
-	$(BIN)/maturin build --release --quiet $(CRATE) --features $(FEATURES) --out $(@D)
+	$(BIN)/maturin build --release --quiet $(CRATE) --features python,harness --out $(@D)
+	touch $@
+
+# On Linux for the oldest glibc that Blender runs on; elsewhere as the system compiles it.
+build/servo/.built: $(NATIVE_SOURCES) $(wildcard release/compile_servo.py release/servo_wheel/*.py) $(VENV)/.installed
+	rm -rf $(@D)
+	mkdir -p $(@D)
+	case $$(uname -sm) in \
+	  'Linux x86_64') $(BIN)/python release/compile_servo.py linux-x64 --output $(@D) ;; \
+	  'Linux aarch64') $(BIN)/python release/compile_servo.py linux-arm64 --output $(@D) ;; \
+	  *) $(BIN)/maturin build --release --quiet $(CRATE) --features python --out $(@D) ;; \
+	esac
 	touch $@
 
 $(VENV)/.servo-installed: build/servo-harness/.built
@@ -91,13 +95,15 @@ build/typing/palpate:
 .PHONY: package
 package: build/packages/.made ## the extension for Blender on this system, checked by Blender's own tool
 	@ls -l build/packages/palpate-[0-9]*.zip
-	@echo 'Packages for other systems need palpate_servo compiled there: .github/workflows/packages.yml' \
-	  'does it, and hands the wheels to the same script, release/build_extension.py.'
 
 build/packages/.made: build/servo/.built $(EXTENSION_SOURCES) | $(BPY_VENV)/.installed
 	rm -f build/packages/palpate-[0-9]*.zip
 	$(BIN)/python release/build_extension.py --servo-wheel build/servo/*.whl --blender $(BPY_VENV)
 	touch $@
+
+.PHONY: package-all
+package-all: $(VENV)/.installed | $(BPY_VENV)/.installed ## the extension for every system, compiled from here; see build/packages-all
+	$(BIN)/python release/package_all.py --blender $(BPY_VENV) --output build/packages-all
 
 # The windowed Blender may be of another Python than the official ones, and gets a package of its own.
 WINDOWED_PACKAGE := $(if $(wildcard $(BLENDER_GUI)),build/packages/palpate-windowed.zip)
@@ -125,7 +131,7 @@ test: ## everything that must hold, in a few minutes
 	$(MAKE) test-core test-servo test-addon test-gui
 
 .PHONY: test-all
-test-all: test $(ALL_BPY:%=test-addon-%) check-systems ## the same, the extension in every Blender, the servo for every system
+test-all: test $(BLENDERS:%=test-addon-%) check-systems ## the same, the extension in every Blender, the servo for every system
 
 build/reports:
 	mkdir -p $@
@@ -137,7 +143,7 @@ lint: $(VENV)/.servo-installed build/typing/palpate | build/reports ## linters, 
 	$(BIN)/ruff check --quiet --output-format concise .
 	$(BIN)/ruff format --check --quiet .
 	$(BIN)/mypy $(REPORT)
-	$(BIN)/mypy release/*.py
+	$(BIN)/mypy release/*.py release/servo_wheel/*.py
 
 .PHONY: test-native
 test-native: $(VENV)/.installed | build/reports ## the servo's own tests
@@ -154,8 +160,8 @@ test-servo: $(VENV)/.servo-installed | build/reports ## servo and firmware: they
 .PHONY: test-addon
 test-addon: test-addon-$(BPY) ## the package installed in Blender as a module, driven by its operators
 
-.PHONY: $(ALL_BPY:%=test-addon-%)
-$(ALL_BPY:%=test-addon-%): test-addon-%: .venv-bpy-%/.installed build/packages/.made | build/reports
+.PHONY: $(BLENDERS:%=test-addon-%)
+$(BLENDERS:%=test-addon-%): test-addon-%: .venv-bpy-%/.installed build/packages/.made | build/reports
 	.venv-bpy-$*/bin/pytest -q $(ON_ALL_CORES) tests/addon $(REPORT)
 
 # Compiles without linking, for those systems whose standard library rustup has put here.

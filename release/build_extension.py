@@ -16,11 +16,15 @@ import argparse
 import shutil
 import sys
 import tomllib
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import blender_tool
 import bundled_wheels
+import reproducible_zip
 import translations
+from blenders import pythons_on
 from bundled_wheels import PackagingError
 from extension_files import extension_files
 from package_check import faults, runs_on
@@ -28,55 +32,96 @@ from package_manifest import package_manifest
 from platforms import PLATFORMS, Platform, this_platform
 
 REPOSITORY = Path(__file__).resolve().parent.parent
-# Blender 4.5 LTS and 5.0, then 5.2 LTS.
-OFFICIAL_PYTHONS = ["3.11", "3.13"]
+
+
+@dataclass(frozen=True)
+class Order:
+    """What package is to be made.
+
+    Attributes
+    ----------
+    pythons : versions such as `3.11`, for each of which wheels are bundled.
+    blender : a folder that holds a Blender or a bpy module.
+    name : file name of the package; empty for one of identity, version and platform.
+    """
+
+    platform: Platform
+    pythons: tuple[str, ...]
+    blender: Path
+    output: Path = REPOSITORY / "build" / "packages"
+    wheel_cache: Path = REPOSITORY / "build" / "wheels"
+    name: str = ""
+
+
+def package_of(order: Order, servo_wheel: Path | None) -> Path:
+    """Make one package, and let Blender's own tool validate it.
+
+    Raises
+    ------
+    PackagingError
+        It cannot be whole.
+    """
+    servo = _servo_wheel(servo_wheel, order.platform, order.pythons)
+    wheels = {
+        path.name: path
+        for version in order.pythons
+        for path in bundled_wheels.fetch(order.platform, version, order.wheel_cache)
+    }
+    return _package(order, [*wheels.values(), servo])
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Make one package and print its path; return 2 with one message when it cannot be whole."""
-    options = _options(arguments)
-    platform = PLATFORMS[options.platform]
+    order, servo_wheel = _order(arguments)
     try:
-        servo = _servo_wheel(options.servo_wheel, platform, options.python)
-        wheels = {
-            path.name: path
-            for version in options.python
-            for path in bundled_wheels.fetch(platform, version, options.wheel_cache)
-        }
-        package = _package(platform, [*wheels.values(), servo], options)
+        package = package_of(order, servo_wheel)
     except PackagingError as error:
         print(f"build_extension: {error}", file=sys.stderr)
         return 2
-    print(f"{package} ({package.stat().st_size / 1e6:.1f} MB, Python {', '.join(options.python)})")
+    print(f"{package} ({package.stat().st_size / 1e6:.1f} MB, Python {', '.join(order.pythons)})")
+    if order.platform.without:
+        absent = ", ".join(sorted(order.platform.without))
+        print(f"  without {absent}: there are no wheels for {order.platform.name}")
     return 0
 
 
-def _options(arguments: list[str] | None) -> argparse.Namespace:
+def _order(arguments: list[str] | None) -> tuple[Order, Path | None]:
+    """The package that a command line asks for, and the wheel of the servo for it."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--platform", choices=sorted(PLATFORMS), default=this_platform())
     parser.add_argument("--servo-wheel", type=Path, help="palpate_servo, built for that platform")
     parser.add_argument(
         "--blender", type=Path, required=True, help="a folder that holds a Blender or bpy module"
     )
-    parser.add_argument("--output", type=Path, default=REPOSITORY / "build" / "packages")
-    parser.add_argument("--wheel-cache", type=Path, default=REPOSITORY / "build" / "wheels")
+    parser.add_argument("--output", type=Path, default=Order.output)
+    parser.add_argument("--wheel-cache", type=Path, default=Order.wheel_cache)
     parser.add_argument(
         "--python",
         nargs="+",
-        default=OFFICIAL_PYTHONS,
         metavar="X.Y",
-        help="Python versions to bundle wheels for (default: those of the official Blenders)",
+        help="Python versions to bundle wheels for (default: those of release/blenders.mk)",
     )
-    parser.add_argument("--name", help="the package's file name (default: id-version-platform.zip)")
-    return parser.parse_args(arguments)
+    parser.add_argument(
+        "--name", default="", help="the package's file name (default: id-version-platform.zip)"
+    )
+    options = parser.parse_args(arguments)
+    platform = PLATFORMS[options.platform]
+    return Order(
+        platform,
+        tuple(options.python or pythons_on(platform.name)),
+        options.blender,
+        options.output,
+        options.wheel_cache,
+        options.name,
+    ), options.servo_wheel
 
 
-def _servo_wheel(path: Path | None, platform: Platform, python_versions: list[str]) -> Path:
+def _servo_wheel(path: Path | None, platform: Platform, python_versions: Sequence[str]) -> Path:
     if path is None:
         message = (
             f"no palpate_servo wheel for {platform.name} was given (--servo-wheel), and without it "
-            "the extension cannot press: build it on that platform with maturin, or let the "
-            "workflow in .github/workflows do it"
+            "the extension cannot press: `make package-all` compiles it for every platform, "
+            "maturin for the one it runs on"
         )
         raise PackagingError(message)
     if not path.is_file():
@@ -89,15 +134,16 @@ def _servo_wheel(path: Path | None, platform: Platform, python_versions: list[st
     return path
 
 
-def _package(platform: Platform, wheels: list[Path], options: argparse.Namespace) -> Path:
+def _package(order: Order, wheels: list[Path]) -> Path:
     """Stage the files, let Blender's tool pack and validate them, and read the result back."""
     source = (REPOSITORY / "blender_manifest.toml").read_text(encoding="utf-8")
     identity = tomllib.loads(source)
-    name = options.name or (
+    platform = order.platform
+    name = order.name or (
         f"{identity['id']}-{identity['version']}-{platform.name.replace('-', '_')}.zip"
     )
-    package: Path = options.output / name
-    stage: Path = options.output / "stage" / package.stem
+    package = order.output / name
+    stage = order.output / "stage" / package.stem
     shutil.rmtree(stage, ignore_errors=True)
     for relative in extension_files(REPOSITORY):
         (stage / relative).parent.mkdir(parents=True, exist_ok=True)
@@ -109,11 +155,12 @@ def _package(platform: Platform, wheels: list[Path], options: argparse.Namespace
     manifest = package_manifest(source, platform.name, [wheel.name for wheel in wheels])
     (stage / "blender_manifest.toml").write_text(manifest, encoding="utf-8")
 
-    tool = blender_tool.find_tool(options.blender)
+    tool = blender_tool.find_tool(order.blender)
     blender_tool.build(tool, stage, package)
     shutil.rmtree(stage)
+    reproducible_zip.settle(package)
     blender_tool.validate(tool, package)
-    wrong = faults(package, platform, options.python)
+    wrong = faults(package, platform, order.pythons)
     if wrong:
         package.unlink()
         raise PackagingError("the package is not whole: " + "; ".join(wrong))

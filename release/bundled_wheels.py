@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -31,26 +32,51 @@ def lock_file(python_version: str) -> Path:
     return path
 
 
-def pinned_names(python_version: str) -> list[str]:
-    """Return how the file names of the wheels in a lock file begin: `scipy-1.17.1-`."""
-    lines = lock_file(python_version).read_text(encoding="utf-8").splitlines()
-    pins = [line.split()[0].split("==") for line in lines if "==" in line and line[0] != "#"]
-    return [f"{name.replace('-', '_')}-{version}-" for name, version in pins]
+def pins(python_version: str) -> dict[str, str]:
+    """Return the entries of a lock file, with their hashes, by `name==version`."""
+    text = lock_file(python_version).read_text(encoding="utf-8")
+    entries = [
+        entry for entry in re.split(r"^(?=[a-z])", text, flags=re.MULTILINE) if "==" in entry
+    ]
+    return {entry.split()[0]: entry for entry in entries}
+
+
+def pinned_for(platform: Platform, python_version: str) -> dict[str, str]:
+    """Return the entries of a lock file that there are wheels of for a platform."""
+    return {
+        pin: entry
+        for pin, entry in pins(python_version).items()
+        if pin.split("==")[0] not in platform.without
+    }
+
+
+def beginning(pin: str) -> str:
+    """Return how the file name of a pinned wheel begins: `scipy-1.17.1-` for `scipy==1.17.1`."""
+    name, version = pin.split("==")
+    return f"{name.replace('-', '_')}-{version}-"
 
 
 def fetch(platform: Platform, python_version: str, cache: Path) -> list[Path]:
-    """Return the wheels for one platform and Python version; download those not yet in `cache`."""
+    """Return the wheels for one platform and Python version; download those not yet in `cache`.
+
+    Raises PackagingError when the index does not have them, or others under their names.
+    """
     into = cache / platform.name / lock_file(python_version).stem
     into.mkdir(parents=True, exist_ok=True)
+    wanted = pinned_for(platform, python_version)
+    requirements = into / "requirements.txt"
+    requirements.write_text("".join(wanted.values()), encoding="utf-8")
     command = [sys.executable, "-m", "pip", "download", "--quiet", "--disable-pip-version-check"]
     command += ["--no-deps", "--only-binary=:all:", "--require-hashes"]
     command += ["--implementation", "cp", "--python-version", python_version]
     for tag in platform.wheel_tags:
         command += ["--platform", tag]
-    command += ["--dest", str(into), "--requirement", str(lock_file(python_version))]
+    command += ["--dest", str(into), "--requirement", str(requirements)]
     # pip keeps what lies in --dest already, after checking its hash.
-    subprocess.run(command, check=True)
-    return [_only(into, name) for name in pinned_names(python_version)]
+    if subprocess.run(command, check=False).returncode != 0:
+        message = f"wheels for {platform.name}, Python {python_version} cannot be had: see above"
+        raise PackagingError(message)
+    return [_only(into, beginning(pin)) for pin in wanted]
 
 
 def _only(folder: Path, name: str) -> Path:

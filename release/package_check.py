@@ -8,6 +8,7 @@ import zipfile
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from pathlib import Path
 
     from platforms import Platform
@@ -38,7 +39,12 @@ def runs_on(wheel_name: str, python_version: str) -> bool:
     return False
 
 
-def faults(package: Path, platform: Platform, python_versions: list[str]) -> list[str]:
+def needed_on(platform: Platform) -> list[str]:
+    """Return what is imported on a platform: all that is needed, as far as there are wheels."""
+    return [name for name in NEEDED if name.replace("_", "-") not in platform.without]
+
+
+def faults(package: Path, platform: Platform, python_versions: Iterable[str]) -> list[str]:
     """Return one sentence for each fault of a package; none for a whole one."""
     with zipfile.ZipFile(package) as archive:
         names = archive.namelist()
@@ -50,7 +56,7 @@ def faults(package: Path, platform: Platform, python_versions: list[str]) -> lis
         found.append(f"the manifest lists the wheels {listed}, the package holds {packed}")
     wheel_names = [name.rsplit("/", 1)[1] for name in packed]
     for version in python_versions:
-        for module in NEEDED:
+        for module in needed_on(platform):
             fitting = [
                 name
                 for name in wheel_names

@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 import zipfile
 from pathlib import Path
 
 import pytest
+from blenders import blenders, pythons_on
 from build_extension import main
-from bundled_wheels import LOCKS, PackagingError, lock_file, pinned_names
+from bundled_wheels import LOCKS, PackagingError, lock_file, pinned_for, pins
 from extension_files import extension_files
-from package_check import faults, runs_on
+from package_check import faults, needed_on, runs_on
 from package_manifest import package_manifest
 from platforms import PLATFORMS
+from reproducible_zip import settle
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 MANIFEST = (REPOSITORY / "blender_manifest.toml").read_text(encoding="utf-8")
 LINUX = PLATFORMS["linux-x64"]
+EVERYWHERE = {"pyserial", "threadpoolctl"}
 WHOLE = [
     "scipy-1.17.1-cp311-cp311-manylinux_2_27_x86_64.manylinux_2_28_x86_64.whl",
     "scipy-1.18.1-cp313-cp313-manylinux_2_27_x86_64.manylinux_2_28_x86_64.whl",
@@ -62,7 +66,10 @@ def test_a_wheels_name_says_which_python_it_runs_on(wheel, version, fits):
     [
         ("a-1-cp311-cp311-manylinux_2_27_x86_64.manylinux_2_28_x86_64.whl", "linux-x64"),
         ("a-1-cp311-cp311-win_amd64.whl", "windows-x64"),
+        ("a-1-cp311-cp311-win_arm64.whl", "windows-arm64"),
+        ("a-1-cp311-cp311-manylinux_2_28_aarch64.whl", "linux-arm64"),
         ("a-1-cp311-cp311-macosx_11_0_arm64.whl", "macos-arm64"),
+        ("a-1-cp311-cp311-macosx_10_15_x86_64.whl", "macos-x64"),
     ],
 )
 def test_a_wheels_name_says_which_system_it_runs_on(wheel, platform):
@@ -122,15 +129,27 @@ def test_a_servo_for_another_platform_is_refused(tmp_path, capsys):
     assert "not a palpate_servo wheel for windows-x64" in capsys.readouterr().err
 
 
-def test_every_bundled_wheel_is_pinned_with_a_hash_for_each_platform():
-    for version in ("3.11", "3.13"):
-        text = lock_file(version).read_text(encoding="utf-8")
-        names = pinned_names(version)
-        assert len(names) == 6
-        # pyserial and threadpoolctl are the same file everywhere, the others one for each system.
-        assert text.count("--hash=sha256:") == 4 * len(PLATFORMS) + 2
-        assert "pytetwild-0.2.3-" in names
-        assert not any(name.startswith("numpy-") for name in names)
+@pytest.mark.parametrize("version", ["3.11", "3.13"])
+def test_every_bundled_wheel_is_pinned_with_a_hash_for_each_platform_that_has_it(version):
+    entries = pins(version)
+    assert len(entries) == 6
+    platforms = [one for one in PLATFORMS.values() if version in pythons_on(one.name)]
+    for pin, entry in entries.items():
+        name = pin.split("==")[0]
+        builds = sum(name not in one.without for one in platforms)
+        # These two are the same file everywhere.
+        assert entry.count("--hash=sha256:") == (1 if name in EVERYWHERE else builds), pin
+    assert "pytetwild==0.2.3" in entries
+    assert "numpy" not in {pin.split("==")[0] for pin in entries}
+
+
+def test_what_nobody_builds_for_a_platform_is_neither_fetched_nor_missed():
+    arm = PLATFORMS["linux-arm64"]
+    assert set(pins("3.11")) - set(pinned_for(arm, "3.11")) == {"pytetwild==0.2.3"}
+    assert "pytetwild" not in needed_on(arm)
+    assert "pytetwild" in needed_on(LINUX)
+    windows = PLATFORMS["windows-arm64"]
+    assert not {"pytetwild", "fast_simplification"} & set(needed_on(windows))
 
 
 def test_a_python_without_a_list_of_wheels_says_which_there_are():
@@ -148,3 +167,33 @@ def test_a_file_that_nobody_foresaw_is_not_shipped(tmp_path):
     (tmp_path / "core" / "notes.txt").touch()
     with pytest.raises(PackagingError, match=r"core/notes\.txt"):
         extension_files(tmp_path)
+
+
+def test_the_bytes_of_a_package_follow_from_its_contents_alone(tmp_path):
+    written = []
+    for number, names in enumerate((["b.py", "a.whl"], ["a.whl", "b.py"])):
+        path = tmp_path / f"{number}.zip"
+        with zipfile.ZipFile(path, "w") as archive:
+            for name in names:
+                entry = zipfile.ZipInfo(name, (2020 + number, 1, 1, 0, 0, 0))
+                entry.external_attr = (0o100600 + number) << 16
+                archive.writestr(entry, name * 100)
+        settle(path)
+        written.append(path.read_bytes())
+        with zipfile.ZipFile(path) as archive:
+            assert archive.read("b.py") == b"b.py" * 100
+            assert archive.testzip() is None
+    assert written[0] == written[1]
+
+
+def test_the_table_of_blenders_names_platforms_that_there_are():
+    assert [one.version for one in blenders()] == sorted(one.version for one in blenders())
+    assert {name for one in blenders() for name in one.platforms} == set(PLATFORMS)
+    assert pythons_on("linux-x64") == ["3.11", "3.13"]
+    assert pythons_on("macos-x64") == ["3.11"]
+
+
+def test_the_workflow_tries_the_blenders_of_the_table():
+    text = (REPOSITORY / ".github" / "workflows" / "packages.yml").read_text(encoding="utf-8")
+    tried = re.findall(r'{ bpy: ([\d.]+), python: "([\d.]+)" }', text)
+    assert tried == [(one.version, one.python) for one in blenders()]

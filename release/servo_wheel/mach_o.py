@@ -1,0 +1,70 @@
+"""Checks of a library for macOS."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import lief
+import ziglang
+from servo_wheel.code_signature import signature_fault
+from servo_wheel.target import Target
+
+MAGIC = b"\xcf\xfa\xed\xfe"
+MACHINES = {"arm64": "ARM64", "x86_64": "X86_64"}
+
+
+def faults(image: bytes, target: Target) -> Iterator[str]:
+    """Yield the faults of an image, and of the guardian within it."""
+    yield from of_one(image, target)
+    if "_PyInit_palpate_servo" not in exported(image):
+        yield "Python could not import it: no PyInit_palpate_servo"
+    start = image.find(MAGIC, len(MAGIC))
+    if start < 0:
+        yield "the guardian is not in it"
+    else:
+        yield from (f"guardian: {fault}" for fault in of_one(image[start:], target))
+
+
+def of_one(image: bytes, target: Target) -> Iterator[str]:
+    """Yield the faults that a library and a program may both have."""
+    parsed: Any = lief.MachO.parse(list(image))
+    if parsed is None:
+        yield "it is no Mach-O image"
+        return
+    library = parsed.at(0)
+    _, major, minor, machine = target.tag.split("_", 3)
+    if library.header.cpu_type.name != MACHINES[machine]:
+        yield f"it is compiled for {library.header.cpu_type.name}"
+    if library.build_version.minos[:2] > [int(major), int(minor)]:
+        yield f"it is made for macOS {library.build_version.minos} and later"
+    unsigned = signature_fault(image)
+    if unsigned and machine == "arm64":
+        yield f"arm64 would not load it: {unsigned}"
+    asked = [entry.name for entry in library.libraries][library.header.file_type.name == "DYLIB" :]
+    foreign = [name for name in asked if not name.startswith(("/usr/lib/", "/System/"))]
+    if foreign:
+        yield f"it wants libraries that macOS does not have: {', '.join(foreign)}"
+    unknown = sorted(
+        name
+        for name in {symbol.name for symbol in library.imported_symbols}
+        if name not in symbols_of_the_system() and not name.startswith(("_Py", "__Py"))
+    )
+    if unknown:
+        yield f"libSystem does not have {', '.join(unknown)}"
+
+
+def exported(image: bytes) -> set[str]:
+    """Return the names that an image exports."""
+    parsed: Any = lief.MachO.parse(list(image))
+    return {symbol.name for symbol in parsed.at(0).exported_symbols} if parsed else set()
+
+
+@cache
+def symbols_of_the_system() -> frozenset[str]:
+    """Return the symbols that Apple's libSystem has, by zig's list of them."""
+    listed = Path(ziglang.__file__).parent / "lib" / "libc" / "darwin" / "libSystem.tbd"
+    return frozenset(re.findall(r"[\w$.\-]+", listed.read_text(encoding="utf-8")))
