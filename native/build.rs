@@ -6,15 +6,15 @@ use std::path::Path;
 use std::process::Command;
 
 const SOURCE: &str = "src/guardian/program.rs";
+/// Its part for each system.
+const PARTS: &str = "src/guardian/program";
 
 fn main() {
     println!("cargo:rerun-if-changed={SOURCE}");
+    println!("cargo:rerun-if-changed={PARTS}");
     println!("cargo:rerun-if-changed=build.rs");
     let of = |name: &str| env::var_os(name).unwrap_or_default();
-    let program = Path::new(&of("OUT_DIR")).join("guardian");
-    if env::var_os("CARGO_CFG_UNIX").is_none() {
-        return;
-    }
+    let program = Path::new(&of("OUT_DIR")).join("guardian.program");
     let mut rustc = Command::new(of("RUSTC"));
     rustc.args([
         "--edition=2024",

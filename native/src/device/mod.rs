@@ -14,6 +14,7 @@ mod transit;
 use glam::{DMat3, DVec3};
 
 pub use crate::device::report::{Greeting, LinkReport};
+use crate::guardian::Watch;
 
 /// Map from the device to the body: `p_body = scale * rotation * p_device + translation`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -82,13 +83,15 @@ pub enum Fault {
     Device,
     /// The servo's thread did not run for more than 20 ms.
     Suspended,
+    /// Nobody would say zero should the host end: the guardian has ended, and there is no other yet.
+    Unguarded,
     /// The servo itself failed.
     Internal,
 }
 
 impl Fault {
     /// All faults, in the order of their numbers.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Nan,
         Self::TooFast,
         Self::Stale,
@@ -97,8 +100,18 @@ impl Fault {
         Self::Protocol,
         Self::Device,
         Self::Suspended,
+        Self::Unguarded,
         Self::Internal,
     ];
+
+    /// What a tick's look at the guardian comes to.
+    pub const fn of_watch(watch: Watch) -> Option<Self> {
+        match watch {
+            Watch::Kept => None,
+            Watch::Spoke => Some(Self::Suspended),
+            Watch::Absent => Some(Self::Unguarded),
+        }
+    }
 
     /// Name for people and counters.
     pub const fn name(self) -> &'static str {
@@ -111,6 +124,7 @@ impl Fault {
             Self::Protocol => "wrong protocol",
             Self::Device => "device fault",
             Self::Suspended => "suspended",
+            Self::Unguarded => "unguarded",
             Self::Internal => "internal error",
         }
     }

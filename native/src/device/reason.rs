@@ -76,6 +76,7 @@ pub const fn after(fault: Fault) -> &'static str {
         Fault::Protocol => "after wrong protocol",
         Fault::Device => "after device fault",
         Fault::Suspended => "after suspended",
+        Fault::Unguarded => "after unguarded",
         Fault::Internal => "after internal error",
     }
 }

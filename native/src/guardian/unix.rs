@@ -3,17 +3,19 @@
 use std::ffi::OsStr;
 use std::fs::File;
 use std::io::{self, Write};
-use std::os::fd::{AsFd, AsRawFd, OwnedFd};
+use std::os::fd::{AsRawFd, BorrowedFd, OwnedFd};
 use std::os::unix::net::UnixStream;
 use std::os::unix::process::CommandExt;
 use std::process::{Child, Command, Stdio};
-use std::sync::atomic::Ordering::{Relaxed, Release, SeqCst};
+use std::sync::atomic::Ordering::SeqCst;
 use std::time::Duration;
 
-use crate::guardian::program::{DISMISSED, GUARDIAN, HOST, MOST_BYTES, Sheet, map_sheet, now_ns};
+#[cfg(not(target_os = "linux"))]
+use crate::guardian::program::now_ns;
+use crate::guardian::program::{DISMISSED, Sheet, map_sheet};
 use crate::guardian::refusal::refused;
+use crate::guardian::{PROGRAM, Watch, sign};
 
-static PROGRAM: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/guardian"));
 const NAME: &str = "palpate-guardian";
 /// Waits for its end, of [`PAUSE`] each; a driver may keep it longer.
 const PAUSES: u32 = 50;
@@ -34,7 +36,7 @@ impl Guardian {
     ///
     /// # Errors
     /// When the system does not let it run.
-    pub fn of(port: &impl AsFd) -> io::Result<Self> {
+    pub fn of(port: &impl AsRawFd) -> io::Result<Self> {
         if PROGRAM.is_empty() {
             return Err(refused("this build has none"));
         }
@@ -42,7 +44,9 @@ impl Guardian {
         let paper = memory(c"palpate-sheet", size_of::<Sheet>()).map_err(refused)?;
         let sheet =
             map_sheet(paper.as_raw_fd()).ok_or_else(|| refused(io::Error::last_os_error()))?;
-        let port = port.as_fd().try_clone_to_owned().map_err(refused)?;
+        // SAFETY: the descriptor is open for as long as it is borrowed.
+        let port = unsafe { BorrowedFd::borrow_raw(port.as_raw_fd()) };
+        let port = port.try_clone_to_owned().map_err(refused)?;
         let child = with_program(|path| {
             Command::new(path)
                 .arg0(NAME)
@@ -61,19 +65,14 @@ impl Guardian {
         })
     }
 
-    /// Says that the host lives, and what is to be said should it end: at most [`MOST_BYTES`]. False if
-    /// it was taken for dead since the last time, and the word before was said. Never waits.
-    pub fn live(&self, last_word: &[u8]) -> bool {
-        let next = (self.sheet.newest.load(Relaxed) + 1) % 2;
-        let word = &self.sheet.words[next as usize];
-        let length = last_word.len().min(MOST_BYTES);
-        word.length.store(length as u32, Relaxed);
-        for (stored, byte) in word.bytes.iter().zip(last_word) {
-            stored.store(*byte, Relaxed);
+    /// Says that the host lives, and what is to be said should it end. Never waits.
+    pub fn live(&mut self, last_word: &[u8]) -> Watch {
+        let is_there = (self.child.as_mut()).is_some_and(|child| matches!(child.try_wait(), Ok(None)));
+        match (sign(self.sheet, last_word), is_there) {
+            (false, _) => Watch::Spoke,
+            (true, true) => Watch::Kept,
+            (true, false) => Watch::Absent,
         }
-        self.sheet.newest.store(next, Release);
-        self.sheet.alive_ns.store(now_ns(), Release);
-        self.sheet.holder.swap(HOST, SeqCst) != GUARDIAN
     }
 }
 

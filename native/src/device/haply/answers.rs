@@ -12,6 +12,7 @@ use crate::device::haply::model::Model;
 use crate::device::haply::newest::Newest;
 use crate::device::haply::pantograph::Pose;
 use crate::device::serial::port::Opener;
+use crate::guardian::Watch;
 
 /// A board is asked whether it knows this device this often, s.
 const ASK_SECONDS: f64 = 0.05;
@@ -142,17 +143,16 @@ impl<O: Opener> HaplyDevice<O> {
         message
     }
 
-    /// Tells that the servo lives, and what lets the board go should it end. False if that was said since
-    /// the last tick: the servo did not run for too long.
-    pub(super) fn live(&mut self) -> bool {
+    /// Tells that the servo lives, and what lets the board go should it end.
+    pub(super) fn live(&mut self) -> Watch {
         let message = self.limp_request(self.address());
         let is_known = self.phase != Phase::BEGIN;
-        let lived = self.line.live(if is_known { &message } else { &[] });
-        if !lived {
+        let watch = self.line.live(if is_known { &message } else { &[] });
+        if watch == Watch::Spoke {
             self.inbox.clear();
             self.flight = Flight::default();
         }
-        lived
+        watch
     }
 
     /// Finds out whether the board knows this device, and sets it up if not.

@@ -199,7 +199,7 @@ impl<O: Opener> Device for HaplyDevice<O> {
         if !self.line.is_open() {
             return Reading::Fault(Fault::Unplugged);
         }
-        let lived = self.live();
+        let watch = self.live();
         if let Phase::Asking { asked, in_vain } = self.phase {
             self.ask(asked, in_vain);
             return Reading::Waiting(reason::NO_BOARD);
@@ -212,8 +212,8 @@ impl<O: Opener> Device for HaplyDevice<O> {
         if !self.calibrated {
             return Reading::Waiting(reason::LOST_PLACE);
         }
-        if !lived {
-            return Reading::Fault(Fault::Suspended);
+        if let Some(fault) = Fault::of_watch(watch) {
+            return Reading::Fault(fault);
         }
         if now - self.heard > STALE_SECONDS {
             self.speed.interrupt();

@@ -4,8 +4,9 @@ use glam::DVec3;
 
 use crate::device::arrival::Arrivals;
 use crate::device::link::codec::Decoder;
+use crate::device::link::doubt::Doubt;
 use crate::device::link::freshness::Freshness;
-use crate::device::link::messages::PROTOCOL;
+use crate::device::link::messages::{FIRST_PROTOCOL, PROTOCOL};
 use crate::device::link::newest::Newest;
 use crate::device::link::orientation::Orientations;
 use crate::device::link::pacing::Pacing;
@@ -48,6 +49,7 @@ pub struct LinkDevice<O: Opener> {
     pub(super) arrivals: Arrivals,
     pub(super) pacing: Pacing,
     pub(super) freshness: Freshness,
+    pub(super) doubt: Doubt,
     /// The one that is spoken, or tried.
     pub(super) protocol: u8,
     pub(super) sequence: u16,
@@ -85,6 +87,7 @@ impl<O: Opener> LinkDevice<O> {
             arrivals: Arrivals::default(),
             pacing: Pacing::default(),
             freshness: Freshness::default(),
+            doubt: Doubt::default(),
             protocol: PROTOCOL,
             sequence: 0,
             pushes: false,
@@ -115,6 +118,7 @@ impl<O: Opener> LinkDevice<O> {
         self.arrivals.forget();
         self.pacing = Pacing::default();
         self.freshness = Freshness::default();
+        self.doubt = Doubt::default();
         self.protocol = PROTOCOL;
         self.refused = None;
     }
@@ -126,8 +130,19 @@ impl<O: Opener> LinkDevice<O> {
             .is_some_and(|since| now - since > STALE_SECONDS)
         {
             self.freshness.refuse(now);
+            self.doubt_it(now);
         }
-        self.freshness.is_deaf(now)
+        if self.doubt.asks(now) {
+            self.say_hello();
+        }
+        self.freshness.is_deaf(now) || self.doubt.stands()
+    }
+
+    /// The device has heard nothing lately. In protocol 2 each STATE tells when it hears again.
+    pub(super) fn doubt_it(&mut self, now: f64) {
+        if self.protocol == FIRST_PROTOCOL {
+            self.doubt.begin(now);
+        }
     }
 
     /// Tries the port again now and then.
@@ -168,12 +183,13 @@ impl<O: Opener> Device for LinkDevice<O> {
         if self.line.is_open() {
             self.drain(now);
             self.line.flush();
+            self.line.repeat();
         }
         self.arrivals.end_of_tick(now);
         if !self.line.is_open() {
             return Reading::Fault(Fault::Unplugged);
         }
-        let lived = self.live();
+        let watch = self.live();
         if !self.is_greeted() {
             self.greet(now);
             return match self.greeting {
@@ -182,9 +198,9 @@ impl<O: Opener> Device for LinkDevice<O> {
             };
         }
         let device_fault = std::mem::take(&mut self.device_fault);
-        if !lived {
+        if let Some(fault) = Fault::of_watch(watch) {
             // What the device says of it is the same news.
-            return Reading::Fault(Fault::Suspended);
+            return Reading::Fault(fault);
         }
         if device_fault {
             return Reading::Fault(Fault::Device);
@@ -252,6 +268,7 @@ impl<O: Opener> Device for LinkDevice<O> {
             }
             // Time for the device to read before the line closes.
             std::thread::sleep(PARKING_PAUSE);
+            self.line.repeat();
         }
         for _ in 0..PARKING_PAUSES {
             self.line.flush();

@@ -2,6 +2,7 @@
 
 pub mod codec;
 mod device;
+mod doubt;
 mod freshness;
 pub mod messages;
 mod newest;

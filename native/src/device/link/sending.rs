@@ -8,6 +8,7 @@ use crate::device::link::messages::{
     Answer, PROTOCOL, answering_payload, force_payload, hello_payload,
 };
 use crate::device::serial::port::Opener;
+use crate::guardian::Watch;
 
 /// HELLO is repeated this often until it is answered, s.
 const HELLO_SECONDS: f64 = 0.05;
@@ -31,16 +32,21 @@ impl<O: Opener> LinkDevice<O> {
     pub(super) fn greet(&mut self, now: f64) {
         if now >= self.next_hello {
             self.next_hello = now + HELLO_SECONDS;
-            let said = self.send(&hello_payload(self.protocol));
-            self.report.hellos += u64::from(said);
+            self.say_hello();
         }
+    }
+
+    pub(super) fn say_hello(&mut self) {
+        let said = self.send(&hello_payload(self.protocol));
+        self.report.hellos += u64::from(said);
     }
 
     /// Says a force (N, device axes) if it is time to; letting go is always.
     pub(super) fn say_force(&mut self, force: DVec3, enable: bool) {
         let lets_go = std::mem::replace(&mut self.pushes, enable) && !enable;
         let (now, dt) = (self.now, self.dt);
-        let is_due = self.pacing.is_due(now, dt) && self.freshness.may_send(enable, now);
+        let may_send = self.freshness.may_send(enable, now) && !self.doubt.stands();
+        let is_due = self.pacing.is_due(now, dt) && may_send;
         if lets_go || is_due {
             let payload = force_payload(self.sequence, force, enable);
             let said = if lets_go {
@@ -66,9 +72,8 @@ impl<O: Opener> LinkDevice<O> {
         self.send_numbered(&payload, send)
     }
 
-    /// Tells that the servo lives, and the zero to be said should it end. False if that was said since
-    /// the last tick: the servo did not run for too long.
-    pub(super) fn live(&mut self) -> bool {
+    /// Tells that the servo lives, and the zero to be said should it end.
+    pub(super) fn live(&mut self) -> Watch {
         let mut frame = [0; 1 + MAX_FRAME];
         let mut length = 0;
         if self.is_greeted() || self.farewells > 0 {
@@ -81,13 +86,13 @@ impl<O: Opener> LinkDevice<O> {
             };
             length = said.unwrap_or(0);
         }
-        let lived = self.line.live(&frame[..length]);
-        if !lived {
+        let watch = self.line.live(&frame[..length]);
+        if watch == Watch::Spoke {
             // Its number is used up.
             self.sequence = self.sequence.wrapping_add(AHEAD + 1);
             self.freshness.forget();
         }
-        lived
+        watch
     }
 
     /// Zero to a device whose session has ended, for some ticks: it may hold a force of that.

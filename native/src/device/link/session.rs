@@ -1,6 +1,7 @@
 //! Sessions of a device on the link: where one begins, and which STATE counts.
 
 use crate::device::link::device::LinkDevice;
+use crate::device::link::doubt::Doubt;
 use crate::device::link::freshness::Freshness;
 use crate::device::link::messages::{DeviceState, FIRST_PROTOCOL, Message, PROTOCOL, Taken, parse};
 use crate::device::link::newest::Newest;
@@ -8,6 +9,8 @@ use crate::device::link::sending::FAREWELLS;
 use crate::device::serial::port::Opener;
 use crate::device::speedometer::has_begun_anew;
 
+/// Code of a FAULT: nothing was heard for 20 ms.
+const LIMP: u8 = 1;
 /// Code of a FAULT: the host's HELLO was of another protocol.
 const OTHER_PROTOCOL: u8 = 2;
 
@@ -43,6 +46,7 @@ impl<O: Opener> LinkDevice<O> {
                 }
                 self.greeting = Some(greeting);
                 self.report.greeting = Some(greeting);
+                self.doubt.hear(now);
             }
             // A device that streams before it was greeted may speak another version.
             Some(Message::State(state)) if self.is_greeted() => {
@@ -60,6 +64,9 @@ impl<O: Opener> LinkDevice<O> {
                 self.device_fault = true;
                 self.report.device_faults += 1;
                 self.report.last_fault = Some((code, detail));
+                if code == LIMP {
+                    self.doubt_it(now);
+                }
             }
             None => self.report.unknown += 1,
         }
@@ -84,6 +91,7 @@ impl<O: Opener> LinkDevice<O> {
         self.speedometer.reset();
         self.orientations.forget();
         self.freshness = Freshness::default();
+        self.doubt = Doubt::default();
         self.refused = None;
     }
 

@@ -2,15 +2,16 @@
 
 use std::io;
 
+use crate::device::serial::errands::{Done, Errand, Errands};
 use crate::device::serial::port::{SerialPort, SerialWire, Wire};
-use crate::guardian::Guardian;
+use crate::guardian::{Guardian, Watch};
 
 /// A serial port, and whether its device keeps its force when nobody speaks to it any more.
 #[derive(Debug, Clone)]
 pub struct GuardedPort {
     /// The port.
     pub port: SerialPort,
-    /// It is not opened without a guardian.
+    /// It is not opened without a guardian, and given no force.
     pub needs_guardian: bool,
 }
 
@@ -21,11 +22,20 @@ impl GuardedPort {
     /// When there is no port, or somebody else has it, or it needs a guardian and there is none.
     pub fn open(&self) -> io::Result<GuardedWire> {
         let wire = self.port.open()?;
-        let guardian = match wire.guardian() {
+        let twin = wire.twin()?;
+        let guardian = match twin.guardian() {
             Err(error) if self.needs_guardian => return Err(error),
             guardian => guardian.ok(),
         };
-        Ok(GuardedWire { guardian, wire })
+        Ok(GuardedWire {
+            guardian,
+            errands: Errands::of(twin)?,
+            wire,
+            needs_guardian: self.needs_guardian,
+            is_guarding: false,
+            is_discarding: false,
+            has_discarded: false,
+        })
     }
 }
 
@@ -34,7 +44,31 @@ impl GuardedPort {
 pub struct GuardedWire {
     /// Before the wire: it is dismissed first.
     guardian: Option<Guardian>,
+    errands: Errands,
     wire: SerialWire,
+    needs_guardian: bool,
+    /// Another guardian is being started.
+    is_guarding: bool,
+    is_discarding: bool,
+    has_discarded: bool,
+}
+
+impl GuardedWire {
+    fn look_what_is_done(&mut self) {
+        while let Some(done) = self.errands.done() {
+            match done {
+                Done::Discarded => {
+                    self.is_discarding = false;
+                    self.has_discarded = true;
+                }
+                Done::Guarded(None) if self.needs_guardian => self.errands.ask(Errand::TryAgain),
+                Done::Guarded(guardian) => {
+                    self.is_guarding = false;
+                    self.guardian = guardian;
+                }
+            }
+        }
+    }
 }
 
 impl Wire for GuardedWire {
@@ -55,7 +89,15 @@ impl Wire for GuardedWire {
     }
 
     fn discard(&mut self) {
-        self.wire.discard();
+        if !self.is_discarding {
+            self.is_discarding = true;
+            self.errands.ask(Errand::Discard);
+        }
+    }
+
+    fn has_discarded(&mut self) -> bool {
+        self.look_what_is_done();
+        std::mem::take(&mut self.has_discarded)
     }
 
     fn bits_per_second(&self) -> Option<u32> {
@@ -66,8 +108,20 @@ impl Wire for GuardedWire {
         self.guardian.is_some()
     }
 
-    fn live(&mut self, last_word: &[u8]) -> bool {
-        let guardian = self.guardian.as_ref();
-        guardian.is_none_or(|guardian| guardian.live(last_word))
+    fn live(&mut self, last_word: &[u8]) -> Watch {
+        self.look_what_is_done();
+        let watch = match &mut self.guardian {
+            Some(guardian) => guardian.live(last_word),
+            None if self.is_guarding => Watch::Absent,
+            // It was refused from the start, or since: the device lets go by itself.
+            None => Watch::Kept,
+        };
+        if watch == Watch::Absent
+            && let Some(gone) = self.guardian.take()
+        {
+            self.is_guarding = true;
+            self.errands.ask(Errand::Guard(gone));
+        }
+        watch
     }
 }

@@ -4,6 +4,7 @@ use std::io::ErrorKind;
 use std::task::Poll;
 
 use crate::device::serial::port::{Opener, Wire};
+use crate::guardian::Watch;
 
 /// A port that is gone is tried again this often, s.
 const REOPEN_SECONDS: f64 = 0.2;
@@ -25,6 +26,9 @@ pub struct Line<O: Opener> {
     pending: [u8; OUTBOX],
     pending_from: usize,
     pending_to: usize,
+    /// Said at once, and again when what waited with it has been thrown away.
+    urgent: [u8; OUTBOX],
+    urgent_to: usize,
 }
 
 impl<O: Opener> Line<O> {
@@ -43,6 +47,8 @@ impl<O: Opener> Line<O> {
             pending: [0; OUTBOX],
             pending_from: 0,
             pending_to: 0,
+            urgent: [0; OUTBOX],
+            urgent_to: 0,
         })
     }
 
@@ -56,6 +62,7 @@ impl<O: Opener> Line<O> {
         self.gone = self.wire.take();
         self.retry_at = now + REOPEN_SECONDS;
         (self.pending_from, self.pending_to) = (0, 0);
+        self.urgent_to = 0;
     }
 
     /// Leaves the port for good, when no tick comes any more: closing may take its time.
@@ -108,14 +115,15 @@ impl<O: Opener> Line<O> {
         self.wire.as_ref().is_some_and(Wire::is_guarded)
     }
 
-    /// Says that the servo lives, and what is to be said should it end. False if that was said since
-    /// the last time, and all that waited before it is gone.
-    pub fn live(&mut self, last_word: &[u8]) -> bool {
-        let lived = self.wire.as_mut().is_none_or(|wire| wire.live(last_word));
-        if !lived {
+    /// Says that the servo lives, and what is to be said should it end. If that was said since the last
+    /// time, all that waited before it is gone.
+    pub fn live(&mut self, last_word: &[u8]) -> Watch {
+        let watch = (self.wire.as_mut()).map_or(Watch::Kept, |wire| wire.live(last_word));
+        if watch == Watch::Spoke {
             (self.pending_from, self.pending_to) = (0, 0);
+            self.urgent_to = 0;
         }
-        lived
+        watch
     }
 
     /// Bits that the line takes a second, where that is known.
@@ -144,18 +152,33 @@ impl<O: Opener> Line<O> {
         true
     }
 
-    /// Throws away what has not left and says this instead: now, or before all that comes later.
+    /// Says this instead of what has not left: now, or before all that comes later. What waits is thrown
+    /// away by the driver when it gets to it; then this is said once more.
     pub fn send_at_once(&mut self, message: &[u8]) {
         let Some(wire) = &mut self.wire else { return };
-        wire.discard();
-        // Where the driver cuts is not known.
-        self.pending[0] = END;
-        let Some(pending) = self.pending.get_mut(1..=message.len()) else {
+        let Some(urgent) = self.urgent.get_mut(1..=message.len()) else {
             return;
         };
-        pending.copy_from_slice(message);
-        (self.pending_from, self.pending_to) = (0, 1 + message.len());
+        urgent.copy_from_slice(message);
+        // Where the driver cuts is not known.
+        self.urgent[0] = END;
+        self.urgent_to = 1 + message.len();
+        wire.discard();
+        self.say_urgent();
+    }
+
+    fn say_urgent(&mut self) {
+        self.pending = self.urgent;
+        (self.pending_from, self.pending_to) = (0, self.urgent_to);
         self.flush();
+    }
+
+    /// Says again what was urgent, if it may have been thrown away with all else.
+    pub fn repeat(&mut self) {
+        if self.wire.as_mut().is_some_and(Wire::has_discarded) && self.urgent_to > 0 {
+            self.say_urgent();
+            self.urgent_to = 0;
+        }
     }
 
     /// Sends the rest of a message that did not fit.

@@ -5,6 +5,7 @@ use std::task::Poll;
 use std::time::Duration;
 
 use crate::device::serial::wired::is_wired;
+use crate::guardian::Watch;
 
 /// An open line to a device. Nothing here may wait or, while the line is there, allocate.
 pub trait Wire: Send {
@@ -30,8 +31,13 @@ pub trait Wire: Send {
     fn queued(&mut self) -> usize {
         0
     }
-    /// Throws these away, where the driver can.
+    /// Has these thrown away, where the driver can; does not wait for it.
     fn discard(&mut self) {}
+    /// Whether that was done behind the caller's back, since the last call of this: what was written
+    /// meanwhile may be gone too.
+    fn has_discarded(&mut self) -> bool {
+        false
+    }
     /// Bits that the line takes a second, where that is known and its own.
     fn bits_per_second(&self) -> Option<u32> {
         None
@@ -40,10 +46,9 @@ pub trait Wire: Send {
     fn is_guarded(&self) -> bool {
         false
     }
-    /// Says that the servo lives, and what is to be said should it end. False if that was said since the
-    /// last time: the servo did not run for too long.
-    fn live(&mut self, _last_word: &[u8]) -> bool {
-        true
+    /// Says that the servo lives, and what is to be said should it end.
+    fn live(&mut self, _last_word: &[u8]) -> Watch {
+        Watch::Kept
     }
 }
 
@@ -106,12 +111,12 @@ pub use on_windows::SerialWire;
 #[cfg(unix)]
 mod on_unix {
     use std::io;
-    use std::os::fd::{AsRawFd, BorrowedFd};
+    use std::os::fd::AsRawFd;
 
     use serialport::TTYPort;
 
     use super::Wire;
-    use crate::guardian::Guardian;
+    use crate::device::serial::twin::Twin;
 
     /// A terminal in raw mode, read and written without waiting.
     ///
@@ -139,10 +144,8 @@ mod on_unix {
             }
         }
 
-        /// Starts a guardian for this port.
-        pub(in crate::device::serial) fn guardian(&self) -> io::Result<Guardian> {
-            // SAFETY: the descriptor is open for as long as it is borrowed.
-            Guardian::of(&unsafe { BorrowedFd::borrow_raw(self.port.as_raw_fd()) })
+        pub(in crate::device::serial) fn twin(&self) -> io::Result<Twin> {
+            Ok(Twin::of(self.port.try_clone_native()?))
         }
 
         /// A number of bytes that the terminal tells.
@@ -208,12 +211,6 @@ mod on_unix {
             self.told(libc::TIOCOUTQ as _).unwrap_or(0)
         }
 
-        fn discard(&mut self) {
-            // SAFETY: the descriptor is open; the call touches no memory. A terminal that is gone has
-            // no queue, and what is gone is found by `waiting`.
-            let _ = unsafe { libc::tcflush(self.port.as_raw_fd(), libc::TCOFLUSH) };
-        }
-
         fn bits_per_second(&self) -> Option<u32> {
             self.baud
         }
@@ -240,10 +237,10 @@ mod on_unix {
 mod on_windows {
     use std::io::{self, Read, Write};
 
-    use serialport::{COMPort, ClearBuffer, SerialPort};
+    use serialport::{COMPort, SerialPort};
 
     use super::Wire;
-    use crate::guardian::Guardian;
+    use crate::device::serial::twin::Twin;
 
     /// A COM port.
     #[derive(Debug)]
@@ -257,8 +254,8 @@ mod on_windows {
             Ok(Self { port, baud })
         }
 
-        pub(in crate::device::serial) fn guardian(&self) -> io::Result<Guardian> {
-            Guardian::of(&self.port)
+        pub(in crate::device::serial) fn twin(&self) -> io::Result<Twin> {
+            Ok(Twin::of(self.port.try_clone_native()?))
         }
     }
 
@@ -269,11 +266,6 @@ mod on_windows {
 
         fn queued(&mut self) -> usize {
             self.port.bytes_to_write().map_or(0, |bytes| bytes as usize)
-        }
-
-        fn discard(&mut self) {
-            // A port that is gone has no queue, and what is gone is found by `waiting`.
-            let _ = self.port.clear(ClearBuffer::Output);
         }
 
         fn bits_per_second(&self) -> Option<u32> {
