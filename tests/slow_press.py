@@ -77,6 +77,12 @@ class Aged:
     """FORCE that had come meanwhile."""
     queued_pushes: int = 0
     """Those of them with *enable*."""
+    last_pushes: bool = False
+    """The last of them has it."""
+    newest_push_in_silence: float = 0.0
+    """When the last of them was put on the line, s."""
+    largest_at_the_end: float = 0.0
+    """N, in the last 0.1 s."""
 
 
 def press(
@@ -99,13 +105,17 @@ def press(
         for put_at, frame in there.take(now):
             _weigh(found, frame, now - put_at - there.seconds(frame))
             stored.append(frame)
+            if deaf and _pushes(frame):
+                found.newest_push_in_silence = put_at
         if deaf:
-            found.queued, found.queued_pushes = _counted(stored)
+            _count(found, stored)
         else:
             for frame in stored:
                 back.put(device.receive(frame, now), now)
                 felt = float(np.linalg.norm(device.force))
                 found.largest = max(found.largest, felt)
+                if now > seconds - 0.1:
+                    found.largest_at_the_end = max(found.largest_at_the_end, felt)
                 if reads_not[0] <= now < reads_not[1] + 0.01:
                     found.largest_in_silence = max(found.largest_in_silence, felt)
             stored.clear()
@@ -137,9 +147,15 @@ def _forces(frames: list[bytes]) -> list[link.Force]:
     return [message for message in messages if isinstance(message, link.Force)]
 
 
-def _counted(frames: list[bytes]) -> tuple[int, int]:
+def _pushes(frame: bytes) -> bool:
+    return any(force.flags & link.ForceFlag.ENABLE for force in _forces([frame]))
+
+
+def _count(found: Aged, frames: list[bytes]) -> None:
     forces = _forces(frames)
-    return len(forces), sum(bool(force.flags & link.ForceFlag.ENABLE) for force in forces)
+    pushes = [bool(force.flags & link.ForceFlag.ENABLE) for force in forces]
+    found.queued, found.queued_pushes = len(forces), sum(pushes)
+    found.last_pushes = bool(pushes) and pushes[-1]
 
 
 def _weigh(found: Aged, frame: bytes, waited: float) -> None:

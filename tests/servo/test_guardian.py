@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from palpate.simulated.attack.real import guardians, processes
+from palpate.simulated.attack.real import guardians, lost_guardians, processes
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="looks for processes in /proc")
 
@@ -40,3 +40,14 @@ def test_a_host_that_goes_on_has_its_port_back():
         suspension = processes.suspend(host, hand, 0.1)
         assert suspension.problems() == []
         processes.press(host, hand)
+
+
+@pytest.mark.parametrize("kind", guardians.KINDS)
+def test_one_that_is_killed_is_noticed_and_another_takes_its_place(kind):
+    loss = lost_guardians.lose(kind)
+    assert loss.pushed
+    assert loss.unguarded == 1
+    assert loss.ms_to_zero < float("inf")
+    # And the second does what the first would have done.
+    assert loss.last.words
+    assert not loss.last.words[-1].pushes

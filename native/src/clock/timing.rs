@@ -14,6 +14,7 @@ pub const LATE_LIMITS_NS: [u64; 4] = [10_000, 50_000, 200_000, 1_000_000];
 #[derive(Debug, Default)]
 pub struct Timing {
     missed: AtomicU64,
+    sleeps: AtomicU64,
     late: [AtomicU64; 4],
     longest_gap_ns: AtomicU64,
     lateness: Durations,
@@ -26,6 +27,9 @@ pub struct Timing {
 pub struct TimingReport {
     /// Whole periods that passed without a tick and were skipped.
     pub missed: u64,
+    /// Times the thread went to sleep until its next deadline: any other time that it gave up its
+    /// processor it waited for somebody.
+    pub sleeps: u64,
     /// Ticks later than each of [`LATE_LIMITS_NS`].
     pub late: [u64; 4],
     /// Longest time between two wakings, ns.
@@ -54,6 +58,7 @@ impl Timing {
     pub fn report(&self) -> TimingReport {
         TimingReport {
             missed: self.missed.load(Relaxed),
+            sleeps: self.sleeps.load(Relaxed),
             late: std::array::from_fn(|i| self.late[i].load(Relaxed)),
             longest_gap_ns: self.longest_gap_ns.load(Relaxed),
             lateness: self.lateness.report(),
@@ -151,6 +156,9 @@ impl Pace {
     fn reach(&mut self, deadline_ns: u64, done_ns: u64, timing: &Timing) -> u64 {
         let margin_ns = self.margin.as_ref().map_or(0, Margin::ns);
         let timer_ns = deadline_ns - margin_ns;
+        if timer_ns > done_ns {
+            raise(&timing.sleeps, 1);
+        }
         self.sleeper.sleep_until(timer_ns);
         let mut now = self.sleeper.now_ns();
         if timer_ns > done_ns {

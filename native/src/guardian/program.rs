@@ -16,8 +16,8 @@ mod system;
 #[path = "program/windows.rs"]
 mod system;
 
-pub use system::{map_sheet, now_ns};
 use system::{Port, host_ends_within, leave_the_group, sheet};
+pub use system::{map_sheet, now_ns};
 
 /// A host that has given no sign of life for so long has stopped, ns: the zero that follows is there
 /// within 20 ms, when a device's own watchdog would wait no longer either.

@@ -67,7 +67,8 @@ impl Guardian {
 
     /// Says that the host lives, and what is to be said should it end. Never waits.
     pub fn live(&mut self, last_word: &[u8]) -> Watch {
-        let is_there = (self.child.as_mut()).is_some_and(|child| matches!(child.try_wait(), Ok(None)));
+        let is_there =
+            (self.child.as_mut()).is_some_and(|child| matches!(child.try_wait(), Ok(None)));
         match (sign(self.sheet, last_word), is_there) {
             (false, _) => Watch::Spoke,
             (true, true) => Watch::Kept,

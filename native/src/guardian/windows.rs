@@ -41,8 +41,8 @@ impl Guardian {
             return Err(refused("this build has none"));
         }
         let paper = memory().map_err(refused)?;
-        let sheet = map_sheet(paper.as_raw_handle())
-            .ok_or_else(|| refused(io::Error::last_os_error()))?;
+        let sheet =
+            map_sheet(paper.as_raw_handle()).ok_or_else(|| refused(io::Error::last_os_error()))?;
         // SAFETY: the port is open for as long as it is borrowed, and a process's own handle always.
         let (port, host) = unsafe {
             let this_process = BorrowedHandle::borrow_raw(GetCurrentProcess());
@@ -116,9 +116,11 @@ fn memory() -> io::Result<OwnedHandle> {
 /// as long as it runs. So it stays there, one for each edition of it.
 fn program() -> io::Result<PathBuf> {
     let place = |name: String| std::env::temp_dir().join(name);
-    let edition = PROGRAM.iter().fold(0xCBF2_9CE4_8422_2325_u64, |hash, byte| {
-        (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01B3)
-    });
+    let edition = PROGRAM
+        .iter()
+        .fold(0xCBF2_9CE4_8422_2325_u64, |hash, byte| {
+            (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01B3)
+        });
     let path = place(format!("palpate-guardian-{edition:016x}.exe"));
     if std::fs::read(&path).is_ok_and(|there| there == PROGRAM) {
         return Ok(path);

@@ -72,8 +72,8 @@ fn a_constant_lag_of_state_is_deafness() {
     }
 }
 
-#[test]
-fn a_port_that_takes_nothing_is_deafness_in_the_first_protocol_too() {
+/// A device of protocol 1 that is pushed for 0.1 s.
+fn older() -> (Bench, LinkDevice<Bench>) {
     let bench = Bench::default();
     let mut device = LinkDevice::open(bench.clone()).unwrap();
     read(&mut device, 0.0);
@@ -81,6 +81,61 @@ fn a_port_that_takes_nothing_is_deafness_in_the_first_protocol_too() {
     read(&mut device, 0.0);
     bench.hello(1, 2.5);
     ticks(&bench, &mut device, 1, 100, |_| {});
+    bench.received();
+    (bench, device)
+}
+
+#[test]
+fn an_older_device_that_went_limp_is_given_no_force_until_it_has_answered_a_hello() {
+    let (bench, mut device) = older();
+    // It reads nothing, and its watchdog says so after 20 ms.
+    let deaf = ticks(&bench, &mut device, 101, 3000, |tick| {
+        if tick == 121 {
+            bench.send(&[4, 1, 1, 0]);
+        }
+    });
+    assert!(deaf[21..].iter().all(|deaf| *deaf));
+    let said = bench.received();
+    let zero = said.iter().position(|p| p[0] == 3 && p[9] == 0);
+    let zero = zero.expect("let go");
+    assert!(zero <= 21, "{zero}");
+    let (force, hello): (Vec<_>, Vec<_>) = said[zero + 1..].iter().partition(|p| p[0] == 3);
+    assert!(force.is_empty(), "nothing waits behind the zero: {force:?}");
+    assert!((4..=7).contains(&hello.len()), "{}", hello.len());
+    // Now it reads, and answers the next one; those before it come to nothing.
+    let after = ticks(&bench, &mut device, 3101, 1500, |_| {
+        if bench.received().contains(&vec![1, 1]) {
+            bench.hello(1, 2.5);
+        }
+    });
+    let last = after.iter().rposition(|deaf| *deaf).expect("deaf");
+    assert!(last < 1100, "{last}");
+    bench.received();
+    ticks(&bench, &mut device, 4601, 10, |_| {});
+    assert!(bench.received().iter().all(|p| p[0] == 3 && p[9] == 1));
+}
+
+#[test]
+fn what_was_thrown_away_behind_the_back_of_a_tick_is_said_again() {
+    let (bench, mut device) = older();
+    bench.line().queued = 14;
+    bench.line().discards_later = true;
+    device.write(DVec3::ZERO, false, &FRAME());
+    let said = bench.received();
+    assert_eq!(said.len(), 1);
+    read(&mut device, 0.101);
+    assert!(bench.received().is_empty(), "not done yet");
+    bench.line().has_discarded = true;
+    read(&mut device, 0.102);
+    assert_eq!(bench.received(), said);
+    bench.line().has_discarded = true;
+    read(&mut device, 0.103);
+    assert!(bench.received().is_empty(), "said again already");
+}
+
+#[test]
+fn a_port_that_takes_nothing_is_deafness_in_the_first_protocol_too() {
+    let (bench, mut device) = older();
     bench.line().queued = 14;
     let deaf = ticks(&bench, &mut device, 101, 100, |_| bench.line().queued = 14);
     let first = deaf.iter().position(|deaf| *deaf).expect("deaf");

@@ -4,6 +4,7 @@ use crate::link_bench::{Bench, FRAME, greeted, position, read};
 use glam::DVec3;
 use palpate_servo::device::link::LinkDevice;
 use palpate_servo::device::{Device, DeviceFrame, Fault, Reading};
+use palpate_servo::guardian::Watch;
 
 #[test]
 fn hello_is_repeated_until_it_is_answered() {
@@ -337,6 +338,18 @@ fn the_frame_maps_positions_and_forces() {
     bench.received();
     device.write(DVec3::Y, true, &frame);
     assert_eq!(bench.received()[0][3..5], 1000_i16.to_le_bytes());
+}
+
+#[test]
+fn without_a_guardian_that_there_should_be_there_is_no_force() {
+    let (bench, mut device) = greeted();
+    assert!(matches!(read(&mut device, 0.001), Reading::At(_)));
+    bench.line().watch = Some(Watch::Absent);
+    assert_eq!(read(&mut device, 0.002), Reading::Fault(Fault::Unguarded));
+    bench.line().watch = Some(Watch::Spoke);
+    assert_eq!(read(&mut device, 0.003), Reading::Fault(Fault::Suspended));
+    bench.line().watch = None;
+    assert!(matches!(read(&mut device, 0.004), Reading::At(_)));
 }
 
 #[test]

@@ -8,6 +8,7 @@ use palpate_servo::device::link::LinkDevice;
 use palpate_servo::device::link::codec::{Decoder, MAX_FRAME, encode};
 use palpate_servo::device::serial::port::{Opener, Wire};
 use palpate_servo::device::{Device, DeviceFrame, Reading};
+use palpate_servo::guardian::Watch;
 
 #[derive(Default)]
 pub struct Line {
@@ -27,6 +28,11 @@ pub struct Line {
     /// What the driver says that it has not sent, bytes; and how often it threw that away.
     pub queued: usize,
     pub discarded: u64,
+    /// It does so on a thread of its own, and has now.
+    pub discards_later: bool,
+    pub has_discarded: bool,
+    /// What the tick finds of its guardian.
+    pub watch: Option<Watch>,
 }
 
 /// Largest damping of the bench, 0.01 N s/m.
@@ -158,7 +164,17 @@ impl Wire for Bench {
     fn discard(&mut self) {
         let mut line = self.line();
         line.discarded += 1;
-        line.queued = 0;
+        if !line.discards_later {
+            line.queued = 0;
+        }
+    }
+
+    fn has_discarded(&mut self) -> bool {
+        std::mem::take(&mut self.line().has_discarded)
+    }
+
+    fn live(&mut self, _last_word: &[u8]) -> Watch {
+        self.line().watch.unwrap_or(Watch::Kept)
     }
 }
 

@@ -3,6 +3,7 @@
 
 #[path = "../bodies/mod.rs"]
 mod bodies;
+mod starved;
 mod system_calls;
 
 use std::collections::BTreeMap;
@@ -44,6 +45,13 @@ fn settings() -> Settings {
 
 /// The sleep, and the clock where the kernel does not let it be read without a call.
 const PACE: [libc::c_long; 2] = [libc::SYS_clock_nanosleep, libc::SYS_clock_gettime];
+
+/// What a terminal is asked: how much has come, and how much has not left. Neither waits for anybody;
+/// what throws away (TCFLSH) does.
+const QUESTIONS: [libc::c_ulong; 2] = [libc::FIONREAD, libc::TIOCOUTQ];
+
+/// Of a serial port with its guardian: whether that has ended is a wait that does not wait.
+const PORT: [libc::c_long; 3] = [libc::SYS_read, libc::SYS_write, libc::SYS_wait4];
 
 /// A device that has its thread watched from the first tick on.
 struct Watching<D> {
@@ -133,7 +141,7 @@ fn calls_of<D: Device + 'static>(
     permitted: &[libc::c_long],
     during: impl FnOnce(&Running),
 ) -> BTreeMap<i64, u64> {
-    let (counter, watch) = Counter::new(&[&PACE, permitted].concat());
+    let (counter, watch) = Counter::new(&[&PACE, permitted].concat(), &QUESTIONS);
     let watching = Watching {
         device,
         watch: Some(watch),
@@ -280,8 +288,7 @@ fn a_servo_with_a_serial_device_only_sleeps_reads_and_writes() {
         let ends = ends.clone();
         move || board(line, &ends)
     });
-    let permitted = [libc::SYS_read, libc::SYS_write, libc::SYS_ioctl];
-    let calls = calls_of(device, Vec::new(), &permitted, |running| {
+    let calls = calls_of(device, Vec::new(), &PORT, |running| {
         hammer(running, 3000);
         let seen = running.published();
         assert!(
@@ -309,13 +316,8 @@ fn a_port_that_goes_is_closed_and_opened_again_by_another_thread() {
         baud: None,
     };
     let device = LinkDevice::open(Reopening::of(guarded(port)).expect("a thread")).expect("a port");
-    let permitted = [
-        libc::SYS_read,
-        libc::SYS_write,
-        libc::SYS_ioctl,
-        // Wakes the other thread.
-        libc::SYS_futex,
-    ];
+    // Wakes the other thread.
+    let permitted = [&PORT, &[libc::SYS_futex][..]].concat();
     let calls = calls_of(device, Vec::new(), &permitted, |running| {
         let comes = |what: &dyn Fn(&LinkReport, Option<Fault>) -> bool| {
             for _ in 0..2000 {

@@ -25,6 +25,8 @@ pub struct Counter {
 pub struct Watch {
     listener: Arc<AtomicI32>,
     permitted: Vec<libc::c_long>,
+    /// Requests to terminals that are permitted too.
+    requests: Vec<libc::c_ulong>,
 }
 
 const NOT_YET: libc::c_int = -1;
@@ -35,7 +37,7 @@ const RETURN: u16 = (libc::BPF_RET | libc::BPF_K) as u16;
 
 impl Counter {
     /// A counter for all calls but those that are permitted.
-    pub fn new(permitted: &[libc::c_long]) -> (Self, Watch) {
+    pub fn new(permitted: &[libc::c_long], requests: &[libc::c_ulong]) -> (Self, Watch) {
         let calls = Arc::<Mutex<BTreeMap<i64, u64>>>::default();
         // No channel: the watched thread must be able to hand this over without any call.
         let listener = Arc::new(AtomicI32::new(NOT_YET));
@@ -48,12 +50,13 @@ impl Counter {
             listener: listener.clone(),
             counting,
         };
-        let permitted = permitted.to_vec();
+        let (permitted, requests) = (permitted.to_vec(), requests.to_vec());
         (
             counter,
             Watch {
                 listener,
                 permitted,
+                requests,
             },
         )
     }
@@ -96,6 +99,17 @@ impl Watch {
         for &number in &self.permitted {
             steps.push(step(SKIP_UNLESS, 1, number as u32));
             steps.push(step(RETURN, 0, libc::SECCOMP_RET_ALLOW));
+        }
+        let requests = self.requests.len() as u8;
+        if requests > 0 {
+            // Of an ioctl the second argument: after the number, the machine and the place of the call.
+            const REQUEST: u32 = 4 + 4 + 8 + 8;
+            steps.push(step(SKIP_UNLESS, 2 * requests + 1, libc::SYS_ioctl as u32));
+            steps.push(step(LOAD_NUMBER, 0, REQUEST));
+            for &request in &self.requests {
+                steps.push(step(SKIP_UNLESS, 1, request as u32));
+                steps.push(step(RETURN, 0, libc::SECCOMP_RET_ALLOW));
+            }
         }
         steps.push(step(RETURN, 0, libc::SECCOMP_RET_USER_NOTIF));
         let filter = libc::sock_fprog {

@@ -103,7 +103,7 @@ WORDS: dict[str, Callable[[Iterable[tuple[float, bytes]]], list[Word]]] = {
 def end_by(number: signal.Signals, kind: str) -> LastWords:
     """Press with a device of this kind, send its host a signal, and listen."""
     with ExitStack() as stack:
-        hand = stack.enter_context(_hand(kind))
+        hand = stack.enter_context(hand_of(kind))
         line = stack.enter_context(Overheard(hand.port))
         host = stack.enter_context(Host(line.port, kind))
         press(host, hand, WAYS[kind])
@@ -115,7 +115,8 @@ def end_by(number: signal.Signals, kind: str) -> LastWords:
         return LastWords(number, bool(before), tuple(words), sent)
 
 
-def _hand(kind: str) -> SimulatedDevice:
+def hand_of(kind: str) -> SimulatedDevice:
+    """A simulated device of this kind."""
     if kind == "link":
         return device()
     return SimulatedDevice(SimulatedOptions(), haply=DEFAULT_MODEL)

@@ -18,11 +18,26 @@ def test_a_force_waits_for_at_most_a_tick(baud, rate_hz, protocol):
     assert bool(found.seen & {"stale", "deaf"}) is too_slow
 
 
+@pytest.mark.parametrize("rate_hz", [100, 400, 1000])
 @pytest.mark.parametrize("baud", [115_200, 1_000_000])
-def test_a_device_that_reads_nothing_for_three_seconds_is_handed_no_old_force(baud):
-    found = press(baud, 400, seconds=5.5, reads_not=(1.5, 4.5))
+def test_a_device_that_reads_nothing_for_three_seconds_is_handed_no_old_force(baud, rate_hz):
+    found = press(baud, rate_hz, seconds=5.5, reads_not=(1.5, 4.5))
     # Since the first FORCE that was not taken, in answer to the next STATE.
-    assert found.deaf_after <= 0.02 + 1 / 400 + 2 * TICK
+    assert found.deaf_after <= 0.02 + 1 / rate_hz + 2 * TICK
     assert found.queued_pushes <= 4
     assert found.largest > 0.5
     assert found.largest_in_silence == 0.0
+
+
+@pytest.mark.parametrize("rate_hz", [100, 400, 1000])
+@pytest.mark.parametrize("baud", [115_200, 1_000_000])
+def test_an_older_device_says_that_it_heard_nothing_and_zero_is_the_last_that_waits(baud, rate_hz):
+    found = press(baud, rate_hz, 1, seconds=5.5, reads_not=(1.5, 4.5))
+    # Its watchdog, the way of its FAULT behind a STATE, and a tick.
+    assert found.deaf_after <= 0.02 + 40 * 10 / baud + 3 * TICK
+    # What the watchdog's time brings.
+    assert found.queued_pushes <= 1 + (0.02 + 40 * 10 / baud + 3 * TICK) * min(rate_hz, 1000)
+    assert not found.last_pushes
+    assert found.newest_push_in_silence <= 1.5 + found.deaf_after + TICK
+    assert found.largest > 0.5
+    assert found.largest_at_the_end > 0.5

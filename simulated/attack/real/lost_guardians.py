@@ -1,0 +1,86 @@
+"""Guardians that are killed in the middle of a press: noticed by their hosts, and replaced."""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+from contextlib import ExitStack
+from dataclasses import dataclass
+
+from ..table import Row
+from .guardians import PROMISED_MS, WAYS, WORDS, LastWords, guardians, hand_of
+from .host import Host, eventually
+from .overheard import Overheard
+from .pressing import press
+
+
+@dataclass(frozen=True)
+class Loss:
+    """A guardian that was killed, and what its host did then."""
+
+    pushed: bool
+    """There was a force before."""
+    unguarded: int
+    """Faults of that name."""
+    ms_to_zero: float
+    """From the signal to the first zero, ms; infinite without one."""
+    last: LastWords
+    """What was said when the host was killed while it pressed again."""
+
+
+def lose(kind: str) -> Loss:
+    """Press with a device of this kind, kill the guardian, press again, and kill the host."""
+    known = set(guardians())
+    with ExitStack() as stack:
+        hand = stack.enter_context(hand_of(kind))
+        line = stack.enter_context(Overheard(hand.port))
+        host = stack.enter_context(Host(line.port, kind))
+
+        def own() -> set[int]:
+            return set(guardians()) - known
+
+        press(host, hand, WAYS[kind])
+        (first,) = own()
+        pushed = any(word.pushes for word in WORDS[kind](list(line.said)))
+        sent = time.monotonic()
+        os.kill(first, signal.SIGKILL)
+        eventually(lambda: host.report()["faults"]["unguarded"] > 0, "the host notices")
+        eventually(lambda: bool(own() - {first}), "another guardian is there")
+        words = [word for word in WORDS[kind](list(line.said)) if word.time >= sent]
+        zero = next((word.time for word in words if not word.pushes), float("inf"))
+        press(host, hand, WAYS[kind])
+        unguarded = host.report()["faults"]["unguarded"]
+        killed = time.monotonic()
+        host.signal(signal.SIGKILL)
+        eventually(lambda: not own(), "the second guardian has ended")
+        last = tuple(word for word in WORDS[kind](list(line.said)) if word.time >= killed)
+        return Loss(
+            pushed=pushed,
+            unguarded=unguarded,
+            ms_to_zero=(zero - sent) * 1e3,
+            last=LastWords(signal.SIGKILL, pushed, last, killed),
+        )
+
+
+def lost_guardian_rows(times: int) -> list[Row]:
+    """A row for each kind of device."""
+    rows = []
+    for kind in WAYS:
+        losses = [lose(kind) for _ in range(times)]
+        worst = max(max(loss.ms_to_zero, loss.last.ms_to_zero) for loss in losses)
+        broken = []
+        if not all(loss.pushed for loss in losses):
+            broken.append("it did not push")
+        if worst > PROMISED_MS:
+            broken.append(f"zero later than {PROMISED_MS:g} ms")
+        rows.append(
+            Row(
+                injected=f"SIGKILL to the guardian, then to the host, {kind}",
+                times=times,
+                told="unguarded",
+                broken=tuple(broken),
+                zero_ms=worst,
+            )
+        )
+    return rows
