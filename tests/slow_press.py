@@ -22,6 +22,8 @@ TICK = 1e-3
 BITS = 10
 STEP = 1e-4
 """Of the device and the line, s."""
+STILL_SECONDS = 0.3
+"""Until the hand sets out."""
 GLIDE_SECONDS = 0.3
 ROOM_BYTES = 32
 """The device leaves out a STATE that would wait behind more."""
@@ -70,7 +72,7 @@ class Aged:
     largest_in_silence: float = 0.0
     """N, made while the device took its time to read, and just after."""
     seen: set[str] = field(default_factory=set)
-    """Names of faults."""
+    """Names of faults since the hand set out."""
     deaf_after: float | None = None
     """From the moment when the device stopped reading until the servo said so, s."""
     queued: int = 0
@@ -112,12 +114,8 @@ def press(
         else:
             for frame in stored:
                 back.put(device.receive(frame, now), now)
-                felt = float(np.linalg.norm(device.force))
-                found.largest = max(found.largest, felt)
-                if now > seconds - 0.1:
-                    found.largest_at_the_end = max(found.largest_at_the_end, felt)
-                if reads_not[0] <= now < reads_not[1] + 0.01:
-                    found.largest_in_silence = max(found.largest_in_silence, felt)
+                silent = reads_not[0] <= now < reads_not[1] + 0.01
+                _feel(found, device, silent, at_the_end=now > seconds - 0.1)
             stored.clear()
         back.put(device.watch(now, STEP), now)
         if now >= next_state:
@@ -129,10 +127,24 @@ def press(
             heard = b"".join(frame for _, frame in back.take(now))
             there.put(servo.tick(heard), now)
             fault = servo.snapshot().fault
-            found.seen |= {fault} - {""}
-            if deaf and fault == "deaf" and found.deaf_after is None:
-                found.deaf_after = now - reads_not[0]
+            _note(found, fault, now, now - reads_not[0] if deaf else None)
     return found
+
+
+def _note(found: Aged, fault: str, now: float, deaf_for: float | None) -> None:
+    if fault and now > STILL_SECONDS:
+        found.seen.add(fault)
+    if fault == "deaf" and found.deaf_after is None:
+        found.deaf_after = deaf_for
+
+
+def _feel(found: Aged, device: Firmware, silent: bool, *, at_the_end: bool) -> None:
+    felt = float(np.linalg.norm(device.force))
+    found.largest = max(found.largest, felt)
+    if at_the_end:
+        found.largest_at_the_end = max(found.largest_at_the_end, felt)
+    if silent:
+        found.largest_in_silence = max(found.largest_in_silence, felt)
 
 
 def _position(now: float) -> tuple[int, int, int]:

@@ -58,8 +58,8 @@ FAULTS = {
     "device fault": "The device reports a fault of its own; see its manual, or plug it in again",
     "suspended": "The computer stood still for a moment, so the device was let go; "
     "pressing goes on by itself",
-    "unguarded": "The process that lets the device go should Blender end was ended, so the device was "
-    "let go; pressing goes on when another one runs",
+    "unguarded": "The process that lets the device go should Blender end was ended, so the device "
+    "was let go; pressing goes on when another one runs",
     "internal error": "The force loop has failed, so pressing has ended; press again",
 }
 # For a list with their counts.

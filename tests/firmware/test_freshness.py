@@ -84,6 +84,27 @@ def test_a_stored_second_of_forces_is_refused_and_the_zero_behind_it_taken(greet
     assert greeted.counters()["forces"] == 1
 
 
+def test_what_was_refused_is_as_if_it_had_not_come(greeted):
+    # Until its first FORCE the device is limp and says nothing of it.
+    assert greeted.drive(500_000) == (("limp", False, False, NO_FORCE), [])
+    greeted.hear(force(10, 500_000), 500_000)
+    greeted.hear(force(50, 400_000), 510_000)
+    # Behind the refused one, ahead of the one that was taken.
+    greeted.hear(force(11, 510_000, z_mn=500), 510_000)
+    assert greeted.force(510_000) == (0.0, 0.0, 0.5)
+    said = []
+    for sequence in range(12, 40):
+        said += greeted.hear(force(sequence, 400_000), 510_000 + 700 * sequence)
+    standing, more = greeted.drive(540_000)
+    assert standing == ("limp", False, False, NO_FORCE)
+    assert [*said, *more] == [link.Fault(1, 1)]
+    # Said once, and then any number is taken, also the one that was.
+    assert greeted.drive(600_000)[1] == []
+    greeted.hear(force(11, 600_000), 600_000)
+    assert greeted.force(600_000) == (0.0, 0.0, 1.0)
+    assert greeted.counters()["duplicates"] == 0
+
+
 def test_layouts_of_the_other_protocol_are_not_used(greeted):
     greeted.hear(link.Force(0, (0, 0, 1000)), 0)
     assert greeted.force(0) == NO_FORCE

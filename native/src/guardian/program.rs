@@ -1,14 +1,15 @@
 //! The guardian: a program that says zero to a device when its host cannot any more.
 //!
-//! `build.rs` compiles this file alone, so it uses no crate; the library sees the [`Sheet`] by which the
+//! `build.rs` compiles this file and its parts alone, so it uses no crate; the library sees the [`Sheet`] by which the
 //! two know of each other. The host gives it a line that breaks when the host ends (standard input), the
 //! device's port (standard output) and the sheet (standard error), and nothing else. On Windows the line is
 //! the host's process itself.
 
 use std::sync::atomic::Ordering::{Acquire, SeqCst};
-use std::sync::atomic::{AtomicU8, AtomicU32, AtomicU64};
 use std::time::Duration;
 
+#[path = "program/sheet.rs"]
+mod sheet;
 #[cfg(unix)]
 #[path = "program/unix.rs"]
 mod system;
@@ -16,14 +17,14 @@ mod system;
 #[path = "program/windows.rs"]
 mod system;
 
-use system::{Port, host_ends_within, leave_the_group, sheet};
+use sheet::Written;
+pub use sheet::{DISMISSED, GUARDIAN, HOST, MOST_BYTES, Sheet};
+use system::{Port, handed_sheet, host_ends_within, leave_the_group};
 pub use system::{map_sheet, now_ns};
 
 /// A host that has given no sign of life for so long has stopped, ns: the zero that follows is there
 /// within 20 ms, when a device's own watchdog would wait no longer either.
 pub const SILENCE_NS: u64 = 12_000_000;
-/// Longest last word, bytes.
-pub const MOST_BYTES: usize = 64;
 /// Times that it is said: one may be lost on the line.
 const TIMES: u32 = 3;
 const PAUSE: Duration = Duration::from_millis(2);
@@ -32,45 +33,6 @@ const TRIES: u32 = 10;
 /// Wait for a host that has not begun, or that was silenced, ms.
 const IDLE_MS: u32 = 50;
 const MS: u64 = 1_000_000;
-
-/// Holds the port: the host.
-pub const HOST: u32 = 0;
-/// Holds the port: the guardian, which has said the last word or is about to.
-pub const GUARDIAN: u32 = 1;
-/// The host has let its device go and ends.
-pub const DISMISSED: u32 = 2;
-
-/// A last word.
-#[repr(C)]
-#[derive(Debug)]
-pub struct Word {
-    /// Bytes of it; 0: there is nothing to say.
-    pub length: AtomicU32,
-    /// The bytes.
-    pub bytes: [AtomicU8; MOST_BYTES],
-}
-
-/// Memory that host and guardian share. All zero is a host that has not begun.
-#[repr(C)]
-#[derive(Debug)]
-pub struct Sheet {
-    /// The host's last sign of life by [`now_ns`]; 0 before the first.
-    pub alive_ns: AtomicU64,
-    /// [`HOST`], [`GUARDIAN`] or [`DISMISSED`].
-    pub holder: AtomicU32,
-    /// Which of the two words counts; the host writes the other one.
-    pub newest: AtomicU32,
-    /// What is to be said.
-    pub words: [Word; 2],
-}
-
-/// What came of writing to the port.
-enum Write {
-    /// So many bytes were taken.
-    Some(usize),
-    /// The port is gone: nobody is there to be told.
-    Gone,
-}
 
 fn last_word(sheet: &Sheet) -> ([u8; MOST_BYTES], usize) {
     let word = &sheet.words[sheet.newest.load(Acquire) as usize % 2];
@@ -102,7 +64,7 @@ fn speak(port: &mut Port, sheet: &Sheet, host_may_come_back: bool) {
 
 fn write_all(port: &mut Port, mut bytes: &[u8]) {
     for _ in 0..TRIES {
-        let Write::Some(count) = port.write(bytes) else {
+        let Written::Some(count) = port.write(bytes) else {
             return;
         };
         bytes = &bytes[count..];
@@ -116,7 +78,7 @@ fn write_all(port: &mut Port, mut bytes: &[u8]) {
 /// Watches until the host ends.
 pub fn main() {
     leave_the_group();
-    let Some(sheet) = sheet() else { return };
+    let Some(sheet) = handed_sheet() else { return };
     let mut port = Port::handed_over();
     while sheet.holder.load(SeqCst) != DISMISSED {
         let alive = sheet.alive_ns.load(Acquire);

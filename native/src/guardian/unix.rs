@@ -14,7 +14,7 @@ use std::time::Duration;
 use crate::guardian::program::now_ns;
 use crate::guardian::program::{DISMISSED, Sheet, map_sheet};
 use crate::guardian::refusal::refused;
-use crate::guardian::{PROGRAM, Watch, sign};
+use crate::guardian::watch::{PROGRAM, Watch, sign};
 
 const NAME: &str = "palpate-guardian";
 /// Waits for its end, of [`PAUSE`] each; a driver may keep it longer.

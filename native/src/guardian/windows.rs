@@ -18,7 +18,7 @@ use windows_sys::Win32::System::Threading::{CREATE_NO_WINDOW, GetCurrentProcess}
 
 use crate::guardian::program::{DISMISSED, Sheet, map_sheet};
 use crate::guardian::refusal::refused;
-use crate::guardian::{PROGRAM, Watch, sign};
+use crate::guardian::watch::{PROGRAM, Watch, sign};
 
 /// Waits for its end, of [`PAUSE`] each: it looks whether it was dismissed twenty times a second.
 const PAUSES: u32 = 50;

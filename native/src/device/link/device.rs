@@ -6,7 +6,7 @@ use crate::device::arrival::Arrivals;
 use crate::device::link::codec::Decoder;
 use crate::device::link::doubt::Doubt;
 use crate::device::link::freshness::Freshness;
-use crate::device::link::messages::{FIRST_PROTOCOL, PROTOCOL};
+use crate::device::link::messages::PROTOCOL;
 use crate::device::link::newest::Newest;
 use crate::device::link::orientation::Orientations;
 use crate::device::link::pacing::Pacing;
@@ -17,7 +17,10 @@ use crate::device::speedometer::Speedometer;
 use crate::device::{Device, DeviceFrame, Fault, Greeting, LinkReport, Probe, Reading};
 
 /// Without a STATE for this long there is no force, s.
-const STALE_SECONDS: f64 = 0.02;
+pub(super) const STALE_SECONDS: f64 = 0.02;
+/// A device that is silent for so long may have been reset, and waits for HELLO, s. Its answer to the last
+/// one may alone take half of that, on the slowest line.
+const RESET_SECONDS: f64 = 0.04;
 /// Zero forces sent when parking: one may be lost on the wire.
 const PARKING_FRAMES: u32 = 3;
 const PARKING_PAUSE: std::time::Duration = std::time::Duration::from_millis(2);
@@ -123,28 +126,6 @@ impl<O: Opener> LinkDevice<O> {
         self.refused = None;
     }
 
-    /// Whether force would come too late: what was said is not taken in time, or does not leave.
-    fn is_deaf(&mut self, now: f64) -> bool {
-        if self
-            .refused
-            .is_some_and(|since| now - since > STALE_SECONDS)
-        {
-            self.freshness.refuse(now);
-            self.doubt_it(now);
-        }
-        if self.doubt.asks(now) {
-            self.say_hello();
-        }
-        self.freshness.is_deaf(now) || self.doubt.stands()
-    }
-
-    /// The device has heard nothing lately. In protocol 2 each STATE tells when it hears again.
-    pub(super) fn doubt_it(&mut self, now: f64) {
-        if self.protocol == FIRST_PROTOCOL {
-            self.doubt.begin(now);
-        }
-    }
-
     /// Tries the port again now and then.
     fn reopen(&mut self, now: f64) {
         if self.line.reopen(now) {
@@ -213,8 +194,9 @@ impl<O: Opener> Device for LinkDevice<O> {
             self.speedometer.interrupt();
             self.orientations.interrupt();
             self.freshness.forget();
-            // A device that was reset waits for HELLO.
-            self.greet(now);
+            if now - self.heard > RESET_SECONDS {
+                self.greet(now);
+            }
             return Reading::Fault(Fault::Stale);
         }
         if self.is_deaf(now) {

@@ -28,9 +28,9 @@ fn encode_after_end(payload: &[u8], message: &mut [u8; 1 + MAX_FRAME]) -> Option
 }
 
 impl<O: Opener> LinkDevice<O> {
-    /// Says HELLO, now and then.
+    /// Says HELLO, now and then; to a device that may hold a force not before zero.
     pub(super) fn greet(&mut self, now: f64) {
-        if now >= self.next_hello {
+        if now >= self.next_hello && self.farewells < FAREWELLS {
             self.next_hello = now + HELLO_SECONDS;
             self.say_hello();
         }

@@ -1,6 +1,6 @@
 //! Sessions of a device on the link: where one begins, and which STATE counts.
 
-use crate::device::link::device::LinkDevice;
+use crate::device::link::device::{LinkDevice, STALE_SECONDS};
 use crate::device::link::doubt::Doubt;
 use crate::device::link::freshness::Freshness;
 use crate::device::link::messages::{DeviceState, FIRST_PROTOCOL, Message, PROTOCOL, Taken, parse};
@@ -69,6 +69,28 @@ impl<O: Opener> LinkDevice<O> {
                 }
             }
             None => self.report.unknown += 1,
+        }
+    }
+
+    /// Whether force would come too late: what was said is not taken in time, or does not leave.
+    pub(super) fn is_deaf(&mut self, now: f64) -> bool {
+        if self
+            .refused
+            .is_some_and(|since| now - since > STALE_SECONDS)
+        {
+            self.freshness.refuse(now);
+            self.doubt_it(now);
+        }
+        if self.doubt.asks(now) {
+            self.say_hello();
+        }
+        self.freshness.is_deaf(now) || self.doubt.stands()
+    }
+
+    /// The device has heard nothing lately. In protocol 2 each STATE tells when it hears again.
+    fn doubt_it(&mut self, now: f64) {
+        if self.protocol == FIRST_PROTOCOL {
+            self.doubt.begin(now);
         }
     }
 

@@ -74,10 +74,11 @@ impl Opener for Reopening {
 
     fn ask(&mut self, gone: Option<GuardedWire>) {
         // There is room: whoever asks has had the answer to what was asked before.
-        let Some(Ok(())) = self.requests.as_mut().map(|r| r.push(gone)) else {
-            return;
-        };
-        self.thread.unpark();
+        if let Some(requests) = &mut self.requests
+            && requests.push(gone).is_ok()
+        {
+            self.thread.unpark();
+        }
     }
 
     fn answer(&mut self) -> Poll<Option<GuardedWire>> {

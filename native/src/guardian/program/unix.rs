@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::{ErrorKind, Write};
 use std::os::fd::FromRawFd;
 
-use super::{Sheet, Write as Written};
+use super::sheet::{Sheet, Written};
 
 #[cfg(target_os = "macos")]
 mod numbers {
@@ -77,7 +77,7 @@ pub fn map_sheet(descriptor: c_int) -> Option<&'static Sheet> {
 }
 
 /// The sheet that was handed over as standard error.
-pub fn sheet() -> Option<&'static Sheet> {
+pub fn handed_sheet() -> Option<&'static Sheet> {
     map_sheet(2)
 }
 

@@ -2,7 +2,7 @@
 
 use std::ffi::c_void;
 
-use super::{Sheet, Write};
+use super::sheet::{Sheet, Written};
 
 /// A kernel object of this process.
 pub type Handle = *mut c_void;
@@ -67,7 +67,7 @@ pub fn map_sheet(mapping: Handle) -> Option<&'static Sheet> {
 }
 
 /// The sheet that was handed over as standard error.
-pub fn sheet() -> Option<&'static Sheet> {
+pub fn handed_sheet() -> Option<&'static Sheet> {
     // SAFETY: touches no memory.
     map_sheet(unsafe { GetStdHandle(STANDARD_ERROR) })
 }
@@ -108,7 +108,7 @@ impl Port {
     }
 
     /// Writes what fits within the port's time limit.
-    pub fn write(&mut self, bytes: &[u8]) -> Write {
+    pub fn write(&mut self, bytes: &[u8]) -> Written {
         let mut written = 0;
         // SAFETY: the bytes are valid for reading and the count for writing; the port was not opened
         // for overlapped calls.
@@ -122,8 +122,8 @@ impl Port {
             )
         };
         match is_done {
-            0 => Write::Gone,
-            _ => Write::Some(written as usize),
+            0 => Written::Gone,
+            _ => Written::Some(written as usize),
         }
     }
 
