@@ -8,6 +8,7 @@ from pathlib import Path
 
 from ...core.errors import PalpateError
 from .real.guardians import guardian_rows
+from .real.lost_guardians import lost_guardian_rows
 from .real.processes import process_rows
 from .real.stalled_reader import stalled_reader_row
 from .table import Table
@@ -79,5 +80,10 @@ def _virtual_table(
 def real_table(attack: Attack, say: Callable[[str], None]) -> Table:
     """Attack processes on pseudo-terminals: signals, the plug, a reader that stalls."""
     say("processes on a pseudo-terminal")
-    rows = [*process_rows(attack.times), stalled_reader_row(), *guardian_rows(attack.times)]
+    rows = [
+        *process_rows(attack.times),
+        stalled_reader_row(),
+        *guardian_rows(attack.times),
+        *lost_guardian_rows(attack.times),
+    ]
     return Table("Real processes on a pseudo-terminal", tuple(rows))

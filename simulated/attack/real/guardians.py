@@ -122,12 +122,16 @@ def hand_of(kind: str) -> SimulatedDevice:
     return SimulatedDevice(SimulatedOptions(), haply=DEFAULT_MODEL)
 
 
-def guardians() -> list[int]:
-    """Process ids of all guardians that run on this Linux."""
+def guardians(host: int | None = None) -> list[int]:
+    """Process ids of the guardians that run on this Linux; of one host only, by its id."""
     found = []
     for folder in Path("/proc").glob("[0-9]*"):
         try:
-            if (folder / "cmdline").read_bytes().startswith(b"palpate-guardian"):
+            if not (folder / "cmdline").read_bytes().startswith(b"palpate-guardian"):
+                continue
+            # After the name, which may hold anything, the state and the parent.
+            parent = (folder / "stat").read_text().rpartition(")")[2].split()[1]
+            if host is None or int(parent) == host:
                 found.append(int(folder.name))
         except OSError:
             # It has ended meanwhile.

@@ -31,29 +31,29 @@ class Loss:
 
 def lose(kind: str) -> Loss:
     """Press with a device of this kind, kill the guardian, press again, and kill the host."""
-    known = set(guardians())
     with ExitStack() as stack:
         hand = stack.enter_context(hand_of(kind))
         line = stack.enter_context(Overheard(hand.port))
         host = stack.enter_context(Host(line.port, kind))
 
-        def own() -> set[int]:
-            return set(guardians()) - known
+        def others(pid: int) -> list[int]:
+            return [found for found in guardians(host.process.pid) if found != pid]
 
         press(host, hand, WAYS[kind])
-        (first,) = own()
+        (first,) = guardians(host.process.pid)
         pushed = any(word.pushes for word in WORDS[kind](list(line.said)))
         sent = time.monotonic()
         os.kill(first, signal.SIGKILL)
         eventually(lambda: host.report()["faults"]["unguarded"] > 0, "the host notices")
-        eventually(lambda: bool(own() - {first}), "another guardian is there")
+        eventually(lambda: bool(others(first)), "another guardian is there")
         words = [word for word in WORDS[kind](list(line.said)) if word.time >= sent]
         zero = next((word.time for word in words if not word.pushes), float("inf"))
         press(host, hand, WAYS[kind])
         unguarded = host.report()["faults"]["unguarded"]
+        (second,) = others(first)
         killed = time.monotonic()
         host.signal(signal.SIGKILL)
-        eventually(lambda: not own(), "the second guardian has ended")
+        eventually(lambda: second not in guardians(), "the second guardian has ended")
         last = tuple(word for word in WORDS[kind](list(line.said)) if word.time >= killed)
         return Loss(
             pushed=pushed,
