@@ -13,7 +13,7 @@ MACHINES = {"win_amd64": "AMD64", "win_arm64": "ARM64"}
 # What comes with Windows 10 and with Blender; in small letters, without .dll.
 SYSTEM = re.compile(
     r"api-ms-win-.*|advapi32|avrt|bcrypt|bcryptprimitives|cfgmgr32|kernel32|ntdll|ole32|psapi"
-    r"|setupapi|ucrtbase|userenv|user32|ws2_32|msvcrt"
+    r"|setupapi|ucrtbase|userenv|user32|winmm|ws2_32|msvcrt"
 )
 
 
