@@ -164,6 +164,26 @@ test-addon: test-addon-$(BPY) ## the package installed in Blender as a module, d
 $(BLENDERS:%=test-addon-%): test-addon-%: .venv-bpy-%/.installed build/packages/.made | build/reports
 	.venv-bpy-$*/bin/pytest -q $(ON_ALL_CORES) tests/addon $(REPORT)
 
+# Under wine, in a root folder outside of the checkout, which is made if it is not there: 3 GB, as root.
+WINDOWS_ROOT ?= /var/tmp/palpate-windows
+WINDOWS_TESTS := tests/core tests/cli tests/servo
+WINDOWS_WHEELS := build/servo-of-windows
+
+$(WINDOWS_WHEELS)/.built: $(NATIVE_SOURCES) $(VENV)/.installed
+	$(BIN)/python release/compile_servo.py windows-x64 --features python,harness --output $(@D)
+	touch $@
+
+.PHONY: test-windows
+test-windows: $(WINDOWS_WHEELS)/.built | build/reports ## servo, core and command line in the Python of Windows, under wine
+	release/windows/make_root.sh $(WINDOWS_ROOT)
+	PYTHON=$(BIN)/python release/windows/test.sh $(WINDOWS_ROOT) $(WINDOWS_WHEELS)/*.whl 313 $(WINDOWS_TESTS) $(REPORT)
+
+.PHONY: test-windows-addon
+test-windows-addon: $(VENV)/.installed | build/reports ## the package for Windows (make package-all) in Blender as a module, under wine
+	release/windows/make_root.sh $(WINDOWS_ROOT)
+	PYTHON=$(BIN)/python release/windows/test_addon.sh $(WINDOWS_ROOT) \
+	  build/packages-all/palpate-[0-9]*-windows_x64.zip 313 5.2.3 tests/addon $(REPORT)
+
 # Compiles without linking, for those systems whose standard library rustup has put here.
 .PHONY: check-systems
 check-systems: $(VENV)/.installed

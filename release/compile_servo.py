@@ -21,7 +21,7 @@ REPOSITORY = Path(__file__).resolve().parent.parent
 WORK = REPOSITORY / "native" / "target"
 
 
-def compiled(platform: str, output: Path, work: Path = WORK) -> Path:
+def compiled(platform: str, output: Path, work: Path = WORK, features: str = "python") -> Path:
     """Return the checked wheel of one platform, in the folder `output`.
 
     Raises
@@ -29,7 +29,7 @@ def compiled(platform: str, output: Path, work: Path = WORK) -> Path:
     PackagingError
         It does not compile, or the wheel is not sound.
     """
-    wheel = compile_wheel(TARGETS[platform], REPOSITORY, work, output)
+    wheel = compile_wheel(TARGETS[platform], REPOSITORY, work, output, features)
     wrong = faults(wheel, TARGETS[platform])
     if wrong:
         raise PackagingError(f"{wheel.name} is not sound: " + "; ".join(wrong))
@@ -42,13 +42,14 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("platforms", nargs="*", metavar="PLATFORM", help=", ".join(TARGETS))
     parser.add_argument("--output", type=Path, default=REPOSITORY / "build" / "servo-of-systems")
     parser.add_argument("--work", type=Path, default=WORK)
+    parser.add_argument("--features", default="python", help="python,harness for tests")
     options = parser.parse_args(arguments)
     unknown = [name for name in options.platforms if name not in TARGETS]
     if unknown:
         parser.error(f"no platform {', '.join(unknown)}; there are {', '.join(TARGETS)}")
     try:
         for name in options.platforms or TARGETS:
-            wheel = compiled(name, options.output, options.work)
+            wheel = compiled(name, options.output, options.work, options.features)
             print(f"{wheel} ({wheel.stat().st_size / 1e3:.0f} kB)")
     except PackagingError as error:
         print(f"compile_servo: {error}", file=sys.stderr)

@@ -25,12 +25,15 @@ LEFT_OUT = {"RUSTFLAGS", "CFLAGS", "CXXFLAGS", "LDFLAGS", "SDKROOT", "PYO3_PYTHO
 SOURCE_DATE_EPOCH = "315532800"
 
 
-def compile_wheel(target: Target, repository: Path, work: Path, output: Path) -> Path:
+def compile_wheel(
+    target: Target, repository: Path, work: Path, output: Path, features: str = "python"
+) -> Path:
     """Compile the wheel of one target into the folder `output`, where its tag tells it from others.
 
     Parameters
     ----------
     work : cargo's target folder.
+    features : of the crate; `python,harness` for tests.
 
     Raises
     ------
@@ -43,7 +46,7 @@ def compile_wheel(target: Target, repository: Path, work: Path, output: Path) ->
     for older in output.glob(f"palpate_servo-*-{target.tag}.whl"):
         older.unlink()
     done = subprocess.run(
-        command(target, repository, output), env=environment, check=False, text=True
+        command(target, repository, output, features), env=environment, check=False, text=True
     )
     if done.returncode != 0:
         message = f"palpate_servo does not compile for {target.platform} ({target.triple})"
@@ -52,10 +55,10 @@ def compile_wheel(target: Target, repository: Path, work: Path, output: Path) ->
     return wheel
 
 
-def command(target: Target, repository: Path, output: Path) -> list[str]:
+def command(target: Target, repository: Path, output: Path, features: str) -> list[str]:
     """Return the call of maturin."""
     call = [sys.executable, "-m", "maturin", "build", "--release", "--quiet", "--locked"]
-    call += ["--manifest-path", str(repository / "native" / "Cargo.toml"), "--features", "python"]
+    call += ["--manifest-path", str(repository / "native" / "Cargo.toml"), "--features", features]
     call += ["--zig", "--target", target.triple, "--out", str(output)]
     if target.is_linux:
         call += ["--compatibility", target.tag.rsplit("_", 2 if "x86_64" in target.tag else 1)[0]]

@@ -13,7 +13,8 @@ import ziglang
 from servo_wheel.code_signature import signature_fault
 from servo_wheel.target import Target
 
-MAGIC = b"\xcf\xfa\xed\xfe"
+# The head of a program of 64 bits: its magic number alone also stands in code that reads images.
+PROGRAM = re.compile(b"\xcf\xfa\xed\xfe[\x07\x0c]\x00\x00\x01.{4}\x02\x00\x00\x00", re.DOTALL)
 MACHINES = {"arm64": "ARM64", "x86_64": "X86_64"}
 
 
@@ -22,11 +23,11 @@ def faults(image: bytes, target: Target) -> Iterator[str]:
     yield from of_one(image, target)
     if "_PyInit_palpate_servo" not in exported(image):
         yield "Python could not import it: no PyInit_palpate_servo"
-    start = image.find(MAGIC, len(MAGIC))
-    if start < 0:
+    program = PROGRAM.search(image)
+    if program is None:
         yield "the guardian is not in it"
     else:
-        yield from (f"guardian: {fault}" for fault in of_one(image[start:], target))
+        yield from (f"guardian: {fault}" for fault in of_one(image[program.start() :], target))
 
 
 def of_one(image: bytes, target: Target) -> Iterator[str]:

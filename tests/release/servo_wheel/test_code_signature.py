@@ -7,6 +7,7 @@ import struct
 
 import pytest
 from servo_wheel.code_signature import signature_fault
+from servo_wheel.mach_o import PROGRAM
 
 PAGE = 4096
 
@@ -55,3 +56,12 @@ def test_a_signature_that_ends_early_is_told():
     start = image.index(struct.pack(">I", 0xFADE0C02))
     struct.pack_into(">I", image, start + 32, PAGE)
     assert signature_fault(bytes(image)) == "its signature covers another length"
+
+
+def test_a_magic_number_in_code_is_no_program():
+    in_code = b"\x81\x3f\xcf\xfa\xed\xfe\x75\x10" + bytes(20)
+    assert PROGRAM.search(in_code) is None
+    program = struct.pack("<8I", 0xFEEDFACF, 0x01000007, 3, 2, 0, 0, 0, 0)
+    assert PROGRAM.search(in_code + program).start() == len(in_code)
+    library = struct.pack("<8I", 0xFEEDFACF, 0x01000007, 3, 6, 0, 0, 0, 0)
+    assert PROGRAM.search(library) is None

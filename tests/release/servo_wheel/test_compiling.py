@@ -47,7 +47,7 @@ def test_only_macos_gets_stubs_of_frameworks(tmp_path):
 
 @pytest.mark.parametrize("platform", ["linux-x64", "linux-arm64"])
 def test_linux_is_compiled_for_the_glibc_of_blender(platform):
-    call = command(TARGETS[platform], REPOSITORY, Path("out"))
+    call = command(TARGETS[platform], REPOSITORY, Path("out"), "python")
     assert call[call.index("--compatibility") + 1] == "manylinux_2_28"
 
 
