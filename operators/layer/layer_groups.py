@@ -18,6 +18,8 @@ from .group_building import GroupBuilder, Sockets
 MARK, VERSION = "palpate_group", 1
 DISPLACEMENT, CARRIER = "Displacement", "Carrier"
 STRENGTH = "Strength"
+# Attributes that a press gives the vertices: places at rest, and where the live layer finds them.
+REST, AT = "palpate_rest", "palpate_at"
 AXES = ("X", "Y", "Z")
 DESCRIPTIONS = {
     DISPLACEMENT: "Attribute of the vertices that is added to their places, local units",
@@ -36,6 +38,7 @@ class Kind(Enum):
 
     LAYER = "layer"  # the attribute's vectors, times Strength
     RIG = "rig"  # of three attributes, "<name> X", Y and Z: each times its slider
+    PLACES = "places"  # nothing; it gives the vertices their places at rest, and as they are
     STORED = "stored"  # within the others: the vectors of a name
 
 
@@ -91,6 +94,8 @@ def _make(kind: Kind) -> bpy.types.NodeTree:
     vectors = plan.vectors(builder)
     if not adds:
         return builder.end(Vectors=vectors)
+    if kind is Kind.PLACES:
+        return builder.end(Geometry=_with_places(builder, vectors))
     moved = builder.node(
         "GeometryNodeSetPosition", Geometry=builder.given("Geometry"), Offset=vectors
     )
@@ -138,6 +143,20 @@ def _named(builder: GroupBuilder, name: object) -> bpy.types.NodeSocket:
     return found["Vectors"]
 
 
+def _with_places(builder: GroupBuilder, rest: bpy.types.NodeSocket) -> bpy.types.NodeSocket:
+    """Geometry with places at rest, and the present ones."""
+    geometry = builder.given("Geometry")
+    for name, places in ((REST, rest), (AT, builder.node("GeometryNodeInputPosition")["Position"])):
+        geometry = builder.node(
+            "GeometryNodeStoreNamedAttribute",
+            {"data_type": "FLOAT_VECTOR", "domain": "POINT"},
+            Geometry=geometry,
+            Name=name,
+            Value=places,
+        )["Geometry"]
+    return geometry
+
+
 def _layer(builder: GroupBuilder) -> bpy.types.NodeSocket:
     return builder.scaled(_named(builder, builder.given(DISPLACEMENT)), builder.given(STRENGTH))
 
@@ -160,5 +179,6 @@ _PLANS = {
         (Kind.STORED, (), _stored),
         (Kind.LAYER, (STRENGTH,), _layer),
         (Kind.RIG, AXES, _rig),
+        (Kind.PLACES, (), lambda builder: _named(builder, builder.given(DISPLACEMENT))),
     )
 }

@@ -9,14 +9,15 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from . import layers
+from . import layers, place_marks
 
 LIVE_NAME = "Palpate Live"
 
 
 def hang(thing: bpy.types.Object) -> None:
-    """Add the live layer."""
+    """Add the live layer, and the marks by which its places are found."""
     remove(thing)
+    place_marks.hang(thing)
     layers.add(thing, LIVE_NAME)
 
 
@@ -32,6 +33,7 @@ def keep(thing: bpy.types.Object) -> str:
     live = find(thing)
     if live is None:
         raise RuntimeError(f"{thing.name} has no live layer to keep")
+    place_marks.remove(thing)
     return layers.keep(thing, live)
 
 
@@ -40,6 +42,7 @@ def remove(thing: bpy.types.Object) -> None:
     live = find(thing)
     if live is not None:
         layers.remove(thing, live)
+    place_marks.remove(thing)
     remains = thing.data.attributes.get(LIVE_NAME)
     if remains is not None:
         thing.data.attributes.remove(remains)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from ...core.body.drawn_map import DrawnMap
 from ...core.body.soft_body import SoftBody
+from ...core.contact.place import nearest_place
 from ...core.contact.tool.tool_dent import PressingTool, kept_out
 from ...core.errors import PalpateError
 from ..scene import drawn_surface, ray
@@ -66,6 +67,14 @@ class DrawnBody:
         """Outward unit normals (N, 3) of all nodes at rest; zero inside."""
         mesh = self.body.mesh
         return ray.node_normals(mesh.nodes, mesh.surface_triangles)
+
+    def surface_place(self, near: Array) -> tuple[Array, Array]:
+        """Place of the body's rest surface nearest to a point (3,), metres, and its outward unit
+        normal, smooth across triangles.
+        """
+        place = nearest_place(self.body, near)
+        normal = place.alpha @ self.node_normals[self.body.mesh.surface_triangles[place.triangle]]
+        return place.position, normal / np.linalg.norm(normal)
 
     @cached_property
     def rest_places(self) -> Array:

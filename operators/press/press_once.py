@@ -17,7 +17,8 @@ from ...core.contact.tool.tools import Tool
 from ...core.contact.touches import ToolTouch, Touch
 from ...core.errors import PalpateError
 from ...core.shape.meeting import FingerLoad, settled
-from ..layer import live_layer
+from ..layer import live_layer, place_marks, touched_place
+from ..layer.touched_place import TouchedPlace
 from ..object.drawn_body import DrawnBody, open_body
 from ..scene.body_frame import Point, as_point
 from ..session.live_settings import contact_mode
@@ -92,20 +93,41 @@ def press_several(
     drawn = open_body(thing, scene)
     frame, young_modulus = drawn.frame, thing.palpate.young_modulus
     tip = chosen_tip(scene, thing, drawn.size)
-    places = np.array([_point(frame.body_from_world(_point(at, "at")), "at") for at in ats])
-    inward = np.array([frame.turn_to_body(_point(by, "by")) * frame.metres_per_unit for by in bys])
+    points = [_point(at, "at") for at in ats]
+    ways = [_point(by, "by") for by in bys]
+    found = _seen_places(thing, drawn, points)
+    frames = [frame if place is None else place.frame(frame) for place in found]
+    places = np.array(
+        [
+            _point(frame.body_from_world(point), "at") if place is None else place.rest
+            for place, point in zip(found, points, strict=True)
+        ]
+    )
+    inward = np.array(
+        [one.turn_to_body(way) * one.metres_per_unit for one, way in zip(frames, ways, strict=True)]
+    )
     made = _touches(thing, scene, drawn, tip.tool, places, inward)
     with closing_shape(thing, drawn) as shape:
         met = settled(drawn.body, shape, loads_of(made), young_modulus)
     return Pressed(
         fingers=tuple(
-            PressedFinger(one, as_point(frame.turn_to_world(one.force)), float(np.linalg.norm(way)))
-            for one, way in zip(made, inward, strict=True)
+            PressedFinger(one, as_point(local.turn_to_world(one.force)), float(np.linalg.norm(way)))
+            for one, local, way in zip(made, frames, inward, strict=True)
         ),
         largest_displacement=float(np.linalg.norm(met.displacements, axis=1).max()),
         layer=(keep_shape(thing, drawn, met.displacements, pressing_tools(made)) if keep else ""),
         remarks=tuple(filter(None, (tip.remark, shape.notice))),
     )
+
+
+def _seen_places(
+    thing: bpy.types.Object, drawn: DrawnBody, points: Sequence[Array]
+) -> list[TouchedPlace | None]:
+    """Places as seen nearest to points (3,), world coordinates; None where that is at rest."""
+    if touched_place.is_seen_at_rest(thing):
+        return [None for _ in points]
+    with place_marks.marked(thing):
+        return [touched_place.nearest(thing, drawn.frame, point) for point in points]
 
 
 def keep_shape(

@@ -7,7 +7,7 @@ size, and invariant when the object is moved or rotated.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -105,6 +105,14 @@ class BodyFrame:
         """Directions or forces (..., 3) from world axes to body axes; lengths stay."""
         turned: Array = np.asarray(vectors, dtype=np.float64) @ self.rotation
         return turned
+
+    def posed(self, turn: Array, rest: Array, seen: Array) -> BodyFrame:
+        """Frame in which the place ``rest`` (3,) of the body is where ``seen`` (3,) is, turned by
+        ``turn`` (3, 3); both in metres, body coordinates of this frame.
+        """
+        rotation = self.rotation @ turn
+        origin = self.world_from_body(seen) - rotation @ rest / self.metres_per_unit
+        return replace(self, rotation=rotation, origin=origin)
 
     def wind(self, triangles: NDArray[np.int64]) -> NDArray[np.int64]:
         """Triangles (m, 3) of the local surface, rewound if mirrored."""

@@ -35,10 +35,15 @@ class Viewport:
 
     def ray(self, frame: BodyFrame) -> tuple[Array, Array]:
         """Line of sight through the pointer in body coordinates: origin and unit direction (3,)."""
+        origin, along = self.line_of_sight()
+        direction = frame.turn_to_body(along)
+        return frame.body_from_world(origin), direction / np.linalg.norm(direction)
+
+    def line_of_sight(self) -> tuple[Array, Array]:
+        """Line of sight through the pointer, world coordinates: origin and direction (3,)."""
         origin = view3d_utils.region_2d_to_origin_3d(self.region, self.region_3d, self.cursor)
         along = view3d_utils.region_2d_to_vector_3d(self.region, self.region_3d, self.cursor)
-        direction = frame.turn_to_body(np.array(along))
-        return frame.body_from_world(np.array(origin)), direction / np.linalg.norm(direction)
+        return np.array(origin), np.array(along)
 
     def view_at(self, point: Array, frame: BodyFrame) -> View | None:
         """Screen axes and scale at ``point`` (body coordinates); None behind the viewer."""

@@ -11,8 +11,11 @@ from mathutils import Vector
 from numpy.typing import NDArray
 
 from ...core.contact.tool.pose import resting_on
+from ..layer import touched_place
+from ..layer.touched_place import TouchedPlace
 from ..scene import ray
 from ..scene.body_frame import as_point
+from ..scene.drawn_surface import frame_of
 from ..scene.package_preferences import preferences
 from ..scene.probe_drag import ProbeDrag
 from ..scene.viewport import Viewport
@@ -63,15 +66,13 @@ class PointerHand:
             if self._begin(here, event, grabbed, held):
                 self.session.post(Moment.GRAB)
             return
-        drawn = self.session.drawn
-        triangles = drawn.body.mesh.surface_triangles
-        hit = ray.first_hit(*here.ray(drawn.frame), self.session.seen.nodes(), triangles)
-        if hit is None:
+        thing = self.session.handle.find()
+        place = None if thing is None else self._touched(thing, here)
+        if place is None:
             return
-        corners = triangles[hit.triangle]
-        normal = hit.alpha @ drawn.node_normals[corners]
-        normal /= np.linalg.norm(normal)
-        point = hit.alpha @ drawn.body.mesh.nodes[corners]
+        self.session.touch(place, thing)
+        drawn = self.session.drawn
+        point, normal = drawn.surface_place(place.rest)
         view_axes = np.array(here.region_3d.view_matrix)[:3, :3]
         start, turn = self._at_rest(point, normal, view_axes)
         finger = self._free_finger(here)
@@ -79,6 +80,12 @@ class PointerHand:
         if self._begin(here, event, finger, held):
             self.held[finger] = held
             self._set_down(finger, turn)
+
+    def _touched(self, thing: bpy.types.Object, here: Viewport) -> TouchedPlace | None:
+        """Place of the object under the pointer, as it is seen."""
+        origin, along = here.line_of_sight()
+        frame = frame_of(thing, self.session.scene)
+        return touched_place.under_ray(thing, frame, origin, along)
 
     def follow(self, event: bpy.types.Event) -> None:
         """Handle pointer motion, wheel and released button."""
@@ -113,9 +120,8 @@ class PointerHand:
                 # No surface, as in a ring: a click sets it down.
                 continue
             corners = triangles[hit.triangle]
-            normal = hit.alpha @ drawn.node_normals[corners]
-            normal /= np.linalg.norm(normal)
-            start, turn = self._at_rest(hit.alpha @ nodes[corners], normal, axes)
+            point, normal = drawn.surface_place(hit.alpha @ nodes[corners])
+            start, turn = self._at_rest(point, normal, axes)
             self.held[finger] = Held(start, normal, self.session.tip.deepest)
             self._set_down(finger, turn)
             self.session.post(Moment.RELEASE)

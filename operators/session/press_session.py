@@ -20,8 +20,8 @@ from ...core.servo.session import Snapshot
 from ..device import device_source, servo_words
 from ..device.device_source import DeviceFrame
 from ..layer import live_layer
+from ..layer.touched_place import TouchedPlace
 from ..object.drawn_body import DrawnBody, open_body
-from ..scene import drawn_surface
 from ..scene.object_handle import ObjectHandle
 from ..tool.finger_tip import FingerTip, chosen_tip
 from .finger_leads import BOTH_POINTER, FingerLead, Lead, leads_of
@@ -42,6 +42,7 @@ from .press_events import (
     Start,
 )
 from .press_state import Phase, PressState, transition
+from .pressed_object import moved_along, reason_to_end
 from .seen_body import SeenBody
 
 
@@ -50,7 +51,8 @@ class PressSession:
     """Press of one object. Make one with :func:`begin`; it is :func:`current` until it ends.
 
     ``leads`` move the fingers, ``tip`` is their tool or point, ``seen`` the drawn body, ``area``
-    the address of the 3D view where it began, 0 for none.
+    the address of the 3D view where it began, 0 for none, ``place`` what the pointer touched: the
+    body is felt and drawn in its local frame.
     """
 
     handle: ObjectHandle
@@ -64,6 +66,7 @@ class PressSession:
     snapshot: Snapshot | None = None
     kept_name: str = ""
     area: int = 0
+    place: TouchedPlace | None = None
     said: list[Say] = field(default_factory=list)
     _problems: list[str] = field(default_factory=list)
     _reported: frozenset[str] = frozenset()
@@ -104,6 +107,11 @@ class PressSession:
         if self.state.phase is not Phase.LOST and not self.state.withdrawn:
             self.seen.draw(thing, snapshot, loop.settings.servo.young_modulus)
         return moved
+
+    def touch(self, place: TouchedPlace, thing: bpy.types.Object) -> None:
+        """Press at a place as it is seen from now on."""
+        self.place = place
+        self._follow_frame(thing)
 
     def switch_force(self) -> None:
         """Switch the device's force off at once, or on with a ramp."""
@@ -197,28 +205,16 @@ class PressSession:
     def _object_as_it_is(self) -> bpy.types.Object | None:
         """The object, if the press can continue on it; else the press ends."""
         thing = self.handle.find()
-        reason = ""
-        if thing is None:
-            reason = "{name} was deleted; pressing has ended"
-        elif thing.mode != "OBJECT":
-            reason = "{name} is being edited; pressing has ended"
-        elif 3 * len(thing.data.vertices) != len(self.drawn.rest):
-            reason = "{name} was edited; press Make Soft to bake it again"
-        elif not self._follow_frame(thing):
+        reason = reason_to_end(thing, self.drawn, withdrawn=self.state.withdrawn)
+        if thing is not None and not reason and not self._follow_frame(thing):
             reason = "{name} was scaled; press Make Soft to bake it again"
-        elif not self.state.withdrawn and live_layer.find(thing) is None:
-            reason = "{name} has lost its live layer; pressing has ended"
         if reason:
             self.post(GiveWay(Sentence(reason, name=(thing or self.handle).name)))
             return None
         return thing
 
     def _follow_frame(self, thing: bpy.types.Object) -> bool:
-        try:
-            moved = self.drawn.moved_to(drawn_surface.frame_of(thing, self.scene))
-        except PalpateError:
-            # A flattened object has changed its scale too.
-            return False
+        moved = moved_along(thing, self.scene, self.drawn, self.place)
         if moved is not None:
             self.drawn = self.seen.drawn = moved
         return moved is not None

@@ -227,6 +227,13 @@ def layer_names(thing: bpy.types.Object) -> list[str]:
     return [layer.name for layer in part("operators.layer.layers").layers_of(thing)]
 
 
+def hide_layers(thing: bpy.types.Object) -> None:
+    """Let the next press find the object as it was."""
+    for layer in part("operators.layer.layers").layers_of(thing):
+        layer.show_viewport = False
+    bpy.context.view_layer.update()
+
+
 def moved(thing: bpy.types.Object, name: str) -> NDArray[np.float32]:
     """Displacements (p, 3) of a layer, local units."""
     return part("operators.layer.layers").displacement(thing, thing.modifiers[name])

@@ -11,6 +11,7 @@ from soft_scene import (
     begin,
     cube,
     error_of,
+    hide_layers,
     layer_names,
     locate,
     mesh_state,
@@ -45,6 +46,7 @@ def test_force_grows_with_the_modulus_and_the_shape_does_not_without_a_bake(palp
     path = locate(thing)
     stamp = path.stat().st_mtime_ns
     soft = press(thing, bpy.context.scene, TOP, (0, 0, -0.005))
+    hide_layers(thing)
     thing.palpate.young_modulus *= 3
     firm = press(thing, bpy.context.scene, TOP, (0, 0, -0.005))
     assert np.allclose(np.array(firm.force), 3 * np.array(soft.force))

@@ -14,6 +14,7 @@ from soft_scene import (
     DEPTH,
     begin_pressed,
     depth,
+    hide_layers,
     layer_names,
     locate,
     mesh_state,
@@ -76,6 +77,7 @@ def test_the_panel_offers_every_shape_with_its_sentence(palpate, shapes):
 def test_scripts_that_name_the_former_series_get_paper_and_are_told(palpate, shapes, thing):
     once, keys = part("operators.press.press_once").press_once, {}
     for name in ("TABLE", "SERIES"):
+        hide_layers(thing)
         thing.palpate.shape = name
         pressed = once(thing, bpy.context.scene, BESIDE, (0.0, 0.0, -DEPTH), keep=True)
         assert pressed.remarks == ((shapes.SERIES_IS_PAPER,) if name == "SERIES" else ())
@@ -102,6 +104,7 @@ def test_costs_are_told_before_and_grow_with_the_body(palpate, name):
 @pytest.mark.parametrize("name", NAMES)
 def test_a_script_keeps_the_shape_that_is_chosen(palpate, name, thing):
     press_down(thing, depth=DEPTH)
+    hide_layers(thing)
     thing.palpate.shape = name
     press_down(thing, depth=DEPTH)
     linear, chosen = (moved(thing, key) for key in ("Press 1", "Press 2"))

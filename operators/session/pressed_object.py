@@ -1,0 +1,41 @@
+"""Object under a press: whether it is still what the press began with."""
+
+from __future__ import annotations
+
+import bpy
+
+from ...core.errors import PalpateError
+from ..layer import live_layer
+from ..layer.touched_place import TouchedPlace
+from ..object.drawn_body import DrawnBody
+from ..scene.drawn_surface import frame_of
+
+
+def reason_to_end(thing: bpy.types.Object | None, drawn: DrawnBody, *, withdrawn: bool) -> str:
+    """Reason why a press cannot continue on an object, {name} for its name; empty if it can."""
+    if thing is None:
+        return "{name} was deleted; pressing has ended"
+    if thing.mode != "OBJECT":
+        return "{name} is being edited; pressing has ended"
+    if 3 * len(thing.data.vertices) != len(drawn.rest):
+        return "{name} was edited; press Make Soft to bake it again"
+    if not withdrawn and live_layer.find(thing) is None:
+        return "{name} has lost its live layer; pressing has ended"
+    return ""
+
+
+def moved_along(
+    thing: bpy.types.Object,
+    scene: bpy.types.Scene,
+    drawn: DrawnBody,
+    place: TouchedPlace | None,
+) -> DrawnBody | None:
+    """The body where the object is now, in the local frame of a touched place; None if it was
+    scaled, sheared or flattened.
+    """
+    try:
+        frame = frame_of(thing, scene)
+    except PalpateError:
+        # A flattened object has changed its scale too.
+        return None
+    return drawn.moved_to(frame if place is None else place.frame(frame))
