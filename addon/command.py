@@ -74,11 +74,12 @@ def bake(arguments: argparse.Namespace) -> dict[str, object]:
     _set_up(thing.palpate, arguments)
     before = body_store.present()
     body, report = bake_session.run(thing, bpy.context.scene)
+    written = body_store.stamp(thing)
     try:
         save(arguments.file)
     except PalpateError:
         # The body of an unsaved scene has no owner.
-        body_store.take_back(thing, before)
+        body_store.take_back(thing, before, written)
         raise
     for warning in report.warnings:
         print(f"palpate: warning: {warning}", file=sys.stderr)

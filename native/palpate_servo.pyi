@@ -758,6 +758,16 @@ class DeviceCoupling(TypedDict):
     damping: float
     passivity_control: bool
 
+def closest_points(
+    nodes: ArrayLike, triangles: ArrayLike, points: ArrayLike
+) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """The triangle (p,) of a surface nearest to each of points (p, 3), and the area coordinates
+    (p, 3) of the nearest place there, exactly zero off an edge or a corner; by all cores.
+
+    ValueError for a number that is not finite, a triangle without area or of nodes that are not
+    there.
+    """
+
 def device_coupling(rate_hz: int = 1000, *, encoder_step: float = 0.0) -> DeviceCoupling:
     """The coupling for devices with motors of which nothing but the encoders' step at the handle
     (m) is known: see docs/stability.md. ValueError for a rate or a step without sense.

@@ -30,6 +30,7 @@ from ..progress import unwatched
 from ..sentence import Sentence
 from .child import BODY_FILE, OUTCOME_FILE, PROGRESS_FILE
 from .foreseen_share import ForeseenShare
+from .lease import sweep_leases
 from .request import BakeRequest
 from .steps import BakeReport, BakeSettings
 
@@ -262,6 +263,7 @@ def run_bake(
     An exception from ``on_progress``, KeyboardInterrupt included, stops the child.
     """
     refuse_unwritable(target)
+    sweep_leases(target.parent)
     with BakeJob(source, settings, surface, python) as job:
         while not job.finished:
             on_progress(job.poll())

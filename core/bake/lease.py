@@ -1,8 +1,15 @@
-"""Lease file that tells workers that their results are still wanted."""
+"""Lease file that tells workers that their results are still wanted.
+
+Its name ends in a word for the computer: what a killed process left is removed by the next one of
+the same computer, which alone can tell that nobody holds it.
+"""
 
 from __future__ import annotations
 
+import hashlib
 import os
+import platform
+import re
 import secrets
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -10,7 +17,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..files.atomic_file import atomic_file, refuse_unwritable
+from ..files.held_lock import abandoned, hold, is_same_file
 from ..files.patience import remove_file
+
+PREFIX = ".palpate-bake-"
 
 
 @dataclass(frozen=True)
@@ -57,11 +67,42 @@ def lease(folder: Path) -> Iterator[Lease]:
         The folder cannot be made or written.
     """
     word = secrets.token_hex(16)
-    sign = Lease(folder / f".palpate-bake-{word[:8]}", word)
+    sign = Lease(folder / f"{PREFIX}{word[:8]}-{_computer()}", word)
     refuse_unwritable(sign.path)
-    with atomic_file(sign.path, make_folders=True) as file:
-        file.write(word.encode("ascii"))
+    sweep_leases(folder)
     try:
-        yield sign
+        with _written(sign):
+            yield sign
     finally:
         _withdraw(sign.path)
+
+
+def sweep_leases(folder: Path) -> None:
+    """Remove leases that killed processes of this computer left in ``folder``."""
+    own = re.compile(rf"{re.escape(PREFIX)}[0-9a-f]{{8}}-{_computer()}")
+    for path in folder.glob(f"{PREFIX}*"):
+        if own.fullmatch(path.name):
+            with abandoned(path) as nobody:
+                if nobody:
+                    path.unlink(missing_ok=True)
+
+
+@contextmanager
+def _written(sign: Lease) -> Iterator[None]:
+    """The lease's file, held against :func:`sweep_leases`."""
+    while True:
+        with atomic_file(sign.path, make_folders=True) as file:
+            file.write(sign.word.encode("ascii"))
+        try:
+            held = sign.path.open("rb")
+        except FileNotFoundError:
+            continue
+        with held:
+            hold(held.fileno())
+            if is_same_file(held.fileno(), sign.path):
+                yield
+                return
+
+
+def _computer() -> str:
+    return hashlib.sha256(platform.node().encode()).hexdigest()[:8]

@@ -31,6 +31,8 @@ FOLDER = "palpate"
 
 # Damaged files and their modification times: the panel offers to rebuild them.
 _damaged: dict[Path, int] = {}
+# Places that had a body file, perhaps another program's, when a new one was to be written there.
+_replaced: set[Path] = set()
 
 
 def place_for(thing: bpy.types.Object, key: str) -> Path:
@@ -45,7 +47,9 @@ def place_for(thing: bpy.types.Object, key: str) -> Path:
     """
     folder, word = folder_for_new_files(), bpy.path.clean_name(thing.name)
     places = (folder / body_name(word, key, number) for number in itertools.count(1))
-    return next(place for place in places if is_free(place, body_file.FORMAT))
+    chosen = next(place for place in places if is_free(place, body_file.FORMAT))
+    (_replaced.add if os.path.lexists(chosen) else _replaced.discard)(chosen)
+    return chosen
 
 
 def folder_for_new_files() -> Path:
@@ -201,13 +205,28 @@ def present() -> set[Path]:
     return {folder, *folder.iterdir()} if folder.is_dir() else set()
 
 
-def take_back(thing: bpy.types.Object, before: set[Path]) -> None:
-    """Remove the object's body file, and the folder, if they are new since :func:`present`.
-
-    Files that others put there meanwhile stay, and the folder with them.
-    """
+def stamp(thing: bpy.types.Object) -> tuple[Path, int, int] | None:
+    """The object's body file, and what tells it from another of the same name."""
     path = locate(thing)
-    if path is None or path in before:
+    if path is None:
+        return None
+    about = path.lstat()
+    return path, about.st_ino, about.st_mtime_ns
+
+
+def take_back(
+    thing: bpy.types.Object, before: set[Path], written: tuple[Path, int, int] | None
+) -> None:
+    """Remove the body file ``written``, by its :func:`stamp`, and its folder, if they are new.
+
+    What was there :func:`before <present>` stays, with the folder; so does a file where another one
+    stood when it was written, one that others have put there since, and one that is shared.
+    """
+    if written is None or stamp(thing) != written:
+        return
+    path = written[0]
+    shared = any(o != thing and o.palpate.body_file == path.name for o in bpy.data.objects)
+    if path in before or path in _replaced or shared:
         return
     _delete(path)
     if path.parent not in before and not any(path.parent.iterdir()):

@@ -27,6 +27,9 @@ Array = NDArray[np.float64]
 # Relative tolerance of equal stretches: matrices are float32.
 SAME_STRETCH = 1e-5
 
+# Reach within which a tool changes what is drawn, as a share of its own: more than tool_dent.FADE.
+FARTHEST_KEPT_OUT = 1.3
+
 # Free surface nodes at most for restoring a missing body, a few seconds, without progress.
 MOST_NODES_AT_ONCE = 1500
 
@@ -87,13 +90,36 @@ class DrawnBody:
         """Flat displacements (3 p,) of the drawn vertices, local units, by those of the free
         surface nodes (n, 3), metres; no vertex ends within the tools.
         """
-        shift = self.hung.displacements(displacements)
+        into_local = np.linalg.inv(self.frame.metric)
+        # The map takes units as they are; there are far fewer nodes than vertices.
+        local = self.hung.displacements(displacements @ into_local).astype(np.float32)
         if tools:
-            places = self.rest_places + shift
+            near = self._near(tools, float(np.abs(displacements).max(initial=0.0)))
+            rest, normals = self.rest_places[near], self.hung.normals[near]
+            places = rest + local[near] @ self.frame.metric
             for pressing in tools:
-                places = kept_out(places, self.hung.normals, pressing)
-            shift = places - self.rest_places
-        return self.frame.local_from_body(shift).ravel().astype(np.float32)
+                places = kept_out(places, normals, pressing)
+            local[near] = (places - rest) @ into_local
+        return local.ravel()
+
+    def _near(self, tools: Sequence[PressingTool], largest: float) -> NDArray[np.int64]:
+        """Drawn vertices (k,) that may be within a tool where none moves along an axis by more than
+        twice ``largest``, metres, as far as a smooth dent is deeper than its nodes.
+        """
+        found = []
+        for pressing in tools:
+            reach = FARTHEST_KEPT_OUT * pressing.tool.reach + 2.0 * largest
+            near = np.arange(len(self.rest_places))
+            for axis, middle in zip(self._rest_axes, pressing.pose.position, strict=True):
+                along = axis if len(near) == len(axis) else axis[near]
+                near = near[np.abs(along - np.float32(middle)) < reach]
+            found.append(near)
+        return np.unique(np.concatenate(found))
+
+    @cached_property
+    def _rest_axes(self) -> NDArray[np.float32]:
+        """Coordinates (3, p) of the drawn vertices at rest, one axis after the other, metres."""
+        return np.ascontiguousarray(self.rest_places.T, dtype=np.float32)
 
     def node_displacements(self, displacements: Array) -> Array:
         """Displacements of all nodes (N, 3), zero where pinned or inside."""

@@ -90,12 +90,13 @@ def take(
     face_starts: NDArray[np.int64],
 ) -> Fingerprint:
     """Fingerprint a surface without rules: vertices (p, 3) in local units and metres, polygons."""
+    of_local, of_body = _project(local, body)
     return Fingerprint(
         vertices=len(local),
         faces=len(face_starts),
         topology=digest(corners, face_starts),
-        local=_project(local),
-        body=_project(body),
+        local=of_local,
+        body=of_body,
         size=_size(body),
         local_size=_size(local),
     )
@@ -130,9 +131,13 @@ def changed_body(old: Fingerprint, new: Fingerprint) -> str:
     return Sentence("the shape was edited since the bake")
 
 
-def _project(points: NDArray[np.float64]) -> tuple[float, ...]:
-    directions = np.random.default_rng(SEED).standard_normal((PROJECTIONS, points.size))
-    return tuple((directions @ points.ravel()).tolist())
+def _project(*places: NDArray[np.float64]) -> list[tuple[float, ...]]:
+    """Projections of each array of places (p, 3) on the same directions."""
+    generator, flat = np.random.default_rng(SEED), [points.ravel() for points in places]
+    # One direction at a time: they are the same numbers as all at once, in less memory.
+    rows = (generator.standard_normal(flat[0].size) for _ in range(PROJECTIONS))
+    products = np.array([[float(row @ points) for points in flat] for row in rows])
+    return [tuple(column.tolist()) for column in products.T]
 
 
 def _same(old: tuple[float, ...], new: tuple[float, ...], size: float, count: int) -> bool:

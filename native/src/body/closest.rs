@@ -1,10 +1,14 @@
-//! Signed distance to the surface.
+//! Signed distance to the surface, and the closest places to many points.
+
+use std::num::NonZero;
+use std::thread;
 
 use glam::DVec3;
 
-use crate::body::face::Face;
+use crate::body::error::BodyError;
+use crate::body::face::{Face, measure_faces};
 use crate::body::surface::Body;
-use crate::body::tree::Closest;
+use crate::body::tree::{Closest, Tree};
 
 /// Nearest surface point and whether `p` lies inside the body.
 ///
@@ -46,4 +50,49 @@ fn is_behind(body: &Body, triangle: u32, alpha: [f64; 3], point: DVec3, p: DVec3
         [false, false, true] => body.edge_normal(triangle, 0).dot(p - point) < 0.0,
         _ => body.face(triangle).side(p) < 0.0,
     }
+}
+
+/// Fewer points are not worth a thread of their own.
+const POINTS_A_THREAD: usize = 4096;
+
+/// Nearest surface point of each of `points`, by all cores; neighbours in the list that lie near
+/// each other are quick. For work that is not the tick's.
+pub fn closest_points(
+    nodes: &[DVec3],
+    triangles: &[[u32; 3]],
+    points: &[DVec3],
+) -> Result<Vec<Closest>, BodyError> {
+    if triangles.is_empty() {
+        return Err(BodyError("there are no triangles".to_owned()));
+    }
+    let faces = measure_faces(nodes, triangles)?;
+    let tree = Tree::new(&faces);
+    let cores = thread::available_parallelism().map_or(1, NonZero::get);
+    let share = points.len().div_ceil(cores).max(POINTS_A_THREAD);
+    let found = thread::scope(|scope| {
+        let parts: Vec<_> = points
+            .chunks(share)
+            .map(|part| scope.spawn(|| in_turn(&tree, &faces, part)))
+            .collect();
+        parts
+            .into_iter()
+            .flat_map(|part| {
+                part.join()
+                    .expect("a search for closest points does not panic")
+            })
+            .collect()
+    });
+    Ok(found)
+}
+
+fn in_turn(tree: &Tree, faces: &[Face], points: &[DVec3]) -> Vec<Closest> {
+    let mut hint = 0;
+    points
+        .iter()
+        .map(|&p| {
+            let found = tree.closest(faces, p, hint);
+            hint = found.triangle;
+            found
+        })
+        .collect()
 }

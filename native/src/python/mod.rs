@@ -32,6 +32,7 @@ fn palpate_servo(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<tool::shape::Tool>()?;
     module.add_class::<tool::surface::ToolSurface>()?;
     module.add_class::<engine::ContactEngine>()?;
+    module.add_function(wrap_pyfunction!(body::closest::closest_points, module)?)?;
     module.add_function(wrap_pyfunction!(device::coupling::device_coupling, module)?)?;
     module.add_function(wrap_pyfunction!(device::haply::haply_encoder_step, module)?)?;
     #[cfg(feature = "harness")]

@@ -322,3 +322,25 @@ def test_a_body_from_before_minus_zero_was_zero_is_restored(thing):
     body = store.restore(thing)
     assert body.key == thing.palpate.body_key != older
     assert store.load(thing).key == body.key
+
+
+def test_only_what_was_written_anew_is_taken_back(saved):
+    store, path = part("operators.object.body_store"), locate(saved)
+    content, written = path.read_bytes(), store.stamp(saved)
+    store.take_back(saved, store.present(), written)
+    assert path.exists(), "it was there before"
+    store.place_for(saved, saved.palpate.body_key)
+    store.take_back(saved, set(), written)
+    assert path.exists(), "another one stood there when it was written"
+    store._replaced.clear()
+    path.unlink()
+    path.write_bytes(content)
+    store.take_back(saved, set(), written)
+    assert path.exists(), "others have put it there since"
+    twin = saved.copy()
+    bpy.context.scene.collection.objects.link(twin)
+    store.take_back(saved, set(), store.stamp(saved))
+    assert path.exists(), "another object shares it"
+    bpy.data.objects.remove(twin)
+    store.take_back(saved, {path.parent}, store.stamp(saved))
+    assert not path.exists()

@@ -7,9 +7,11 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pytest
 
+from palpate.core.bake.lease import lease, sweep_leases
 from palpate.core.files.atomic_file import atomic_file
 from palpate.core.files.scratch_folder import LOCK_FILE, ScratchFolder, sweep
 
@@ -127,3 +129,42 @@ def test_a_scratch_folder_is_removed_with_its_lock(place):
         assert sweep(("bake",)) == []
     scratch.remove()
     assert list(place.iterdir()) == []
+
+
+LESSEE = """
+import sys, time
+from pathlib import Path
+from palpate.core.bake.lease import lease
+with lease(Path(sys.argv[1])) as sign:
+    print(sign.path, flush=True)
+    time.sleep(600)
+"""
+
+
+def test_leases_of_killed_processes_are_swept_and_others_kept(tmp_path):
+    def lessee():
+        process = subprocess.Popen(
+            [sys.executable, "-c", LESSEE, str(tmp_path)], stdout=subprocess.PIPE, text=True
+        )
+        return process, Path(process.stdout.readline().strip())
+
+    (dead, left), (living, kept) = lessee(), lessee()
+    try:
+        elsewhere = tmp_path / f"{left.name[:-8]}00000000"
+        elsewhere.write_text("another computer's")
+        killed(dead)
+        with lease(tmp_path) as own:
+            assert own.is_seen()
+            assert {path.name for path in tmp_path.iterdir()} == {
+                own.path.name,
+                kept.name,
+                elsewhere.name,
+            }
+        killed(living)
+        sweep_leases(tmp_path)
+        assert [path.name for path in tmp_path.iterdir()] == [elsewhere.name]
+    finally:
+        for process in (dead, living):
+            process.kill()
+            process.wait()
+            process.stdout.close()

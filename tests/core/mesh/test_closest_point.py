@@ -1,7 +1,9 @@
 import numpy as np
+import pytest
 import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from palpate_servo import closest_points
 from trimesh.triangles import closest_point as referee_closest_point
 
 from palpate.core.mesh.closest_point import ClosestPoints, closest_area_coordinates
@@ -56,3 +58,39 @@ def test_no_points_give_no_places(cube_mesh):
     assert (
         len(ClosestPoints(mesh.nodes, mesh.surface_triangles).query(np.empty((0, 3))).triangle) == 0
     )
+
+
+def test_the_compiled_search_finds_places_as_near(mouse, rng):
+    """The other implementation as referee; ties may be of another triangle, never farther."""
+    mesh = mouse.mesh
+    points = mesh.nodes[rng.integers(0, len(mesh.nodes), 9000)] + rng.normal(0, 0.01, (9000, 3))
+    points[:100] = mesh.nodes[mesh.surface_nodes[:100]]
+    expected = ClosestPoints(mesh.nodes, mesh.surface_triangles).query(points)
+    triangle, alpha = closest_points(mesh.nodes, mesh.surface_triangles, points)
+    np.testing.assert_allclose(alpha.sum(axis=1), 1.0, atol=1e-12)
+    assert alpha.min() >= 0.0
+    places = np.einsum("pc,pcx->px", alpha, mesh.nodes[mesh.surface_triangles[triangle]])
+    distance = np.linalg.norm(points - places, axis=1)
+    np.testing.assert_allclose(distance, expected.distance, atol=1e-12)
+    np.testing.assert_allclose(places, expected.position, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("nodes", "triangles", "points", "said"),
+    [
+        (np.eye(3), [[0, 1, 3]], np.eye(3), "names the node 3"),
+        (np.eye(3), [[0, 1, -1]], np.eye(3), "names the node -1"),
+        (np.eye(3), [[0, 1, 1]], np.eye(3), "no area"),
+        (np.eye(3), np.empty((0, 3)), np.eye(3), "no triangles"),
+        (np.full((3, 3), np.nan), [[0, 1, 2]], np.eye(3), "not finite"),
+        (np.eye(3), [[0, 1, 2]], np.full((3, 3), np.inf), "not finite"),
+    ],
+)
+def test_the_compiled_search_refuses_what_is_no_surface(nodes, triangles, points, said):
+    with pytest.raises(ValueError, match=said):
+        closest_points(nodes, triangles, points)
+
+
+def test_the_compiled_search_takes_no_points():
+    triangle, alpha = closest_points(np.eye(3), [[0, 1, 2]], np.empty((0, 3)))
+    assert (triangle.shape, alpha.shape) == ((0,), (0, 3))

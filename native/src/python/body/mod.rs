@@ -1,4 +1,5 @@
 //! A body from numpy arrays.
 
+pub mod closest;
 pub mod compliance;
 pub mod surface;

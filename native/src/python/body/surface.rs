@@ -38,23 +38,7 @@ impl Body {
     ) -> PyResult<Self> {
         let nodes = vectors("nodes", &nodes)?;
         let blocks = matrices("contact_blocks", &contact_blocks)?;
-        let triangles = triangles.as_array();
-        if triangles.ncols() != 3 {
-            return Err(PyValueError::new_err("triangles must have three columns"));
-        }
-        let triangles = triangles
-            .rows()
-            .into_iter()
-            .enumerate()
-            .map(|(t, r)| {
-                let index = |k: usize| {
-                    u32::try_from(r[k]).map_err(|_| {
-                        PyValueError::new_err(format!("triangle {t} names the node {}", r[k]))
-                    })
-                };
-                Ok([index(0)?, index(1)?, index(2)?])
-            })
-            .collect::<PyResult<_>>()?;
+        let triangles = triangle_rows(&triangles)?;
         let refused = |e: surface::BodyError| PyValueError::new_err(e.to_string());
         let mut inner = surface::Body::new(nodes, triangles, blocks).map_err(refused)?;
         if let Some(compliance) = compliance {
@@ -198,4 +182,25 @@ fn node_numbers(numbers: &PyArrayLike1<'_, i64, AllowTypeChange>) -> PyResult<Ve
             .map_err(|_| PyValueError::new_err(format!("free_nodes names the node {n}")))
     };
     numbers.as_array().iter().map(number).collect()
+}
+
+/// Triangles (m, 3) as node numbers; whether the nodes exist is for others to say.
+pub fn triangle_rows(given: &PyArrayLike2<'_, i64, AllowTypeChange>) -> PyResult<Vec<[u32; 3]>> {
+    let triangles = given.as_array();
+    if triangles.ncols() != 3 {
+        return Err(PyValueError::new_err("triangles must have three columns"));
+    }
+    triangles
+        .rows()
+        .into_iter()
+        .enumerate()
+        .map(|(t, r)| {
+            let index = |k: usize| {
+                u32::try_from(r[k]).map_err(|_| {
+                    PyValueError::new_err(format!("triangle {t} names the node {}", r[k]))
+                })
+            };
+            Ok([index(0)?, index(1)?, index(2)?])
+        })
+        .collect()
 }
