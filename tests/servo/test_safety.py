@@ -46,17 +46,9 @@ def haply_press(_):
     return HaplyPress(TARGET)
 
 
-UNMENDED = {
-    "haply_press: an honest hand, the host held up 2 to 15 ms",
-}
-"""What breaks a rule still: shorter with every change, until it is empty."""
-
-
 def rows(make, causes):
     for cause in causes:
-        name = f"{make.__name__}: {cause.name}"
-        marks = [pytest.mark.xfail(strict=False)] if name in UNMENDED else []
-        yield pytest.param(make, cause, id=name, marks=marks)
+        yield pytest.param(make, cause, id=f"{make.__name__}: {cause.name}")
 
 
 @pytest.mark.parametrize(

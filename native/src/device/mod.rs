@@ -1,7 +1,7 @@
 //! The device: what moves the probe and takes the force.
 
 pub mod arrival;
-mod course;
+pub mod course;
 pub mod haply;
 pub mod link;
 pub mod pointer;

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::device::course::{Course, Step};
+use crate::device::course::{Course, Elapsed, Step};
 use crate::device::transit::Transit;
 
 /// A device's clock is compared with the host's over this time, s.
@@ -97,7 +97,7 @@ impl Speedometer {
             (host.max(TOGETHER_SECONDS), by_host(&here, &last))
         };
         self.transit.goes_on(now, seconds);
-        self.course.step(position, seconds, measured)
+        self.course.step(position, Elapsed::of(seconds), measured)
     }
 
     fn compare_clocks(&mut self, here: &Seen) {

@@ -4,6 +4,7 @@ mod arrival;
 mod codec;
 #[path = "../counting/mod.rs"]
 mod counting;
+mod course;
 mod damage;
 mod deaf;
 mod fuzz_link;

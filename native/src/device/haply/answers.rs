@@ -57,7 +57,7 @@ impl<O: Opener> HaplyDevice<O> {
         let farthest = if self.unproven {
             SETUP_DEGREES
         } else {
-            JUMP_DEGREES + FASTEST_TURN * (self.now - self.heard)
+            JUMP_DEGREES + FASTEST_TURN * self.speed.since(&self.flight.moment(self.now))
         };
         self.degrees.is_none_or(|last| {
             let [first, second] = [0, 1].map(|arm| (degrees[arm] - last[arm]).abs());
@@ -67,7 +67,8 @@ impl<O: Opener> HaplyDevice<O> {
 
     fn accept(&mut self, degrees: [f64; 2]) {
         self.report.states += 1;
-        self.flight.answer();
+        let moment = self.flight.moment(self.now);
+        self.flight.answer(self.now);
         self.heard = self.now;
         self.degrees = Some(degrees);
         self.unproven = false;
@@ -83,7 +84,7 @@ impl<O: Opener> HaplyDevice<O> {
         let pose = self.model.pantograph.pose(degrees.map(f64::to_radians));
         let last = self.newest.map_or(DVec3::ZERO, |newest| newest.position);
         let position = pose.map_or(last, |pose| self.model.to_device(pose.position));
-        let step = self.speed.step(position, self.now);
+        let step = self.speed.step(position, moment);
         self.unseen |= step.has_strayed;
         let newest = Newest {
             position,

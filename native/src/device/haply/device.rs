@@ -158,7 +158,7 @@ impl<O: Opener> HaplyDevice<O> {
     fn request(&mut self, torques: Option<[f64; 2]>) {
         let limp = torques.is_none();
         // Behind requests that wait already a new one would only queue; letting go comes first.
-        if self.flight.is_full() && (!limp || self.limp) {
+        if self.flight.is_full(self.now) && (!limp || self.limp) {
             self.report.unsent += 1;
             return;
         }
