@@ -5,11 +5,14 @@ from __future__ import annotations
 import contextlib
 import os
 import select
+import sys
 import threading
 import time
-import tty
 from types import TracebackType
 from typing import Self
+
+if sys.platform != "win32":
+    import tty
 
 LOOK_SECONDS = 0.05
 
