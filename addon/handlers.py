@@ -9,6 +9,7 @@ from bpy.app.handlers import persistent
 from ..core.bake.job import SCRATCH_WORDS
 from ..core.errors import PalpateError
 from ..core.files import scratch_folder
+from ..operators.animation import live_pressers
 from ..operators.bake import bake_session
 from ..operators.layer import live_layer
 from ..operators.object import body_store, kept_body
@@ -34,6 +35,7 @@ def end_everything(reason: str) -> None:
 def _forget() -> None:
     known_status.forget()
     body_view.forget()
+    live_pressers.forget()
 
 
 @persistent
@@ -106,6 +108,13 @@ def _after_change(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> Non
     updates = depsgraph.updates
     if any(update.is_updated_geometry or update.is_updated_transform for update in updates):
         body_view.forget()
+    if any(update.is_updated_transform for update in updates):
+        live_pressers.follow_all(scene)
+
+
+@persistent
+def _after_frame_change(scene: bpy.types.Scene, *_: object) -> None:
+    live_pressers.follow_all(scene)
 
 
 def _before_exit() -> None:
@@ -123,6 +132,7 @@ HANDLERS = {
     "save_post": _after_save,
     "save_post_fail": _after_failed_save,
     "depsgraph_update_post": _after_change,
+    "frame_change_post": _after_frame_change,
 }
 
 
@@ -138,6 +148,7 @@ def unregister() -> None:
     """End everything and remove the handlers."""
     end_everything("Palpate was switched off; pressing has ended")
     kept_body.forget()
+    live_pressers.forget()
     known_status.end()
     atexit.unregister(_before_exit)
     for name, handler in HANDLERS.items():

@@ -43,7 +43,8 @@ UNTRANSLATED = {
     *("Ecoflex 00-10", "Ecoflex 00-20", "Ecoflex 00-30", "Ecoflex 00-50", "Palpate"),
     *("Empty", "Format", "Group", "Height", "Material", "None", "Port", "Vertex Group"),
     *("Basis", "Body File", "Body Key", "Fingerprint", "Operator", "Palpate Softness"),
-    *("Palpate Animation", "Palpate Probe", "Palpate Live", "Palpate Places", "Pinned", "Press at"),
+    *("Palpate Animation", "Palpate Pressers", "Palpate Probe", "Palpate Live", "Palpate Places"),
+    *("Pinned", "Press at"),
 }
 
 

@@ -33,8 +33,6 @@ class PALPATE_PT_finger(PalpatePanel, bpy.types.Panel):
             return
         _draw_sizes(column, context, chosen)
         layout.prop(chosen, "show_pressure")
-        if chosen.source_empty is not None or chosen.tip == "MESH":
-            while_idle(layout).operator("palpate.press_frames", icon="RENDER_ANIMATION")
 
 
 def _draw_sizes(

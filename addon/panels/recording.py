@@ -24,7 +24,6 @@ class PALPATE_PT_recording(PalpatePanel, bpy.types.Panel):
         else:
             _draw_choice(layout, context)
         layout.operator("palpate.save_recording", icon="EXPORT")
-        layout.operator("palpate.animate_recording", icon="ANIM")
         _draw_file(layout, context)
 
 

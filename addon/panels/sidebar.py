@@ -10,7 +10,7 @@ from ...operators.bake import bake_session
 from ...operators.session import press_session
 from . import advanced, device, finger, recording, softness, state
 from .base import PalpatePanel, named_properties, while_idle
-from .kept import layers
+from .kept import animation, layers
 from .sentence import say
 
 
@@ -108,6 +108,7 @@ classes = (
     PALPATE_PT_touch,
     PALPATE_PT_stiff_region,
     layers.PALPATE_PT_layers,
+    animation.PALPATE_PT_animation,
     *softness.classes,
     *device.classes,
     *recording.classes,

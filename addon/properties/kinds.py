@@ -65,6 +65,13 @@ def chosen_object(name: str, description: str, kind: str | None = None) -> objec
     )
 
 
+def chosen_collection(name: str, description: str, **more: object) -> object:
+    """A collection of objects."""
+    return bpy.props.PointerProperty(
+        name=name, description=description, type=bpy.types.Collection, **more
+    )
+
+
 def result(default: str | float, **more: object) -> object:
     """What operators write, and nobody else; of the type of ``default``."""
     return OF_RESULTS[type(default)](default=default, options={"HIDDEN"}, **more)

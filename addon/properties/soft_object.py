@@ -6,7 +6,8 @@ from collections.abc import Callable
 import bpy
 
 from ...core.softness.scales.materials import MATERIALS
-from .kinds import choice, number, result, span, switch, text
+from ...operators.animation import live_pressers
+from .kinds import choice, chosen_collection, number, result, span, switch, text
 from .scene import PalpateScene
 from .shape import ShapeProperties
 
@@ -65,6 +66,10 @@ def _leave_material(name: str) -> Callable[[bpy.types.PropertyGroup, bpy.types.C
             settings.material = CUSTOM
 
     return update
+
+
+def _press_anew(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    live_pressers.follow(settings.id_data, context.scene)
 
 
 def _keep_order(changed: str) -> Callable[[bpy.types.PropertyGroup, bpy.types.Context], None]:
@@ -160,6 +165,12 @@ class PalpateObject(ShapeProperties, bpy.types.PropertyGroup):
         0.0,
         FRICTIONS,
         update=_keep_order("dynamic_friction"),
+    )
+    pressers: chosen_collection(
+        "Pressers",
+        "Objects of this collection press while the animation plays: meshes by their convex hulls, "
+        "Empties as spheres of their size",
+        update=_press_anew,
     )
     edge_length: number(
         "Edge Length",

@@ -18,7 +18,7 @@ from ..press.press_once import keep_shape, pressing_tools
 from ..reporting.translated import reported, shown
 from ..scene.viewport import redraw_views
 from ..shape.drawn_shape import closing_shape
-from . import frame_keys, mesh_cache
+from . import frame_keys, live_pressers, mesh_cache
 from .force_table import FrameRows
 from .pressed_frames import PressedFrame, frame_kept, press_frames
 
@@ -176,7 +176,7 @@ class PALPATE_OT_press_frames(Pressing, bpy.types.Operator):
         rows: FrameRows,
     ) -> Iterator[PressedFrame]:
         touched = False
-        with frame_kept(scene), closing_shape(thing, drawn) as shape:
+        with live_pressers.paused(), frame_kept(scene), closing_shape(thing, drawn) as shape:
             for here in press_frames(thing, scene, drawn, frames, shape):
                 rows.add(here)
                 touched |= here.displacements is not None
@@ -204,6 +204,7 @@ class PALPATE_OT_press_frames(Pressing, bpy.types.Operator):
                 cache.write(here.coordinates(drawn))
                 yield cache.written / size.samples
         mesh_cache.play(thing, place, size)
+        live_pressers.end(thing)
 
     def _keep_keys(
         self, thing: bpy.types.Object, drawn: DrawnBody, pressed: Iterator[PressedFrame], count: int
@@ -213,6 +214,7 @@ class PALPATE_OT_press_frames(Pressing, bpy.types.Operator):
             kept.append(here)
             yield len(kept) / count
         frame_keys.keep_frames(thing, drawn, kept)
+        live_pressers.end(thing)
 
     def _keep_last(
         self, thing: bpy.types.Object, drawn: DrawnBody, pressed: Iterator[PressedFrame], count: int

@@ -33,6 +33,14 @@ def keep_frames(thing: bpy.types.Object, drawn: DrawnBody, pressed: list[Pressed
     return count
 
 
+def plays(thing: bpy.types.Object) -> bool:
+    """Whether the object has shape keys of an animation."""
+    keys = thing.data.shape_keys
+    return keys is not None and any(
+        key.name.startswith(f"{FRAME_NAME} ") for key in keys.key_blocks
+    )
+
+
 def _remove_frames(thing: bpy.types.Object) -> None:
     """Remove the remains of an earlier press along an animation."""
     keys = thing.data.shape_keys

@@ -31,6 +31,12 @@ def place_for(thing: bpy.types.Object) -> Path:
     return next(place for place in places if not place.exists() or is_own_cache(place))
 
 
+def plays(thing: bpy.types.Object) -> bool:
+    """Whether the object's modifier plays a cache now."""
+    modifier = thing.modifiers.get(MODIFIER_NAME)
+    return modifier is not None and modifier.type == "MESH_CACHE" and modifier.show_viewport
+
+
 def play(thing: bpy.types.Object, cache: Path, size: CacheSize) -> bpy.types.Modifier:
     """Let the object's modifier play a cache, before all that deforms the mesh further."""
     modifier = thing.modifiers.get(MODIFIER_NAME)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import bpy
 import numpy as np
@@ -16,9 +16,12 @@ from ...core.shape.meeting import settled
 from ...core.shape.shapes import Shape
 from ..object.drawn_body import DrawnBody
 from ..press.press_once import loads_of, pressing_tools
-from . import pressers
+from .pressers import Presser, pressers_of
 
 Array = NDArray[np.float64]
+
+# Share of a tool's rounding by which it may differ from frame to frame.
+SAME = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +40,43 @@ class PressedFrame:
         return drawn.rest + drawn.drawn_displacement(self.displacements, tools)
 
 
+@dataclass(eq=False)
+class AnimatedPress:
+    """Press of a body by objects that move; goes on from the last frame while these keep their
+    shapes, and begins anew where they do not.
+    """
+
+    thing: bpy.types.Object
+    scene: bpy.types.Scene
+    drawn: DrawnBody
+    shape: Shape
+    _pressers: list[Presser] = field(default_factory=list)
+    _press: Press | None = None
+
+    def now(self) -> PressedFrame:
+        """Result of the scene as it is.
+
+        Raises
+        ------
+        PalpateError
+            A presser cannot press, nothing leads one, or their forces do not settle.
+        """
+        chosen = self.thing.palpate
+        found = pressers_of(self.thing, self.scene, self.drawn)
+        if self._press is None or not _same_tools(found, self._pressers):
+            settings = ContactSettings(chosen.young_modulus, chosen.static_friction)
+            self._press = Press(self.drawn.body, [one.tool for one in found], settings)
+            self._pressers = found
+        frame = self.drawn.frame
+        touches = self._press.to([one.pose(self.scene, frame) for one in found])
+        loads = loads_of(touches)
+        moved = None
+        if loads:
+            met = settled(self.drawn.body, self.shape, loads, chosen.young_modulus)
+            moved = met.displacements
+        return PressedFrame(self.scene.frame_current, touches, moved)
+
+
 def press_frames(
     thing: bpy.types.Object,
     scene: bpy.types.Scene,
@@ -44,23 +84,21 @@ def press_frames(
     frames: Sequence[int],
     shape: Shape,
 ) -> Iterator[PressedFrame]:
-    """Lead the scene's tools through these frames, one result each.
-
-    Raises
-    ------
-    PalpateError
-        The finger is a point, or nothing leads it.
-    """
-    tool, guides = pressers.tool_of(scene, thing, drawn.size), pressers.leading_objects(scene)
-    modulus = thing.palpate.young_modulus
-    settings = ContactSettings(modulus, thing.palpate.static_friction)
-    press = Press(drawn.body, [tool] * len(guides), settings)
+    """Lead the pressers through these frames, one result each; errors as of `AnimatedPress.now`."""
+    press = AnimatedPress(thing, scene, drawn, shape)
     for frame in frames:
         scene.frame_set(frame)
-        touches = press.to([pressers.pose_of(guide, scene, drawn.frame) for guide in guides])
-        loads = loads_of(touches)
-        moved = settled(drawn.body, shape, loads, modulus).displacements if loads else None
-        yield PressedFrame(frame, touches, moved)
+        yield press.now()
+
+
+def _same_tools(found: Sequence[Presser], before: Sequence[Presser]) -> bool:
+    return len(found) == len(before) and all(
+        one.tool.core.shape == other.tool.core.shape
+        # Matrices are float32, so a tool that turns is never quite the same.
+        and np.allclose(one.tool.core, other.tool.core, rtol=0.0, atol=SAME * one.tool.radius)
+        and np.isclose(one.tool.radius, other.tool.radius, rtol=SAME)
+        for one, other in zip(found, before, strict=True)
+    )
 
 
 @contextmanager

@@ -1,43 +1,80 @@
-"""Pressers: the objects that lead tools through an animation, and their poses."""
+"""Pressers: the objects that press through an animation, each a tool with a pose.
+
+They are those of the collection that the soft object names, or else what leads the scene's fingers.
+"""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import bpy
 import numpy as np
 
+from ...core.contact.tool import tools
+from ...core.contact.tool.convex_tool import convex
 from ...core.contact.tool.pose import Pose
 from ...core.contact.tool.tools import Tool
 from ...core.errors import PalpateError
+from ..object.drawn_body import DrawnBody
 from ..scene.body_frame import BodyFrame
-from ..tool import tool_turn
+from ..scene.drawn_surface import metres_per_unit
+from ..tool import hull, tool_turn
 from ..tool.finger_tip import chosen_tip
 
 
-def tool_of(scene: bpy.types.Scene, thing: bpy.types.Object, size: float) -> Tool:
-    """The tool that presses, on a body of this ``size``, metres.
+@dataclass(frozen=True, eq=False)
+class Presser:
+    """Tool that moves with an object, and turns with ``turner``."""
+
+    tool: Tool
+    guide: bpy.types.Object
+    turner: bpy.types.Object
+
+    def pose(self, scene: bpy.types.Scene, body: BodyFrame) -> Pose:
+        """Present pose in the body's coordinates."""
+        place = body.body_from_world(np.array(self.guide.matrix_world)[:3, 3])
+        return Pose(place, tool_turn.as_object(self.turner, scene, body))
+
+
+def pressers_of(thing: bpy.types.Object, scene: bpy.types.Scene, drawn: DrawnBody) -> list[Presser]:
+    """Pressers of a soft object, as they are now.
 
     Raises
     ------
     PalpateError
-        The finger is a point.
+        One of them cannot press, or there is none.
     """
-    tool = chosen_tip(scene, thing, size).tool
+    if thing.palpate.pressers is not None:
+        return [_of_object(one, thing, scene) for one in thing.palpate.pressers.all_objects]
+    tool = chosen_tip(scene, thing, drawn.size).tool
     if tool is None:
         raise PalpateError(
             "finger: a point has no shape to press along an animation; choose Fingertip, Plate, "
             "Rod or Mesh"
         )
-    return tool
+    turner = tool_turn.guide_of(scene) if scene.palpate.tip_turn == "OBJECT" else None
+    return [Presser(tool, guide, turner or guide) for guide in _leading_objects(scene)]
 
 
-def leading_objects(scene: bpy.types.Scene) -> tuple[bpy.types.Object, ...]:
-    """Objects that lead the tools: the pressing mesh, or the fingers' Empties.
+def _of_object(one: bpy.types.Object, thing: bpy.types.Object, scene: bpy.types.Scene) -> Presser:
+    if one == thing:
+        raise PalpateError(
+            "pressers: {name} cannot press itself; take it out of the collection", name=thing.name
+        )
+    if one.type == "EMPTY":
+        scale = float(np.cbrt(abs(np.linalg.det(np.array(one.matrix_world)[:3, :3]))))
+        radius = one.empty_display_size * scale * metres_per_unit(scene)
+        return Presser(tools.sphere(radius), one, one)
+    if one.type != "MESH":
+        raise PalpateError(
+            "pressers: {name} is neither a mesh nor an Empty; take it out of the collection",
+            name=one.name,
+        )
+    return Presser(convex(hull.hull_of(one, scene).corners), one, one)
 
-    Raises
-    ------
-    PalpateError
-        Nothing does, or both fingers are led by the same object.
-    """
+
+def _leading_objects(scene: bpy.types.Scene) -> tuple[bpy.types.Object, ...]:
+    """Objects that lead the scene's fingers: the pressing mesh, or the fingers' Empties."""
     chosen = scene.palpate
     first = chosen.source_empty
     if chosen.tip == "MESH":
@@ -45,7 +82,8 @@ def leading_objects(scene: bpy.types.Scene) -> tuple[bpy.types.Object, ...]:
     first = first or chosen.turn_object
     if first is None:
         raise PalpateError(
-            "finger: nothing leads the tool; choose Press With: Empty and an animated Empty"
+            "finger: nothing leads the tool; choose a collection of Pressers, or Press With: Empty "
+            "and an animated Empty"
         )
     if chosen.second != "EMPTY":
         return (first,)
@@ -56,10 +94,3 @@ def leading_objects(scene: bpy.types.Scene) -> tuple[bpy.types.Object, ...]:
             "finger: both fingers are led by {name}; choose another Empty for one", name=first.name
         )
     return (first, chosen.second_empty)
-
-
-def pose_of(guide: bpy.types.Object, scene: bpy.types.Scene, body: BodyFrame) -> Pose:
-    """Pose of the tool that ``guide`` leads, in the body's coordinates."""
-    place = body.body_from_world(np.array(guide.matrix_world)[:3, 3])
-    turner = tool_turn.guide_of(scene) if scene.palpate.tip_turn == "OBJECT" else None
-    return Pose(place, tool_turn.as_object(turner or guide, scene, body))

@@ -39,6 +39,23 @@ def a_baked_animation_plays_by_its_modifier(stage: Stage) -> Wait:
     assert not _thing().modifiers
 
 
+def pressers_are_followed_while_scrubbing(stage: Stage) -> Wait:
+    yield from _begin(stage)
+    hand = bpy.data.collections.new("Hand")
+    hand.objects.link(bpy.data.objects["Finger Skin"])
+    bpy.context.scene.frame_set(1)
+    rest = _places()
+    _thing().palpate.pressers = hand
+    for frame in (21, 16, 21):
+        bpy.context.scene.frame_set(frame)
+        yield
+    yield from stage.picture("frame-21")
+    assert np.abs(_places() - rest).max() > 1e-3
+    bpy.context.scene.frame_set(1)
+    yield
+    assert np.abs(_places() - rest).max() < 1e-6
+
+
 def _begin(stage: Stage) -> Wait:
     stage.open_scene(own_copy(stage, "sample_scenes/fingertip.blend"))
     yield 0.5

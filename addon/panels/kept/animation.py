@@ -1,0 +1,27 @@
+"""Animation: what presses while it plays, and how that is kept."""
+
+import bpy
+
+from ....operators.animation import live_pressers
+from ..base import PalpatePanel, named_properties, while_idle
+from ..sentence import say
+
+
+class PALPATE_PT_animation(PalpatePanel, bpy.types.Panel):
+    bl_idname = "PALPATE_PT_animation"
+    bl_label = "Animation"
+    bl_parent_id = "PALPATE_PT_main"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout, thing = named_properties(self), context.object
+        column = while_idle(layout)
+        column.prop(thing.palpate, "pressers")
+        problem = live_pressers.problem_of(thing)
+        if problem:
+            say(layout, context, problem, "ERROR")
+        column.operator("palpate.press_frames", icon="RENDER_ANIMATION")
+        column.operator("palpate.animate_recording", icon="ANIM")
+
+
+classes = (PALPATE_PT_animation,)

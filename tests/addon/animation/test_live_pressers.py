@@ -1,0 +1,117 @@
+"""Pressers: a soft object follows what presses it, in any order of frames."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+import pytest
+from soft_scene import error_of, mesh_state, part, soft_cube
+
+FRAMES = (1, 4, 7)
+
+
+@pytest.fixture
+def pressed(palpate):
+    """A cube with a ball that goes into and out of its top within the frames 1 to 7."""
+    thing, scene = soft_cube(), bpy.context.scene
+    ball = sphere("Ball", (0.0, 0.0, 0.07))
+    for frame, height in zip(FRAMES, (0.07, 0.041, 0.07), strict=True):
+        ball.location.z = height
+        ball.keyframe_insert("location", frame=frame)
+    scene.frame_set(1)
+    thing.palpate.pressers = collection("Hand", ball)
+    return thing
+
+
+def sphere(name, place, radius=0.02):
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=2, radius=radius, location=place)
+    bpy.context.object.name = name
+    return bpy.context.object
+
+
+def collection(name, *things):
+    made = bpy.data.collections.new(name)
+    for thing in things:
+        made.objects.link(thing)
+    return made
+
+
+def drawn(thing):
+    """Vertices (p, 3) as Blender draws them now, local units."""
+    evaluated = thing.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    return np.array([vertex.co for vertex in evaluated.data.vertices])
+
+
+def test_frames_may_come_in_any_order(pressed):
+    scene, rest = bpy.context.scene, mesh_state(pressed)["mesh"]
+    seen = {}
+    for frame in (1, 2, 3, 4, 5, 6, 7):
+        scene.frame_set(frame)
+        seen[frame] = drawn(pressed)
+    still = np.array([vertex.co for vertex in pressed.data.vertices])
+    np.testing.assert_allclose(seen[1], still, atol=1e-7)
+    assert (still - seen[4])[:, 2].max() > 1e-4
+    for frame in (4, 1, 6, 3, 7, 2, 5):
+        scene.frame_set(frame)
+        np.testing.assert_allclose(drawn(pressed), seen[frame], atol=1e-9)
+    assert mesh_state(pressed)["mesh"] == rest
+
+
+def test_a_presser_moved_by_hand_is_followed_at_once(pressed):
+    before = drawn(pressed)
+    ball = bpy.data.objects["Ball"]
+    ball.animation_data_clear()
+    ball.location.z = 0.041
+    bpy.context.view_layer.update()
+    bpy.context.view_layer.update()
+    assert (before - drawn(pressed))[:, 2].max() > 1e-4
+
+
+def test_what_is_live_is_what_is_baked(pressed, tmp_path):
+    scene = bpy.context.scene
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "pressed.blend"))
+    scene.frame_set(4)
+    live = drawn(pressed)
+    bpy.context.view_layer.objects.active = pressed
+    assert bpy.ops.palpate.press_frames(frame_start=1, frame_end=7) == {"FINISHED"}
+    scene.frame_set(4)
+    assert [one.type for one in pressed.modifiers] == ["MESH_CACHE"]
+    np.testing.assert_allclose(drawn(pressed), live, atol=2e-6)
+
+
+def test_several_parts_press_together_and_an_empty_is_a_sphere(pressed):
+    scene = bpy.context.scene
+    scene.frame_set(4)
+    one = drawn(pressed)
+    finger = bpy.data.objects.new("Finger", None)
+    scene.collection.objects.link(finger)
+    finger.empty_display_size, finger.location = 0.02, (0.041, 0.0, 0.0)
+    bpy.context.view_layer.update()
+    pressed.palpate.pressers.objects.link(finger)
+    scene.frame_set(4)
+    both = drawn(pressed)
+    moved = both - one
+    assert moved[:, 0].min() < -1e-4
+    assert part("operators.animation.live_pressers").problem_of(pressed) == ""
+
+
+def test_what_cannot_press_is_told_and_the_rest_goes_on(pressed):
+    live = part("operators.animation.live_pressers")
+    light = bpy.data.objects.new("Lamp", bpy.data.lights.new("Lamp", "POINT"))
+    bpy.context.scene.collection.objects.link(light)
+    pressed.palpate.pressers.objects.link(light)
+    bpy.context.scene.frame_set(2)
+    assert "Lamp is neither a mesh nor an Empty" in str(live.problem_of(pressed))
+    bpy.context.view_layer.objects.active = pressed
+    assert "Lamp is neither" in error_of(bpy.ops.palpate.press_frames)
+    pressed.palpate.pressers.objects.unlink(light)
+    bpy.context.scene.frame_set(4)
+    assert live.problem_of(pressed) == ""
+
+
+def test_without_pressers_nothing_is_left(pressed):
+    bpy.context.scene.frame_set(4)
+    assert [one.name for one in pressed.modifiers] == ["Palpate Pressers"]
+    pressed.palpate.pressers = None
+    assert not pressed.modifiers
+    assert "Palpate Pressers" not in pressed.data.attributes
