@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import bpy
 import numpy as np
 from mouse_scene import own_copy, type_key
@@ -20,7 +22,7 @@ def escape_ends_the_baking_of_an_animation_and_changes_nothing(stage: Stage) -> 
     yield from type_key(stage, "ESC")
     yield from stage.until(lambda: bpy.context.scene.frame_current == frame, "the old frame")
     assert not _thing().modifiers
-    assert not list((stage.output / "scene" / "palpate").glob("*.pc2*"))
+    assert not _caches(stage)
 
 
 def a_baked_animation_plays_by_its_modifier(stage: Stage) -> Wait:
@@ -56,7 +58,14 @@ def pressers_are_followed_while_scrubbing(stage: Stage) -> Wait:
     assert np.abs(_places() - rest).max() < 1e-6
 
 
+def _caches(stage: Stage) -> list[Path]:
+    return list((stage.output / "scene" / "palpate").glob("*.pc2*"))
+
+
 def _begin(stage: Stage) -> Wait:
+    # What earlier runs baked.
+    for cache in _caches(stage):
+        cache.unlink()
     stage.open_scene(own_copy(stage, "sample_scenes/fingertip.blend"))
     yield 0.5
     yield from stage.open_sidebar("Palpate")
