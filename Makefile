@@ -151,7 +151,7 @@ test-native: $(VENV)/.installed | build/reports ## the servo's own tests
 
 .PHONY: test-core
 test-core: $(VENV)/.servo-installed | build/reports ## core, command line and packages, without Blender
-	$(BIN)/pytest -q $(ON_ALL_CORES) tests/core tests/simulated tests/cli tests/passivity tests/demo tests/release tests/test_architecture.py tests/test_docs.py tests/test_examples.py tests/test_without_posix.py $(REPORT)
+	$(BIN)/pytest -q $(ON_ALL_CORES) tests/core tests/simulated tests/cli tests/passivity tests/demo tests/release tests/test_architecture.py tests/test_docs.py tests/test_examples.py $(REPORT)
 
 .PHONY: test-servo
 test-servo: $(VENV)/.servo-installed | build/reports ## servo and firmware: they have deadlines, so one test after the other
