@@ -15,7 +15,7 @@ from ..operators.bake import (
 )
 from ..operators.device import refresh_devices
 from ..operators.layer import apply_layers, convert_layers
-from ..operators.press import pinch, press, record, save_recording, switch_force
+from ..operators.press import add_press_rig, pinch, press, record, save_recording, switch_force
 from ..operators.record import recording_writer
 from ..operators.softness import force_curve, read_durometer, softness_colours
 from . import command, handlers, preferences, translations
@@ -47,6 +47,7 @@ modules = (
     refresh_devices,
     convert_layers,
     apply_layers,
+    add_press_rig,
     remove_softness,
     read_durometer,
     force_curve,

@@ -2,8 +2,8 @@
 
 import bpy
 
-from ....operators.layer import layers, modifier_inputs
-from ....operators.layer.layer_groups import STRENGTH
+from ....operators.layer import layers, modifier_inputs, press_rig
+from ....operators.layer.layer_groups import AXES, STRENGTH
 from ..base import PalpatePanel, while_idle
 
 
@@ -11,10 +11,13 @@ class PALPATE_PT_layers(PalpatePanel, bpy.types.Panel):
     bl_idname = "PALPATE_PT_layers"
     bl_label = "Layers"
     bl_parent_id = "PALPATE_PT_main"
+    bl_options = {"DEFAULT_CLOSED"}
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return super().poll(context) and bool(layers.layers_of(context.object))
+        return super().poll(context) and bool(
+            layers.layers_of(context.object) or context.object.palpate.body_key
+        )
 
     def draw(self, context: bpy.types.Context) -> None:
         thing = context.object
@@ -23,7 +26,13 @@ class PALPATE_PT_layers(PalpatePanel, bpy.types.Panel):
             row = column.row(align=True)
             row.prop(layer, "show_viewport", text="")
             modifier_inputs.draw_slider(row, layer, STRENGTH, layer.name)
+        for rig in press_rig.rigs_of(thing):
+            column = self.layout.column(align=True)
+            column.label(text=rig.name, icon="EMPTY_AXIS", translate=False)
+            for axis in AXES:
+                modifier_inputs.draw_slider(column, rig, axis, axis)
         column = while_idle(self.layout).column(align=True)
+        column.operator("palpate.add_press_rig", icon="EMPTY_AXIS")
         column.operator("palpate.convert_layers", icon="SHAPEKEY_DATA")
         column.operator("palpate.apply_layers", icon="CHECKMARK")
 

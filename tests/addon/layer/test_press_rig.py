@@ -1,0 +1,53 @@
+"""Press rigs: sliders that add stored answers, exactly."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+from soft_scene import mesh_state, part, rest_places, seen_places
+from without_palpate import without_palpate
+
+AT = (0.004, 0.002, 0.025)
+
+
+def set_sliders(thing, rig, values):
+    inputs = part("operators.layer.modifier_inputs")
+    for axis, value in zip("XYZ", values, strict=True):
+        inputs.set_value(rig, axis, value)
+    thing.update_tag()
+
+
+def test_sliders_superpose_the_three_answers(thing, tmp_path):
+    mesh = mesh_state(thing)["mesh"]
+    assert bpy.ops.palpate.add_press_rig(use_cursor=False, at=AT, radius=0.1) == {"FINISHED"}
+    (rig,) = part("operators.layer.press_rig").rigs_of(thing)
+    rest = rest_places(thing)
+    np.testing.assert_array_equal(seen_places(thing), rest)
+    units = []
+    for unit in np.eye(3):
+        set_sliders(thing, rig, unit)
+        units.append(seen_places(thing) - rest)
+    assert all(np.abs(one).max() > 1e-4 for one in units)
+    values = np.array([0.5, -1.25, 2.0])
+    set_sliders(thing, rig, values)
+    together = rest + np.tensordot(values, np.array(units), axes=1)
+    np.testing.assert_allclose(seen_places(thing), together, rtol=0, atol=1e-6)
+    np.testing.assert_allclose(
+        without_palpate(tmp_path)[thing.name], seen_places(thing), rtol=0, atol=1e-6
+    )
+    assert mesh_state(thing)["mesh"] == mesh
+
+
+def test_a_slider_moves_the_place_by_the_radius_and_is_what_the_body_answers(thing):
+    scene = bpy.context.scene
+    drawn = part("operators.object.drawn_body").open_body(thing, scene)
+    place = part("core.contact.place").nearest_place(drawn.body, np.array(AT))
+    corners = drawn.body.mesh.surface_triangles[place.triangle]
+    grip = part("core.grip.patch").Grip(place.triangle, place.alpha, -place.axis, 0.005)
+    normals = drawn.node_normals[drawn.body.mesh.surface_nodes]
+    held = part("core.grip.held_patch").HeldPatch.of(drawn.body, [grip], normals)
+    everywhere = drawn.node_displacements(held.displacements[:, :, 2] * 0.005)
+    np.testing.assert_allclose(place.alpha @ everywhere[corners], [0, 0, 0.005], atol=1e-3)
+    made = part("operators.press.add_press_rig").answers(drawn, np.array(AT), 0.005)
+    expected = drawn.drawn_displacement(held.displacements[:, :, 2] * 0.005)
+    np.testing.assert_allclose(made[2].ravel(), expected, rtol=0, atol=1e-5)
