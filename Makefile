@@ -205,6 +205,13 @@ demo: $(VENV)/.servo-installed build/packages/.made ## the main job on a plush m
 	$(BIN)/python demo/make_demo.py --blender $(BPY_VENV)/bin/python \
 	  --package build/packages/palpate-[0-9]*.zip --output build/demo
 
+# The steps are played in the window, so the pictures are what a user sees.
+.PHONY: tutorial
+tutorial: $(VENV)/.servo-installed $(WINDOWED_PACKAGE) ## the pictures of docs/tutorial.md
+	BLENDER_GUI='$(BLENDER_GUI)' $(BIN)/pytest -q tests/gui -k newcomer
+	for picture in build/gui/newcomer-*-[1-9]-*.png; do \
+	  cp "$$picture" "docs/images/tutorial-$${picture##*-}"; done
+
 .PHONY: translations
 translations: $(VENV)/.installed ## new texts into addon/translations/*.po, and old ones out
 	$(BIN)/python release/translations.py

@@ -48,14 +48,17 @@ def percent(share: float) -> str:
 
 
 def area(square_metres: float) -> str:
-    """Contact area: ``12.3 mm²``, ``4.6 cm²``."""
-    small = 1e6 * square_metres
-    return f"{small:.3g} mm²" if small < 100.0 else f"{small / 100:.3g} cm²"
+    """Contact area: ``12.3 mm²``, ``4.6 cm²``, ``0.124 m²``."""
+    for unit, size, most in (("mm²", 1e-6, 100.0), ("cm²", 1e-4, 999.5)):
+        if square_metres < most * size:
+            return f"{square_metres / size:.3g} {unit}"
+    return f"{square_metres:.3g} m²"
 
 
 def pressure(pascal: float) -> str:
-    """Pressure in kPa, three digits."""
-    return f"{pascal / 1000:.3g} kPa"
+    """Pressure in kPa or MPa, three digits."""
+    kilo = pascal / 1000
+    return f"{kilo:.3g} kPa" if kilo < 999.5 else f"{kilo / 1000:.3g} MPa"
 
 
 def length(metres: float) -> str:

@@ -96,6 +96,7 @@ def pressed(hare: Any, name: str) -> Pressed:
     import bpy
 
     hare.palpate.shape = name
+    bpy.context.scene.palpate.tip = "POINT"
     at = pressed_place().tolist()
     if bpy.ops.palpate.press("EXEC_DEFAULT", at=at, by=BY) != {"FINISHED"}:
         raise RuntimeError(f"{name}: the press did not finish")

@@ -57,6 +57,7 @@ def demo_cube(folder: Path) -> dict[str, Any]:
 
     say("cube: baking")
     cube = open_scene("cube", folder)
+    bpy.context.scene.palpate.tip = "POINT"
     figures = baking.rebuild_body(cube)
     pictures = [photograph(folder / "cube-before.png", 75)]
     presses = []

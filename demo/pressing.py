@@ -71,6 +71,8 @@ def press_with_device(
         python_args=bpy.app.python_args,
     )
     with device:
+        # The paper's finger, whose depth is from the probe to its proxy.
+        scene.palpate.tip = "POINT"
         scene.palpate.source, scene.palpate.port = "SERIAL", device.port
         session = session_module.begin(thing, scene, state.Source.DEVICE)
         try:

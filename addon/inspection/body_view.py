@@ -57,7 +57,7 @@ def draw() -> None:
         faces, _ = _kept("pins", (thing.session_uid, *rule, matrix), lambda: _pins(context))
         nearer = BEFORE * context.region_data.view_distance * axes[2]
         for depth_test, opacity in (("NONE", SEEN_THROUGH), ("LESS_EQUAL", 1.0)):
-            colors = np.broadcast_to(PIN_COLOR * [1.0, 1.0, 1.0, opacity], (3 * len(faces), 4))
+            colors = np.tile(PIN_COLOR * [1.0, 1.0, 1.0, opacity], (3 * len(faces), 1))
             _draw_triangles(faces + nearer, colors, depth_test)
 
 

@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.contact.tool.pose import reach
+from ...core.contact.tool.pose import resting_on
 from ...core.errors import PalpateError
 from ...simulated.hand.options import SimulatedOptions
 from ...simulated.simulated_process import SimulatedDevice
@@ -23,6 +23,8 @@ Array = NDArray[np.float64]
 
 # Start of the simulated hand above the body and depth of its presses, as shares of the body's size.
 SIMULATED_REST, SIMULATED_DEPTH = 0.15, 0.12
+# Height of a tool above the surface between its presses, likewise.
+SIMULATED_AIR = 0.01
 # World directions from which the first and the second simulated hand come.
 FROM_ABOVE, FROM_THE_SIDE = np.array([0.0, 0.0, 1.0]), np.array([1.0, 0.0, 0.0])
 POINT = FingerTip()
@@ -163,9 +165,15 @@ def start_simulated(
     """
     up = drawn.frame.turn_to_body(towards)
     above, deep = SIMULATED_REST * drawn.size, min(SIMULATED_DEPTH * drawn.size, tip.deepest)
-    lift = 0.0 if tip.tool is None else reach(tip.tool, np.eye(3), -up)
+    top = _top(drawn, up)
+    lift = 0.0
+    if tip.tool is not None:
+        # Out of contact with all of the surface between its presses: only so it can come anew.
+        resting = resting_on(tip.tool, np.eye(3), top, up, drawn.surface_nodes)
+        lift = float((resting.position - top) @ up) + SIMULATED_AIR * drawn.size
+        deep += SIMULATED_AIR * drawn.size
     if haply is None:
-        options = _hand(frame, _top(drawn, up) + lift * up, above * up, deep * up)
+        options = _hand(frame, top + lift * up, above * up, deep * up)
     else:
         # Its angles count from its rest pose, where it begins.
         reachable = SIMULATED_REACH * half_extents(haply)[1] * frame.scale

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import shutil
+from pathlib import Path
+
 import bpy
 import numpy as np
 import pytest
 from soft_scene import cube, part, select, soft_cube
+
+SCENES = Path(__file__).resolve().parents[3] / "sample_scenes"
 
 
 @pytest.fixture
@@ -78,3 +83,23 @@ def test_a_file_from_before_keeps_the_lengths_that_it_sets(chosen, tmp_path):
         assert bpy.context.scene.palpate.own_sizes == own, name
     bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "set.blend"))
     assert bpy.context.scene.palpate.tip_radius == pytest.approx(0.013)
+
+
+def test_a_simulated_hand_lets_go_of_all_of_the_surface_between_its_presses(
+    chosen, tmp_path, monkeypatch
+):
+    """Also between the ears of the mouse, or it could never touch anew."""
+    copy = tmp_path / "mouse.blend"
+    shutil.copyfile(SCENES / copy.name, copy)
+    bpy.ops.wm.open_mainfile(filepath=str(copy))
+    thing, scene = select(bpy.data.objects["Mouse"]), bpy.context.scene
+    drawn = part("operators.object.drawn_body").open_body(thing, scene)
+    tip = part("operators.tool.finger_tip").chosen_tip(scene, thing, drawn.size)
+    source = part("operators.device.device_source")
+    monkeypatch.setattr(source, "SimulatedDevice", lambda options, **_: options)
+    frame = source.DeviceFrame(np.eye(3), np.zeros(3), 1.0)
+    hand = source.start_simulated(drawn, frame, tip=tip)
+    clear = np.linalg.norm(drawn.surface_nodes - np.array(hand.at), axis=1).min()
+    assert clear > tip.tool.radius
+    deepest = np.linalg.norm(drawn.surface_nodes - np.array(hand.at) - hand.by, axis=1).min()
+    assert deepest < 0.8 * tip.tool.radius

@@ -99,11 +99,13 @@ def test_a_tool_is_as_deep_as_it_has_travelled_however_far(palpate, name, thickn
     assert reading.depth_of(tool, away, down, nodes, SLAB_TRIANGLES) == 0.0
 
 
-def test_small_quantities_keep_their_digits(palpate):
+def test_quantities_keep_their_digits_at_any_size(palpate):
     quantities = part("core.quantities")
     assert quantities.area(12.34e-6) == "12.3 mm²"
     assert quantities.area(4.56e-4) == "4.56 cm²"
+    assert quantities.area(0.124) == "0.124 m²"
     assert quantities.pressure(1234.5) == "1.23 kPa"
+    assert quantities.pressure(2.5e6) == "2.5 MPa"
 
 
 ROOM = (10.0, 10.0, 790.0, 590.0)
