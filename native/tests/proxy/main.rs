@@ -8,3 +8,5 @@ mod friction;
 mod god_object;
 mod pushes;
 mod pushing;
+mod thin_parts;
+mod through;
