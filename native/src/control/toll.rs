@@ -1,18 +1,24 @@
-//! The toll: what a finger pays where its contact point comes to a stiffer place of the body.
+//! The toll: what fingers pay where their contact points come to stiffer places of the body.
 //!
-//! A force that is the slope of the elastic energy gives back what was put in, as long as its contact
-//! point stays. But a point slides on, and where the body is stiffer the same depth holds more energy,
+//! Forces that are the slope of the elastic energy give back what was put in, as long as their contact
+//! points stay. But points slide on, and where the body is stiffer the same depth holds more energy,
 //! which nobody has paid for: pressed in where it is soft, drawn aside and let out where it is stiff,
-//! such a finger would gain (`docs/contact.md`). So the energy held is compared with the work that the
-//! finger has done. What is missing, the debt, a brake takes from the way that the finger goes on:
-//! against it, hence without a force at rest, where the law of contact holds as it is. Places that
-//! are softer give nothing back: a credit could be carried into another path, and taken out there.
+//! such a finger would gain (`docs/contact.md`). So the energy held is compared with the work of all
+//! fingers together, for what one has put in another may take out. What is missing, the debt, brakes
+//! take from the ways that the fingers go on: against them, hence without a force at rest, where the
+//! law of contact holds as it is. Places that are softer give nothing back: a credit could be carried
+//! into another path, and taken out there.
 //!
-//! The brake is as large as the debt asks, up to the push. It grows and turns over a short piece of the
+//! The accounts are those of the forces as sent: what the limits cut off a force was not worked
+//! against, and what they cut off a brake was not paid.
+//!
+//! A brake is as large as the debt asks, up to the push. It grows and turns over a short piece of the
 //! way, solved implicitly, so that no step is too long for it: so it is continuous, and knows neither the
 //! mesh nor the speed.
 
 use glam::DVec3;
+
+use crate::control::safety::shorten;
 
 /// Debts are paid within about this share of the depth,
 const PAYING: f64 = 0.008;
@@ -27,115 +33,252 @@ const FREE: f64 = 1.0e-4;
 const SAME_PLACE: f64 = 1.0e-9;
 /// No depth, m: less cannot be divided by.
 const SHALLOWEST: f64 = 1.0e-100;
-/// A finger at rest loses the brake within this time, s.
+/// A finger at rest loses its brake within this time, s.
 const REST: f64 = 0.02;
 
-/// A point that presses, at the end of a tick.
-#[derive(Debug, Clone, Copy, Default)]
+/// A finger at the end of a tick; by default it is not there, or presses nothing.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Pressed {
     /// Where the finger is, m.
     pub finger: DVec3,
+    /// It did not move there but was set down.
+    pub is_set_down: bool,
     /// Its contact point at rest, m.
     pub place: DVec3,
     /// Its force on the body by the law of contact, N.
     pub push: DVec3,
-    /// The energy of that law at this place and displacement, J.
+    /// Its share of the energy of all by that law at these places and displacements, J.
     pub energy: f64,
-    /// Young's modulus, Pa. Who changes it, or the law, while a finger presses, puts energy in or takes
-    /// it, and owes nothing.
+    /// What is asked of the motors but for a brake, N.
+    pub wanted: DVec3,
+    /// By which law it presses.
+    pub law: Law,
+    /// That law is not known, or changes, or its force is not sent whole.
+    pub is_unsettled: bool,
+}
+
+/// What the law depends on but for places and displacements. Who changes it while a finger presses
+/// puts energy in or takes it, and owes nothing.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Law {
+    /// Young's modulus, Pa.
     pub modulus: f64,
-    /// Whether the law stays.
-    pub is_settled: bool,
+    /// The most that motors see of the body's stiffness, N/m.
+    pub most_stiffness: f64,
+    /// The largest force that is sent, N.
+    pub most_force: f64,
 }
 
-/// What is owed by one finger, from tick to tick.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Toll {
-    last: Pressed,
-    /// The brake's part of what the finger last felt, as a push, N.
-    against: DVec3,
-    /// J.
-    debt: f64,
-    /// Size of the brake while the finger goes on as it did, N.
-    brake: f64,
-    /// Its direction, at most of unit length.
-    direction: DVec3,
-    is_led: bool,
-}
-
-impl Toll {
-    /// The finger is off the body, and owes nothing.
-    pub fn lift(&mut self, finger: DVec3, modulus: f64) {
-        let last = Pressed {
-            finger,
-            modulus,
-            ..Pressed::default()
-        };
-        *self = Self {
-            last,
-            is_led: true,
-            ..Self::default()
-        };
-    }
-
-    /// Where the finger was is not known, and what it owed is forgotten.
-    pub fn forget(&mut self) {
-        *self = Self::default();
-    }
-
-    /// The brake on the finger, N, `dt` seconds after the last tick: at most as large as the push.
-    pub fn take(&mut self, pressed: Pressed, dt: f64) -> DVec3 {
-        let last = std::mem::replace(&mut self.last, pressed);
-        let was_led = std::mem::replace(&mut self.is_led, true);
-        let way = if was_led {
-            pressed.finger - last.finger
+impl Pressed {
+    /// Of a force of this size, N, the share that is sent.
+    fn sent_share(&self) -> f64 {
+        let push = self.push.length();
+        if push > self.law.most_force {
+            self.law.most_force / push
         } else {
-            DVec3::ZERO
-        };
-        let most = pressed.push.length();
-        let depth = 2.0 * pressed.energy / most;
-        let is_pressed = most > 0.0 && depth > SHALLOWEST && depth.is_finite();
-        if !is_pressed {
-            (self.debt, self.brake) = (0.0, 0.0);
-            self.against = DVec3::ZERO;
-            return DVec3::ZERO;
+            1.0
         }
-        let length = way.length();
-        self.turn(way, length, TURNING * depth, dt);
-        let along = if length > 0.0 {
-            self.direction.dot(way) / length
+    }
+
+    /// The push as far as it is sent, N.
+    fn felt(&self) -> DVec3 {
+        self.push * self.sent_share()
+    }
+
+    /// The energy that is had back by going straight out, J: less where the force is cut off.
+    fn held(&self) -> f64 {
+        let share = self.sent_share();
+        self.energy * share * (2.0 - share)
+    }
+
+    /// 0 unless it presses, m.
+    fn depth(&self) -> f64 {
+        let depth = 2.0 * self.energy / self.push.length();
+        if depth > SHALLOWEST && depth.is_finite() {
+            depth
         } else {
             0.0
-        };
-        let gained = pressed.energy - last.energy;
-        let stays = pressed.place.distance(last.place) <= SAME_PLACE * depth;
-        let worked = if stays {
-            gained
-        } else {
-            0.5 * (last.push + pressed.push).dot(way)
-        };
-        let is_same = was_led && pressed.modulus == last.modulus && pressed.is_settled;
-        let made = if is_same { gained - worked } else { 0.0 };
-        let owed = self.debt + made - 0.5 * self.against.dot(way);
-        let gain = 1.0 / (PAYING * depth);
-        let paid = 0.5 * length * along;
-        let collected = (owed - FREE * pressed.energy).max(0.0);
-        let brake = gain * collected / (1.0 + gain * paid.max(0.0));
-        let change = most * length / (GROWING * depth);
-        let brake = brake.clamp(self.brake - change, self.brake + change);
-        self.brake = brake.clamp(0.0, most);
-        self.debt = (owed - paid * self.brake).max(0.0);
-        self.against = self.direction * self.brake;
-        -self.against
+        }
     }
 
-    /// Turns the brake's direction with the way; at rest there is none.
-    fn turn(&mut self, way: DVec3, length: f64, turning: f64, dt: f64) {
+    /// What is asked of the motors as far as it may be sent, N.
+    fn asked(&self) -> DVec3 {
+        shorten(self.wanted, self.law.most_force)
+    }
+
+    fn presses(&self) -> bool {
+        self.push != DVec3::ZERO
+    }
+
+    /// Whether it presses by the law of the last tick.
+    fn presses_as(&self, last: &Self) -> bool {
+        let is_same = self.law == last.law || !(self.presses() && last.presses());
+        is_same && !self.is_unsettled && !last.is_unsettled
+    }
+
+    /// Whether it presses where it did, with a force that is sent whole.
+    fn stays(&self, last: &Self) -> bool {
+        let is_off = !self.presses() && !last.presses();
+        let nearest = SAME_PLACE * self.depth().max(last.depth());
+        let is_there = self.place.distance(last.place) <= nearest;
+        is_off || (is_there && self.sent_share() == 1.0)
+    }
+
+    /// The finger's work against the push as it is sent, J.
+    fn work(&self, last: &Self, way: DVec3) -> f64 {
+        let work = 0.5 * (last.felt() + self.felt()).dot(way);
+        if self.presses() {
+            work
+        } else {
+            // The rest of the way out was in the air.
+            work.max(-last.held())
+        }
+    }
+}
+
+/// The brake of one finger.
+#[derive(Debug, Clone, Copy, Default)]
+struct Brake {
+    /// Its size while the finger goes on as it did, N.
+    size: f64,
+    /// Its direction, at most of unit length.
+    direction: DVec3,
+    /// The finger's way in this tick, m.
+    way: DVec3,
+    /// What was sent less than asked, with the brake, N.
+    beside: DVec3,
+}
+
+impl Brake {
+    /// Turns its direction with the way; at rest there is none.
+    fn turn(&mut self, turning: f64, dt: f64) {
+        let length = self.way.length();
         if length > 0.0 {
-            self.direction += (way / length - self.direction) * (length / (length + turning));
+            let ahead = self.way / length - self.direction;
+            self.direction += ahead * (length / (length + turning));
         } else {
             let rest = self.direction.length() - dt / REST;
             self.direction = self.direction.normalize_or_zero() * rest.max(0.0);
+        }
+    }
+
+    /// As a push, N.
+    fn force(&self) -> DVec3 {
+        self.direction * self.size
+    }
+
+    /// What it takes from this tick's way for each newton, J; the other half is the next tick's.
+    fn paid(&self) -> f64 {
+        0.5 * self.direction.dot(self.way)
+    }
+
+    /// Grows towards a size, at most as large as the push, no faster than the way allows.
+    fn grow(&mut self, size: f64, pressed: &Pressed) {
+        let most = pressed.push.length();
+        let change = most * self.way.length() / (GROWING * pressed.depth());
+        let size = size.clamp(self.size - change, self.size + change);
+        self.size = size.clamp(0.0, most);
+    }
+}
+
+/// What is owed by all fingers together, from tick to tick.
+#[derive(Debug, Clone, Copy)]
+pub struct Toll<const FINGERS: usize> {
+    last: [Pressed; FINGERS],
+    brakes: [Brake; FINGERS],
+    /// J.
+    debt: f64,
+    /// Whether the accounts of this tick can be kept.
+    is_kept: bool,
+}
+
+impl<const FINGERS: usize> Default for Toll<FINGERS> {
+    fn default() -> Self {
+        Self {
+            last: [Pressed::default(); FINGERS],
+            brakes: [Brake::default(); FINGERS],
+            debt: 0.0,
+            is_kept: false,
+        }
+    }
+}
+
+impl<const FINGERS: usize> Toll<FINGERS> {
+    /// The brakes on the fingers, N, `dt` seconds after the last tick.
+    pub fn take(&mut self, pressed: &[Pressed; FINGERS], dt: f64) -> [DVec3; FINGERS] {
+        let last = std::mem::replace(&mut self.last, *pressed);
+        let held: f64 = pressed.iter().map(Pressed::held).sum();
+        if held <= 0.0 {
+            self.brakes = [Brake::default(); FINGERS];
+            (self.debt, self.is_kept) = (0.0, false);
+            return [DVec3::ZERO; FINGERS];
+        }
+        for ((brake, now), last) in self.brakes.iter_mut().zip(pressed).zip(&last) {
+            let is_led = !now.is_set_down;
+            brake.way = if is_led {
+                now.finger - last.finger
+            } else {
+                DVec3::ZERO
+            };
+        }
+        self.is_kept = (pressed.iter().zip(&last)).all(|(now, last)| now.presses_as(last));
+        if self.is_kept {
+            self.debt += self.made(pressed, &last);
+        }
+        self.brake(pressed, held, dt);
+        self.brakes.map(|brake| -brake.force())
+    }
+
+    /// Tells what the devices hold until the next tick, N; none where no force is given.
+    pub fn sent(&mut self, forces: &[Option<DVec3>; FINGERS]) {
+        for ((brake, force), pressed) in self.brakes.iter_mut().zip(forces).zip(&self.last) {
+            let Some(force) = force.filter(|_| pressed.presses()) else {
+                brake.beside = DVec3::ZERO;
+                continue;
+            };
+            let beside = pressed.asked() - force;
+            if self.is_kept {
+                self.debt += 0.5 * (brake.force() - beside).dot(brake.way);
+            }
+            brake.beside = beside;
+        }
+        self.debt = self.debt.max(0.0);
+    }
+
+    /// What the energy gained beyond the work of the fingers, but for this tick's brakes, J.
+    fn made(&self, pressed: &[Pressed; FINGERS], last: &[Pressed; FINGERS]) -> f64 {
+        let stay = (pressed.iter().zip(last)).all(|(now, last)| now.stays(last));
+        let fingers = pressed.iter().zip(last).zip(&self.brakes);
+        let made = fingers.map(|((now, last), brake)| {
+            let by_law = if stay {
+                0.0
+            } else {
+                now.held() - last.held() - now.work(last, brake.way)
+            };
+            by_law - 0.5 * brake.beside.dot(brake.way)
+        });
+        made.sum()
+    }
+
+    /// Brakes that take the debt from the ways, and what is left of it.
+    fn brake(&mut self, pressed: &[Pressed; FINGERS], held: f64, dt: f64) {
+        let mut steepness = 0.0;
+        for (brake, pressed) in self.brakes.iter_mut().zip(pressed) {
+            let depth = pressed.depth();
+            if depth > 0.0 {
+                brake.turn(TURNING * depth, dt);
+                steepness += brake.paid().max(0.0) / (PAYING * depth);
+            }
+        }
+        let left = (self.debt - FREE * held).max(0.0) / (1.0 + steepness);
+        for (brake, pressed) in self.brakes.iter_mut().zip(pressed) {
+            let depth = pressed.depth();
+            if depth > 0.0 {
+                brake.grow(left / (PAYING * depth), pressed);
+                self.debt -= brake.paid() * brake.size;
+            } else {
+                (brake.size, brake.direction) = (0.0, DVec3::ZERO);
+            }
         }
     }
 }

@@ -22,6 +22,7 @@ use crate::body::surface::Body;
 use crate::contact::cones::MAX_FINGERS;
 use crate::contact::ground::Ground;
 use crate::contact::touch::ContactMode;
+use crate::control::toll::Toll;
 use crate::device::{Device, Fault};
 use crate::engine::Engine;
 use crate::servo::exchange::{Hand, Holder, exchange};
@@ -61,6 +62,7 @@ pub struct Servo {
     /// Where ticks go while they are recorded.
     pub tape: Option<Tape>,
     engine: Engine,
+    toll: Toll<MAX_FINGERS>,
     tick: u64,
     /// Time of the last tick, s.
     ticked_at: Option<f64>,
@@ -102,6 +104,7 @@ impl Servo {
             samples: samples_in,
             tape: None,
             engine: Engine::default(),
+            toll: Toll::default(),
             tick: 0,
             ticked_at: None,
             samples_lost: 0,
@@ -155,11 +158,14 @@ impl Servo {
         self.stages.end_of(Stage::Proxy, &mut since);
 
         let touches = self.feel(&moment, &followed);
+        let touches = self.pay(&moment, &touches);
         self.stages.end_of(Stage::Contact, &mut since);
 
         let shots = each(&mut self.fingers, |k, finger| {
             Some(finger.send(followed[k].as_ref()?, touches[k].as_ref()?))
         });
+        (self.toll)
+            .sent(&shots.map(|shot| Some(shot.filter(|s| s.state.may_push())?.output_force)));
         self.stages.end_of(Stage::Write, &mut since);
         self.publish(&shots, settings.young_modulus);
     }
@@ -190,6 +196,18 @@ impl Servo {
         each(&mut self.fingers, |k, finger| {
             let answer = answers.as_ref().map(|answers| &answers[k]);
             Some(finger.feel(followed[k].as_ref()?, answer))
+        })
+    }
+
+    /// The contact of each finger with what it pays for sliding.
+    fn pay(&mut self, moment: &Moment<'_>, touches: &Each<Touch>) -> Each<Touch> {
+        if moment.body_replaced {
+            self.toll = Toll::default();
+        }
+        let pressed = touches.map(|touch| touch.map_or_else(Default::default, |t| t.pressed));
+        let brakes = self.toll.take(&pressed, moment.dt);
+        each(&mut self.fingers, |k, _| {
+            Some(touches[k]?.braked(brakes[k]))
         })
     }
 

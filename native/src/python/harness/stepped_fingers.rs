@@ -34,15 +34,22 @@ struct Place {
     set_down: bool,
 }
 
-/// A device without motors that is wherever it was put.
+/// A device that is wherever it was put.
 #[derive(Clone)]
-struct Led(Arc<Mutex<Place>>);
+struct Led {
+    place: Arc<Mutex<Place>>,
+    /// N; infinite without motors.
+    max_force: f64,
+}
 
 impl Device for Led {
     fn read(&mut self, _now: f64, _dt: f64, _frame: &DeviceFrame) -> Reading {
-        let mut place = locked(&self.0);
+        let mut place = locked(&self.place);
         let restart = std::mem::take(&mut place.set_down);
-        Reading::At(Probe::without_motors(place.position, restart))
+        Reading::At(Probe {
+            max_force: self.max_force,
+            ..Probe::without_motors(place.position, restart)
+        })
     }
 
     fn write(&mut self, _force: DVec3, _enable: bool, _frame: &DeviceFrame) {}
@@ -72,7 +79,7 @@ impl Stepped {
         }
         for places in paths.outer_iter() {
             for (led, row) in self.led.iter().zip(places.rows()) {
-                locked(&led.0).position = finite("paths", [row[0], row[1], row[2]])?;
+                locked(&led.place).position = finite("paths", [row[0], row[1], row[2]])?;
             }
             tick(&mut self.stepping);
         }
@@ -82,9 +89,11 @@ impl Stepped {
 
 /// The ticks of a Servo, by hand and in virtual time, with fingers led along paths.
 ///
-/// No device, no limits; fingers are where the path says, however far apart its places lie.
+/// No device, no limits; fingers are where the path says, however far apart its places lie. With a
+/// `max_force`, N, they have motors that bear so much.
 /// `follow(paths)` takes (ticks, m, 3), m, and gives contact forces on the fingers, N, and torques,
-/// N m, (ticks, m, 3), before coupling and safety; `costs(paths)` the CPU time of each tick, s. ValueError
+/// N m, (ticks, m, 3), before coupling and safety; `sent(paths)` the forces that devices are told, N,
+/// (ticks, m, 3); `costs(paths)` the CPU time of each tick, s. ValueError
 /// for several fingers on a body that is not whole, and for other shapes.
 #[pyclass(frozen, module = "palpate_servo.harness")]
 pub struct SteppedFingers(Mutex<Stepped>);
@@ -92,12 +101,13 @@ pub struct SteppedFingers(Mutex<Stepped>);
 #[pymethods]
 impl SteppedFingers {
     #[new]
-    #[pyo3(signature = (body, positions, settings, *, rate_hz=1000))]
+    #[pyo3(signature = (body, positions, settings, *, rate_hz=1000, max_force=None))]
     fn new(
         body: &Body,
         positions: PyArrayLike2<'_, f64, AllowTypeChange>,
         settings: Given,
         rate_hz: u32,
+        max_force: Option<f64>,
     ) -> PyResult<Self> {
         let places = vectors("positions", &positions)?;
         if places.is_empty() || places.len() > MAX_FINGERS {
@@ -122,10 +132,11 @@ impl SteppedFingers {
         };
         let led: Vec<Led> = (places.into_iter())
             .map(|position| {
-                Led(Arc::new(Mutex::new(Place {
-                    position,
-                    set_down: true,
-                })))
+                let set_down = true;
+                Led {
+                    place: Arc::new(Mutex::new(Place { position, set_down })),
+                    max_force: max_force.unwrap_or(f64::INFINITY),
+                }
             })
             .collect();
         let boxed = led
@@ -153,6 +164,22 @@ impl SteppedFingers {
         })?;
         let shaped = |values| PyArray1::from_vec(py, values).reshape([ticks, fingers, 3]);
         Ok((shaped(forces)?, shaped(torques)?))
+    }
+
+    fn sent<'py>(
+        &self,
+        py: Python<'py>,
+        paths: PyArrayLike3<'py, f64, AllowTypeChange>,
+    ) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        let (ticks, fingers, _) = paths.as_array().dim();
+        let mut forces = Vec::with_capacity(3 * ticks * fingers);
+        locked(&self.0).lead(&paths, |stepping| {
+            stepping.tick(None);
+            for report in stepping.ends.snapshots.read().fingers() {
+                forces.extend(report.snapshot.output_force.to_array());
+            }
+        })?;
+        PyArray1::from_vec(py, forces).reshape([ticks, fingers, 3])
     }
 
     fn costs<'py>(
@@ -193,7 +220,7 @@ impl SteppedFingers {
     fn set_down(&self, position: Triple, finger: usize) -> PyResult<()> {
         let stepped = locked(&self.0);
         let led = (stepped.led.get(finger)).ok_or_else(|| no_finger(finger, stepped.led.len()))?;
-        *locked(&led.0) = Place {
+        *locked(&led.place) = Place {
             position: finite("position", position)?,
             set_down: true,
         };

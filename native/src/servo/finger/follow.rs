@@ -29,16 +29,13 @@ impl Finger {
         let tip_fits = self.tips.tip.fits(moment.body);
         let mut found = self.inspect(moment, reading, tip_fits);
         let probe = reading.probe();
+        let mut is_set_down = moment.body_replaced || tip_changed;
         if let Some(probe) = probe {
             self.pose.rotation = probe.orientation * own.orientation;
             if probe.position.is_finite() {
                 self.pose.position = probe.position;
-                let jumps = self.jumps(own, probe, &found);
-                self.go(
-                    moment,
-                    jumps || moment.body_replaced || tip_changed,
-                    tip_fits,
-                );
+                is_set_down |= self.jumps(own, probe, &found);
+                self.go(moment, is_set_down, tip_fits);
             }
         }
         self.appear(&found, moment);
@@ -73,6 +70,8 @@ impl Finger {
                     Tip::Point => hold.is_some(),
                 },
             presence: self.presence,
+            is_ramped: self.safety.is_ramped(),
+            is_set_down,
         }
     }
 

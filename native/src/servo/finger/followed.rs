@@ -3,7 +3,9 @@
 use glam::DVec3;
 
 use crate::control::coupling::{Contact, Coupled, Coupler};
+use crate::control::safety::Limits;
 use crate::control::state::Findings;
+use crate::control::toll::{Law, Pressed};
 use crate::proxy::SurfacePoint;
 use crate::servo::settings::{FingerSettings, Moment};
 use crate::servo::snapshot::Snapshot;
@@ -25,6 +27,10 @@ pub struct Followed<'a> {
     pub(super) touches: bool,
     /// From 0 to 1 after a fault.
     pub(super) presence: f64,
+    /// Its force was sent whole, but for the limits.
+    pub(super) is_ramped: bool,
+    /// No way leads from where it was.
+    pub(super) is_set_down: bool,
 }
 
 impl Followed<'_> {
@@ -41,6 +47,34 @@ impl Followed<'_> {
     /// The most that motors may see of the body's stiffness, N/m.
     pub(super) fn most_stiffness(&self) -> f64 {
         self.own.coupling.stiffness / self.own.frame.scale
+    }
+
+    /// The servo's limits and the device's own, whichever is less; what is no number stays none.
+    pub(super) fn limits(&self) -> Limits {
+        let Moment {
+            options, settings, ..
+        } = *self.moment;
+        let most = settings.max_force.unwrap_or(options.limits.max_force);
+        let device = self.motors.filter(|&force| force < most);
+        Limits {
+            max_force: device.unwrap_or(most),
+            ..options.limits
+        }
+    }
+
+    /// As the toll sees the finger while it presses nothing.
+    pub(super) fn free(&self) -> Pressed {
+        Pressed {
+            finger: self.shot.probe,
+            is_set_down: self.is_set_down,
+            place: self.shot.proxy,
+            law: Law {
+                modulus: self.moment.settings.young_modulus,
+                most_stiffness: self.most_stiffness(),
+                most_force: self.limits().max_force,
+            },
+            ..Pressed::default()
+        }
     }
 
     /// A contact as motors are to make it felt; as it is without them.

@@ -5,11 +5,9 @@ use glam::DVec3;
 use super::Finger;
 use super::followed::Followed;
 use super::touch::Touch;
-use crate::control::safety::Limits;
 use crate::control::state::{Standing, State, transition};
 use crate::device::Fault;
 use crate::device::reason;
-use crate::servo::settings::Moment;
 use crate::servo::snapshot::{FingerReport, Snapshot};
 use crate::servo::tip::Tip;
 
@@ -24,7 +22,7 @@ impl Finger {
         self.standing = transition(&self.standing, found, dt);
         let (mut output_force, mut limited) = (DVec3::ZERO, "");
         if self.standing.may_push(found) {
-            match self.safety.limit(touch.wanted, &limits(followed), dt) {
+            match self.safety.limit(touch.wanted, &followed.limits(), dt) {
                 Some(within) => (output_force, limited) = (within.force, within.by),
                 None => self.standing = Standing::fault(Fault::Nan),
             }
@@ -90,18 +88,5 @@ impl Finger {
         }
         self.report.link = self.device.report();
         &self.report
-    }
-}
-
-/// The servo's limits and the device's own, whichever is less; what is no number stays none.
-fn limits(followed: &Followed<'_>) -> Limits {
-    let Moment {
-        options, settings, ..
-    } = *followed.moment;
-    let most = settings.max_force.unwrap_or(options.limits.max_force);
-    let device = followed.motors.filter(|&force| force < most);
-    Limits {
-        max_force: device.unwrap_or(most),
-        ..options.limits
     }
 }

@@ -14,7 +14,6 @@ use crate::contact::touch::{
     ContactMode, contact_relation, softened_touch, surface_displacement, touch,
 };
 use crate::control::coupling::{Contact, Coupled, Coupler, series_compliance};
-use crate::control::toll::{Pressed, Toll};
 use crate::fingers::press::{Answer, Press};
 use crate::proxy::{Proxy, SurfacePoint};
 use crate::servo::settings::Moment;
@@ -25,7 +24,6 @@ pub(super) struct Point {
     pub proxy: Option<Proxy>,
     pub among: Among,
     pub blend: Blend,
-    toll: Toll,
 }
 
 impl Point {
@@ -35,7 +33,6 @@ impl Point {
             proxy: None,
             among: Among::fresh(),
             blend: Blend::default(),
-            toll: Toll::default(),
         }
     }
 
@@ -43,7 +40,6 @@ impl Point {
     pub fn turn_to(&mut self, body: &Body, place: DVec3) {
         self.among = Among::default();
         self.blend.let_go();
-        self.toll.forget();
         if let Some(proxy) = &mut self.proxy {
             proxy.restart(body, place);
         }
@@ -121,20 +117,16 @@ impl Point {
             }
         };
         let Some(hold) = followed.hold else {
-            if followed.is_sound {
-                let modulus = followed.moment.settings.young_modulus;
-                self.toll.lift(followed.shot.probe, modulus);
-            }
             return Touch::none(followed);
         };
         if let Some(answer) = answer.filter(|_| acts) {
-            self.toll.forget();
             return self.feel_others(followed, &hold, answer, coupler);
         }
         let mut touch = self.feel_alone(followed, &hold, coupler);
         if answer.is_some() {
             // Its contact is lifted: it is followed, for it may come back, but presses nothing.
             touch.shot.nodal_forces = [DVec3::ZERO; 3];
+            touch.pressed = followed.free();
         }
         touch
     }
@@ -185,23 +177,9 @@ impl Point {
             // The coupling's spring holds what it is pressed together by.
             energy = relation.energy(moved) * young_modulus + 0.5 * push.dot(displacement - moved);
         }
-        let brake = if mode == ContactMode::Consistent {
-            let pressed = Pressed {
-                finger: followed.shot.probe,
-                place: followed.shot.proxy,
-                push,
-                energy,
-                modulus: young_modulus,
-                is_settled: self.blend.is_settled(),
-            };
-            self.toll.take(pressed, followed.moment.dt)
-        } else {
-            self.toll.forget();
-            DVec3::ZERO
-        };
         let reached = coupled.body_displacement;
         let shot = Snapshot {
-            contact_force: whole.force + brake,
+            contact_force: whole.force,
             nodal_forces: if !is_softened && reached == displacement {
                 whole.nodal_forces
             } else {
@@ -211,7 +189,12 @@ impl Point {
             ..followed.shot
         };
         let shot = self.on_surface(followed, hold, shot, DVec3::ZERO);
-        Touch::of(followed, shot, coupled.force + brake)
+        let touch = Touch::of(followed, shot, coupled.force);
+        if mode == ContactMode::Paper {
+            // As published: nobody pays.
+            return touch;
+        }
+        touch.with_energy(push, energy, self.is_settled(followed))
     }
 
     /// The contact of a finger among others.
@@ -241,7 +224,15 @@ impl Point {
             displacement: followed.displacement() - answer.by_others,
             force,
         };
-        Touch::of(followed, shot, followed.drive(coupler, &seen))
+        let energy = answer.energy * young_modulus;
+        let is_settled = answer.is_settled && self.is_settled(followed);
+        let wanted = followed.drive(coupler, &seen);
+        Touch::of(followed, shot, wanted).with_energy(-force, energy, is_settled)
+    }
+
+    /// Whether the law stays as it is, and all of it is felt.
+    fn is_settled(&self, followed: &Followed<'_>) -> bool {
+        self.blend.is_settled() && followed.presence == 1.0 && followed.is_ramped
     }
 
     /// Softenings of the touched triangle's nodes, as they are felt in this tick.

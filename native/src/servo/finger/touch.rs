@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::followed::Followed;
 use crate::control::state::Findings;
+use crate::control::toll::Pressed;
 use crate::device::Fault;
 use crate::servo::snapshot::Snapshot;
 
@@ -15,6 +16,8 @@ pub struct Touch {
     pub(super) found: Findings,
     /// To go to the motors, N.
     pub(super) wanted: DVec3,
+    /// For the toll.
+    pub pressed: Pressed,
 }
 
 impl Touch {
@@ -26,6 +29,38 @@ impl Touch {
             shot,
             found,
             wanted,
+            // Nobody knows of its energy, unless told.
+            pressed: Pressed {
+                is_unsettled: true,
+                ..followed.free()
+            },
+        }
+    }
+
+    /// The same of a point whose energy is known.
+    #[must_use]
+    pub(super) fn with_energy(self, push: DVec3, energy: f64, is_settled: bool) -> Self {
+        let pressed = Pressed {
+            push,
+            energy,
+            wanted: self.wanted,
+            is_unsettled: !is_settled,
+            ..self.pressed
+        };
+        Self { pressed, ..self }
+    }
+
+    /// The same with a brake, N.
+    #[must_use]
+    pub fn braked(self, brake: DVec3) -> Self {
+        let shot = Snapshot {
+            contact_force: self.shot.contact_force + brake,
+            ..self.shot
+        };
+        Self {
+            shot,
+            wanted: self.wanted + brake,
+            ..self
         }
     }
 
@@ -35,6 +70,7 @@ impl Touch {
             shot: followed.shot,
             found: followed.found,
             wanted: DVec3::ZERO,
+            pressed: followed.free(),
         }
     }
 
