@@ -1,8 +1,8 @@
-"""Closed paths of a finger in a body, and the work that goes round them."""
+"""Closed paths of fingers in a body, and the work that goes round them."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -26,6 +26,8 @@ ROUND = 1600
 REST = 20
 # Contact points so near to each other, in depths, are the same.
 SAME = 0.02
+# Fingers of a pair begin at most so many depths apart.
+APART = 4.0
 
 
 @dataclass(frozen=True)
@@ -53,13 +55,14 @@ class Loop:
 
 @dataclass(frozen=True)
 class Books:
-    """What a loop gave, each as a share of F d / 2: its largest force, the depth of the press.
+    """What fingers were given on their loops, as shares of F d / 2: of the finger for which that is
+    most, its largest force and the depth of its press.
 
     Attributes
     ----------
     rounds : energy that came out of each round. Only of those that touched throughout, and whose
-        contact point ended where it began: past a ridge it may lie on the other side, where less of
-        what the press has put in is held.
+        contact points ended where they began: past a ridge one may lie on the other side, where
+        less of what the press has put in is held.
     path : of the whole path, from air to air.
     """
 
@@ -99,25 +102,39 @@ def random_loops(
         yield Loop(float(depth), start + heights * normals[triangle], start + 0.5 * ellipse)
 
 
-def books(loop: Loop, follow: Follow) -> Books | None:
-    """The work of a loop by the trapezoidal rule; None where nothing was felt.
+def random_pairs(loops: Sequence[Loop], seed: int) -> Iterator[tuple[Loop, Loop]]:
+    """Each loop with another one that begins nearby, if there is one."""
+    random = np.random.default_rng(seed)
+    starts = np.array([loop.round[0] for loop in loops])
+    for number, loop in enumerate(loops):
+        distances = np.linalg.norm(starts - starts[number], axis=1)
+        near = np.flatnonzero(distances < APART * loop.depth)
+        others = near[near != number]
+        if len(others):
+            yield loop, loops[random.choice(others)]
 
-    ``follow`` leads a finger on and gives forces on it, newton, and at the end its contact point.
+
+def books(loops: Sequence[Loop], follow: Follow) -> Books | None:
+    """The work of fingers led round together, by the trapezoidal rule; None where nothing was felt.
+
+    ``follow`` leads ``m`` fingers on along (ticks, m, 3) and gives the forces on them, newton, of
+    that shape, and at the end their contact points (m, 3).
     """
-    path = loop.path
+    path = np.stack([loop.path for loop in loops], axis=1)
     ends = [0, *(PRESS + REST + number * ROUND for number in range(3)), len(path)]
     parts = [follow(path[begin:end]) for begin, end in pairwise(ends)]
     forces = np.concatenate([part[0] for part in parts])
     places = [part[1] for part in parts]
-    size = np.linalg.norm(forces, axis=1)
+    size = np.linalg.norm(forces, axis=2)
     if size.max() == 0.0:
         return None
-    work = np.einsum("tx,tx->t", 0.5 * (forces[1:] + forces[:-1]), np.diff(path, axis=0))
-    work /= 0.5 * size.max() * loop.depth
+    depths = np.array([loop.depth for loop in loops])
+    work = np.einsum("tfx,tfx->t", 0.5 * (forces[1:] + forces[:-1]), np.diff(path, axis=0))
+    work /= 0.5 * (size.max(axis=0) * depths).max()
     rounds = []
     for number in range(2):
         begin = PRESS + REST - 1 + number * ROUND
-        moved = np.linalg.norm(places[number + 1] - places[number])
-        if size[begin : begin + ROUND + 1].min() > 0.0 and moved < SAME * loop.depth:
+        moved = np.linalg.norm(places[number + 1] - places[number], axis=1)
+        if size[begin : begin + ROUND + 1].min() > 0.0 and (moved < SAME * depths).all():
             rounds.append(float(work[begin : begin + ROUND].sum()))
     return Books(tuple(rounds), float(work.sum()))

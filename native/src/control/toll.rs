@@ -21,11 +21,11 @@ use glam::DVec3;
 use crate::control::safety::shorten;
 
 /// Debts are paid within about this share of the depth,
-const PAYING: f64 = 0.008;
+const PAYING: f64 = 0.016;
 /// the brake turns within this one,
-const TURNING: f64 = 0.01;
+const TURNING: f64 = 0.02;
 /// and grows as large as the push, or falls from there, within this one.
-const GROWING: f64 = 0.1;
+const GROWING: f64 = 0.2;
 /// This share of the energy may be owed: work adds up from tick to tick to rounding and bends.
 const FREE: f64 = 1.0e-4;
 /// A contact point that moved by less than this share of the depth has stayed: then the work of the law

@@ -2,7 +2,7 @@
 //!
 //! The servo leads all fingers through the stages of a tick, one stage after the other. Each stage makes
 //! a value of those of the stages before: `read` a [`Reading`], `follow` a [`Followed`], `feel` a
-//! [`Touch`], `send` the [`Snapshot`](crate::servo::snapshot::Snapshot).
+//! [`Touch`], which the servo's toll brakes, `send` the [`Snapshot`](crate::servo::snapshot::Snapshot).
 
 mod among;
 mod follow;

@@ -1,4 +1,4 @@
-//! One tick: read, proxy, contact, safety, write, publish. No allocation, no lock.
+//! One tick: read, proxy, contact, toll, safety, write, publish. No allocation, no lock.
 
 mod child_thread;
 pub mod exchange;

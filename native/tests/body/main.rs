@@ -3,5 +3,6 @@
 #[path = "../bodies/mod.rs"]
 mod bodies;
 mod compliance;
+mod cones;
 mod consistent_contact;
 mod softening;

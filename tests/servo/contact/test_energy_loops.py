@@ -1,12 +1,12 @@
-"""A point gives no energy on closed paths without friction, and is as the law says at rest."""
+"""Points give no energy on closed paths without friction, and are as the law says at rest."""
 
 import numpy as np
 import pytest
 from palpate_servo.harness import SteppedFingers
-from referees.energy_loops import books, random_loops
+from referees.energy_loops import books, random_loops, random_pairs
 
 from palpate.core.servo.session import native_body
-from palpate.core.servo.settings import Settings
+from palpate.core.servo.settings import Coupling, Settings
 
 YOUNG_MODULUS = 10_000.0
 # Shares of F d / 2.
@@ -14,38 +14,61 @@ MOST = 1e-3
 LOOPS = 40
 
 
-def by(surface, settings, start):
-    fingers = SteppedFingers(surface, start[None], settings)
+def by(surface, settings, starts, motors):
+    fingers = SteppedFingers(surface, starts, settings, max_force=motors)
 
     def follow(path):
-        forces = fingers.follow(path[:, None])[0][:, 0]
-        return forces, fingers.snapshot().fingers[0].proxy
+        forces = fingers.sent(path)
+        return forces, np.array([shot.proxy for shot in fingers.snapshot().fingers])
 
     return follow
 
 
-def books_of(body, settings):
+def loops_of(body, count):
     mesh = body.mesh
     free = ~np.isin(mesh.surface_nodes, body.fixed)
     nodes, triangles = mesh.nodes[mesh.surface_nodes], mesh.surface_local_triangles
-    surface = native_body(body)
-    loops = random_loops(nodes, triangles, free, LOOPS, seed=14)
-    found = [books(loop, by(surface, settings, loop.press[0])) for loop in loops]
+    return list(random_loops(nodes, triangles, free, count, seed=14))
+
+
+def books_of(surface, together, settings, motors=None):
+    found = []
+    for loops in together:
+        starts = np.array([loop.press[0] for loop in loops])
+        found.append(books(loops, by(surface, settings, starts, motors)))
     return [one for one in found if one is not None]
 
 
-@pytest.mark.parametrize("shading", [False, True], ids=["facets", "shaded"])
-def test_no_closed_path_gives_energy(body, shading):
-    found = books_of(body, Settings(YOUNG_MODULUS, shading=shading))
+def gives_nothing(found):
     rounds = [gain for one in found for gain in one.rounds]
-    assert len(rounds) > LOOPS
+    assert len(rounds) > LOOPS / 2
     assert max(rounds) <= MOST
     assert max(one.path for one in found) <= MOST
 
 
+@pytest.mark.parametrize("shading", [False, True], ids=["facets", "shaded"])
+def test_no_closed_path_gives_energy(body, shading):
+    alone = [(loop,) for loop in loops_of(body, LOOPS)]
+    gives_nothing(books_of(native_body(body), alone, Settings(YOUNG_MODULUS, shading=shading)))
+
+
+@pytest.mark.parametrize("max_force", [3.0, 0.02], ids=["whole", "cut off"])
+def test_none_gives_energy_to_motors(body, max_force):
+    """The forces as sent: behind the coupling, and cut off by what the motors bear."""
+    alone = [(loop,) for loop in loops_of(body, LOOPS)]
+    coupled = Settings(YOUNG_MODULUS, coupling=Coupling(800.0, 4.0, passivity_control=True))
+    gives_nothing(books_of(native_body(body), alone, coupled, max_force))
+
+
+def test_two_that_are_led_together_get_no_energy(body):
+    pairs = list(random_pairs(loops_of(body, 10 * LOOPS), seed=14))[:LOOPS]
+    gives_nothing(books_of(native_body(body, whole=True), pairs, Settings(YOUNG_MODULUS)))
+
+
 def test_the_papers_law_as_published_does(body):
     """What the test above would say of a force without a toll."""
-    found = books_of(body, Settings(YOUNG_MODULUS, mode="paper"))
+    alone = [(loop,) for loop in loops_of(body, LOOPS)]
+    found = books_of(native_body(body), alone, Settings(YOUNG_MODULUS, mode="paper"))
     rounds = np.array([gain for one in found for gain in one.rounds])
     assert (rounds > 10 * MOST).mean() > 0.1
 

@@ -24,16 +24,6 @@ impl Tool {
     }
 
     #[getter]
-    fn radius(&self) -> f64 {
-        self.inner.radius()
-    }
-
-    #[getter]
-    fn reach(&self) -> f64 {
-        self.inner.reach()
-    }
-
-    #[getter]
     fn stride(&self) -> f64 {
         self.inner.stride()
     }

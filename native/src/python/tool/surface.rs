@@ -71,9 +71,4 @@ impl ToolSurface {
             inner: Arc::new(surface),
         })
     }
-
-    #[getter]
-    fn spacing(&self) -> f64 {
-        self.inner.spacing()
-    }
 }
