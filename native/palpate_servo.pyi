@@ -400,12 +400,6 @@ class Tool:
         """
 
     @property
-    def radius(self) -> float: ...
-    @property
-    def reach(self) -> float:
-        """From the reference point to the farthest point of the tool, m."""
-
-    @property
     def stride(self) -> float:
         """How far the tool moves in one tick at most, m."""
 
@@ -437,10 +431,6 @@ class ToolSurface:
 
         Raises ValueError for a body that is not whole, or arrays that do not fit.
         """
-
-    @property
-    def spacing(self) -> float:
-        """How far points usually are apart, m."""
 
 PointTarget: TypeAlias = tuple[int, _Vector, _Vector]
 """Triangle, area coordinates there, and how far from that place, m."""

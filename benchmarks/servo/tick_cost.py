@@ -21,6 +21,8 @@ Exit code 1 where a claim fails:
   two alone (for an idle machine: medians);
 * a fingertip of 12 points at most 50 us, of 40 points at most 300 us (the same);
 * at most one tick in 100,000 of any tool computes for longer than 700 us;
+* four fingertips of 40 points together at most 650 us, 900 with friction, two plates 3 mm deep 600
+  and 700 (the same);
 * pressed down at 50 mm/s and held still, a tool without friction has its force, to a millionth,
   within 20 ticks.
 
@@ -43,6 +45,7 @@ from numpy.typing import NDArray
 from palpate_servo import Body
 from palpate_servo.harness import SteppedFingers, ToolContact, tool_costs
 
+from palpate.benchmarks.servo.several_tools import print_several
 from palpate.core.bake.steps import BakeSettings, bake
 from palpate.core.body.soft_body import SoftBody
 from palpate.core.contact.tool.convex_tool import convex
@@ -272,6 +275,8 @@ def main() -> int:
     surface = native_body(body, whole=True)
     holds = print_points(surface, ticks // 2)
     holds &= print_tools(body, surface, ticks, given.tool)
+    if not given.tool:
+        holds &= print_several(body, surface, ticks // 20)
     if not holds:
         print("a claim does not hold (on an idle machine?)")
     return 0 if holds else 1

@@ -115,7 +115,8 @@ def random_pairs(loops: Sequence[Loop], seed: int) -> Iterator[tuple[Loop, Loop]
 
 
 def books(loops: Sequence[Loop], follow: Follow) -> Books | None:
-    """The work of fingers led round together, by the trapezoidal rule; None where nothing was felt.
+    """The work of fingers led round together, by the trapezoidal rule; None where one did not touch
+    when it had been pressed in: there is no F d of what it only grazes.
 
     ``follow`` leads ``m`` fingers on along (ticks, m, 3) and gives the forces on them, newton, of
     that shape, and at the end their contact points (m, 3).
@@ -126,7 +127,7 @@ def books(loops: Sequence[Loop], follow: Follow) -> Books | None:
     forces = np.concatenate([part[0] for part in parts])
     places = [part[1] for part in parts]
     size = np.linalg.norm(forces, axis=2)
-    if size.max() == 0.0:
+    if size[PRESS + REST - 1].min() == 0.0:
         return None
     depths = np.array([loop.depth for loop in loops])
     work = np.einsum("tfx,tfx->t", 0.5 * (forces[1:] + forces[:-1]), np.diff(path, axis=0))
