@@ -101,7 +101,7 @@ impl Safety {
 }
 
 /// The vector, cut to `length` if it is longer, with its direction.
-pub(super) fn shorten(v: DVec3, length: f64) -> DVec3 {
+fn shorten(v: DVec3, length: f64) -> DVec3 {
     let own = v.length();
     if own <= length {
         v

@@ -18,8 +18,6 @@
 
 use glam::DVec3;
 
-use crate::control::safety::shorten;
-
 /// Debts are paid within about this share of the depth,
 const PAYING: f64 = 0.016;
 /// the brake turns within this one,
@@ -101,9 +99,14 @@ impl Pressed {
         }
     }
 
-    /// What is asked of the motors as far as it may be sent, N.
+    /// What is to be sent without a brake, N. Damping is left out, for it takes; cut off together with
+    /// the law's force it need not, and is counted.
     fn asked(&self) -> DVec3 {
-        shorten(self.wanted, self.law.most_force)
+        if self.wanted.length() > self.law.most_force {
+            -self.felt()
+        } else {
+            self.wanted
+        }
     }
 
     fn presses(&self) -> bool {
