@@ -6,6 +6,7 @@ import os
 import shutil
 import tempfile
 import time
+from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
 from typing import Self
@@ -38,6 +39,7 @@ class ScratchFolder:
 
     def remove(self) -> None:
         """Remove the folder. Safe to repeat."""
+        _empty(self.path)
         if self._lock >= 0:
             os.close(self._lock)
             self._lock = -1
@@ -87,5 +89,20 @@ def _swept(path: Path) -> bool:
         return is_old
     with abandoned(lock) as nobody:
         if nobody:
-            shutil.rmtree(path, ignore_errors=True)
+            _remove_lock_last(path)
         return nobody
+
+
+def _remove_lock_last(folder: Path) -> None:
+    _empty(folder)
+    shutil.rmtree(folder, ignore_errors=True)
+
+
+def _empty(folder: Path) -> None:
+    """Remove all but the lock: whoever is killed meanwhile leaves a folder that is swept again."""
+    for entry in folder.iterdir() if folder.is_dir() else ():
+        if entry.name != LOCK_FILE and entry.is_dir() and not entry.is_symlink():
+            shutil.rmtree(entry, ignore_errors=True)
+        elif entry.name != LOCK_FILE:
+            with suppress(OSError):
+                entry.unlink()

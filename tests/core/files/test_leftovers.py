@@ -168,3 +168,16 @@ def test_leases_of_killed_processes_are_swept_and_others_kept(tmp_path):
             process.kill()
             process.wait()
             process.stdout.close()
+
+
+def test_a_sweep_that_is_killed_leaves_what_the_next_one_sweeps(place, holder, monkeypatch):
+    dead = holder()
+    killed(dead)
+    (folder,) = place.glob("palpate-bake-*")
+    monkeypatch.setattr("shutil.rmtree", lambda *_, **__: None)
+    sweep(("bake",))
+    assert [path.name for path in folder.iterdir()] == [LOCK_FILE]
+    monkeypatch.undo()
+    monkeypatch.setattr("tempfile.tempdir", str(place))
+    assert sweep(("bake",)) == [folder]
+    assert not folder.exists()
