@@ -87,7 +87,7 @@ build/typing/palpate:
 .PRECIOUS: .venv-bpy-%/.installed
 .venv-bpy-%/.installed:
 	python=$$(release/find_python.sh $(PYTHON_OF_$*) $(PYTHON)); "$$python" -m venv .venv-bpy-$*
-	.venv-bpy-$*/bin/pip install --quiet bpy==$* pytest pytest-timeout pytest-xdist
+	.venv-bpy-$*/bin/pip install --quiet bpy==$* pytest pytest-timeout pytest-xdist hypothesis
 	touch $@
 
 # ------------------------------------------------------------------------------------- packages

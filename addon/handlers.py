@@ -19,6 +19,7 @@ from ..operators.session.press_events import Moment
 from ..operators.tool.tool_sizes import keep_exact_sizes
 from . import known_status
 from .inspection import body_view
+from .properties import from_file
 
 # Body files before a save that may change the .blend's folder.
 _found_before_save: dict[str, Path] = {}
@@ -45,6 +46,7 @@ def _before_load(*_: object) -> None:
 
 @persistent
 def _after_load(*_: object) -> None:
+    from_file.mend_all()
     _forget()
     kept_body.forget()
     live_layer.remove_leftovers()
@@ -52,6 +54,12 @@ def _after_load(*_: object) -> None:
         keep_exact_sizes(scene)
         if not bpy.data.filepath:
             scene.palpate.source = preferences().default_source
+
+
+@persistent
+def _after_import(*_: object) -> None:
+    from_file.mend_all()
+    known_status.forget()
 
 
 @persistent
@@ -124,6 +132,7 @@ def _before_exit() -> None:
 HANDLERS = {
     "load_pre": _before_load,
     "load_post": _after_load,
+    "blend_import_post": _after_import,
     "undo_pre": _before_undo,
     "redo_pre": _before_undo,
     "undo_post": _after_undo,

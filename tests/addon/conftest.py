@@ -24,6 +24,7 @@ from pathlib import Path
 from types import ModuleType
 
 import pytest
+from hypothesis import settings
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 MODULE = "bl_ext.user_default.palpate"
@@ -37,6 +38,11 @@ os.environ["BLENDER_USER_RESOURCES"] = str(USER_FOLDER)
 
 import bpy  # noqa: E402 -- the environment comes first, see above
 from soft_scene import mesh_state, soft_cube  # noqa: E402
+
+# The same examples in every run, few of them: each opens and saves a file.
+settings.register_profile("repeatable", derandomize=True, deadline=None, max_examples=12)
+settings.register_profile("long", max_examples=20_000, deadline=None, database=None)
+settings.load_profile("repeatable")
 
 
 def pytest_report_header() -> str:

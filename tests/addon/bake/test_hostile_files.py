@@ -4,29 +4,21 @@ from __future__ import annotations
 
 import itertools
 import json
-import os
 import shutil
 from pathlib import Path
 
 import bpy
 import numpy as np
 import pytest
-from soft_scene import error_of, layer_names, locate, part, press_down, select, soft_cube, status
-
-KEY = "0123456789ab"
+from soft_scene import error_of, layer_names, locate, part, press_down, select, status
+from users_home import KEY, fill_home, outside, save_soft_cube
 
 
 @pytest.fixture
 def saved(palpate, tmp_path):
     """A soft cube in a saved file, beside a home with things that are nobody's business."""
-    home = tmp_path / "home"
-    for place in (".ssh/id_rsa", "letter.odt", f"body-{KEY}.npz", ".config/autostart/here.desktop"):
-        (home / place).parent.mkdir(parents=True, exist_ok=True)
-        (home / place).write_text(f"the user's {place}")
-    thing = soft_cube()
-    (tmp_path / "scene").mkdir()
-    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene" / "scene.blend"))
-    return select(thing)
+    fill_home(tmp_path)
+    return save_soft_cube(tmp_path)
 
 
 def hostile_names(home: Path) -> list[str]:
@@ -49,22 +41,6 @@ def hostile_names(home: Path) -> list[str]:
     names += ["a" * length + f"-{KEY}.npz" for length in (250, 400, 900)]
     names += [f"{up}etc/passwd" for up in ("/", *("../" * n for n in range(1, 20)))]
     return list(dict.fromkeys(names))
-
-
-def everything(folder: Path) -> dict[Path, bytes]:
-    """All files below a folder, links not followed."""
-    found = (Path(top) / name for top, _, names in os.walk(folder) for name in names)
-    return {path: b"link" if path.is_symlink() else path.read_bytes() for path in found}
-
-
-def outside(tmp_path: Path) -> dict[Path, bytes]:
-    """All files but the .blend files and what lies in the folders of bodies."""
-    own = {path for path in tmp_path.rglob("palpate") if path.is_dir() and not path.is_symlink()}
-    return {
-        path: held
-        for path, held in everything(tmp_path).items()
-        if path.parent not in own and path.suffix not in {".blend", ".blend1"}
-    }
 
 
 def test_no_name_leads_any_operator_or_handler_to_another_file(saved, tmp_path, monkeypatch):
