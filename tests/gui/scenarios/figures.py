@@ -1,4 +1,4 @@
-"""What is drawn over the view: force, depth and pressure, pins, tetrahedra, what is wrong with a mesh."""
+"""What is drawn over the view: force, depth, pressure, pins, tetrahedra, faults of a mesh."""
 
 from __future__ import annotations
 

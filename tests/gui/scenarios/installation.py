@@ -1,4 +1,4 @@
-"""The extension is there after its installation, and what is typed arrives as from a user's hands."""
+"""The extension is there once installed, and what is typed arrives as from a user's hands."""
 
 from __future__ import annotations
 
