@@ -18,11 +18,13 @@ from ..operators.layer import apply_layers, convert_layers
 from ..operators.press import add_press_rig, pinch, press, record, save_recording, switch_force
 from ..operators.record import recording_writer
 from ..operators.softness import force_curve, read_durometer, softness_colours
+from ..operators.stroke import stroke_operator, stroke_size
 from . import command, handlers, preferences, translations
 from .inspection import body_view
 from .overlay import view
 from .panels import sidebar
 from .properties import soft_object, softness
+from .toolbar import keys, palpate_tool
 
 # In the order of registration; properties first, since all others refer to them.
 modules = (
@@ -52,9 +54,13 @@ modules = (
     read_durometer,
     force_curve,
     softness_colours,
+    stroke_operator,
+    stroke_size,
     sidebar,
     view,
     body_view,
+    palpate_tool,
+    keys,
     handlers,
     command,
     translations,

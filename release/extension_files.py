@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 TOP_FILES = ("__init__.py", "LICENSE")
 FOLDERS = ("addon", "operators", "core", "simulated", "cli")
 # What these folders may hold for Blender's sake; anything else is refused, not shipped by accident.
-SHIPPED = {".py", ".json", ".toml", ".glsl", ".png", ".svg"}
+SHIPPED = {".py", ".json", ".toml", ".glsl", ".png", ".svg", ".dat"}
 # Translations, which the package holds in another form: see translations.py.
 SOURCES = {".po"}
 

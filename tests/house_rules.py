@@ -45,6 +45,7 @@ operators/shape
 operators/session
 operators/bake
 operators/press
+operators/stroke
 operators/animation
 operators/softness
 operators
@@ -53,6 +54,7 @@ addon/properties
 addon/overlay
 addon/inspection
 addon/panels
+addon/toolbar
 addon
 cli/body cli/press cli/softness cli/bake cli
 """.split()  # noqa: SIM905 - a level of the house is a line

@@ -6,6 +6,7 @@ from ...operators.device import refresh_devices
 from .finger import FingerProperties, haply_at_rest, haply_model
 from .inspection import InspectionProperties
 from .kinds import choice, chosen_object, number, span, switch, text
+from .stroke import StrokeProperties
 
 # Files hold the numbers of these items: add new ones at the end only.
 SOURCE_ITEMS = [
@@ -27,7 +28,9 @@ def _suggest_ports(
     return [f"{path} ({text})" if text else path for path, text in refresh_devices.known_ports()]
 
 
-class PalpateScene(FingerProperties, InspectionProperties, bpy.types.PropertyGroup):
+class PalpateScene(
+    FingerProperties, InspectionProperties, StrokeProperties, bpy.types.PropertyGroup
+):
     """``scene.palpate``: device, place and force loop."""
 
     source: choice("Press With", "Who moves the probe", SOURCE_ITEMS, "POINTER")

@@ -15,9 +15,13 @@ from .probe_drag import View
 
 Array = NDArray[np.float64]
 
-# Blender's navigation gizmos in the corner: the ball, then a column of buttons, in unscaled pixels.
-GIZMO_MARGIN, GIZMO_BUTTON, GIZMO_BUTTONS = 20, 34, 4
-DEFAULT_GIZMO_SIZE = 80
+# Blender's navigation gizmos in the corner, in unscaled pixels: the ball and its margin, then a
+# column of round buttons, each with its spacing.
+BALL_MARGIN, BUTTON_SIZE, BUTTON_SPACING = 10.0, 28.0, 30.0
+BUTTONS, BELOW_BALL, FROM_CORNER = 4, 2.1, 0.75
+# Without the ball there are small axes: their size in units of the interface, and twice their own.
+SMALL_AXES_UNITS, UNIT = 2.5, 20.0
+DEFAULT_BALL_SIZE = 80
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,18 +66,40 @@ class Viewport:
         return View(right, up, metres)
 
     def over_gizmos(self) -> bool:
-        """Whether the pointer is on the view's navigation gizmos, which must keep working."""
+        """Whether the pointer is on a navigation gizmo of the view, which must keep working."""
+        return any(
+            np.hypot(*np.subtract(self.cursor, middle)) <= radius
+            for middle, radius in self.gizmos()
+        )
+
+    def gizmos(self) -> list[tuple[tuple[float, float], float]]:
+        """Middles and radii of the navigation gizmos, pixels of the region."""
         if not self.area.spaces.active.show_gizmo_navigate:
-            return False
+            return []
         preferences = bpy.context.preferences
-        scale = preferences.system.ui_scale
-        size = getattr(preferences.view, "gizmo_size_navigate_view", DEFAULT_GIZMO_SIZE)
-        width = (size + 2 * GIZMO_MARGIN) * scale
-        height = width + GIZMO_BUTTONS * GIZMO_BUTTON * scale
+        view, scale = preferences.view, preferences.system.ui_scale
+        ball = 0.5 * getattr(view, "gizmo_size_navigate_view", DEFAULT_BALL_SIZE) * scale
         right = self.region.width - self._covered("UI")
         top = self.region.height - self._covered("HEADER") - self._covered("TOOL_HEADER")
-        x, y = self.cursor
-        return right - width <= x <= right and top - height <= y <= top
+        offset, spacing = ball + BALL_MARGIN * scale, BUTTON_SPACING * scale
+        found, below = [], FROM_CORNER * spacing
+        if view.mini_axis_type == "GIZMO":
+            found.append(((right - offset, top - offset), ball))
+            below = BELOW_BALL * offset
+        elif view.mini_axis_type == "MINIMAL":
+            axes = 2.0 * view.mini_axis_size * preferences.system.pixel_size
+            below = SMALL_AXES_UNITS * UNIT * scale + axes
+        if view.show_navigate_ui:
+            # Of a camera's view there is one more, which locks it.
+            count = BUTTONS + (self.region_3d.view_perspective == "CAMERA")
+            found += [
+                (
+                    (right - FROM_CORNER * spacing, top - below - slot * spacing),
+                    0.5 * BUTTON_SIZE * scale,
+                )
+                for slot in range(count)
+            ]
+        return found
 
     def _covered(self, kind: str) -> int:
         """Pixels of the window region covered by another region of this kind."""

@@ -1,0 +1,1 @@
+"""The tool Palpate in the toolbar, its keys and its places in the menus."""

@@ -1,0 +1,56 @@
+"""Shortcut of the tool, and Palpate in the Object menus."""
+
+import bpy
+
+from ...operators.reporting.translated import shown
+from .palpate_tool import IDNAME
+
+_keys: list[tuple[bpy.types.KeyMap, bpy.types.KeyMapItem]] = []
+
+
+class PALPATE_MT_object(bpy.types.Menu):
+    bl_idname = "PALPATE_MT_object"
+    bl_label = "Palpate"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.operator("palpate.make_soft")
+        layout.separator()
+        tool = layout.operator("wm.tool_set_by_id", text=shown("Strokes"), translate=False)
+        tool.name = IDNAME
+        # As from a menu there is a place under the pointer, invoke where it is chosen.
+        layout.operator("palpate.press")
+        layout.operator("palpate.pinch")
+
+
+def _in_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
+    if context.object is not None and context.object.type == "MESH":
+        menu.layout.separator()
+        menu.layout.menu(PALPATE_MT_object.bl_idname)
+
+
+MENUS = ("VIEW3D_MT_object", "VIEW3D_MT_object_context_menu")
+classes = (PALPATE_MT_object,)
+
+
+def register() -> None:
+    """Add menu entries, and the shortcut, which the preferences show under Object Mode."""
+    for name in MENUS:
+        getattr(bpy.types, name).append(_in_menu)
+    configuration = bpy.context.window_manager.keyconfigs.addon
+    if configuration is None:
+        # Background mode has no keys.
+        return
+    keys = configuration.keymaps.new("Object Mode")
+    item = keys.keymap_items.new("wm.tool_set_by_id", "P", "PRESS", ctrl=True, alt=True)
+    item.properties.name = IDNAME
+    _keys.append((keys, item))
+
+
+def unregister() -> None:
+    """Remove them."""
+    for keys, item in _keys:
+        keys.keymap_items.remove(item)
+    _keys.clear()
+    for name in MENUS:
+        getattr(bpy.types, name).remove(_in_menu)

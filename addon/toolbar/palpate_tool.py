@@ -1,0 +1,82 @@
+"""Tool Palpate: strokes on soft objects, with the circle of its radius on the surface."""
+
+from pathlib import Path
+
+import bpy
+
+from ...operators.object import soft_object
+from ...operators.reporting.translated import shown
+from ...operators.stroke.stroke_properties import CONTEXT
+from . import surface_circle
+
+IDNAME = "palpate.tool"
+# Blender adds the suffix ".dat".
+ICON = Path(__file__).with_name("palpate_icon")
+
+
+def _key(
+    kind: str, operator: str, *, shift: bool = False, **properties: object
+) -> tuple[object, ...]:
+    event = {"type": kind, "value": "PRESS", **({"shift": True} if shift else {})}
+    return (operator, event, {"properties": list(properties.items())})
+
+
+class PalpateTool(bpy.types.WorkSpaceTool):
+    bl_space_type = "VIEW_3D"
+    bl_context_mode = "OBJECT"
+    bl_idname = IDNAME
+    bl_label = "Palpate"
+    bl_description = (
+        "Push, pull, grab, twist or pinch soft objects: hold and drag, in any direction. Shift "
+        "goes the other way"
+    )
+    bl_icon = str(ICON)
+    bl_cursor = "CROSSHAIR"
+    bl_operator = "palpate.stroke"
+    bl_keymap = (
+        _key("LEFTMOUSE", "palpate.stroke"),
+        _key("LEFTMOUSE", "palpate.stroke", shift=True, outward=True),
+        _key("F", "palpate.stroke_size", what="RADIUS"),
+        _key("F", "palpate.stroke_size", shift=True, what="STRENGTH"),
+    )
+
+    @staticmethod
+    def draw_settings(
+        context: bpy.types.Context, layout: bpy.types.UILayout, tool: bpy.types.WorkSpaceTool
+    ) -> None:
+        """Draw the settings in the header of the tool, or in its panel."""
+        chosen, thing = context.scene.palpate, context.object
+        if thing is not None and not soft_object.refusal(thing) and not thing.palpate.body_key:
+            layout.operator("palpate.make_soft")
+            return
+        layout.prop(chosen, "stroke", text="", text_ctxt=CONTEXT)
+        row = layout.row(align=True)
+        row.prop(chosen, "tip_radius")
+        row = layout.row(align=True)
+        row.prop(chosen, "stroke_strength")
+        outward = chosen.stroke != "GRAB"
+        if outward:
+            layout.prop(chosen, "stroke_outward", toggle=True)
+        row = layout.row(align=True)
+        row.label(text=shown("Mirrored"), translate=False)
+        row.prop(chosen, "stroke_mirrored", text="", toggle=True)
+        if thing is not None and thing.type == "MESH":
+            layout.prop(thing.palpate, "material", text="")
+            layout.operator("palpate.press", text="Press with Device", icon="MODIFIER")
+
+    @staticmethod
+    def draw_cursor(
+        context: bpy.types.Context, tool: bpy.types.WorkSpaceTool, xy: tuple[int, int]
+    ) -> None:
+        """Draw the tool's radius on the surface under the pointer."""
+        surface_circle.draw(xy)
+
+
+def register() -> None:
+    """Put the tool into the toolbar, below the cursor."""
+    bpy.utils.register_tool(PalpateTool, after={"builtin.cursor"}, separator=True)
+
+
+def unregister() -> None:
+    """Take it out again."""
+    bpy.utils.unregister_tool(PalpateTool)

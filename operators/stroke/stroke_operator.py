@@ -1,0 +1,263 @@
+"""Stroke: hold and drag on a soft object; what is let go stays."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import bpy
+import numpy as np
+from mathutils import Vector
+
+from ...core.errors import PalpateError
+from ...core.sentence import Sentence
+from ..object import soft_object
+from ..object.drawn_body import open_body
+from ..reporting.acting import Acting
+from ..reporting.translated import reported
+from ..scene import viewport
+from ..scene.drawn_surface import metres_per_unit
+from ..scene.object_handle import ObjectHandle
+from ..session import press_session
+from . import kept_stroke, stroke_words, touched_place
+from .motion import Asked, Motion
+from .seen_place import seen_place
+from .stroke import Stroke, Stroked, grips_at
+from .stroke_drag import StrokeDrag
+from .stroke_properties import CONTEXT, StrokeProperties
+from .stroke_size import radius_of
+from .touched_place import TouchedPlace
+from .typed_amount import TypedAmount
+
+
+class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
+    bl_idname = "palpate.stroke"
+    bl_label = "Stroke"
+    bl_translation_context = CONTEXT
+    bl_description = (
+        "Push, pull, grab, twist or pinch the soft object under the pointer: hold, drag, let go. "
+        "Every stroke stays, and the next goes on from it"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+
+    _handle: ObjectHandle
+    _stroke: Stroke
+    _touched: TouchedPlace
+    _drag: StrokeDrag
+    _typed: TypedAmount
+
+    @classmethod
+    def refusal(cls, context: bpy.types.Context) -> str:
+        if press_session.current() is not None:
+            return "A press is going on; Enter keeps the shape, Escape restores it"
+        if context.mode != "OBJECT":
+            return "Strokes are for Object Mode; leave this mode first"
+        return ""
+
+    def act(self, context: bpy.types.Context) -> None:
+        thing, scene = context.object, context.scene
+        reason = soft_object.refusal(thing)
+        if reason or not thing.palpate.body_key:
+            raise PalpateError(reason or not_soft(thing))
+        graph = context.evaluated_depsgraph_get()
+        touched = touched_place.nearest(scene, graph, thing, Vector(self.place))
+        self._begin(scene, touched)
+        asked = self._asked()
+        if asked.nothing:
+            raise PalpateError(
+                "stroke: it moves nothing; give it a depth, a way, an angle or a share"
+            )
+        kept_stroke.begin(thing)
+        try:
+            stroked = self._stroke.stroked(asked)
+            kept_stroke.draw(thing, self._stroke.drawn, stroked)
+        except BaseException:
+            kept_stroke.give_up(thing)
+            raise
+        self._keep(scene, thing, asked, stroked)
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        if bpy.app.background:
+            return self.execute(context)
+        return self.guarded(lambda: self._start(context, event))
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        try:
+            return self._handle_event(context, event)
+        except PalpateError as problem:
+            self._leave(context, give_up=True)
+            self.report({"ERROR"}, reported(problem))
+            return {"CANCELLED"}
+        except BaseException:
+            # A bug must not leave a layer that nobody removes.
+            self._leave(context, give_up=True)
+            raise
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        """End with the operator: another file, unregister, or exit."""
+        self._leave(context, give_up=True)
+
+    def _start(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        here = viewport.under_pointer(context.window, event.mouse_x, event.mouse_y)
+        if here is None:
+            return {"PASS_THROUGH"}
+        scene = context.scene
+        touched = seen_place(scene, context.evaluated_depsgraph_get(), here)
+        if touched is None:
+            return {"PASS_THROUGH"}
+        thing = touched.thing
+        reason = soft_object.refusal(thing)
+        if reason:
+            raise PalpateError(reason)
+        if not self.properties.is_property_set("motion"):
+            self.motion = scene.palpate.stroke
+        if not self.properties.is_property_set("mirrored"):
+            self.mirrored = scene.palpate.stroke_mirrored
+        self.place = touched.seen
+        context.window.cursor_modal_set("WAIT")
+        try:
+            self._begin(scene, touched)
+        finally:
+            context.window.cursor_modal_restore()
+        place = touched.frame.body_from_world(touched.seen)
+        view = here.view_at(place, touched.frame)
+        if view is None:
+            return {"PASS_THROUGH"}
+        if context.object != thing:
+            _make_active(context, thing)
+        kept_stroke.begin(thing)
+        motion, cursor = Motion[self.motion], (event.mouse_x, event.mouse_y)
+        self._drag = StrokeDrag(
+            motion,
+            -1.0 if self.outward != scene.palpate.stroke_outward else 1.0,
+            view,
+            self._stroke.grips[0].radius,
+            self._stroke.drawn.size,
+            scene.palpate.stroke_strength,
+            cursor,
+            cursor,
+        )
+        self._typed = TypedAmount(motion)
+        context.window_manager.modal_handler_add(self)
+        context.workspace.status_text_set(stroke_words.status(motion))
+        self._follow(context, event)
+        return {"RUNNING_MODAL"}
+
+    def _begin(self, scene: bpy.types.Scene, touched: TouchedPlace) -> None:
+        """Take hold of the body at a place."""
+        thing = touched.thing
+        drawn = open_body(thing, scene)
+        metres = metres_per_unit(scene)
+        radius = metres * self.radius or radius_of(scene, drawn)
+        self.radius = radius / metres
+        grips = grips_at(drawn, touched.rest, radius, tuple(self.mirrored))
+        chosen = thing.palpate
+        self._touched, self._handle = touched, ObjectHandle.of(thing)
+        self._stroke = Stroke(drawn, grips, chosen.young_modulus, chosen.static_friction)
+
+    def _handle_event(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        pressed = event.value == "PRESS"
+        if pressed and event.type in {"ESC", "RIGHTMOUSE"}:
+            self._leave(context, give_up=True)
+            return {"CANCELLED"}
+        released = event.type == "LEFTMOUSE" and event.value == "RELEASE"
+        if released or (pressed and event.type in {"RET", "NUMPAD_ENTER"}):
+            return self._finish(context)
+        typed = self._typed.after(event)
+        if typed is not None:
+            self._typed = typed
+        if typed is not None or event.type in {"MOUSEMOVE", "INBETWEEN_MOUSEMOVE"}:
+            self._follow(context, event)
+        return {"RUNNING_MODAL"}
+
+    def _follow(self, context: bpy.types.Context, event: bpy.types.Event) -> None:
+        """Draw the stroke as the pointer or the keyboard has it now."""
+        scene, thing = context.scene, self._thing()
+        pressure = event.pressure if event.is_tablet else 0.0
+        drag = self._drag.dragged((event.mouse_x, event.mouse_y), pressure)
+        self._drag = replace(drag, typed=self._typed.value(scene))
+        asked = self._drag.asked(self._touched.turn)
+        stroked = self._stroke.stroked(asked)
+        kept_stroke.draw(thing, self._stroke.drawn, stroked)
+        text = stroke_words.figures(scene, asked, stroked)
+        if self._typed.text:
+            text = f"[{self._typed.text}|]   {text}"
+        context.area.header_text_set(text)
+        context.area.tag_redraw()
+
+    def _finish(self, context: bpy.types.Context) -> set[str]:
+        asked = self._drag.asked(self._touched.turn)
+        if asked.nothing:
+            # A click moves nothing, and leaves nothing.
+            self._leave(context, give_up=True)
+            return {"CANCELLED"}
+        scene, thing = context.scene, self._thing()
+        stroked = self._stroke.stroked(asked)
+        self._tell(asked, scene)
+        self._leave(context, give_up=False)
+        self._keep(scene, thing, asked, stroked)
+        return {"FINISHED"}
+
+    def _keep(
+        self, scene: bpy.types.Scene, thing: bpy.types.Object, asked: Asked, stroked: Stroked
+    ) -> None:
+        name = kept_stroke.keep(thing)
+        self.force = stroked.force
+        figures = stroke_words.figures(scene, asked, stroked)
+        self.report({"INFO"}, reported("{figures}, kept as '{name}'", figures=figures, name=name))
+
+    def _leave(self, context: bpy.types.Context, *, give_up: bool) -> None:
+        thing = self._handle.find()
+        if give_up and thing is not None:
+            kept_stroke.give_up(thing)
+        context.workspace.status_text_set(None)
+        if context.area is not None:
+            context.area.header_text_set(None)
+        viewport.redraw_views()
+
+    def _thing(self) -> bpy.types.Object:
+        thing = self._handle.find()
+        if thing is None:
+            raise PalpateError("{name} is gone; choose another object", name=self._handle.name)
+        return thing
+
+    def _asked(self) -> Asked:
+        """What the properties ask."""
+        match motion := Motion[self.motion]:
+            case Motion.GRAB:
+                frame = self._touched.frame
+                way = frame.turn_to_body(np.array(self.by)) * frame.metres_per_unit
+                return Asked(motion, by=way @ self._touched.turn)
+            case Motion.TWIST:
+                return Asked(motion, self.angle)
+            case Motion.PINCH:
+                return Asked(motion, self.share)
+        return Asked(motion, self.depth * self._touched.frame.metres_per_unit)
+
+    def _tell(self, asked: Asked, scene: bpy.types.Scene) -> None:
+        """Write what was asked into the properties, for the redo panel."""
+        metres = metres_per_unit(scene)
+        match asked.motion:
+            case Motion.GRAB if asked.by is not None:
+                seen = self._touched.turn @ asked.by
+                self.by = self._touched.frame.turn_to_world(seen) / metres
+            case Motion.TWIST:
+                self.angle = asked.amount
+            case Motion.PINCH:
+                self.share = asked.amount
+            case _:
+                self.depth = asked.amount / metres
+
+
+def not_soft(thing: bpy.types.Object) -> Sentence:
+    """Refusal of an object without a body."""
+    return Sentence("{name} is not soft yet; press Make Soft first", name=thing.name)
+
+
+def _make_active(context: bpy.types.Context, thing: bpy.types.Object) -> None:
+    for other in context.selected_objects:
+        other.select_set(False)
+    thing.select_set(True)
+    context.view_layer.objects.active = thing
+
+
+classes = (PALPATE_OT_stroke,)

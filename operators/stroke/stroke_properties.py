@@ -1,0 +1,89 @@
+"""Properties of a stroke: what it did, and what the redo panel changes."""
+
+from __future__ import annotations
+
+import bpy
+
+from ..reporting.translated import shown
+
+MOTION_ITEMS = [
+    ("PUSH", "Push", "A fingertip presses in along the surface's normal; outward it pulls"),
+    ("GRAB", "Grab", "The touched patch follows the pointer in the plane of the view"),
+    ("TWIST", "Twist", "The touched patch is turned about the surface's normal"),
+    ("PINCH", "Pinch", "The touched patch is drawn together, or spread"),
+]
+# Blender's own dictionary, where a pinch is a sculpting brush, has precedence.
+CONTEXT = "Palpate"
+
+
+class StrokeProperties:
+    """Part of an operator that strokes; lengths in scene units."""
+
+    motion: bpy.props.EnumProperty(
+        name="Motion",
+        description="What the stroke does",
+        items=MOTION_ITEMS,
+        translation_context=CONTEXT,
+        options={"SKIP_SAVE"},
+    )
+    place: bpy.props.FloatVectorProperty(
+        name="Place",
+        description="The surface point nearest to this is touched, world coordinates",
+        subtype="TRANSLATION",
+        options={"SKIP_SAVE"},
+    )
+    depth: bpy.props.FloatProperty(
+        name="Depth",
+        description="How far the place is pushed in; below zero it is pulled out",
+        subtype="DISTANCE",
+        options={"SKIP_SAVE"},
+    )
+    by: bpy.props.FloatVectorProperty(
+        name="By",
+        description="How far the place is moved, world axes",
+        subtype="TRANSLATION",
+        options={"SKIP_SAVE"},
+    )
+    angle: bpy.props.FloatProperty(
+        name="Angle",
+        description="How far the patch is turned, counter-clockwise seen from outside",
+        subtype="ANGLE",
+        options={"SKIP_SAVE"},
+    )
+    share: bpy.props.FloatProperty(
+        name="Drawn In",
+        description="How far the patch is drawn together: 1 to a line; below zero it is spread",
+        soft_min=-1.0,
+        max=1.0,
+        options={"SKIP_SAVE"},
+    )
+    radius: bpy.props.FloatProperty(
+        name="Radius",
+        description="Radius of the fingertip or patch; 0 for the tool's",
+        subtype="DISTANCE",
+        min=0.0,
+        options={"SKIP_SAVE"},
+    )
+    mirrored: bpy.props.BoolVectorProperty(
+        name="Mirrored",
+        description="Mirror the stroke across the object's axes",
+        subtype="XYZ",
+        options={"SKIP_SAVE"},
+    )
+    outward: bpy.props.BoolProperty(
+        name="Other Direction",
+        description="Pull, turn back or spread",
+        options={"SKIP_SAVE", "HIDDEN"},
+    )
+    force: bpy.props.FloatProperty(options={"SKIP_SAVE", "HIDDEN"})
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout: bpy.types.UILayout = self.layout  # type: ignore[attr-defined]  # of Operator
+        layout.use_property_split = True
+        layout.prop(self, "motion")
+        asked = {"PUSH": "depth", "GRAB": "by", "TWIST": "angle", "PINCH": "share"}
+        layout.prop(self, asked[self.motion])
+        layout.prop(self, "place")
+        layout.prop(self, "radius")
+        layout.prop(self, "mirrored", toggle=True)
+        layout.label(text=shown("Force: {force:.3g} N", force=self.force), translate=False)

@@ -1,0 +1,125 @@
+"""Radius of the tool, and how much a drag moves: set by a drag in the view."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+
+from ...core.errors import PalpateError
+from ..object.drawn_body import DrawnBody
+from ..reporting.acting import Acting
+from ..reporting.translated import shown
+from ..scene import viewport
+from ..scene.drawn_surface import frame_of, metres_per_unit
+from . import stroke_words
+from .seen_place import seen_place
+
+# Pixels over which the strength doubles.
+DOUBLING_PIXELS = 100.0
+WEAKEST, STRONGEST = 0.05, 20.0
+SMALLEST_RADIUS = 1e-6
+
+
+def radius_of(scene: bpy.types.Scene, drawn: DrawnBody) -> float:
+    """Radius of the tool for a body, metres."""
+    return float(metres_per_unit(scene) * scene.palpate.tip_radius)
+
+
+def shown_radius(scene: bpy.types.Scene, thing: bpy.types.Object) -> float:
+    """Radius of the tool for an object whose body is not read yet, metres."""
+    return float(metres_per_unit(scene) * scene.palpate.tip_radius)
+
+
+class PALPATE_OT_stroke_size(Acting, bpy.types.Operator):
+    bl_idname = "palpate.stroke_size"
+    bl_label = "Size of the Tool"
+    bl_description = (
+        "Move the pointer to the right for more, to the left for less; click to take it"
+    )
+    bl_options = {"INTERNAL"}
+
+    what: bpy.props.EnumProperty(
+        name="What",
+        description="What is set",
+        items=[
+            ("RADIUS", "Radius", "Radius of the fingertip or patch"),
+            ("STRENGTH", "Strength", "How far a drag moves the surface"),
+        ],
+        options={"SKIP_SAVE"},
+    )
+
+    _before: float
+    _start: int
+    _metres_per_pixel: float
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        return self.guarded(lambda: self._start_in_view(context, event))
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        if event.type in {"MOUSEMOVE", "INBETWEEN_MOUSEMOVE"}:
+            self._follow(context, event.mouse_x - self._start)
+            return {"RUNNING_MODAL"}
+        if event.value != "PRESS":
+            return {"RUNNING_MODAL"}
+        if event.type in {"ESC", "RIGHTMOUSE"}:
+            self._write(context, self._before)
+            return self._leave(context, "CANCELLED")
+        if event.type in {"LEFTMOUSE", "RET", "NUMPAD_ENTER", "F"}:
+            return self._leave(context, "FINISHED")
+        return {"RUNNING_MODAL"}
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        """End with the operator: another file, unregister, or exit."""
+        self._leave(context, "CANCELLED")
+
+    def _start_in_view(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        here = viewport.under_pointer(context.window, event.mouse_x, event.mouse_y)
+        thing = context.object
+        if here is None or thing is None:
+            raise PalpateError("place the pointer in a 3D view with an object to set this")
+        touched = seen_place(context.scene, context.evaluated_depsgraph_get(), here)
+        frame = frame_of(thing, context.scene) if touched is None else touched.frame
+        place = np.zeros(3) if touched is None else frame.body_from_world(touched.seen)
+        view = here.view_at(place, frame)
+        self._metres_per_pixel = 0.0 if view is None else view.metres_per_pixel
+        self._before, self._start = self._read(context), event.mouse_x
+        context.window_manager.modal_handler_add(self)
+        context.workspace.status_text_set(
+            shown("Move: More or less     [LMB] Take     [Esc] Restore")
+        )
+        self._follow(context, 0)
+        return {"RUNNING_MODAL"}
+
+    def _follow(self, context: bpy.types.Context, pixels: int) -> None:
+        if self.what == "STRENGTH":
+            changed = self._before * 2.0 ** (pixels / DOUBLING_PIXELS)
+            self._write(context, min(max(changed, WEAKEST), STRONGEST))
+        else:
+            units = self._metres_per_pixel / metres_per_unit(context.scene)
+            self._write(context, max(self._before + pixels * units, SMALLEST_RADIUS))
+
+    def _read(self, context: bpy.types.Context) -> float:
+        chosen = context.scene.palpate
+        return float(chosen.stroke_strength if self.what == "STRENGTH" else chosen.tip_radius)
+
+    def _write(self, context: bpy.types.Context, value: float) -> None:
+        chosen = context.scene.palpate
+        if self.what == "STRENGTH":
+            chosen.stroke_strength = value
+            text = f"{shown('Strength')}: {value:.2f}"
+        else:
+            chosen.tip_radius = value
+            metres = value * metres_per_unit(context.scene)
+            text = f"{shown('Radius')}: {stroke_words.length(context.scene, metres)}"
+        if context.area is not None:
+            context.area.header_text_set(text)
+            context.area.tag_redraw()
+
+    def _leave(self, context: bpy.types.Context, result: str) -> set[str]:
+        context.workspace.status_text_set(None)
+        if context.area is not None:
+            context.area.header_text_set(None)
+        return {result}
+
+
+classes = (PALPATE_OT_stroke_size,)

@@ -1,0 +1,43 @@
+"""Texts of a running stroke: status bar and header."""
+
+from __future__ import annotations
+
+import math
+
+import bpy
+
+from ..reporting.translated import shown
+from .motion import Asked, Motion
+from .stroke import Stroked
+
+STATUS = {
+    Motion.PUSH: "Drag away in any direction: Deeper     [0-9] Depth     [Esc] Restore",
+    Motion.GRAB: "Drag: The surface follows     [0-9] Distance     [Esc] Restore",
+    Motion.TWIST: "Drag away in any direction: Turn     [0-9] Degrees     [Esc] Restore",
+    Motion.PINCH: "Drag away in any direction: Draw in     [0-9] Percent     [Esc] Restore",
+}
+
+
+def status(motion: Motion) -> str:
+    """What keys and pointer do during a stroke."""
+    return f"Palpate: {shown(STATUS[motion])}"
+
+
+def figures(scene: bpy.types.Scene, asked: Asked, stroked: Stroked) -> str:
+    """Amount and force of a stroke, such as "3.2 mm   1.25 N"."""
+    match asked.motion:
+        case Motion.TWIST:
+            return f"{math.degrees(asked.amount):.1f}°   {stroked.torque:.3g} N m"
+        case Motion.PINCH:
+            return f"{100.0 * asked.amount:.0f} %   {stroked.force:.3g} N"
+    metres = math.hypot(*asked.by) if asked.by is not None else asked.amount
+    return f"{length(scene, metres)}   {stroked.force:.3g} N"
+
+
+def length(scene: bpy.types.Scene, metres: float) -> str:
+    """A length in the scene's unit system."""
+    system = scene.unit_settings.system
+    if system == "NONE":
+        return f"{metres:.4g}"
+    text: str = bpy.utils.units.to_string(system, "LENGTH", metres, precision=3)
+    return text

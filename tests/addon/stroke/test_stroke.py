@@ -1,0 +1,126 @@
+"""Strokes by scripts and by the redo panel: what they do to the mesh, and that each stays."""
+
+from __future__ import annotations
+
+import math
+
+import bpy
+import numpy as np
+import pytest
+from mathutils import Vector
+from soft_scene import (
+    TOP,
+    cube,
+    error_of,
+    key_coordinates,
+    key_names,
+    mesh_state,
+    part,
+)
+
+STROKES = {
+    "push": {"motion": "PUSH", "depth": 0.003},
+    "pull": {"motion": "PUSH", "depth": -0.003},
+    "grab": {"motion": "GRAB", "by": (0.002, 0.001, 0.002)},
+    "twist": {"motion": "TWIST", "angle": 0.8},
+    "pinch": {"motion": "PINCH", "share": 0.6},
+    "spread": {"motion": "PINCH", "share": -0.6},
+}
+
+
+def moved(thing, name="Press 1"):
+    return key_coordinates(thing, name) - key_coordinates(thing, "Basis")
+
+
+@pytest.mark.parametrize("name", list(STROKES))
+def test_a_stroke_moves_the_surface_and_stays(thing, name):
+    assert bpy.ops.palpate.stroke(place=(0.02, 0.02, 0.025), radius=0.02, **STROKES[name]) == {
+        "FINISHED"
+    }
+    assert key_names(thing) == ["Basis", "Press 1"]
+    shift = moved(thing)
+    assert np.isfinite(shift).all()
+    assert np.abs(shift).max() > 1e-4
+
+
+def test_a_push_goes_in_and_a_pull_out(thing):
+    bpy.ops.palpate.stroke(place=TOP, radius=0.02, **STROKES["push"])
+    bpy.ops.palpate.stroke(place=TOP, radius=0.02, **STROKES["pull"])
+    assert key_names(thing) == ["Basis", "Press 1", "Press 2"]
+    top = key_coordinates(thing, "Basis")[:, 2] > 0.02
+    assert moved(thing, "Press 1")[top, 2].mean() < 0.0 < moved(thing, "Press 2")[top, 2].mean()
+
+
+def test_a_stroke_is_undone_in_one_step_and_others_stay(thing):
+    bpy.ops.ed.undo_push(message="before")
+    bpy.ops.palpate.stroke("EXEC_DEFAULT", True, place=TOP, radius=0.02, **STROKES["push"])
+    bpy.ops.palpate.stroke("EXEC_DEFAULT", True, place=TOP, radius=0.02, **STROKES["grab"])
+    bpy.ops.ed.undo()
+    assert key_names(bpy.context.object) == ["Basis", "Press 1"]
+
+
+def test_a_mirrored_grab_moves_both_sides(thing):
+    at = (0.02, 0.0, 0.025)
+    by = (0.002, 0.0, 0.002)
+    bpy.ops.palpate.stroke(
+        motion="GRAB", place=at, radius=0.015, by=by, mirrored=(True, False, False)
+    )
+    shift, rest = moved(thing), key_coordinates(thing, "Basis")
+    right = shift[(rest[:, 0] > 0) & (rest[:, 2] > 0)].mean(axis=0)
+    left = shift[(rest[:, 0] < 0) & (rest[:, 2] > 0)].mean(axis=0)
+    assert right[0] > 0.0 > left[0]
+    assert min(right[2], left[2]) > 2e-4
+
+
+def test_what_moves_nothing_is_refused_and_leaves_nothing(palpate, thing, before):
+    assert "nothing" in error_of(bpy.ops.palpate.stroke, place=TOP, radius=0.02)
+    assert mesh_state(thing) == before
+
+
+def test_a_pinned_place_is_refused_and_leaves_nothing(palpate, thing, before):
+    said = error_of(bpy.ops.palpate.stroke, place=(0, 0, -0.025), radius=0.005, **STROKES["pull"])
+    assert "pinned" in said
+    assert mesh_state(thing) == before
+
+
+def test_what_was_never_baked_cannot_be_stroked(palpate):
+    cube()
+    assert "Make Soft" in error_of(bpy.ops.palpate.stroke, place=TOP, depth=0.001)
+
+
+def test_the_place_is_found_on_the_mesh_as_it_is_posed_and_scaled_by_a_key(thing):
+    places = part("operators.stroke.touched_place")
+    thing.shape_key_add(name="Basis", from_mix=False)
+    key = thing.shape_key_add(name="Tall", from_mix=False)
+    for point in key.data:
+        x, y, z = point.co
+        # Turned about X by 90 degrees, and twice as tall.
+        point.co = (x, -2.0 * z, y)
+    key.value = 1.0
+    bpy.context.view_layer.update()
+    graph = bpy.context.evaluated_depsgraph_get()
+    found = places.nearest(bpy.context.scene, graph, thing, Vector((0.01, -0.06, 0.004)))
+    assert np.allclose(found.seen, (0.01, -0.05, 0.004), atol=1e-6)
+    assert np.allclose(found.rest, (0.01, 0.004, 0.025), atol=1e-6)
+    assert np.allclose(found.turn @ [0, 0, 1], [0, -1, 0], atol=1e-6)
+    assert np.allclose(found.normal, [0, -1, 0], atol=1e-6)
+
+
+def test_a_ray_meets_the_soft_object_in_front_and_nothing_behind_another(thing):
+    places, scene = part("operators.stroke.touched_place"), bpy.context.scene
+    ray = (Vector((0.01, 0.005, 1.0)), Vector((0.0, 0.0, -1.0)))
+    bpy.data.objects.remove(bpy.data.objects["Cube"])
+    found = places.under_ray(scene, bpy.context.evaluated_depsgraph_get(), *ray)
+    assert found.thing == thing
+    assert np.allclose(found.seen, (0.01, 0.005, 0.025), atol=1e-6)
+    assert np.allclose(found.rest, (0.01, 0.005, 0.025), atol=1e-6)
+    bpy.ops.mesh.primitive_plane_add(size=1.0, location=(0, 0, 0.5))
+    assert places.under_ray(scene, bpy.context.evaluated_depsgraph_get(), *ray) is None
+
+
+def test_angle_and_share_are_what_was_asked(thing):
+    bpy.ops.palpate.stroke(place=TOP, radius=0.03, motion="TWIST", angle=math.radians(20))
+    rest, shift = key_coordinates(thing, "Basis"), moved(thing)
+    top = rest[:, 2] > 0
+    around = np.cross(np.tile([0, 0, 1.0], (top.sum(), 1)), rest[top])
+    assert ((shift[top] * around).sum(axis=1) > 0).all()

@@ -1,0 +1,204 @@
+"""Strokes with the tool of the toolbar, by the events of a pointer."""
+
+from __future__ import annotations
+
+import math
+
+import bmesh
+import bpy
+import numpy as np
+from mouse_scene import mouse, open_mouse, type_key
+from stage import Pixel, Stage, Wait
+
+from bl_ext.user_default.palpate.operators.object import soft_object
+from bl_ext.user_default.palpate.operators.scene.viewport import under_pointer
+from bl_ext.user_default.palpate.operators.stroke.seen_place import seen_place
+
+TOOL = "palpate.tool"
+DIRECTIONS = {
+    "right": (90, 0),
+    "left": (-90, 0),
+    "up": (0, 90),
+    "down": (0, -90),
+}
+
+
+def the_default_cube_is_pushed_by_a_drag_in_every_direction(stage: Stage) -> Wait:
+    cube = yield from _soft_default_cube(stage)
+    _choose_tool(stage)
+    for number, (name, (x, y)) in enumerate(DIRECTIONS.items(), start=1):
+        here = stage.pixel(_place_on_cube(number))
+        yield from stage.move(here)
+        yield from stage.picture(f"circle-{name}")
+        yield from stage.drag([here, (here[0] + x, here[1] + y)], release=False)
+        yield from stage.picture(f"push-{name}")
+        yield from stage.event("LEFTMOUSE", "RELEASE", stage.mouse)
+        yield from stage.until(lambda n=number: len(kept(cube)) == n, "the stroke that is kept")
+        shift = last_stroke(cube)
+        inward = -np.eye(3)[1] * -1 if number % 2 else -np.eye(3)[2]
+        assert (shift @ inward).max() > 0.05, f"{name} did not push in"
+    for number in (3, 2, 1, 0):
+        yield from type_key(stage, "Z", ctrl=True)
+        yield from stage.until(
+            lambda n=number: len(kept(bpy.data.objects["Cube"])) == n, "one undo step a stroke"
+        )
+
+
+def every_kind_of_stroke_is_kept_and_escape_restores(stage: Stage) -> Wait:
+    cube = yield from _soft_default_cube(stage)
+    _choose_tool(stage)
+    chosen = bpy.context.scene.palpate
+    here = stage.pixel((0.1, 0.2, 1.0))
+    for number, (motion, shift) in enumerate(
+        [("PUSH", False), ("PUSH", True), ("GRAB", False), ("TWIST", False), ("PINCH", False)]
+    ):
+        chosen.stroke = motion
+        yield from stage.drag([here, (here[0] + 60, here[1] + 40)], release=False, shift=shift)
+        yield from stage.picture(f"{motion.lower()}-{'other-way' if shift else 'drag'}")
+        if number % 2:
+            yield from stage.key("ESC")
+            yield from stage.event("LEFTMOUSE", "RELEASE", stage.mouse)
+            yield 0.3
+            assert kept(cube) == []
+            continue
+        yield from stage.event("LEFTMOUSE", "RELEASE", stage.mouse)
+        yield from stage.until(lambda: len(kept(bpy.data.objects["Cube"])) == 1, "the stroke")
+        yield from type_key(stage, "Z", ctrl=True)
+        yield from stage.until(lambda: not kept(bpy.data.objects["Cube"]), "the undo")
+        cube = bpy.data.objects["Cube"]
+
+
+def a_depth_is_typed_while_dragging(stage: Stage) -> Wait:
+    cube = yield from _soft_default_cube(stage)
+    _choose_tool(stage)
+    here = stage.pixel((0.0, 0.0, 1.0))
+    yield from stage.drag([here, (here[0] + 30, here[1])], release=False)
+    for digit in ("PERIOD", "TWO"):
+        yield from stage.key(digit)
+    yield from stage.picture("typed")
+    yield from stage.event("LEFTMOUSE", "RELEASE", stage.mouse)
+    yield from stage.until(lambda: len(kept(cube)) == 1, "the stroke")
+    last = bpy.context.window_manager.operators[-1]
+    assert last.bl_idname == "PALPATE_OT_stroke"
+    stage.note(depth=last.properties["depth"])
+
+
+def twenty_random_drags_press_where_the_cursor_is(stage: Stage) -> Wait:
+    rng = np.random.default_rng(15)
+    for scale in (1.0, 1.75):
+        bpy.context.preferences.view.ui_scale = scale
+        yield 0.3
+        for name in ("cube", "mouse"):
+            if name == "cube":
+                yield from _soft_default_cube(stage)
+                thing = bpy.data.objects["Cube"]
+            else:
+                yield from open_mouse(stage)
+                thing = mouse()
+                thing.data  # noqa: B018
+            yield from stage.open_sidebar("Palpate")
+            _choose_tool(stage)
+            yield from _random_drags(stage, thing.name, rng, 5)
+            yield from stage.picture(f"{name}-{scale}")
+    bpy.context.preferences.view.ui_scale = 1.0
+
+
+def _random_drags(stage: Stage, name: str, rng: np.random.Generator, count: int) -> Wait:
+    for _ in range(count):
+        before = len(kept(bpy.data.objects[name]))
+        here = _visible_place(stage, name, rng)
+        at = _seen(stage, here)
+        angle = rng.uniform(0.0, 2.0 * math.pi)
+        end = (here[0] + 40 * math.cos(angle), here[1] + 40 * math.sin(angle))
+        yield from stage.drag([here, end], steps=4, release=False)
+        # Where it is held, the surface has moved.
+        yield from stage.event("LEFTMOUSE", "RELEASE", stage.mouse)
+        thing = bpy.data.objects[name]
+        yield from stage.until(
+            lambda n=before: len(kept(bpy.data.objects[name])) == n + 1, f"a stroke at {here}"
+        )
+        shift = np.linalg.norm(last_stroke(thing), axis=1)
+        rest = _rest(thing)[np.argmax(shift)]
+        missed = np.linalg.norm(rest - at)
+        assert missed < 0.2 * np.linalg.norm(thing.dimensions), f"pressed {missed} m off"
+
+
+def _visible_place(stage: Stage, name: str, rng: np.random.Generator) -> Pixel:
+    """A pixel at which the object is seen, not covered by a panel or a gizmo."""
+    region = stage.region("WINDOW")
+    while True:
+        x = region.x + rng.uniform(0.1, 0.9) * region.width
+        y = region.y + rng.uniform(0.1, 0.9) * region.height
+        here = under_pointer(stage.window, round(x), round(y))
+        if here is None or here.over_gizmos():
+            continue
+        touched = _touched(stage, (x, y))
+        if touched is not None and touched.thing.name == name:
+            return round(x), round(y)
+
+
+def _touched(stage: Stage, at: Pixel):
+    here = under_pointer(stage.window, round(at[0]), round(at[1]))
+    graph = bpy.context.evaluated_depsgraph_get()
+    return None if here is None else seen_place(bpy.context.scene, graph, here)
+
+
+def _seen(stage: Stage, at: Pixel) -> np.ndarray:
+    """Place at rest under a pixel, local coordinates."""
+    touched = _touched(stage, at)
+    return touched.frame.local_from_body(touched.rest[None])[0]
+
+
+def _soft_default_cube(stage: Stage) -> Wait:
+    """The factory scene's cube, with vertices to dent, made soft."""
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=False)
+    yield 0.3
+    cube = bpy.data.objects["Cube"]
+    mesh = bmesh.new()
+    mesh.from_mesh(cube.data)
+    bmesh.ops.subdivide_edges(mesh, edges=mesh.edges[:], cuts=15, use_grid_fill=True)
+    mesh.to_mesh(cube.data)
+    mesh.free()
+    bpy.context.scene.palpate.tip_radius = 0.2
+    with stage.view():
+        bpy.context.view_layer.objects.active = cube
+        bpy.ops.palpate.make_soft("EXEC_DEFAULT")
+    region = stage.area.spaces.active.region_3d
+    region.view_distance = 6.0
+    bpy.ops.ed.undo_push(message="Soft")
+    yield 0.3
+    assert not soft_object.refusal(cube)
+    return cube
+
+
+def _choose_tool(stage: Stage) -> None:
+    with stage.view():
+        bpy.ops.wm.tool_set_by_id(name=TOOL)
+
+
+def _place_on_cube(number: int) -> tuple[float, float, float]:
+    """Places on the front and on top, in turn."""
+    return (0.3, -1.0, 0.2) if number % 2 else (-0.2, 0.2, 1.0)
+
+
+def kept(thing: bpy.types.Object) -> list[str]:
+    """Names of the strokes that were kept."""
+    keys = thing.data.shape_keys
+    return [key.name for key in keys.key_blocks if key.name.startswith("Press")] if keys else []
+
+
+def last_stroke(thing: bpy.types.Object) -> np.ndarray:
+    """Displacements (p, 3) of the last stroke kept, local units."""
+    key = thing.data.shape_keys.key_blocks[kept(thing)[-1]]
+    return _coordinates(key.data) - _rest(thing)
+
+
+def _rest(thing: bpy.types.Object) -> np.ndarray:
+    keys = thing.data.shape_keys
+    return _coordinates(keys.reference_key.data if keys else thing.data.vertices)
+
+
+def _coordinates(points: object) -> np.ndarray:
+    flat = np.empty(3 * len(points), dtype=np.float32)
+    points.foreach_get("co", flat)
+    return flat.reshape(-1, 3)
