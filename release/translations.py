@@ -45,6 +45,7 @@ UNTRANSLATED = {
     *("Basis", "Body File", "Body Key", "Fingerprint", "Operator", "Palpate Softness"),
     *("Palpate Animation", "Palpate Pressers", "Palpate Probe", "Palpate Live", "Palpate Places"),
     *("Pinned", "Press at"),
+    "Object Mode",
 }
 
 

@@ -2,16 +2,14 @@
 
 import bpy
 
-from ...operators.stroke.stroke_properties import CONTEXT, MOTION_ITEMS
+from ...operators.stroke.stroke_properties import MOTION_ITEMS
 from .kinds import choice, number, span, switch
 
 
 class StrokeProperties:
     """Part of ``scene.palpate`` for strokes."""
 
-    stroke: choice(
-        "Stroke", "What a stroke does", MOTION_ITEMS, "PUSH", translation_context=CONTEXT
-    )
+    stroke: choice("Stroke", "What a stroke does", MOTION_ITEMS, "PUSH")
     stroke_outward: switch("Outward", "Pull, turn back or spread; with Shift the other way")
     stroke_strength: number(
         "Strength",

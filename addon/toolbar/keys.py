@@ -5,6 +5,8 @@ import bpy
 from ...operators.reporting.translated import shown
 from .palpate_tool import IDNAME
 
+KEYMAP = "Object Mode"
+
 _keys: list[tuple[bpy.types.KeyMap, bpy.types.KeyMapItem]] = []
 
 
@@ -18,7 +20,6 @@ class PALPATE_MT_object(bpy.types.Menu):
         layout.separator()
         tool = layout.operator("wm.tool_set_by_id", text=shown("Strokes"), translate=False)
         tool.name = IDNAME
-        # As from a menu there is a place under the pointer, invoke where it is chosen.
         layout.operator("palpate.press")
         layout.operator("palpate.pinch")
 
@@ -41,7 +42,7 @@ def register() -> None:
     if configuration is None:
         # Background mode has no keys.
         return
-    keys = configuration.keymaps.new("Object Mode")
+    keys = configuration.keymaps.new(KEYMAP)
     item = keys.keymap_items.new("wm.tool_set_by_id", "P", "PRESS", ctrl=True, alt=True)
     item.properties.name = IDNAME
     _keys.append((keys, item))

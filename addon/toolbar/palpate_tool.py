@@ -6,7 +6,6 @@ import bpy
 
 from ...operators.object import soft_object
 from ...operators.reporting.translated import shown
-from ...operators.stroke.stroke_properties import CONTEXT
 from . import surface_circle
 
 IDNAME = "palpate.tool"
@@ -49,13 +48,10 @@ class PalpateTool(bpy.types.WorkSpaceTool):
         if thing is not None and not soft_object.refusal(thing) and not thing.palpate.body_key:
             layout.operator("palpate.make_soft")
             return
-        layout.prop(chosen, "stroke", text="", text_ctxt=CONTEXT)
-        row = layout.row(align=True)
-        row.prop(chosen, "tip_radius")
-        row = layout.row(align=True)
-        row.prop(chosen, "stroke_strength")
-        outward = chosen.stroke != "GRAB"
-        if outward:
+        layout.prop(chosen, "stroke", text="")
+        layout.prop(chosen, "tip_radius" if chosen.own_sizes else "tip_share", text="Radius")
+        layout.prop(chosen, "stroke_strength")
+        if chosen.stroke != "GRAB":
             layout.prop(chosen, "stroke_outward", toggle=True)
         row = layout.row(align=True)
         row.label(text=shown("Mirrored"), translate=False)

@@ -15,7 +15,7 @@ from ...operators.scene import viewport
 from ...operators.scene.drawn_surface import metres_per_unit
 from ...operators.scene.viewport import Viewport
 from ...operators.stroke.seen_place import seen_place
-from ...operators.stroke.stroke_size import shown_radius
+from ...operators.stroke.stroke_size import radius_for
 from ...operators.stroke.touched_place import TouchedPlace
 
 SEGMENTS = 48
@@ -31,16 +31,16 @@ def draw(xy: tuple[int, int]) -> None:
     here = viewport.under_pointer(context.window, *xy)
     if here is None or context.region != here.region:
         return
+    scene = context.scene
     try:
         # As it was evaluated last: a drawing must not evaluate.
-        touched = seen_place(context.scene, context.view_layer.depsgraph, here)
+        touched = seen_place(scene, context.view_layer.depsgraph, here)
+        if touched is None:
+            return
+        radius = radius_for(scene, touched.thing) / metres_per_unit(scene)
     except PalpateError:
         # A flattened object; a stroke reports it with its remedy.
         return
-    if touched is None:
-        return
-    scene = context.scene
-    radius = shown_radius(scene, touched.thing) / metres_per_unit(scene)
     points = _on_screen(_circle(touched, radius), here)
     if points is not None:
         _draw_line(points, OUTWARD if scene.palpate.stroke_outward else INWARD, context)

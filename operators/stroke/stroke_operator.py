@@ -18,13 +18,13 @@ from ..scene import viewport
 from ..scene.drawn_surface import metres_per_unit
 from ..scene.object_handle import ObjectHandle
 from ..session import press_session
+from ..tool.tool_sizes import chosen_sizes
 from . import kept_stroke, stroke_words, touched_place
 from .motion import Asked, Motion
 from .seen_place import seen_place
 from .stroke import Stroke, Stroked, grips_at
 from .stroke_drag import StrokeDrag
-from .stroke_properties import CONTEXT, StrokeProperties
-from .stroke_size import radius_of
+from .stroke_properties import StrokeProperties
 from .touched_place import TouchedPlace
 from .typed_amount import TypedAmount
 
@@ -32,7 +32,6 @@ from .typed_amount import TypedAmount
 class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
     bl_idname = "palpate.stroke"
     bl_label = "Stroke"
-    bl_translation_context = CONTEXT
     bl_description = (
         "Push, pull, grab, twist or pinch the soft object under the pointer: hold, drag, let go. "
         "Every stroke stays, and the next goes on from it"
@@ -147,7 +146,7 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
         thing = touched.thing
         drawn = open_body(thing, scene)
         metres = metres_per_unit(scene)
-        radius = metres * self.radius or radius_of(scene, drawn)
+        radius = metres * self.radius or chosen_sizes(scene, drawn.size).tip_radius
         self.radius = radius / metres
         grips = grips_at(drawn, touched.rest, radius, tuple(self.mirrored))
         chosen = thing.palpate

@@ -12,8 +12,6 @@ MOTION_ITEMS = [
     ("TWIST", "Twist", "The touched patch is turned about the surface's normal"),
     ("PINCH", "Pinch", "The touched patch is drawn together, or spread"),
 ]
-# Blender's own dictionary, where a pinch is a sculpting brush, has precedence.
-CONTEXT = "Palpate"
 
 
 class StrokeProperties:
@@ -23,7 +21,6 @@ class StrokeProperties:
         name="Motion",
         description="What the stroke does",
         items=MOTION_ITEMS,
-        translation_context=CONTEXT,
         options={"SKIP_SAVE"},
     )
     place: bpy.props.FloatVectorProperty(

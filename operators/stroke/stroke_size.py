@@ -6,28 +6,30 @@ import bpy
 import numpy as np
 
 from ...core.errors import PalpateError
-from ..object.drawn_body import DrawnBody
 from ..reporting.acting import Acting
 from ..reporting.translated import shown
 from ..scene import viewport
-from ..scene.drawn_surface import frame_of, metres_per_unit
+from ..scene.drawn_surface import frame_of, metres_per_unit, size_of
+from ..tool.tool_sizes import chosen_sizes
 from . import stroke_words
 from .seen_place import seen_place
 
 # Pixels over which the strength doubles.
 DOUBLING_PIXELS = 100.0
 WEAKEST, STRONGEST = 0.05, 20.0
-SMALLEST_RADIUS = 1e-6
+# Of the radius before, at once.
+LEAST_SHARE = 0.02
 
 
-def radius_of(scene: bpy.types.Scene, drawn: DrawnBody) -> float:
-    """Radius of the tool for a body, metres."""
-    return float(metres_per_unit(scene) * scene.palpate.tip_radius)
+def radius_for(scene: bpy.types.Scene, thing: bpy.types.Object) -> float:
+    """Radius of the tool for an object, metres.
 
-
-def shown_radius(scene: bpy.types.Scene, thing: bpy.types.Object) -> float:
-    """Radius of the tool for an object whose body is not read yet, metres."""
-    return float(metres_per_unit(scene) * scene.palpate.tip_radius)
+    Raises
+    ------
+    PalpateError
+        Its transform flattens it.
+    """
+    return chosen_sizes(scene, size_of(thing, scene)).tip_radius
 
 
 class PALPATE_OT_stroke_size(Acting, bpy.types.Operator):
@@ -49,6 +51,7 @@ class PALPATE_OT_stroke_size(Acting, bpy.types.Operator):
     )
 
     _before: float
+    _radius: float
     _start: int
     _metres_per_pixel: float
 
@@ -62,7 +65,7 @@ class PALPATE_OT_stroke_size(Acting, bpy.types.Operator):
         if event.value != "PRESS":
             return {"RUNNING_MODAL"}
         if event.type in {"ESC", "RIGHTMOUSE"}:
-            self._write(context, self._before)
+            setattr(context.scene.palpate, self._property(context), self._before)
             return self._leave(context, "CANCELLED")
         if event.type in {"LEFTMOUSE", "RET", "NUMPAD_ENTER", "F"}:
             return self._leave(context, "FINISHED")
@@ -82,7 +85,8 @@ class PALPATE_OT_stroke_size(Acting, bpy.types.Operator):
         place = np.zeros(3) if touched is None else frame.body_from_world(touched.seen)
         view = here.view_at(place, frame)
         self._metres_per_pixel = 0.0 if view is None else view.metres_per_pixel
-        self._before, self._start = self._read(context), event.mouse_x
+        self._before = getattr(context.scene.palpate, self._property(context))
+        self._radius, self._start = radius_for(context.scene, thing), event.mouse_x
         context.window_manager.modal_handler_add(self)
         context.workspace.status_text_set(
             shown("Move: More or less     [LMB] Take     [Esc] Restore")
@@ -91,26 +95,27 @@ class PALPATE_OT_stroke_size(Acting, bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def _follow(self, context: bpy.types.Context, pixels: int) -> None:
+        chosen = context.scene.palpate
         if self.what == "STRENGTH":
             changed = self._before * 2.0 ** (pixels / DOUBLING_PIXELS)
-            self._write(context, min(max(changed, WEAKEST), STRONGEST))
+            chosen.stroke_strength = min(max(changed, WEAKEST), STRONGEST)
+            self._tell(context, f"{shown('Strength')}: {chosen.stroke_strength:.2f}")
+            return
+        metres = max(self._radius + pixels * self._metres_per_pixel, LEAST_SHARE * self._radius)
+        if chosen.own_sizes:
+            chosen.tip_radius = metres / metres_per_unit(context.scene)
         else:
-            units = self._metres_per_pixel / metres_per_unit(context.scene)
-            self._write(context, max(self._before + pixels * units, SMALLEST_RADIUS))
+            chosen.tip_share = self._before * metres / self._radius
+        metres = radius_for(context.scene, context.object)
+        self._tell(context, f"{shown('Radius')}: {stroke_words.length(context.scene, metres)}")
 
-    def _read(self, context: bpy.types.Context) -> float:
-        chosen = context.scene.palpate
-        return float(chosen.stroke_strength if self.what == "STRENGTH" else chosen.tip_radius)
-
-    def _write(self, context: bpy.types.Context, value: float) -> None:
-        chosen = context.scene.palpate
+    def _property(self, context: bpy.types.Context) -> str:
+        """Name of the scene's property that is set."""
         if self.what == "STRENGTH":
-            chosen.stroke_strength = value
-            text = f"{shown('Strength')}: {value:.2f}"
-        else:
-            chosen.tip_radius = value
-            metres = value * metres_per_unit(context.scene)
-            text = f"{shown('Radius')}: {stroke_words.length(context.scene, metres)}"
+            return "stroke_strength"
+        return "tip_radius" if context.scene.palpate.own_sizes else "tip_share"
+
+    def _tell(self, context: bpy.types.Context, text: str) -> None:
         if context.area is not None:
             context.area.header_text_set(text)
             context.area.tag_redraw()

@@ -7,7 +7,7 @@ import math
 import bmesh
 import bpy
 import numpy as np
-from mouse_scene import mouse, open_mouse, type_key
+from mouse_scene import open_mouse, type_key
 from stage import Pixel, Stage, Wait
 
 from bl_ext.user_default.palpate.operators.object import soft_object
@@ -47,12 +47,11 @@ def the_default_cube_is_pushed_by_a_drag_in_every_direction(stage: Stage) -> Wai
 def every_kind_of_stroke_is_kept_and_escape_restores(stage: Stage) -> Wait:
     cube = yield from _soft_default_cube(stage)
     _choose_tool(stage)
-    chosen = bpy.context.scene.palpate
     here = stage.pixel((0.1, 0.2, 1.0))
     for number, (motion, shift) in enumerate(
         [("PUSH", False), ("PUSH", True), ("GRAB", False), ("TWIST", False), ("PINCH", False)]
     ):
-        chosen.stroke = motion
+        bpy.context.scene.palpate.stroke = motion
         yield from stage.drag([here, (here[0] + 60, here[1] + 40)], release=False, shift=shift)
         yield from stage.picture(f"{motion.lower()}-{'other-way' if shift else 'drag'}")
         if number % 2:
@@ -83,24 +82,29 @@ def a_depth_is_typed_while_dragging(stage: Stage) -> Wait:
     stage.note(depth=last.properties["depth"])
 
 
-def twenty_random_drags_press_where_the_cursor_is(stage: Stage) -> Wait:
-    rng = np.random.default_rng(15)
-    for scale in (1.0, 1.75):
+def random_drags_press_where_the_cursor_is(stage: Stage) -> Wait:
+    yield from _random_drags_on_bodies(stage, 1.0)
+
+
+def random_drags_press_where_the_cursor_is_in_a_large_interface(stage: Stage) -> Wait:
+    try:
+        yield from _random_drags_on_bodies(stage, 1.75)
+    finally:
+        bpy.context.preferences.view.ui_scale = 1.0
+
+
+def _random_drags_on_bodies(stage: Stage, scale: float) -> Wait:
+    """Ten drags in all, with the sidebar open."""
+    rng = np.random.default_rng(round(100 * scale))
+    for name in ("Cube", "Mouse"):
+        yield from (_soft_default_cube(stage) if name == "Cube" else open_mouse(stage))
         bpy.context.preferences.view.ui_scale = scale
-        yield 0.3
-        for name in ("cube", "mouse"):
-            if name == "cube":
-                yield from _soft_default_cube(stage)
-                thing = bpy.data.objects["Cube"]
-            else:
-                yield from open_mouse(stage)
-                thing = mouse()
-                thing.data  # noqa: B018
-            yield from stage.open_sidebar("Palpate")
-            _choose_tool(stage)
-            yield from _random_drags(stage, thing.name, rng, 5)
-            yield from stage.picture(f"{name}-{scale}")
-    bpy.context.preferences.view.ui_scale = 1.0
+        yield 0.5
+        yield from stage.open_sidebar("Palpate")
+        _choose_tool(stage)
+        yield 0.5
+        yield from _random_drags(stage, name, rng, 5)
+        yield from stage.picture(name)
 
 
 def _random_drags(stage: Stage, name: str, rng: np.random.Generator, count: int) -> Wait:
@@ -126,15 +130,16 @@ def _random_drags(stage: Stage, name: str, rng: np.random.Generator, count: int)
 def _visible_place(stage: Stage, name: str, rng: np.random.Generator) -> Pixel:
     """A pixel at which the object is seen, not covered by a panel or a gizmo."""
     region = stage.region("WINDOW")
-    while True:
-        x = region.x + rng.uniform(0.1, 0.9) * region.width
-        y = region.y + rng.uniform(0.1, 0.9) * region.height
+    for _ in range(2000):
+        x = region.x + rng.uniform(0.02, 0.98) * region.width
+        y = region.y + rng.uniform(0.02, 0.98) * region.height
         here = under_pointer(stage.window, round(x), round(y))
         if here is None or here.over_gizmos():
             continue
-        touched = _touched(stage, (x, y))
+        touched = _touched(stage, (round(x), round(y)))
         if touched is not None and touched.thing.name == name:
             return round(x), round(y)
+    raise AssertionError(f"{name} is nowhere to be seen")
 
 
 def _touched(stage: Stage, at: Pixel):
