@@ -20,6 +20,7 @@ from ..scene import drawn_surface, ray
 from ..scene.body_frame import BodyFrame
 from ..scene.drawn_surface import DrawnSurface
 from . import body_store, kept_body, pin_change, soft_object
+from .hung_map import hung_on
 from .soft_object import BodyStatus, Fit
 
 Array = NDArray[np.float64]
@@ -159,7 +160,7 @@ def open_body(thing: bpy.types.Object, scene: bpy.types.Scene) -> DrawnBody:
     body = _body(thing, surface, status)
     return DrawnBody(
         body=body,
-        hung=DrawnMap.hang(surface.body, body),
+        hung=hung_on(body, surface.body),
         rest=drawn_surface.rest_coordinates(thing.data),
         frame=surface.frame,
         file=body_store.locate(thing),

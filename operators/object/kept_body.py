@@ -11,7 +11,7 @@ import bpy
 
 from ...core.body.soft_body import SoftBody
 from ...core.compliance.mapped import MappedCompliance
-from . import body_store
+from . import body_store, hung_map
 
 # The body, its file, and the file's state when read.
 _kept: tuple[tuple[object, ...], SoftBody] | None = None
@@ -41,6 +41,7 @@ def forget() -> None:
     """Free the memory."""
     global _kept  # noqa: PLW0603  see load
     _kept = None
+    hung_map.forget()
 
 
 def _stamp(path: Path, key: str) -> tuple[object, ...]:

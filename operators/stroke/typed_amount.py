@@ -11,6 +11,14 @@ from .motion import Motion
 
 # What can be part of a number with its unit.
 CHARACTERS = set("0123456789.,-+*/()'\"cmkutyfindhr ")
+DIGITS = ("ZERO", "ONE", "TWO", "THREE", "FOUR", "FIVE", "SIX", "SEVEN", "EIGHT", "NINE")
+# What keys mean that come without a character, as from some input methods.
+KEYS = {
+    **{name: str(digit) for digit, name in enumerate(DIGITS)},
+    **{f"NUMPAD_{digit}": str(digit) for digit in range(10)},
+    **{name: "." for name in ("PERIOD", "COMMA", "NUMPAD_PERIOD")},
+    **{name: "-" for name in ("MINUS", "NUMPAD_MINUS")},
+}
 UNITS = {
     "KILOMETERS": "km",
     "METERS": "m",
@@ -37,8 +45,9 @@ class TypedAmount:
             return None
         if event.type == "BACK_SPACE":
             return replace(self, text=self.text[:-1])
-        if event.unicode and event.unicode in CHARACTERS:
-            return replace(self, text=self.text + event.unicode)
+        character = event.unicode or KEYS.get(event.type, "")
+        if character and character in CHARACTERS:
+            return replace(self, text=self.text + character)
         return None
 
     def value(self, scene: bpy.types.Scene) -> float | None:

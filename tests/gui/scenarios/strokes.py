@@ -79,7 +79,7 @@ def a_depth_is_typed_while_dragging(stage: Stage) -> Wait:
     yield from stage.until(lambda: len(kept(cube)) == 1, "the stroke")
     last = bpy.context.window_manager.operators[-1]
     assert last.bl_idname == "PALPATE_OT_stroke"
-    stage.note(depth=last.properties["depth"])
+    assert math.isclose(last.properties["depth"], 0.2, rel_tol=1e-5)
 
 
 def random_drags_press_where_the_cursor_is(stage: Stage) -> Wait:
