@@ -16,8 +16,8 @@ DIGITS = ("ZERO", "ONE", "TWO", "THREE", "FOUR", "FIVE", "SIX", "SEVEN", "EIGHT"
 KEYS = {
     **{name: str(digit) for digit, name in enumerate(DIGITS)},
     **{f"NUMPAD_{digit}": str(digit) for digit in range(10)},
-    **{name: "." for name in ("PERIOD", "COMMA", "NUMPAD_PERIOD")},
-    **{name: "-" for name in ("MINUS", "NUMPAD_MINUS")},
+    **dict.fromkeys(("PERIOD", "COMMA", "NUMPAD_PERIOD"), "."),
+    **dict.fromkeys(("MINUS", "NUMPAD_MINUS"), "-"),
 }
 UNITS = {
     "KILOMETERS": "km",
