@@ -10,8 +10,9 @@ from mathutils import Vector
 
 from ...core.errors import PalpateError
 from ...core.sentence import Sentence
+from ..layer import live_layer
 from ..object import soft_object
-from ..object.drawn_body import open_body
+from ..object.drawn_body import DrawnBody, open_body
 from ..reporting.acting import Acting
 from ..reporting.translated import reported
 from ..scene import viewport
@@ -19,7 +20,7 @@ from ..scene.drawn_surface import metres_per_unit
 from ..scene.object_handle import ObjectHandle
 from ..session import press_session
 from ..tool.tool_sizes import chosen_sizes
-from . import kept_stroke, stroke_words, touched_place
+from . import stroke_words, touched_place
 from .motion import Asked, Motion
 from .seen_place import seen_place
 from .stroke import Stroke, Stroked, grips_at
@@ -65,12 +66,12 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
             raise PalpateError(
                 "stroke: it moves nothing; give it a depth, a way, an angle or a share"
             )
-        kept_stroke.begin(thing)
+        live_layer.hang(thing)
         try:
             stroked = self._stroke.stroked(asked)
-            kept_stroke.draw(thing, self._stroke.drawn, stroked)
+            _draw(thing, self._stroke.drawn, stroked)
         except BaseException:
-            kept_stroke.give_up(thing)
+            live_layer.remove(thing)
             raise
         self._keep(scene, thing, asked, stroked)
 
@@ -123,7 +124,7 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
             return {"PASS_THROUGH"}
         if context.object != thing:
             _make_active(context, thing)
-        kept_stroke.begin(thing)
+        live_layer.hang(thing)
         motion, cursor = Motion[self.motion], (event.mouse_x, event.mouse_y)
         self._drag = StrokeDrag(
             motion,
@@ -176,7 +177,7 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
         self._drag = replace(drag, typed=self._typed.value(scene))
         asked = self._drag.asked(self._touched.turn)
         stroked = self._stroke.stroked(asked)
-        kept_stroke.draw(thing, self._stroke.drawn, stroked)
+        _draw(thing, self._stroke.drawn, stroked)
         text = stroke_words.figures(scene, asked, stroked)
         if self._typed.text:
             text = f"[{self._typed.text}|]   {text}"
@@ -199,7 +200,7 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
     def _keep(
         self, scene: bpy.types.Scene, thing: bpy.types.Object, asked: Asked, stroked: Stroked
     ) -> None:
-        name = kept_stroke.keep(thing)
+        name = live_layer.keep(thing)
         self.force = stroked.force
         figures = stroke_words.figures(scene, asked, stroked)
         self.report({"INFO"}, reported("{figures}, kept as '{name}'", figures=figures, name=name))
@@ -207,7 +208,7 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
     def _leave(self, context: bpy.types.Context, *, give_up: bool) -> None:
         thing = self._handle.find()
         if give_up and thing is not None:
-            kept_stroke.give_up(thing)
+            live_layer.remove(thing)
         context.workspace.status_text_set(None)
         if context.area is not None:
             context.area.header_text_set(None)
@@ -245,6 +246,10 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
                 self.share = asked.amount
             case _:
                 self.depth = asked.amount / metres
+
+
+def _draw(thing: bpy.types.Object, drawn: DrawnBody, stroked: Stroked) -> None:
+    live_layer.write(thing, drawn.drawn_displacement(stroked.displacements, stroked.tools))
 
 
 def not_soft(thing: bpy.types.Object) -> Sentence:

@@ -12,10 +12,12 @@ from soft_scene import (
     TOP,
     cube,
     error_of,
-    key_coordinates,
-    key_names,
+    layer_names,
     mesh_state,
+    moved,
     part,
+    rest_places,
+    seen_places,
 )
 
 STROKES = {
@@ -28,17 +30,13 @@ STROKES = {
 }
 
 
-def moved(thing, name="Press 1"):
-    return key_coordinates(thing, name) - key_coordinates(thing, "Basis")
-
-
 @pytest.mark.parametrize("name", list(STROKES))
 def test_a_stroke_moves_the_surface_and_stays(thing, name):
     assert bpy.ops.palpate.stroke(place=(0.02, 0.02, 0.025), radius=0.02, **STROKES[name]) == {
         "FINISHED"
     }
-    assert key_names(thing) == ["Basis", "Press 1"]
-    shift = moved(thing)
+    assert layer_names(thing) == ["Press 1"]
+    shift = moved(thing, "Press 1")
     assert np.isfinite(shift).all()
     assert np.abs(shift).max() > 1e-4
 
@@ -46,9 +44,23 @@ def test_a_stroke_moves_the_surface_and_stays(thing, name):
 def test_a_push_goes_in_and_a_pull_out(thing):
     bpy.ops.palpate.stroke(place=TOP, radius=0.02, **STROKES["push"])
     bpy.ops.palpate.stroke(place=TOP, radius=0.02, **STROKES["pull"])
-    assert key_names(thing) == ["Basis", "Press 1", "Press 2"]
-    top = key_coordinates(thing, "Basis")[:, 2] > 0.02
+    assert layer_names(thing) == ["Press 1", "Press 2"]
+    top = rest_places(thing)[:, 2] > 0.02
     assert moved(thing, "Press 1")[top, 2].mean() < 0.0 < moved(thing, "Press 2")[top, 2].mean()
+
+
+def test_the_next_stroke_is_added_to_what_is_seen_and_begins_there(thing):
+    bpy.ops.palpate.stroke(place=(0.025, 0.025, 0.025), radius=0.02, **STROKES["grab"])
+    places = part("operators.stroke.touched_place")
+    graph = bpy.context.evaluated_depsgraph_get()
+    corner = seen_places(thing)[np.argmax(rest_places(thing).sum(axis=1))]
+    assert np.linalg.norm(corner - 0.025) > 1e-3
+    found = places.nearest(bpy.context.scene, graph, thing, Vector(corner))
+    assert np.allclose(found.seen, corner, atol=1e-6)
+    assert np.allclose(found.rest, 0.025, atol=1e-6)
+    bpy.ops.palpate.stroke(place=corner, radius=0.02, **STROKES["push"])
+    both = moved(thing, "Press 1") + moved(thing, "Press 2")
+    assert np.allclose(seen_places(thing) - rest_places(thing), both, atol=1e-6)
 
 
 def test_a_stroke_is_undone_in_one_step_and_others_stay(thing):
@@ -56,7 +68,7 @@ def test_a_stroke_is_undone_in_one_step_and_others_stay(thing):
     bpy.ops.palpate.stroke("EXEC_DEFAULT", True, place=TOP, radius=0.02, **STROKES["push"])
     bpy.ops.palpate.stroke("EXEC_DEFAULT", True, place=TOP, radius=0.02, **STROKES["grab"])
     bpy.ops.ed.undo()
-    assert key_names(bpy.context.object) == ["Basis", "Press 1"]
+    assert layer_names(bpy.context.object) == ["Press 1"]
 
 
 def test_a_mirrored_grab_moves_both_sides(thing):
@@ -65,7 +77,7 @@ def test_a_mirrored_grab_moves_both_sides(thing):
     bpy.ops.palpate.stroke(
         motion="GRAB", place=at, radius=0.015, by=by, mirrored=(True, False, False)
     )
-    shift, rest = moved(thing), key_coordinates(thing, "Basis")
+    shift, rest = moved(thing, "Press 1"), rest_places(thing)
     right = shift[(rest[:, 0] > 0) & (rest[:, 2] > 0)].mean(axis=0)
     left = shift[(rest[:, 0] < 0) & (rest[:, 2] > 0)].mean(axis=0)
     assert right[0] > 0.0 > left[0]
@@ -120,7 +132,7 @@ def test_a_ray_meets_the_soft_object_in_front_and_nothing_behind_another(thing):
 
 def test_angle_and_share_are_what_was_asked(thing):
     bpy.ops.palpate.stroke(place=TOP, radius=0.03, motion="TWIST", angle=math.radians(20))
-    rest, shift = key_coordinates(thing, "Basis"), moved(thing)
+    rest, shift = rest_places(thing), moved(thing, "Press 1")
     top = rest[:, 2] > 0
     around = np.cross(np.tile([0, 0, 1.0], (top.sum(), 1)), rest[top])
     assert ((shift[top] * around).sum(axis=1) > 0).all()

@@ -10,6 +10,7 @@ import numpy as np
 from mouse_scene import open_mouse, type_key
 from stage import Pixel, Stage, Wait
 
+from bl_ext.user_default.palpate.operators.layer import layers
 from bl_ext.user_default.palpate.operators.object import soft_object
 from bl_ext.user_default.palpate.operators.scene.viewport import under_pointer
 from bl_ext.user_default.palpate.operators.stroke.seen_place import seen_place
@@ -102,9 +103,17 @@ def _random_drags_on_bodies(stage: Stage, scale: float) -> Wait:
         yield 0.5
         yield from stage.open_sidebar("Palpate")
         _choose_tool(stage)
-        yield 0.5
+        yield from _settled(stage)
         yield from _random_drags(stage, name, rng, 5)
         yield from stage.picture(name)
+
+
+def _settled(stage: Stage) -> Wait:
+    """Wait until the sidebar has its place, which a larger interface gives it in steps."""
+    before = None
+    while before != (before := (stage.region("UI").x, stage.region("UI").width)):
+        yield 1.0
+        yield
 
 
 def _random_drags(stage: Stage, name: str, rng: np.random.Generator, count: int) -> Wait:
@@ -134,7 +143,8 @@ def _visible_place(stage: Stage, name: str, rng: np.random.Generator) -> Pixel:
         x = region.x + rng.uniform(0.02, 0.98) * region.width
         y = region.y + rng.uniform(0.02, 0.98) * region.height
         here = under_pointer(stage.window, round(x), round(y))
-        if here is None or here.over_gizmos():
+        # The sidebar's edge can be dragged, also from a little beside it.
+        if here is None or here.over_gizmos() or abs(x - stage.region("UI").x) < 20:
             continue
         touched = _touched(stage, (round(x), round(y)))
         if touched is not None and touched.thing.name == name:
@@ -188,22 +198,17 @@ def _place_on_cube(number: int) -> tuple[float, float, float]:
 
 def kept(thing: bpy.types.Object) -> list[str]:
     """Names of the strokes that were kept."""
-    keys = thing.data.shape_keys
-    return [key.name for key in keys.key_blocks if key.name.startswith("Press")] if keys else []
+    return [layer.name for layer in layers.layers_of(thing) if layer.name.startswith("Press")]
 
 
 def last_stroke(thing: bpy.types.Object) -> np.ndarray:
     """Displacements (p, 3) of the last stroke kept, local units."""
-    key = thing.data.shape_keys.key_blocks[kept(thing)[-1]]
-    return _coordinates(key.data) - _rest(thing)
+    moved = layers.displacement(thing, thing.modifiers[kept(thing)[-1]])
+    assert moved is not None
+    return moved
 
 
 def _rest(thing: bpy.types.Object) -> np.ndarray:
-    keys = thing.data.shape_keys
-    return _coordinates(keys.reference_key.data if keys else thing.data.vertices)
-
-
-def _coordinates(points: object) -> np.ndarray:
-    flat = np.empty(3 * len(points), dtype=np.float32)
-    points.foreach_get("co", flat)
+    flat = np.empty(3 * len(thing.data.vertices), dtype=np.float32)
+    thing.data.vertices.foreach_get("co", flat)
     return flat.reshape(-1, 3)
