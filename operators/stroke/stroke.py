@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -69,7 +70,8 @@ class Stroke:
         PalpateError
             The place is pinned; the fingertip is too small for the body.
         """
-        if asked.motion is Motion.PUSH and asked.amount > 0.0:
+        # A pull begins at a depth of -0.
+        if asked.motion is Motion.PUSH and math.copysign(1.0, asked.amount) > 0.0:
             return self._pushing.to(asked.amount, self.young_modulus)
         answer = self._held.answer(asked.shares(self.grips[0].normal), self.young_modulus)
         force = float(np.linalg.norm(answer.force))

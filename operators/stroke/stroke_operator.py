@@ -14,10 +14,11 @@ from ..layer import live_layer
 from ..object import soft_object
 from ..object.drawn_body import DrawnBody, open_body
 from ..reporting.acting import Acting
-from ..reporting.translated import reported
+from ..reporting.translated import reported, shown
 from ..scene import viewport
 from ..scene.drawn_surface import metres_per_unit
 from ..scene.object_handle import ObjectHandle
+from ..scene.probe_drag import View
 from ..session import press_session
 from ..tool.tool_sizes import chosen_sizes
 from . import stroke_words, touched_place
@@ -44,6 +45,8 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
     _touched: TouchedPlace
     _drag: StrokeDrag
     _typed: TypedAmount
+    # What was asked last and could be done.
+    _last: tuple[Asked, Stroked]
 
     @classmethod
     def refusal(cls, context: bpy.types.Context) -> str:
@@ -116,31 +119,35 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
         context.window.cursor_modal_set("WAIT")
         try:
             self._begin(scene, touched)
+            view = here.view_at(touched.frame.body_from_world(touched.seen), touched.frame)
+            if view is None:
+                return {"PASS_THROUGH"}
+            self._drag = self._drag_from(event, view, scene)
+            # What takes time is prepared before anything is changed, and a pinned place refused.
+            asked = self._drag.asked(touched.turn)
+            self._last = asked, self._stroke.stroked(asked)
         finally:
             context.window.cursor_modal_restore()
-        place = touched.frame.body_from_world(touched.seen)
-        view = here.view_at(place, touched.frame)
-        if view is None:
-            return {"PASS_THROUGH"}
         if context.object != thing:
             _make_active(context, thing)
+        self._typed = TypedAmount(self._drag.motion)
         live_layer.hang(thing)
-        motion, cursor = Motion[self.motion], (event.mouse_x, event.mouse_y)
-        self._drag = StrokeDrag(
-            motion,
-            -1.0 if self.outward != scene.palpate.stroke_outward else 1.0,
-            view,
-            self._stroke.grips[0].radius,
-            self._stroke.drawn.size,
-            scene.palpate.stroke_strength,
-            cursor,
-            cursor,
-        )
-        self._typed = TypedAmount(motion)
         context.window_manager.modal_handler_add(self)
-        context.workspace.status_text_set(stroke_words.status(motion))
-        self._follow(context, event)
+        context.workspace.status_text_set(stroke_words.status(self._drag.motion))
         return {"RUNNING_MODAL"}
+
+    def _drag_from(self, event: bpy.types.Event, view: View, scene: bpy.types.Scene) -> StrokeDrag:
+        chosen, cursor = scene.palpate, (event.mouse_x, event.mouse_y)
+        return StrokeDrag(
+            motion=Motion[self.motion],
+            sign=-1.0 if self.outward != chosen.stroke_outward else 1.0,
+            view=view,
+            radius=self._stroke.grips[0].radius,
+            size=self._stroke.drawn.size,
+            strength=chosen.stroke_strength,
+            start=cursor,
+            cursor=cursor,
+        )
 
     def _begin(self, scene: bpy.types.Scene, touched: TouchedPlace) -> None:
         """Take hold of the body at a place."""
@@ -176,22 +183,27 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
         drag = self._drag.dragged((event.mouse_x, event.mouse_y), pressure)
         self._drag = replace(drag, typed=self._typed.value(scene))
         asked = self._drag.asked(self._touched.turn)
-        stroked = self._stroke.stroked(asked)
+        problem = ""
+        try:
+            self._last = asked, self._stroke.stroked(asked)
+        except PalpateError as refused:
+            # As far as it went; back from there the stroke goes on.
+            problem = f"   {shown(refused)}"
+        asked, stroked = self._last
         _draw(thing, self._stroke.drawn, stroked)
-        text = stroke_words.figures(scene, asked, stroked)
+        text = f"{stroke_words.figures(scene, asked, stroked)}{problem}"
         if self._typed.text:
             text = f"[{self._typed.text}|]   {text}"
         context.area.header_text_set(text)
         context.area.tag_redraw()
 
     def _finish(self, context: bpy.types.Context) -> set[str]:
-        asked = self._drag.asked(self._touched.turn)
-        if asked.nothing:
+        if self._last[0].nothing:
             # A click moves nothing, and leaves nothing.
             self._leave(context, give_up=True)
             return {"CANCELLED"}
+        asked, stroked = self._last
         scene, thing = context.scene, self._thing()
-        stroked = self._stroke.stroked(asked)
         self._tell(asked, scene)
         self._leave(context, give_up=False)
         self._keep(scene, thing, asked, stroked)

@@ -135,3 +135,14 @@ def test_angle_and_share_are_what_was_asked(thing):
     top = rest[:, 2] > 0
     around = np.cross(np.tile([0, 0, 1.0], (top.sum(), 1)), rest[top])
     assert ((shift[top] * around).sum(axis=1) > 0).all()
+
+
+def test_nothing_is_asked_at_first_and_nothing_moves(thing):
+    scene, strokes = bpy.context.scene, part("operators.stroke.stroke")
+    drawn = part("operators.object.drawn_body").open_body(thing, scene)
+    asked, motion = part("operators.stroke.motion").Asked, part("operators.stroke.motion").Motion
+    grips = strokes.grips_at(drawn, np.array(TOP), 0.01, (True, True, False))
+    stroke = strokes.Stroke(drawn, grips, 1000.0, 0.5)
+    for kind, amount in ((motion.PUSH, 0.0), (motion.PUSH, -0.0), (motion.TWIST, 0.0)):
+        assert not stroke.stroked(asked(kind, amount)).displacements.any()
+    assert stroke.stroked(asked(motion.PUSH, 0.002)).displacements.any()
