@@ -3,7 +3,11 @@
 from .kinds import choice, number, span, switch
 
 # Files hold the numbers of these items: add new ones at the end only.
-AXIS_ITEMS = [(axis, axis, f"Cut across the world's {axis} axis") for axis in "XYZ"]
+AXIS_ITEMS = [
+    ("X", "X", "Cut across the world's X axis"),
+    ("Y", "Y", "Cut across the world's Y axis"),
+    ("Z", "Z", "Cut across the world's Z axis"),
+]
 
 
 class InspectionProperties:

@@ -7,6 +7,7 @@ from soft_scene import part
 
 # Blender translates these itself, or they are the same everywhere.
 BLENDERS_OWN = {
+    *"XYZ",
     "CSV",
     "npz",
     "Format",
