@@ -15,7 +15,7 @@ NAME = "Mouse"
 def escape_ends_the_baking_of_an_animation_and_changes_nothing(stage: Stage) -> Wait:
     yield from _begin(stage)
     frame = bpy.context.scene.frame_current
-    yield from _bake(stage)
+    yield from _bake(stage, last=1000)
     # Some frames on: the timer presses a slice at a time, and the window is drawn in between.
     yield from stage.until(lambda: bpy.context.scene.frame_current > frame, "a frame")
     yield from stage.picture("bar")
@@ -76,9 +76,9 @@ def _begin(stage: Stage) -> Wait:
     yield
 
 
-def _bake(stage: Stage) -> Wait:
+def _bake(stage: Stage, last: int = 21) -> Wait:
     with stage.view():
-        bpy.ops.palpate.press_frames("INVOKE_DEFAULT", frame_start=11, frame_end=21)
+        bpy.ops.palpate.press_frames("INVOKE_DEFAULT", frame_start=11, frame_end=last)
     yield
 
 
