@@ -16,7 +16,7 @@ from ..object.drawn_body import DrawnBody, open_body
 from ..press.modal_press import Pressing
 from ..press.press_once import keep_shape, pressing_tools
 from ..reporting.translated import reported, shown
-from ..scene.viewport import redraw_views
+from ..scene.modal_progress import ModalProgress
 from ..shape.drawn_shape import closing_shape
 from . import frame_keys, live_pressers, mesh_cache
 from .force_table import FrameRows
@@ -70,7 +70,7 @@ class PALPATE_OT_press_frames(Pressing, bpy.types.Operator):
         description="Press up to the current frame and keep only its shape",
     )
 
-    _timer: bpy.types.Timer | None = None
+    _progress: ModalProgress
     _baking: Baking
     _told: str = ""
 
@@ -88,10 +88,8 @@ class PALPATE_OT_press_frames(Pressing, bpy.types.Operator):
         self._baking = self._bake(context)
         # What cannot be baked is refused before the operator becomes modal.
         share = next(self._baking, 1.0)
-        manager = context.window_manager
-        self._timer = manager.event_timer_add(SLICE_SECONDS, window=context.window)
-        manager.progress_begin(0, 100)
-        manager.modal_handler_add(self)
+        self._progress = ModalProgress()
+        self._progress.begin(self, context, SLICE_SECONDS)
         self._show(context, share)
         return {"RUNNING_MODAL"}
 
@@ -105,23 +103,23 @@ class PALPATE_OT_press_frames(Pressing, bpy.types.Operator):
         try:
             share = self._go_on()
         except PalpateError as problem:
-            self._leave(context)
+            self._progress.end(context)
             self.report({"ERROR"}, reported(problem))
             return {"CANCELLED"}
         except BaseException:
-            self._leave(context)
+            self._progress.end(context)
             raise
         if share is not None:
             self._show(context, share)
             return {"RUNNING_MODAL"}
-        self._leave(context)
+        self._progress.end(context)
         self.report({"INFO"}, reported(self._told))
         return {"FINISHED"}
 
     def cancel(self, context: bpy.types.Context) -> None:
         """End with the operator: another file, or exit."""
         self._baking.close()
-        self._leave(context)
+        self._progress.end(context)
 
     def _go_on(self) -> float | None:
         """Press for a while; the share that is done, None at the end."""
@@ -132,21 +130,7 @@ class PALPATE_OT_press_frames(Pressing, bpy.types.Operator):
         return None
 
     def _show(self, context: bpy.types.Context, share: float) -> None:
-        context.workspace.status_text_set(
-            f"Palpate: {shown(self.bl_label)}: {100 * share:.0f} %     [Esc] {shown('Cancel')}"
-        )
-        context.window_manager.progress_update(100 * share)
-        redraw_views()
-
-    def _leave(self, context: bpy.types.Context) -> None:
-        if self._timer is not None:
-            context.window_manager.event_timer_remove(self._timer)
-            self._timer = None
-        context.window_manager.progress_end()
-        # None while Blender replaces its windows for another file.
-        if context.workspace is not None:
-            context.workspace.status_text_set(None)
-        redraw_views()
+        self._progress.show(context, f"{shown(self.bl_label)}: {100 * share:.0f} %", share)
 
     def _bake(self, context: bpy.types.Context) -> Baking:
         """Press all frames, then keep what came of it; nothing is kept if it is closed before."""
@@ -209,21 +193,14 @@ class PALPATE_OT_press_frames(Pressing, bpy.types.Operator):
     def _keep_keys(
         self, thing: bpy.types.Object, drawn: DrawnBody, pressed: Iterator[PressedFrame], count: int
     ) -> Baking:
-        kept: list[PressedFrame] = []
-        for here in pressed:
-            kept.append(here)
-            yield len(kept) / count
+        kept = yield from _collected(pressed, count)
         frame_keys.keep_frames(thing, drawn, kept)
         live_pressers.end(thing)
 
     def _keep_last(
         self, thing: bpy.types.Object, drawn: DrawnBody, pressed: Iterator[PressedFrame], count: int
     ) -> Baking:
-        kept: list[PressedFrame] = []
-        for here in pressed:
-            kept.append(here)
-            yield len(kept) / count
-        last = kept[-1]
+        *_, last = yield from _collected(pressed, count)
         if last.displacements is None:
             raise PalpateError("The tool touches nothing in this frame; choose another")
         name = keep_shape(thing, drawn, last.displacements, pressing_tools(last.fingers))
@@ -248,6 +225,17 @@ class PALPATE_OT_press_frames(Pressing, bpy.types.Operator):
                 most=MOST_KEYS,
             )
         return frames
+
+
+def _collected(
+    pressed: Iterator[PressedFrame], count: int
+) -> Generator[float, None, list[PressedFrame]]:
+    """All frames, once each share of them was told."""
+    kept: list[PressedFrame] = []
+    for here in pressed:
+        kept.append(here)
+        yield len(kept) / count
+    return kept
 
 
 classes = (PALPATE_OT_press_frames,)

@@ -8,7 +8,7 @@ from ...core.errors import CancelledError, PalpateError
 from ..object import soft_object
 from ..reporting.acting import Acting
 from ..reporting.translated import reported, shown
-from ..scene.viewport import redraw_views
+from ..scene.modal_progress import ModalProgress
 from ..session import press_session
 from . import bake_session, bake_words
 from .bake_session import BakeSession
@@ -21,7 +21,7 @@ class BakingOperator(Acting):
 
     rebuild = False
     _session: BakeSession
-    _timer: bpy.types.Timer | None = None
+    _progress: ModalProgress
 
     @classmethod
     def refusal(cls, context: bpy.types.Context) -> str:
@@ -42,10 +42,8 @@ class BakingOperator(Acting):
 
     def _start(self, context: bpy.types.Context) -> set[str]:
         self._session = bake_session.start(context.object, context.scene, rebuild=self.rebuild)
-        manager = context.window_manager
-        self._timer = manager.event_timer_add(1 / POLLS_PER_SECOND, window=context.window)
-        manager.progress_begin(0, 100)
-        manager.modal_handler_add(self)
+        self._progress = ModalProgress()
+        self._progress.begin(self, context, 1 / POLLS_PER_SECOND)
         self._show(context)
         return {"RUNNING_MODAL"}
 
@@ -53,7 +51,7 @@ class BakingOperator(Acting):
         try:
             return self._follow(context, event)
         except PalpateError as problem:
-            self._leave(context)
+            self._progress.end(context)
             level = "INFO" if isinstance(problem, CancelledError) else "ERROR"
             self.report({level}, reported(problem))
             return {"CANCELLED"}
@@ -72,35 +70,22 @@ class BakingOperator(Acting):
         if not finished or not self._session.can_commit:
             return {"PASS_THROUGH"}
         body, report = self._session.commit(context.scene)
-        self._leave(context)
+        self._progress.end(context)
         self._tell(self._session.handle.name, body, report)
         return {"FINISHED"}
 
     def cancel(self, context: bpy.types.Context) -> None:
         """End with the operator: another file, or exit."""
         self._session.end()
-        self._leave(context)
+        self._progress.end(context)
 
     def _show(self, context: bpy.types.Context, *, waiting: bool = False) -> None:
         progress = self._session.progress
         text = f"{shown(progress.text)}, {bake_words.how_far(progress)}"
         if waiting:
             text = shown(bake_words.WAITING)
-        context.workspace.status_text_set(
-            f"Palpate: {self._session.handle.name}: {text}     [Esc] {shown('Cancel')}"
-        )
-        context.window_manager.progress_update(100 * (progress.share or 0.0))
-        redraw_views()
-
-    def _leave(self, context: bpy.types.Context) -> None:
-        if self._timer is not None:
-            context.window_manager.event_timer_remove(self._timer)
-            self._timer = None
-        context.window_manager.progress_end()
-        # None while Blender replaces its windows for another file.
-        if context.workspace is not None:
-            context.workspace.status_text_set(None)
-        redraw_views()
+        text = f"{self._session.handle.name}: {text}"
+        self._progress.show(context, text, progress.share or 0.0)
 
     def _tell(self, name: str, body: SoftBody, report: BakeReport) -> None:
         for warning in report.warnings:

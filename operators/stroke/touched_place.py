@@ -7,18 +7,15 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 from mathutils import Matrix, Vector
-from mathutils.geometry import tessellate_polygon
 from numpy.typing import NDArray
 
 from ...core.errors import PalpateError
-from ...core.mesh.closest_point import closest_area_coordinates
+from ..layer.layer_groups import REST
 from ..scene.body_frame import BodyFrame
 from ..scene.drawn_surface import metres_per_unit
+from ..scene.seen_triangle import outward_normal, triangle_at, turn_between
 
 Array = NDArray[np.float64]
-
-# Point attribute of the evaluated mesh: the places at rest, also of vertices that modifiers made.
-REST = "palpate_rest"
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,39 +89,18 @@ def _on_face(
 ) -> TouchedPlace:
     frame = BodyFrame.of_matrix(np.array(matrix), metres_per_unit(scene))
     mesh = thing.evaluated_get(graph).data
-    corners, alpha = _triangle(mesh, face, place)
+    corners, alpha = triangle_at(mesh, face, place)
     seen = frame.body_from_local(np.array([mesh.vertices[corner].co for corner in corners]))
     at_rest = _rest(thing, mesh, corners)
     rest = seen if at_rest is None else frame.body_from_local(at_rest)
-    outward = np.cross(seen[1] - seen[0], seen[2] - seen[0]) * (-1.0 if frame.mirrored else 1.0)
-    outward /= np.linalg.norm(outward)
     return TouchedPlace(
         thing,
         frame,
         frame.world_from_body(alpha @ seen),
-        frame.turn_to_world(outward),
+        frame.turn_to_world(outward_normal(seen, frame)),
         alpha @ rest,
-        _turn(rest, seen),
+        turn_between(rest, seen),
     )
-
-
-def _triangle(mesh: bpy.types.Mesh, face: int, place: Vector) -> tuple[list[int], Array]:
-    """Vertices of the triangle of a polygon that has a place, and its area coordinates there."""
-    vertices = list(mesh.polygons[face].vertices)
-    points = [mesh.vertices[vertex].co for vertex in vertices]
-    triangles = np.array(tessellate_polygon([points]))
-    corners = np.array(points, dtype=np.float64)[triangles]
-    asked = np.repeat(np.array([place], dtype=np.float64), len(triangles), axis=0)
-    alphas = closest_area_coordinates(asked, corners)
-    missed = np.linalg.norm(np.einsum("tc,tcx->tx", alphas, corners) - asked, axis=1)
-    best = int(np.argmin(missed))
-    chosen = [vertices[corner] for corner in triangles[best]]
-    # Wound as the polygon is.
-    normal = mesh.polygons[face].normal
-    i, j, k = (Vector(corner) for corner in corners[best])
-    if (j - i).cross(k - i).dot(normal) < 0.0:
-        return chosen[::-1], alphas[best][::-1]
-    return chosen, alphas[best]
 
 
 def _rest(
@@ -139,22 +115,3 @@ def _rest(
         return None
     points = base.shape_keys.reference_key.points if base.shape_keys else base.vertices
     return np.array([points[corner].co for corner in corners], dtype=np.float64)
-
-
-def _turn(rest: Array, seen: Array) -> Array:
-    """Rotation (3, 3) that best takes a triangle's edges and normal at rest to those seen."""
-    before, after = _axes(rest), _axes(seen)
-    if min(abs(np.linalg.det(before)), abs(np.linalg.det(after))) < 1e-12:
-        return np.eye(3)
-    left, _, right = np.linalg.svd(after @ np.linalg.inv(before))
-    turn: Array = left @ np.diag([1.0, 1.0, np.sign(np.linalg.det(left @ right))]) @ right
-    return turn
-
-
-def _axes(corners: Array) -> Array:
-    """Edges and normal of a triangle (3, 3), as columns, in lengths of its longest edge."""
-    one, two = corners[1] - corners[0], corners[2] - corners[0]
-    normal = np.cross(one, two)
-    longest = max(np.linalg.norm(one), np.linalg.norm(two), 1e-300)
-    unit = normal / max(np.linalg.norm(normal), 1e-300)
-    return np.column_stack([one / longest, two / longest, unit])

@@ -145,19 +145,24 @@ def guardian_rows(times: int, signals: Sequence[signal.Signals] = SIGNALS) -> li
     for kind in KINDS:
         for number in signals:
             all_of_them = [end_by(number, kind) for _ in range(times)]
+            injected = f"{number.name} to the host, {kind}"
+            pushed = [one.pushed for one in all_of_them]
             worst = max(one.ms_to_zero for one in all_of_them)
-            broken = []
-            if not all(one.pushed for one in all_of_them):
-                broken.append("it did not push")
-            if worst > PROMISED_MS:
-                broken.append(f"zero later than {PROMISED_MS:g} ms")
-            rows.append(
-                Row(
-                    injected=f"{number.name} to the host, {kind}",
-                    times=times,
-                    told="(no host)",
-                    broken=tuple(broken),
-                    zero_ms=worst,
-                )
-            )
+            rows.append(ending_row(injected, "(no host)", pushed, worst))
     return rows
+
+
+def ending_row(injected: str, told: str, pushed: Sequence[bool], worst_ms: float) -> Row:
+    """Row of devices that were to hear zero, of which each had to push before."""
+    broken = []
+    if not all(pushed):
+        broken.append("it did not push")
+    if worst_ms > PROMISED_MS:
+        broken.append(f"zero later than {PROMISED_MS:g} ms")
+    return Row(
+        injected=injected,
+        times=len(pushed),
+        told=told,
+        broken=tuple(broken),
+        zero_ms=worst_ms,
+    )

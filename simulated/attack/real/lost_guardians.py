@@ -9,7 +9,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 
 from ..table import Row
-from .guardians import PROMISED_MS, WAYS, WORDS, LastWords, guardians, hand_of
+from .guardians import WAYS, WORDS, LastWords, ending_row, guardians, hand_of
 from .host import Host, eventually
 from .overheard import Overheard
 from .pressing import press
@@ -69,18 +69,6 @@ def lost_guardian_rows(times: int) -> list[Row]:
     for kind in WAYS:
         losses = [lose(kind) for _ in range(times)]
         worst = max(max(loss.ms_to_zero, loss.last.ms_to_zero) for loss in losses)
-        broken = []
-        if not all(loss.pushed for loss in losses):
-            broken.append("it did not push")
-        if worst > PROMISED_MS:
-            broken.append(f"zero later than {PROMISED_MS:g} ms")
-        rows.append(
-            Row(
-                injected=f"SIGKILL to the guardian, then to the host, {kind}",
-                times=times,
-                told="unguarded",
-                broken=tuple(broken),
-                zero_ms=worst,
-            )
-        )
+        injected = f"SIGKILL to the guardian, then to the host, {kind}"
+        rows.append(ending_row(injected, "unguarded", [loss.pushed for loss in losses], worst))
     return rows

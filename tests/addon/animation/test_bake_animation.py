@@ -15,6 +15,7 @@ from soft_scene import (
     layer_names,
     mesh_state,
     part,
+    seen_places,
     soft_cube,
 )
 
@@ -39,14 +40,6 @@ def tapped(chosen, tmp_path):
     chosen.tip, chosen.source, chosen.source_empty = "SPHERE", "EMPTY", guide
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "tapped.blend"))
     return thing
-
-
-def drawn(thing):
-    """Vertices (p, 3) as Blender draws them now, local units."""
-    evaluated = thing.evaluated_get(bpy.context.evaluated_depsgraph_get())
-    places = np.empty(3 * len(evaluated.data.vertices), np.float32)
-    evaluated.data.vertices.foreach_get("co", places)
-    return places.reshape(-1, 3)
 
 
 def frames_of(thing, scene, frames):
@@ -77,7 +70,7 @@ def test_a_cache_plays_every_frame_without_a_shape_key(tapped):
     # Scrubbed in any order.
     for frame in (4, 1, 6, 3, 7, 2, 5):
         scene.frame_set(frame)
-        np.testing.assert_allclose(drawn(tapped), wanted[frame - 1], rtol=0, atol=1e-7)
+        np.testing.assert_allclose(seen_places(tapped), wanted[frame - 1], rtol=0, atol=1e-7)
     # A second bake takes the place of the first.
     assert bpy.ops.palpate.press_frames() == {"FINISHED"}
     assert [one.type for one in tapped.modifiers] == ["MESH_CACHE"]
@@ -90,7 +83,7 @@ def test_a_coarser_cache_goes_straight_between_its_frames(tapped):
     for frame, share in ((1, 0.0), (2, 1 / 3), (4, 1.0)):
         scene.frame_set(frame)
         expected = (1 - share) * wanted[0] + share * wanted[1]
-        np.testing.assert_allclose(drawn(tapped), expected, rtol=0, atol=1e-7)
+        np.testing.assert_allclose(seen_places(tapped), expected, rtol=0, atol=1e-7)
 
 
 def test_forces_are_written_as_a_table(tapped, tmp_path):

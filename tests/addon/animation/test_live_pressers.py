@@ -5,7 +5,7 @@ from __future__ import annotations
 import bpy
 import numpy as np
 import pytest
-from soft_scene import error_of, mesh_state, part, soft_cube
+from soft_scene import error_of, mesh_state, part, seen_places, soft_cube
 
 FRAMES = (1, 4, 7)
 
@@ -36,62 +36,56 @@ def collection(name, *things):
     return made
 
 
-def drawn(thing):
-    """Vertices (p, 3) as Blender draws them now, local units."""
-    evaluated = thing.evaluated_get(bpy.context.evaluated_depsgraph_get())
-    return np.array([vertex.co for vertex in evaluated.data.vertices])
-
-
 def test_frames_may_come_in_any_order(pressed):
     scene, rest = bpy.context.scene, mesh_state(pressed)["mesh"]
     seen = {}
     for frame in (1, 2, 3, 4, 5, 6, 7):
         scene.frame_set(frame)
-        seen[frame] = drawn(pressed)
+        seen[frame] = seen_places(pressed)
     still = np.array([vertex.co for vertex in pressed.data.vertices])
     np.testing.assert_allclose(seen[1], still, atol=1e-7)
     assert (still - seen[4])[:, 2].max() > 1e-4
     for frame in (4, 1, 6, 3, 7, 2, 5):
         scene.frame_set(frame)
-        np.testing.assert_allclose(drawn(pressed), seen[frame], atol=1e-9)
+        np.testing.assert_allclose(seen_places(pressed), seen[frame], atol=1e-9)
     assert mesh_state(pressed)["mesh"] == rest
 
 
 def test_a_presser_moved_by_hand_is_followed_at_once(pressed):
-    before = drawn(pressed)
+    before = seen_places(pressed)
     ball = bpy.data.objects["Ball"]
     ball.animation_data_clear()
     ball.location.z = 0.041
     bpy.context.view_layer.update()
     bpy.context.view_layer.update()
-    assert (before - drawn(pressed))[:, 2].max() > 1e-4
+    assert (before - seen_places(pressed))[:, 2].max() > 1e-4
 
 
 def test_what_is_live_is_baked(pressed, tmp_path):
-    scene, rest = bpy.context.scene, drawn(pressed)
+    scene, rest = bpy.context.scene, seen_places(pressed)
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "pressed.blend"))
     scene.frame_set(4)
-    live = drawn(pressed)
+    live = seen_places(pressed)
     bpy.context.view_layer.objects.active = pressed
     assert bpy.ops.palpate.press_frames(frame_start=1, frame_end=7) == {"FINISHED"}
     scene.frame_set(4)
     assert [one.type for one in pressed.modifiers] == ["MESH_CACHE"]
     # What comes down from above may rest a little aside of what is there at once.
-    live_dent, baked_dent = (np.mean((rest - seen)[:, 2]) for seen in (live, drawn(pressed)))
+    live_dent, baked_dent = (np.mean((rest - seen)[:, 2]) for seen in (live, seen_places(pressed)))
     assert baked_dent == pytest.approx(live_dent, rel=0.3)
 
 
 def test_several_parts_press_together_and_an_empty_is_a_sphere(pressed):
     scene = bpy.context.scene
     scene.frame_set(4)
-    one = drawn(pressed)
+    one = seen_places(pressed)
     finger = bpy.data.objects.new("Finger", None)
     scene.collection.objects.link(finger)
     finger.empty_display_size, finger.location = 0.02, (0.041, 0.0, 0.0)
     bpy.context.view_layer.update()
     pressed.palpate.pressers.objects.link(finger)
     scene.frame_set(4)
-    both = drawn(pressed)
+    both = seen_places(pressed)
     moved = both - one
     assert moved[:, 0].min() < -1e-4
     assert part("operators.animation.live_pressers").problem_of(pressed) == ""
