@@ -122,7 +122,10 @@ def test_a_shape_is_switched_while_pressing_and_nothing_is_lost(
     thing.palpate.shape = name
     wait(
         session,
-        lambda: session.seen.shape.ready == 1.0 and session.seen.displacements is not linear,
+        lambda: (
+            session.seen.shape.ready == 1.0
+            and not np.array_equal(session.seen.displacements, linear)
+        ),
     )
     assert not session.seen.shape.problem
     assert session.snapshot.touching
