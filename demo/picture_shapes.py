@@ -137,7 +137,10 @@ def true_one(hare: Any) -> Pressed:
     met = meeting.Meeting(drawn.body, Newton(drawn.body)).settle([load], drawn.body.young_modulus)
     if not met.settled:
         raise RuntimeError(f"Newton's method misses the finger by {100 * met.missed:.0f} %")
-    palpate("operators.press.press_once").keep_shape(hare, drawn, met.displacements)
+    moved = drawn.drawn_displacement(met.displacements)
+    palpate("operators.imprint.kept_imprint").keep_moved(
+        hare, bpy.context.scene, drawn.frame, moved
+    )
     return taken(hare, TRUTH)
 
 

@@ -28,6 +28,7 @@ core/shape/solid core/shape/paper core/shape/rotation_strain core/shape/force_at
 core/bake/settings.py core/bake/cost core/bake
 core/servo/link core/servo
 core/record
+core/imprint
 core/softness/scales core/softness
 core
 simulated/wire simulated/hand simulated/board simulated
@@ -36,6 +37,7 @@ simulated/attack/virtual simulated/attack/real simulated/attack/port simulated/a
 operators/reporting
 operators/scene
 operators/layer
+operators/imprint
 operators/pins
 operators/object
 operators/tool

@@ -80,6 +80,22 @@ class PALPATE_PT_touch(PalpatePanel, bpy.types.Panel):
         column.prop(settings, "dynamic_friction", text="Sliding")
 
 
+class PALPATE_PT_imprint(PalpatePanel, bpy.types.Panel):
+    bl_label = "Imprint"
+    bl_parent_id = "PALPATE_PT_material"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = named_properties(self)
+        settings = context.object.palpate
+        layout.prop(settings, "yield_depth")
+        column = layout.column()
+        column.active = settings.yield_depth > 0.0
+        column.prop(settings, "forget_time")
+        if settings.yield_depth > 0.0 and settings.pressers is not None:
+            say(layout, context, "Of Pressers it is made by Bake Animation", "INFO")
+
+
 class PALPATE_PT_pins(PalpatePanel, bpy.types.Panel):
     bl_label = "Pins"
     bl_parent_id = "PALPATE_PT_main"
@@ -106,6 +122,7 @@ classes = (
     PALPATE_PT_pins,
     PALPATE_PT_material,
     PALPATE_PT_touch,
+    PALPATE_PT_imprint,
     PALPATE_PT_stiff_region,
     layers.PALPATE_PT_layers,
     animation.PALPATE_PT_animation,

@@ -172,6 +172,19 @@ class PalpateObject(ShapeProperties, bpy.types.PropertyGroup):
         "Empties as spheres of their size",
         update=_press_anew,
     )
+    yield_depth: number(
+        "Yield Depth",
+        "What is pressed farther than this stays, as in clay. 0 is elastic: all springs back, and "
+        "only what is kept stays",
+        0.0,
+        span(0.0, soft_max=1.0, precision=4, step=0.1, subtype="DISTANCE", unit="LENGTH"),
+    )
+    forget_time: number(
+        "Forget Time",
+        "Seconds in which an imprint fades to about a third, as in memory foam; 0 for never",
+        0.0,
+        span(0.0, soft_max=60.0, precision=2, step=10),
+    )
     edge_length: number(
         "Edge Length",
         "Wanted edge length of the tetrahedra, as a share of the object's diagonal. "

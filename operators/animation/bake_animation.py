@@ -12,14 +12,16 @@ from ...core.errors import PalpateError
 from ...core.files.atomic_file import refuse_unwritable
 from ...core.files.point_cache import CacheSize, point_cache
 from ...core.sentence import Sentence
+from ..imprint import kept_imprint
+from ..imprint.surface_imprint import yielding_of
 from ..object.drawn_body import DrawnBody, open_body
 from ..press.modal_press import Pressing
-from ..press.press_once import keep_shape, pressing_tools
 from ..reporting.translated import reported, shown
 from ..scene.modal_progress import ModalProgress
 from ..shape.drawn_shape import closing_shape
 from . import frame_keys, live_pressers, mesh_cache
 from .force_table import FrameRows
+from .imprinted_frames import imprinted
 from .pressed_frames import PressedFrame, frame_kept, press_frames
 
 MOST_KEYS = 2000
@@ -142,7 +144,7 @@ class PALPATE_OT_press_frames(Pressing, bpy.types.Operator):
         rows = FrameRows(drawn, scene.render.fps / scene.render.fps_base)
         pressed = self._press(thing, scene, drawn, frames, rows)
         if self.current_only:
-            yield from self._keep_last(thing, drawn, pressed, len(frames))
+            yield from self._keep_last(thing, scene, drawn, pressed, len(frames))
         elif self.keep == "KEYS":
             yield from self._keep_keys(thing, drawn, pressed, len(frames))
         else:
@@ -159,11 +161,13 @@ class PALPATE_OT_press_frames(Pressing, bpy.types.Operator):
         frames: list[int],
         rows: FrameRows,
     ) -> Iterator[PressedFrame]:
-        touched = False
+        touched, rate = False, scene.render.fps / scene.render.fps_base
         with live_pressers.paused(), frame_kept(scene), closing_shape(thing, drawn) as shape:
-            for here in press_frames(thing, scene, drawn, frames, shape):
+            law = yielding_of(thing, drawn.frame)
+            pressed = press_frames(thing, scene, drawn, frames, shape)
+            for here in imprinted(pressed, law, drawn, rate):
                 rows.add(here)
-                touched |= here.displacements is not None
+                touched |= here.moved is not None
                 yield here
             if shape.notice:
                 self.report({"WARNING"}, reported(shape.notice))
@@ -198,12 +202,17 @@ class PALPATE_OT_press_frames(Pressing, bpy.types.Operator):
         live_pressers.end(thing)
 
     def _keep_last(
-        self, thing: bpy.types.Object, drawn: DrawnBody, pressed: Iterator[PressedFrame], count: int
+        self,
+        thing: bpy.types.Object,
+        scene: bpy.types.Scene,
+        drawn: DrawnBody,
+        pressed: Iterator[PressedFrame],
+        count: int,
     ) -> Baking:
         *_, last = yield from _collected(pressed, count)
-        if last.displacements is None:
+        if last.moved is None:
             raise PalpateError("The tool touches nothing in this frame; choose another")
-        name = keep_shape(thing, drawn, last.displacements, pressing_tools(last.fingers))
+        name = kept_imprint.keep_moved(thing, scene, drawn.frame, last.moved)
         self._told = Sentence("Kept as layer '{layer}'", layer=name)
 
     def _frames(self, scene: bpy.types.Scene) -> list[int]:

@@ -18,7 +18,7 @@ def keep_frames(thing: bpy.types.Object, drawn: DrawnBody, pressed: list[Pressed
     _remove_frames(thing)
     count = 0
     for number, here in enumerate(pressed):
-        if here.displacements is None:
+        if here.moved is None:
             continue
         key = thing.shape_key_add(name=f"{FRAME_NAME} {here.frame}", from_mix=False)
         key.relative_key = thing.data.shape_keys.reference_key

@@ -18,7 +18,6 @@ from ...core.errors import PalpateError
 from ...core.shape.shapes import Shape, shape
 from ..layer import layers
 from ..object.drawn_body import DrawnBody, open_body
-from ..press.press_once import pressing_tools
 from ..scene import drawn_surface
 from ..session import press_session
 from ..shape.drawn_shape import chosen_shape
@@ -105,13 +104,8 @@ def _press(thing: bpy.types.Object, scene: bpy.types.Scene) -> None:
     followed.places = places
     pressed = AnimatedPress(thing, scene, followed.drawn, followed.shape).now()
     layer = _layer(thing) or layers.add(thing, LAYER_NAME)
-    if pressed.displacements is None:
-        vectors = np.zeros(len(followed.drawn.rest), dtype=np.float32)
-    else:
-        vectors = followed.drawn.drawn_displacement(
-            pressed.displacements, pressing_tools(pressed.fingers)
-        )
-    layers.write(thing, layer, vectors)
+    moved = pressed.moved
+    layers.write(thing, layer, np.zeros_like(followed.drawn.rest) if moved is None else moved)
 
 
 def _opened(thing: bpy.types.Object, scene: bpy.types.Scene) -> _Followed:

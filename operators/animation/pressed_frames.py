@@ -18,26 +18,23 @@ from ..object.drawn_body import DrawnBody
 from ..press.press_once import loads_of, pressing_tools
 from .pressers import Presser, pressers_of
 
-Array = NDArray[np.float64]
-
 # Share of a tool's rounding by which it may differ from frame to frame.
 SAME = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
 class PressedFrame:
-    """Result of a frame: each finger's force (N), and the displacements (n, 3), None if free."""
+    """Result of a frame: each finger's touch, and the flat displacements (3 p,) of the drawn
+    vertices, local units; None where none moves.
+    """
 
     frame: int
     fingers: tuple[Touch, ...]
-    displacements: Array | None
+    moved: NDArray[np.float32] | None
 
     def coordinates(self, drawn: DrawnBody) -> NDArray[np.float32]:
         """Flat coordinates (3 p,) of the drawn vertices, local units."""
-        if self.displacements is None:
-            return drawn.rest
-        tools = pressing_tools(self.fingers)
-        return drawn.rest + drawn.drawn_displacement(self.displacements, tools)
+        return drawn.rest if self.moved is None else drawn.rest + self.moved
 
 
 @dataclass(eq=False)
@@ -73,7 +70,7 @@ class AnimatedPress:
         moved = None
         if loads:
             met = settled(self.drawn.body, self.shape, loads, chosen.young_modulus)
-            moved = met.displacements
+            moved = self.drawn.drawn_displacement(met.displacements, pressing_tools(touches))
         return PressedFrame(self.scene.frame_current, touches, moved)
 
 

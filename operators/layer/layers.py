@@ -70,6 +70,7 @@ def rename(thing: bpy.types.Object, layer: bpy.types.NodesModifier, name: str) -
 def remove(thing: bpy.types.Object, layer: bpy.types.NodesModifier) -> None:
     """Remove a layer, and its attribute where no other layer shows it."""
     mesh, name = _mesh(thing, layer), attribute_name(layer)
+    thing.driver_remove(strength_path(layer))
     thing.modifiers.remove(layer)
     shown = {
         attribute_name(other)

@@ -153,7 +153,8 @@ class ModalPress(Pressing):
             return True
         here = viewport.under_pointer(context.window, event.mouse_x, event.mouse_y)
         empties = session.state.source is Source.EMPTY
-        dented = session.seen.displacements is not None
+        thing = session.handle.find()
+        dented = thing is not None and session.seen.stays(thing)
         # The right button still opens menus while an Empty is moved by hand.
         last = _ending(event, over_view=here is not None and not empties, dented=dented)
         if last is not None:

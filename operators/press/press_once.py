@@ -17,7 +17,8 @@ from ...core.contact.tool.tools import Tool
 from ...core.contact.touches import ToolTouch, Touch
 from ...core.errors import PalpateError
 from ...core.shape.meeting import FingerLoad, settled
-from ..layer import live_layer, place_marks, touched_place
+from ..imprint import kept_imprint
+from ..layer import place_marks, touched_place
 from ..layer.touched_place import TouchedPlace
 from ..object.drawn_body import DrawnBody, open_body
 from ..scene.body_frame import Point, as_point
@@ -109,13 +110,14 @@ def press_several(
     made = _touches(thing, scene, drawn, tip.tool, places, inward)
     with closing_shape(thing, drawn) as shape:
         met = settled(drawn.body, shape, loads_of(made), young_modulus)
+    moved = drawn.drawn_displacement(met.displacements, pressing_tools(made))
     return Pressed(
         fingers=tuple(
             PressedFinger(one, as_point(local.turn_to_world(one.force)), float(np.linalg.norm(way)))
             for one, local, way in zip(made, frames, inward, strict=True)
         ),
         largest_displacement=float(np.linalg.norm(met.displacements, axis=1).max()),
-        layer=(keep_shape(thing, drawn, met.displacements, pressing_tools(made)) if keep else ""),
+        layer=kept_imprint.keep_moved(thing, scene, frame, moved) if keep else "",
         remarks=tuple(filter(None, (tip.remark, shape.notice))),
     )
 
@@ -128,18 +130,6 @@ def _seen_places(
         return [None for _ in points]
     with place_marks.marked(thing):
         return [touched_place.nearest(thing, drawn.frame, point) for point in points]
-
-
-def keep_shape(
-    thing: bpy.types.Object,
-    drawn: DrawnBody,
-    displacements: Array,
-    tools: Sequence[PressingTool] = (),
-) -> str:
-    """Keep displacements (n, 3) of the free surface nodes as the next "Press <n>", out of tools."""
-    live_layer.hang(thing)
-    live_layer.write(thing, drawn.drawn_displacement(displacements, tools))
-    return live_layer.keep(thing)
 
 
 def _touches(

@@ -159,6 +159,8 @@ class PressSession:
                 self._start_loop(source)
             case SetDown() | Move() | SwitchForce():
                 self._running.carry_out(effect)
+                if isinstance(effect, SetDown) and not self.pinches:
+                    self.seen.lift(self._running.snapshot().tick)
             case Act.DRAW_REST:
                 self.seen.draw_rest(self.handle.find())
             case Act.STOP_SERVO:
@@ -183,8 +185,8 @@ class PressSession:
             act(thing)
 
     def _keep(self, thing: bpy.types.Object) -> None:
-        self.said += self.seen.finish(thing, self.snapshot)
-        self.kept_name = live_layer.keep(thing)
+        self.kept_name, said = self.seen.keep(thing, self.scene, self.snapshot)
+        self.said += said
 
     def _start_loop(self, source: Source) -> None:
         thing = self.handle.find()

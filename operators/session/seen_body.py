@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import bpy
@@ -13,6 +13,9 @@ from ...core.contact.tool.tool_surface import surface_and_correction
 from ...core.sentence import Sentence
 from ...core.servo.session import Snapshot
 from ...core.shape.meeting import FingerLoad
+from ..imprint import kept_imprint
+from ..imprint.kept_imprint import NothingStaysError
+from ..imprint.surface_imprint import SurfaceImprint, yielding_of
 from ..layer import live_layer
 from ..object.drawn_body import DrawnBody
 from ..shape.drawn_shape import DrawnShape, chosen_shape, loads_of
@@ -21,6 +24,8 @@ from .press_effects import Say
 
 Array = NDArray[np.float64]
 
+# Until one tells of a finger that was set down.
+TICKS_TO_LIFT = 2
 KEPT_EARLY = "It is kept as far as it was computed, {share} %"
 
 
@@ -35,8 +40,13 @@ class SeenBody:
     displacements: Array | None = None
     linear: Array | None = None
     drawn_contact: tuple[object, ...] = ()
+    imprint: SurfaceImprint = field(init=False)
     _loads: tuple[FingerLoad, ...] = ()
     _modulus: float = 1.0
+    _lifted_at: int = -1
+
+    def __post_init__(self) -> None:
+        self.imprint = SurfaceImprint(self.drawn.frame)
 
     @cached_property
     def shape(self) -> DrawnShape:
@@ -66,13 +76,17 @@ class SeenBody:
             for finger in snapshot.fingers
         )
         contact = (self.shape.name, self.shape.ready, young_modulus, fingers)
-        if contact == self.drawn_contact:
+        fades = self.imprint.fades(yielding_of(thing, self.drawn.frame))
+        if contact == self.drawn_contact and not fades:
             return
         self.drawn_contact = contact
-        self._loads, self._modulus = tuple(loads_of(self.drawn.body, snapshot)), young_modulus
+        # A finger that was set down elsewhere is told by the last tick where it was before.
+        is_past = snapshot.tick <= self._lifted_at
+        self._loads = () if is_past else tuple(loads_of(self.drawn.body, snapshot))
+        self._modulus = young_modulus
         if not self._loads:
             self.displacements = self.linear = None
-            live_layer.write(thing, np.zeros_like(self.drawn.rest))
+            self._write(thing, None, snapshot)
             return
         met = self.shape.draw(self._loads, young_modulus)
         if not met.settled or self.shape.ready < 1.0:
@@ -85,9 +99,32 @@ class SeenBody:
         """Draw the rest shape."""
         self.displacements, self.linear, self.drawn_contact = None, None, ()
         if thing is not None:
-            live_layer.write(thing, np.zeros_like(self.drawn.rest))
+            live_layer.write(thing, self._imprinted())
 
-    def finish(self, thing: bpy.types.Object, snapshot: Snapshot | None) -> list[Say]:
+    def lift(self, tick: int) -> None:
+        """The finger was set down on the surface as it is, at this tick."""
+        self.imprint.settle()
+        self._lifted_at, self.drawn_contact = tick + TICKS_TO_LIFT, ()
+
+    def stays(self, thing: bpy.types.Object) -> bool:
+        """Whether there would be something to keep."""
+        if yielding_of(thing, self.drawn.frame).elastic:
+            return self.displacements is not None
+        return self.imprint.left is not None
+
+    def keep(
+        self, thing: bpy.types.Object, scene: bpy.types.Scene, snapshot: Snapshot | None
+    ) -> tuple[str, list[Say]]:
+        """Keep the live layer; its name, empty where the object springs back, and remarks."""
+        said = self._finish(thing, snapshot)
+        try:
+            name = kept_imprint.keep(thing, scene, self.drawn.frame, self._imprinted())
+        except NothingStaysError as problem:
+            live_layer.remove(thing)
+            return "", [*said, Say(problem.sentence)]
+        return name, said
+
+    def _finish(self, thing: bpy.types.Object, snapshot: Snapshot | None) -> list[Say]:
         """Draw the shape to keep, as far as its tables are ready."""
         if not self._loads or self.drawn_contact:
             return []
@@ -99,7 +136,15 @@ class SeenBody:
         return [Say(Sentence(KEPT_EARLY, share=share), warning=True)]
 
     def _write(
-        self, thing: bpy.types.Object, displacements: Array, snapshot: Snapshot | None
+        self, thing: bpy.types.Object, displacements: Array | None, snapshot: Snapshot | None
     ) -> None:
-        tools = () if snapshot is None else self.tip.pressing(snapshot)
-        live_layer.write(thing, self.drawn.drawn_displacement(displacements, tools))
+        moved = np.zeros_like(self.drawn.rest)
+        if displacements is not None:
+            tools = () if snapshot is None else self.tip.pressing(snapshot)
+            moved = self.drawn.drawn_displacement(displacements, tools)
+        law, now = yielding_of(thing, self.drawn.frame), 0.0 if snapshot is None else snapshot.time
+        live_layer.write(thing, self.imprint.seen(law, moved, now))
+
+    def _imprinted(self) -> NDArray[np.float32]:
+        left = self.imprint.left
+        return np.zeros_like(self.drawn.rest) if left is None else left

@@ -10,6 +10,8 @@ from mathutils import Vector
 
 from ...core.errors import PalpateError
 from ...core.sentence import Sentence
+from ..imprint import kept_imprint
+from ..imprint.kept_imprint import NothingStaysError
 from ..layer import live_layer
 from ..object import soft_object
 from ..object.drawn_body import DrawnBody, open_body
@@ -73,10 +75,10 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
         try:
             stroked = self._stroke.stroked(asked)
             _draw(thing, self._stroke.drawn, stroked)
+            self._keep(scene, thing, asked, stroked)
         except BaseException:
             live_layer.remove(thing)
             raise
-        self._keep(scene, thing, asked, stroked)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if bpy.app.background:
@@ -205,14 +207,19 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
         asked, stroked = self._last
         scene, thing = context.scene, self._thing()
         self._tell(asked, scene)
+        try:
+            self._keep(scene, thing, asked, stroked)
+        except NothingStaysError as problem:
+            self._leave(context, give_up=True)
+            self.report({"INFO"}, reported(problem))
+            return {"CANCELLED"}
         self._leave(context, give_up=False)
-        self._keep(scene, thing, asked, stroked)
         return {"FINISHED"}
 
     def _keep(
         self, scene: bpy.types.Scene, thing: bpy.types.Object, asked: Asked, stroked: Stroked
     ) -> None:
-        name = live_layer.keep(thing)
+        name = kept_imprint.keep(thing, scene, self._stroke.drawn.frame)
         self.force = stroked.force
         figures = stroke_words.figures(scene, asked, stroked)
         self.report({"INFO"}, reported("{figures}, kept as '{name}'", figures=figures, name=name))

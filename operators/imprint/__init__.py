@@ -1,0 +1,1 @@
+"""Imprints of soft objects: what stays of their presses, and fades as time goes on."""
