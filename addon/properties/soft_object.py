@@ -69,6 +69,7 @@ def _leave_material(name: str) -> Callable[[bpy.types.PropertyGroup, bpy.types.C
 
 
 def _press_anew(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    live_pressers.look_again()
     live_pressers.follow(settings.id_data, context.scene)
 
 

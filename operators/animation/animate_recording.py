@@ -8,7 +8,7 @@ import numpy as np
 from ...core.errors import PalpateError
 from ...core.record.resampling import Frames, frames_of
 from ..press.modal_press import Pressing
-from ..press.save_recording import recorded
+from ..press.save_recording import NOTHING, recorded, refusal_unrecorded
 from ..reporting.translated import reported
 from ..scene import curves, drawn_surface
 from ..scene.body_frame import BodyFrame
@@ -27,15 +27,12 @@ class PALPATE_OT_animate_recording(Pressing, bpy.types.Operator):
 
     @classmethod
     def refusal(cls, context: bpy.types.Context) -> str:
-        reason = super().refusal(context)
-        return reason or (
-            "" if recorded() else "Nothing is recorded yet; press Record while you press"
-        )
+        return super().refusal(context) or refusal_unrecorded()
 
     def act(self, context: bpy.types.Context) -> None:
         thing, scene, kept = context.object, context.scene, recorded()
-        if kept is None or not len(kept.samples):
-            raise PalpateError("Nothing is recorded yet; press Record while you press")
+        if not len(kept.samples):
+            raise PalpateError(NOTHING)
         frame = drawn_surface.frame_of(thing, scene)
         rate = scene.render.fps / scene.render.fps_base
         first = scene.frame_current

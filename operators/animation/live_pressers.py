@@ -19,6 +19,7 @@ from ...core.shape.shapes import Shape, shape
 from ..layer import layers
 from ..object.drawn_body import DrawnBody, open_body
 from ..scene import drawn_surface
+from ..scene.object_handle import ObjectHandle
 from ..session import press_session
 from ..shape.drawn_shape import chosen_shape
 from . import frame_keys, mesh_cache
@@ -39,6 +40,8 @@ class _Followed:
 
 _followed: dict[int, _Followed] = {}
 _problems: dict[int, str] = {}
+# Number of objects when those with pressers were looked for, and these.
+_known: tuple[int, tuple[ObjectHandle, ...]] | None = None
 _paused = False
 
 
@@ -49,8 +52,9 @@ def problem_of(thing: bpy.types.Object) -> str:
 
 def follow_all(scene: bpy.types.Scene) -> None:
     """Let all objects of a scene follow their pressers."""
-    for thing in scene.objects:
-        if thing.type == "MESH" and thing.palpate.pressers is not None:
+    for handle in _pressed():
+        thing = handle.find()
+        if thing is not None and thing.palpate.pressers is not None and thing.name in scene.objects:
             follow(thing, scene)
 
 
@@ -94,6 +98,29 @@ def forget() -> None:
     for uid in list(_followed):
         _drop(uid)
     _problems.clear()
+    look_again()
+
+
+def look_again() -> None:
+    """Another object may have pressers now."""
+    global _known  # noqa: PLW0603  see _pressed
+    _known = None
+
+
+def _pressed() -> tuple[ObjectHandle, ...]:
+    """Objects with pressers, looked for only once there are more or fewer objects: this is asked at
+    every move.
+    """
+    global _known  # noqa: PLW0603  handlers ask it
+    count = len(bpy.data.objects)
+    if _known is None or _known[0] != count:
+        found = tuple(
+            ObjectHandle.of(thing)
+            for thing in bpy.data.objects
+            if thing.type == "MESH" and thing.palpate.pressers is not None
+        )
+        _known = count, found
+    return _known[1]
 
 
 def _press(thing: bpy.types.Object, scene: bpy.types.Scene) -> None:

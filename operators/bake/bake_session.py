@@ -14,7 +14,6 @@ from ...core.bake.steps import BakeReport, BakeSettings
 from ...core.body.soft_body import SoftBody
 from ...core.errors import CancelledError, PalpateError
 from ...core.mesh.surface import Surface
-from ...core.sentence import Sentence
 from ...core.stiffness.pins import PinNodes
 from ..object import baked_record, body_store, soft_object
 from ..object.embedded_body import embedded
@@ -227,10 +226,7 @@ class OnSoft(Acting):
 
     @classmethod
     def refusal(cls, context: bpy.types.Context) -> str:
-        reason = soft_object.refusal(context.object)
-        if not reason and not context.object.palpate.body_key:
-            name = context.object.name
-            reason = Sentence("{name} is not soft yet; press Make Soft first", name=name)
+        reason = soft_object.refusal_unbaked(context.object)
         if not reason and (current() or press_session.current()):
             reason = "Finish baking or pressing first"
         return reason

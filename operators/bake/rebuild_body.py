@@ -2,7 +2,7 @@
 
 import bpy
 
-from ...core.sentence import Sentence
+from ..object import soft_object
 from .make_soft import BakingOperator
 
 
@@ -18,12 +18,7 @@ class PALPATE_OT_rebuild_body(BakingOperator, bpy.types.Operator):
 
     @classmethod
     def refusal(cls, context: bpy.types.Context) -> str:
-        reason = super().refusal(context)
-        if not reason and not context.object.palpate.body_key:
-            reason = Sentence(
-                "{name} is not soft yet; press Make Soft first", name=context.object.name
-            )
-        return reason
+        return super().refusal(context) or soft_object.refusal_unbaked(context.object)
 
 
 classes = (PALPATE_OT_rebuild_body,)

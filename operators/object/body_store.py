@@ -28,6 +28,7 @@ from ..scene.package_preferences import PACKAGE, preferences
 from . import baked_settings, embedded_body
 
 FOLDER = "palpate"
+NOT_SOFT = "{name} is not soft yet; press Make Soft first"
 
 # Damaged files and their modification times: the panel offers to rebuild them.
 _damaged: dict[Path, int] = {}
@@ -119,7 +120,7 @@ def load(thing: bpy.types.Object) -> SoftBody:
     """
     baked = thing.palpate
     if not baked.body_key:
-        raise PalpateError("{name}: it is not soft yet; press Make Soft first", name=thing.name)
+        raise PalpateError(NOT_SOFT, name=thing.name)
     path = locate(thing)
     if path is None:
         raise BodyFileError(

@@ -66,6 +66,14 @@ def refusal(thing: bpy.types.Object | None) -> str:
     return ""
 
 
+def refusal_unbaked(thing: bpy.types.Object | None) -> str:
+    """Reason why this object has no body to press; empty if it has."""
+    reason = refusal(thing)
+    if not reason and thing is not None and not thing.palpate.body_key:
+        return Sentence(body_store.NOT_SOFT, name=thing.name)
+    return reason
+
+
 def body_status(thing: bpy.types.Object, scene: bpy.types.Scene) -> BodyStatus:
     """Whether the object's body exists and still fits. Reads the mesh, not the body file.
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import bpy
 
 from ...core.errors import PalpateError
-from ...core.sentence import Sentence
 from ..object import soft_object
 from ..reporting.acting import Acting
 from ..reporting.translated import reported, shown
@@ -56,13 +55,10 @@ class Pressing(Acting):
 
     @classmethod
     def refusal(cls, context: bpy.types.Context) -> str:
-        thing = context.object
-        reason = soft_object.refusal(thing)
+        reason = soft_object.refusal(context.object)
         if not reason and press_session.current() is not None:
             reason = "A press is going on; Enter keeps the shape, Escape restores it"
-        if not reason and not thing.palpate.body_key:
-            reason = Sentence("{name} is not soft yet; press Make Soft first", name=thing.name)
-        return reason
+        return reason or soft_object.refusal_unbaked(context.object)
 
 
 class ModalPress(Pressing):

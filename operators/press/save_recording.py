@@ -17,6 +17,7 @@ FORMAT_ITEMS = [
     (".npz", "npz", "Arrays for numpy; smaller, and written at once"),
 ]
 DEFAULT_NAME = "recording"
+NOTHING = "Nothing is recorded yet; press Record while you press"
 
 
 def _recorder() -> Recorder | None:
@@ -26,10 +27,24 @@ def _recorder() -> Recorder | None:
     return loop.recorder if loop is not None and loop.recorder.wanted else None
 
 
-def recorded() -> Kept | None:
-    """Recording that can be saved now."""
+def refusal_unrecorded() -> str:
+    """Reason why there is no recording; empty if there is one, which is not copied."""
+    return NOTHING if _recorder() is None and recording.last() is None else ""
+
+
+def recorded() -> Kept:
+    """Recording that can be saved now.
+
+    Raises
+    ------
+    PalpateError
+        There is none.
+    """
     recorder = _recorder()
-    return recording.last() if recorder is None else recorder.kept()
+    kept = recording.last() if recorder is None else recorder.kept()
+    if kept is None:
+        raise PalpateError(NOTHING)
+    return kept
 
 
 class PALPATE_OT_save_recording(Acting, bpy.types.Operator):
@@ -49,10 +64,8 @@ class PALPATE_OT_save_recording(Acting, bpy.types.Operator):
 
     @classmethod
     def refusal(cls, context: bpy.types.Context) -> str:
-        reason = ""
-        if _recorder() is None and recording.last() is None:
-            reason = "Nothing is recorded yet; press Record while you press"
-        elif recording_writer.going_on():
+        reason = refusal_unrecorded()
+        if not reason and recording_writer.going_on():
             reason = "A recording is being written; wait until it is done"
         return reason
 
@@ -74,8 +87,6 @@ class PALPATE_OT_save_recording(Acting, bpy.types.Operator):
 
     def act(self, context: bpy.types.Context) -> None:
         kept = recorded()
-        if kept is None:
-            raise PalpateError("Nothing is recorded yet; press Record while you press")
         path = Path(bpy.path.abspath(self.filepath))
         if self._in_window:
             recording_writer.begin(path, kept)

@@ -9,7 +9,6 @@ import numpy as np
 from mathutils import Vector
 
 from ...core.errors import PalpateError
-from ...core.sentence import Sentence
 from ..imprint import kept_imprint
 from ..imprint.kept_imprint import NothingStaysError
 from ..layer import live_layer
@@ -60,9 +59,9 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
 
     def act(self, context: bpy.types.Context) -> None:
         thing, scene = context.object, context.scene
-        reason = soft_object.refusal(thing)
-        if reason or not thing.palpate.body_key:
-            raise PalpateError(reason or not_soft(thing))
+        reason = soft_object.refusal_unbaked(thing)
+        if reason:
+            raise PalpateError(reason)
         graph = context.evaluated_depsgraph_get()
         touched = touched_place.nearest(scene, graph, thing, Vector(self.place))
         self._begin(scene, touched)
@@ -269,11 +268,6 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
 
 def _draw(thing: bpy.types.Object, drawn: DrawnBody, stroked: Stroked) -> None:
     live_layer.write(thing, drawn.drawn_displacement(stroked.displacements, stroked.tools))
-
-
-def not_soft(thing: bpy.types.Object) -> Sentence:
-    """Refusal of an object without a body."""
-    return Sentence("{name} is not soft yet; press Make Soft first", name=thing.name)
 
 
 def _make_active(context: bpy.types.Context, thing: bpy.types.Object) -> None:

@@ -1,5 +1,8 @@
-"""Bodies for the tests of core, and the same examples in every run."""
+"""Bodies for the tests of core, the same examples in every run, and a place for litter."""
 
+import os
+
+import pytest
 from bodies.shared import (  # noqa: F401
     body,
     cube,
@@ -16,3 +19,12 @@ from hypothesis import settings
 settings.register_profile("repeatable", derandomize=True, deadline=None)
 settings.register_profile("long", max_examples=20_000, deadline=None, database=None)
 settings.load_profile("repeatable")
+
+
+@pytest.fixture(scope="module", autouse=True)
+def somewhere_else(tmp_path_factory):
+    """fTetWild writes files where it runs; see core/mesh/tetrahedralize.py."""
+    before = os.getcwd()  # noqa: PTH109  what os.chdir takes
+    os.chdir(tmp_path_factory.mktemp("here"))
+    yield
+    os.chdir(before)

@@ -111,3 +111,23 @@ def test_without_pressers_nothing_is_left(pressed):
     pressed.palpate.pressers = None
     assert not pressed.modifiers
     assert "Palpate Pressers" not in pressed.data.attributes
+
+
+def test_only_a_change_of_the_objects_is_looked_through(pressed, monkeypatch):
+    live, scene = part("operators.animation.live_pressers"), bpy.context.scene
+    scene.frame_set(1)
+    looked = []
+    handle = live.ObjectHandle
+    monkeypatch.setattr(live, "ObjectHandle", type("Seen", (), {"of": looked.append}))
+    scene.frame_set(4)
+    assert not looked
+    monkeypatch.setattr(live, "ObjectHandle", handle)
+    # A copy is found, and follows by itself.
+    other = pressed.copy()
+    other.data = pressed.data.copy()
+    scene.collection.objects.link(other)
+    bpy.context.view_layer.update()
+    for one in (1, 4):
+        scene.frame_set(one)
+    np.testing.assert_allclose(seen_places(other), seen_places(pressed), atol=1e-7)
+    assert (seen_places(other) != np.array([vertex.co for vertex in other.data.vertices])).any()
