@@ -38,7 +38,7 @@ from .steps import BakeReport, BakeSettings
 LINE_BYTES = 200
 LOG_FILE = "log.txt"
 # Of folders that killed processes may have left.
-SCRATCH_WORDS = ("bake", "worker", "device")
+SCRATCH_WORDS = ("bake", "worker", "device", "animation")
 STEP_TEXTS = {
     "start": "Starting",
     "tetrahedralize": "Filling with tetrahedra",

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Generator, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import bpy
 
 from ...core.errors import PalpateError
 from ...core.files.atomic_file import refuse_unwritable
-from ...core.files.point_cache import CacheSize, point_cache
+from ...core.files.point_cache import CacheSize
 from ...core.sentence import Sentence
 from ..imprint import kept_imprint
 from ..imprint.surface_imprint import yielding_of
@@ -19,17 +19,15 @@ from ..press.modal_press import Pressing
 from ..reporting.translated import reported, shown
 from ..scene.modal_progress import ModalProgress
 from ..shape.drawn_shape import closing_shape
-from . import frame_keys, live_pressers, mesh_cache
+from . import live_pressers
 from .force_table import FrameRows
 from .imprinted_frames import imprinted
+from .keeping import ITEMS, KEEPERS, Baking, collected
 from .pressed_frames import PressedFrame, frame_kept, press_frames
 
 MOST_KEYS = 2000
 # Seconds of pressing between two looks at the keyboard.
 SLICE_SECONDS = 0.05
-
-Baking = Generator[float, None, None]
-"""Share of the frames that are pressed, after each."""
 
 
 class PALPATE_OT_press_frames(Pressing, bpy.types.Operator):
@@ -56,10 +54,7 @@ class PALPATE_OT_press_frames(Pressing, bpy.types.Operator):
     keep: bpy.props.EnumProperty(
         name="Keep As",
         description="What plays the animation",
-        items=(
-            ("CACHE", "Mesh Cache", "A PC2 file beside the .blend, played by a modifier"),
-            ("KEYS", "Shape Keys", "A shape key a frame, within the .blend"),
-        ),
+        items=ITEMS,
         default="CACHE",
     )
     forces: bpy.props.StringProperty(
@@ -145,11 +140,10 @@ class PALPATE_OT_press_frames(Pressing, bpy.types.Operator):
         pressed = self._press(thing, scene, drawn, frames, rows)
         if self.current_only:
             yield from self._keep_last(thing, scene, drawn, pressed, len(frames))
-        elif self.keep == "KEYS":
-            yield from self._keep_keys(thing, drawn, pressed, len(frames))
         else:
             size = CacheSize(len(drawn.rest) // 3, len(frames), frames[0], self.step)
-            yield from self._keep_cache(thing, drawn, pressed, size)
+            yield from KEEPERS[self.keep](thing, scene, drawn, pressed, size)
+            live_pressers.end(thing)
         if table is not None:
             rows.write(table)
 
@@ -179,28 +173,6 @@ class PALPATE_OT_press_frames(Pressing, bpy.types.Operator):
             "{count} frames, up to {largest:.3g} N", count=len(frames), largest=rows.largest_force
         )
 
-    def _keep_cache(
-        self,
-        thing: bpy.types.Object,
-        drawn: DrawnBody,
-        pressed: Iterator[PressedFrame],
-        size: CacheSize,
-    ) -> Baking:
-        place = mesh_cache.place_for(thing)
-        with point_cache(place, size) as cache:
-            for here in pressed:
-                cache.write(here.coordinates(drawn))
-                yield cache.written / size.samples
-        mesh_cache.play(thing, place, size)
-        live_pressers.end(thing)
-
-    def _keep_keys(
-        self, thing: bpy.types.Object, drawn: DrawnBody, pressed: Iterator[PressedFrame], count: int
-    ) -> Baking:
-        kept = yield from _collected(pressed, count)
-        frame_keys.keep_frames(thing, drawn, kept)
-        live_pressers.end(thing)
-
     def _keep_last(
         self,
         thing: bpy.types.Object,
@@ -209,7 +181,7 @@ class PALPATE_OT_press_frames(Pressing, bpy.types.Operator):
         pressed: Iterator[PressedFrame],
         count: int,
     ) -> Baking:
-        *_, last = yield from _collected(pressed, count)
+        *_, last = yield from collected(pressed, count)
         if last.moved is None:
             raise PalpateError("The tool touches nothing in this frame; choose another")
         name = kept_imprint.keep_moved(thing, scene, drawn.frame, last.moved)
@@ -234,17 +206,6 @@ class PALPATE_OT_press_frames(Pressing, bpy.types.Operator):
                 most=MOST_KEYS,
             )
         return frames
-
-
-def _collected(
-    pressed: Iterator[PressedFrame], count: int
-) -> Generator[float, None, list[PressedFrame]]:
-    """All frames, once each share of them was told."""
-    kept: list[PressedFrame] = []
-    for here in pressed:
-        kept.append(here)
-        yield len(kept) / count
-    return kept
 
 
 classes = (PALPATE_OT_press_frames,)

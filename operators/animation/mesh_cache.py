@@ -1,22 +1,24 @@
-"""Mesh Cache: the modifier that plays an animation's point cache, also without Palpate."""
+"""Mesh Cache: the modifier that plays an animation's file, also without Palpate."""
 
 from __future__ import annotations
 
 import itertools
+from collections.abc import Callable
 from pathlib import Path
 
 import bpy
 
-from ...core.files.point_cache import CacheSize, is_own_cache
+from ...core.files.point_cache import CacheSize
+from ..layer.layers import PLAYERS
 from ..object import body_store
 
 MODIFIER_NAME = "Palpate Animation"
 
 
-def place_for(thing: bpy.types.Object) -> Path:
-    """Where the object's cache is written: beside its body file, ``<object>-animation.pc2``.
+def place_for(thing: bpy.types.Object, suffix: str, is_own: Callable[[Path], bool]) -> Path:
+    """Where the object's cache is written: beside its body file, ``<object>-animation`` and suffix.
 
-    Nothing is there, or a cache of Palpate's; if something else is, the next name is taken.
+    Nothing is there, or what is Palpate's own; if something else is, the next name is taken.
 
     Raises
     ------
@@ -25,26 +27,24 @@ def place_for(thing: bpy.types.Object) -> Path:
     """
     folder, word = body_store.folder_for_new_files(), bpy.path.clean_name(thing.name)
     names = itertools.chain(
-        (f"{word}-animation.pc2",), (f"{word}-animation-{n}.pc2" for n in itertools.count(2))
+        (f"{word}-animation{suffix}",),
+        (f"{word}-animation-{n}{suffix}" for n in itertools.count(2)),
     )
     places = (folder / name for name in names)
-    return next(place for place in places if not place.exists() or is_own_cache(place))
+    return next(place for place in places if not place.exists() or is_own(place))
 
 
 def plays(thing: bpy.types.Object) -> bool:
     """Whether the object's modifier plays a cache now."""
     modifier = thing.modifiers.get(MODIFIER_NAME)
-    return modifier is not None and modifier.type == "MESH_CACHE" and modifier.show_viewport
+    return modifier is not None and modifier.type in PLAYERS and modifier.show_viewport
 
 
 def play(thing: bpy.types.Object, cache: Path, size: CacheSize) -> bpy.types.Modifier:
     """Let the object's modifier play a cache, before all that deforms the mesh further."""
-    modifier = thing.modifiers.get(MODIFIER_NAME)
-    if modifier is None or modifier.type != "MESH_CACHE":
-        modifier = thing.modifiers.new(MODIFIER_NAME, "MESH_CACHE")
-    thing.modifiers.move(thing.modifiers.find(modifier.name), 0)
+    modifier = modifier_of(thing, "MESH_CACHE")
     modifier.cache_format = "PC2"
-    modifier.filepath = _shortest(cache)
+    modifier.filepath = shortest(cache)
     modifier.deform_mode = "OVERWRITE"
     modifier.interpolation = "LINEAR"
     modifier.play_mode, modifier.time_mode = "SCENE", "FRAME"
@@ -54,7 +54,19 @@ def play(thing: bpy.types.Object, cache: Path, size: CacheSize) -> bpy.types.Mod
     return modifier
 
 
-def _shortest(path: Path) -> str:
+def modifier_of(thing: bpy.types.Object, kind: str) -> bpy.types.Modifier:
+    """The modifier that plays an object's animation, first of all; another kind is replaced."""
+    modifier = thing.modifiers.get(MODIFIER_NAME)
+    if modifier is not None and modifier.type in PLAYERS and modifier.type != kind:
+        thing.modifiers.remove(modifier)
+        modifier = None
+    if modifier is None or modifier.type != kind:
+        modifier = thing.modifiers.new(MODIFIER_NAME, kind)
+    thing.modifiers.move(thing.modifiers.find(modifier.name), 0)
+    return modifier
+
+
+def shortest(path: Path) -> str:
     """Relative to the .blend where it is beside it."""
     blend = Path(bpy.data.filepath)
     if bpy.data.filepath and path.is_relative_to(blend.parent):

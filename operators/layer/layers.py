@@ -16,6 +16,8 @@ from . import modifier_inputs
 from .layer_groups import CARRIER, DISPLACEMENT, STRENGTH, Kind, group_of, kind_of
 
 KEPT_NAME = "Press"
+# Types of modifiers that play the places of all vertices.
+PLAYERS = ("MESH_CACHE", "MESH_SEQUENCE_CACHE")
 
 
 def layers_of(thing: bpy.types.Object) -> list[bpy.types.NodesModifier]:
@@ -163,7 +165,7 @@ def _place(thing: bpy.types.Object, new: bpy.types.NodesModifier) -> int:
     """Place of a new modifier of Palpate's: behind those that come first, and what plays places."""
     place = 0
     for modifier in thing.modifiers:
-        if modifier == new or (kind(modifier) is None and modifier.type != "MESH_CACHE"):
+        if modifier == new or (kind(modifier) is None and modifier.type not in PLAYERS):
             break
         place += 1
     return place

@@ -103,7 +103,7 @@ def test_forces_are_written_as_a_table(tapped, tmp_path):
 
 
 def test_nothing_is_left_of_a_bake_that_is_ended(tapped, tmp_path, monkeypatch):
-    cache = part("operators.animation.mesh_cache").place_for(tapped)
+    folder = part("operators.object.body_store").folder_for_new_files()
     frames = part("operators.animation.bake_animation")
     original = frames.press_frames
 
@@ -116,12 +116,13 @@ def test_nothing_is_left_of_a_bake_that_is_ended(tapped, tmp_path, monkeypatch):
     monkeypatch.setattr(frames, "press_frames", breaking)
     assert "The line is down" in error_of(bpy.ops.palpate.press_frames)
     assert not tapped.modifiers
-    assert not list(cache.parent.glob("*.pc2*"))
+    assert not list(folder.glob("*-animation*"))
     assert bpy.context.scene.frame_current == 2
 
 
 def test_a_foreign_file_of_the_cache_s_name_is_left_alone(tapped):
-    place = part("operators.animation.mesh_cache").place_for(tapped)
+    name = f"{bpy.path.clean_name(tapped.name)}-animation.pc2"
+    place = part("operators.object.body_store").folder_for_new_files() / name
     place.parent.mkdir(exist_ok=True)
     place.write_bytes(b"POINTCACHE2\0 of somebody else")
     assert bpy.ops.palpate.press_frames() == {"FINISHED"}

@@ -1,0 +1,99 @@
+"""Ways to keep the frames of an animation so that they play without Palpate."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator, Iterator
+from functools import partial
+
+import bpy
+
+from ...core.files.point_cache import CacheSize, is_own_cache, point_cache
+from ...core.files.scratch_folder import ScratchFolder
+from ..object.drawn_body import DrawnBody
+from . import exchange_file, frame_keys, live_pressers, mesh_cache
+from .exchange_file import Exchange
+from .pressed_frames import PressedFrame
+
+Baking = Generator[float, None, None]
+"""Share of the frames that are pressed, after each."""
+Keeper = Callable[
+    [bpy.types.Object, bpy.types.Scene, DrawnBody, Iterator[PressedFrame], CacheSize], Baking
+]
+"""Keeps all frames once the last is pressed; nothing, if it is closed before."""
+
+SCRATCH_WORD = "animation"
+
+
+def _as_cache(
+    thing: bpy.types.Object,
+    _: bpy.types.Scene,
+    drawn: DrawnBody,
+    pressed: Iterator[PressedFrame],
+    size: CacheSize,
+) -> Baking:
+    place = mesh_cache.place_for(thing, ".pc2", is_own_cache)
+    with point_cache(place, size) as cache:
+        for here in pressed:
+            cache.write(here.coordinates(drawn))
+            yield cache.written / size.samples
+    mesh_cache.play(thing, place, size)
+
+
+def _as_keys(
+    thing: bpy.types.Object,
+    _: bpy.types.Scene,
+    drawn: DrawnBody,
+    pressed: Iterator[PressedFrame],
+    size: CacheSize,
+) -> Baking:
+    kept = yield from collected(pressed, size.samples)
+    frame_keys.keep_frames(thing, drawn, kept)
+
+
+def _as_exchange(
+    thing: bpy.types.Object,
+    scene: bpy.types.Scene,
+    drawn: DrawnBody,
+    pressed: Iterator[PressedFrame],
+    size: CacheSize,
+    *,
+    kind: Exchange,
+) -> Baking:
+    target = mesh_cache.place_for(thing, kind.value, partial(exchange_file.is_played, thing))
+    with ScratchFolder(SCRATCH_WORD) as folder:
+        frames = folder.path / "frames.pc2"
+        with point_cache(frames, size) as cache:
+            for here in pressed:
+                cache.write(here.coordinates(drawn))
+                yield cache.written / size.samples
+        with live_pressers.paused():
+            path = exchange_file.write(thing, scene, frames, size, target, kind)
+    exchange_file.play(thing, target, path)
+
+
+KEEPERS: dict[str, Keeper] = {
+    "CACHE": _as_cache,
+    "KEYS": _as_keys,
+    "ALEMBIC": partial(_as_exchange, kind=Exchange.ALEMBIC),
+    "USD": partial(_as_exchange, kind=Exchange.USD),
+}
+ITEMS = [
+    ("CACHE", "Mesh Cache", "A PC2 file beside the .blend, played by a modifier"),
+    ("KEYS", "Shape Keys", "A shape key a frame, within the .blend"),
+    *(
+        (kind.name, name, "A file beside the .blend for other programs, played by a modifier")
+        for kind, name in ((Exchange.ALEMBIC, "Alembic"), (Exchange.USD, "USD"))
+        if kind.is_built_in
+    ),
+]
+
+
+def collected(
+    pressed: Iterator[PressedFrame], count: int
+) -> Generator[float, None, list[PressedFrame]]:
+    """All frames, once each share of them was told."""
+    kept: list[PressedFrame] = []
+    for here in pressed:
+        kept.append(here)
+        yield len(kept) / count
+    return kept
