@@ -102,6 +102,32 @@ def test_forces_are_written_as_a_table(tapped, tmp_path):
     assert float(rows[3]["seconds"]) == pytest.approx(seconds)
 
 
+def test_the_table_agrees_with_the_pressure_and_the_geometry(tapped, tmp_path):
+    table, scene = tmp_path / "forces.csv", bpy.context.scene
+    assert bpy.ops.palpate.press_frames(forces=str(table)) == {"FINISHED"}
+    with table.open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    opened = part("operators.object.drawn_body").open_body(tapped, scene)
+    pressed = part("operators.animation.pressed_frames")
+    with part("operators.shape.drawn_shape").closing_shape(tapped, opened) as shape:
+        frames = list(pressed.press_frames(tapped, scene, opened, list(range(1, 8)), shape))
+    touched = 0
+    for row, here in zip(rows, frames, strict=True):
+        (touch,) = here.fingers
+        force = np.array([float(row[f"force_{axis}_N"]) for axis in "xyz"])
+        # Without friction the force is the sum of pressure, area and normal.
+        spread = -((touch.pressures * touch.areas)[:, None] * touch.normals).sum(axis=0)
+        np.testing.assert_allclose(force, spread, rtol=1e-6, atol=1e-9)
+        assert float(row["area_m2"]) == pytest.approx(touch.areas.sum(), rel=1e-6)
+        largest = touch.pressures.max(initial=0.0)
+        assert float(row["largest_pressure_Pa"]) == pytest.approx(largest, rel=1e-6)
+        # And the depth is how far the ball is below the flat top.
+        depth = max(0.025 - (touch.pose.position[2] - touch.tool.radius), 0.0)
+        assert float(row["depth_m"]) == pytest.approx(depth, rel=0.05, abs=2e-5)
+        touched += touch.touching
+    assert 0 < touched < len(rows)
+
+
 def test_nothing_is_left_of_a_bake_that_is_ended(tapped, tmp_path, monkeypatch):
     folder = part("operators.object.body_store").folder_for_new_files()
     frames = part("operators.animation.bake_animation")
