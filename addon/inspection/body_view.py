@@ -75,11 +75,24 @@ def _kept(kind: str, which: object, make: Callable[[], tuple[Array, Array]]) -> 
 def _pins(context: bpy.types.Context) -> tuple[Array, Array]:
     """Triangles (k, 3, 3) of the pinned part of the surface, world."""
     thing, scene = context.object, context.scene
+    if thing.palpate.pin_mode == "CORE":
+        return _core(context)
     surface = drawn_surface.read(thing, scene)
     triangles = surface.frame.wind(surface.triangles)
-    weights = pin_group.pins(thing, surface).weights
+    weights = pin_group.pinned_from(thing, surface).weights
     places = film(surface.body, triangles, weights, pin_group.PINNED_FROM)
     return surface.frame.world_from_body(places), np.zeros((0, 3))
+
+
+def _core(context: bpy.types.Context) -> tuple[Array, Array]:
+    """Triangles (k, 3, 3) of the tetrahedra inside that are pinned, world; none before a bake."""
+    thing = context.object
+    if not thing.palpate.body_key:
+        return np.zeros((0, 3, 3)), np.zeros((0, 3))
+    body = embedded(thing)
+    nodes = drawn_surface.frame_of(thing, context.scene).world_from_body(body.mesh.nodes)
+    held = np.isin(body.mesh.tets, body.fixed).sum(axis=1)
+    return faces_of(nodes, body.mesh.tets[held >= min(3, held.max())]), np.zeros((0, 3))
 
 
 def _tetrahedra(context: bpy.types.Context) -> tuple[Array, Array]:

@@ -110,7 +110,7 @@ class PALPATE_PT_pins(PalpatePanel, bpy.types.Panel):
             layout.prop_search(settings, "pin_group", thing, "vertex_groups")
             if settings.pin_group not in thing.vertex_groups:
                 say(layout, context, "There is no such vertex group", "ERROR")
-        else:
+        elif settings.pin_mode == "BELOW":
             layout.prop(settings, "pin_fraction")
             layout.operator("palpate.pin_below", icon="GROUP_VERTEX")
         layout.prop(context.scene.palpate, "show_pins")

@@ -31,6 +31,11 @@ FRICTIONS = span(0.0, 5.0, soft_max=1.5, precision=2, step=5)
 PIN_ITEMS = [
     ("BELOW", "Below Height", "Everything in the lowest part of the object, as it stands"),
     ("GROUP", "Vertex Group", "Vertices with a weight of 0.5 or more"),
+    (
+        "CORE",
+        "Core",
+        "What lies deep inside, as if by a skeleton: the whole surface gives way, and nothing leans",
+    ),
 ]
 FORMULATION_ITEMS = [
     (
@@ -114,7 +119,7 @@ class PalpateObject(ShapeProperties, bpy.types.PropertyGroup):
         span(0.0, 0.499, precision=3, step=1),
         update=_leave_material("poisson_ratio"),
     )
-    pin_mode: choice("Pin", "Which part never moves", PIN_ITEMS, "BELOW")
+    pin_mode: choice("Pin", "Which part never moves", PIN_ITEMS, "CORE")
     pin_fraction: number(
         "Height",
         "Share of the object's height in world Z below which it is pinned",

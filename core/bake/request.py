@@ -10,7 +10,7 @@ import numpy as np
 
 from ..mesh.surface import Surface
 from ..mesh.tet_mesh import TetMesh
-from ..stiffness.pins import PinBelow, PinNodes, Pins, PinWeights
+from ..stiffness.pins import PinBelow, PinCore, PinNodes, Pins, PinWeights
 from ..stiffness.regions import StiffRegion, TetScale
 from .settings import BakeSettings
 
@@ -43,6 +43,8 @@ class BakeRequest:
         match settings.pins:
             case PinBelow(fraction, axis):
                 plain["pin_below"] = [fraction, axis]
+            case PinCore(share):
+                plain["pin_core"] = share
             case PinWeights(weights):
                 arrays["pin_weights"] = weights
             case PinNodes(nodes):
@@ -66,6 +68,8 @@ class BakeRequest:
         if "pin_below" in plain:
             fraction, axis = plain.pop("pin_below")
             pins = PinBelow(fraction, axis)
+        elif "pin_core" in plain:
+            pins = PinCore(plain.pop("pin_core"))
         elif "pin_weights" in arrays:
             pins = PinWeights(arrays["pin_weights"])
         else:

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from ..errors import PalpateError
 from ..mesh.tet_mesh import TetMesh
 from ..sentence import Sentence
+from .pins import holds
 
 
 def pins_checked(mesh: TetMesh, fixed: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -28,7 +29,7 @@ def pins_checked(mesh: TetMesh, fixed: NDArray[np.int64]) -> NDArray[np.int64]:
         )
     for piece in range(mesh.component_count):
         held = mesh.nodes[pins[mesh.node_components[pins] == piece]]
-        if not _holds(held):
+        if not holds(held):
             alone, few = mesh.component_count == 1, len(held) <= 2
             raise PalpateError(
                 "pins: {where} is pinned at {held} and could move away; pin at least three nodes "
@@ -45,11 +46,3 @@ def pins_checked(mesh: TetMesh, fixed: NDArray[np.int64]) -> NDArray[np.int64]:
             "pins: every surface node is pinned, so nothing is left to touch; pin fewer"
         )
     return pins
-
-
-def _holds(held: NDArray[np.float64]) -> bool:
-    """Whether pinned points (k, 3) leave no rotation: at least three, not on one line."""
-    if len(held) < 3:
-        return False
-    spread = np.linalg.svd(held - held.mean(axis=0), compute_uv=False)
-    return bool(spread[1] > 1e-9 * spread[0])

@@ -35,7 +35,22 @@ class PinNodes:
     nodes: NDArray[np.int64]
 
 
-Pins = PinBelow | PinWeights | PinNodes
+@dataclass(frozen=True)
+class PinCore:
+    """Pin what lies deepest in each piece of the body, and nothing of its surface: nodes under at
+    least this ``share`` of the depth of its deepest one.
+
+    So a body is held as by a skeleton: where it is thick it gives way only around what presses, and
+    does not lean, however slender what it stands on is; limbs bend.
+    """
+
+    share: float = 0.5
+
+
+Pins = PinBelow | PinCore | PinWeights | PinNodes
+
+# Of a piece without nodes deep enough to hold it: so many next to its middle, at least a share.
+FEWEST_IN_CORE, LEAST_SHARE_IN_CORE = 4, 0.02
 
 
 def pinned_nodes(
@@ -59,6 +74,8 @@ def pinned_nodes(
         return np.unique(pins.nodes)
     if isinstance(pins, PinBelow):
         return _below(pins, mesh)
+    if isinstance(pins, PinCore):
+        return _core(pins, mesh)
     return _weighted(pins, mesh, surface, places)
 
 
@@ -93,6 +110,41 @@ def _below(pins: PinBelow, mesh: TetMesh) -> NDArray[np.int64]:
     limit = height.min() + pins.fraction * np.ptp(height) + rounding
     low: NDArray[np.int64] = mesh.surface_nodes[height <= limit]
     return low
+
+
+def _core(pins: PinCore, mesh: TetMesh) -> NDArray[np.int64]:
+    depth = np.zeros(len(mesh.nodes))
+    inner = np.setdiff1d(np.arange(len(mesh.nodes)), mesh.surface_nodes)
+    found = ClosestPoints(mesh.nodes, mesh.surface_triangles).query(mesh.nodes[inner])
+    depth[inner] = found.distance
+    cores = [
+        _core_of_piece(pins.share, mesh.nodes, depth, np.flatnonzero(mesh.node_components == piece))
+        for piece in range(mesh.component_count)
+    ]
+    core: NDArray[np.int64] = np.sort(np.concatenate(cores))
+    return core
+
+
+def _core_of_piece(
+    share: float, nodes: NDArray[np.float64], depth: NDArray[np.float64], piece: NDArray[np.int64]
+) -> NDArray[np.int64]:
+    deep = piece[(depth[piece] > 0.0) & (depth[piece] >= share * depth[piece].max())]
+    if holds(nodes[deep]):
+        return deep
+    from_middle = np.linalg.norm(nodes[piece] - nodes[piece].mean(axis=0), axis=1)
+    count = max(FEWEST_IN_CORE, int(LEAST_SHARE_IN_CORE * len(piece)))
+    order = np.argsort(from_middle, kind="stable")
+    while not holds(nodes[piece[order[:count]]]) and count < len(piece):
+        count += 1
+    return piece[order[:count]]
+
+
+def holds(held: NDArray[np.float64]) -> bool:
+    """Whether pinned points (k, 3) leave no rotation: at least three, not on one line."""
+    if len(held) < 3:
+        return False
+    spread = np.linalg.svd(held - held.mean(axis=0), compute_uv=False)
+    return bool(spread[1] > 1e-9 * spread[0])
 
 
 def _weighted(

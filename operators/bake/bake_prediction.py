@@ -12,7 +12,7 @@ from ...core.bake.cost.size import ShapeSize
 from ...core.bake.settings import BakeSettings
 from ...core.errors import PalpateError
 from ...core.machine.available_memory import available_memory
-from ...core.stiffness.pins import PinBelow, Pins
+from ...core.stiffness.pins import PinBelow, PinCore, Pins
 from ..pins import pin_group
 
 
@@ -44,6 +44,8 @@ def pins_of(thing: bpy.types.Object) -> Pins:
     settings = thing.palpate
     if settings.pin_mode == "BELOW":
         return PinBelow(settings.pin_fraction)
+    if settings.pin_mode == "CORE":
+        return PinCore()
     try:
         return pin_group.painted(thing)
     except PalpateError:

@@ -7,11 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.errors import PalpateError
-from ...core.stiffness.pins import PinWeights
+from ...core.stiffness.pins import PinCore, PinWeights
 from ..scene.drawn_surface import DrawnSurface
+from ..scene.fingerprint import Fingerprint
 from .group_weights import group_digest, group_weights
 
 GROUP_NAME = "Pinned"
+BELOW_RULE, CORE_RULE = "below", "core"
 # Weight from which on a place is pinned.
 PINNED_FROM = 0.5
 # Tolerance for rounding of a level bottom, as a share of the height.
@@ -22,15 +24,28 @@ def pin_rule(thing: bpy.types.Object) -> str:
     """Text that changes with the object's pins."""
     settings = thing.palpate
     if settings.pin_mode == "BELOW":
-        return f"below {settings.pin_fraction:.4f}"
+        return f"{BELOW_RULE} {settings.pin_fraction:.4f}"
+    if settings.pin_mode == "CORE":
+        return CORE_RULE
     group = thing.vertex_groups.get(settings.pin_group)
     if group is None:
         return "no group"
     return f"group {group_digest(thing, group)}"
 
 
-def pins(thing: bpy.types.Object, surface: DrawnSurface) -> PinWeights:
-    """Pins for a bake, one weight per vertex; pinned where it reaches one half.
+def pins(thing: bpy.types.Object, surface: DrawnSurface) -> PinWeights | PinCore:
+    """Pins for a bake.
+
+    Raises
+    ------
+    PalpateError
+        The vertex group is missing or empty.
+    """
+    return PinCore() if thing.palpate.pin_mode == "CORE" else pinned_from(thing, surface)
+
+
+def pinned_from(thing: bpy.types.Object, surface: DrawnSurface) -> PinWeights:
+    """Pins of the surface, one weight per vertex, pinned where it reaches one half.
 
     A height is given as weights linear in it, which are exact between vertices of any mesh.
 
@@ -44,6 +59,20 @@ def pins(thing: bpy.types.Object, surface: DrawnSurface) -> PinWeights:
         height = _relative_height(surface)
         return PinWeights(PINNED_FROM + settings.pin_fraction + LEVEL - height)
     return painted(thing)
+
+
+def keep_height(thing: bpy.types.Object) -> None:
+    """Let an object from before there was a core keep the height that it was pinned below."""
+    settings = thing.palpate
+    if not settings.fingerprint or settings.is_property_set("pin_mode"):
+        return
+    try:
+        pinned = Fingerprint.from_text(settings.fingerprint).pins
+    except PalpateError:
+        # Damaged; the panel says so, and nothing of it is taken over.
+        return
+    if pinned.startswith(BELOW_RULE):
+        settings.pin_mode = "BELOW"
 
 
 def painted(thing: bpy.types.Object) -> PinWeights:

@@ -39,7 +39,7 @@ def cube(edge: float = 0.05) -> bpy.types.Object:
     """A cube of this edge at the origin, its scale applied, settings for a quick bake."""
     bpy.ops.mesh.primitive_cube_add(size=edge)
     thing = bpy.context.object
-    thing.palpate.edge_length = COARSE
+    thing.palpate.edge_length, thing.palpate.pin_mode = COARSE, "BELOW"
     return select(thing)
 
 
@@ -49,7 +49,7 @@ def mesh_object(vertices: Any, faces: Any, name: str = "Thing") -> bpy.types.Obj
     mesh.from_pydata(vertices, [], faces)
     thing = bpy.data.objects.new(name, mesh)
     bpy.context.collection.objects.link(thing)
-    thing.palpate.edge_length = COARSE
+    thing.palpate.edge_length, thing.palpate.pin_mode = COARSE, "BELOW"
     return select(thing)
 
 

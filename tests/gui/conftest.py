@@ -18,7 +18,7 @@ Blender, stepped by a timer, and gets a `Stage` (see stage.py) with what a user'
 What it yields says how long to wait: `yield` until the viewport has been drawn again, `yield 0.5`
 so many seconds. It fails by an exception, and also when Blender or the extension prints a traceback
 meanwhile, for Blender swallows those of timers, handlers and modal operators. It also fails after
-`LIMIT_SECONDS` of stage.py, which is far more than any needs, and there only so that none hangs.
+`limit_seconds` of windowed_blender.py, far more than any needs, and there only so that none hangs.
 
 Before each scenario Blender loads its factory scene; the extension stays installed and enabled.
 All scenarios that pytest selected run in one Blender, in the order of their files; should it crash

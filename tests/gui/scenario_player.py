@@ -16,12 +16,13 @@ import traceback
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import bpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
-from stage import LIMIT_SECONDS, MODULE, Stage, Wait
+from stage import MODULE, Stage, Wait
 
 STEP_SECONDS = 0.01
 # A redraw that does not come is not worth more than this: the scenario's own asserts will say it.
@@ -33,16 +34,21 @@ GRACE_SECONDS = 20.0
 class Player:
     """Plays one scenario after the other; `step` is called by a timer until it returns None."""
 
-    def __init__(self, job: dict[str, str], scenarios: list[str]) -> None:
+    def __init__(self, job: dict[str, Any], scenarios: list[str]) -> None:
         self.job = job
         self.waiting = scenarios
         self.report: dict[str, dict[str, object]] = {}
         self.name = ""
-        self.stage = Stage(Path(job["repository"]), Path(job["output"]), "")
+        self.stage = self.new_stage("")
         self.scenario: Wait | None = None
         self.wake: Callable[[], bool] = lambda: True
         self.deadline = 0.0
         self.draws = self.draws_before = 0
+
+    def new_stage(self, name: str) -> Stage:
+        """A stage for a scenario."""
+        job = self.job
+        return Stage(Path(job["repository"]), Path(job["output"]), name, tuple(job["arguments"]))
 
     def count_draw(self) -> None:
         """Note that the viewport has been drawn."""
@@ -57,7 +63,7 @@ class Player:
             self.begin(self.waiting.pop(0))
         elif time.monotonic() > self.deadline:
             self.scenario.close()
-            self.end(f"the scenario was not over after {LIMIT_SECONDS:g} s")
+            self.end(f"the scenario was not over after {self.job['limit']:g} s")
         elif self.wake():
             self.advance()
         return STEP_SECONDS
@@ -65,24 +71,26 @@ class Player:
     def begin(self, name: str) -> None:
         """Load the factory scene and start a scenario."""
         self.name = name
-        self.stage = Stage(Path(self.job["repository"]), Path(self.job["output"]), name)
+        self.stage = self.new_stage(name)
         self.report[name] = {"state": "running", "failure": "", "pictures": [], "figures": {}}
         self.write_report()
         mark(f"scenario begins: {name}")
-        self.deadline, self.draws_before = time.monotonic() + LIMIT_SECONDS, self.draws
+        self.deadline, self.draws_before = time.monotonic() + self.job["limit"], self.draws
         try:
             self.scenario = self.prepare(name)
         except Exception:  # noqa: BLE001 -- whatever it is, pytest shows it
             self.end(traceback.format_exc())
             return
-        faulthandler.dump_traceback_later(LIMIT_SECONDS + GRACE_SECONDS, exit=True)
+        faulthandler.dump_traceback_later(self.job["limit"] + GRACE_SECONDS, exit=True)
         self.wake_after(None)
 
     def prepare(self, name: str) -> Wait:
         """Return the scenario, in a fresh scene, at its beginning."""
         bpy.ops.wm.read_homefile(use_factory_startup=True)
         file, _, function_name = name.partition("::")
-        function = getattr(load(Path(__file__).parent / "scenarios" / f"{file}.py"), function_name)
+        function = getattr(
+            load(Path(__file__).parent / self.job["folder"] / f"{file}.py"), function_name
+        )
         return function(self.stage)
 
     def advance(self) -> None:
@@ -119,7 +127,7 @@ class Player:
         }
         self.scenario = None
         self.write_report()
-        seconds = time.monotonic() - (self.deadline - LIMIT_SECONDS)
+        seconds = time.monotonic() - (self.deadline - self.job["limit"])
         mark(
             f"scenario ends: {self.name}, {seconds:.0f} s, {self.draws - self.draws_before} frames"
         )
@@ -134,6 +142,8 @@ class Player:
 
 def load(path: Path) -> ModuleType:
     """Import a file of scenarios."""
+    if str(path.parent) not in sys.path:
+        sys.path.append(str(path.parent))
     spec = importlib.util.spec_from_file_location(path.stem, path)
     assert spec is not None
     assert spec.loader is not None

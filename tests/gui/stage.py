@@ -18,8 +18,7 @@ import bpy
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 
 MODULE = "bl_ext.user_default.palpate"
-# Against hanging only: a scenario takes some seconds, and many times that on a busy machine.
-LIMIT_SECONDS = 300.0
+# Against hanging only: a wait takes some seconds, and many times that on a busy machine.
 LONGEST_WAIT_SECONDS = 150.0
 Wait = Generator[float | None, None, None]
 Pixel = tuple[float, float]
@@ -28,8 +27,12 @@ Pixel = tuple[float, float]
 class Stage:
     """One scenario's hands and eyes."""
 
-    def __init__(self, repository: Path, output: Path, scenario: str) -> None:
+    def __init__(
+        self, repository: Path, output: Path, scenario: str, arguments: tuple[str, ...] = ()
+    ) -> None:
         self.repository = repository
+        self.arguments = arguments
+        """What the scenario was called with."""
         self.output = output
         self.scenario = scenario
         self.pictures: list[str] = []
@@ -140,11 +143,13 @@ class Stage:
 
     # ---- what a user sees
 
-    def until(self, condition: Callable[[], object], what: str) -> Wait:
+    def until(
+        self, condition: Callable[[], object], what: str, longest: float = LONGEST_WAIT_SECONDS
+    ) -> Wait:
         """Wait until a condition holds; fail with `what` was awaited when it never does."""
-        end = time.monotonic() + LONGEST_WAIT_SECONDS
+        end = time.monotonic() + longest
         while not condition():
-            assert time.monotonic() < end, f"waited {LONGEST_WAIT_SECONDS:g} s in vain for {what}"
+            assert time.monotonic() < end, f"waited {longest:g} s in vain for {what}"
             yield 0.02
 
     def picture(self, name: str) -> Wait:

@@ -35,12 +35,20 @@ class WindowedBlender:
     program: Path
     package: Path
     repository: Path
+    folder: str = "scenarios"
+    """Of the scenarios' files, beside this one."""
+    arguments: tuple[str, ...] = ()
+    """For the scenarios, as `stage.arguments`."""
+    limit_seconds: float = 300.0
+    """For each scenario, against hanging only."""
+    output: Path | None = None
+    """Folder of pictures and logs; build/gui without one."""
     outcomes: dict[str, Outcome] = field(default_factory=dict)
 
     def play(self, scenarios: list[str]) -> None:
         """Fill `outcomes` with one for each scenario."""
         uncover(self.repository)
-        output = self.repository / "build" / "gui"
+        output = self.output or self.repository / "build" / "gui"
         output.mkdir(parents=True, exist_ok=True)
         waiting = list(scenarios)
         start = 0
@@ -61,6 +69,9 @@ class WindowedBlender:
                 json.dumps(
                     {
                         "scenarios": scenarios,
+                        "folder": self.folder,
+                        "arguments": self.arguments,
+                        "limit": self.limit_seconds,
                         "package": str(self.package),
                         "repository": str(self.repository),
                         "output": str(output),

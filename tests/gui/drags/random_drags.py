@@ -1,0 +1,214 @@
+"""Drags at random visible places of a soft object in random directions, and where each pressed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+from bpy_extras.view3d_utils import (
+    location_3d_to_region_2d,
+    region_2d_to_origin_3d,
+    region_2d_to_vector_3d,
+)
+from mathutils import Euler, Vector
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+from shown import replaced
+from stage import Pixel, Stage, Wait
+
+from bl_ext.user_default.palpate.operators.layer import layers
+from bl_ext.user_default.palpate.operators.scene.drawn_surface import metres_per_unit
+from bl_ext.user_default.palpate.operators.scene.viewport import under_pointer
+from bl_ext.user_default.palpate.operators.stroke import stroke_operator
+from bl_ext.user_default.palpate.operators.stroke.stroke_size import radius_for
+
+TOOL = "palpate.tool"
+Points = NDArray[np.float64]
+DRAG_PIXELS = 40.0
+# The sidebar's edge can be dragged, also from a little beside it.
+BESIDE_SIDEBAR = 20
+# Of the tool's radius on the screen: as far from the cursor may lie what moved most.
+FARTHEST_OFF = 1.0
+# Less than this is not seen.
+LEAST_MOVED_PIXELS = 1.0
+# Radii of the tool around a place, whose mean it is held against.
+SURROUNDINGS = 2.0
+# Drags after which the object is looked at from elsewhere.
+LOOKS_FROM = 5
+
+
+@dataclass(frozen=True)
+class Drag:
+    """One drag and what came of it; lengths in pixels at the touched place.
+
+    Attributes
+    ----------
+    at : where it began, in the window.
+    off : from there to the place that moved most, as it was seen before.
+    dent_off : from there to the place that moved most against what surrounds it, so that a limb
+        that bends or a body that leans does not count.
+    radius : of the tool.
+    moved : by how much the place that moved most did.
+    dent : by how much the other moved against its surroundings.
+    said : what the stroke reported or refused meanwhile.
+    """
+
+    at: Pixel
+    off: float
+    dent_off: float
+    radius: float
+    moved: float
+    dent: float
+    said: tuple[str, ...]
+
+    @property
+    def hit(self) -> bool:
+        """Whether it pressed where the cursor was, and could be seen to."""
+        off = min(self.off, self.dent_off)
+        return off <= FARTHEST_OFF * self.radius and self.moved >= LEAST_MOVED_PIXELS
+
+
+def random_drags(
+    stage: Stage, name: str, rng: np.random.Generator, count: int, drags: list[Drag]
+) -> Wait:
+    """Append what came of so many drags with the tool Palpate, seen from all around.
+
+    Those seen from one side go on from each other; after them all are undone.
+    """
+    with stage.view():
+        bpy.ops.wm.tool_set_by_id(name=TOOL)
+    for number in range(count):
+        if number % LOOKS_FROM == 0 and number:
+            yield from _undo_all(stage, name)
+            yield from _look_from_elsewhere(stage, rng)
+        at = visible_place(stage, name, rng)
+        yield from _drag(stage, name, at, rng.uniform(0.0, 2.0 * math.pi), drags)
+
+
+def _drag(stage: Stage, name: str, at: Pixel, angle: float, drags: list[Drag]) -> Wait:
+    before, count = seen_points(name), len(layers.layers_of(bpy.data.objects[name]))
+    here = _world_under(stage, at, name)
+    assert here is not None
+    end = (at[0] + DRAG_PIXELS * math.cos(angle), at[1] + DRAG_PIXELS * math.sin(angle))
+    with _heard() as said:
+        yield from stage.drag([at, end], steps=3)
+        yield 0.1
+        yield
+    thing = bpy.data.objects[name]
+    scale = _pixels_per_unit(stage, here)
+    radius = radius_for(bpy.context.scene, thing) / metres_per_unit(bpy.context.scene) * scale
+    if len(layers.layers_of(thing)) == count:
+        drags.append(Drag(at, math.inf, math.inf, radius, 0.0, 0.0, tuple(said)))
+        return
+    shift = seen_points(name) - before
+    moved = np.linalg.norm(shift, axis=1)
+    dented = np.linalg.norm(shift - _around(before, shift, SURROUNDINGS * radius / scale), axis=1)
+    most, deepest = int(np.argmax(moved)), int(np.argmax(dented))
+    drags.append(
+        Drag(
+            at,
+            math.dist(at, stage.pixel(before[most])),
+            math.dist(at, stage.pixel(before[deepest])),
+            radius,
+            float(moved[most]) * scale,
+            float(dented[deepest]) * scale,
+            tuple(said),
+        )
+    )
+
+
+def _around(places: Points, shift: Points, radius: float) -> Points:
+    """Mean shift (p, 3) of all places (p, 3) within a radius of each."""
+    near = cKDTree(places).sparse_distance_matrix(cKDTree(places), radius, output_type="coo_matrix")
+    count = np.bincount(near.row, minlength=len(places))[:, None]
+    sums = [
+        np.bincount(near.row, shift[near.col, axis], minlength=len(places)) for axis in range(3)
+    ]
+    return np.column_stack(sums) / np.maximum(count, 1)
+
+
+def visible_place(stage: Stage, name: str, rng: np.random.Generator) -> Pixel:
+    """A pixel at which the object is seen, covered by no panel and no gizmo."""
+    region = stage.region("WINDOW")
+    for _ in range(5000):
+        at = (
+            round(region.x + rng.uniform(0.02, 0.98) * region.width),
+            round(region.y + rng.uniform(0.02, 0.98) * region.height),
+        )
+        here = under_pointer(stage.window, *at)
+        if here is None or here.over_gizmos():
+            continue
+        if abs(at[0] - stage.region("UI").x) > BESIDE_SIDEBAR and _world_under(stage, at, name):
+            return at
+    raise AssertionError(f"{name} is nowhere to be seen")
+
+
+def seen_points(name: str) -> Points:
+    """Vertices (p, 3) as they are drawn, world coordinates."""
+    thing = bpy.data.objects[name].evaluated_get(bpy.context.evaluated_depsgraph_get())
+    flat = np.empty(3 * len(thing.data.vertices), dtype=np.float32)
+    thing.data.vertices.foreach_get("co", flat)
+    matrix = np.array(thing.matrix_world)
+    return flat.reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]
+
+
+def _world_under(stage: Stage, at: Pixel, name: str) -> Vector | None:
+    """Where the line of sight through a pixel meets the object first, world coordinates."""
+    region, view = stage.region("WINDOW"), stage.area.spaces.active.region_3d
+    cursor = (at[0] - region.x, at[1] - region.y)
+    met, place, _, _, thing, _ = bpy.context.scene.ray_cast(
+        bpy.context.evaluated_depsgraph_get(),
+        region_2d_to_origin_3d(region, view, cursor),
+        region_2d_to_vector_3d(region, view, cursor),
+    )
+    return place if met and thing.name == name else None
+
+
+def _pixels_per_unit(stage: Stage, here: Vector) -> float:
+    region, view = stage.region("WINDOW"), stage.area.spaces.active.region_3d
+    step = 0.01 * view.view_distance
+    aside = here + step * view.view_matrix.to_3x3()[0]
+    ends = [location_3d_to_region_2d(region, view, place) for place in (here, aside)]
+    return float((ends[1] - ends[0]).length) / step
+
+
+def _undo_all(stage: Stage, name: str) -> Wait:
+    region = stage.region("WINDOW")
+    yield from stage.move((region.x + 0.3 * region.width, region.y + 0.3 * region.height))
+    for _ in range(LOOKS_FROM):
+        count = len(layers.layers_of(bpy.data.objects[name]))
+        if count:
+            yield from stage.key("Z", ctrl=True)
+            yield from stage.until(
+                lambda n=count: len(layers.layers_of(bpy.data.objects[name])) < n, "the undo"
+            )
+
+
+def _look_from_elsewhere(stage: Stage, rng: np.random.Generator) -> Wait:
+    tilt, turn = rng.uniform(math.radians(30), math.radians(110)), rng.uniform(0, 2 * math.pi)
+    stage.area.spaces.active.region_3d.view_rotation = Euler((tilt, 0.0, turn)).to_quaternion()
+    yield
+    yield
+
+
+@contextmanager
+def _heard() -> Iterator[list[str]]:
+    """What strokes say meanwhile."""
+    said: list[str] = []
+
+    def hearing(say: Callable[..., str]) -> Callable[..., str]:
+        def hear(text: object, **figures: object) -> str:
+            said.append(str(say(text, **figures)))
+            return said[-1]
+
+        return hear
+
+    with (
+        replaced(stroke_operator, "reported", hearing(stroke_operator.reported)),
+        replaced(stroke_operator, "shown", hearing(stroke_operator.shown)),
+    ):
+        yield said
