@@ -34,7 +34,7 @@ PIN_ITEMS = [
     (
         "CORE",
         "Core",
-        "What lies deep inside, as if by a skeleton: the whole surface gives way, and nothing leans",
+        "What lies deep inside, as a skeleton: all of the surface gives way, and nothing leans",
     ),
 ]
 FORMULATION_ITEMS = [

@@ -42,10 +42,10 @@ def drags_press_where_the_cursor_is(stage: Stage) -> Wait:
             rng = np.random.default_rng(round(100 * scale))
             yield from random_drags(stage, thing.name, rng, DRAGS, drags)
         finally:
+            yield from stage.picture(f"dragged-{scale:g}")
             bpy.context.preferences.view.ui_scale = 1.0
             _note_drags(stage, scale, drags)
         missed += [drag for drag in drags if not drag.hit]
-        yield from stage.picture(f"dragged-{scale:g}")
     assert not missed, f"{len(missed)} drags missed, the first: {missed[0]}"
 
 
