@@ -88,9 +88,8 @@ class Player:
         """Return the scenario, in a fresh scene, at its beginning."""
         bpy.ops.wm.read_homefile(use_factory_startup=True)
         file, _, function_name = name.partition("::")
-        function = getattr(
-            load(Path(__file__).parent / self.job["folder"] / f"{file}.py"), function_name
-        )
+        folder = Path(__file__).parent / self.job["folder"]
+        function = getattr(load(folder / f"{file}.py"), function_name)
         return function(self.stage)
 
     def advance(self) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 
 import bpy
@@ -50,14 +49,11 @@ def drags_press_where_the_cursor_is(stage: Stage) -> Wait:
 
 
 def _note_drags(stage: Stage, scale: float, drags: list[Drag]) -> None:
-    off = [drag.off / drag.radius for drag in drags if math.isfinite(drag.off)]
     said = sorted({text for drag in drags if not drag.hit for text in drag.said})
     stage.note(
         **{
             f"hits at {scale:g}": sum(drag.hit for drag in drags),
-            f"farthest off at {scale:g}": round(max(off, default=math.nan), 2),
-            f"leaned at {scale:g}": sum(drag.off > drag.radius for drag in drags),
-            f"least moved at {scale:g}": round(min(drag.moved for drag in drags), 1),
+            f"more elsewhere at {scale:g}": sum(drag.elsewhere for drag in drags),
             f"drags at {scale:g}": [str(drag) for drag in drags],
             f"missed at {scale:g}, said": said,
         }

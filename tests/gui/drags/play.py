@@ -32,12 +32,8 @@ COLUMNS = (
     "taken",
     "hits at 1",
     "hits at 1.75",
-    "farthest off at 1",
-    "farthest off at 1.75",
-    "leaned at 1",
-    "leaned at 1.75",
-    "least moved at 1",
-    "least moved at 1.75",
+    "more elsewhere at 1",
+    "more elsewhere at 1.75",
     "refused",
 )
 

@@ -16,7 +16,6 @@ from bpy_extras.view3d_utils import (
 )
 from mathutils import Euler, Vector
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 from shown import replaced
 from stage import Pixel, Stage, Wait
 
@@ -31,12 +30,8 @@ Points = NDArray[np.float64]
 DRAG_PIXELS = 40.0
 # The sidebar's edge can be dragged, also from a little beside it.
 BESIDE_SIDEBAR = 20
-# Of the tool's radius on the screen: as far from the cursor may lie what moved most.
-FARTHEST_OFF = 1.0
-# Less than this is not seen.
-LEAST_MOVED_PIXELS = 1.0
-# Radii of the tool around a place, whose mean it is held against.
-SURROUNDINGS = 2.0
+# Of the way that the pointer was dragged.
+LEAST_PRESSED = 0.4
 # Drags after which the object is looked at from elsewhere.
 LOOKS_FROM = 5
 
@@ -49,27 +44,28 @@ class Drag:
     ----------
     at : where it began, in the window.
     off : from there to the place that moved most, as it was seen before.
-    dent_off : from there to the place that moved most against what surrounds it, so that a limb
-        that bends or a body that leans does not count.
     radius : of the tool.
     moved : by how much the place that moved most did.
-    dent : by how much the other moved against its surroundings.
+    pressed : by how much the surface under the cursor went in.
     said : what the stroke reported or refused meanwhile.
     """
 
     at: Pixel
     off: float
-    dent_off: float
     radius: float
     moved: float
-    dent: float
+    pressed: float
     said: tuple[str, ...]
 
     @property
     def hit(self) -> bool:
-        """Whether it pressed where the cursor was, and could be seen to."""
-        off = min(self.off, self.dent_off)
-        return off <= FARTHEST_OFF * self.radius and self.moved >= LEAST_MOVED_PIXELS
+        """Whether the surface was pressed in where the cursor was, as one would see it."""
+        return self.pressed >= LEAST_PRESSED * DRAG_PIXELS
+
+    @property
+    def elsewhere(self) -> bool:
+        """Whether another place moved more, as the tip of a limb that bends."""
+        return self.off > self.radius
 
 
 def random_drags(
@@ -91,8 +87,9 @@ def random_drags(
 
 def _drag(stage: Stage, name: str, at: Pixel, angle: float, drags: list[Drag]) -> Wait:
     before, count = seen_points(name), len(layers.layers_of(bpy.data.objects[name]))
-    here = _world_under(stage, at, name)
-    assert here is not None
+    met = _world_under(stage, at, name)
+    assert met is not None
+    here, inward = met
     end = (at[0] + DRAG_PIXELS * math.cos(angle), at[1] + DRAG_PIXELS * math.sin(angle))
     with _heard() as said:
         yield from stage.drag([at, end], steps=3)
@@ -102,33 +99,16 @@ def _drag(stage: Stage, name: str, at: Pixel, angle: float, drags: list[Drag]) -
     scale = _pixels_per_unit(stage, here)
     radius = radius_for(bpy.context.scene, thing) / metres_per_unit(bpy.context.scene) * scale
     if len(layers.layers_of(thing)) == count:
-        drags.append(Drag(at, math.inf, math.inf, radius, 0.0, 0.0, tuple(said)))
+        drags.append(Drag(at, math.inf, radius, 0.0, 0.0, tuple(said)))
         return
     shift = seen_points(name) - before
     moved = np.linalg.norm(shift, axis=1)
-    dented = np.linalg.norm(shift - _around(before, shift, SURROUNDINGS * radius / scale), axis=1)
-    most, deepest = int(np.argmax(moved)), int(np.argmax(dented))
-    drags.append(
-        Drag(
-            at,
-            math.dist(at, stage.pixel(before[most])),
-            math.dist(at, stage.pixel(before[deepest])),
-            radius,
-            float(moved[most]) * scale,
-            float(dented[deepest]) * scale,
-            tuple(said),
-        )
-    )
-
-
-def _around(places: Points, shift: Points, radius: float) -> Points:
-    """Mean shift (p, 3) of all places (p, 3) within a radius of each."""
-    near = cKDTree(places).sparse_distance_matrix(cKDTree(places), radius, output_type="coo_matrix")
-    count = np.bincount(near.row, minlength=len(places))[:, None]
-    sums = [
-        np.bincount(near.row, shift[near.col, axis], minlength=len(places)) for axis in range(3)
-    ]
-    return np.column_stack(sums) / np.maximum(count, 1)
+    most = int(np.argmax(moved))
+    away = np.linalg.norm(before - np.array(here), axis=1)
+    touched = away <= max(0.5 * radius / scale, away.min())
+    pressed = float((shift[touched] @ inward).max()) * scale
+    off = math.dist(at, stage.pixel(before[most]))
+    drags.append(Drag(at, off, radius, float(moved[most]) * scale, pressed, tuple(said)))
 
 
 def visible_place(stage: Stage, name: str, rng: np.random.Generator) -> Pixel:
@@ -156,16 +136,21 @@ def seen_points(name: str) -> Points:
     return flat.reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]
 
 
-def _world_under(stage: Stage, at: Pixel, name: str) -> Vector | None:
-    """Where the line of sight through a pixel meets the object first, world coordinates."""
+def _world_under(stage: Stage, at: Pixel, name: str) -> tuple[Vector, Points] | None:
+    """Where the line of sight through a pixel meets the object first, world coordinates, and the
+    inward unit normal (3,) there.
+    """
     region, view = stage.region("WINDOW"), stage.area.spaces.active.region_3d
     cursor = (at[0] - region.x, at[1] - region.y)
-    met, place, _, _, thing, _ = bpy.context.scene.ray_cast(
+    along = region_2d_to_vector_3d(region, view, cursor)
+    met, place, normal, _, thing, _ = bpy.context.scene.ray_cast(
         bpy.context.evaluated_depsgraph_get(),
         region_2d_to_origin_3d(region, view, cursor),
-        region_2d_to_vector_3d(region, view, cursor),
+        along,
     )
-    return place if met and thing.name == name else None
+    if not met or thing.name != name:
+        return None
+    return place, np.array(normal if normal.dot(along) > 0.0 else -normal)
 
 
 def _pixels_per_unit(stage: Stage, here: Vector) -> float:
