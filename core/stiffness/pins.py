@@ -128,15 +128,16 @@ def _core(pins: PinCore, mesh: TetMesh) -> NDArray[np.int64]:
 def _core_of_piece(
     share: float, nodes: NDArray[np.float64], depth: NDArray[np.float64], piece: NDArray[np.int64]
 ) -> NDArray[np.int64]:
-    deep = piece[(depth[piece] > 0.0) & (depth[piece] >= share * depth[piece].max())]
+    is_deep = (depth[piece] > 0.0) & (depth[piece] >= share * depth[piece].max())
+    deep: NDArray[np.int64] = piece[is_deep]
     if holds(nodes[deep]):
         return deep
     from_middle = np.linalg.norm(nodes[piece] - nodes[piece].mean(axis=0), axis=1)
     count = max(FEWEST_IN_CORE, int(LEAST_SHARE_IN_CORE * len(piece)))
-    order = np.argsort(from_middle, kind="stable")
-    while not holds(nodes[piece[order[:count]]]) and count < len(piece):
+    order: NDArray[np.int64] = piece[np.argsort(from_middle, kind="stable")]
+    while not holds(nodes[order[:count]]) and count < len(piece):
         count += 1
-    return piece[order[:count]]
+    return order[:count]
 
 
 def holds(held: NDArray[np.float64]) -> bool:
