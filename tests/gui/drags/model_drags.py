@@ -21,10 +21,11 @@ LONGEST_BAKE = 900.0
 def drags_press_where_the_cursor_is(stage: Stage) -> Wait:
     path = Path(stage.arguments[0])
     yield from _only_model(stage, path)
-    thing = bpy.context.object
+    # Undo makes objects anew.
+    name = bpy.context.object.name
     yield from stage.open_sidebar("Palpate")
     yield from _predicted(stage)
-    stage.note(model=path.name, vertices=len(thing.data.vertices))
+    stage.note(model=path.name, vertices=len(bpy.context.object.data.vertices))
     yield from stage.picture("imported")
     try:
         yield from _make_soft(stage)
@@ -39,7 +40,7 @@ def drags_press_where_the_cursor_is(stage: Stage) -> Wait:
         yield from _scaled(stage, scale)
         try:
             rng = np.random.default_rng(round(100 * scale))
-            yield from random_drags(stage, thing.name, rng, DRAGS, drags)
+            yield from random_drags(stage, name, rng, DRAGS, drags)
         finally:
             yield from stage.picture(f"dragged-{scale:g}")
             bpy.context.preferences.view.ui_scale = 1.0
@@ -71,7 +72,9 @@ def _only_model(stage: Stage, path: Path) -> Wait:
         with stage.view():
             _import(path)
     yield 0.3
-    meshes = [thing for thing in bpy.context.scene.objects if thing.type == "MESH"]
+    meshes = [
+        thing for thing in bpy.context.scene.objects if thing.type == "MESH" and thing.visible_get()
+    ]
     assert meshes, f"{path.name} has no mesh"
     largest = max(meshes, key=lambda thing: np.prod(np.maximum(thing.dimensions, 1e-6)))
     for other in bpy.context.scene.objects:
