@@ -37,6 +37,8 @@ simulated/attack/virtual simulated/attack/real simulated/attack/port simulated/a
 operators/reporting
 operators/scene
 operators/layer
+operators/place
+operators/carrier
 operators/imprint
 operators/pins
 operators/object

@@ -3,6 +3,7 @@
 import bpy
 
 from ...operators.bake import bake_session
+from ...operators.layer import stack
 from ...operators.object import soft_object
 from ...operators.session import press_session
 from . import cost, shape
@@ -51,9 +52,8 @@ class PALPATE_PT_bake(PalpatePanel, bpy.types.Panel):
         column.enabled = idle
         for name in ("edge_length", "epsilon", "decimate_above", "time_limit"):
             column.prop(thing.palpate, name)
-        if any(modifier.type == "MIRROR" for modifier in thing.modifiers):
-            text = "Only the base mesh is baked: apply the Mirror modifier first"
-            say(layout, context, text, "INFO")
+        if stack.making(thing):
+            column.prop(thing.palpate, "bake_from")
         column.operator("palpate.show_problems", icon="VIEWZOOM")
         if idle and not soft_object.refusal(thing):
             cost.draw_prediction(layout, context)

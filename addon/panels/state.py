@@ -6,6 +6,7 @@ from ...core.quantities import duration
 from ...operators.bake import bake_words
 from ...operators.bake.bake_session import BakeSession
 from ...operators.device.servo_words import FORCEFUL, Signal, Standing, standing
+from ...operators.layer import layers, stack
 from ...operators.object import soft_object
 from ...operators.object.drawn_body import restores_quickly
 from ...operators.object.pin_change import PinFit
@@ -113,6 +114,8 @@ def draw_idle(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         return
     if status.fit is Fit.NEVER_BAKED:
         column.operator("palpate.make_soft", icon="MOD_SOFT")
+        if thing.palpate.bake_from != "BASE":
+            _draw_source(layout, context)
         cost.draw_summary(layout, context)
         return
     row = column.row()
@@ -169,10 +172,22 @@ def _draw_status(
     _draw_resolution(layout, context)
 
 
+def _draw_source(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw which modifiers are filled with the mesh, if any."""
+    made_by = ", ".join(modifier.name for modifier in stack.making(context.object))
+    if made_by:
+        say(layout, context, "As seen: with {modifiers}", "INFO", modifiers=made_by)
+
+
 def _draw_resolution(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """Draw a hint where the mesh has far fewer vertices than its body."""
-    thing = context.object
-    drawn, body = len(thing.data.vertices), thing.palpate.free_surface_count
+    """Draw where dents come on a finer mesh, and a hint where that is still coarse."""
+    thing, mesh = context.object, layers.drawn_mesh(context.object)
+    drawn, body = len(mesh.vertices), thing.palpate.free_surface_count
+    if layers.made_by(thing):
+        _draw_source(layout, context)
+    if mesh != thing.data and layers.halved(thing.palpate.carrier):
+        text = "Dents come on {count} finer vertices; the mesh keeps its own"
+        say(layout, context, text, "INFO", count=f"{drawn:,}")
     if drawn < COARSE * body:
         text = "Only {count} vertices are drawn: a dent needs more; subdivide the mesh"
         say(layout, context, text, "INFO", count=f"{drawn:,}")

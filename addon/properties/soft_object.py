@@ -119,6 +119,24 @@ class PalpateObject(ShapeProperties, bpy.types.PropertyGroup):
         span(0.0, 0.499, precision=3, step=1),
         update=_leave_material("poisson_ratio"),
     )
+    bake_from: choice(
+        "Bake From",
+        "What is filled and felt",
+        (
+            (
+                "AUTO",
+                "As Seen",
+                "The mesh with the modifiers before an Armature, where these make vertices",
+            ),
+            ("BASE", "Base Mesh", "The mesh's own vertices, whatever modifiers make of them"),
+        ),
+        "AUTO",
+    )
+    carrier: bpy.props.PointerProperty(
+        name="Carrier",
+        description="Hidden object whose vertices are those that the layers move",
+        type=bpy.types.Object,
+    )
     pin_mode: choice("Pin", "Which part never moves", PIN_ITEMS, "CORE")
     pin_fraction: number(
         "Height",

@@ -11,12 +11,11 @@ from mathutils import Vector
 from numpy.typing import NDArray
 
 from ...core.errors import PalpateError
+from ...operators.place.seen_place import SeenPlace, under_pointer
 from ...operators.scene import viewport
 from ...operators.scene.drawn_surface import metres_per_unit
 from ...operators.scene.viewport import Viewport
-from ...operators.stroke.seen_place import seen_place
 from ...operators.stroke.stroke_size import radius_for
-from ...operators.stroke.touched_place import TouchedPlace
 
 SEGMENTS = 48
 INWARD, OUTWARD = (0.35, 0.75, 1.0, 0.9), (1.0, 0.65, 0.3, 0.9)
@@ -34,7 +33,7 @@ def draw(xy: tuple[int, int]) -> None:
     scene = context.scene
     try:
         # As it was evaluated last: a drawing must not evaluate.
-        touched = seen_place(scene, context.view_layer.depsgraph, here)
+        touched = under_pointer(scene, context.view_layer.depsgraph, here)
         if touched is None:
             return
         radius = radius_for(scene, touched.thing) / metres_per_unit(scene)
@@ -46,7 +45,7 @@ def draw(xy: tuple[int, int]) -> None:
         _draw_line(points, OUTWARD if scene.palpate.stroke_outward else INWARD, context)
 
 
-def _circle(touched: TouchedPlace, radius: float) -> NDArray[np.float64]:
+def _circle(touched: SeenPlace, radius: float) -> NDArray[np.float64]:
     """Points (SEGMENTS + 1, 3) around a place, world, and a stroke along its normal after them."""
     normal = touched.normal
     aside = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])

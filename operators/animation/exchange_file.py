@@ -17,6 +17,7 @@ import bpy
 from ...core.errors import PalpateError
 from ...core.files.atomic_file import atomic_file
 from ...core.files.point_cache import CacheSize
+from ..layer import layers
 from . import mesh_cache
 
 TWIN, MESH = "palpate_surface", "palpate_surface_mesh"
@@ -106,7 +107,7 @@ def _twin(
     """Object of the same mesh, at the same place in every frame, that plays a cache; the only one
     that is selected.
     """
-    mesh = thing.data.copy()
+    mesh = layers.drawn_mesh(thing).copy()
     mesh.name = MESH
     twin = bpy.data.objects.new(TWIN, mesh)
     view_layer = bpy.context.view_layer

@@ -9,7 +9,8 @@ from pathlib import Path
 import bpy
 
 from ...core.files.point_cache import CacheSize
-from ..layer.layers import PLAYERS
+from ..layer import layers
+from ..layer.stack import PLAYERS
 from ..object import body_store
 
 MODIFIER_NAME = "Palpate Animation"
@@ -55,14 +56,16 @@ def play(thing: bpy.types.Object, cache: Path, size: CacheSize) -> bpy.types.Mod
 
 
 def modifier_of(thing: bpy.types.Object, kind: str) -> bpy.types.Modifier:
-    """The modifier that plays an object's animation, first of all; another kind is replaced."""
+    """The modifier that plays an object's animation, right behind what makes its vertices; another
+    kind is replaced.
+    """
     modifier = thing.modifiers.get(MODIFIER_NAME)
     if modifier is not None and modifier.type in PLAYERS and modifier.type != kind:
         thing.modifiers.remove(modifier)
         modifier = None
     if modifier is None or modifier.type != kind:
         modifier = thing.modifiers.new(MODIFIER_NAME, kind)
-    thing.modifiers.move(thing.modifiers.find(modifier.name), 0)
+    thing.modifiers.move(thing.modifiers.find(modifier.name), layers.place_of_vertices(thing))
     return modifier
 
 

@@ -15,11 +15,11 @@ from ...core.body.soft_body import SoftBody
 from ...core.errors import CancelledError, PalpateError
 from ...core.mesh.surface import Surface
 from ...core.stiffness.pins import PinNodes
+from ..carrier import body_source, carrier
 from ..object import baked_record, body_store, soft_object
 from ..object.embedded_body import embedded
 from ..pins import pin_group, stiff_region
 from ..reporting.acting import Acting
-from ..scene import drawn_surface
 from ..scene.drawn_surface import DrawnSurface
 from ..scene.fingerprint import Fingerprint, changed_body
 from ..scene.object_handle import ObjectHandle
@@ -86,6 +86,7 @@ class BakeSession:
             body, report = self.job.result(place_for)
             name = places[0].name
             baked_record.record(thing, body, name, self.surface, self.fingerprint)
+            carrier.give(thing, scene, self.surface)
             if not self.rebuild:
                 thing.palpate.baked_edge_length = self.settings.edge_length
                 thing.palpate.baked_epsilon = self.settings.epsilon
@@ -114,7 +115,8 @@ class BakeSession:
             raise PalpateError(
                 "bake: {refusal}; then bake again", refusal=soft_object.refusal(thing)
             )
-        drawn = drawn_surface.read(thing, scene)
+        read = body_source.read_again if self.rebuild else body_source.read
+        drawn = read(thing, scene)
         now = drawn.fingerprint(self.fingerprint.pins, self.fingerprint.stiffness)
         change = changed_body(self.fingerprint, now)
         if change:
@@ -153,7 +155,7 @@ def start(thing: bpy.types.Object, scene: bpy.types.Scene, *, rebuild: bool = Fa
         )
     if soft_object.refusal(thing):
         raise PalpateError(soft_object.refusal(thing))
-    drawn = drawn_surface.read(thing, scene)
+    drawn = (body_source.read_again if rebuild else body_source.read)(thing, scene)
     surface = drawn.surface()
     fingerprint = drawn.fingerprint(pin_group.pin_rule(thing), stiff_region.stiff_rule(thing))
     settings = settings_of(thing, drawn)
@@ -217,7 +219,7 @@ def settings_of(thing: bpy.types.Object, drawn: DrawnSurface) -> BakeSettings:
         bake_prediction.settings_of(thing, pin_group.pins(thing, drawn)),
         young_modulus=chosen.young_modulus,
         time_limit=chosen.time_limit,
-        stiffness=stiff_region.stiff_region(thing),
+        stiffness=stiff_region.stiff_region(thing, drawn),
     )
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import bpy
 
 from ...core.errors import PalpateError
+from ..carrier import body_source
 from ..object import soft_object
 from ..object.mesh_look import shape_size
 from ..reporting.acting import Acting
-from ..scene import drawn_surface
 from .bake_prediction import Prediction, pins_of, predict, settings_of
 
 
@@ -33,7 +33,7 @@ class PALPATE_OT_fit_memory(Acting, bpy.types.Operator):
 
     def act(self, context: bpy.types.Context) -> None:
         thing = context.object
-        surface = drawn_surface.read(thing, context.scene).surface()
+        surface = body_source.read(thing, context.scene).surface()
         settings = settings_of(thing, pins_of(thing))
         self._change(thing, predict(shape_size(surface), settings))
 

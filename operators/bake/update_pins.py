@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import bpy
 
+from ..carrier import body_source
 from ..object import pin_change, soft_object
 from ..reporting.translated import reported
-from ..scene import drawn_surface
 from .bake_session import OnSoft
 
 
@@ -28,7 +28,7 @@ class PALPATE_OT_update_pins(OnSoft, bpy.types.Operator):
 
     def act(self, context: bpy.types.Context) -> None:
         thing = context.object
-        drawn = drawn_surface.read(thing, context.scene)
+        drawn = body_source.read_again(thing, context.scene)
         soft_object.refuse_changed(thing, soft_object.mesh_status(thing, drawn))
         body = pin_change.take_over(thing, drawn)
         self.report(

@@ -48,6 +48,14 @@ class GroupBuilder:
             self._connect(operand, node.inputs[place])
         return node.outputs["Value"]
 
+    def truth(self, operation: str, *operands: bpy.types.NodeSocket) -> bpy.types.NodeSocket:
+        """Result of an operation on truths."""
+        node = self.group.nodes.new("FunctionNodeBooleanMath")
+        node.operation = operation
+        for place, operand in enumerate(operands):
+            self._connect(operand, node.inputs[place])
+        return node.outputs["Boolean"]
+
     def sum(self, *vectors: bpy.types.NodeSocket) -> bpy.types.NodeSocket:
         """Sum of vectors."""
         result, *others = vectors

@@ -17,14 +17,17 @@ from .group_building import GroupBuilder, Sockets
 # Custom property of a group that was made here: its kind and the version of its nodes.
 MARK, VERSION = "palpate_group", 1
 DISPLACEMENT, CARRIER = "Displacement", "Carrier"
-STRENGTH = "Strength"
-# Attributes that a press gives the vertices: places at rest, and where the live layer finds them.
-REST, AT = "palpate_rest", "palpate_at"
+STRENGTH, LIVE, LEVEL = "Strength", "Live", "Level"
+# Attributes that a press gives the vertices: places at rest, where the live layer finds them, and
+# what that moves them by.
+REST, AT, PRESSED = "palpate_rest", "palpate_at", "palpate_pressed"
 AXES = ("X", "Y", "Z")
 DESCRIPTIONS = {
     DISPLACEMENT: "Attribute of the vertices that is added to their places, local units",
     CARRIER: "Mesh that has the attribute for the vertices that modifiers make; none: the mesh's",
     STRENGTH: "Factor on the displacement: 1 as it was pressed",
+    LIVE: "Attribute of the layer that follows a press",
+    LEVEL: "How often each edge is halved",
     "X": "Push along the X axis",
     "Y": "Push along the Y axis",
     "Z": "Push along the Z axis",
@@ -39,14 +42,16 @@ class Kind(Enum):
     LAYER = "layer"  # the attribute's vectors, times Strength
     RIG = "rig"  # of three attributes, "<name> X", Y and Z: each times its slider
     PLACES = "places"  # nothing; it gives the vertices their places at rest, and as they are
+    FINE = "fine"  # nothing; it divides faces, so that a coarse mesh can show a dent
     STORED = "stored"  # within the others: the vectors of a name
 
 
 @dataclass(frozen=True)
 class _Plan:
-    name: str
+    """Inputs of a group, and its one output: what it is of those."""
+
     inputs: Sockets
-    vectors: Callable[[GroupBuilder], bpy.types.NodeSocket]
+    result: Callable[[GroupBuilder], bpy.types.NodeSocket]
 
 
 def group_of(kind: Kind) -> bpy.types.NodeTree:
@@ -81,25 +86,17 @@ def _in(group: bpy.types.NodeTree) -> list[bpy.types.NodeTreeInterfaceSocket]:
 
 
 def _make(kind: Kind) -> bpy.types.NodeTree:
-    plan = _PLANS[kind]
-    adds = kind is not Kind.STORED
-    result = ("Geometry", "Geometry") if adds else ("Vectors", "Vector")
-    builder = GroupBuilder.begin(plan.name, plan.inputs, (result,))
-    builder.group.is_modifier = adds
+    plan, within = _PLANS[kind], kind is Kind.STORED
+    name, output = f"Palpate {kind.value.title()}", "Vectors" if within else "Geometry"
+    outputs = ((output, "Vector" if within else "Geometry"),)
+    builder = GroupBuilder.begin(name, plan.inputs, outputs)
+    builder.group.is_modifier = not within
     builder.group[MARK] = _mark(kind)
     for item in _in(builder.group):
         item.description = DESCRIPTIONS.get(item.name, "")
         if item.socket_type == "NodeSocketFloat":
             item.default_value = 1.0 if item.name == STRENGTH else 0.0
-    vectors = plan.vectors(builder)
-    if not adds:
-        return builder.end(Vectors=vectors)
-    if kind is Kind.PLACES:
-        return builder.end(Geometry=_with_places(builder, vectors))
-    moved = builder.node(
-        "GeometryNodeSetPosition", Geometry=builder.given("Geometry"), Offset=vectors
-    )
-    return builder.end(Geometry=moved["Geometry"])
+    return builder.end(**{output: plan.result(builder)})
 
 
 def _stored(builder: GroupBuilder) -> bpy.types.NodeSocket:
@@ -143,42 +140,78 @@ def _named(builder: GroupBuilder, name: object) -> bpy.types.NodeSocket:
     return found["Vectors"]
 
 
-def _with_places(builder: GroupBuilder, rest: bpy.types.NodeSocket) -> bpy.types.NodeSocket:
-    """Geometry with places at rest, and the present ones."""
+def _moved(builder: GroupBuilder, vectors: bpy.types.NodeSocket) -> bpy.types.NodeSocket:
+    """Geometry moved by vectors."""
+    moved = builder.node(
+        "GeometryNodeSetPosition", Geometry=builder.given("Geometry"), Offset=vectors
+    )
+    return moved["Geometry"]
+
+
+def _places(builder: GroupBuilder) -> bpy.types.NodeSocket:
+    """Geometry with the marks of its vertices."""
     geometry = builder.given("Geometry")
-    for name, places in ((REST, rest), (AT, builder.node("GeometryNodeInputPosition")["Position"])):
+    marks = {
+        REST: _named(builder, builder.given(DISPLACEMENT)),
+        AT: builder.node("GeometryNodeInputPosition")["Position"],
+        PRESSED: _named(builder, builder.given(LIVE)),
+    }
+    for name, vectors in marks.items():
         geometry = builder.node(
             "GeometryNodeStoreNamedAttribute",
             {"data_type": "FLOAT_VECTOR", "domain": "POINT"},
             Geometry=geometry,
             Name=name,
-            Value=places,
+            Value=vectors,
         )["Geometry"]
     return geometry
 
 
+def _fine(builder: GroupBuilder) -> bpy.types.NodeSocket:
+    """Geometry with its faces divided, shaped and shaded as it was: the edges of a flat face stay
+    sharp, and within it, where a dent comes, it is smooth.
+    """
+    smooth = builder.node("GeometryNodeInputShadeSmooth")["Smooth"]
+    flat_beside = builder.node(
+        "GeometryNodeFieldOnDomain",
+        {"data_type": "BOOLEAN", "domain": "FACE"},
+        Value=builder.truth("NOT", smooth),
+    )["Value"]
+    sharp = builder.truth("NOT", builder.node("GeometryNodeInputEdgeSmooth")["Smooth"])
+    edged = builder.node(
+        "GeometryNodeStoreNamedAttribute",
+        {"data_type": "BOOLEAN", "domain": "EDGE"},
+        Geometry=builder.given("Geometry"),
+        Name="sharp_edge",
+        Value=builder.truth("OR", flat_beside, sharp),
+    )["Geometry"]
+    shaded = builder.node("GeometryNodeSetShadeSmooth", Geometry=edged, Shade_Smooth=True)
+    made = builder.node(
+        "GeometryNodeSubdivideMesh", Mesh=shaded["Geometry"], Level=builder.given(LEVEL)
+    )
+    return made["Mesh"]
+
+
 def _layer(builder: GroupBuilder) -> bpy.types.NodeSocket:
-    return builder.scaled(_named(builder, builder.given(DISPLACEMENT)), builder.given(STRENGTH))
+    vectors = _named(builder, builder.given(DISPLACEMENT))
+    return _moved(builder, builder.scaled(vectors, builder.given(STRENGTH)))
 
 
 def _rig(builder: GroupBuilder) -> bpy.types.NodeSocket:
-    return builder.sum(
-        *(
-            builder.scaled(
-                _named(builder, builder.text(builder.given(DISPLACEMENT), f" {axis}")),
-                builder.given(axis),
-            )
-            for axis in AXES
+    vectors = (
+        builder.scaled(
+            _named(builder, builder.text(builder.given(DISPLACEMENT), f" {axis}")),
+            builder.given(axis),
         )
+        for axis in AXES
     )
+    return _moved(builder, builder.sum(*vectors))
 
 
 _PLANS = {
-    kind: _Plan(f"Palpate {kind.value.title()}", (*_SOURCE, *((f, "Float") for f in sliders)), made)
-    for kind, sliders, made in (
-        (Kind.STORED, (), _stored),
-        (Kind.LAYER, (STRENGTH,), _layer),
-        (Kind.RIG, AXES, _rig),
-        (Kind.PLACES, (), lambda builder: _named(builder, builder.given(DISPLACEMENT))),
-    )
+    Kind.STORED: _Plan(_SOURCE, _stored),
+    Kind.LAYER: _Plan((*_SOURCE, (STRENGTH, "Float")), _layer),
+    Kind.RIG: _Plan((*_SOURCE, *((axis, "Float") for axis in AXES)), _rig),
+    Kind.PLACES: _Plan((*_SOURCE, (LIVE, "String")), _places),
+    Kind.FINE: _Plan((("Geometry", "Geometry"), (LEVEL, "Int")), _fine),
 }

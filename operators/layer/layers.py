@@ -12,12 +12,42 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from . import modifier_inputs
-from .layer_groups import CARRIER, DISPLACEMENT, STRENGTH, Kind, group_of, kind_of
+from . import modifier_inputs, stack
+from .layer_groups import CARRIER, DISPLACEMENT, LEVEL, STRENGTH, Kind, group_of, kind_of
 
 KEPT_NAME = "Press"
-# Types of modifiers that play the places of all vertices.
-PLAYERS = ("MESH_CACHE", "MESH_SEQUENCE_CACHE")
+FINE_NAME = "Palpate Fine"
+# Custom property of a carrier: how often the faces are halved for its vertices.
+HALVED, MOST_HALVED = "palpate_halved", 7
+# And how many of them modifiers of the object made, before they were halved.
+SEEN = "palpate_seen"
+
+
+def carrier(thing: bpy.types.Object) -> bpy.types.Object | None:
+    """The hidden object whose vertices are those that an object's layers move; None where they are
+    the object's own.
+    """
+    found = thing.palpate.carrier
+    # A stranger's file may name any object.
+    return found if found is not None and found.type == "MESH" and found != thing else None
+
+
+def drawn_mesh(thing: bpy.types.Object) -> bpy.types.Mesh:
+    """Mesh with the vertices that layers move, at rest: the object's, or its carrier's."""
+    found = carrier(thing)
+    return thing.data if found is None else found.data
+
+
+def made_by(thing: bpy.types.Object) -> list[bpy.types.Modifier]:
+    """Modifiers that make the drawn mesh; none where that is the object's own, or only finer."""
+    on = carrier(thing)
+    return stack.making(thing) if seen_count(on) else []
+
+
+def seen_count(on: bpy.types.Object | None) -> int:
+    """Vertices that an object's modifiers made for its carrier; 0 where they made none."""
+    count = 0 if on is None else on.get(SEEN, 0)
+    return count if isinstance(count, int) else 0
 
 
 def layers_of(thing: bpy.types.Object) -> list[bpy.types.NodesModifier]:
@@ -35,29 +65,78 @@ def kind(modifier: bpy.types.Modifier) -> Kind | None:
     return kind_of(modifier.node_group) if modifier.type == "NODES" else None
 
 
-def add(
-    thing: bpy.types.Object, name: str, carrier: bpy.types.Object | None = None
-) -> bpy.types.NodesModifier:
-    """Add a layer that displaces nothing yet, with its attribute on the carrier, if there is one.
+def add(thing: bpy.types.Object, name: str) -> bpy.types.NodesModifier:
+    """Add a layer that displaces nothing yet.
 
     Blender gives another name where this one is taken.
     """
-    mesh = thing.data if carrier is None else carrier.data
-    attribute = mesh.attributes.new(name, "FLOAT_VECTOR", "POINT")
-    return add_modifier(thing, name, Kind.LAYER, {DISPLACEMENT: attribute.name, CARRIER: carrier})
+    attribute = drawn_mesh(thing).attributes.new(name, "FLOAT_VECTOR", "POINT")
+    return add_modifier(thing, name, Kind.LAYER, {DISPLACEMENT: attribute.name})
 
 
 def add_modifier(
     thing: bpy.types.Object, name: str, added: Kind, inputs: Mapping[str, object]
 ) -> bpy.types.NodesModifier:
-    """Add a modifier of Palpate's with values of its inputs, before all that poses the mesh."""
+    """Add a modifier of Palpate's on the drawn mesh with values of its other inputs: behind all
+    that makes this mesh, before all that poses it.
+    """
+    on = carrier(thing)
+    if on is not None:
+        refine(thing, halved(on))
+    modifier = _new(thing, name, added, {**inputs, CARRIER: on})
+    thing.modifiers.move(len(thing.modifiers) - 1, _place(thing, modifier))
+    return modifier
+
+
+def _new(
+    thing: bpy.types.Object, name: str, added: Kind, inputs: Mapping[str, object]
+) -> bpy.types.NodesModifier:
     modifier = thing.modifiers.new(name, "NODES")
     modifier.node_group = group_of(added)
     for given, value in inputs.items():
         modifier_inputs.set_value(modifier, given, value)
     modifier.show_expanded = False
-    thing.modifiers.move(len(thing.modifiers) - 1, _place(thing, modifier))
     return modifier
+
+
+def halved(on: bpy.types.Object) -> int:
+    """How often faces are halved for the vertices of a carrier."""
+    level = on.get(HALVED, 0)
+    return min(level, MOST_HALVED) if isinstance(level, int) and level > 0 else 0
+
+
+def refine(thing: bpy.types.Object, level: int) -> None:
+    """Have an object's faces halved so often, before all layers; nothing for 0."""
+    found = _fine(thing)
+    if not level:
+        return
+    if found is None:
+        found = _new(thing, FINE_NAME, Kind.FINE, {})
+        thing.modifiers.move(len(thing.modifiers) - 1, _first_place(thing))
+    modifier_inputs.set_value(found, LEVEL, level)
+
+
+def lacks_fine(thing: bpy.types.Object) -> bool:
+    """Whether the faces of an object are not divided yet as its carrier has them."""
+    on = carrier(thing)
+    return on is not None and halved(on) > 0 and _fine(thing) is None
+
+
+def _fine(thing: bpy.types.Object) -> bpy.types.NodesModifier | None:
+    return next((one for one in thing.modifiers if kind(one) is Kind.FINE), None)
+
+
+def remove_modifier(thing: bpy.types.Object, modifier: bpy.types.NodesModifier) -> None:
+    """Remove a modifier of Palpate's; the division of faces with the last that needs it."""
+    thing.modifiers.remove(modifier)
+    fine = _fine(thing)
+    if fine is not None and not any(map(_is_on_vertices, thing.modifiers)):
+        thing.modifiers.remove(fine)
+
+
+def _is_on_vertices(modifier: bpy.types.Modifier) -> bool:
+    """Whether a modifier has something for each drawn vertex."""
+    return modifier.type in stack.PLAYERS or kind(modifier) not in {None, Kind.FINE}
 
 
 def rename(thing: bpy.types.Object, layer: bpy.types.NodesModifier, name: str) -> None:
@@ -73,7 +152,7 @@ def remove(thing: bpy.types.Object, layer: bpy.types.NodesModifier) -> None:
     """Remove a layer, and its attribute where no other layer shows it."""
     mesh, name = _mesh(thing, layer), attribute_name(layer)
     thing.driver_remove(strength_path(layer))
-    thing.modifiers.remove(layer)
+    remove_modifier(thing, layer)
     shown = {
         attribute_name(other)
         for user in bpy.data.objects
@@ -161,11 +240,24 @@ def set_strength(thing: bpy.types.Object, layer: bpy.types.NodesModifier, factor
     thing.update_tag()
 
 
+def _first_place(thing: bpy.types.Object) -> int:
+    """Place behind the modifiers that make the drawn mesh."""
+    found = made_by(thing)
+    return thing.modifiers.find(found[-1].name) + 1 if found else 0
+
+
+def place_of_vertices(thing: bpy.types.Object) -> int:
+    """Place right behind what makes the drawn vertices, which is added where it is missing."""
+    on = carrier(thing)
+    refine(thing, 0 if on is None else halved(on))
+    return _first_place(thing) + (_fine(thing) is not None)
+
+
 def _place(thing: bpy.types.Object, new: bpy.types.NodesModifier) -> int:
-    """Place of a new modifier of Palpate's: behind those that come first, and what plays places."""
-    place = 0
-    for modifier in thing.modifiers:
-        if modifier == new or (kind(modifier) is None and modifier.type not in PLAYERS):
+    """Place of a new modifier: behind those of Palpate's, and what plays places."""
+    place = _first_place(thing)
+    for modifier in thing.modifiers[place:]:
+        if modifier == new or (kind(modifier) is None and modifier.type not in stack.PLAYERS):
             break
         place += 1
     return place

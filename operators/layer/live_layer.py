@@ -17,7 +17,7 @@ LIVE_NAME = "Palpate Live"
 def hang(thing: bpy.types.Object) -> None:
     """Add the live layer, and the marks by which its places are found."""
     remove(thing)
-    place_marks.hang(thing)
+    place_marks.hang(thing, LIVE_NAME)
     layers.add(thing, LIVE_NAME)
 
 
@@ -43,9 +43,10 @@ def remove(thing: bpy.types.Object) -> None:
     if live is not None:
         layers.remove(thing, live)
     place_marks.remove(thing)
-    remains = thing.data.attributes.get(LIVE_NAME)
+    mesh = layers.drawn_mesh(thing)
+    remains = mesh.attributes.get(LIVE_NAME)
     if remains is not None:
-        thing.data.attributes.remove(remains)
+        mesh.attributes.remove(remains)
 
 
 def find(thing: bpy.types.Object) -> bpy.types.NodesModifier | None:

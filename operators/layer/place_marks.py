@@ -12,45 +12,48 @@ from contextlib import contextmanager
 import bpy
 
 from ..scene.drawn_surface import rest_coordinates
-from . import layers
-from .layer_groups import AT, CARRIER, DISPLACEMENT, REST, Kind
+from . import layers, stack
+from .layer_groups import AT, DISPLACEMENT, LIVE, PRESSED, REST, Kind
 
 NAME = "Palpate Places"
 
 
 def needed(thing: bpy.types.Object) -> bool:
-    """Whether modifiers other than layers move or make vertices."""
-    return any(
-        modifier.show_viewport and layers.kind(modifier) is None for modifier in thing.modifiers
-    )
+    """Whether anything but layers moves vertices, or makes some, after those that layers move; or
+    these are not there yet.
+    """
+    keys = thing.data.shape_keys
+    keyed = keys is not None and len(keys.key_blocks) > 1
+    return keyed or layers.lacks_fine(thing) or bool(stack.following(thing, layers.made_by(thing)))
 
 
-def hang(thing: bpy.types.Object) -> None:
-    """Mark the vertices, where that is needed."""
+def hang(thing: bpy.types.Object, live: str) -> None:
+    """Mark the vertices, where that is needed; ``live`` names the layer that follows a press."""
     remove(thing)
     if not needed(thing):
         return
-    mesh = thing.data
+    mesh = layers.drawn_mesh(thing)
     attribute = mesh.attributes.new(REST, "FLOAT_VECTOR", "POINT")
     attribute.data.foreach_set("vector", rest_coordinates(mesh))
-    layers.add_modifier(thing, NAME, Kind.PLACES, {DISPLACEMENT: attribute.name, CARRIER: None})
+    layers.add_modifier(thing, NAME, Kind.PLACES, {DISPLACEMENT: attribute.name, LIVE: live})
 
 
 def remove(thing: bpy.types.Object) -> None:
     """Remove the marks. Safe without them."""
     modifier = thing.modifiers.get(NAME)
     if modifier is not None and layers.kind(modifier) is Kind.PLACES:
-        thing.modifiers.remove(modifier)
-    for name in (REST, AT):
-        attribute = thing.data.attributes.get(name)
+        layers.remove_modifier(thing, modifier)
+    mesh = layers.drawn_mesh(thing)
+    for name in (REST, AT, PRESSED):
+        attribute = mesh.attributes.get(name)
         if attribute is not None:
-            thing.data.attributes.remove(attribute)
+            mesh.attributes.remove(attribute)
 
 
 @contextmanager
 def marked(thing: bpy.types.Object) -> Iterator[None]:
     """Evaluation with marks, for as long as it lasts."""
-    hang(thing)
+    hang(thing, "")
     try:
         bpy.context.view_layer.update()
         yield

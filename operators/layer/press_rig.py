@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import layers
-from .layer_groups import AXES, CARRIER, DISPLACEMENT, Kind
+from .layer_groups import AXES, DISPLACEMENT, Kind
 
 STEM = "Push"
 
@@ -20,12 +20,13 @@ def add(thing: bpy.types.Object, answers: NDArray[np.float32]) -> bpy.types.Node
     """Add a rig with displacements of the vertices (3, p, 3), local units, for a unit each along X,
     Y and Z; its sliders begin at 0.
     """
-    name = layers.free_name(thing, thing.data, STEM)
+    mesh = layers.drawn_mesh(thing)
+    name = layers.free_name(thing, mesh, STEM)
     for axis, answer in zip(AXES, answers, strict=True):
-        attribute = thing.data.attributes.new(f"{name} {axis}", "FLOAT_VECTOR", "POINT")
+        attribute = mesh.attributes.new(f"{name} {axis}", "FLOAT_VECTOR", "POINT")
         attribute.data.foreach_set("vector", np.ascontiguousarray(answer, np.float32).ravel())
-    thing.data.update_tag()
-    rig = layers.add_modifier(thing, name, Kind.RIG, {DISPLACEMENT: name, CARRIER: None})
+    mesh.update_tag()
+    rig = layers.add_modifier(thing, name, Kind.RIG, {DISPLACEMENT: name})
     rig.show_expanded = True
     return rig
 

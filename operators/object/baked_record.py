@@ -39,4 +39,4 @@ def record(
         baked.body_to_mesh = body.fit.body_to_input
         baked.mesh_to_body = body.fit.input_to_body
     if baked.pin_mode == "BELOW":
-        pin_group.mark_below(thing, surface, baked.pin_fraction)
+        pin_group.mark_below(thing, surface.base, baked.pin_fraction)

@@ -16,6 +16,8 @@ from ...core.body.soft_body import SoftBody
 from ...core.contact.place import nearest_place
 from ...core.contact.tool.tool_dent import PressingTool, kept_out
 from ...core.errors import PalpateError
+from ..carrier import body_source
+from ..layer import layers
 from ..scene import drawn_surface, ray
 from ..scene.body_frame import BodyFrame
 from ..scene.drawn_surface import DrawnSurface
@@ -154,14 +156,16 @@ def open_body(thing: bpy.types.Object, scene: bpy.types.Scene) -> DrawnBody:
     refusal = soft_object.refusal(thing)
     if refusal:
         raise PalpateError(refusal)
-    surface = drawn_surface.read(thing, scene)
+    surface = body_source.read_again(thing, scene)
     status = soft_object.with_file(thing, soft_object.mesh_status(thing, surface))
     soft_object.refuse_changed(thing, status)
     body = _body(thing, surface, status)
+    rest = drawn_surface.rest_coordinates(layers.drawn_mesh(thing))
+    places = rest.reshape(-1, 3).astype(np.float64)
     return DrawnBody(
         body=body,
-        hung=hung_on(body, surface.body),
-        rest=drawn_surface.rest_coordinates(thing.data),
+        hung=hung_on(body, surface.frame.body_from_local(places)),
+        rest=rest,
         frame=surface.frame,
         file=body_store.locate(thing),
     )

@@ -69,10 +69,14 @@ def look(thing: bpy.types.Object, drawn: Callable[[], DrawnSurface]) -> PinChang
 
     Only for an object whose mesh still fits its body.
     """
-    if Fingerprint.from_text(thing.palpate.fingerprint).pins == pin_group.pin_rule(thing):
+    baked = Fingerprint.from_text(thing.palpate.fingerprint)
+    if baked.pins == pin_group.pin_rule(thing):
         return SAME
     try:
         surface_now = drawn()
+        if baked.stack and surface_now is surface_now.base:
+            # A panel cannot evaluate modifiers; Press can.
+            return PinChange(PinFit.OTHER)
         within = _placed(surface_now, ObjectHandle.of(thing), thing.palpate.body_key)
         new = _nodes(thing, surface_now, within)
     except PalpateError as problem:

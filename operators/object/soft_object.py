@@ -12,8 +12,9 @@ import bpy
 from ...core.errors import PalpateError
 from ...core.sentence import Sentence
 from ...core.stiffness.formulation import formulation_for
+from ..carrier import body_source, seen_mesh
 from ..pins import pin_group, stiff_region
-from ..scene import drawn_surface, fingerprint
+from ..scene import fingerprint
 from ..scene.drawn_surface import DrawnSurface
 from ..scene.fingerprint import Fingerprint
 from . import baked_settings, body_store, pin_change
@@ -82,7 +83,7 @@ def body_status(thing: bpy.types.Object, scene: bpy.types.Scene) -> BodyStatus:
     PalpateError
         A transform that flattens the object.
     """
-    return with_file(thing, mesh_status(thing, drawn_surface.read(thing, scene)))
+    return with_file(thing, mesh_status(thing, body_source.read_again(thing, scene)))
 
 
 def with_file(thing: bpy.types.Object, status: BodyStatus) -> BodyStatus:
@@ -116,7 +117,8 @@ def shape_status(
     except PalpateError:
         return BodyStatus(Fit.CHANGED, Sentence("what this file says of its body cannot be true"))
     pins, stiffness = pin_group.pin_rule(thing), stiff_region.stiff_rule(thing)
-    new = replace(shape, pins=pins, stiffness=stiffness)
+    made_by = seen_mesh.digest(thing) if old.stack else ""
+    new = replace(shape, pins=pins, stiffness=stiffness, stack=made_by)
     change = fingerprint.changed_body(old, new)
     if change:
         return BodyStatus(Fit.CHANGED, change)

@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 from ...core.errors import PalpateError
 from ...core.stiffness.pins import PinCore, PinWeights
-from ..scene.drawn_surface import DrawnSurface
+from ..scene.drawn_surface import DrawnSurface, group_weights
 from ..scene.fingerprint import Fingerprint
-from .group_weights import group_digest, group_weights
+from .group_digest import group_digest
 
 GROUP_NAME = "Pinned"
 BELOW_RULE, CORE_RULE = "below", "core"
@@ -58,7 +58,7 @@ def pinned_from(thing: bpy.types.Object, surface: DrawnSurface) -> PinWeights:
     if settings.pin_mode == "BELOW":
         height = _relative_height(surface)
         return PinWeights(PINNED_FROM + settings.pin_fraction + LEVEL - height)
-    return painted(thing)
+    return painted(thing, surface)
 
 
 def keep_height(thing: bpy.types.Object) -> None:
@@ -75,8 +75,8 @@ def keep_height(thing: bpy.types.Object) -> None:
         settings.pin_mode = "BELOW"
 
 
-def painted(thing: bpy.types.Object) -> PinWeights:
-    """Pins of the vertex group that is chosen.
+def painted(thing: bpy.types.Object, surface: DrawnSurface | None = None) -> PinWeights:
+    """Pins of the vertex group that is chosen, at the vertices of a surface or of the mesh.
 
     Raises
     ------
@@ -92,7 +92,10 @@ def painted(thing: bpy.types.Object) -> PinWeights:
             name=thing.name,
             group=settings.pin_group,
         )
-    weights = group_weights(thing, group)
+    if surface is None:
+        weights = group_weights(thing.data, group.index)
+    else:
+        weights = surface.group(thing, group.name)
     if not (weights >= PINNED_FROM).any():
         raise PalpateError(
             "{name}: no vertex has a weight of 0.5 or more in the group '{group}'; assign the "

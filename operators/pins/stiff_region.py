@@ -6,7 +6,8 @@ import bpy
 
 from ...core.errors import PalpateError
 from ...core.stiffness.regions import StiffRegion
-from .group_weights import group_digest, group_weights
+from ..scene.drawn_surface import DrawnSurface
+from .group_digest import group_digest
 
 
 def stiff_rule(thing: bpy.types.Object) -> str:
@@ -20,8 +21,8 @@ def stiff_rule(thing: bpy.types.Object) -> str:
     return f"{settings.stiff_factor:.6g} times in {group_digest(thing, group)}"
 
 
-def stiff_region(thing: bpy.types.Object) -> StiffRegion | None:
-    """Stiff region for a bake, one weight per vertex; None if none is chosen.
+def stiff_region(thing: bpy.types.Object, surface: DrawnSurface) -> StiffRegion | None:
+    """Stiff region for a bake, one weight per vertex of a surface; None if none is chosen.
 
     Raises
     ------
@@ -39,7 +40,7 @@ def stiff_region(thing: bpy.types.Object) -> StiffRegion | None:
             name=thing.name,
             group=settings.stiff_group,
         )
-    weights = group_weights(thing, group)
+    weights = surface.group(thing, group.name)
     if not weights.any():
         raise PalpateError(
             "{name}: no vertex has a weight in the group '{group}', so nothing would be stiff; "

@@ -8,8 +8,9 @@ from ...core.contact.place import nearest_place
 from ...core.grip.held_patch import HeldPatch
 from ...core.grip.motions import moved
 from ...core.grip.patch import Grip
-from ..layer import place_marks, press_rig, touched_place
+from ..layer import place_marks, press_rig
 from ..object.drawn_body import DrawnBody, open_body
+from ..place import touched_place
 from ..reporting.translated import reported
 from .modal_press import Pressing
 

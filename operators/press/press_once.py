@@ -18,9 +18,10 @@ from ...core.contact.touches import ToolTouch, Touch
 from ...core.errors import PalpateError
 from ...core.shape.meeting import FingerLoad, settled
 from ..imprint import kept_imprint
-from ..layer import place_marks, touched_place
-from ..layer.touched_place import TouchedPlace
+from ..layer import place_marks
 from ..object.drawn_body import DrawnBody, open_body
+from ..place import touched_place
+from ..place.touched_place import TouchedPlace
 from ..scene.body_frame import Point, as_point
 from ..session.live_settings import contact_mode
 from ..shape.drawn_shape import closing_shape

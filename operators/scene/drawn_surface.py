@@ -1,6 +1,7 @@
 """Drawn mesh at rest, read from Blender into arrays: the surface that a body is made from.
 
 It is the base mesh (the Basis of its shape keys), not the evaluated one: modifiers stay on top.
+What these make is read in ``operators/carrier``.
 """
 
 from __future__ import annotations
@@ -39,6 +40,15 @@ class DrawnSurface:
     frame: BodyFrame
 
     @property
+    def base(self) -> DrawnSurface:
+        """The surface of the object's own mesh."""
+        return self
+
+    def group(self, thing: bpy.types.Object, name: str) -> NDArray[np.float64]:
+        """Weights (p,) of a vertex group at its vertices."""
+        return group_weights(thing.data, thing.vertex_groups[name].index)
+
+    @property
     def body(self) -> NDArray[np.float64]:
         """Vertices (p, 3) in metres, body coordinates."""
         return self.frame.body_from_local(self.local)
@@ -65,15 +75,17 @@ class DrawnSurface:
         return replace(self.shape, pins=pins, stiffness=stiffness)
 
 
-def read(thing: bpy.types.Object, scene: bpy.types.Scene) -> DrawnSurface:
-    """Read a mesh object.
+def read(
+    thing: bpy.types.Object, scene: bpy.types.Scene, mesh: bpy.types.Mesh | None = None
+) -> DrawnSurface:
+    """Read the mesh of an object, or another that was made of it.
 
     Raises
     ------
     PalpateError
         An object whose transform flattens it.
     """
-    mesh = thing.data
+    mesh = mesh or thing.data
     mesh.calc_loop_triangles()
     triangles = np.empty(3 * len(mesh.loop_triangles), dtype=np.int32)
     mesh.loop_triangles.foreach_get("vertices", triangles)
@@ -85,6 +97,16 @@ def read(thing: bpy.types.Object, scene: bpy.types.Scene) -> DrawnSurface:
         face_starts=starts.astype(np.int64),
         frame=frame_of(thing, scene),
     )
+
+
+def group_weights(mesh: bpy.types.Mesh, group: int) -> NDArray[np.float64]:
+    """Weight of a vertex group, by its number, at every vertex (p,); 0 where one is not in it."""
+    weights = np.zeros(len(mesh.vertices))
+    for vertex in mesh.vertices:
+        for membership in vertex.groups:
+            if membership.group == group:
+                weights[vertex.index] = membership.weight
+    return weights
 
 
 def polygons(mesh: bpy.types.Mesh) -> tuple[NDArray[np.int32], NDArray[np.int32]]:

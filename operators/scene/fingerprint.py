@@ -29,7 +29,8 @@ LONGEST_TEXT, MOST_VERTICES, FARTHEST = 10_000, 2**31, 1e100
 class Fingerprint:
     """Topology, shape and size of a drawn surface, and the rules painted on it.
 
-    ``pins`` and ``stiffness`` are texts that change with pins and stiff regions.
+    ``pins`` and ``stiffness`` are texts that change with pins and stiff regions, ``stack`` one that
+    changes with the modifiers that made what was baked; empty where that was the mesh itself.
     """
 
     vertices: int
@@ -41,6 +42,7 @@ class Fingerprint:
     local_size: float
     pins: str = ""
     stiffness: str = ""
+    stack: str = ""
 
     def to_text(self) -> str:
         """Text stored on the object."""
@@ -70,7 +72,7 @@ class Fingerprint:
         """Whether every value is of its type, and finite."""
         counts = (self.vertices, self.faces)
         numbers = (*self.local, *self.body, self.size, self.local_size)
-        texts = (self.topology, self.pins, self.stiffness)
+        texts = (self.topology, self.pins, self.stiffness, self.stack)
         return (
             len(self.local) == len(self.body) == PROJECTIONS
             and all(type(count) is int and 0 <= count < MOST_VERTICES for count in counts)
@@ -124,6 +126,8 @@ def changed_body(old: Fingerprint, new: Fingerprint) -> str:
         )
     if old.topology != new.topology:
         return Sentence("the faces are connected differently than when it was baked")
+    if old.stack != new.stack:
+        return Sentence("the modifiers that made what was baked have changed")
     if _same(old.body, new.body, old.size, old.vertices):
         return ""
     if _same(old.local, new.local, old.local_size, old.vertices):

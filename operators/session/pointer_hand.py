@@ -11,8 +11,8 @@ from mathutils import Vector
 from numpy.typing import NDArray
 
 from ...core.contact.tool.pose import resting_on
-from ..layer import touched_place
-from ..layer.touched_place import TouchedPlace
+from ..place import touched_place
+from ..place.touched_place import TouchedPlace
 from ..scene import ray
 from ..scene.body_frame import as_point
 from ..scene.drawn_surface import frame_of

@@ -20,8 +20,8 @@ from ...core.servo.session import Snapshot
 from ..device import device_source, servo_words
 from ..device.device_source import DeviceFrame
 from ..layer import live_layer
-from ..layer.touched_place import TouchedPlace
 from ..object.drawn_body import DrawnBody, open_body
+from ..place.touched_place import TouchedPlace
 from ..scene.object_handle import ObjectHandle
 from ..tool.finger_tip import FingerTip, chosen_tip
 from .finger_leads import BOTH_POINTER, FingerLead, Lead, leads_of

@@ -5,9 +5,9 @@ from __future__ import annotations
 import bpy
 
 from ...core.errors import PalpateError
-from ..layer import live_layer
-from ..layer.touched_place import TouchedPlace
+from ..layer import layers, live_layer
 from ..object.drawn_body import DrawnBody
+from ..place.touched_place import TouchedPlace
 from ..scene.drawn_surface import frame_of
 
 
@@ -17,7 +17,7 @@ def reason_to_end(thing: bpy.types.Object | None, drawn: DrawnBody, *, withdrawn
         return "{name} was deleted; pressing has ended"
     if thing.mode != "OBJECT":
         return "{name} is being edited; pressing has ended"
-    if 3 * len(thing.data.vertices) != len(drawn.rest):
+    if 3 * len(layers.drawn_mesh(thing).vertices) != len(drawn.rest):
         return "{name} was edited; press Make Soft to bake it again"
     if not withdrawn and live_layer.find(thing) is None:
         return "{name} has lost its live layer; pressing has ended"

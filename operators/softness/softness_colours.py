@@ -12,6 +12,7 @@ from ..object import soft_object
 from ..object.drawn_body import DrawnBody
 from ..reporting.acting import Acting
 from ..reporting.translated import reported
+from ..scene.drawn_surface import rest_coordinates
 from .softness_operator import SoftnessOperator
 
 ATTRIBUTE = "Palpate Softness"
@@ -37,7 +38,7 @@ class PALPATE_OT_map_softness(SoftnessOperator, bpy.types.Operator):
         shown = thing.data.color_attributes.active_color_name
         if shown != ATTRIBUTE:
             softness.shown_before = shown
-        _write(thing.data, ramp(_at_vertices(drawn, found)))
+        _write(thing.data, ramp(_at_vertices(thing, drawn, found)))
         softness.map_low, softness.map_high = (end / MILLIMETRES for end in found.span)
         self.report({"INFO"}, reported("Viewport Shading > Color > Attribute shows it"))
 
@@ -65,9 +66,11 @@ class PALPATE_OT_remove_softness_map(Acting, bpy.types.Operator):
             softness.property_unset(name)
 
 
-def _at_vertices(drawn: DrawnBody, found: SoftnessMap) -> NDArray[np.float64]:
-    """Positions of the drawn vertices (p,) on the colour scale, from the nodes around each."""
-    local = drawn.rest.reshape(-1, 3)
+def _at_vertices(
+    thing: bpy.types.Object, drawn: DrawnBody, found: SoftnessMap
+) -> NDArray[np.float64]:
+    """Positions of the object's vertices (p,) on the colour scale, from the nodes around each."""
+    local = rest_coordinates(thing.data).reshape(-1, 3)
     places = drawn.body.closest_points.query(drawn.frame.body_from_local(local))
     corners = drawn.body.mesh.surface_local_triangles[places.triangle]
     shares: NDArray[np.float64] = np.einsum("pc,pc->p", places.alpha, found.shares()[corners])

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ...core.errors import PalpateError
 from ..object.drawn_body import DrawnBody
+from ..scene.drawn_surface import rest_coordinates
 
 
 def place_in_body(
@@ -41,8 +42,8 @@ def _middle_of_selected(drawn: DrawnBody, thing: bpy.types.Object) -> NDArray[np
             "at the 3D cursor",
             name=thing.name,
         )
-    middle: NDArray[np.float64] = drawn.rest_places[selected].mean(axis=0)
-    return middle
+    local = rest_coordinates(thing.data).reshape(-1, 3)[selected].mean(axis=0)
+    return drawn.frame.body_from_local(local)
 
 
 def at_property() -> bpy.props.FloatVectorProperty:

@@ -6,29 +6,30 @@ from dataclasses import replace
 
 import bpy
 import numpy as np
-from mathutils import Vector
 
 from ...core.errors import PalpateError
 from ..imprint import kept_imprint
 from ..imprint.kept_imprint import NothingStaysError
-from ..layer import live_layer
+from ..layer import live_layer, place_marks
 from ..object import soft_object
 from ..object.drawn_body import DrawnBody, open_body
+from ..place import touched_place
+from ..place.seen_place import under_pointer
+from ..place.touched_place import TouchedPlace
 from ..reporting.acting import Acting
 from ..reporting.translated import reported, shown
 from ..scene import viewport
-from ..scene.drawn_surface import metres_per_unit
+from ..scene.body_frame import BodyFrame
+from ..scene.drawn_surface import frame_of, metres_per_unit
 from ..scene.object_handle import ObjectHandle
 from ..scene.probe_drag import View
 from ..session import press_session
 from ..tool.tool_sizes import chosen_sizes
-from . import stroke_words, touched_place
+from . import stroke_words
 from .motion import Asked, Motion
-from .seen_place import seen_place
 from .stroke import Stroke, Stroked, grips_at
 from .stroke_drag import StrokeDrag
 from .stroke_properties import StrokeProperties
-from .touched_place import TouchedPlace
 from .typed_amount import TypedAmount
 
 
@@ -44,6 +45,8 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
     _handle: ObjectHandle
     _stroke: Stroke
     _touched: TouchedPlace
+    # Of the object, or of its instance that was touched.
+    _frame: BodyFrame
     _drag: StrokeDrag
     _typed: TypedAmount
     # What was asked last and could be done.
@@ -62,9 +65,10 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
         reason = soft_object.refusal_unbaked(thing)
         if reason:
             raise PalpateError(reason)
-        graph = context.evaluated_depsgraph_get()
-        touched = touched_place.nearest(scene, graph, thing, Vector(self.place))
-        self._begin(scene, touched)
+        frame = frame_of(thing, scene)
+        with place_marks.marked(thing):
+            touched = touched_place.nearest(thing, frame, np.array(self.place))
+        self._begin(thing, scene, frame, touched)
         asked = self._asked()
         if asked.nothing:
             raise PalpateError(
@@ -105,10 +109,10 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
         if here is None:
             return {"PASS_THROUGH"}
         scene = context.scene
-        touched = seen_place(scene, context.evaluated_depsgraph_get(), here)
-        if touched is None:
+        seen = under_pointer(scene, context.evaluated_depsgraph_get(), here)
+        if seen is None:
             return {"PASS_THROUGH"}
-        thing = touched.thing
+        thing, frame = seen.thing, seen.frame
         reason = soft_object.refusal(thing)
         if reason:
             raise PalpateError(reason)
@@ -116,13 +120,15 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
             self.motion = scene.palpate.stroke
         if not self.properties.is_property_set("mirrored"):
             self.mirrored = scene.palpate.stroke_mirrored
-        self.place = touched.seen
+        self.place = seen.seen
         context.window.cursor_modal_set("WAIT")
         try:
-            self._begin(scene, touched)
-            view = here.view_at(touched.frame.body_from_world(touched.seen), touched.frame)
-            if view is None:
+            with place_marks.marked(thing):
+                touched = touched_place.under_ray(thing, frame, *here.line_of_sight())
+            view = None if touched is None else here.view_at(touched.seen, frame)
+            if touched is None or view is None:
                 return {"PASS_THROUGH"}
+            self._begin(thing, scene, frame, touched)
             self._drag = self._drag_from(event, view, scene)
             # What takes time is prepared before anything is changed, and a pinned place refused.
             asked = self._drag.asked(touched.turn)
@@ -150,16 +156,21 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
             cursor=cursor,
         )
 
-    def _begin(self, scene: bpy.types.Scene, touched: TouchedPlace) -> None:
+    def _begin(
+        self,
+        thing: bpy.types.Object,
+        scene: bpy.types.Scene,
+        frame: BodyFrame,
+        touched: TouchedPlace,
+    ) -> None:
         """Take hold of the body at a place."""
-        thing = touched.thing
         drawn = open_body(thing, scene)
         metres = metres_per_unit(scene)
         radius = metres * self.radius or chosen_sizes(scene, drawn.size).tip_radius
         self.radius = radius / metres
         grips = grips_at(drawn, touched.rest, radius, tuple(self.mirrored))
         chosen = thing.palpate
-        self._touched, self._handle = touched, ObjectHandle.of(thing)
+        self._touched, self._frame, self._handle = touched, frame, ObjectHandle.of(thing)
         self._stroke = Stroke(drawn, grips, chosen.young_modulus, chosen.static_friction)
 
     def _handle_event(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -242,14 +253,14 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
         """What the properties ask."""
         match motion := Motion[self.motion]:
             case Motion.GRAB:
-                frame = self._touched.frame
+                frame = self._frame
                 way = frame.turn_to_body(np.array(self.by)) * frame.metres_per_unit
                 return Asked(motion, by=way @ self._touched.turn)
             case Motion.TWIST:
                 return Asked(motion, self.angle)
             case Motion.PINCH:
                 return Asked(motion, self.share)
-        return Asked(motion, self.depth * self._touched.frame.metres_per_unit)
+        return Asked(motion, self.depth * self._frame.metres_per_unit)
 
     def _tell(self, asked: Asked, scene: bpy.types.Scene) -> None:
         """Write what was asked into the properties, for the redo panel."""
@@ -257,7 +268,7 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
         match asked.motion:
             case Motion.GRAB if asked.by is not None:
                 seen = self._touched.turn @ asked.by
-                self.by = self._touched.frame.turn_to_world(seen) / metres
+                self.by = self._frame.turn_to_world(seen) / metres
             case Motion.TWIST:
                 self.angle = asked.amount
             case Motion.PINCH:

@@ -6,13 +6,13 @@ import bpy
 import numpy as np
 
 from ...core.errors import PalpateError
+from ..place.seen_place import under_pointer
 from ..reporting.acting import Acting
 from ..reporting.translated import shown
 from ..scene import viewport
 from ..scene.drawn_surface import frame_of, metres_per_unit, size_of
 from ..tool.tool_sizes import chosen_sizes
 from . import stroke_words
-from .seen_place import seen_place
 
 # Pixels over which the strength doubles.
 DOUBLING_PIXELS = 100.0
@@ -80,7 +80,7 @@ class PALPATE_OT_stroke_size(Acting, bpy.types.Operator):
         thing = context.object
         if here is None or thing is None:
             raise PalpateError("place the pointer in a 3D view with an object to set this")
-        touched = seen_place(context.scene, context.evaluated_depsgraph_get(), here)
+        touched = under_pointer(context.scene, context.evaluated_depsgraph_get(), here)
         frame = frame_of(thing, context.scene) if touched is None else touched.frame
         place = np.zeros(3) if touched is None else frame.body_from_world(touched.seen)
         view = here.view_at(place, frame)

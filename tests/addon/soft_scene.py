@@ -36,9 +36,12 @@ def select(thing: bpy.types.Object) -> bpy.types.Object:
 
 
 def cube(edge: float = 0.05) -> bpy.types.Object:
-    """A cube of this edge at the origin, its scale applied, settings for a quick bake."""
+    """A cube of this edge at the origin, its scale applied, settings for a quick bake; its eight
+    vertices alone are drawn.
+    """
     bpy.ops.mesh.primitive_cube_add(size=edge)
     thing = bpy.context.object
+    thing.palpate.bake_from = "BASE"
     thing.palpate.edge_length, thing.palpate.pin_mode = COARSE, "BELOW"
     return select(thing)
 

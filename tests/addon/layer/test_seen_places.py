@@ -134,7 +134,7 @@ def test_a_session_has_the_seen_place_and_leaves_nothing(sessions, states, thing
     before = mesh_state(thing)
     session = begin(sessions, states, thing)
     bpy.context.view_layer.update()
-    touched = part("operators.layer.touched_place")
+    touched = part("operators.place.touched_place")
     drawn_surface = part("operators.scene.drawn_surface")
     outward = turn @ np.array([0.0, 0.0, 1.0])
     seen = turn @ np.array([*AT[:2], 0.025])

@@ -41,6 +41,13 @@ def test_a_stroke_moves_the_surface_and_stays(thing, name):
     assert np.abs(shift).max() > 1e-4
 
 
+def touched_at(thing, at):
+    """Place of a soft object nearest to a place in the world."""
+    frame = part("operators.scene.drawn_surface").frame_of(thing, bpy.context.scene)
+    with part("operators.layer.place_marks").marked(thing):
+        return part("operators.place.touched_place").nearest(thing, frame, at)
+
+
 def test_a_push_goes_in_and_a_pull_out(thing):
     bpy.ops.palpate.stroke(place=TOP, radius=0.02, **STROKES["push"])
     bpy.ops.palpate.stroke(place=TOP, radius=0.02, **STROKES["pull"])
@@ -51,11 +58,9 @@ def test_a_push_goes_in_and_a_pull_out(thing):
 
 def test_the_next_stroke_is_added_to_what_is_seen_and_begins_there(thing):
     bpy.ops.palpate.stroke(place=(0.025, 0.025, 0.025), radius=0.02, **STROKES["grab"])
-    places = part("operators.stroke.touched_place")
-    graph = bpy.context.evaluated_depsgraph_get()
     corner = seen_places(thing)[np.argmax(rest_places(thing).sum(axis=1))]
     assert np.linalg.norm(corner - 0.025) > 1e-3
-    found = places.nearest(bpy.context.scene, graph, thing, Vector(corner))
+    found = touched_at(thing, corner)
     assert np.allclose(found.seen, corner, atol=1e-6)
     assert np.allclose(found.rest, 0.025, atol=1e-6)
     bpy.ops.palpate.stroke(place=corner, radius=0.02, **STROKES["push"])
@@ -101,7 +106,6 @@ def test_what_was_never_baked_cannot_be_stroked(palpate):
 
 
 def test_the_place_is_found_on_the_mesh_as_it_is_posed_and_scaled_by_a_key(thing):
-    places = part("operators.stroke.touched_place")
     thing.shape_key_add(name="Basis", from_mix=False)
     key = thing.shape_key_add(name="Tall", from_mix=False)
     for point in key.data:
@@ -110,22 +114,22 @@ def test_the_place_is_found_on_the_mesh_as_it_is_posed_and_scaled_by_a_key(thing
         point.co = (x, -2.0 * z, y)
     key.value = 1.0
     bpy.context.view_layer.update()
-    graph = bpy.context.evaluated_depsgraph_get()
-    found = places.nearest(bpy.context.scene, graph, thing, Vector((0.01, -0.06, 0.004)))
+    found = touched_at(thing, (0.01, -0.06, 0.004))
     assert np.allclose(found.seen, (0.01, -0.05, 0.004), atol=1e-6)
     assert np.allclose(found.rest, (0.01, 0.004, 0.025), atol=1e-6)
-    assert np.allclose(found.turn @ [0, 0, 1], [0, -1, 0], atol=1e-6)
+    # Keys move what layers add; they do not turn it.
+    assert np.allclose(found.turn, np.eye(3), atol=1e-6)
     assert np.allclose(found.normal, [0, -1, 0], atol=1e-6)
 
 
 def test_a_ray_meets_the_soft_object_in_front_and_nothing_behind_another(thing):
-    places, scene = part("operators.stroke.touched_place"), bpy.context.scene
+    places, scene = part("operators.place.seen_place"), bpy.context.scene
     ray = (Vector((0.01, 0.005, 1.0)), Vector((0.0, 0.0, -1.0)))
     bpy.data.objects.remove(bpy.data.objects["Cube"])
     found = places.under_ray(scene, bpy.context.evaluated_depsgraph_get(), *ray)
     assert found.thing == thing
     assert np.allclose(found.seen, (0.01, 0.005, 0.025), atol=1e-6)
-    assert np.allclose(found.rest, (0.01, 0.005, 0.025), atol=1e-6)
+    assert np.allclose(found.normal, (0.0, 0.0, 1.0), atol=1e-6)
     bpy.ops.mesh.primitive_plane_add(size=1.0, location=(0, 0, 0.5))
     assert places.under_ray(scene, bpy.context.evaluated_depsgraph_get(), *ray) is None
 

@@ -12,8 +12,10 @@ from stage import Pixel, Stage, Wait
 
 from bl_ext.user_default.palpate.operators.layer import layers
 from bl_ext.user_default.palpate.operators.object import soft_object
+from bl_ext.user_default.palpate.operators.place import touched_place
+from bl_ext.user_default.palpate.operators.place.seen_place import SeenPlace
+from bl_ext.user_default.palpate.operators.place.seen_place import under_pointer as seen_place
 from bl_ext.user_default.palpate.operators.scene.viewport import under_pointer
-from bl_ext.user_default.palpate.operators.stroke.seen_place import seen_place
 
 TOOL = "palpate.tool"
 DIRECTIONS = {
@@ -152,7 +154,7 @@ def _visible_place(stage: Stage, name: str, rng: np.random.Generator) -> Pixel:
     raise AssertionError(f"{name} is nowhere to be seen")
 
 
-def _touched(stage: Stage, at: Pixel):
+def _touched(stage: Stage, at: Pixel) -> SeenPlace | None:
     here = under_pointer(stage.window, round(at[0]), round(at[1]))
     graph = bpy.context.evaluated_depsgraph_get()
     return None if here is None else seen_place(bpy.context.scene, graph, here)
@@ -160,8 +162,9 @@ def _touched(stage: Stage, at: Pixel):
 
 def _seen(stage: Stage, at: Pixel) -> np.ndarray:
     """Place at rest under a pixel, local coordinates."""
-    touched = _touched(stage, at)
-    return touched.frame.local_from_body(touched.rest[None])[0]
+    seen = _touched(stage, at)
+    touched = touched_place.nearest(seen.thing, seen.frame, seen.seen)
+    return seen.frame.local_from_body(touched.rest)
 
 
 def _soft_default_cube(stage: Stage) -> Wait:

@@ -14,34 +14,48 @@ from mathutils import Vector
 from numpy.typing import NDArray
 
 from ...core.errors import PalpateError
+from ..layer import layers, place_marks
+from ..layer.layer_groups import AT, PRESSED, REST
 from ..scene.body_frame import BodyFrame
 from ..scene.drawn_surface import rest_coordinates
-from ..scene.seen_triangle import outward_normal, triangle_at, turn_between
-from . import place_marks
-from .layer_groups import AT, REST
+from .seen_triangle import outward_normal, triangle_at, turn_between
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
 class TouchedPlace:
-    """Place on the mesh as evaluated, metres, in body coordinates of the object's frame.
+    """Place on the mesh as evaluated, without what the live layer moves it by.
 
     Attributes
     ----------
-    rest, seen : float64 (3,), where it is at rest, and as seen.
+    rest, seen : float64 (3,), where it is at rest, and as seen; metres, body coordinates of the
+        object's frame, or of its instance's.
     normal : float64 (3,), outward unit normal as seen.
     turn : float64 (3, 3), rotation from a displacement at rest to the same as seen.
+    corners : vertices of its triangle in the evaluated mesh.
+    alpha : float64 (3,), area coordinates in it.
     """
 
     rest: Array
     seen: Array
     normal: Array
     turn: Array
+    corners: tuple[int, ...] = ()
+    alpha: Array | None = None
 
     def frame(self, of_object: BodyFrame) -> BodyFrame:
         """Local frame, by the present one of the object."""
         return of_object.posed(self.turn, self.rest, self.seen)
+
+    def followed(self, thing: bpy.types.Object, frame: BodyFrame) -> TouchedPlace:
+        """The same place as it is seen now, after another pose; as it was where that is unknown."""
+        mesh = evaluated(thing).data
+        if self.alpha is None or max(self.corners, default=0) >= len(mesh.vertices):
+            return self
+        if not _is_marked(mesh):
+            return self
+        return _on_triangle(thing, frame, mesh, list(self.corners), self.alpha)
 
 
 def is_seen_at_rest(thing: bpy.types.Object) -> bool:
@@ -55,9 +69,9 @@ def under_ray(
     thing: bpy.types.Object, frame: BodyFrame, origin: Array, direction: Array
 ) -> TouchedPlace | None:
     """First place of an object on a ray (3,), world coordinates; None beside it."""
-    matrix = thing.matrix_world.inverted()
-    seen, start = _evaluated(thing), matrix @ Vector(origin)
-    along = (matrix.to_3x3() @ Vector(direction)).normalized()
+    start = _local(frame, origin)
+    along = (_local(frame, np.add(origin, direction)) - start).normalized()
+    seen = evaluated(thing)
     if not len(seen.data.polygons):
         return None
     hit, place, _, face = seen.ray_cast(start, along)
@@ -72,46 +86,69 @@ def nearest(thing: bpy.types.Object, frame: BodyFrame, at: Array) -> TouchedPlac
     PalpateError
         It shows no face.
     """
-    point, seen = thing.matrix_world.inverted() @ Vector(at), _evaluated(thing)
+    seen = evaluated(thing)
     if not len(seen.data.polygons):
         raise PalpateError("{name} shows no face to touch; look at its modifiers", name=thing.name)
-    _, place, _, face = seen.closest_point_on_mesh(point)
+    _, place, _, face = seen.closest_point_on_mesh(_local(frame, at))
     return _on_face(thing, frame, face, place)
 
 
-def _evaluated(thing: bpy.types.Object) -> bpy.types.Object:
+def evaluated(thing: bpy.types.Object) -> bpy.types.Object:
+    """The object as evaluated for the view."""
     return thing.evaluated_get(bpy.context.evaluated_depsgraph_get())
 
 
+def _local(frame: BodyFrame, at: Array) -> Vector:
+    return Vector(frame.local_from_body(frame.body_from_world(np.asarray(at, dtype=np.float64))))
+
+
 def _on_face(thing: bpy.types.Object, frame: BodyFrame, face: int, place: Vector) -> TouchedPlace:
-    mesh = _evaluated(thing).data
+    mesh = evaluated(thing).data
     corners, alpha = triangle_at(mesh, face, place)
-    local = np.array([mesh.vertices[corner].co for corner in corners], dtype=np.float64)
-    seen = frame.body_from_local(local)
-    rest, before = _marked(mesh, REST, corners), _marked(mesh, AT, corners)
-    if rest is None or before is None:
-        rest, turn = _rest_by_number(thing, mesh, corners), np.eye(3)
+    return _on_triangle(thing, frame, mesh, corners, alpha)
+
+
+def _on_triangle(
+    thing: bpy.types.Object,
+    frame: BodyFrame,
+    mesh: bpy.types.Mesh,
+    corners: list[int],
+    alpha: Array,
+) -> TouchedPlace:
+    seen = frame.body_from_local([mesh.vertices[corner].co for corner in corners])
+    if not _is_marked(mesh):
+        rest = frame.body_from_local(_rest_by_number(thing, mesh, corners))
+        turn, moved = np.eye(3), np.zeros((3, 3))
     else:
-        turn = turn_between(frame.body_from_local(before), seen)
+        rest, before, moved = (
+            frame.body_from_local(_marks(mesh, name, corners)) for name in (REST, AT, PRESSED)
+        )
+        turn = turn_between(before + moved, seen)
     return TouchedPlace(
-        rest=alpha @ frame.body_from_local(rest),
-        seen=alpha @ seen,
+        rest=alpha @ rest,
+        seen=alpha @ seen - turn @ (alpha @ moved),
         normal=outward_normal(seen, frame),
         turn=turn,
+        corners=tuple(corners),
+        alpha=alpha,
     )
 
 
-def _marked(mesh: bpy.types.Mesh, name: str, corners: list[int]) -> Array | None:
-    """Marks (3, 3) of vertices; None without."""
-    attribute = mesh.attributes.get(name)
-    if attribute is None or (attribute.data_type, attribute.domain) != ("FLOAT_VECTOR", "POINT"):
-        return None
+def _is_marked(mesh: bpy.types.Mesh) -> bool:
+    found = (mesh.attributes.get(name) for name in (REST, AT, PRESSED))
+    kind = ("FLOAT_VECTOR", "POINT")
+    return all(one is not None and (one.data_type, one.domain) == kind for one in found)
+
+
+def _marks(mesh: bpy.types.Mesh, name: str, corners: list[int]) -> Array:
+    """Marks (3, 3) of vertices."""
+    attribute = mesh.attributes[name]
     return np.array([attribute.data[corner].vector for corner in corners], dtype=np.float64)
 
 
 def _rest_by_number(thing: bpy.types.Object, mesh: bpy.types.Mesh, corners: list[int]) -> Array:
-    """Local coordinates (3, 3) at rest of vertices that are the object's own."""
-    rest = rest_coordinates(thing.data).reshape(-1, 3)
+    """Local coordinates (3, 3) at rest of vertices that are the drawn mesh's own."""
+    rest = rest_coordinates(layers.drawn_mesh(thing)).reshape(-1, 3)
     if len(rest) != len(mesh.vertices) or place_marks.needed(thing):
         raise PalpateError(
             "{name}: its modifiers make vertices that cannot be followed; press again",

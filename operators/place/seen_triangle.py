@@ -9,7 +9,7 @@ from mathutils.geometry import tessellate_polygon
 from numpy.typing import NDArray
 
 from ...core.mesh.closest_point import closest_area_coordinates
-from .body_frame import BodyFrame
+from ..scene.body_frame import BodyFrame
 
 Array = NDArray[np.float64]
 

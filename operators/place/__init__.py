@@ -1,0 +1,1 @@
+"""Places of a soft object as it is seen, and at rest."""
