@@ -120,6 +120,9 @@ build/packages/palpate-windowed.zip: build/servo/.built $(EXTENSION_SOURCES) | $
 REPORT = 2>&1 | tee build/reports/$@.txt
 ON_ALL_CORES := --numprocesses auto --maxprocesses 4 --dist loadfile
 
+# What the engine answers does not depend on when it is asked.
+ENGINE_TESTS := tests/servo/engine tests/servo/contact
+
 # What compiles and downloads goes side by side; a make that knows how (4.0 and later) prints each part
 # in one piece. Tests come one after the other: some have deadlines, the others fill all cores.
 SIDE_BY_SIDE := $(MAKE) --jobs=2 $(if $(filter output-sync,$(.FEATURES)),--output-sync)
@@ -131,7 +134,7 @@ test: ## everything that must hold, in a few minutes
 	$(MAKE) test-core test-servo test-addon test-gui
 
 .PHONY: test-all
-test-all: test $(BLENDERS:%=test-addon-%) check-systems ## the same, the extension in every Blender, the servo for every system
+test-all: test test-gui-at-length $(BLENDERS:%=test-addon-%) check-systems ## the same, the extension in every Blender, the servo for every system
 
 build/reports:
 	mkdir -p $@
@@ -150,12 +153,12 @@ test-native: $(VENV)/.installed | build/reports ## the servo's own tests
 	$(CARGO) test --quiet $(CRATE) --features harness $(REPORT)
 
 .PHONY: test-core
-test-core: $(VENV)/.servo-installed | build/reports ## core, command line and packages, without Blender
-	$(BIN)/pytest -q $(ON_ALL_CORES) tests/core tests/simulated tests/cli tests/passivity tests/demo tests/release tests/test_architecture.py tests/test_docs.py tests/test_examples.py $(REPORT)
+test-core: $(VENV)/.servo-installed | build/reports ## core, engine, command line and packages, without Blender
+	$(BIN)/pytest -q $(ON_ALL_CORES) tests/core $(ENGINE_TESTS) tests/simulated tests/cli tests/passivity tests/demo tests/release tests/test_architecture.py tests/test_docs.py tests/test_examples.py $(REPORT)
 
 .PHONY: test-servo
 test-servo: $(VENV)/.servo-installed | build/reports ## servo and firmware: they have deadlines, so one test after the other
-	$(BIN)/pytest -q tests/servo tests/firmware $(REPORT)
+	$(BIN)/pytest -q tests/servo tests/firmware $(ENGINE_TESTS:%=--ignore=%) $(REPORT)
 
 .PHONY: test-addon
 test-addon: test-addon-$(BPY) ## the package installed in Blender as a module, driven by its operators
@@ -197,6 +200,10 @@ check-systems: $(VENV)/.installed
 .PHONY: test-gui
 test-gui: $(VENV)/.servo-installed $(WINDOWED_PACKAGE) | build/reports ## the package in a Blender with a window, where there is one
 	BLENDER_GUI='$(BLENDER_GUI)' $(BIN)/pytest -q tests/gui $(REPORT)
+
+.PHONY: test-gui-at-length
+test-gui-at-length: $(VENV)/.servo-installed $(WINDOWED_PACKAGE) | build/reports ## the same with the scenarios that take long
+	BLENDER_GUI='$(BLENDER_GUI)' $(BIN)/pytest -q tests/gui --at-length $(REPORT)
 
 # ---------------------------------------------------------------------------- demo, benchmarks
 

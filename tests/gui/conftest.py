@@ -21,10 +21,11 @@ meanwhile, for Blender swallows those of timers, handlers and modal operators. I
 `limit_seconds` of windowed_blender.py, far more than any needs, and there only so that none hangs.
 
 Before each scenario Blender loads its factory scene; the extension stays installed and enabled.
-All scenarios that pytest selected run in one Blender, in the order of their files; should it crash
-or hang, that scenario fails and the rest run in a new one. Pictures, Blender's output and
-result.json are left in build/gui/. `make test-gui` builds the package and plays everything; after
-that, one alone by `.venv/bin/pytest tests/gui -k dragging_dents`.
+The scenarios that pytest selected are dealt to two Blenders, which play them side by side, each in
+the order of their files; should one crash or hang, that scenario fails and its rest runs in a new
+one. Pictures, Blender's output and its reports are left in build/gui/. `make test-gui` builds the
+package and plays all but those marked `@at_length`, which `make test-gui-at-length` and with it
+`make test-all` add; after that, one alone by `.venv/bin/pytest tests/gui -k dragging_dents`.
 
 `BLENDER_GUI` names the program that starts the windowed Blender, `PALPATE_PACKAGE` the zip. Without
 that program everything here is skipped.
@@ -43,14 +44,22 @@ HERE = Path(__file__).resolve().parent
 REPOSITORY = HERE.parents[1]
 
 
-def scenarios() -> list[str]:
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add the choice to play the long scenarios too."""
+    parser.addoption("--at-length", action="store_true", help="play the long scenarios too")
+
+
+def scenarios(*, at_length: bool) -> list[str]:
     """Return `file::function` of every scenario: public functions with one parameter, `stage`."""
     found = []
     for path in sorted((HERE / "scenarios").glob("*.py")):
         for node in ast.parse(path.read_text(encoding="utf-8")).body:
             if not isinstance(node, ast.FunctionDef) or node.name.startswith("_"):
                 continue
-            if [argument.arg for argument in node.args.args] == ["stage"]:
+            if [argument.arg for argument in node.args.args] != ["stage"]:
+                continue
+            marks = {mark.id for mark in node.decorator_list if isinstance(mark, ast.Name)}
+            if at_length or "at_length" not in marks:
                 found.append(f"{path.stem}::{node.name}")
     return found
 
@@ -58,7 +67,8 @@ def scenarios() -> list[str]:
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     """Make one test of each scenario."""
     if "scenario" in metafunc.fixturenames:
-        metafunc.parametrize("scenario", scenarios())
+        at_length = bool(metafunc.config.getoption("--at-length", default=False))
+        metafunc.parametrize("scenario", scenarios(at_length=at_length))
 
 
 @pytest.fixture(scope="session")

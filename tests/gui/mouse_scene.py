@@ -46,7 +46,7 @@ def open_mouse(stage: Stage) -> Wait:
 
 def own_copy(stage: Stage, file: str = SCENE) -> str:
     """A copy of a scene, so that no body file is made or removed beside the repository's."""
-    copy, scene = stage.output / "scene" / Path(file).name, stage.repository / file
+    copy, scene = stage.files / "scene" / Path(file).name, stage.repository / file
     if not copy.is_file() or copy.stat().st_mtime < scene.stat().st_mtime:
         copy.parent.mkdir(exist_ok=True)
         shutil.copyfile(scene, copy)

@@ -1,7 +1,7 @@
 """Plays scenarios; runs inside Blender, started by windowed_blender.py with a job file.
 
 Each scenario is a generator that a timer steps, so that Blender handles events and draws meanwhile.
-At each beginning and end result.json is written, so that a crash loses nothing.
+At each beginning and end its report is written, so that a crash loses nothing.
 """
 
 from __future__ import annotations
@@ -47,8 +47,10 @@ class Player:
 
     def new_stage(self, name: str) -> Stage:
         """A stage for a scenario."""
-        job = self.job
-        return Stage(Path(job["repository"]), Path(job["output"]), name, tuple(job["arguments"]))
+        repository, output, files = (
+            Path(self.job[folder]) for folder in ("repository", "pictures", "files")
+        )
+        return Stage(repository, output, files, name, tuple(self.job["arguments"]))
 
     def count_draw(self) -> None:
         """Note that the viewport has been drawn."""
@@ -132,7 +134,7 @@ class Player:
         )
 
     def write_report(self) -> None:
-        """Write result.json whole, or not at all."""
+        """Write the report whole, or not at all."""
         result = Path(self.job["result"])
         partial = result.with_suffix(".partial")
         partial.write_text(json.dumps(self.report, indent=1), encoding="utf-8")

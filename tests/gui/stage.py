@@ -24,16 +24,29 @@ Wait = Generator[float | None, None, None]
 Pixel = tuple[float, float]
 
 
+def at_length(scenario: Callable[[Stage], Wait]) -> Callable[[Stage], Wait]:
+    """Leave a scenario to `make test-all`: it takes long, and shorter ones keep near promises."""
+    return scenario
+
+
 class Stage:
     """One scenario's hands and eyes."""
 
     def __init__(
-        self, repository: Path, output: Path, scenario: str, arguments: tuple[str, ...] = ()
+        self,
+        repository: Path,
+        output: Path,
+        files: Path,
+        scenario: str,
+        arguments: tuple[str, ...] = (),
     ) -> None:
         self.repository = repository
         self.arguments = arguments
         """What the scenario was called with."""
         self.output = output
+        """Where pictures are kept."""
+        self.files = files
+        """A folder of this Blender's own for what a scenario saves."""
         self.scenario = scenario
         self.pictures: list[str] = []
         self.figures: dict[str, object] = {}
@@ -165,5 +178,5 @@ class Stage:
         self.pictures.append(str(path))
 
     def note(self, **figures: object) -> None:
-        """Keep figures for result.json."""
+        """Keep figures for the report."""
         self.figures.update(figures)

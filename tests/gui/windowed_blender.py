@@ -6,6 +6,8 @@ import json
 import os
 import subprocess
 import tempfile
+import time
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -16,6 +18,10 @@ LONGEST_RUN_SECONDS = 1800
 LINES_OF_LOG = 60
 # Drawn by the processor, so every pixel takes time; the panels' text is still read easily.
 SCREEN = "1280x800"
+# A window that is drawn by the processor keeps about one core busy.
+AT_ONCE = min(2, os.cpu_count() or 1)
+# Xvfb looks for a free display and takes it in two steps; two that look at once find the same one.
+SECONDS_BETWEEN_STARTS = 3.0
 
 
 @dataclass(frozen=True)
@@ -46,24 +52,36 @@ class WindowedBlender:
     outcomes: dict[str, Outcome] = field(default_factory=dict)
 
     def play(self, scenarios: list[str]) -> None:
-        """Fill `outcomes` with one for each scenario."""
+        """Fill `outcomes` with one for each scenario, played by some Blenders side by side."""
         uncover(self.repository)
-        output = self.output or self.repository / "build" / "gui"
-        output.mkdir(parents=True, exist_ok=True)
+        with ThreadPoolExecutor(AT_ONCE) as players:
+            dealt = [scenarios[first::AT_ONCE] for first in range(AT_ONCE)]
+            for outcomes in players.map(self._play_in_order, range(1, AT_ONCE + 1), dealt):
+                self.outcomes |= outcomes
+
+    def _play_in_order(self, player: int, scenarios: list[str]) -> dict[str, Outcome]:
+        """Play scenarios in one Blender, and in a new one what is left when it crashes."""
+        time.sleep((player - 1) * SECONDS_BETWEEN_STARTS)
+        pictures = self.output or self.repository / "build" / "gui"
+        pictures.mkdir(parents=True, exist_ok=True)
+        outcomes: dict[str, Outcome] = {}
         waiting = list(scenarios)
         start = 0
         while waiting:
             start += 1
-            log = output / f"blender-{start}.log"
-            self._run_blender(waiting, output, log)
-            played = self._read(output, log, waiting)
-            self.outcomes |= played
+            log = pictures / f"blender-{player}.{start}.log"
+            result = log.with_suffix(".json")
+            result.unlink(missing_ok=True)
+            self._run_blender(waiting, pictures, log, result)
+            played = self._read(log, result, waiting)
+            outcomes |= played
             waiting = [scenario for scenario in waiting if scenario not in played]
+        return outcomes
 
-    def _run_blender(self, scenarios: list[str], output: Path, log: Path) -> None:
-        result = output / "result.json"
-        result.unlink(missing_ok=True)
+    def _run_blender(self, scenarios: list[str], pictures: Path, log: Path, result: Path) -> None:
         with tempfile.TemporaryDirectory(prefix="palpate-gui-") as user_folder:
+            files = Path(user_folder) / "files"
+            files.mkdir()
             job = Path(user_folder) / "job.json"
             job.write_text(
                 json.dumps(
@@ -74,7 +92,8 @@ class WindowedBlender:
                         "limit": self.limit_seconds,
                         "package": str(self.package),
                         "repository": str(self.repository),
-                        "output": str(output),
+                        "pictures": str(pictures),
+                        "files": str(files),
                         "result": str(result),
                     }
                 ),
@@ -99,9 +118,8 @@ class WindowedBlender:
                     timeout=LONGEST_RUN_SECONDS + SECONDS_TO_START,
                 )
 
-    def _read(self, output: Path, log: Path, scenarios: list[str]) -> dict[str, Outcome]:
+    def _read(self, log: Path, result: Path, scenarios: list[str]) -> dict[str, Outcome]:
         """Return outcomes of all that were at least begun; of the first, if none was."""
-        result = output / "result.json"
         reported = json.loads(result.read_text(encoding="utf-8")) if result.is_file() else {}
         text = log.read_text(encoding="utf-8", errors="replace")
         if not reported:

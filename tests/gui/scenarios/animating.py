@@ -59,7 +59,7 @@ def pressers_are_followed_while_scrubbing(stage: Stage) -> Wait:
 
 
 def _caches(stage: Stage) -> list[Path]:
-    return list((stage.output / "scene" / "palpate").glob("*.pc2*"))
+    return list((stage.files / "scene" / "palpate").glob("*.pc2*"))
 
 
 def _begin(stage: Stage) -> Wait:

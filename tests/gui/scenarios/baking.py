@@ -11,7 +11,7 @@ from pathlib import Path
 import bpy
 from mouse_scene import depth, drag_in, end_press, mouse, open_mouse, start_press, type_key
 from shown import all_panels_open, replaced
-from stage import Stage, Wait
+from stage import Stage, Wait, at_length
 
 from bl_ext.user_default.palpate.addon import known_status
 from bl_ext.user_default.palpate.addon.panels import base, sentence
@@ -75,6 +75,7 @@ def the_panel_says_which_pins_need_no_bake(stage: Stage) -> Wait:
             yield from stage.picture(f"{100 * fraction:.0f}-percent")
 
 
+@at_length
 def a_compressed_body_is_pressed_like_any_other(stage: Stage) -> Wait:
     with all_panels_open(), _times_left() as left:
         yield from open_mouse(stage)

@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 from mouse_scene import depth, drag_in, end_press, open_mouse, start_press, type_key
 from shown import replaced
-from stage import Stage, Wait
+from stage import Stage, Wait, at_length
 
 from bl_ext.user_default.palpate.addon.inspection import body_view
 from bl_ext.user_default.palpate.addon.overlay import hud, pixels
@@ -19,6 +19,7 @@ from bl_ext.user_default.palpate.operators.session import press_session
 Area = tuple[float, float, float, float]
 
 
+@at_length
 def figures_keep_clear_of_the_body_at_any_scale_of_the_interface(stage: Stage) -> Wait:
     yield from open_mouse(stage)
     view = bpy.context.preferences.view

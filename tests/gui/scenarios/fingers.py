@@ -5,7 +5,7 @@ from __future__ import annotations
 import bpy
 import numpy as np
 from mouse_scene import end_press, over_the_view, own_copy, type_key
-from stage import Pixel, Stage, Wait
+from stage import Pixel, Stage, Wait, at_length
 
 from bl_ext.user_default.palpate.addon.overlay.reading import Reading, readings
 from bl_ext.user_default.palpate.operators.session import press_session
@@ -36,6 +36,7 @@ def a_fingertip_led_by_the_mouse_shows_its_patch_and_force(stage: Stage) -> Wait
     assert not bpy.data.objects["Mouse"].modifiers
 
 
+@at_length
 def a_plate_and_a_mesh_are_chosen_in_the_panel_and_press(stage: Stage) -> Wait:
     yield from _open(stage, FINGERTIP, "Mouse")
     chosen = bpy.context.scene.palpate

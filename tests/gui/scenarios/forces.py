@@ -29,7 +29,7 @@ def space_lets_the_device_go_and_what_it_did_is_saved(stage: Stage) -> Wait:
         yield from type_key(stage, "SPACE")
         yield from stage.until(lambda: _state() in {"ramping", "free", "touching"}, "its return")
         yield from end_press(stage)
-    path = stage.output / "recording.npz"
+    path = stage.files / "recording.npz"
     assert bpy.ops.palpate.save_recording(filepath=str(path)) == {"FINISHED"}
     samples = read_recording(path).samples
     # Not one tick is missing, though drawing took a quarter of a second for each frame.

@@ -21,7 +21,7 @@ from mouse_scene import (
 )
 from numpy.typing import NDArray
 from shown import replaced
-from stage import MODULE, Stage, Wait
+from stage import MODULE, Stage, Wait, at_length
 
 from bl_ext.user_default.palpate.addon.overlay import pixels
 from bl_ext.user_default.palpate.operators.bake import bake_session
@@ -79,6 +79,7 @@ def the_wheel_goes_deeper_while_the_button_is_held(stage: Stage) -> Wait:
     yield from type_key(stage, "ESC")
 
 
+@at_length
 def the_view_turns_while_a_dent_is_held_and_another_touch_starts_elsewhere(stage: Stage) -> Wait:
     yield from open_mouse(stage)
     yield from start_press(stage)
@@ -119,6 +120,7 @@ def numpad_turns_the_view_and_ctrl_s_saves_while_a_dent_is_held(stage: Stage) ->
     file.unlink()
 
 
+@at_length
 def a_probe_led_outward_keeps_no_shape(stage: Stage) -> Wait:
     yield from open_mouse(stage)
     yield from start_press(stage)
@@ -265,6 +267,7 @@ def make_soft_shows_progress_and_escape_leaves_nothing(stage: Stage) -> Wait:
     assert kept() == []
 
 
+@at_length
 def make_soft_beside_blender_makes_the_mouse_pressable(stage: Stage) -> Wait:
     yield from open_mouse(stage)
     bpy.ops.palpate.remove_softness()
