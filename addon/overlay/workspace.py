@@ -51,7 +51,7 @@ def _of_plane(context: bpy.types.Context) -> list[tuple[Array, Array]]:
     try:
         body = drawn_surface.frame_of(thing, scene)
         home = device_source.home_of_device(thing, scene, body)
-        frame = device_source.device_frame(scene, body, home)
+        frame = device_source.device_frame(thing, scene, body, home)
     except PalpateError:
         # A flattened transform; Press reports it with its remedy.
         return []

@@ -14,7 +14,7 @@ from ...core.files.point_cache import CacheSize
 from ...core.sentence import Sentence
 from ..imprint import kept_imprint
 from ..imprint.surface_imprint import yielding_of
-from ..layer import layers
+from ..layer import layers, place_marks
 from ..object.drawn_body import DrawnBody, open_body
 from ..press.modal_press import Pressing
 from ..reporting.translated import reported, shown
@@ -163,7 +163,12 @@ class PALPATE_OT_press_frames(Pressing, bpy.types.Operator):
         rows: FrameRows,
     ) -> Iterator[PressedFrame]:
         touched, rate = False, scene.render.fps / scene.render.fps_base
-        with live_pressers.paused(), frame_kept(scene), closing_shape(thing, drawn) as shape:
+        with (
+            live_pressers.paused(),
+            place_marks.marked(thing, live_pressers.LAYER_NAME),
+            frame_kept(scene),
+            closing_shape(thing, drawn) as shape,
+        ):
             law = yielding_of(thing, drawn.frame)
             pressed = press_frames(thing, scene, drawn, frames, shape)
             for here in imprinted(pressed, law, drawn, rate):

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ...core.errors import PalpateError
 from ...core.shape.shapes import Shape, shape
-from ..layer import layers
+from ..layer import layers, place_marks
 from ..object.drawn_body import DrawnBody, open_body
 from ..scene import drawn_surface
 from ..scene.object_handle import ObjectHandle
@@ -67,7 +67,9 @@ def follow(thing: bpy.types.Object, scene: bpy.types.Scene) -> None:
         end(thing)
         return
     try:
-        _press(thing, scene)
+        # To read a body may evaluate the object, which calls handlers.
+        with paused():
+            _press(thing, scene)
     except PalpateError as problem:
         # A handler has no report: the panel shows it.
         _problems[thing.session_uid] = problem.sentence
@@ -91,6 +93,7 @@ def end(thing: bpy.types.Object) -> None:
     layer = _layer(thing)
     if layer is not None:
         layers.remove(thing, layer)
+        place_marks.remove(thing)
 
 
 def forget() -> None:
@@ -126,8 +129,12 @@ def _pressed() -> tuple[ObjectHandle, ...]:
 def _press(thing: bpy.types.Object, scene: bpy.types.Scene) -> None:
     followed = _opened(thing, scene)
     places = _places(thing)
-    if followed.places is not None and np.array_equal(places, followed.places):
+    posed = place_marks.needed(thing)
+    if not posed and followed.places is not None and np.array_equal(places, followed.places):
         return
+    if posed and not place_marks.hung(thing):
+        place_marks.hang(thing, LAYER_NAME)
+        bpy.context.view_layer.update()
     followed.places = places
     pressed = AnimatedPress(thing, scene, followed.drawn, followed.shape).now()
     layer = _layer(thing) or layers.add(thing, LAYER_NAME)
@@ -140,7 +147,7 @@ def _opened(thing: bpy.types.Object, scene: bpy.types.Scene) -> _Followed:
     chosen = thing.palpate
     known = (
         chosen.body_key,
-        len(thing.data.vertices),
+        len(layers.drawn_mesh(thing).vertices),
         chosen_shape(thing),
         chosen.young_modulus,
         chosen.static_friction,

@@ -14,8 +14,11 @@ from ...core.contact.press import ContactSettings, Press
 from ...core.contact.touches import Touch
 from ...core.shape.meeting import settled
 from ...core.shape.shapes import Shape
+from ..layer import place_marks
 from ..object.drawn_body import DrawnBody
+from ..place import touched_place
 from ..press.press_once import loads_of, pressing_tools
+from ..scene.body_frame import BodyFrame
 from .pressers import Presser, pressers_of
 
 # Share of a tool's rounding by which it may differ from frame to frame.
@@ -64,14 +67,20 @@ class AnimatedPress:
             settings = ContactSettings(chosen.young_modulus, chosen.static_friction)
             self._press = Press(self.drawn.body, [one.tool for one in found], settings)
             self._pressers = found
-        frame = self.drawn.frame
-        touches = self._press.to([one.pose(self.scene, frame) for one in found])
+        touches = self._press.to([one.pose(self.scene, self._frame_at(one)) for one in found])
         loads = loads_of(touches)
         moved = None
         if loads:
             met = settled(self.drawn.body, self.shape, loads, chosen.young_modulus)
             moved = self.drawn.drawn_displacement(met.displacements, pressing_tools(touches))
         return PressedFrame(self.scene.frame_current, touches, moved)
+
+    def _frame_at(self, presser: Presser) -> BodyFrame:
+        """Local frame of what is seen nearest to a presser; the body's where nothing is posed."""
+        frame = self.drawn.frame
+        if not place_marks.hung(self.thing):
+            return frame
+        return touched_place.nearest(self.thing, frame, presser.place).frame(frame)
 
 
 def press_frames(

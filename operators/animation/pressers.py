@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 from ...core.contact.tool import tools
 from ...core.contact.tool.convex_tool import convex
@@ -30,10 +31,14 @@ class Presser:
     guide: bpy.types.Object
     turner: bpy.types.Object
 
+    @property
+    def place(self) -> NDArray[np.float64]:
+        """Where it is, (3,), world coordinates."""
+        return np.array(self.guide.matrix_world)[:3, 3]
+
     def pose(self, scene: bpy.types.Scene, body: BodyFrame) -> Pose:
         """Present pose in the body's coordinates."""
-        place = body.body_from_world(np.array(self.guide.matrix_world)[:3, 3])
-        return Pose(place, tool_turn.as_object(self.turner, scene, body))
+        return Pose(body.body_from_world(self.place), tool_turn.as_object(self.turner, scene, body))
 
 
 def pressers_of(thing: bpy.types.Object, scene: bpy.types.Scene, drawn: DrawnBody) -> list[Presser]:

@@ -14,7 +14,7 @@ from ...core.errors import PalpateError
 from ...simulated.hand.options import SimulatedOptions
 from ...simulated.simulated_process import SimulatedDevice
 from ..object.drawn_body import DrawnBody
-from ..scene import ray
+from ..scene import drawn_surface, ray
 from ..scene.body_frame import BodyFrame, as_point
 from ..tool.finger_tip import FingerTip
 from .device_plane import half_extents, upright_plane
@@ -69,8 +69,21 @@ def home_of_device(thing: bpy.types.Object, scene: bpy.types.Scene, body: BodyFr
     return DeviceFrame(np.eye(3), np.zeros(3), 1.0)
 
 
-def device_frame(scene: bpy.types.Scene, body: BodyFrame, home: DeviceFrame) -> DeviceFrame:
-    """Frame of the device: of the chosen Empty, else ``home``.
+def _in_pose(home: DeviceFrame, of_object: BodyFrame, local: BodyFrame) -> DeviceFrame:
+    """A frame in the body of an object at rest, in a local frame of its pose: the same one in the
+    world.
+    """
+    return replace(
+        home,
+        rotation=local.rotation.T @ of_object.rotation @ home.rotation,
+        translation=local.body_from_world(of_object.world_from_body(home.translation)),
+    )
+
+
+def device_frame(
+    thing: bpy.types.Object, scene: bpy.types.Scene, body: BodyFrame, home: DeviceFrame
+) -> DeviceFrame:
+    """Frame of the device: of the chosen Empty, else ``home``, which is in the body at rest.
 
     Raises
     ------
@@ -79,7 +92,8 @@ def device_frame(scene: bpy.types.Scene, body: BodyFrame, home: DeviceFrame) -> 
     """
     chosen = scene.palpate
     if chosen.device_frame is None:
-        return replace(home, scale=chosen.device_scale)
+        of_object = drawn_surface.frame_of(thing, scene)
+        return replace(_in_pose(home, of_object, body), scale=chosen.device_scale)
     return _frame_of_empty(chosen.device_frame, body, chosen.device_scale)
 
 

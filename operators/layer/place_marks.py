@@ -27,6 +27,12 @@ def needed(thing: bpy.types.Object) -> bool:
     return keyed or layers.lacks_fine(thing) or bool(stack.following(thing, layers.made_by(thing)))
 
 
+def hung(thing: bpy.types.Object) -> bool:
+    """Whether the vertices are marked."""
+    modifier = thing.modifiers.get(NAME)
+    return modifier is not None and layers.kind(modifier) is Kind.PLACES
+
+
 def hang(thing: bpy.types.Object, live: str) -> None:
     """Mark the vertices, where that is needed; ``live`` names the layer that follows a press."""
     remove(thing)
@@ -40,9 +46,8 @@ def hang(thing: bpy.types.Object, live: str) -> None:
 
 def remove(thing: bpy.types.Object) -> None:
     """Remove the marks. Safe without them."""
-    modifier = thing.modifiers.get(NAME)
-    if modifier is not None and layers.kind(modifier) is Kind.PLACES:
-        layers.remove_modifier(thing, modifier)
+    if hung(thing):
+        layers.remove_modifier(thing, thing.modifiers[NAME])
     mesh = layers.drawn_mesh(thing)
     for name in (REST, AT, PRESSED):
         attribute = mesh.attributes.get(name)
@@ -51,9 +56,9 @@ def remove(thing: bpy.types.Object) -> None:
 
 
 @contextmanager
-def marked(thing: bpy.types.Object) -> Iterator[None]:
+def marked(thing: bpy.types.Object, live: str = "") -> Iterator[None]:
     """Evaluation with marks, for as long as it lasts."""
-    hang(thing, "")
+    hang(thing, live)
     try:
         bpy.context.view_layer.update()
         yield

@@ -135,6 +135,9 @@ class DrawnBody:
         old, new = self.frame.metric, frame.metric
         if np.abs(new - old).max() > SAME_STRETCH * np.abs(old).max():
             return None
+        same = np.array_equal(frame.rotation, self.frame.rotation)
+        if same and np.array_equal(frame.origin, self.frame.origin):
+            return self
         # The baked stretch is kept, so that rounding does not accumulate while the object moves.
         return replace(self, frame=replace(frame, stretch=self.frame.stretch))
 

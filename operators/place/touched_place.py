@@ -22,6 +22,9 @@ from .seen_triangle import outward_normal, triangle_at, turn_between
 
 Array = NDArray[np.float64]
 
+# Relative difference of places that are the same: evaluated ones are float32.
+SAME = 1e-6
+
 
 @dataclass(frozen=True, eq=False)
 class TouchedPlace:
@@ -50,12 +53,22 @@ class TouchedPlace:
 
     def followed(self, thing: bpy.types.Object, frame: BodyFrame) -> TouchedPlace:
         """The same place as it is seen now, after another pose; as it was where that is unknown."""
-        mesh = evaluated(thing).data
+        mesh = _evaluated(thing).data
         if self.alpha is None or max(self.corners, default=0) >= len(mesh.vertices):
             return self
         if not _is_marked(mesh):
             return self
-        return _on_triangle(thing, frame, mesh, list(self.corners), self.alpha)
+        now = _on_triangle(thing, frame, mesh, list(self.corners), self.alpha)
+        # Rounding is no motion.
+        return self if now.is_at(self) else now
+
+    def is_at(self, other: TouchedPlace) -> bool:
+        """Whether it is seen where another is, and as that is turned."""
+        size = float(np.linalg.norm(self.seen)) + float(np.linalg.norm(self.rest))
+        return bool(
+            np.abs(self.seen - other.seen).max() <= SAME * size
+            and np.abs(self.turn - other.turn).max() <= SAME
+        )
 
 
 def is_seen_at_rest(thing: bpy.types.Object) -> bool:
@@ -68,10 +81,12 @@ def is_seen_at_rest(thing: bpy.types.Object) -> bool:
 def under_ray(
     thing: bpy.types.Object, frame: BodyFrame, origin: Array, direction: Array
 ) -> TouchedPlace | None:
-    """First place of an object on a ray (3,), world coordinates; None beside it."""
+    """First place of an object on a ray (3,), world coordinates; None
+    beside it.
+    """
     start = _local(frame, origin)
     along = (_local(frame, np.add(origin, direction)) - start).normalized()
-    seen = evaluated(thing)
+    seen = _evaluated(thing)
     if not len(seen.data.polygons):
         return None
     hit, place, _, face = seen.ray_cast(start, along)
@@ -86,15 +101,18 @@ def nearest(thing: bpy.types.Object, frame: BodyFrame, at: Array) -> TouchedPlac
     PalpateError
         It shows no face.
     """
-    seen = evaluated(thing)
+    seen = _evaluated(thing)
     if not len(seen.data.polygons):
         raise PalpateError("{name} shows no face to touch; look at its modifiers", name=thing.name)
     _, place, _, face = seen.closest_point_on_mesh(_local(frame, at))
     return _on_face(thing, frame, face, place)
 
 
-def evaluated(thing: bpy.types.Object) -> bpy.types.Object:
-    """The object as evaluated for the view."""
+def _evaluated(thing: bpy.types.Object) -> bpy.types.Object:
+    """The object as evaluated for the view.
+
+    Where something changed since, Blender evaluates it again: what it had then may be gone.
+    """
     return thing.evaluated_get(bpy.context.evaluated_depsgraph_get())
 
 
@@ -103,7 +121,7 @@ def _local(frame: BodyFrame, at: Array) -> Vector:
 
 
 def _on_face(thing: bpy.types.Object, frame: BodyFrame, face: int, place: Vector) -> TouchedPlace:
-    mesh = evaluated(thing).data
+    mesh = _evaluated(thing).data
     corners, alpha = triangle_at(mesh, face, place)
     return _on_triangle(thing, frame, mesh, corners, alpha)
 

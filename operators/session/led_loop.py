@@ -6,18 +6,22 @@ from collections.abc import Sequence
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 from ...core.errors import PalpateError
 from ...core.sentence import Sentence
+from ...core.servo.session import Snapshot
 from ..object.drawn_body import DrawnBody
 from ..record import recording_writer
-from ..scene.body_frame import as_point
+from ..scene.body_frame import BodyFrame, as_point
 from ..tool import tool_turn
 from ..tool.finger_tip import FingerTip
 from ..tool.tool_turn import Point, Turn
 from .finger_leads import FingerLead, Lead
 from .force_loop import ForceLoop
 from .live_settings import LiveSettings
+
+Array = NDArray[np.float64]
 
 
 def start_loop(
@@ -89,6 +93,18 @@ def lead_fingers(
             troubles.append(problem.sentence)
         loop.lead(finger, None if empty is None else _place_of(empty, drawn), turn)
     return troubles
+
+
+def led_place(lead: FingerLead, snapshot: Snapshot | None, frame: BodyFrame) -> Array | None:
+    """Where a finger of an Empty or a device is, world coordinates; None while it touches, and for
+    the pointer's, which stays with what it touched.
+    """
+    if lead.lead is Lead.POINTER or (snapshot is not None and snapshot.touching):
+        return None
+    empty = lead.empty.find() if lead.empty is not None else None
+    if empty is not None:
+        return np.array(empty.matrix_world)[:3, 3]
+    return None if snapshot is None else frame.world_from_body(snapshot.fingers[0].probe)
 
 
 def _start_of(lead: FingerLead, drawn: DrawnBody) -> Point:

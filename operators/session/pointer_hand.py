@@ -11,6 +11,7 @@ from mathutils import Vector
 from numpy.typing import NDArray
 
 from ...core.contact.tool.pose import resting_on
+from ..layer import place_marks
 from ..place import touched_place
 from ..place.touched_place import TouchedPlace
 from ..scene import ray
@@ -70,7 +71,9 @@ class PointerHand:
         place = None if thing is None else self._touched(thing, here)
         if place is None:
             return
-        self.session.touch(place, thing)
+        if not self.held or len(self.fingers) == 1:
+            # Both fingers of a pinch are in one local frame.
+            self.session.touch(place, thing)
         drawn = self.session.drawn
         point, normal = drawn.surface_place(place.rest)
         view_axes = np.array(here.region_3d.view_matrix)[:3, :3]
@@ -109,7 +112,9 @@ class PointerHand:
 
     def place_on_both_sides(self, region_3d: bpy.types.RegionView3D) -> None:
         """Set two fingers down at the left and right of the body in the view."""
-        drawn, axes = self.session.drawn, np.array(region_3d.view_matrix)[:3, :3]
+        axes = np.array(region_3d.view_matrix)[:3, :3]
+        self._face(axes[2])
+        drawn = self.session.drawn
         right = drawn.frame.turn_to_body(axes[0])
         nodes, triangles = drawn.body.mesh.nodes, drawn.body.mesh.surface_triangles
         surface = drawn.surface_nodes
@@ -125,6 +130,20 @@ class PointerHand:
             self.held[finger] = Held(start, normal, self.session.tip.deepest)
             self._set_down(finger, turn)
             self.session.post(Moment.RELEASE)
+
+    def _face(self, toward: Array) -> None:
+        """Take the local frame of what is seen of a posed body from a side (3,), world axes."""
+        thing = self.session.handle.find()
+        if thing is None or not place_marks.needed(thing):
+            return
+        size = max(thing.dimensions)
+        corners = np.array([thing.matrix_world @ Vector(corner) for corner in thing.bound_box])
+        middle = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
+        frame = frame_of(thing, self.session.scene)
+        place = touched_place.under_ray(thing, frame, middle + 2.0 * size * toward, -toward)
+        if place is None:
+            place = touched_place.nearest(thing, frame, middle)
+        self.session.touch(place, thing)
 
     def _at_rest(self, point: Array, normal: Array, view_axes: Array) -> tuple[Array, Turn | None]:
         """Position of a finger just out of contact, and rotation of its tool."""

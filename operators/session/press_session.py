@@ -19,14 +19,14 @@ from ...core.sentence import Sentence
 from ...core.servo.session import Snapshot
 from ..device import device_source, servo_words
 from ..device.device_source import DeviceFrame
-from ..layer import live_layer
+from ..layer import live_layer, place_marks
 from ..object.drawn_body import DrawnBody, open_body
 from ..place.touched_place import TouchedPlace
 from ..scene.object_handle import ObjectHandle
 from ..tool.finger_tip import FingerTip, chosen_tip
 from .finger_leads import BOTH_POINTER, FingerLead, Lead, leads_of
 from .force_loop import ForceLoop
-from .led_loop import lead_fingers, record, start_loop
+from .led_loop import lead_fingers, led_place, record, start_loop
 from .live_settings import LiveSettings
 from .press_effects import Act, Effect, Say, StartServo, SwitchForce
 from .press_events import (
@@ -193,8 +193,11 @@ class PressSession:
         if thing is None:
             raise PalpateError("{name} is gone; choose another object", name=self.handle.name)
         frame = None
+        if place_marks.hung(thing):
+            bpy.context.view_layer.update()
+        self._follow_frame(thing)
         if source is Source.DEVICE:
-            frame = device_source.device_frame(self.scene, self.drawn.frame, self.home)
+            frame = device_source.device_frame(thing, self.scene, self.drawn.frame, self.home)
         settings = LiveSettings.of(thing, self.scene, frame)
         self.loop = start_loop(thing, self.scene, self.drawn, settings, self.leads, self.tip)
         self._problems += lead_fingers(self.loop, self.leads, self.scene, self.drawn)
@@ -216,7 +219,8 @@ class PressSession:
         return thing
 
     def _follow_frame(self, thing: bpy.types.Object) -> bool:
-        moved = moved_along(thing, self.scene, self.drawn, self.place)
+        finger = led_place(self.leads[0], self.snapshot, self.drawn.frame)
+        moved, self.place = moved_along(thing, self.scene, self.drawn, self.place, finger)
         if moved is not None:
             self.drawn = self.seen.drawn = moved
         return moved is not None
@@ -226,7 +230,7 @@ class PressSession:
         scene, frame = self.scene, before
         if before is not None:
             try:
-                frame = device_source.device_frame(scene, self.drawn.frame, self.home)
+                frame = device_source.device_frame(thing, scene, self.drawn.frame, self.home)
             except PalpateError as problem:
                 self._problems.append(problem.sentence)
         return LiveSettings.of(thing, scene, frame)

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import bpy
+import numpy as np
+from numpy.typing import NDArray
 
 from ...core.errors import PalpateError
-from ..layer import layers, live_layer
+from ..layer import layers, live_layer, place_marks
 from ..object.drawn_body import DrawnBody
+from ..place import touched_place
 from ..place.touched_place import TouchedPlace
 from ..scene.drawn_surface import frame_of
+
+Array = NDArray[np.float64]
 
 
 def reason_to_end(thing: bpy.types.Object | None, drawn: DrawnBody, *, withdrawn: bool) -> str:
@@ -29,13 +34,19 @@ def moved_along(
     scene: bpy.types.Scene,
     drawn: DrawnBody,
     place: TouchedPlace | None,
-) -> DrawnBody | None:
-    """The body where the object is now, in the local frame of a touched place; None if it was
-    scaled, sheared or flattened.
+    finger: Array | None = None,
+) -> tuple[DrawnBody | None, TouchedPlace | None]:
+    """The body where the object is now, in the local frame of a place; None if it was scaled,
+    sheared or flattened. And that place: the touched one as it is seen now, or the nearest one to a
+    ``finger`` (3,) that is free, world coordinates; None at rest.
     """
     try:
         frame = frame_of(thing, scene)
     except PalpateError:
         # A flattened object has changed its scale too.
-        return None
-    return drawn.moved_to(frame if place is None else place.frame(frame))
+        return None, place
+    if finger is not None and place_marks.hung(thing):
+        place = touched_place.nearest(thing, frame, finger)
+    elif place is not None:
+        place = place.followed(thing, frame)
+    return drawn.moved_to(frame if place is None else place.frame(frame)), place

@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ..bake.bake_session import OnSoft
+from ..layer import place_marks
 from ..object.drawn_body import DrawnBody, open_body
+from ..place import touched_place
 from ..reporting.translated import reported, shown
-from ..scene import ray, viewport
+from ..scene import viewport
 from ..scene.body_frame import Point, as_point
 
 if TYPE_CHECKING:
@@ -52,7 +54,7 @@ class SoftnessOperator(OnSoft, _Operator):
             return {"PASS_THROUGH"} if event.type.startswith(("WHEEL", "MIDDLE")) else MODAL
         self._leave(context)
         here = viewport.under_pointer(context.window, event.mouse_x, event.mouse_y)
-        place = None if here is None else _met(self._drawn, here)
+        place = None if here is None else _met(context, self._drawn, here)
         if place is None:
             self.report(
                 {"WARNING"},
@@ -77,12 +79,9 @@ class SoftnessOperator(OnSoft, _Operator):
 MODAL = {"RUNNING_MODAL"}
 
 
-def _met(drawn: DrawnBody, here: viewport.Viewport) -> Point | None:
-    """Point of the body under the pointer, world units."""
-    mesh = drawn.body.mesh
-    origin, direction = here.ray(drawn.frame)
-    hit = ray.first_hit(origin, direction, mesh.nodes, mesh.surface_triangles)
-    if hit is None:
-        return None
-    point = hit.alpha @ mesh.nodes[mesh.surface_triangles[hit.triangle]]
-    return as_point(drawn.frame.world_from_body(point))
+def _met(context: bpy.types.Context, drawn: DrawnBody, here: viewport.Viewport) -> Point | None:
+    """Point of the object, as it is seen, under the pointer, world units."""
+    thing = context.object
+    with place_marks.marked(thing):
+        place = touched_place.under_ray(thing, drawn.frame, *here.line_of_sight())
+    return None if place is None else as_point(drawn.frame.world_from_body(place.seen))

@@ -9,15 +9,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.errors import PalpateError
+from ..layer import place_marks
 from ..object.drawn_body import DrawnBody
+from ..place import touched_place
 from ..scene.drawn_surface import rest_coordinates
 
 
 def place_in_body(
     drawn: DrawnBody, context: bpy.types.Context, operator: bpy.types.Operator
 ) -> NDArray[np.float64]:
-    """Place (3,), metres in the body: the operator's ``at`` if it was set, else the 3D cursor or
-    the middle of the selected vertices, as chosen.
+    """Place (3,), metres in the body at rest: of what is seen nearest to the operator's ``at``, if
+    that was set, else to the 3D cursor; or the middle of the selected vertices, as chosen.
 
     Raises
     ------
@@ -29,8 +31,9 @@ def place_in_body(
         return _middle_of_selected(drawn, context.object)
     given = operator.properties.is_property_set("at")
     world = operator.at if given else context.scene.cursor.location
-    place: NDArray[np.float64] = drawn.frame.body_from_world(np.array(world, dtype=np.float64))
-    return place
+    thing = context.object
+    with place_marks.marked(thing):
+        return touched_place.nearest(thing, drawn.frame, np.array(world)).rest
 
 
 def _middle_of_selected(drawn: DrawnBody, thing: bpy.types.Object) -> NDArray[np.float64]:

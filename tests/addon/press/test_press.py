@@ -281,7 +281,7 @@ def test_an_empty_places_the_device(sessions, states, thing):
     bpy.context.view_layer.update()
     body = part("operators.scene.drawn_surface").frame_of(thing, scene)
     source = part("operators.device.device_source")
-    frame = source.device_frame(scene, body, source.home_of_device(thing, scene, body))
+    frame = source.device_frame(thing, scene, body, source.home_of_device(thing, scene, body))
     device = np.array([0.01, 0.02, 0.03])
     expected = np.array(bpy.context.object.matrix_world.to_3x3()) @ (2 * device) + [0, 0, 0.3]
     mapped = frame.scale * frame.rotation @ device + frame.translation
