@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import bpy
@@ -20,7 +21,7 @@ from ..press.modal_press import Pressing
 from ..reporting.translated import reported, shown
 from ..scene.modal_progress import ModalProgress
 from ..shape.drawn_shape import closing_shape
-from . import live_pressers
+from . import frame_keys, live_pressers, mesh_cache
 from .force_table import FrameRows
 from .imprinted_frames import imprinted
 from .keeping import ITEMS, KEEPERS, Baking, collected
@@ -165,7 +166,7 @@ class PALPATE_OT_press_frames(Pressing, bpy.types.Operator):
         touched, rate = False, scene.render.fps / scene.render.fps_base
         with (
             live_pressers.paused(),
-            place_marks.marked(thing, live_pressers.LAYER_NAME),
+            _met_as_seen(thing),
             frame_kept(scene),
             closing_shape(thing, drawn) as shape,
         ):
@@ -218,6 +219,16 @@ class PALPATE_OT_press_frames(Pressing, bpy.types.Operator):
                 most=MOST_KEYS,
             )
         return frames
+
+
+@contextmanager
+def _met_as_seen(thing: bpy.types.Object) -> Iterator[None]:
+    """The body is met where it is seen, but for what an earlier bake plays."""
+    if frame_keys.plays(thing):
+        yield
+        return
+    with mesh_cache.silent(thing), place_marks.marked(thing, live_pressers.LAYER_NAME):
+        yield
 
 
 classes = (PALPATE_OT_press_frames,)
