@@ -12,9 +12,6 @@ from numpy.typing import NDArray
 Vectors = NDArray[np.float64]
 Follow = Callable[[Vectors], tuple[Vectors, Vectors]]
 
-# Depths and radii, in edges of the mesh.
-DEPTHS = (0.1, 4.0)
-RADII = (0.1, 4.0)
 # Rounds are at most so many depths wide: wider ones leave the body as a rule.
 WIDEST = 3.0
 # Share of loops that begin on an edge or a node of the mesh.
@@ -31,17 +28,34 @@ APART = 4.0
 
 
 @dataclass(frozen=True)
+class Span:
+    """How deep loops go in, and how wide they are.
+
+    Attributes
+    ----------
+    unit : metres; None for the edge of the mesh.
+    depths, radii : least and largest, in that unit.
+    """
+
+    unit: float | None = None
+    depths: tuple[float, float] = (0.1, 4.0)
+    radii: tuple[float, float] = (0.1, 4.0)
+
+
+@dataclass(frozen=True)
 class Loop:
     """A way in from the air, along a normal, and a round that begins and ends there.
 
     Attributes
     ----------
     depth : metres.
+    normal : (3,), out of the body where the way goes in.
     press : (k, 3), metres.
     round : (n, 3), metres; the last place is the first one.
     """
 
     depth: float
+    normal: Vectors
     press: Vectors
     round: Vectors
 
@@ -71,7 +85,12 @@ class Books:
 
 
 def random_loops(
-    nodes: Vectors, triangles: NDArray[np.int64], free: NDArray[np.bool_], count: int, seed: int
+    nodes: Vectors,
+    triangles: NDArray[np.int64],
+    free: NDArray[np.bool_],
+    count: int,
+    seed: int,
+    span: Span = Span(),
 ) -> Iterator[Loop]:
     """Ellipses in any plane, at any place of a surface whose triangles are free to move.
 
@@ -83,7 +102,7 @@ def random_loops(
     normals = np.cross(b - a, c - a)
     areas = np.linalg.norm(normals, axis=1)
     normals /= areas[:, None]
-    edge = float(np.sqrt(2.0 / np.sqrt(3.0) * np.median(areas)))
+    unit = span.unit or float(np.sqrt(2.0 / np.sqrt(3.0) * np.median(areas)))
     angle = np.linspace(0.0, 2.0 * np.pi, ROUND + 1)[:, None]
     for _ in range(count):
         triangle = random.choice(len(triangles), p=areas / areas.sum())
@@ -91,15 +110,16 @@ def random_loops(
         if random.random() < ON_BORDERS:
             alpha *= random.permutation([1.0, random.integers(2), 0.0])
             alpha /= alpha.sum()
-        depth = edge * np.exp(random.uniform(*np.log(DEPTHS)))
-        wide = min(edge * np.exp(random.uniform(*np.log(RADII))), WIDEST * depth)
+        depth = unit * np.exp(random.uniform(*np.log(span.depths)))
+        wide = min(unit * np.exp(random.uniform(*np.log(span.radii))), WIDEST * depth)
         narrow = wide * random.uniform(0.3, 1.0)
         plane = np.linalg.qr(random.normal(size=(3, 3)))[0]
         start = alpha @ nodes[triangles[triangle]] - depth * normals[triangle]
         heights = np.linspace(1.05 * depth, 0.0, PRESS)[:, None]
         ellipse = (1.0 - np.cos(angle)) * plane[0] * wide + np.sin(angle) * plane[1] * narrow
         ellipse[-1] = 0.0
-        yield Loop(float(depth), start + heights * normals[triangle], start + 0.5 * ellipse)
+        normal = normals[triangle]
+        yield Loop(float(depth), normal, start + heights * normal, start + 0.5 * ellipse)
 
 
 def random_pairs(loops: Sequence[Loop], seed: int) -> Iterator[tuple[Loop, Loop]]:
@@ -119,7 +139,7 @@ def books(loops: Sequence[Loop], follow: Follow) -> Books | None:
     when it had been pressed in: there is no F d of what it only grazes.
 
     ``follow`` leads ``m`` fingers on along (ticks, m, 3) and gives the forces on them, newton, of
-    that shape, and at the end their contact points (m, 3).
+    that shape, and at the end their contact points (m, 3), of tools the middle of the pressure.
     """
     path = np.stack([loop.path for loop in loops], axis=1)
     ends = [0, *(PRESS + REST + number * ROUND for number in range(3)), len(path)]

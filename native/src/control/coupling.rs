@@ -122,6 +122,8 @@ pub struct Contact {
 pub struct Coupled {
     /// The part of the displacement that the body takes, m; the spring takes the rest.
     pub body_displacement: DVec3,
+    /// Force of the body and the spring, N.
+    pub spring: DVec3,
     /// Force for the device before safety, N.
     pub force: DVec3,
 }
@@ -156,6 +158,7 @@ impl Coupler {
         };
         Coupled {
             body_displacement: share * contact.displacement,
+            spring: seen.force,
             force: self.drive(&seen, coupling, scale, dt),
         }
     }

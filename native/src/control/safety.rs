@@ -53,13 +53,21 @@ impl Safety {
         self.gain >= 1.0
     }
 
-    /// The force to send for the force `wanted` (N), `dt` seconds after the last one.
+    /// The force to send for the force `wanted` and the `brake` beside it (N), `dt` seconds after the
+    /// last one. A brake is for the force as far as it is sent: it is added to what the clamp leaves.
     ///
-    /// None when `wanted` or a limit is not finite: the caller reports the fault, the output is
-    /// zero and ramps up again. The output is never larger than `wanted`, so no limit can hold a
+    /// None when one of them or a limit is not finite: the caller reports the fault, the output is
+    /// zero and ramps up again. The output is never larger than both together, so no limit can hold a
     /// force that the body no longer gives.
-    pub fn limit(&mut self, wanted: DVec3, limits: &Limits, dt: f64) -> Option<Limited> {
+    pub fn limit(
+        &mut self,
+        wanted: DVec3,
+        brake: DVec3,
+        limits: &Limits,
+        dt: f64,
+    ) -> Option<Limited> {
         let numbers_are_sound = wanted.is_finite()
+            && brake.is_finite()
             && limits.max_force >= 0.0
             && limits.max_slew >= 0.0
             && limits.ramp_seconds >= 0.0
@@ -74,7 +82,7 @@ impl Safety {
         } else {
             1.0
         };
-        let clamped = shorten(wanted, limits.max_force);
+        let clamped = shorten(shorten(wanted, limits.max_force) + brake, limits.max_force);
         let ramped = clamped * self.gain;
         let change = shorten(ramped - self.output, limits.max_slew * dt);
         let is_slewed = change != ramped - self.output;
@@ -84,11 +92,11 @@ impl Safety {
         } else {
             ramped
         };
-        let by = if self.output == wanted {
+        let by = if self.output == wanted + brake {
             ""
         } else if self.gain < 1.0 {
             RAMP
-        } else if clamped != wanted {
+        } else if clamped != wanted + brake {
             CLAMP
         } else {
             SLEW
@@ -128,12 +136,12 @@ mod tests {
     #[test]
     fn clamp_keeps_the_direction() {
         let force = Safety::default()
-            .limit(DVec3::new(30.0, 40.0, 0.0), &OPEN, DT)
+            .limit(DVec3::new(30.0, 40.0, 0.0), DVec3::ZERO, &OPEN, DT)
             .unwrap()
             .force;
         assert!(force.distance(DVec3::new(1.8, 2.4, 0.0)) < 1e-12);
         let huge = Safety::default()
-            .limit(DVec3::splat(1e300), &OPEN, DT)
+            .limit(DVec3::splat(1e300), DVec3::ZERO, &OPEN, DT)
             .unwrap()
             .force;
         assert!((huge.length() - 3.0).abs() < 1e-12);
@@ -148,12 +156,16 @@ mod tests {
         let mut safety = Safety::default();
         let mut last = 0.0;
         for tick in 1..=100 {
-            let force = safety.limit(DVec3::X, &limits, DT).unwrap().force.x;
+            let force = safety
+                .limit(DVec3::X, DVec3::ZERO, &limits, DT)
+                .unwrap()
+                .force
+                .x;
             assert!((force - f64::from(tick) * 0.01).abs() < 1e-9);
             assert!(force > last);
             last = force;
         }
-        let whole = safety.limit(DVec3::X, &limits, DT).unwrap();
+        let whole = safety.limit(DVec3::X, DVec3::ZERO, &limits, DT).unwrap();
         assert_eq!((whole.force, whole.by), (DVec3::X, ""));
     }
 
@@ -165,10 +177,17 @@ mod tests {
         };
         let mut safety = Safety::default();
         for _ in 0..200 {
-            safety.limit(DVec3::X, &limits, DT);
+            safety.limit(DVec3::X, DVec3::ZERO, &limits, DT);
         }
         assert_eq!(safety.silence(), DVec3::ZERO);
-        assert!(safety.limit(DVec3::X, &limits, DT).unwrap().force.x < 0.011);
+        assert!(
+            safety
+                .limit(DVec3::X, DVec3::ZERO, &limits, DT)
+                .unwrap()
+                .force
+                .x
+                < 0.011
+        );
     }
 
     #[test]
@@ -178,13 +197,25 @@ mod tests {
             ..OPEN
         };
         let mut safety = Safety::default();
-        assert!((safety.limit(DVec3::X, &limits, DT).unwrap().force.x - 0.1).abs() < 1e-12);
+        assert!(
+            (safety
+                .limit(DVec3::X, DVec3::ZERO, &limits, DT)
+                .unwrap()
+                .force
+                .x
+                - 0.1)
+                .abs()
+                < 1e-12
+        );
         for _ in 0..20 {
-            safety.limit(DVec3::X, &limits, DT);
+            safety.limit(DVec3::X, DVec3::ZERO, &limits, DT);
         }
-        let turned = safety.limit(DVec3::Y, &limits, DT).unwrap().force;
+        let turned = safety
+            .limit(DVec3::Y, DVec3::ZERO, &limits, DT)
+            .unwrap()
+            .force;
         assert!(turned.distance(DVec3::X) <= 0.1 + 1e-12);
-        let gone = safety.limit(DVec3::ZERO, &limits, DT).unwrap();
+        let gone = safety.limit(DVec3::ZERO, DVec3::ZERO, &limits, DT).unwrap();
         assert_eq!((gone.force, gone.by), (DVec3::ZERO, ""));
     }
 
@@ -192,13 +223,16 @@ mod tests {
     fn numbers_that_are_not_finite_give_no_force() {
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             let mut safety = Safety::default();
-            safety.limit(DVec3::X, &OPEN, DT);
-            assert_eq!(safety.limit(DVec3::new(0.0, bad, 0.0), &OPEN, DT), None);
+            safety.limit(DVec3::X, DVec3::ZERO, &OPEN, DT);
+            assert_eq!(
+                safety.limit(DVec3::new(0.0, bad, 0.0), DVec3::ZERO, &OPEN, DT),
+                None
+            );
             let nan_limit = Limits {
                 max_force: f64::NAN,
                 ..OPEN
             };
-            assert_eq!(safety.limit(DVec3::X, &nan_limit, DT), None);
+            assert_eq!(safety.limit(DVec3::X, DVec3::ZERO, &nan_limit, DT), None);
         }
     }
 }

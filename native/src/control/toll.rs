@@ -1,10 +1,11 @@
-//! The toll: what fingers pay where their contact points come to stiffer places of the body.
+//! The toll: what fingers pay for energy that the body gains and nobody has put in.
 //!
-//! Forces that are the slope of the elastic energy give back what was put in, as long as their contact
-//! points stay. But points slide on, and where the body is stiffer the same depth holds more energy,
-//! which nobody has paid for: pressed in where it is soft, drawn aside and let out where it is stiff,
-//! such a finger would gain (`docs/contact.md`). So the energy held is compared with the work of all
-//! fingers together, for what one has put in another may take out. What is missing, the debt, brakes
+//! Forces that are the slope of the elastic energy give back what was put in, as those of tools do and
+//! of points whose contact points stay. But points slide on, and where the body is stiffer the same
+//! depth holds more energy: pressed in where it is soft, drawn aside and let out where it is stiff,
+//! such a finger would gain (`docs/contact.md`). And deep in the body a tool's pushes are held near a
+//! direction that changes with them (`docs/fingertip.md`). So the energy held is compared with the work
+//! of all fingers together, for what one has put in another may take out. What is missing, the debt, brakes
 //! take from the ways that the fingers go on: against them, hence without a force at rest, where the
 //! law of contact holds as it is. Places that are softer give nothing back: a credit could be carried
 //! into another path, and taken out there.
@@ -12,7 +13,7 @@
 //! The accounts are those of the forces as sent: what the limits cut off a force was not worked
 //! against, and what they cut off a brake was not paid.
 //!
-//! A brake is as large as the debt asks, up to the push. It grows and turns over a short piece of the
+//! A brake is as large as the debt asks, up to the push as sent. It grows and turns over a short piece of the
 //! way, solved implicitly, so that no step is too long for it: so it is continuous, and knows neither the
 //! mesh nor the speed.
 
@@ -41,8 +42,12 @@ pub struct Pressed {
     pub finger: DVec3,
     /// It did not move there but was set down.
     pub is_set_down: bool,
-    /// Its contact point at rest, m.
-    pub place: DVec3,
+    /// Its contact point at rest, m; a tool has none.
+    pub place: Option<DVec3>,
+    /// How far a tool was turned in this tick, about an axis by its length in rad.
+    pub turn: DVec3,
+    /// The torque with which a tool turns the body by the law, N m.
+    pub torque: DVec3,
     /// Its force on the body by the law of contact, N.
     pub push: DVec3,
     /// Its share of the energy of all by that law at these places and displacements, J.
@@ -123,13 +128,14 @@ impl Pressed {
     fn stays(&self, last: &Self) -> bool {
         let is_off = !self.presses() && !last.presses();
         let nearest = SAME_PLACE * self.depth().max(last.depth());
-        let is_there = self.place.distance(last.place) <= nearest;
-        is_off || (is_there && self.sent_share() == 1.0)
+        let moved = (self.place.zip(last.place)).map(|(now, last)| now.distance(last));
+        is_off || (moved.is_some_and(|moved| moved <= nearest) && self.sent_share() == 1.0)
     }
 
-    /// The finger's work against the push as it is sent, J.
+    /// The finger's work against the push as it is sent, J, and that of who turns the tool.
     fn work(&self, last: &Self, way: DVec3) -> f64 {
-        let work = 0.5 * (last.felt() + self.felt()).dot(way);
+        let turned = self.torque * self.sent_share() + last.torque * last.sent_share();
+        let work = 0.5 * ((last.felt() + self.felt()).dot(way) + turned.dot(self.turn));
         if self.presses() {
             work
         } else {
@@ -175,9 +181,9 @@ impl Brake {
         0.5 * self.direction.dot(self.way)
     }
 
-    /// Grows towards a size, at most as large as the push, no faster than the way allows.
+    /// Grows towards a size, at most as large as the push as sent, no faster than the way allows.
     fn grow(&mut self, size: f64, pressed: &Pressed) {
-        let most = pressed.push.length();
+        let most = pressed.felt().length();
         let change = most * self.way.length() / (GROWING * pressed.depth());
         let size = size.clamp(self.size - change, self.size + change);
         self.size = size.clamp(0.0, most);

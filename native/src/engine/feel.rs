@@ -29,6 +29,8 @@ impl Joint {
             let arm = slot.at.position + slot.moved - position;
             felt.force -= slot.force * young_modulus;
             felt.torque -= arm.cross(slot.force * young_modulus);
+            let held = slot.force.dot(slot.moved) + slot.spring * slot.push * slot.push;
+            felt.energy += 0.5 * held * young_modulus;
             felt.pressed += 1;
             collider.take(slot);
         }

@@ -81,7 +81,7 @@ pub struct Answer {
     pub force: DVec3,
     /// On the body, were there nothing but the body between it and this finger.
     pub contact_force: DVec3,
-    /// Its share of the energy of all, J at unit modulus; without what tools hold.
+    /// Its share of the energy of all, J at unit modulus.
     pub energy: f64,
     /// Whether force and energy are those of the law, not on their way there.
     pub is_settled: bool,

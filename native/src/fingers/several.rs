@@ -107,7 +107,7 @@ impl Several {
             if press.touches {
                 let own = inverse_of_definite(&alone[p][p])?;
                 answers[p].force = force;
-                answers[p].energy = 0.5 * force.dot(asked[p]);
+                answers[p].energy = 0.5 * force.dot(press.displacement);
                 answers[p].is_settled = true;
                 answers[p].contact_force = force + own * force * between[p];
                 let moved = by_all + force * between[p];

@@ -145,7 +145,7 @@ impl Softened {
             let force = self.forces[p];
             let sprung = force * pressing.between[p];
             answer.force = force;
-            answer.energy = relation.energy(own[p]) + 0.5 * force.dot(pressing.asked[p] - own[p]);
+            answer.energy = relation.energy(own[p]) + 0.5 * force.dot(press.displacement - own[p]);
             answer.is_settled = found && self.left == 0.0;
             answer.contact_force = if found {
                 force + beyond[p]

@@ -222,7 +222,7 @@ impl<'a> Controller<'a> {
         );
         let sent = self
             .safety
-            .limit(DVec3::X * wanted, &trial.limits, dt)
+            .limit(DVec3::X * wanted, DVec3::ZERO, &trial.limits, dt)
             .map(|limited| limited.force)
             .unwrap_or_default();
         self.coupler.sent(sent);

@@ -67,7 +67,7 @@ impl Followed<'_> {
         Pressed {
             finger: self.shot.probe,
             is_set_down: self.is_set_down,
-            place: self.shot.proxy,
+            place: self.hold.map(|_| self.shot.proxy),
             law: Law {
                 modulus: self.moment.settings.young_modulus,
                 most_stiffness: self.most_stiffness(),
@@ -82,6 +82,7 @@ impl Followed<'_> {
         if self.motors.is_none() {
             return Coupled {
                 body_displacement: contact.displacement,
+                spring: contact.force,
                 force: contact.force,
             };
         }

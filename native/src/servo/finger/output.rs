@@ -22,7 +22,8 @@ impl Finger {
         self.standing = transition(&self.standing, found, dt);
         let (mut output_force, mut limited) = (DVec3::ZERO, "");
         if self.standing.may_push(found) {
-            match self.safety.limit(touch.wanted, &followed.limits(), dt) {
+            let Touch { wanted, brake, .. } = *touch;
+            match self.safety.limit(wanted, brake, &followed.limits(), dt) {
                 Some(within) => (output_force, limited) = (within.force, within.by),
                 None => self.standing = Standing::fault(Fault::Nan),
             }

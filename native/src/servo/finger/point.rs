@@ -155,6 +155,7 @@ impl Point {
         }
         let mut coupled = Coupled {
             body_displacement: displacement,
+            spring: whole.force,
             force: whole.force,
         };
         let (mut push, mut energy) = (-whole.force, -0.5 * whole.force.dot(displacement));
@@ -282,6 +283,7 @@ fn drive_softened(followed: &Followed<'_>, relation: &Relation, coupler: &mut Co
     };
     Coupled {
         body_displacement: moved,
+        spring: seen.force,
         force: followed.drive(coupler, &seen),
     }
 }

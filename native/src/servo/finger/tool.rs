@@ -7,6 +7,7 @@ use super::touch::Touch;
 use crate::control::coupling::{Contact, Coupler};
 use crate::servo::snapshot::Snapshot;
 use crate::tool::collider::Collider;
+use crate::tool::shape::Pose;
 
 /// The coupling sees a tool's stiffness smoothed over this time, s: it jumps where a point comes to
 /// bear, which the force must not.
@@ -19,6 +20,8 @@ pub(super) struct ToolTouch {
     begin: DVec3,
     /// Smoothed, N/m.
     stiffness: DMat3,
+    /// In the last tick.
+    rotation: DMat3,
 }
 
 impl ToolTouch {
@@ -37,14 +40,18 @@ impl ToolTouch {
         };
         let mut followed = *followed;
         followed.found.inside = !tool.is_free();
+        let mut turn = DVec3::ZERO;
         if let Some(pose) = tool.pose() {
             followed.shot.proxy = pose.position;
+            let last = Pose {
+                rotation: std::mem::replace(&mut self.rotation, pose.rotation),
+                ..*pose
+            };
+            turn = last.way_to(pose).1;
         }
         if felt.pressed == 0 {
-            *self = Self {
-                begin: followed.shot.probe,
-                stiffness: DMat3::ZERO,
-            };
+            self.begin = followed.shot.probe;
+            self.stiffness = DMat3::ZERO;
             return Touch::none(&followed);
         }
         let dt = followed.moment.dt;
@@ -54,12 +61,25 @@ impl ToolTouch {
             displacement: followed.shot.probe - self.begin,
             force: felt.force,
         };
-        let wanted = followed.couple(coupler, &contact).force;
+        let coupled = followed.couple(coupler, &contact);
         let shot = Snapshot {
             contact_force: felt.force,
             torque: felt.torque,
             ..followed.shot
         };
-        Touch::of(&followed, shot, wanted)
+        // Behind the coupling's spring force, torque and energy are less by one share.
+        let share = if felt.force == DVec3::ZERO {
+            1.0
+        } else {
+            coupled.spring.dot(felt.force) / felt.force.length_squared()
+        };
+        let is_settled = followed.presence == 1.0 && followed.is_ramped;
+        let mut touch = Touch::of(&followed, shot, coupled.force).with_energy(
+            -coupled.spring,
+            felt.energy * share,
+            is_settled,
+        );
+        (touch.pressed.turn, touch.pressed.torque) = (turn, felt.torque * -share);
+        touch
     }
 }

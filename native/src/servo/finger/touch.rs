@@ -14,8 +14,10 @@ pub struct Touch {
     /// What is known of the tick, but for the output.
     pub(super) shot: Snapshot,
     pub(super) found: Findings,
-    /// To go to the motors, N.
+    /// To go to the motors, N, but for the brake.
     pub(super) wanted: DVec3,
+    /// What it pays, N.
+    pub(super) brake: DVec3,
     /// For the toll.
     pub pressed: Pressed,
 }
@@ -29,6 +31,7 @@ impl Touch {
             shot,
             found,
             wanted,
+            brake: DVec3::ZERO,
             // Nobody knows of its energy, unless told.
             pressed: Pressed {
                 is_unsettled: true,
@@ -37,7 +40,7 @@ impl Touch {
         }
     }
 
-    /// The same of a point whose energy is known.
+    /// The same of a contact whose energy is known.
     #[must_use]
     pub(super) fn with_energy(self, push: DVec3, energy: f64, is_settled: bool) -> Self {
         let pressed = Pressed {
@@ -59,7 +62,7 @@ impl Touch {
         };
         Self {
             shot,
-            wanted: self.wanted + brake,
+            brake,
             ..self
         }
     }
@@ -70,6 +73,7 @@ impl Touch {
             shot: followed.shot,
             found: followed.found,
             wanted: DVec3::ZERO,
+            brake: DVec3::ZERO,
             pressed: followed.free(),
         }
     }

@@ -13,6 +13,8 @@ pub struct Felt {
     pub torque: DVec3,
     /// How the force resists a small move of the tool while other tools stay, N/m.
     pub stiffness: DMat3,
+    /// Of what it presses, J: its share of the body's, and what springs before its points hold.
+    pub energy: f64,
     /// Points that are pressed.
     pub pressed: usize,
     /// Linearisations it took.
@@ -30,6 +32,7 @@ impl Default for Felt {
             force: DVec3::ZERO,
             torque: DVec3::ZERO,
             stiffness: DMat3::ZERO,
+            energy: 0.0,
             pressed: 0,
             linearisations: 0,
             exact: false,
