@@ -42,8 +42,9 @@ def test_a_host_that_goes_on_has_its_port_back():
 
 
 @pytest.mark.parametrize("kind", guardians.KINDS)
-def test_one_that_is_killed_is_noticed_and_another_takes_its_place(kind):
-    loss = lost_guardians.lose(kind)
+@pytest.mark.parametrize("number", lost_guardians.SIGNALS, ids=lambda number: number.name)
+def test_one_that_is_lost_is_noticed_and_another_takes_its_place(kind, number):
+    loss = lost_guardians.lose(kind, number)
     assert loss.pushed
     assert loss.unguarded == 1
     assert loss.ms_to_zero < float("inf")

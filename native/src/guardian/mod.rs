@@ -5,6 +5,7 @@
 //! is opened. The tick tells it by shared memory that it lives and what is to be said for it, and looks
 //! whether it is there.
 
+mod end;
 pub mod program;
 mod refusal;
 mod watch;

@@ -5,7 +5,7 @@
 //! device's port (standard output) and the sheet (standard error), and nothing else. On Windows the line is
 //! the host's process itself.
 
-use std::sync::atomic::Ordering::{Acquire, SeqCst};
+use std::sync::atomic::Ordering::{Acquire, Release, SeqCst};
 use std::time::Duration;
 
 #[path = "program/sheet.rs"]
@@ -81,6 +81,7 @@ pub fn main() {
     let Some(sheet) = handed_sheet() else { return };
     let mut port = Port::handed_over();
     while sheet.holder.load(SeqCst) != DISMISSED {
+        sheet.looks.fetch_add(1, Release);
         let alive = sheet.alive_ns.load(Acquire);
         let silence = now_ns().saturating_sub(alive);
         let is_watched = alive > 0 && sheet.holder.load(SeqCst) == HOST;

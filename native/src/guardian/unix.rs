@@ -8,18 +8,15 @@ use std::os::unix::net::UnixStream;
 use std::os::unix::process::CommandExt;
 use std::process::{Child, Command, Stdio};
 use std::sync::atomic::Ordering::SeqCst;
-use std::time::Duration;
 
+use crate::guardian::end::end;
 #[cfg(not(target_os = "linux"))]
 use crate::guardian::program::now_ns;
 use crate::guardian::program::{DISMISSED, Sheet, map_sheet};
 use crate::guardian::refusal::refused;
-use crate::guardian::watch::{PROGRAM, Watch, sign};
+use crate::guardian::watch::{Attention, PROGRAM, Watch, watch};
 
 const NAME: &str = "palpate-guardian";
-/// Waits for its end, of [`PAUSE`] each; a driver may keep it longer.
-const PAUSES: u32 = 50;
-const PAUSE: Duration = Duration::from_millis(2);
 
 /// A process that watches this one, for one open port.
 #[derive(Debug)]
@@ -28,6 +25,7 @@ pub struct Guardian {
     /// Breaks when this process ends, or drops it.
     tie: Option<UnixStream>,
     child: Option<Child>,
+    attention: Attention,
     process: u32,
 }
 
@@ -61,6 +59,7 @@ impl Guardian {
             sheet,
             tie: Some(tie),
             child: Some(child),
+            attention: Attention::default(),
             process: std::process::id(),
         })
     }
@@ -69,11 +68,7 @@ impl Guardian {
     pub fn live(&mut self, last_word: &[u8]) -> Watch {
         let is_there =
             (self.child.as_mut()).is_some_and(|child| matches!(child.try_wait(), Ok(None)));
-        match (sign(self.sheet, last_word), is_there) {
-            (false, _) => Watch::Spoke,
-            (true, true) => Watch::Kept,
-            (true, false) => Watch::Absent,
-        }
+        watch(self.sheet, last_word, &mut self.attention, is_there)
     }
 }
 
@@ -88,12 +83,7 @@ impl Drop for Guardian {
         }
         self.sheet.holder.store(DISMISSED, SeqCst);
         self.tie = None;
-        for _ in 0..PAUSES {
-            if !matches!(child.try_wait(), Ok(None)) {
-                break;
-            }
-            std::thread::sleep(PAUSE);
-        }
+        end(&mut child);
         let at = std::ptr::from_ref(self.sheet).cast_mut();
         // SAFETY: mapped by `map_sheet` for this one alone, and used no more.
         let _ = unsafe { libc::munmap(at.cast(), size_of::<Sheet>()) };

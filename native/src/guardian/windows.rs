@@ -8,7 +8,6 @@ use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 use std::ptr::null;
 use std::sync::atomic::Ordering::SeqCst;
-use std::time::Duration;
 
 use windows_sys::Win32::Foundation::INVALID_HANDLE_VALUE;
 use windows_sys::Win32::System::Memory::{
@@ -16,19 +15,17 @@ use windows_sys::Win32::System::Memory::{
 };
 use windows_sys::Win32::System::Threading::{CREATE_NO_WINDOW, GetCurrentProcess};
 
+use crate::guardian::end::end;
 use crate::guardian::program::{DISMISSED, Sheet, map_sheet};
 use crate::guardian::refusal::refused;
-use crate::guardian::watch::{PROGRAM, Watch, sign};
-
-/// Waits for its end, of [`PAUSE`] each: it looks whether it was dismissed twenty times a second.
-const PAUSES: u32 = 50;
-const PAUSE: Duration = Duration::from_millis(2);
+use crate::guardian::watch::{Attention, PROGRAM, Watch, watch};
 
 /// A process that watches this one, for one open port.
 #[derive(Debug)]
 pub struct Guardian {
     sheet: &'static Sheet,
     child: Child,
+    attention: Attention,
 }
 
 impl Guardian {
@@ -60,17 +57,17 @@ impl Guardian {
             .creation_flags(CREATE_NO_WINDOW)
             .spawn()
             .map_err(refused)?;
-        Ok(Self { sheet, child })
+        Ok(Self {
+            sheet,
+            child,
+            attention: Attention::default(),
+        })
     }
 
     /// Says that the host lives, and what is to be said should it end. Never waits.
     pub fn live(&mut self, last_word: &[u8]) -> Watch {
         let is_there = matches!(self.child.try_wait(), Ok(None));
-        match (sign(self.sheet, last_word), is_there) {
-            (false, _) => Watch::Spoke,
-            (true, true) => Watch::Kept,
-            (true, false) => Watch::Absent,
-        }
+        watch(self.sheet, last_word, &mut self.attention, is_there)
     }
 }
 
@@ -78,12 +75,7 @@ impl Drop for Guardian {
     /// The device was let go: nothing is left to say.
     fn drop(&mut self) {
         self.sheet.holder.store(DISMISSED, SeqCst);
-        for _ in 0..PAUSES {
-            if !matches!(self.child.try_wait(), Ok(None)) {
-                break;
-            }
-            std::thread::sleep(PAUSE);
-        }
+        end(&mut self.child);
         let at = MEMORY_MAPPED_VIEW_ADDRESS {
             Value: std::ptr::from_ref(self.sheet).cast_mut().cast(),
         };

@@ -1,4 +1,4 @@
-"""Guardians that are killed in the middle of a press: noticed by their hosts, and replaced."""
+"""Guardians that are killed or stopped in mid-press: noticed by their hosts, and replaced."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import signal
 import time
 from contextlib import ExitStack
 from dataclasses import dataclass
+from itertools import product
 
 from ..table import Row
 from .guardians import WAYS, WORDS, LastWords, ending_row, guardians, hand_of
@@ -14,10 +15,12 @@ from .host import Host, eventually
 from .overheard import Overheard
 from .pressing import press
 
+SIGNALS = (signal.SIGKILL, signal.SIGSTOP)
+
 
 @dataclass(frozen=True)
 class Loss:
-    """A guardian that was killed, and what its host did then."""
+    """A guardian that was killed or stopped, and what its host did then."""
 
     pushed: bool
     """There was a force before."""
@@ -29,8 +32,8 @@ class Loss:
     """What was said when the host was killed while it pressed again."""
 
 
-def lose(kind: str) -> Loss:
-    """Press with a device of this kind, kill the guardian, press again, and kill the host."""
+def lose(kind: str, by: signal.Signals = signal.SIGKILL) -> Loss:
+    """Press with a device of this kind, send the guardian a signal, press again, and kill the host."""
     with ExitStack() as stack:
         hand = stack.enter_context(hand_of(kind))
         line = stack.enter_context(Overheard(hand.port))
@@ -43,9 +46,10 @@ def lose(kind: str) -> Loss:
         (first,) = guardians(host.process.pid)
         pushed = any(word.pushes for word in WORDS[kind](list(line.said)))
         sent = time.monotonic()
-        os.kill(first, signal.SIGKILL)
+        os.kill(first, by)
         eventually(lambda: host.report()["faults"]["unguarded"] > 0, "the host notices")
         eventually(lambda: bool(others(first)), "another guardian is there")
+        eventually(lambda: first not in guardians(), "the first guardian has ended")
         words = [word for word in WORDS[kind](list(line.said)) if word.time >= sent]
         zero = next((word.time for word in words if not word.pushes), float("inf"))
         press(host, hand, WAYS[kind])
@@ -64,11 +68,14 @@ def lose(kind: str) -> Loss:
 
 
 def lost_guardian_rows(times: int) -> list[Row]:
-    """A row for each kind of device."""
+    """A row for each kind of device and signal."""
     rows = []
-    for kind in WAYS:
-        losses = [lose(kind) for _ in range(times)]
-        worst = max(max(loss.ms_to_zero, loss.last.ms_to_zero) for loss in losses)
-        injected = f"SIGKILL to the guardian, then to the host, {kind}"
+    for kind, by in product(WAYS, SIGNALS):
+        losses = [lose(kind, by) for _ in range(times)]
+        worst = max(loss.last.ms_to_zero for loss in losses)
+        if by is signal.SIGKILL:
+            # One that is stopped is found by its silence, which takes longer: the host lives meanwhile.
+            worst = max(worst, *(loss.ms_to_zero for loss in losses))
+        injected = f"{by.name} to the guardian, then SIGKILL to the host, {kind}"
         rows.append(ending_row(injected, "unguarded", [loss.pushed for loss in losses], worst))
     return rows

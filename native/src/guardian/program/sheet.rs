@@ -28,6 +28,8 @@ pub struct Word {
 pub struct Sheet {
     /// The host's last sign of life by [`now_ns`]; 0 before the first.
     pub alive_ns: AtomicU64,
+    /// How often the guardian has looked, round and round.
+    pub looks: AtomicU32,
     /// [`HOST`], [`GUARDIAN`] or [`DISMISSED`].
     pub holder: AtomicU32,
     /// Which of the two words counts; the host writes the other one.
