@@ -33,7 +33,7 @@ class Loss:
 
 
 def lose(kind: str, by: signal.Signals = signal.SIGKILL) -> Loss:
-    """Press with a device of this kind, send the guardian a signal, press again, and kill the host."""
+    """Press with a device, send its guardian a signal, press again, and kill the host."""
     with ExitStack() as stack:
         hand = stack.enter_context(hand_of(kind))
         line = stack.enter_context(Overheard(hand.port))
@@ -74,7 +74,7 @@ def lost_guardian_rows(times: int) -> list[Row]:
         losses = [lose(kind, by) for _ in range(times)]
         worst = max(loss.last.ms_to_zero for loss in losses)
         if by is signal.SIGKILL:
-            # One that is stopped is found by its silence, which takes longer: the host lives meanwhile.
+            # One that is stopped is found by its silence, later: the host lives meanwhile.
             worst = max(worst, *(loss.ms_to_zero for loss in losses))
         injected = f"{by.name} to the guardian, then SIGKILL to the host, {kind}"
         rows.append(ending_row(injected, "unguarded", [loss.pushed for loss in losses], worst))

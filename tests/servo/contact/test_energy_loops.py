@@ -1,10 +1,12 @@
-"""Points give no energy on closed paths without friction, and are as the law says at rest."""
+"""Points and tools give no energy on closed paths without friction."""
 
 import numpy as np
 import pytest
 from palpate_servo.harness import SteppedFingers
-from referees.energy_loops import books, random_loops, random_pairs
+from referees.energy_loops import Span, books, random_loops, random_pairs
+from referees.led_tips import Tip, led, tip_of
 
+from palpate.core.contact.tool.tools import plate, sphere
 from palpate.core.servo.session import native_body
 from palpate.core.servo.settings import Coupling, Settings
 
@@ -12,36 +14,28 @@ YOUNG_MODULUS = 10_000.0
 # Shares of F d / 2.
 MOST = 1e-3
 LOOPS = 40
+SPAN = Span()
+POINTS = (Tip(), Tip())
 
 
-def by(surface, settings, starts, motors):
-    fingers = SteppedFingers(surface, starts, settings, max_force=motors)
-
-    def follow(path):
-        forces = fingers.sent(path)
-        return forces, np.array([shot.proxy for shot in fingers.snapshot().fingers])
-
-    return follow
-
-
-def loops_of(body, count):
+def loops_of(body, count, span=SPAN):
     mesh = body.mesh
     free = ~np.isin(mesh.surface_nodes, body.fixed)
     nodes, triangles = mesh.nodes[mesh.surface_nodes], mesh.surface_local_triangles
-    return list(random_loops(nodes, triangles, free, count, seed=14))
+    return list(random_loops(nodes, triangles, free, count, 14, span))
 
 
-def books_of(surface, together, settings, motors=None):
+def books_of(surface, together, settings, motors=None, tips=POINTS):
     found = []
     for loops in together:
-        starts = np.array([loop.press[0] for loop in loops])
-        found.append(books(loops, by(surface, settings, starts, motors)))
+        follow = led(surface, settings, loops, tips[: len(loops)], motors)
+        found.append(books(loops, follow))
     return [one for one in found if one is not None]
 
 
-def gives_nothing(found):
+def gives_nothing(found, loops=LOOPS):
     rounds = [gain for one in found for gain in one.rounds]
-    assert len(rounds) > LOOPS / 2
+    assert len(rounds) > loops / 2
     assert max(rounds) <= MOST
     assert max(one.path for one in found) <= MOST
 
@@ -58,6 +52,30 @@ def test_none_gives_energy_to_motors(body, max_force):
     alone = [(loop,) for loop in loops_of(body, LOOPS)]
     coupled = Settings(YOUNG_MODULUS, coupling=Coupling(800.0, 4.0, passivity_control=True))
     gives_nothing(books_of(native_body(body), alone, coupled, max_force))
+
+
+TOOL_LOOPS = 8
+RADIUS = 0.004
+# Deeper than half a radius pushes are held near a direction that changes with them.
+DEEP = Span(RADIUS, (0.5, 2.0), (0.2, 1.0))
+
+
+@pytest.mark.parametrize(
+    "tool", [sphere(RADIUS), plate(3 * RADIUS, 2 * RADIUS)], ids=["tip", "plate"]
+)
+@pytest.mark.parametrize("max_force", [None, 0.05], ids=["whole", "cut off"])
+def test_no_tool_gives_energy_down_to_two_radii(body, tool, max_force):
+    surface = native_body(body, whole=True)
+    alone = [(loop,) for loop in loops_of(body, TOOL_LOOPS, DEEP)]
+    tips = (tip_of(body, surface, tool),)
+    gives_nothing(books_of(surface, alone, Settings(YOUNG_MODULUS), max_force, tips), TOOL_LOOPS)
+
+
+def test_a_tool_and_a_point_beside_it_get_no_energy(body):
+    surface = native_body(body, whole=True)
+    pairs = list(random_pairs(loops_of(body, 4 * TOOL_LOOPS, DEEP), seed=14))[:TOOL_LOOPS]
+    tips = (tip_of(body, surface, sphere(RADIUS)), Tip())
+    gives_nothing(books_of(surface, pairs, Settings(YOUNG_MODULUS), tips=tips), TOOL_LOOPS)
 
 
 def test_two_that_are_led_together_get_no_energy(body):
