@@ -21,7 +21,7 @@ PROPERTIES = (
     "tests/core/files/test_own_files.py",
     "tests/core/mesh/test_mesh_formats.py",
     "tests/core/servo/test_codecs_agree.py",
-    "tests/core/servo/test_hostile_recordings.py",
+    "tests/core/record/test_hostile_recordings.py",
     "tests/core/servo/test_link.py",
 )
 # Examples of a property in one round: a few minutes on a usual machine.
