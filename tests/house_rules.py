@@ -39,9 +39,10 @@ operators/scene
 operators/layer
 operators/place
 operators/carrier
-operators/imprint
 operators/pins
 operators/object
+operators/traction
+operators/imprint
 operators/tool
 operators/device
 operators/record

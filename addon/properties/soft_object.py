@@ -7,6 +7,7 @@ import bpy
 
 from ...core.softness.scales.materials import MATERIALS
 from ...operators.animation import live_pressers
+from ...operators.traction import layer_traction
 from .kinds import choice, chosen_collection, number, result, span, switch, text
 from .scene import PalpateScene
 from .shape import ShapeProperties
@@ -76,6 +77,11 @@ def _leave_material(name: str) -> Callable[[bpy.types.PropertyGroup, bpy.types.C
 def _press_anew(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
     live_pressers.look_again()
     live_pressers.follow(settings.id_data, context.scene)
+
+
+def _tell_forces(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    layer_traction.follow(settings.id_data)
+    live_pressers.press_again(settings.id_data, context.scene)
 
 
 def _keep_order(changed: str) -> Callable[[bpy.types.PropertyGroup, bpy.types.Context], None]:
@@ -208,6 +214,12 @@ class PalpateObject(ShapeProperties, bpy.types.PropertyGroup):
         "Seconds in which an imprint fades to about a third, as in memory foam; 0 for never",
         0.0,
         span(0.0, soft_max=60.0, precision=2, step=10),
+    )
+    force_attributes: switch(
+        "Force Attributes",
+        "Give shaders and geometry nodes the attributes palpate_pressure, palpate_normal, "
+        "palpate_traction and palpate_displacement of all layers. Drawing takes a little longer",
+        update=_tell_forces,
     )
     edge_length: number(
         "Edge Length",

@@ -21,6 +21,7 @@ from ..press.modal_press import Pressing
 from ..reporting.translated import reported, shown
 from ..scene.modal_progress import ModalProgress
 from ..shape.drawn_shape import closing_shape
+from ..traction.drawn_traction import patches_of, tractions_of
 from . import frame_keys, live_pressers, mesh_cache
 from .force_table import FrameRows
 from .imprinted_frames import imprinted
@@ -197,7 +198,8 @@ class PALPATE_OT_press_frames(Pressing, bpy.types.Operator):
         *_, last = yield from collected(pressed, count)
         if last.moved is None:
             raise PalpateError("The tool touches nothing in this frame; choose another")
-        name = kept_imprint.keep_moved(thing, scene, drawn.frame, last.moved)
+        borne = tractions_of(thing, drawn, last.moved, patches_of(last.fingers))
+        name = kept_imprint.keep_moved(thing, scene, drawn.frame, last.moved, borne)
         self._told = Sentence("Kept as layer '{layer}'", layer=name)
 
     def _frames(self, scene: bpy.types.Scene) -> list[int]:

@@ -22,6 +22,8 @@ from ..scene import drawn_surface
 from ..scene.object_handle import ObjectHandle
 from ..session import press_session
 from ..shape.drawn_shape import chosen_shape
+from ..traction import layer_traction
+from ..traction.drawn_traction import patches_of, tractions_of
 from . import frame_keys, mesh_cache
 from .pressed_frames import AnimatedPress
 
@@ -74,6 +76,12 @@ def follow(thing: bpy.types.Object, scene: bpy.types.Scene) -> None:
         # A handler has no report: the panel shows it.
         _problems[thing.session_uid] = problem.sentence
         _drop(thing.session_uid)
+
+
+def press_again(thing: bpy.types.Object, scene: bpy.types.Scene) -> None:
+    """Follow what presses an object, also where nothing has moved."""
+    _drop(thing.session_uid)
+    follow(thing, scene)
 
 
 @contextmanager
@@ -138,8 +146,11 @@ def _press(thing: bpy.types.Object, scene: bpy.types.Scene) -> None:
     followed.places = places
     pressed = AnimatedPress(thing, scene, followed.drawn, followed.shape).now()
     layer = _layer(thing) or layers.add(thing, LAYER_NAME)
-    moved = pressed.moved
-    layers.write(thing, layer, np.zeros_like(followed.drawn.rest) if moved is None else moved)
+    drawn = followed.drawn
+    moved = np.zeros_like(drawn.rest) if pressed.moved is None else pressed.moved
+    layers.write(thing, layer, moved)
+    borne = tractions_of(thing, drawn, moved, patches_of(pressed.fingers))
+    layer_traction.write_of(thing, layer, borne)
 
 
 def _opened(thing: bpy.types.Object, scene: bpy.types.Scene) -> _Followed:

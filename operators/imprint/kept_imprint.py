@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from ...core.errors import PalpateError
 from ..layer import layers, live_layer
 from ..scene.body_frame import BodyFrame
+from ..traction import layer_traction
 from .surface_imprint import yielding_of
 
 
@@ -46,6 +47,8 @@ def keep(
                 name=thing.name,
             )
         live_layer.write(thing, left)
+        # Nothing presses it any more.
+        layer_traction.write(thing, None)
     name = live_layer.keep(thing)
     if law.forget and not law.elastic:
         _fade(thing, thing.modifiers[name], scene, law.forget)
@@ -57,9 +60,10 @@ def keep_moved(
     scene: bpy.types.Scene,
     frame: BodyFrame,
     moved: NDArray[np.float32],
+    tractions: NDArray[np.float32] | None = None,
 ) -> str:
-    """Keep flat displacements (3 p,), local units, of a press that has ended; returns the layer's
-    name.
+    """Keep flat displacements (3 p,), local units, of a press that has ended, and what it bore;
+    returns the layer's name.
 
     Raises
     ------
@@ -69,6 +73,7 @@ def keep_moved(
     live_layer.hang(thing)
     try:
         live_layer.write(thing, moved)
+        layer_traction.write(thing, tractions)
         return keep(thing, scene, frame)
     except BaseException:
         live_layer.remove(thing)

@@ -21,6 +21,10 @@ STRENGTH, LIVE, LEVEL = "Strength", "Live", "Level"
 # Attributes that a press gives the vertices: places at rest, where the live layer finds them, and
 # what that moves them by.
 REST, AT, PRESSED = "palpate_rest", "palpate_at", "palpate_pressed"
+# What the name of a layer's attribute has more for its traction, and attributes for shaders.
+TRACTION = " Traction"
+SUM, BORNE = "palpate_displacement", "palpate_traction"
+PRESSURE, NORMAL = "palpate_pressure", "palpate_normal"
 AXES = ("X", "Y", "Z")
 DESCRIPTIONS = {
     DISPLACEMENT: "Attribute of the vertices that is added to their places, local units",
@@ -40,6 +44,7 @@ class Kind(Enum):
     """What a group adds to the places of the vertices."""
 
     LAYER = "layer"  # the attribute's vectors, times Strength
+    FORCES = "forces"  # the same, and what the vertices bear as attributes
     RIG = "rig"  # of three attributes, "<name> X", Y and Z: each times its slider
     PLACES = "places"  # nothing; it gives the vertices their places at rest, and as they are
     FINE = "fine"  # nothing; it divides faces, so that a coarse mesh can show a dent
@@ -157,14 +162,26 @@ def _places(builder: GroupBuilder) -> bpy.types.NodeSocket:
         PRESSED: _named(builder, builder.given(LIVE)),
     }
     for name, vectors in marks.items():
-        geometry = builder.node(
-            "GeometryNodeStoreNamedAttribute",
-            {"data_type": "FLOAT_VECTOR", "domain": "POINT"},
-            Geometry=geometry,
-            Name=name,
-            Value=vectors,
-        )["Geometry"]
+        geometry = _with(builder, geometry, name, vectors)
     return geometry
+
+
+def _with(
+    builder: GroupBuilder,
+    geometry: bpy.types.NodeSocket,
+    name: str,
+    value: bpy.types.NodeSocket,
+    kind: str = "FLOAT_VECTOR",
+) -> bpy.types.NodeSocket:
+    """Geometry with an attribute of its vertices."""
+    stored = builder.node(
+        "GeometryNodeStoreNamedAttribute",
+        {"data_type": kind, "domain": "POINT"},
+        Geometry=geometry,
+        Name=name,
+        Value=value,
+    )
+    return stored["Geometry"]
 
 
 def _fine(builder: GroupBuilder) -> bpy.types.NodeSocket:
@@ -197,6 +214,29 @@ def _layer(builder: GroupBuilder) -> bpy.types.NodeSocket:
     return _moved(builder, builder.scaled(vectors, builder.given(STRENGTH)))
 
 
+def _forces(builder: GroupBuilder) -> bpy.types.NodeSocket:
+    """A layer whose displacement and traction are added to those of the layers before it; pressure
+    and normal are of the sum.
+    """
+    name, factor = builder.given(DISPLACEMENT), builder.given(STRENGTH)
+    moved = builder.scaled(_named(builder, name), factor)
+    borne = builder.scaled(_named(builder, builder.text(name, TRACTION)), factor)
+
+    def known(attribute: str) -> bpy.types.NodeSocket:
+        vectors = {"data_type": "FLOAT_VECTOR"}
+        found = builder.node("GeometryNodeInputNamedAttribute", vectors, Name=attribute)
+        return found["Attribute"]
+
+    def of_borne(operation: str) -> bpy.types.NodeOutputs:
+        return builder.node("ShaderNodeVectorMath", {"operation": operation}, Vector=known(BORNE))
+
+    geometry = _moved(builder, moved)
+    for attribute, vectors in ((SUM, moved), (BORNE, borne)):
+        geometry = _with(builder, geometry, attribute, builder.sum(known(attribute), vectors))
+    geometry = _with(builder, geometry, PRESSURE, of_borne("LENGTH")["Value"], "FLOAT")
+    return _with(builder, geometry, NORMAL, of_borne("NORMALIZE")["Vector"])
+
+
 def _rig(builder: GroupBuilder) -> bpy.types.NodeSocket:
     vectors = (
         builder.scaled(
@@ -211,6 +251,7 @@ def _rig(builder: GroupBuilder) -> bpy.types.NodeSocket:
 _PLANS = {
     Kind.STORED: _Plan(_SOURCE, _stored),
     Kind.LAYER: _Plan((*_SOURCE, (STRENGTH, "Float")), _layer),
+    Kind.FORCES: _Plan((*_SOURCE, (STRENGTH, "Float")), _forces),
     Kind.RIG: _Plan((*_SOURCE, *((axis, "Float") for axis in AXES)), _rig),
     Kind.PLACES: _Plan((*_SOURCE, (LIVE, "String")), _places),
     Kind.FINE: _Plan((("Geometry", "Geometry"), (LEVEL, "Int")), _fine),

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import modifier_inputs, stack
-from .layer_groups import CARRIER, DISPLACEMENT, LEVEL, STRENGTH, Kind, group_of, kind_of
+from .layer_groups import CARRIER, DISPLACEMENT, LEVEL, STRENGTH, TRACTION, Kind, group_of, kind_of
 
 KEPT_NAME = "Press"
 FINE_NAME = "Palpate Fine"
@@ -57,7 +57,12 @@ def layers_of(thing: bpy.types.Object) -> list[bpy.types.NodesModifier]:
 
 def is_layer(modifier: bpy.types.Modifier) -> bool:
     """Whether a modifier is a layer."""
-    return kind(modifier) is Kind.LAYER
+    return kind(modifier) in {Kind.LAYER, Kind.FORCES}
+
+
+def kind_for(thing: bpy.types.Object) -> Kind:
+    """The kind of an object's layers: whether they tell of forces."""
+    return Kind.FORCES if thing.palpate.force_attributes else Kind.LAYER
 
 
 def kind(modifier: bpy.types.Modifier) -> Kind | None:
@@ -71,7 +76,7 @@ def add(thing: bpy.types.Object, name: str) -> bpy.types.NodesModifier:
     Blender gives another name where this one is taken.
     """
     attribute = drawn_mesh(thing).attributes.new(name, "FLOAT_VECTOR", "POINT")
-    return add_modifier(thing, name, Kind.LAYER, {DISPLACEMENT: attribute.name})
+    return add_modifier(thing, name, kind_for(thing), {DISPLACEMENT: attribute.name})
 
 
 def add_modifier(
@@ -140,28 +145,32 @@ def _is_on_vertices(modifier: bpy.types.Modifier) -> bool:
 
 
 def rename(thing: bpy.types.Object, layer: bpy.types.NodesModifier, name: str) -> None:
-    """Rename a layer and its attribute."""
+    """Rename a layer and its attributes."""
     attribute = _attribute(thing, layer)
     if attribute is not None:
+        traction = mesh_of(thing, layer).attributes.get(attribute.name + TRACTION)
         attribute.name = name
         modifier_inputs.set_value(layer, DISPLACEMENT, attribute.name)
+        if traction is not None:
+            traction.name = attribute_name(layer) + TRACTION
     layer.name = name
 
 
 def remove(thing: bpy.types.Object, layer: bpy.types.NodesModifier) -> None:
-    """Remove a layer, and its attribute where no other layer shows it."""
-    mesh, name = _mesh(thing, layer), attribute_name(layer)
+    """Remove a layer, and its attributes where no other layer shows them."""
+    mesh, name = mesh_of(thing, layer), attribute_name(layer)
     thing.driver_remove(strength_path(layer))
     remove_modifier(thing, layer)
     shown = {
         attribute_name(other)
         for user in bpy.data.objects
         for other in layers_of(user)
-        if _mesh(user, other) == mesh
+        if mesh_of(user, other) == mesh
     }
-    attribute = mesh.attributes.get(name)
-    if attribute is not None and name not in shown:
-        mesh.attributes.remove(attribute)
+    for one in (name, name + TRACTION):
+        attribute = mesh.attributes.get(one)
+        if attribute is not None and name not in shown:
+            mesh.attributes.remove(attribute)
     mesh.update_tag()
 
 
@@ -182,9 +191,9 @@ def free_name(thing: bpy.types.Object, mesh: bpy.types.Mesh, stem: str = KEPT_NA
 
 def keep(thing: bpy.types.Object, layer: bpy.types.NodesModifier) -> str:
     """Rename a layer to the next free "Press <n>" and make it the active modifier; its name."""
-    rename(thing, layer, free_name(thing, _mesh(thing, layer)))
+    rename(thing, layer, free_name(thing, mesh_of(thing, layer)))
     thing.modifiers.active = layer
-    _mesh(thing, layer).update_tag()
+    mesh_of(thing, layer).update_tag()
     name: str = layer.name
     return name
 
@@ -196,7 +205,7 @@ def write(
     attribute = _attribute(thing, layer)
     if attribute is not None and 3 * len(attribute.data) == len(vectors):
         attribute.data.foreach_set("vector", vectors)
-        _mesh(thing, layer).update_tag()
+        mesh_of(thing, layer).update_tag()
 
 
 def displacement(
@@ -263,7 +272,8 @@ def _place(thing: bpy.types.Object, new: bpy.types.NodesModifier) -> int:
     return place
 
 
-def _mesh(thing: bpy.types.Object, layer: bpy.types.NodesModifier) -> bpy.types.Mesh:
+def mesh_of(thing: bpy.types.Object, layer: bpy.types.NodesModifier) -> bpy.types.Mesh:
+    """Mesh with a layer's attributes."""
     carrier = carrier_of(layer)
     return thing.data if carrier is None else carrier.data
 
@@ -271,7 +281,7 @@ def _mesh(thing: bpy.types.Object, layer: bpy.types.NodesModifier) -> bpy.types.
 def _attribute(
     thing: bpy.types.Object, layer: bpy.types.NodesModifier
 ) -> bpy.types.Attribute | None:
-    found = _mesh(thing, layer).attributes.get(attribute_name(layer))
+    found = mesh_of(thing, layer).attributes.get(attribute_name(layer))
     # A stranger's file may hold anything under this name.
     if found is None or (found.data_type, found.domain) != ("FLOAT_VECTOR", "POINT"):
         return None

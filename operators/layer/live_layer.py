@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import layers, place_marks
+from .layer_groups import TRACTION
 
 LIVE_NAME = "Palpate Live"
 
@@ -44,9 +45,10 @@ def remove(thing: bpy.types.Object) -> None:
         layers.remove(thing, live)
     place_marks.remove(thing)
     mesh = layers.drawn_mesh(thing)
-    remains = mesh.attributes.get(LIVE_NAME)
-    if remains is not None:
-        mesh.attributes.remove(remains)
+    for name in (LIVE_NAME, LIVE_NAME + TRACTION):
+        remains = mesh.attributes.get(name)
+        if remains is not None:
+            mesh.attributes.remove(remains)
 
 
 def find(thing: bpy.types.Object) -> bpy.types.NodesModifier | None:

@@ -28,6 +28,7 @@ from ..shape.drawn_shape import closing_shape
 from ..shape.felt_table import softenings_for
 from ..tool import tool_turn
 from ..tool.finger_tip import chosen_tip
+from ..traction.drawn_traction import patches_of, tractions_of
 
 Array = NDArray[np.float64]
 
@@ -112,13 +113,14 @@ def press_several(
     with closing_shape(thing, drawn) as shape:
         met = settled(drawn.body, shape, loads_of(made), young_modulus)
     moved = drawn.drawn_displacement(met.displacements, pressing_tools(made))
+    borne = tractions_of(thing, drawn, moved, patches_of(made))
     return Pressed(
         fingers=tuple(
             PressedFinger(one, as_point(local.turn_to_world(one.force)), float(np.linalg.norm(way)))
             for one, local, way in zip(made, frames, inward, strict=True)
         ),
         largest_displacement=float(np.linalg.norm(met.displacements, axis=1).max()),
-        layer=kept_imprint.keep_moved(thing, scene, frame, moved) if keep else "",
+        layer=kept_imprint.keep_moved(thing, scene, frame, moved, borne) if keep else "",
         remarks=tuple(filter(None, (tip.remark, shape.notice))),
     )
 

@@ -20,6 +20,8 @@ from ..layer import live_layer
 from ..object.drawn_body import DrawnBody
 from ..shape.drawn_shape import DrawnShape, chosen_shape, loads_of
 from ..tool.finger_tip import FingerTip
+from ..traction import layer_traction
+from ..traction.drawn_traction import patches_in, tractions_of
 from .press_effects import Say
 
 Array = NDArray[np.float64]
@@ -138,12 +140,15 @@ class SeenBody:
     def _write(
         self, thing: bpy.types.Object, displacements: Array | None, snapshot: Snapshot | None
     ) -> None:
+        pressed = None if displacements is None else snapshot
         moved = np.zeros_like(self.drawn.rest)
         if displacements is not None:
-            tools = () if snapshot is None else self.tip.pressing(snapshot)
+            tools = () if pressed is None else self.tip.pressing(pressed)
             moved = self.drawn.drawn_displacement(displacements, tools)
         law, now = yielding_of(thing, self.drawn.frame), 0.0 if snapshot is None else snapshot.time
         live_layer.write(thing, self.imprint.seen(law, moved, now))
+        patches = patches_in(pressed, self.tip.tool)
+        layer_traction.write(thing, tractions_of(thing, self.drawn, moved, patches))
 
     def _imprinted(self) -> NDArray[np.float32]:
         left = self.imprint.left

@@ -34,13 +34,18 @@ class Stroked:
     displacements : float64 (n, 3), of the free surface nodes, metres.
     force : newton; at the first place where it is mirrored.
     torque : newton metres about the normal there.
-    tools : that press, for drawing.
+    touches : of the tools that press, for drawing.
     """
 
     displacements: Array
     force: float
     torque: float = 0.0
-    tools: tuple[PressingTool, ...] = ()
+    touches: tuple[ToolTouch, ...] = ()
+
+    @property
+    def tools(self) -> tuple[PressingTool, ...]:
+        """The tools that press."""
+        return tuple(PressingTool(one.tool, one.pose, one.force) for one in self.touches)
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,7 +125,7 @@ class _Pushing:
         return Stroked(
             self.press.body.deform(nodes, forces, young_modulus),
             float(np.linalg.norm(made[0].force)),
-            tools=tuple(PressingTool(touch.tool, touch.pose, touch.force) for touch in made),
+            touches=tuple(made),
         )
 
 

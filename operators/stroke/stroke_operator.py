@@ -25,6 +25,8 @@ from ..scene.object_handle import ObjectHandle
 from ..scene.probe_drag import View
 from ..session import press_session
 from ..tool.tool_sizes import chosen_sizes
+from ..traction import layer_traction
+from ..traction.drawn_traction import patches_of, tractions_of
 from . import stroke_words
 from .motion import Asked, Motion
 from .stroke import Stroke, Stroked, grips_at
@@ -278,7 +280,9 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
 
 
 def _draw(thing: bpy.types.Object, drawn: DrawnBody, stroked: Stroked) -> None:
-    live_layer.write(thing, drawn.drawn_displacement(stroked.displacements, stroked.tools))
+    moved = drawn.drawn_displacement(stroked.displacements, stroked.tools)
+    live_layer.write(thing, moved)
+    layer_traction.write(thing, tractions_of(thing, drawn, moved, patches_of(stroked.touches)))
 
 
 def _make_active(context: bpy.types.Context, thing: bpy.types.Object) -> None:

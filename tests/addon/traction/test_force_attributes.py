@@ -1,0 +1,174 @@
+"""Forces as attributes of the evaluated mesh: what shaders and geometry nodes see."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+import pytest
+from soft_scene import TOP, begin, cube, layer_names, moved, part, rest_places, wait
+
+SHOWN = ("palpate_displacement", "palpate_normal", "palpate_pressure", "palpate_traction")
+PUSH = {"place": TOP, "radius": 0.02, "depth": 0.004}
+
+
+@pytest.fixture(scope="module")
+def fine_file(installed, tmp_path_factory):
+    """File with a soft cube whose faces have vertices 2.5 mm apart."""
+    file = tmp_path_factory.mktemp("fine") / "fine.blend"
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+    cube()
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.subdivide(number_cuts=19)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    bpy.ops.wm.save_as_mainfile(filepath=str(file))
+    assert bpy.ops.palpate.make_soft() == {"FINISHED"}
+    bpy.ops.wm.save_mainfile()
+    return file
+
+
+@pytest.fixture
+def fine(palpate, fine_file):
+    """That cube, which tells of forces."""
+    bpy.ops.wm.open_mainfile(filepath=str(fine_file))
+    thing = bpy.context.object
+    thing.palpate.force_attributes = True
+    return thing
+
+
+def shown(thing, name):
+    """An attribute of the evaluated mesh, (p, 3) or (p,); None without."""
+    bpy.context.view_layer.update()
+    found = thing.evaluated_get(bpy.context.evaluated_depsgraph_get()).data.attributes.get(name)
+    if found is None:
+        return None
+    is_vector = found.data_type == "FLOAT_VECTOR"
+    values = np.empty((3 if is_vector else 1) * len(found.data), dtype=np.float32)
+    found.data.foreach_get("vector" if is_vector else "value", values)
+    return values.reshape(-1, 3) if is_vector else values
+
+
+def shares(thing):
+    """Area of each vertex of the evaluated mesh, square metres."""
+    mesh = thing.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+    areas = np.zeros(len(mesh.vertices))
+    for face in mesh.polygons:
+        for vertex in face.vertices:
+            areas[vertex] += face.area / len(face.vertices)
+    return areas
+
+
+def attributes(thing):
+    return sorted(one.name for one in thing.data.attributes)
+
+
+def test_a_stroke_s_pressure_sums_up_to_its_force(fine):
+    assert bpy.ops.palpate.stroke(**PUSH) == {"FINISHED"}
+    pressure, traction = shown(fine, "palpate_pressure"), shown(fine, "palpate_traction")
+    normal = shown(fine, "palpate_normal")
+    drawn = part("operators.object.drawn_body").open_body(fine, bpy.context.scene)
+    pressed = part("core.contact.press")
+    sphere = part("core.contact.tool.tools").sphere(0.02)
+    pose = part("core.contact.tool.pose").Pose
+    press = pressed.Press(drawn.body, [sphere], pressed.ContactSettings(fine.palpate.young_modulus))
+    press.to([pose(np.array([0.0, 0.0, 0.046]), np.eye(3))])
+    touch = press.to([pose(np.array([0.0, 0.0, 0.041]), np.eye(3))])[0]
+    total = (traction * shares(fine)[:, None]).sum(axis=0)
+    # As exact as vertices 2.5 mm apart sample a patch of about 12.
+    np.testing.assert_allclose(total, touch.force, atol=0.06 * touch.force[2])
+    # Its peak is that of the contact points, some twenty, up to their unevenness.
+    assert 0.6 * touch.largest_pressure < pressure.max() < 1.5 * touch.largest_pressure
+    np.testing.assert_allclose(np.linalg.norm(traction, axis=1), pressure, rtol=1e-5, atol=1e-3)
+    touched = pressure > 0.0
+    assert 10 < touched.sum() < 200
+    np.testing.assert_allclose(np.linalg.norm(normal[touched], axis=1), 1.0, atol=1e-5)
+    assert (normal[touched, 2] > 0.7).all()
+    assert not normal[~touched].any()
+    assert (rest_places(fine)[touched, 2] > 0.0249).all()
+    np.testing.assert_array_equal(shown(fine, "palpate_displacement"), moved(fine, "Press 1"))
+
+
+def test_layers_add_up_as_strong_as_they_are(fine):
+    assert bpy.ops.palpate.stroke(**PUSH) == {"FINISHED"}
+    once = {name: shown(fine, name) for name in SHOWN}
+    layers = part("operators.layer.layers")
+    layers.set_strength(fine, fine.modifiers["Press 1"], 0.5)
+    for name in ("palpate_displacement", "palpate_pressure", "palpate_traction"):
+        np.testing.assert_allclose(shown(fine, name), 0.5 * once[name], rtol=1e-5, atol=1e-6)
+    np.testing.assert_allclose(shown(fine, "palpate_normal"), once["palpate_normal"], atol=1e-5)
+    second = fine.modifiers["Press 1"]
+    layers.set_strength(fine, second, 1.0)
+    assert bpy.ops.palpate.stroke(place=(0.025, 0, 0), radius=0.02, depth=0.003) == {"FINISHED"}
+    both = shown(fine, "palpate_traction")
+    fine.modifiers["Press 1"].show_viewport = False
+    other = shown(fine, "palpate_traction")
+    np.testing.assert_allclose(both, once["palpate_traction"] + other, rtol=1e-5, atol=1e-2)
+    assert other.any()
+
+
+def test_its_attributes_go_with_a_layer(fine):
+    before = attributes(fine)
+    assert bpy.ops.palpate.stroke(**PUSH) == {"FINISHED"}
+    assert attributes(fine) == sorted([*before, "Press 1", "Press 1 Traction"])
+    layers = part("operators.layer.layers")
+    layers.rename(fine, fine.modifiers["Press 1"], "Cheek")
+    assert attributes(fine) == sorted([*before, "Cheek", "Cheek Traction"])
+    assert shown(fine, "palpate_pressure").any()
+    layers.remove(fine, fine.modifiers["Cheek"])
+    assert attributes(fine) == before
+
+
+def test_nobody_who_does_not_ask_has_them(fine):
+    fine.palpate.force_attributes = False
+    before = attributes(fine)
+    assert bpy.ops.palpate.stroke(**PUSH) == {"FINISHED"}
+    assert attributes(fine) == sorted([*before, "Press 1"])
+    assert all(shown(fine, name) is None for name in SHOWN)
+
+
+def test_it_can_be_switched_at_any_time(fine):
+    layers = part("operators.layer.layers")
+    assert bpy.ops.palpate.stroke(**PUSH) == {"FINISHED"}
+    layers.set_strength(fine, fine.modifiers["Press 1"], 0.25)
+    pressure = shown(fine, "palpate_pressure")
+    fine.palpate.force_attributes = False
+    assert all(shown(fine, name) is None for name in SHOWN)
+    assert layers.strength(fine.modifiers["Press 1"]) == pytest.approx(0.25)
+    fine.palpate.force_attributes = True
+    np.testing.assert_array_equal(shown(fine, "palpate_pressure"), pressure)
+    assert layer_names(fine) == ["Press 1"]
+
+
+def test_a_running_press_shows_what_it_presses_and_escape_removes_all(fine, sessions, states):
+    chosen = bpy.context.scene.palpate
+    chosen.tip, chosen.own_sizes, chosen.tip_radius = "SPHERE", True, 0.02
+    before = attributes(fine)
+    session = begin(sessions, states, fine)
+    session.post(states.SetDown((0.0, 0.0, 0.046)))
+    session.post(states.Move((0.0, 0.0, 0.041)))
+    wait(session, lambda: session.snapshot.touching and session.snapshot.probe[2] < 0.0411)
+    wait(session, lambda: np.any(session.snapshot.pressures))
+    session.tick()
+    traction = shown(fine, "palpate_traction")
+    force = np.asarray(session.snapshot.contact_force)
+    total = (traction * shares(fine)[:, None]).sum(axis=0)
+    np.testing.assert_allclose(total, force, atol=0.08 * np.linalg.norm(force))
+    session.post(states.Moment.CANCEL)
+    assert attributes(fine) == before
+
+
+def test_pressers_show_what_they_press(fine):
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=3, radius=0.02, location=(0, 0, 0.041))
+    ball, hand = bpy.context.object, bpy.data.collections.new("Hand")
+    hand.objects.link(ball)
+    fine.palpate.pressers = hand
+    assert shown(fine, "palpate_pressure").max() > 0.0
+    ball.location.z = 0.1
+    bpy.context.view_layer.update()
+    assert not shown(fine, "palpate_pressure").any()
+
+
+def test_an_imprint_bears_nothing_once_it_is_let_go(fine):
+    fine.palpate.yield_depth = 0.001
+    assert bpy.ops.palpate.stroke(**PUSH) == {"FINISHED"}
+    assert shown(fine, "palpate_displacement").any()
+    assert not shown(fine, "palpate_pressure").any()
