@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from ...core.sentence import Sentence
 from ...core.softness.force_depth import MILLIMETRES
 from ...core.softness.ramp import ramp
-from ...core.softness.softness_map import SoftnessMap, softness_map
+from ...core.softness.softness_map import softness_map
 from ..object import soft_object
 from ..object.drawn_body import DrawnBody
 from ..reporting.acting import Acting
@@ -16,6 +16,8 @@ from ..scene.drawn_surface import rest_coordinates
 from .softness_operator import SoftnessOperator
 
 ATTRIBUTE = "Palpate Softness"
+# For shaders and geometry nodes: how far a newton goes in, metres.
+SOFTNESS = "palpate_softness"
 
 
 class PALPATE_OT_map_softness(SoftnessOperator, bpy.types.Operator):
@@ -23,7 +25,8 @@ class PALPATE_OT_map_softness(SoftnessOperator, bpy.types.Operator):
     bl_label = "Map Softness"
     bl_description = (
         "Colour the object by how hard a fingertip must push for each millimetre: dark is soft, "
-        "yellow is firm. Writes the colour attribute Palpate Softness and shows it in the view"
+        "yellow is firm. Writes the colour attribute Palpate Softness and shows it in the view, "
+        "and the number palpate_softness (m/N) for shaders"
     )
     asks_everywhere = True
 
@@ -38,7 +41,8 @@ class PALPATE_OT_map_softness(SoftnessOperator, bpy.types.Operator):
         shown = thing.data.color_attributes.active_color_name
         if shown != ATTRIBUTE:
             softness.shown_before = shown
-        _write(thing.data, ramp(_at_vertices(thing, drawn, found)))
+        _write(thing.data, ramp(_at_vertices(thing, drawn, found.shares())))
+        _write_softness(thing.data, _at_vertices(thing, drawn, 1.0 / found.stiffness))
         softness.map_low, softness.map_high = (end / MILLIMETRES for end in found.span)
         self.report({"INFO"}, reported("Viewport Shading > Color > Attribute shows it"))
 
@@ -46,7 +50,7 @@ class PALPATE_OT_map_softness(SoftnessOperator, bpy.types.Operator):
 class PALPATE_OT_remove_softness_map(Acting, bpy.types.Operator):
     bl_idname = "palpate.remove_softness_map"
     bl_label = "Remove Softness Map"
-    bl_description = "Delete the colour attribute Palpate Softness"
+    bl_description = "Delete the attributes Palpate Softness and palpate_softness"
     bl_options = {"REGISTER", "UNDO"}
 
     @classmethod
@@ -60,6 +64,8 @@ class PALPATE_OT_remove_softness_map(Acting, bpy.types.Operator):
         mesh = context.object.data
         softness = context.object.palpate_softness
         mesh.color_attributes.remove(mesh.color_attributes[ATTRIBUTE])
+        if SOFTNESS in mesh.attributes:
+            mesh.attributes.remove(mesh.attributes[SOFTNESS])
         if softness.shown_before in mesh.color_attributes:
             mesh.color_attributes.active_color_name = softness.shown_before
         for name in ("map_low", "map_high", "shown_before"):
@@ -67,14 +73,23 @@ class PALPATE_OT_remove_softness_map(Acting, bpy.types.Operator):
 
 
 def _at_vertices(
-    thing: bpy.types.Object, drawn: DrawnBody, found: SoftnessMap
+    thing: bpy.types.Object, drawn: DrawnBody, of_nodes: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Positions of the object's vertices (p,) on the colour scale, from the nodes around each."""
+    """Values of the object's vertices (p,) from those of the surface nodes (s,) around each."""
     local = rest_coordinates(thing.data).reshape(-1, 3)
     places = drawn.body.closest_points.query(drawn.frame.body_from_local(local))
     corners = drawn.body.mesh.surface_local_triangles[places.triangle]
-    shares: NDArray[np.float64] = np.einsum("pc,pc->p", places.alpha, found.shares()[corners])
-    return shares
+    values: NDArray[np.float64] = np.einsum("pc,pc->p", places.alpha, of_nodes[corners])
+    return values
+
+
+def _write_softness(mesh: bpy.types.Mesh, softness: NDArray[np.float64]) -> None:
+    """Write metres per newton (p,) to the vertices."""
+    old = mesh.attributes.get(SOFTNESS)
+    if old is not None:
+        mesh.attributes.remove(old)
+    attribute = mesh.attributes.new(SOFTNESS, "FLOAT", "POINT")
+    attribute.data.foreach_set("value", softness.astype(np.float32))
 
 
 def _write(mesh: bpy.types.Mesh, colours: NDArray[np.float64]) -> None:

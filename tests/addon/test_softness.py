@@ -113,11 +113,16 @@ def test_the_map_colours_vertices_and_changes_nothing_else(palpate, thing):
     # Corners on top give way more than those that are pinned: darker, less green.
     assert colours.data[top].color[1] < colours.data[base].color[1]
     assert 0 < thing.palpate_softness.map_low < thing.palpate_softness.map_high
+    softness = [mesh.attributes["palpate_softness"].data[v].value for v in (top, base)]
+    low, high = thing.palpate_softness.map_low, thing.palpate_softness.map_high
+    # N/mm to m/N; corners are beyond the colours.
+    assert 0.3e-3 / high < softness[1] < softness[0] < 3e-3 / low
     # Again, over the old one, and away with it.
     assert bpy.ops.palpate.map_softness() == {"FINISHED"}
     assert bpy.ops.palpate.remove_softness_map() == {"FINISHED"}
     assert [attribute.name for attribute in mesh.color_attributes] == ["Paint"]
     assert mesh.color_attributes.active_color_name == "Paint"
+    assert "palpate_softness" not in mesh.attributes
     assert mesh_state(thing) == before
     assert "no softness map" in error_of(bpy.ops.palpate.remove_softness_map)
 

@@ -10,7 +10,7 @@ import numpy as np
 from mouse_scene import open_mouse, type_key
 from stage import Pixel, Stage, Wait
 
-from bl_ext.user_default.palpate.operators.layer import layers
+from bl_ext.user_default.palpate.operators.layer import layers, live_layer
 from bl_ext.user_default.palpate.operators.object import soft_object
 from bl_ext.user_default.palpate.operators.place import touched_place
 from bl_ext.user_default.palpate.operators.place.seen_place import SeenPlace
@@ -83,6 +83,39 @@ def a_depth_is_typed_while_dragging(stage: Stage) -> Wait:
     last = bpy.context.window_manager.operators[-1]
     assert last.bl_idname == "PALPATE_OT_stroke"
     assert math.isclose(last.properties["depth"], 0.2, rel_tol=1e-5)
+
+
+def clay_springs_back_to_its_imprint_by_strokes_and_presses(stage: Stage) -> Wait:
+    cube = yield from _soft_default_cube(stage)
+    cube.palpate.yield_depth = 0.1
+    _choose_tool(stage)
+    here = stage.pixel((0.3, -1.0, 0.2))
+    yield from stage.drag([here, (here[0] + 90, here[1])], release=False)
+    yield from stage.picture("held")
+    held = _live_depth(cube)
+    yield from stage.event("LEFTMOUSE", "RELEASE", stage.mouse)
+    yield from stage.until(lambda: kept(cube), "the imprint")
+    left = np.linalg.norm(last_stroke(cube), axis=1).max()
+    assert math.isclose(left, held - 0.1, abs_tol=1e-5)
+    # A light stroke springs back and leaves nothing.
+    there = stage.pixel((-0.3, 0.0, 1.0))
+    yield from stage.drag([there, (there[0] + 8, there[1])])
+    yield from stage.until(lambda: live_layer.find(cube) is None, "the end of the stroke")
+    assert len(kept(cube)) == 1
+    # A press that is led along leaves its way.
+    start, end = stage.pixel((-0.6, 0.0, 1.0)), stage.pixel((0.6, 0.0, 1.0))
+    with stage.view():
+        bpy.ops.palpate.press("INVOKE_DEFAULT")
+    yield 0.3
+    yield from stage.drag([start, end], steps=30, release=False)
+    for _ in range(3):
+        yield from stage.event("WHEELDOWNMOUSE", "PRESS", stage.mouse)
+    yield from stage.event("LEFTMOUSE", "RELEASE", stage.mouse)
+    yield 0.5
+    yield from stage.picture("press-held")
+    yield from stage.key("RET")
+    yield from stage.until(lambda: len(kept(cube)) == 2, "the imprint of the press")
+    yield from stage.picture("let-go")
 
 
 def random_drags_press_where_the_cursor_is(stage: Stage) -> Wait:
@@ -197,6 +230,13 @@ def _choose_tool(stage: Stage) -> None:
 def _place_on_cube(number: int) -> tuple[float, float, float]:
     """Places on the front and on top, in turn."""
     return (0.3, -1.0, 0.2) if number % 2 else (-0.2, 0.2, 1.0)
+
+
+def _live_depth(thing: bpy.types.Object) -> float:
+    live = live_layer.find(thing)
+    moved = None if live is None else layers.displacement(thing, live)
+    assert moved is not None
+    return float(np.linalg.norm(moved, axis=1).max())
 
 
 def kept(thing: bpy.types.Object) -> list[str]:
