@@ -11,14 +11,11 @@ from numpy.typing import NDArray
 from ...core.contact.tool.pose import Pose
 from ...core.contact.tool.tools import Tool
 from ...core.servo.session import FingerSnapshot
-from ...operators.scene import ray
 from ...operators.session.press_session import PressSession
 from ...operators.session.press_state import Phase
+from ...operators.tool.tool_depth import depth_of
 
 Array = NDArray[np.float64]
-
-# Share of a tool's reach within which places of it are equally deep.
-FLAT = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,25 +163,8 @@ def _depth(session: PressSession, tool: Tool, pose: Pose, push: Array) -> float:
     mesh, moved = session.drawn.body.mesh, session.seen.displacements
     # Nothing is further in than the surface went, and the near field takes it as far as the tool.
     farthest = 0.0 if moved is None else 1.5 * float(np.linalg.norm(moved, axis=1).max())
-    depth = depth_of(tool, pose, push / np.linalg.norm(push), mesh.nodes, mesh.surface_triangles)
-    return depth if depth <= farthest + tool.size else 0.0
-
-
-def depth_of(
-    tool: Tool, pose: Pose, inward: Array, nodes: Array, triangles: NDArray[np.int64]
-) -> float:
-    """How far a tool has gone along ``inward`` (3,), unit, from where it would touch the rest
-    surface, m: from its deepest place back to the first surface that faces it, however far
-    beyond a thin part that has given way. 0 where there is none.
-    """
-    core = tool.core @ pose.rotation.T
-    heights = core @ inward
-    # A face that lies across is deepest in its middle.
-    deepest = core[heights > heights.max() - FLAT * tool.reach].mean(axis=0)
-    tip = pose.position + deepest + tool.radius * inward
-    # From behind, seen from within, so with the triangles turned round.
-    hit = ray.first_hit(tip, -inward, nodes, triangles[:, ::-1])
-    return 0.0 if hit is None else hit.distance
+    inward = push / np.linalg.norm(push)
+    return depth_of(tool, pose, inward, mesh.nodes, mesh.surface_triangles, farthest)
 
 
 def _force(finger: FingerSnapshot) -> Array:

@@ -9,9 +9,10 @@ from pathlib import Path
 
 import numpy as np
 
-from ...core.contact.touches import ToolTouch
+from ...core.contact.touches import ToolTouch, Touch
 from ...core.files.atomic_file import atomic_file
 from ..object.drawn_body import DrawnBody
+from ..tool.tool_depth import depth_of
 from .pressed_frames import PressedFrame
 
 COLUMNS = (
@@ -32,8 +33,8 @@ COLUMNS = (
 class FrameRows:
     """Rows of frames as they are pressed, a row a finger.
 
-    Force on the finger in world axes, contact area, pressure, and how far the surface gives way at
-    most; SI units.
+    Force on the finger in world axes, contact area, pressure, and how far the tool has gone beyond
+    the rest surface; SI units.
     """
 
     drawn: DrawnBody
@@ -52,10 +53,20 @@ class FrameRows:
                 strength,
                 finger.area,
                 finger.largest_pressure,
-                _depth(finger),
+                self._depth(finger),
             )
             seconds, *rest = (f"{figure:.9g}" for figure in figures)
             self._rows.append((here.frame, seconds, number + 1, *rest))
+
+    def _depth(self, finger: Touch) -> float:
+        strength = float(np.linalg.norm(finger.force))
+        if not isinstance(finger, ToolTouch) or strength == 0.0:
+            return 0.0
+        mesh, inward = self.drawn.body.mesh, -finger.force / strength
+        farthest = 1.5 * float(np.linalg.norm(finger.displacements, axis=1).max())
+        return depth_of(
+            finger.tool, finger.pose, inward, mesh.nodes, mesh.surface_triangles, farthest
+        )
 
     def write(self, target: Path) -> None:
         """Write the table.
@@ -71,9 +82,3 @@ class FrameRows:
         table.writerows(self._rows)
         with atomic_file(target) as file:
             file.write(text.getvalue().encode("utf-8"))
-
-
-def _depth(finger: object) -> float:
-    if not isinstance(finger, ToolTouch) or not finger.touching:
-        return 0.0
-    return float(np.linalg.norm(finger.displacements, axis=1).max())

@@ -122,8 +122,9 @@ def test_the_table_agrees_with_the_pressure_and_the_geometry(tapped, tmp_path):
         largest = touch.pressures.max(initial=0.0)
         assert float(row["largest_pressure_Pa"]) == pytest.approx(largest, rel=1e-6)
         # And the depth is how far the ball is below the flat top.
-        depth = max(0.025 - (touch.pose.position[2] - touch.tool.radius), 0.0)
-        assert float(row["depth_m"]) == pytest.approx(depth, rel=0.05, abs=2e-5)
+        depth = 0.025 - (touch.pose.position[2] - touch.tool.radius) if touch.touching else 0.0
+        # Its force leans a little, as the tetrahedra do.
+        assert float(row["depth_m"]) == pytest.approx(depth, rel=0.03, abs=1e-6)
         touched += touch.touching
     assert 0 < touched < len(rows)
 

@@ -82,7 +82,7 @@ def slab(thickness):
 @pytest.mark.parametrize("thickness", [0.5, 20.0])
 def test_a_tool_is_as_deep_as_it_has_travelled_however_far(palpate, name, thickness):
     """Also beyond its own radius, and through a thin part that has given way."""
-    tools, reading = part("core.contact.tool.tools"), part("addon.overlay.reading")
+    tools, depths = part("core.contact.tool.tools"), part("operators.tool.tool_depth")
     Pose = part("core.contact.tool.pose").Pose  # noqa: N806
     tool = {
         "sphere": lambda: tools.sphere(1.0),
@@ -93,10 +93,10 @@ def test_a_tool_is_as_deep_as_it_has_travelled_however_far(palpate, name, thickn
     down, nodes = np.array([0.0, 0.0, -1.0]), slab(thickness)
     for travelled in (0.01, 0.3, 1.0, 1.7, 4.0):
         pose = Pose(np.array([0.02, 0.01, -low - travelled]), np.eye(3))
-        depth = reading.depth_of(tool, pose, down, nodes, SLAB_TRIANGLES)
+        depth = depths.depth_of(tool, pose, down, nodes, SLAB_TRIANGLES)
         assert depth == pytest.approx(travelled)
     away = Pose(np.array([0.0, 0.0, 9.0]), np.eye(3))
-    assert reading.depth_of(tool, away, down, nodes, SLAB_TRIANGLES) == 0.0
+    assert depths.depth_of(tool, away, down, nodes, SLAB_TRIANGLES) == 0.0
 
 
 def test_quantities_keep_their_digits_at_any_size(palpate):
