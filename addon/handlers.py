@@ -13,7 +13,6 @@ from ..operators.animation import live_pressers
 from ..operators.bake import bake_session
 from ..operators.layer import live_layer
 from ..operators.object import body_store, kept_body
-from ..operators.pins import pin_group
 from ..operators.scene.package_preferences import preferences
 from ..operators.session import press_session
 from ..operators.session.press_events import Moment
@@ -51,8 +50,6 @@ def _after_load(*_: object) -> None:
     _forget()
     kept_body.forget()
     live_layer.remove_leftovers()
-    for thing in bpy.data.objects:
-        pin_group.keep_height(thing)
     for scene in bpy.data.scenes:
         keep_exact_sizes(scene)
         if not bpy.data.filepath:

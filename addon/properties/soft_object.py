@@ -143,7 +143,7 @@ class PalpateObject(ShapeProperties, bpy.types.PropertyGroup):
         description="Hidden object whose vertices are those that the layers move",
         type=bpy.types.Object,
     )
-    pin_mode: choice("Pin", "Which part never moves", PIN_ITEMS, "CORE")
+    pin_mode: choice("Pin", "Which part never moves", PIN_ITEMS, "BELOW")
     pin_fraction: number(
         "Height",
         "Share of the object's height in world Z below which it is pinned",

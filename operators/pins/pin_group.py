@@ -9,11 +9,9 @@ from numpy.typing import NDArray
 from ...core.errors import PalpateError
 from ...core.stiffness.pins import PinCore, PinWeights
 from ..scene.drawn_surface import DrawnSurface, group_weights
-from ..scene.fingerprint import Fingerprint
 from .group_digest import group_digest
 
 GROUP_NAME = "Pinned"
-BELOW_RULE, CORE_RULE = "below", "core"
 # Weight from which on a place is pinned.
 PINNED_FROM = 0.5
 # Tolerance for rounding of a level bottom, as a share of the height.
@@ -24,9 +22,9 @@ def pin_rule(thing: bpy.types.Object) -> str:
     """Text that changes with the object's pins."""
     settings = thing.palpate
     if settings.pin_mode == "BELOW":
-        return f"{BELOW_RULE} {settings.pin_fraction:.4f}"
+        return f"below {settings.pin_fraction:.4f}"
     if settings.pin_mode == "CORE":
-        return CORE_RULE
+        return "core"
     group = thing.vertex_groups.get(settings.pin_group)
     if group is None:
         return "no group"
@@ -59,20 +57,6 @@ def pinned_from(thing: bpy.types.Object, surface: DrawnSurface) -> PinWeights:
         height = _relative_height(surface)
         return PinWeights(PINNED_FROM + settings.pin_fraction + LEVEL - height)
     return painted(thing, surface)
-
-
-def keep_height(thing: bpy.types.Object) -> None:
-    """Let an object from before there was a core keep the height that it was pinned below."""
-    settings = thing.palpate
-    if not settings.fingerprint or settings.is_property_set("pin_mode"):
-        return
-    try:
-        pinned = Fingerprint.from_text(settings.fingerprint).pins
-    except PalpateError:
-        # Damaged; the panel says so, and nothing of it is taken over.
-        return
-    if pinned.startswith(BELOW_RULE):
-        settings.pin_mode = "BELOW"
 
 
 def painted(thing: bpy.types.Object, surface: DrawnSurface | None = None) -> PinWeights:
@@ -112,15 +96,25 @@ def mark_below(thing: bpy.types.Object, surface: DrawnSurface, fraction: float) 
     Up is the world's Z axis, as the object stands now.
     """
     group = thing.vertex_groups.get(GROUP_NAME) or thing.vertex_groups.new(name=GROUP_NAME)
-    pinned = np.flatnonzero(_relative_height(surface) <= fraction + LEVEL)
+    pinned = np.flatnonzero(is_below(surface, fraction))
     group.remove(range(len(surface.local)))
     group.add(pinned.tolist(), 1.0, "REPLACE")
     return len(pinned)
 
 
+def is_below(surface: DrawnSurface, fraction: float) -> NDArray[np.bool_]:
+    """Which vertices are in the lowest ``fraction`` of the height."""
+    low: NDArray[np.bool_] = _relative_height(surface) <= fraction + LEVEL
+    return low
+
+
+def up_in_body(surface: DrawnSurface) -> NDArray[np.float64]:
+    """The world's Z axis, a unit vector (3,) in body coordinates."""
+    return surface.frame.turn_to_body(np.array([0.0, 0.0, 1.0]))
+
+
 def _relative_height(surface: DrawnSurface) -> NDArray[np.float64]:
-    up = surface.frame.turn_to_body(np.array([0.0, 0.0, 1.0]))
-    height = surface.body @ up
+    height = surface.body @ up_in_body(surface)
     used = height[surface.triangles.ravel()] if surface.triangles.size else height
     low, span = used.min(), np.ptp(used)
     relative: NDArray[np.float64] = (height - low) / (span or 1.0)

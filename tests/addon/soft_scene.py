@@ -42,7 +42,7 @@ def cube(edge: float = 0.05) -> bpy.types.Object:
     bpy.ops.mesh.primitive_cube_add(size=edge)
     thing = bpy.context.object
     thing.palpate.bake_from = "BASE"
-    thing.palpate.edge_length, thing.palpate.pin_mode = COARSE, "BELOW"
+    thing.palpate.edge_length = COARSE
     return select(thing)
 
 
@@ -52,7 +52,7 @@ def mesh_object(vertices: Any, faces: Any, name: str = "Thing") -> bpy.types.Obj
     mesh.from_pydata(vertices, [], faces)
     thing = bpy.data.objects.new(name, mesh)
     bpy.context.collection.objects.link(thing)
-    thing.palpate.edge_length, thing.palpate.pin_mode = COARSE, "BELOW"
+    thing.palpate.edge_length = COARSE
     return select(thing)
 
 

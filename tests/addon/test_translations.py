@@ -9,6 +9,7 @@ from soft_scene import part
 BLENDERS_OWN = {
     *"XYZ",
     "CSV",
+    "USD",
     "npz",
     "Format",
     "Dragon Skin 10",
