@@ -5,7 +5,6 @@ import pytest
 from mathutils import Matrix
 from soft_scene import part, select
 
-
 pytestmark = pytest.mark.usefixtures("palpate")
 
 
