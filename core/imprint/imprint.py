@@ -31,6 +31,11 @@ class Imprint:
         """What stays (p, 3) once it is let go."""
         return self.earlier + self.here
 
+    def with_more(self, count: int) -> Imprint:
+        """The same, and so many places without one."""
+        more = np.zeros((count, 3))
+        return Imprint(np.vstack([self.earlier, more]), np.vstack([self.here, more]))
+
     def pressed(self, law: Yielding, moved: Array, seconds: float = 0.0) -> Imprint:
         """The imprint some seconds later, with the surface ``moved`` (p, 3) from where the contact
         found it.

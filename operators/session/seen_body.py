@@ -101,7 +101,7 @@ class SeenBody:
         """Draw the rest shape."""
         self.displacements, self.linear, self.drawn_contact = None, None, ()
         if thing is not None:
-            live_layer.write(thing, self._imprinted())
+            live_layer.write(thing, self._left())
 
     def lift(self, tick: int) -> None:
         """The finger was set down on the surface as it is, at this tick."""
@@ -112,7 +112,7 @@ class SeenBody:
         """Whether there would be something to keep."""
         if yielding_of(thing, self.drawn.frame).elastic:
             return self.displacements is not None
-        return self.imprint.left is not None
+        return self.imprint.is_left
 
     def keep(
         self, thing: bpy.types.Object, scene: bpy.types.Scene, snapshot: Snapshot | None
@@ -120,7 +120,7 @@ class SeenBody:
         """Keep the live layer; its name, empty where the object springs back, and remarks."""
         said = self._finish(thing, snapshot)
         try:
-            name = kept_imprint.keep(thing, scene, self.drawn.frame, self._imprinted())
+            name = kept_imprint.keep(thing, scene, self.drawn.frame, self._left())
         except NothingStaysError as problem:
             live_layer.remove(thing)
             return "", [*said, Say(problem.sentence)]
@@ -150,6 +150,5 @@ class SeenBody:
         patches = patches_in(pressed, self.tip.tool)
         layer_traction.write(thing, tractions_of(thing, self.drawn, moved, patches))
 
-    def _imprinted(self) -> NDArray[np.float32]:
-        left = self.imprint.left
-        return np.zeros_like(self.drawn.rest) if left is None else left
+    def _left(self) -> NDArray[np.float32]:
+        return self.imprint.left(len(self.drawn.rest) // 3)

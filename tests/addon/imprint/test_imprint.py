@@ -139,7 +139,7 @@ def test_while_it_is_held_all_is_seen_and_let_go_the_imprint(clay, sessions, sta
     wait(session, lambda: session.seen.displacements is not None)
     live = part("operators.layer.live_layer").find(clay)
     held = part("operators.layer.layers").displacement(clay, live).astype(np.float64)
-    stays = session.seen.imprint.left.reshape(-1, 3)
+    stays = session.seen.imprint.left(len(held)).reshape(-1, 3)
     np.testing.assert_allclose(stays, beyond(held), rtol=0, atol=1e-6)
     session.post(states.Keep(session.seen.stays(clay)))
     assert session.kept_name == "Press 1"
@@ -149,7 +149,7 @@ def test_while_it_is_held_all_is_seen_and_let_go_the_imprint(clay, sessions, sta
 def test_escape_removes_an_imprint(clay, before, sessions, states):
     session = begin(sessions, states, clay)
     press_in(session, states)
-    wait(session, lambda: session.seen.imprint.left is not None)
+    wait(session, lambda: session.seen.imprint.is_left)
     session.post(states.Moment.CANCEL)
     assert mesh_state(clay) == before
 
@@ -157,9 +157,9 @@ def test_escape_removes_an_imprint(clay, before, sessions, states):
 def test_a_place_that_was_left_keeps_its_imprint_during_the_press(clay, sessions, states):
     session = begin(sessions, states, clay)
     press_in(session, states)
-    wait(session, lambda: session.seen.imprint.left is not None)
+    wait(session, lambda: session.seen.imprint.is_left)
     session.post(states.Moment.RELEASE)
-    first = session.seen.imprint.left
+    first = session.seen.imprint.left(len(clay.data.vertices))
     # Beside the body: nothing is touched any more.
     session.post(states.SetDown((0.0, 0.0, 0.1)))
     wait(session, lambda: session.seen.displacements is None and not session.snapshot.touching)

@@ -40,6 +40,11 @@ def test_while_it_is_held_the_surface_is_where_it_is_pressed():
     np.testing.assert_allclose(held.seen(1e-3 * DOWN), 3e-3 * DOWN, rtol=0, atol=1e-18)
 
 
+def test_more_places_begin_without_an_imprint():
+    more = pressed(MILLIMETRE, 3e-3).with_more(1)
+    np.testing.assert_allclose(more.left, [[0, 0, -2e-3], [0, 0, 0]], rtol=0, atol=1e-18)
+
+
 def test_an_elastic_surface_remembers_nothing():
     assert not pressed(Yielding(), 4e-3).left.any()
     np.testing.assert_array_equal(pressed(Yielding(), 4e-3).seen(1e-3 * DOWN), 1e-3 * DOWN)
