@@ -12,8 +12,9 @@ from ..scene.drawn_surface import DrawnSurface
 
 # A fingertip, as a share of the body's size: that of the scene at first.
 FINGERTIP = 0.05
-# Faces up to the fingertip's radius are not divided, others until they are half of it.
-FINE = 0.5
+# Faces are divided until they are half of the fingertip's radius: flat ones above that; smooth
+# ones, which would show that they are flat, only where a dent would be lost between them.
+FINE, COARSE_SMOOTH = 0.5, 2.0
 MOST_FACES = 100_000
 # What may follow divided faces, since it moves flat ones as it moves whole ones.
 _MAY_FOLLOW = frozenset({"ARMATURE", "MESH_CACHE", "WEIGHTED_NORMAL"})
@@ -26,13 +27,20 @@ def halvings(thing: bpy.types.Object, surface: DrawnSurface, *, as_seen: bool) -
         return 0
     radius = FINGERTIP * float(np.linalg.norm(np.ptp(surface.body, axis=0)))
     length = _typical_edge(surface)
-    if length <= radius:
+    if length <= (COARSE_SMOOTH if _is_smooth(thing) else FINE) * radius:
         return 0
     wanted = math.ceil(math.log2(length / (FINE * radius)))
     corners = len(surface.corners)
     # The first division makes a face of each corner.
     allowed = 1 + math.floor(math.log(max(MOST_FACES / corners, 0.25), 4.0))
     return max(0, min(wanted, allowed))
+
+
+def _is_smooth(thing: bpy.types.Object) -> bool:
+    """Whether most faces of an object are shaded smooth."""
+    smooth = np.zeros(len(thing.data.polygons), dtype=np.bool_)
+    thing.data.polygons.foreach_get("use_smooth", smooth)
+    return bool(2 * np.count_nonzero(smooth) > len(smooth))
 
 
 def _typical_edge(surface: DrawnSurface) -> float:

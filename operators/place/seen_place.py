@@ -9,6 +9,7 @@ import numpy as np
 from mathutils import Vector
 from numpy.typing import NDArray
 
+from ...core.errors import PalpateError
 from ..scene.body_frame import BodyFrame
 from ..scene.drawn_surface import metres_per_unit
 from ..scene.viewport import Viewport
@@ -41,7 +42,7 @@ def under_pointer(
     Raises
     ------
     PalpateError
-        Its transform flattens it.
+        Its transform flattens it; it is in no collection that is shown.
     """
     return under_ray(scene, graph, *here.line_of_sight())
 
@@ -54,11 +55,16 @@ def under_ray(
     Raises
     ------
     PalpateError
-        Its transform flattens it.
+        Its transform flattens it; it is in no collection that is shown.
     """
     start, along = Vector(origin), Vector(direction)
     met, place, normal, _, thing, matrix = scene.ray_cast(graph, start, along)
     if not met or thing is None or thing.type != "MESH" or not thing.original.palpate.body_key:
         return None
+    if thing.original.name not in bpy.context.view_layer.objects:
+        raise PalpateError(
+            "{name} is seen as an instance alone; show the collection that it is in, too",
+            name=thing.original.name,
+        )
     frame = BodyFrame.of_matrix(np.array(matrix), metres_per_unit(scene))
     return SeenPlace(thing.original, frame, np.array(place), np.array(normal))

@@ -18,6 +18,7 @@ from ..layer import layers, place_marks
 from ..layer.layer_groups import AT, PRESSED, REST
 from ..scene.body_frame import BodyFrame
 from ..scene.drawn_surface import rest_coordinates
+from .seen_place import SeenPlace
 from .seen_triangle import outward_normal, triangle_at, turn_between
 
 Array = NDArray[np.float64]
@@ -76,6 +77,24 @@ def is_seen_at_rest(thing: bpy.types.Object) -> bool:
     keys = thing.data.shape_keys
     moved = any(modifier.show_viewport for modifier in thing.modifiers)
     return not moved and (keys is None or len(keys.key_blocks) < 2)
+
+
+def touched(seen: SeenPlace, origin: Array, direction: Array) -> TouchedPlace:
+    """What was seen on a ray (3,), world coordinates, and where it is at rest.
+
+    Raises
+    ------
+    PalpateError
+        It is not of the object's mesh.
+    """
+    place = under_ray(seen.thing, seen.frame, origin, direction)
+    if place is None:
+        raise PalpateError(
+            "{name}: what is here is an instance that its modifiers make; Realize Instances makes "
+            "it a part of the mesh",
+            name=seen.thing.name,
+        )
+    return place
 
 
 def under_ray(

@@ -126,9 +126,9 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
         context.window.cursor_modal_set("WAIT")
         try:
             with place_marks.marked(thing):
-                touched = touched_place.under_ray(thing, frame, *here.line_of_sight())
-            view = None if touched is None else here.view_at(touched.seen, frame)
-            if touched is None or view is None:
+                touched = touched_place.touched(seen, *here.line_of_sight())
+            view = here.view_at(touched.seen, frame)
+            if view is None:
                 return {"PASS_THROUGH"}
             self._begin(thing, scene, frame, touched)
             self._drag = self._drag_from(event, view, scene)
