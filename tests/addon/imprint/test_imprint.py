@@ -248,3 +248,21 @@ def test_a_fingertip_leaves_its_depth_less_the_yield_depth(clay):
 def test_an_elastic_object_keeps_all_of_a_press(fine):
     assert bpy.ops.palpate.stroke(place=TOP, radius=0.02, depth=0.004) == {"FINISHED"}
     assert -moved(fine, "Press 1")[:, 2].min() == pytest.approx(0.004, rel=0.02)
+
+
+def test_an_empty_that_taps_the_same_place_twice_leaves_one_imprint(clay, sessions, states):
+    guide, chosen = empty(at=(0.0, 0.0, 0.03)), bpy.context.scene.palpate
+    chosen.source, chosen.source_empty = "EMPTY", guide
+    session = begin(sessions, states, clay, "EMPTY")
+    left = []
+    for _ in range(2):
+        for height in (0.021, 0.03):
+            guide.location.z = height
+            bpy.context.view_layer.update()
+            wait(session, lambda z=height: abs(session.snapshot.probe[2] - z) < 1e-9)
+            wait(session, lambda z=height: session.snapshot.touching == (z < 0.025))
+            # Drawn once more than it is reached.
+            wait(session, lambda z=height: (session.seen.displacements is None) == (z > 0.025))
+        left.append(session.seen.imprint.left(len(clay.data.vertices)))
+    assert left[0].any()
+    np.testing.assert_allclose(left[1], left[0], rtol=0, atol=2e-5)
