@@ -97,17 +97,12 @@ def clay_springs_back_to_its_imprint_by_strokes_and_presses(stage: Stage) -> Wai
     yield from stage.until(lambda: kept(cube), "the imprint")
     left = np.linalg.norm(last_stroke(cube), axis=1).max()
     assert math.isclose(left, held - 0.1, abs_tol=1e-5)
-    # A light stroke springs back and leaves nothing.
-    there = stage.pixel((-0.3, 0.0, 1.0))
-    yield from stage.drag([there, (there[0] + 8, there[1])])
-    yield from stage.until(lambda: live_layer.find(cube) is None, "the end of the stroke")
-    assert len(kept(cube)) == 1
     # A press that is led along leaves its way.
     start, end = stage.pixel((-0.6, 0.0, 1.0)), stage.pixel((0.6, 0.0, 1.0))
     with stage.view():
         bpy.ops.palpate.press("INVOKE_DEFAULT")
     yield 0.3
-    yield from stage.drag([start, end], steps=30, release=False)
+    yield from stage.drag([start, end], steps=8, release=False)
     for _ in range(3):
         yield from stage.event("WHEELDOWNMOUSE", "PRESS", stage.mouse)
     yield from stage.event("LEFTMOUSE", "RELEASE", stage.mouse)
