@@ -30,7 +30,8 @@ class Asked:
     ----------
     motion : its kind.
     amount : depth of a push, metres; angle of a twist, radians; share of a pinch.
-    by : float64 (3,), way of a grab, metres, axes of the body at rest.
+    by : float64 (3,), way of a grab, or of a push along the surface, metres, axes of the body at
+        rest.
     """
 
     motion: Motion
@@ -51,4 +52,5 @@ class Asked:
                 return motions.drawn_in(self.amount)
             case Motion.GRAB if self.by is not None:
                 return motions.moved(self.by)
-        return motions.moved(-self.amount * normal)
+        along = np.zeros(3) if self.by is None else self.by
+        return motions.moved(along - self.amount * normal)

@@ -33,6 +33,7 @@ class StrokeDrag:
     strength : how much a drag moves; 1 follows the pointer.
     start, cursor : pixels.
     pressure : of a pen, 0 to 1.
+    aside : pixels by which a push has gone along the surface.
     typed : amount by the keyboard, in metres, radians or a share; None without.
     """
 
@@ -45,11 +46,23 @@ class StrokeDrag:
     start: tuple[float, float]
     cursor: tuple[float, float]
     pressure: float = 0.0
+    aside: tuple[float, float] = (0.0, 0.0)
     typed: float | None = None
 
-    def dragged(self, cursor: tuple[float, float], pressure: float = 0.0) -> StrokeDrag:
-        """The drag with its pointer at ``cursor`` and a pen's ``pressure``."""
-        return replace(self, cursor=cursor, pressure=pressure)
+    def dragged(
+        self, cursor: tuple[float, float], pressure: float = 0.0, *, sliding: bool = False
+    ) -> StrokeDrag:
+        """The drag with its pointer at ``cursor`` and a pen's ``pressure``; ``sliding`` takes a
+        push along the surface and leaves its depth as it is, as a pen does, whose pressure is the
+        depth.
+        """
+        moved = replace(self, cursor=cursor, pressure=pressure)
+        if self.motion is not Motion.PUSH or not (sliding or pressure > 0.0):
+            return moved
+        step = np.subtract(cursor, self.cursor)
+        x, y = np.add(self.start, step)
+        aside_x, aside_y = np.add(self.aside, step)
+        return replace(moved, start=(x, y), aside=(aside_x, aside_y))
 
     @property
     def distance(self) -> float:
@@ -60,6 +73,10 @@ class StrokeDrag:
         """What it asks of the body; ``turn`` (3, 3) is from the axes at rest to those as seen."""
         if self.motion is Motion.GRAB:
             return Asked(self.motion, by=self._on_screen() @ turn)
+        if any(self.aside):
+            x, y = np.multiply(self.aside, self.view.metres_per_pixel)
+            aside = x * self.view.right + y * self.view.up
+            return Asked(self.motion, self._amount(), by=aside @ turn)
         return Asked(self.motion, self._amount())
 
     def _amount(self) -> float:

@@ -28,8 +28,10 @@ from ..tool.tool_sizes import chosen_sizes
 from ..traction import layer_traction
 from ..traction.drawn_traction import patches_of, tractions_of
 from . import stroke_words
+from .grips import grips_at
 from .motion import Asked, Motion
-from .stroke import Stroke, Stroked, grips_at
+from .pushing import Stroked
+from .stroke import Stroke
 from .stroke_drag import StrokeDrag
 from .stroke_properties import StrokeProperties
 from .typed_amount import TypedAmount
@@ -194,7 +196,8 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
         """Draw the stroke as the pointer or the keyboard has it now."""
         scene, thing = context.scene, self._thing()
         pressure = event.pressure if event.is_tablet else 0.0
-        drag = self._drag.dragged((event.mouse_x, event.mouse_y), pressure)
+        cursor = event.mouse_x, event.mouse_y
+        drag = self._drag.dragged(cursor, pressure, sliding=event.ctrl)
         self._drag = replace(drag, typed=self._typed.value(scene))
         asked = self._drag.asked(self._touched.turn)
         problem = ""
@@ -253,29 +256,30 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
 
     def _asked(self) -> Asked:
         """What the properties ask."""
+        frame = self._frame
+        way = frame.turn_to_body(np.array(self.by)) * frame.metres_per_unit
+        by = way @ self._touched.turn
         match motion := Motion[self.motion]:
             case Motion.GRAB:
-                frame = self._frame
-                way = frame.turn_to_body(np.array(self.by)) * frame.metres_per_unit
-                return Asked(motion, by=way @ self._touched.turn)
+                return Asked(motion, by=by)
             case Motion.TWIST:
                 return Asked(motion, self.angle)
             case Motion.PINCH:
                 return Asked(motion, self.share)
-        return Asked(motion, self.depth * self._frame.metres_per_unit)
+        return Asked(motion, self.depth * frame.metres_per_unit, by=by)
 
     def _tell(self, asked: Asked, scene: bpy.types.Scene) -> None:
         """Write what was asked into the properties, for the redo panel."""
         metres = metres_per_unit(scene)
+        if asked.by is not None:
+            seen = self._touched.turn @ asked.by
+            self.by = self._frame.turn_to_world(seen) / metres
         match asked.motion:
-            case Motion.GRAB if asked.by is not None:
-                seen = self._touched.turn @ asked.by
-                self.by = self._frame.turn_to_world(seen) / metres
             case Motion.TWIST:
                 self.angle = asked.amount
             case Motion.PINCH:
                 self.share = asked.amount
-            case _:
+            case Motion.PUSH:
                 self.depth = asked.amount / metres
 
 

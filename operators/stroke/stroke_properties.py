@@ -14,6 +14,10 @@ MOTION_ITEMS = [
 ]
 
 
+# Properties that a motion asks.
+ASKED = {"PUSH": ("depth", "by"), "GRAB": ("by",), "TWIST": ("angle",), "PINCH": ("share",)}
+
+
 class StrokeProperties:
     """Part of an operator that strokes; lengths in scene units."""
 
@@ -37,7 +41,7 @@ class StrokeProperties:
     )
     by: bpy.props.FloatVectorProperty(
         name="By",
-        description="How far the place is moved, world axes",
+        description="How far the place is moved, or a push goes along the surface, world axes",
         subtype="TRANSLATION",
         options={"SKIP_SAVE"},
     )
@@ -78,8 +82,8 @@ class StrokeProperties:
         layout: bpy.types.UILayout = self.layout  # type: ignore[attr-defined]  # of Operator
         layout.use_property_split = True
         layout.prop(self, "motion")
-        asked = {"PUSH": "depth", "GRAB": "by", "TWIST": "angle", "PINCH": "share"}
-        layout.prop(self, asked[self.motion])
+        for name in ASKED[self.motion]:
+            layout.prop(self, name)
         layout.prop(self, "place")
         layout.prop(self, "radius")
         layout.prop(self, "mirrored", toggle=True)

@@ -8,10 +8,11 @@ import bpy
 
 from ..reporting.translated import shown
 from .motion import Asked, Motion
-from .stroke import Stroked
+from .pushing import Stroked
 
 STATUS = {
-    Motion.PUSH: "Drag away in any direction: Deeper     [0-9] Depth     [Esc] Restore",
+    Motion.PUSH: "Drag away in any direction: Deeper     [Ctrl] Along the surface     "
+    "[0-9] Depth     [Esc] Restore",
     Motion.GRAB: "Drag: The surface follows     [0-9] Distance     [Esc] Restore",
     Motion.TWIST: "Drag away in any direction: Turn     [0-9] Degrees     [Esc] Restore",
     Motion.PINCH: "Drag away in any direction: Draw in     [0-9] Percent     [Esc] Restore",
@@ -30,8 +31,9 @@ def figures(scene: bpy.types.Scene, asked: Asked, stroked: Stroked) -> str:
             return f"{math.degrees(asked.amount):.1f}°   {stroked.torque:.3g} N m"
         case Motion.PINCH:
             return f"{100.0 * asked.amount:.0f} %   {stroked.force:.3g} N"
-    metres = math.hypot(*asked.by) if asked.by is not None else asked.amount
-    return f"{length(scene, metres)}   {stroked.force:.3g} N"
+        case Motion.GRAB if asked.by is not None:
+            return f"{length(scene, math.hypot(*asked.by))}   {stroked.force:.3g} N"
+    return f"{length(scene, asked.amount)}   {stroked.force:.3g} N"
 
 
 def length(scene: bpy.types.Scene, metres: float) -> str:

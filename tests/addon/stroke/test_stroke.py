@@ -146,7 +146,7 @@ def test_nothing_is_asked_at_first_and_nothing_moves(thing):
     scene, strokes = bpy.context.scene, part("operators.stroke.stroke")
     drawn = part("operators.object.drawn_body").open_body(thing, scene)
     asked, motion = part("operators.stroke.motion").Asked, part("operators.stroke.motion").Motion
-    grips = strokes.grips_at(drawn, np.array(TOP), 0.01, (True, True, False))
+    grips = part("operators.stroke.grips").grips_at(drawn, np.array(TOP), 0.01, (True, True, False))
     stroke = strokes.Stroke(drawn, grips, 1000.0, 0.5)
     for kind, amount in ((motion.PUSH, 0.0), (motion.PUSH, -0.0), (motion.TWIST, 0.0)):
         assert not stroke.stroked(asked(kind, amount)).displacements.any()
