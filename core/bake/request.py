@@ -43,8 +43,8 @@ class BakeRequest:
         match settings.pins:
             case PinBelow(fraction, axis):
                 plain["pin_below"] = [fraction, axis]
-            case PinCore(share):
-                plain["pin_core"] = share
+            case PinCore(share, up):
+                plain["pin_core"] = [share, *up]
             case PinWeights(weights):
                 arrays["pin_weights"] = weights
             case PinNodes(nodes):
@@ -69,7 +69,8 @@ class BakeRequest:
             fraction, axis = plain.pop("pin_below")
             pins = PinBelow(fraction, axis)
         elif "pin_core" in plain:
-            pins = PinCore(plain.pop("pin_core"))
+            share, x, y, z = plain.pop("pin_core")
+            pins = PinCore(share, (x, y, z))
         elif "pin_weights" in arrays:
             pins = PinWeights(arrays["pin_weights"])
         else:

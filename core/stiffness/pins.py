@@ -41,16 +41,19 @@ class PinCore:
     least this ``share`` of the depth of its deepest one.
 
     So a body is held as by a skeleton: where it is thick it gives way only around what presses, and
-    does not lean, however slender what it stands on is; limbs bend.
+    does not lean, however slender what it stands on is; limbs bend. A shell has no such inside; the
+    lowest tenth of its surface along ``up`` (3,) is pinned.
     """
 
     share: float = 0.5
+    up: tuple[float, float, float] = (0.0, 0.0, 1.0)
 
 
 Pins = PinBelow | PinCore | PinWeights | PinNodes
 
-# Of a piece without nodes deep enough to hold it: so many next to its middle, at least a share.
-FEWEST_IN_CORE, LEAST_SHARE_IN_CORE = 4, 0.02
+# A piece is a shell when nothing in it is as deep as this share of its diagonal.
+SHALLOW = 0.03
+LOWEST = 0.1
 
 
 def pinned_nodes(
@@ -118,7 +121,7 @@ def _core(pins: PinCore, mesh: TetMesh) -> NDArray[np.int64]:
     found = ClosestPoints(mesh.nodes, mesh.surface_triangles).query(mesh.nodes[inner])
     depth[inner] = found.distance
     cores = [
-        _core_of_piece(pins.share, mesh.nodes, depth, np.flatnonzero(mesh.node_components == piece))
+        _core_of_piece(pins, mesh.nodes, depth, np.flatnonzero(mesh.node_components == piece))
         for piece in range(mesh.component_count)
     ]
     core: NDArray[np.int64] = np.sort(np.concatenate(cores))
@@ -126,15 +129,15 @@ def _core(pins: PinCore, mesh: TetMesh) -> NDArray[np.int64]:
 
 
 def _core_of_piece(
-    share: float, nodes: NDArray[np.float64], depth: NDArray[np.float64], piece: NDArray[np.int64]
+    pins: PinCore, nodes: NDArray[np.float64], depth: NDArray[np.float64], piece: NDArray[np.int64]
 ) -> NDArray[np.int64]:
-    is_deep = (depth[piece] > 0.0) & (depth[piece] >= share * depth[piece].max())
-    deep: NDArray[np.int64] = piece[is_deep]
-    if holds(nodes[deep]):
+    places, deepest = nodes[piece], depth[piece].max()
+    deep: NDArray[np.int64] = piece[(depth[piece] > 0.0) & (depth[piece] >= pins.share * deepest)]
+    if deepest >= SHALLOW * np.linalg.norm(np.ptp(places, axis=0)) and holds(nodes[deep]):
         return deep
-    from_middle = np.linalg.norm(nodes[piece] - nodes[piece].mean(axis=0), axis=1)
-    count = max(FEWEST_IN_CORE, int(LEAST_SHARE_IN_CORE * len(piece)))
-    order: NDArray[np.int64] = piece[np.argsort(from_middle, kind="stable")]
+    height = places @ np.array(pins.up)
+    order: NDArray[np.int64] = piece[np.argsort(height, kind="stable")]
+    count = int((height <= height.min() + LOWEST * np.ptp(height)).sum())
     while not holds(nodes[order[:count]]) and count < len(piece):
         count += 1
     return order[:count]

@@ -39,7 +39,10 @@ def pins(thing: bpy.types.Object, surface: DrawnSurface) -> PinWeights | PinCore
     PalpateError
         The vertex group is missing or empty.
     """
-    return PinCore() if thing.palpate.pin_mode == "CORE" else pinned_from(thing, surface)
+    if thing.palpate.pin_mode != "CORE":
+        return pinned_from(thing, surface)
+    x, y, z = (float(one) for one in up_in_body(surface))
+    return PinCore(up=(x, y, z))
 
 
 def pinned_from(thing: bpy.types.Object, surface: DrawnSurface) -> PinWeights:

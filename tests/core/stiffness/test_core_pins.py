@@ -40,6 +40,15 @@ def test_the_core_lies_deep_and_leaves_the_surface_free() -> None:
     assert np.array_equal(core, np.flatnonzero(depth.min(axis=1) >= 0.25 - 1e-9))
 
 
+def test_a_shell_is_held_by_what_it_stands_on() -> None:
+    cube, _ = paper_cube(1.0, CELLS)
+    flat = TetMesh.checked(cube.nodes * [1.0, 0.05, 1.0], cube.tets)
+    low = flat.nodes[pinned_nodes(PinCore(), flat, None)]
+    assert low[:, 2].max() <= flat.nodes[:, 2].min() + 0.1 + 1e-9
+    aside = flat.nodes[pinned_nodes(PinCore(up=(1.0, 0.0, 0.0)), flat, None)]
+    assert aside[:, 0].max() <= flat.nodes[:, 0].min() + 0.1 + 1e-9
+
+
 @pytest.mark.parametrize("thickness", [0.1, 1.0])
 def test_every_piece_is_held_also_without_nodes_inside(thickness: float) -> None:
     cube, _ = paper_cube(1.0, CELLS)
@@ -71,5 +80,5 @@ def largest_over_touched(mesh: TetMesh, pins: Pins) -> float:
 
 def test_a_child_process_is_asked_for_the_core(tmp_path: Path) -> None:
     mesh, _ = paper_cube(1.0, 2)
-    BakeRequest(mesh, BakeSettings(pins=PinCore(0.4))).write(tmp_path)
-    assert BakeRequest.read(tmp_path).settings.pins == PinCore(0.4)
+    BakeRequest(mesh, BakeSettings(pins=PinCore(0.4, (0.0, 1.0, 0.0)))).write(tmp_path)
+    assert BakeRequest.read(tmp_path).settings.pins == PinCore(0.4, (0.0, 1.0, 0.0))

@@ -21,7 +21,7 @@ from stage import Pixel, Stage, Wait
 
 from bl_ext.user_default.palpate.operators.layer import layers
 from bl_ext.user_default.palpate.operators.scene.drawn_surface import metres_per_unit
-from bl_ext.user_default.palpate.operators.scene.viewport import under_pointer
+from bl_ext.user_default.palpate.operators.scene.viewport import Viewport, under_pointer
 from bl_ext.user_default.palpate.operators.stroke import stroke_operator
 from bl_ext.user_default.palpate.operators.stroke.stroke_size import radius_for
 
@@ -30,6 +30,8 @@ Points = NDArray[np.float64]
 DRAG_PIXELS = 40.0
 # The sidebar's edge can be dragged, also from a little beside it.
 BESIDE_SIDEBAR = 20
+# Of a button's radius; the strip belongs to the gizmo, too.
+STRIP = 1.6
 # Of the way that the pointer was dragged.
 LEAST_PRESSED = 0.4
 # Drags after which the object is looked at from elsewhere.
@@ -86,7 +88,7 @@ def random_drags(
 
 
 def _drag(stage: Stage, name: str, at: Pixel, angle: float, drags: list[Drag]) -> Wait:
-    before, count = seen_points(name), len(layers.layers_of(bpy.data.objects[name]))
+    count = len(layers.layers_of(bpy.data.objects[name]))
     met = _world_under(stage, at, name)
     assert met is not None
     here, inward = met
@@ -101,7 +103,8 @@ def _drag(stage: Stage, name: str, at: Pixel, angle: float, drags: list[Drag]) -
     if len(layers.layers_of(thing)) == count:
         drags.append(Drag(at, math.inf, radius, 0.0, 0.0, tuple(said)))
         return
-    shift = seen_points(name) - before
+    after, before = seen_points(name), _without_last(thing)
+    shift = after - before
     moved = np.linalg.norm(shift, axis=1)
     most = int(np.argmax(moved))
     away = np.linalg.norm(before - np.array(here), axis=1)
@@ -109,6 +112,15 @@ def _drag(stage: Stage, name: str, at: Pixel, angle: float, drags: list[Drag]) -
     pressed = float((shift[touched] @ inward).max()) * scale
     off = math.dist(at, stage.pixel(before[most]))
     drags.append(Drag(at, off, radius, float(moved[most]) * scale, pressed, tuple(said)))
+
+
+def _without_last(thing: bpy.types.Object) -> Points:
+    """Vertices (p, 3) as they are drawn without the last layer, on the same divided faces."""
+    last = layers.layers_of(thing)[-1]
+    layers.set_strength(thing, last, 0.0)
+    before = seen_points(thing.name)
+    layers.set_strength(thing, last, 1.0)
+    return before
 
 
 def visible_place(stage: Stage, name: str, rng: np.random.Generator) -> Pixel:
@@ -120,11 +132,16 @@ def visible_place(stage: Stage, name: str, rng: np.random.Generator) -> Pixel:
             round(region.y + rng.uniform(0.02, 0.98) * region.height),
         )
         here = under_pointer(stage.window, *at)
-        if here is None or here.over_gizmos():
+        if here is None or _beside_gizmos(here):
             continue
         if abs(at[0] - stage.region("UI").x) > BESIDE_SIDEBAR and _world_under(stage, at, name):
             return at
     raise AssertionError(f"{name} is nowhere to be seen")
+
+
+def _beside_gizmos(here: Viewport) -> bool:
+    """Whether a pointer is on a navigation gizmo, or on the strip on which its buttons stand."""
+    return any(math.dist(here.cursor, middle) <= STRIP * radius for middle, radius in here.gizmos())
 
 
 def seen_points(name: str) -> Points:
