@@ -15,7 +15,15 @@ from ..operators.bake import (
 )
 from ..operators.device import refresh_devices
 from ..operators.layer import apply_layers, convert_layers
-from ..operators.press import add_press_rig, pinch, press, record, save_recording, switch_force
+from ..operators.press import (
+    add_press_rig,
+    animate_layers,
+    pinch,
+    press,
+    record,
+    save_recording,
+    switch_force,
+)
 from ..operators.record import recording_writer
 from ..operators.softness import force_curve, read_durometer, softness_colours
 from ..operators.stroke import stroke_operator, stroke_size
@@ -50,6 +58,7 @@ modules = (
     convert_layers,
     apply_layers,
     add_press_rig,
+    animate_layers,
     remove_softness,
     read_durometer,
     force_curve,

@@ -16,12 +16,20 @@ class PALPATE_MT_object(bpy.types.Menu):
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
-        layout.operator("palpate.make_soft")
+        layout.operator_menu_enum("palpate.make_soft", "material")
+        layout.operator("palpate.show_problems")
+        layout.operator("palpate.remove_softness")
         layout.separator()
         tool = layout.operator("wm.tool_set_by_id", text=shown("Strokes"), translate=False)
         tool.name = IDNAME
         layout.operator("palpate.press")
         layout.operator("palpate.pinch")
+        layout.separator()
+        layout.operator("palpate.animate_layers")
+        layout.operator("palpate.press_frames")
+        layout.operator("palpate.add_press_rig")
+        layout.operator("palpate.convert_layers")
+        layout.operator("palpate.apply_layers")
 
 
 def _in_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import bpy
 
+from ...operators.layer import layers
 from ...operators.object import soft_object
 from ...operators.reporting.translated import shown
 from . import surface_circle
@@ -46,7 +47,8 @@ class PalpateTool(bpy.types.WorkSpaceTool):
         """Draw the settings in the header of the tool, or in its panel."""
         chosen, thing = context.scene.palpate, context.object
         if thing is not None and not soft_object.refusal(thing) and not thing.palpate.body_key:
-            layout.operator("palpate.make_soft")
+            layout.prop(thing.palpate, "material", text="")
+            layout.operator("palpate.make_soft", icon="MOD_SOFT")
             return
         layout.prop(chosen, "stroke", text="")
         layout.prop(chosen, "tip_radius" if chosen.own_sizes else "tip_share", text="Radius")
@@ -58,6 +60,8 @@ class PalpateTool(bpy.types.WorkSpaceTool):
         row.prop(chosen, "stroke_mirrored", text="", toggle=True)
         if thing is not None and thing.type == "MESH":
             layout.prop(thing.palpate, "material", text="")
+            if layers.layers_of(thing):
+                layout.operator("palpate.animate_layers", icon="KEY_HLT")
             layout.operator("palpate.press", text="Press with Device", icon="MODIFIER")
 
     @staticmethod

@@ -5,6 +5,7 @@ import bpy
 from ...core.bake.steps import BakeReport
 from ...core.body.soft_body import SoftBody
 from ...core.errors import CancelledError, PalpateError
+from ...core.softness.scales.materials import MATERIALS
 from ..carrier import body_source
 from ..object import soft_object
 from ..pins import slender_foot
@@ -16,6 +17,7 @@ from . import bake_session, bake_words
 from .bake_session import BakeSession
 
 POLLS_PER_SECOND = 10
+AS_SET = "AS_SET"
 
 
 class BakingOperator(Acting):
@@ -128,6 +130,28 @@ class PALPATE_OT_make_soft(BakingOperator, bpy.types.Operator):
         "the mesh itself stays as it is. Escape cancels"
     )
     bl_options = {"UNDO"}
+
+    material: bpy.props.EnumProperty(
+        name="Material",
+        description="What the object is made of",
+        items=[
+            (AS_SET, "As Set", "As the object's material is set"),
+            *((key, one.name, "") for key, one in MATERIALS.items()),
+        ],
+        options={"SKIP_SAVE"},
+    )
+
+    def act(self, context: bpy.types.Context) -> None:
+        self._choose(context.object)
+        super().act(context)
+
+    def _start(self, context: bpy.types.Context) -> set[str]:
+        self._choose(context.object)
+        return super()._start(context)
+
+    def _choose(self, thing: bpy.types.Object) -> None:
+        if self.material != AS_SET:
+            thing.palpate.material = self.material
 
 
 classes = (PALPATE_OT_make_soft,)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import subprocess
 import time
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import AbstractContextManager
 from itertools import pairwise
 from pathlib import Path
@@ -20,6 +20,8 @@ from bpy_extras.view3d_utils import location_3d_to_region_2d
 MODULE = "bl_ext.user_default.palpate"
 # Against hanging only: a wait takes some seconds, and many times that on a busy machine.
 LONGEST_WAIT_SECONDS = 150.0
+# A little less than the side of the smallest button.
+BUTTON_PIXELS = 16
 Wait = Generator[float | None, None, None]
 Pixel = tuple[float, float]
 
@@ -154,6 +156,24 @@ class Stage:
             down = held if value == "PRESS" else {}
             yield from self.event(f"LEFT_{name.upper()}", value, self.mouse, **down)
 
+    def button(
+        self, area: bpy.types.Area, kind: str, command: str
+    ) -> Generator[float, None, Pixel]:
+        """Find the button with a Python command (the start of it) in an area's region of a kind.
+
+        The pointer goes over the region, and Blender tells whose button is under it.
+        """
+        region = next(one for one in area.regions if one.type == kind)
+        for at in _line(region):
+            yield from self.move(at)
+            with bpy.context.temp_override(window=self.window, area=area, region=region):
+                if not bpy.ops.ui.copy_python_command_button.poll():
+                    continue
+                bpy.ops.ui.copy_python_command_button()
+            if bpy.context.window_manager.clipboard.startswith(command):
+                return at
+        raise AssertionError(f"{command} has no button in the {kind} of {area.type}")
+
     # ---- what a user sees
 
     def until(
@@ -180,3 +200,13 @@ class Stage:
     def note(self, **figures: object) -> None:
         """Keep figures for the report."""
         self.figures.update(figures)
+
+
+def _line(region: bpy.types.Region) -> Iterator[Pixel]:
+    """Places along a header, or down a toolbar, so close together that every button has one."""
+    if region.width > region.height:
+        middle = region.y + region.height // 2
+        yield from ((x, middle) for x in range(region.x, region.x + region.width, BUTTON_PIXELS))
+    else:
+        middle, top = region.x + region.width // 2, region.y + region.height
+        yield from ((middle, y) for y in range(top, region.y, -BUTTON_PIXELS))

@@ -32,6 +32,7 @@ class PALPATE_PT_layers(PalpatePanel, bpy.types.Panel):
             for axis in AXES:
                 modifier_inputs.draw_slider(column, rig, axis, axis)
         column = while_idle(self.layout).column(align=True)
+        column.operator("palpate.animate_layers", icon="KEY_HLT")
         column.prop(thing.palpate, "force_attributes")
         column.operator("palpate.add_press_rig", icon="EMPTY_AXIS")
         column.operator("palpate.convert_layers", icon="SHAPEKEY_DATA")

@@ -64,7 +64,9 @@ def slotted(palpate) -> bpy.types.Object:
 
 def test_a_place_that_no_fingertip_gets_to_is_pushed_itself(slotted):
     bpy.ops.palpate.stroke(motion="PUSH", place=(0.0, 0.0, FLOOR), radius=0.01, depth=0.002)
-    rest, shift = rest_places(slotted), moved(slotted, "Press 1")
+    # The vertices are few, so that a finer mesh carries the dent.
+    fine = slotted.palpate.carrier or slotted
+    rest, shift = rest_places(fine), moved(slotted, "Press 1")
     most = np.argmax(np.linalg.norm(shift, axis=1))
     assert np.linalg.norm(rest[most] - [0.0, 0.0, FLOOR]) < 0.006
     assert shift[most, 2] < -0.0015

@@ -61,8 +61,9 @@ class Drag:
 
     @property
     def hit(self) -> bool:
-        """Whether the surface was pressed in where the cursor was, as one would see it."""
-        return self.pressed >= LEAST_PRESSED * DRAG_PIXELS
+        """Whether the surface was pressed where the cursor was, as one would see it."""
+        most = self.moved if self.off <= self.radius else self.pressed
+        return max(most, self.pressed) >= LEAST_PRESSED * DRAG_PIXELS
 
     @property
     def elsewhere(self) -> bool:
