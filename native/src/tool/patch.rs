@@ -4,6 +4,8 @@ mod products;
 mod response;
 mod slot_numbers;
 
+use std::ops::Range;
+
 use glam::{DMat3, DVec3};
 
 use products::{Vectors, add_along, add_moved, at, gather, set};
@@ -17,16 +19,24 @@ use crate::contact::cones::MAX_FINGERS;
 use crate::contact::ground::Ground;
 
 /// Numbers of a slot: how those up to it give way to a force on it, an entry of the blocks after the
-/// other, row by row, each for all of them. How others do follows by symmetry: a processor can keep
-/// half of a full patch at hand, but not all of it.
-const BLOCKS: usize = 9 * MOST_POINTS;
+/// other, row by row, each for all of them and without room for more: what is read in one go comes
+/// twice as soon. How others do follows by symmetry: a processor can keep half of a full patch at
+/// hand, but not all of it.
+fn blocks_at(slot: usize) -> Range<usize> {
+    let (whole, rest) = (slot / WIDE, slot % WIDE);
+    let before = WIDE * whole * (whole + 1) / 2 + rest * (whole + 1);
+    9 * WIDE * before..9 * WIDE * (before + whole + 1)
+}
+
+/// Each entry begins at a multiple of so many numbers.
+const WIDE: usize = 8;
 
 /// Slots in use and the compliance between them.
 #[derive(Debug, Clone)]
 pub struct Patch {
     slots: Vec<Slot>,
     numbers: SlotNumbers,
-    /// C_ij at unit modulus, [`BLOCKS`] for each loaded slot j.
+    /// C_ij at unit modulus, [`blocks_at`] each loaded slot j.
     compliance: Vec<f64>,
     /// Forces whose displacements are summed up, and these.
     forces: Vectors,
@@ -45,7 +55,7 @@ impl Patch {
         Self {
             slots: Vec::with_capacity(MOST_POINTS),
             numbers: SlotNumbers::new(),
-            compliance: room(BLOCKS * MOST_POINTS),
+            compliance: room(blocks_at(MOST_POINTS).start),
             forces: [[0.0; MOST_POINTS]; 3],
             moved: [[0.0; MOST_POINTS]; 3],
             by_one: [[0.0; MOST_POINTS]; 3],
@@ -77,7 +87,7 @@ impl Patch {
     /// How slots up to one give way to a force on it.
     #[inline]
     fn blocks_of(&self, slot: usize) -> &[f64] {
-        &self.compliance[slot * BLOCKS..][..BLOCKS]
+        &self.compliance[blocks_at(slot)]
     }
 
     /// How a slot gives way to a force on another, m/N at unit modulus.
@@ -85,7 +95,8 @@ impl Patch {
     pub(crate) fn compliance(&self, i: usize, j: usize) -> DMat3 {
         let (low, high) = (i.min(j), i.max(j));
         let blocks = self.blocks_of(high);
-        let entry = |r: usize, c: usize| blocks[(3 * r + c) * MOST_POINTS + low];
+        let count = blocks.len() / 9;
+        let entry = |r: usize, c: usize| blocks[(3 * r + c) * count + low];
         let block = DMat3::from_cols_array_2d(&[0, 1, 2].map(|c| [0, 1, 2].map(|r| entry(r, c))));
         if i <= j { block } else { block.transpose() }
     }
@@ -97,7 +108,7 @@ impl Patch {
         for axis in &mut self.by_one {
             axis[..=slot].fill(0.0);
         }
-        let blocks = &self.compliance[slot * BLOCKS..][..BLOCKS];
+        let blocks = &self.compliance[blocks_at(slot)];
         add_moved(blocks, force, &mut self.by_one, slot + 1);
         &self.by_one
     }
@@ -144,7 +155,7 @@ impl Patch {
     pub(crate) fn load(&mut self, slot: usize, force: DVec3) {
         set(&mut self.forces, slot, force);
         if force != DVec3::ZERO {
-            let blocks = &self.compliance[slot * BLOCKS..][..BLOCKS];
+            let blocks = &self.compliance[blocks_at(slot)];
             add_moved(blocks, force, &mut self.moved, slot + 1);
         }
     }
@@ -227,10 +238,11 @@ impl Patch {
     fn put(&mut self, i: usize, j: usize, block: DMat3) {
         let (low, high) = (i.min(j), i.max(j));
         let block = if i <= j { block } else { block.transpose() };
-        let blocks = &mut self.compliance[high * BLOCKS..][..BLOCKS];
+        let blocks = &mut self.compliance[blocks_at(high)];
+        let count = blocks.len() / 9;
         for c in 0..3 {
             for r in 0..3 {
-                blocks[(3 * r + c) * MOST_POINTS + low] = block.col(c)[r];
+                blocks[(3 * r + c) * count + low] = block.col(c)[r];
             }
         }
     }

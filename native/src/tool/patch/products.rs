@@ -21,14 +21,17 @@ pub(super) fn set(vectors: &mut Vectors, i: usize, vector: DVec3) {
     }
 }
 
+/// An entry of the blocks, row by row, of the first slots.
+#[inline(always)]
+fn entry(blocks: &[f64], number: usize, count: usize) -> &[f64] {
+    &blocks[blocks.len() / 9 * number..][..count]
+}
+
 widely! {
     /// Adds how far the first slots move under a force on the one whose blocks these are.
     pub(super) fn add_moved(blocks: &[f64], force: DVec3, moved: &mut Vectors, count: usize) {
         for (r, axis) in moved.iter_mut().enumerate() {
-            let rows = &blocks[3 * r * MOST_POINTS..][..3 * MOST_POINTS];
-            let x = &rows[..count];
-            let y = &rows[MOST_POINTS..][..count];
-            let z = &rows[2 * MOST_POINTS..][..count];
+            let [x, y, z] = [0, 1, 2].map(|c| entry(blocks, 3 * r + c, count));
             let sums = &mut axis[..count];
             for i in 0..sums.len() {
                 sums[i] += x[i] * force.x + y[i] * force.y + z[i] * force.z;
@@ -42,7 +45,7 @@ widely! {
     pub(super) fn gather(blocks: &[f64], forces: &Vectors, count: usize) -> [f64; 3] {
         let mut moved = [0.0; 3];
         for (c, sum) in moved.iter_mut().enumerate() {
-            let part = |r: usize| &blocks[(3 * r + c) * MOST_POINTS..][..count];
+            let part = |r: usize| entry(blocks, 3 * r + c, count);
             let [x, y, z] = forces;
             let forces = [&x[..count], &y[..count], &z[..count]];
             *sum = dot_three([part(0), part(1), part(2)], forces);
@@ -58,10 +61,7 @@ widely! {
         let count = along.len();
         along.fill(0.0);
         for (r, way) in ways.iter().enumerate() {
-            let rows = &blocks[3 * r * MOST_POINTS..][..3 * MOST_POINTS];
-            let x = &rows[..count];
-            let y = &rows[MOST_POINTS..][..count];
-            let z = &rows[2 * MOST_POINTS..][..count];
+            let [x, y, z] = [0, 1, 2].map(|c| entry(blocks, 3 * r + c, count));
             let way = &way[..count];
             for i in 0..count {
                 along[i] += way[i] * (x[i] * force.x + y[i] * force.y + z[i] * force.z);
