@@ -203,7 +203,8 @@ impl Joint {
         let slots = self.patch.slots().iter().enumerate();
         let own = slots.filter(|(_, slot)| slot.is_of(pair));
         if let Some((nearest, slot)) = own.min_by(|a, b| a.1.free.0.total_cmp(&b.1.free.0)) {
-            return slot.offset + self.patch.moved_of(nearest, |slot| slot.tool != pair[0]);
+            // Its own forces are fewer than the others'.
+            return slot.moved - self.patch.moved_of(nearest, |slot| slot.tool == pair[0]);
         }
         let Some(collider) = led[number].as_ref().map(|led| &*led.collider) else {
             return DVec3::ZERO;
