@@ -758,6 +758,21 @@ def closest_points(
     there.
     """
 
+@final
+class CubicPlaces:
+    """Places in triangles that are cubic Bezier patches.
+
+    Each of p places has the number of its patch and area coordinates there (p, 3). ValueError for a
+    number that is not one of ``patches``.
+    """
+
+    def __new__(cls, patch: ArrayLike, alpha: ArrayLike, patches: int) -> Self: ...
+    def vectors(self, patches: ArrayLike) -> NDArray[np.float32]:
+        """Vectors (p, 3) at all places, by all cores, of control vectors (patches, 10, 3): of each
+        patch's corners; beside them, towards another corner (01, 02, 10, 12, 20, 21); in its
+        middle.
+        """
+
 def device_coupling(rate_hz: int = 1000, *, encoder_step: float = 0.0) -> DeviceCoupling:
     """The coupling for devices with motors of which nothing but the encoders' step at the handle
     (m) is known: see docs/stability.md. ValueError for a rate or a step without sense.

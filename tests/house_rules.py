@@ -67,6 +67,7 @@ cli/body cli/press cli/softness cli/bake cli
 ROOMS_OF_RUST = """
 algebra
 body/compliance body
+drawn
 clock
 guardian
 device/serial device device/link device/haply

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from palpate_servo import closest_points
+from palpate_servo import CubicPlaces, closest_points
 from scipy.sparse import csr_array
 
 from .soft_body import SoftBody
@@ -29,34 +29,41 @@ class DrawnMap:
 
     Attributes
     ----------
+    triangle : int64 (p,), of the surface, on which each vertex hangs.
+    normals : float64 (t, 3), outward unit normals of the surface's triangles, at rest.
     beside : sparse (h, n): Bezier values beside the ends of each edge, from displacements of the
         free surface nodes. Pinned nodes do not move and have no slope.
-    weights : sparse (p, n + h): of the nodes, and of the places beside them.
-    normals : float64 (p, 3), outward unit normals of the triangles that they hang on, at rest.
+    controls : int64 (t, 9): of each triangle the values at its corners, and beside them, in the
+        order of ``places``, by their numbers in those of the nodes, the edges, and a zero.
+    places : of the vertices in their triangles.
     """
 
-    beside: csr_array
-    weights: csr_array
+    triangle: NDArray[np.int64]
     normals: NDArray[np.float64]
+    beside: csr_array
+    controls: NDArray[np.int64]
+    places: CubicPlaces
 
     @classmethod
     def hang(cls, vertices: NDArray[np.float64], body: SoftBody) -> DrawnMap:
         """Hang ``vertices`` (p, 3), metres in body coordinates, on the body's rest surface."""
-        triangles = body.mesh.surface_triangles
-        triangle, alpha = closest_points(body.mesh.nodes, triangles, vertices)
+        nodes, triangles = body.mesh.nodes, body.mesh.surface_triangles
+        triangle, alpha = closest_points(nodes, triangles, vertices)
         edges = _edges(triangles)
         edges = edges[body.free_index(edges[:, 0]) >= 0]
-        weights = _weights(alpha, triangles[triangle], edges, body)
-        i, j, k = (body.mesh.nodes[triangles[triangle, corner]] for corner in range(3))
+        i, j, k = (nodes[triangles[:, corner]] for corner in range(3))
         normals = np.cross(j - i, k - i)
         normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-        return cls(_beside(edges, body), weights, normals)
+        places = CubicPlaces(triangle, alpha, len(triangles))
+        return cls(triangle, normals, _beside(edges, body), _controls(edges, body), places)
 
-    def displacements(self, free_surface: NDArray[np.float64]) -> NDArray[np.float64]:
+    def displacements(self, free_surface: NDArray[np.float64]) -> NDArray[np.float32]:
         """Displacements (p, 3) of drawn vertices from those of the free surface nodes (n, 3)."""
-        known = np.concatenate([free_surface, self.beside @ free_surface])
-        moved: NDArray[np.float64] = self.weights @ known
-        return moved
+        known = np.concatenate([free_surface, self.beside @ free_surface, np.zeros((1, 3))])
+        ends = known[self.controls]
+        # With this value in the middle the patch keeps quadratics.
+        middle = ends[:, 3:].sum(axis=1) / 4.0 - ends[:, :3].sum(axis=1) / 6.0
+        return self.places.vectors(np.concatenate([ends, middle[:, None]], axis=1))
 
 
 def _edges(triangles: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -65,30 +72,16 @@ def _edges(triangles: NDArray[np.int64]) -> NDArray[np.int64]:
     return np.unique(np.concatenate([pairs, pairs[:, ::-1]]), axis=0)
 
 
-def _weights(
-    alpha: NDArray[np.float64],
-    corners: NDArray[np.int64],
-    edges: NDArray[np.int64],
-    body: SoftBody,
-) -> csr_array:
-    """Bernstein polynomials at area coordinates (p, 3) in triangles (p, 3)."""
-    count, free = len(alpha), body.compliance.node_count
-    middle = alpha.prod(axis=1)
-    # The value in the middle is that of the ends of the edges, a quarter each, less a sixth of the
-    # corners.
+def _controls(edges: NDArray[np.int64], body: SoftBody) -> NDArray[np.int64]:
+    """Numbers (t, 9) of the values at the corners of all triangles, and beside them."""
+    corners, free = body.mesh.surface_triangles, body.compliance.node_count
+    zero = free + len(edges)
     ends = corners[:, [0, 0, 1, 1, 2, 2]], corners[:, [1, 2, 0, 2, 0, 1]]
     code = np.array([len(body.mesh.nodes), 1])
     numbers = np.searchsorted(edges @ code, np.stack(ends, axis=-1) @ code)
-    beside = np.where(body.free_index(ends[0]) >= 0, free + numbers, -1)
-    along = 3.0 * alpha[:, [0, 0, 1, 1, 2, 2]] ** 2 * alpha[:, [1, 2, 0, 2, 0, 1]]
-    column = np.concatenate([body.free_index(corners), beside], axis=1)
-    value = np.concatenate([alpha**3 - middle[:, None], along + 1.5 * middle[:, None]], axis=1)
-    counts = (column >= 0) & (value != 0.0)
-    # Rows are in order, and short indices are quicker to read.
-    ends_of_rows = np.concatenate([[0], np.cumsum(counts.sum(axis=1))]).astype(np.int32)
-    numbers_of_columns = column[counts].astype(np.int32)
-    shape = (count, free + len(edges))
-    return csr_array((value[counts], numbers_of_columns, ends_of_rows), shape)
+    at, begin = body.free_index(corners), body.free_index(ends[0])
+    beside = np.where(begin >= 0, free + numbers, zero)
+    return np.concatenate([np.where(at >= 0, at, zero), beside], axis=1)
 
 
 def _beside(edges: NDArray[np.int64], body: SoftBody) -> csr_array:

@@ -13,6 +13,7 @@ pub mod clock;
 pub mod contact;
 pub mod control;
 pub mod device;
+pub mod drawn;
 pub mod engine;
 pub mod fingers;
 pub mod guardian;

@@ -95,10 +95,10 @@ class DrawnBody:
         """
         into_local = np.linalg.inv(self.frame.metric)
         # The map takes units as they are; there are far fewer nodes than vertices.
-        local = self.hung.displacements(displacements @ into_local).astype(np.float32)
+        local = self.hung.displacements(displacements @ into_local)
         if tools:
             near = self._near(tools, float(np.abs(displacements).max(initial=0.0)))
-            rest, normals = self.rest_places[near], self.hung.normals[near]
+            rest, normals = self.rest_places[near], self.hung.normals[self.hung.triangle[near]]
             places = rest + local[near] @ self.frame.metric
             for pressing in tools:
                 places = kept_out(places, normals, pressing)

@@ -60,10 +60,10 @@ def hung_vertices(body: SoftBody) -> DrawnMap:
 
 
 def drawn_coordinates(
-    rest: NDArray[np.float32], displacements: NDArray[np.float64]
+    rest: NDArray[np.float32], displacements: NDArray[np.float32]
 ) -> NDArray[np.float32]:
     """What Blender is handed: flat coordinates (3 p,)."""
-    return (rest + displacements.ravel()).astype(np.float32)
+    return rest + displacements.ravel()
 
 
 def blender_write_seconds() -> float | None:

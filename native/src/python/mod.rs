@@ -23,6 +23,7 @@ fn palpate_servo(module: &Bound<'_, PyModule>) -> PyResult<()> {
     let py = module.py();
     module.add_class::<body::surface::Body>()?;
     module.add_class::<body::compliance::Compliance>()?;
+    module.add_class::<body::drawn::CubicPlaces>()?;
     module.add_class::<device::setups::PointerSetup>()?;
     module.add_class::<device::setups::LinkSetup>()?;
     module.add_class::<device::setups::HaplySetup>()?;

@@ -2,4 +2,5 @@
 
 pub mod closest;
 pub mod compliance;
+pub mod drawn;
 pub mod surface;
