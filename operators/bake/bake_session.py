@@ -16,7 +16,7 @@ from ...core.errors import CancelledError, PalpateError
 from ...core.mesh.surface import Surface
 from ...core.stiffness.pins import PinNodes
 from ..carrier import body_source, carrier
-from ..object import baked_record, body_store, soft_object
+from ..object import baked_record, body_store, kept_body, soft_object
 from ..object.embedded_body import embedded
 from ..pins import pin_group, stiff_region
 from ..reporting.acting import Acting
@@ -87,6 +87,7 @@ class BakeSession:
             name = places[0].name
             baked_record.record(thing, body, name, self.surface, self.fingerprint)
             carrier.give(thing, scene, self.surface)
+            kept_body.keep(thing, body)
             if not self.rebuild:
                 thing.palpate.baked_edge_length = self.settings.edge_length
                 thing.palpate.baked_epsilon = self.settings.epsilon

@@ -27,9 +27,6 @@ from .soft_object import BodyStatus, Fit
 
 Array = NDArray[np.float64]
 
-# Relative tolerance of equal stretches: matrices are float32.
-SAME_STRETCH = 1e-5
-
 # Reach within which a tool changes what is drawn, as a share of its own: more than tool_dent.FADE.
 FARTHEST_KEPT_OUT = 1.3
 
@@ -112,10 +109,11 @@ class DrawnBody:
         found = []
         for pressing in tools:
             reach = FARTHEST_KEPT_OUT * pressing.tool.reach + 2.0 * largest
-            near = np.arange(len(self.rest_places))
-            for axis, middle in zip(self._rest_axes, pressing.pose.position, strict=True):
-                along = axis if len(near) == len(axis) else axis[near]
-                near = near[np.abs(along - np.float32(middle)) < reach]
+            x, y, z = self._rest_axes
+            at = pressing.pose.position.astype(np.float32)
+            near = np.flatnonzero(np.abs(x - at[0]) < reach)
+            for axis, middle in zip((y, z), at[1:], strict=True):
+                near = near[np.abs(axis[near] - middle) < reach]
             found.append(near)
         return np.unique(np.concatenate(found))
 
@@ -132,8 +130,7 @@ class DrawnBody:
 
     def moved_to(self, frame: BodyFrame) -> DrawnBody | None:
         """The same body with its object's present frame; None if that was scaled or sheared."""
-        old, new = self.frame.metric, frame.metric
-        if np.abs(new - old).max() > SAME_STRETCH * np.abs(old).max():
+        if not self.frame.stretches_as(frame):
             return None
         same = np.array_equal(frame.rotation, self.frame.rotation)
         if same and np.array_equal(frame.origin, self.frame.origin):

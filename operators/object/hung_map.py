@@ -15,7 +15,7 @@ _kept: tuple[str, NDArray[np.float64], DrawnMap] | None = None
 def hung_on(body: SoftBody, vertices: NDArray[np.float64]) -> DrawnMap:
     """Map of ``vertices`` (p, 3), metres, on a body: the last one if both are the same."""
     global _kept  # noqa: PLW0603  one cached map
-    if _kept is None or _kept[0] != body.key or not np.array_equal(_kept[1], vertices):
+    if _kept is None or _kept[0] != body.key or not _same(_kept[1], vertices):
         _kept = (body.key, vertices, DrawnMap.hang(vertices, body))
     return _kept[2]
 
@@ -24,3 +24,7 @@ def forget() -> None:
     """Free the memory."""
     global _kept  # noqa: PLW0603  see hung_on
     _kept = None
+
+
+def _same(known: NDArray[np.float64], vertices: NDArray[np.float64]) -> bool:
+    return known is vertices or np.array_equal(known, vertices)

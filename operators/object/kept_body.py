@@ -5,12 +5,11 @@ Tools need seconds to prepare on a body; the next press on it reuses that.
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import bpy
 
 from ...core.body.soft_body import SoftBody
 from ...core.compliance.mapped import MappedCompliance
+from ..scene import drawn_surface
 from . import body_store, hung_map
 
 # The body, its file, and the file's state when read.
@@ -25,25 +24,34 @@ def load(thing: bpy.types.Object) -> SoftBody:
     PalpateError
         As there.
     """
-    global _kept  # noqa: PLW0603  one cached body
-    path = body_store.locate(thing)
-    stamp = None if path is None else _stamp(path, thing.palpate.body_key)
-    if _kept is not None and _kept[0] == stamp:
+    if _kept is not None and _kept[0] == _stamp(thing):
         return _kept[1]
     body = body_store.load(thing)
+    keep(thing, body)
+    return body
+
+
+def keep(thing: bpy.types.Object, body: SoftBody) -> None:
+    """Keep the body that was just read from an object's file, or written there."""
+    global _kept  # noqa: PLW0603  one cached body
+    stamp = _stamp(thing)
     # A mapped table keeps its file open, which some systems then cannot replace.
     in_file = isinstance(body.compliance, MappedCompliance)
     _kept = None if stamp is None or in_file else (stamp, body)
-    return body
 
 
 def forget() -> None:
     """Free the memory."""
-    global _kept  # noqa: PLW0603  see load
+    global _kept  # noqa: PLW0603  see keep
     _kept = None
     hung_map.forget()
+    drawn_surface.forget()
 
 
-def _stamp(path: Path, key: str) -> tuple[object, ...]:
+def _stamp(thing: bpy.types.Object) -> tuple[object, ...] | None:
+    """What changes with an object's body file; None without one."""
+    path = body_store.locate(thing)
+    if path is None:
+        return None
     about = path.stat()
-    return (path, key, about.st_mtime_ns, about.st_size, about.st_ino)
+    return (path, thing.palpate.body_key, about.st_mtime_ns, about.st_size, about.st_ino)

@@ -17,6 +17,9 @@ from ...core.errors import PalpateError
 Array = NDArray[np.float64]
 Point = tuple[float, float, float]
 
+# Relative difference of equal stretches: matrices are float32.
+SAME_STRETCH = 1e-5
+
 # Stretches below this share of the largest one count as flat.
 SMALLEST_RELATIVE_STRETCH = 1e-6
 
@@ -73,6 +76,11 @@ class BodyFrame:
     def metric(self) -> Array:
         """Metres of body per local unit, (3, 3): the part of the frame that a body depends on."""
         return self.metres_per_unit * self.stretch
+
+    def stretches_as(self, other: BodyFrame) -> bool:
+        """Whether a body is the same in both frames, but for rounding."""
+        difference = np.abs(other.metric - self.metric).max()
+        return bool(difference <= SAME_STRETCH * np.abs(self.metric).max())
 
     def body_from_local(self, local: ArrayLike) -> Array:
         """Local coordinates (p, 3) to metres in the body."""

@@ -6,8 +6,7 @@ What these make is read in ``operators/carrier``.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import dataclass, field, replace
 
 import bpy
 import numpy as np
@@ -19,6 +18,14 @@ from ...core.sentence import Sentence
 from . import fingerprint
 from .body_frame import BodyFrame
 from .fingerprint import Fingerprint
+
+
+@dataclass(eq=False)
+class Derived:
+    """What was computed of a surface; the same wherever its object is moved."""
+
+    body: NDArray[np.float64] | None = None
+    shape: Fingerprint | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +45,7 @@ class DrawnSurface:
     corners: NDArray[np.int64]
     face_starts: NDArray[np.int64]
     frame: BodyFrame
+    derived: Derived = field(default_factory=Derived, kw_only=True, repr=False)
 
     @property
     def base(self) -> DrawnSurface:
@@ -51,7 +59,9 @@ class DrawnSurface:
     @property
     def body(self) -> NDArray[np.float64]:
         """Vertices (p, 3) in metres, body coordinates."""
-        return self.frame.body_from_local(self.local)
+        if self.derived.body is None:
+            self.derived.body = self.frame.body_from_local(self.local)
+        return self.derived.body
 
     def surface(self) -> Surface:
         """The surface to bake, in metres, wound outward as drawn.
@@ -65,38 +75,61 @@ class DrawnSurface:
         refuse_rounded(Sentence("mesh"), self.local.astype(np.float32))
         return Surface.checked(self.body, self.frame.wind(self.triangles))
 
-    @cached_property
+    @property
     def shape(self) -> Fingerprint:
         """Fingerprint without rules."""
-        return fingerprint.take(self.local, self.body, self.corners, self.face_starts)
+        if self.derived.shape is None:
+            taken = fingerprint.take(self.local, self.body, self.corners, self.face_starts)
+            self.derived.shape = taken
+        return self.derived.shape
 
     def fingerprint(self, pins: str, stiffness: str) -> Fingerprint:
         """Fingerprint of the surface with these rules, stored with a body."""
         return replace(self.shape, pins=pins, stiffness=stiffness)
 
 
+# Surfaces read last, and their arrays as Blender had them: a large mesh takes long to read. Two, for
+# an object's own mesh and what its modifiers make of it.
+_last: list[tuple[tuple[NDArray[np.generic], ...], DrawnSurface]] = []
+MOST_KEPT = 2
+
+
 def read(
     thing: bpy.types.Object, scene: bpy.types.Scene, mesh: bpy.types.Mesh | None = None
 ) -> DrawnSurface:
-    """Read the mesh of an object, or another that was made of it.
+    """Read the mesh of an object, or another that was made of it; one of the surfaces read last
+    where that is still the same.
 
     Raises
     ------
     PalpateError
         An object whose transform flattens it.
     """
-    mesh = mesh or thing.data
+    mesh, frame = mesh or thing.data, frame_of(thing, scene)
+    local, (corners, starts) = rest_coordinates(mesh), polygons(mesh)
+    arrays = (local, corners, starts)
+    for known, surface in _last:
+        same = all(map(np.array_equal, known, arrays))
+        if same and surface.frame.stretches_as(frame):
+            # The stretch differs by rounding only, as between two rotations of the object.
+            return replace(surface, frame=replace(frame, stretch=surface.frame.stretch))
     mesh.calc_loop_triangles()
     triangles = np.empty(3 * len(mesh.loop_triangles), dtype=np.int32)
     mesh.loop_triangles.foreach_get("vertices", triangles)
-    corners, starts = polygons(mesh)
-    return DrawnSurface(
-        local=rest_coordinates(mesh).astype(np.float64).reshape(-1, 3),
+    surface = DrawnSurface(
+        local=local.astype(np.float64).reshape(-1, 3),
         triangles=triangles.astype(np.int64).reshape(-1, 3),
         corners=corners.astype(np.int64),
         face_starts=starts.astype(np.int64),
-        frame=frame_of(thing, scene),
+        frame=frame,
     )
+    _last[:] = [(arrays, surface), *_last][:MOST_KEPT]
+    return surface
+
+
+def forget() -> None:
+    """Free the memory of the surfaces read last."""
+    _last.clear()
 
 
 def group_weights(mesh: bpy.types.Mesh, group: int) -> NDArray[np.float64]:
