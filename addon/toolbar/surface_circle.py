@@ -11,6 +11,7 @@ from mathutils import Vector
 from numpy.typing import NDArray
 
 from ...core.errors import PalpateError
+from ...operators.layer import live_layer
 from ...operators.place.seen_place import SeenPlace, under_pointer
 from ...operators.scene import viewport
 from ...operators.scene.drawn_surface import metres_per_unit
@@ -29,6 +30,9 @@ def draw(xy: tuple[int, int]) -> None:
         return
     here = viewport.under_pointer(context.window, *xy)
     if here is None or context.region != here.region:
+        return
+    if context.object is not None and live_layer.find(context.object) is not None:
+        # Pressed already; and to find a place on a mesh that has just changed takes long.
         return
     scene = context.scene
     try:
