@@ -25,7 +25,7 @@ core/body
 core/contact/near_field core/contact/tool core/contact
 core/grip
 core/shape/solid core/shape/paper core/shape/rotation_strain core/shape/force_at_depth core/shape
-core/bake/settings.py core/bake/cost core/bake
+core/bake/settings.py core/bake/cost core/bake/preview core/bake
 core/servo/link core/servo
 core/record
 core/imprint

@@ -49,6 +49,9 @@ def draw_bake(layout: bpy.types.UILayout, context: bpy.types.Context, bake: Bake
     layout.progress(factor=factor, type="BAR", text=bake_words.how_far(progress), translate=False)
     say(layout, context, progress.text, "TIME")
     layout.operator("palpate.cancel_bake", icon="CANCEL")
+    if bake.preview_off:
+        layout.operator("palpate.press", icon="FORCE_FORCE")
+        say(layout, context, bake_words.previewed(bake.preview_off), "INFO")
 
 
 def draw_press(layout: bpy.types.UILayout, context: bpy.types.Context, press: PressSession) -> None:
@@ -157,7 +160,9 @@ def _rebuild_helps(status: BodyStatus) -> bool:
 def _draw_status(
     layout: bpy.types.UILayout, context: bpy.types.Context, status: BodyStatus
 ) -> None:
-    if status.fit is Fit.READY:
+    if context.object.palpate.preview_off:
+        say(layout, context, "This is a coarse preview; press Make Soft Again", "INFO")
+    elif status.fit is Fit.READY:
         say(layout, context, "Ready to press", "CHECKMARK")
     elif _press_restores(context.object, status):
         say(layout, context, "The body file is missing; Press computes it again", "INFO")

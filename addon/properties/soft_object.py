@@ -270,6 +270,8 @@ class PalpateObject(ShapeProperties, bpy.types.PropertyGroup):
     # Largest distances of the body's surface from the drawn mesh and back, m; 0 if unknown.
     body_to_mesh: result(0.0)
     mesh_to_body: result(0.0)
+    # Of a preview: how far the drawn mesh lies from it at most, as a share of its size; else 0.
+    preview_off: result(0.0)
     bake_seconds: result(0.0)
     bake_warnings: result("")
 

@@ -16,8 +16,11 @@ from ...core.errors import CancelledError, PalpateError
 from ...core.mesh.surface import Surface
 from ...core.stiffness.pins import PinNodes
 from ..carrier import body_source, carrier
-from ..object import baked_record, body_store, kept_body, soft_object
+from ..layer import live_layer
+from ..object import baked_record, body_store, kept_body, preview_body, soft_object
 from ..object.embedded_body import embedded
+from ..object.mesh_look import shape_size
+from ..object.preview_body import PreviewBody
 from ..pins import pin_group, stiff_region
 from ..reporting.acting import Acting
 from ..scene.drawn_surface import DrawnSurface
@@ -27,6 +30,8 @@ from ..session import press_session
 from . import bake_prediction
 
 SECONDS_BETWEEN_POLLS = 0.05
+# A bake up to this long needs no preview. More triangles take longer in any case, and to measure.
+QUICK_SECONDS, MOST_TRIANGLES_MEASURED = 2.0, 20_000
 
 
 @dataclass(eq=False)
@@ -40,6 +45,7 @@ class BakeSession:
     job: BakeJob
     progress: JobProgress
     rebuild: bool
+    preview: PreviewBody | None = None
 
     def poll(self) -> bool:
         """Update the progress; True when there is a result to :meth:`commit`.
@@ -58,13 +64,31 @@ class BakeSession:
         except PalpateError:
             self.end()
             raise
+        if self.preview is not None:
+            self.preview.poll()
         return self.job.finished
 
     @property
-    def can_commit(self) -> bool:
-        """Whether the result can be applied now: not in edit mode."""
+    def awaits_mode(self) -> bool:
+        """Whether the result waits until the object's mode is left."""
         thing = self.handle.find()
-        return thing is None or thing.mode == "OBJECT"
+        return thing is not None and thing.mode != "OBJECT"
+
+    @property
+    def awaits_press(self) -> bool:
+        """Whether the result waits until a press of the preview ends: nothing jumps in the hand."""
+        thing = self.handle.find()
+        return thing is not None and live_layer.find(thing) is not None
+
+    @property
+    def can_commit(self) -> bool:
+        """Whether the result can be applied now."""
+        return not self.awaits_mode and not self.awaits_press
+
+    @property
+    def preview_off(self) -> float:
+        """How far a preview that can be pressed is off, as a share of the size; 0 without one."""
+        return self.preview.off if self.preview is not None and self.preview.key else 0.0
 
     def commit(self, scene: bpy.types.Scene) -> tuple[SoftBody, BakeReport]:
         """Give the object its body. Ends the session in any case.
@@ -100,11 +124,20 @@ class BakeSession:
         return body, report
 
     def end(self) -> None:
-        """Stop the child process and remove its folder. Safe to repeat."""
+        """Stop the child process, and remove its folder and the preview. Safe to repeat."""
         global _current  # noqa: PLW0603  one bake at a time
         self.job.close()
+        if self.preview is not None:
+            self._end_preview(self.preview)
+            self.preview = None
         if _current is self:
             _current = None
+
+    def _end_preview(self, preview: PreviewBody) -> None:
+        press, thing = press_session.current(), self.handle.find()
+        if press is not None and thing is not None and press.handle.find() == thing:
+            press_session.give_way("The bake was cancelled, and its preview with it")
+        preview.end()
 
     def _unchanged_object(self, scene: bpy.types.Scene) -> bpy.types.Object:
         thing = self.handle.find()
@@ -136,11 +169,19 @@ def current() -> BakeSession | None:
     return _current
 
 
-def start(thing: bpy.types.Object, scene: bpy.types.Scene, *, rebuild: bool = False) -> BakeSession:
+def start(
+    thing: bpy.types.Object,
+    scene: bpy.types.Scene,
+    *,
+    rebuild: bool = False,
+    previewed: bool = False,
+) -> BakeSession:
     """Start to bake an object in a child process.
 
     Parameters
     ----------
+    previewed : bake a coarse body, too, for an object that has none and is expected to wait for
+        longer than a preview takes.
     rebuild : only recompute the compliance, from the tetrahedra in the .blend with the present
         pins and material.
 
@@ -168,7 +209,16 @@ def start(thing: bpy.types.Object, scene: bpy.types.Scene, *, rebuild: bool = Fa
     _current = BakeSession(
         ObjectHandle.of(thing), drawn, fingerprint, settings, job, job.poll(), rebuild
     )
+    if previewed and not thing.palpate.body_key and _takes_long(surface, settings):
+        _current.preview = preview_body.start(thing, scene, drawn, fingerprint, settings, python)
     return _current
+
+
+def _takes_long(surface: Surface, settings: BakeSettings) -> bool:
+    """Whether a bake is expected to take longer than its preview."""
+    if len(surface.triangles) > MOST_TRIANGLES_MEASURED:
+        return True
+    return bake_prediction.predict(shape_size(surface), settings).cost.seconds > QUICK_SECONDS
 
 
 def run(

@@ -1,10 +1,13 @@
 """Progress of a bake as translated text."""
 
+import math
+
 from ...core.bake.job import JobProgress
 from ...core.quantities import duration
 from ..reporting.translated import shown
 
-WAITING = "The body is ready; leave Edit Mode to receive it"
+AWAITS_MODE = "The body is ready; leave Edit Mode to receive it"
+AWAITS_PRESS = "The body is ready and comes when pressing ends"
 
 
 def how_far(progress: JobProgress) -> str:
@@ -13,3 +16,9 @@ def how_far(progress: JobProgress) -> str:
     if progress.remaining is None:
         return f"{share}{duration(progress.seconds)}"
     return share + shown("{time} left", time=duration(progress.remaining))
+
+
+def previewed(off: float) -> str:
+    """What can be done with a preview that is ``off`` by a share of the object's size."""
+    # Never better than it is.
+    return shown("Press it now: coarse preview, up to {off} % off", off=math.ceil(100 * off))

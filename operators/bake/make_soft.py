@@ -46,7 +46,9 @@ class BakingOperator(Acting):
 
     def _start(self, context: bpy.types.Context) -> set[str]:
         self._hold(context.object, context.scene)
-        self._session = bake_session.start(context.object, context.scene, rebuild=self.rebuild)
+        self._session = bake_session.start(
+            context.object, context.scene, rebuild=self.rebuild, previewed=not self.rebuild
+        )
         self._progress = ModalProgress()
         self._progress.begin(self, context, 1 / POLLS_PER_SECOND)
         self._show(context)
@@ -104,7 +106,10 @@ class BakingOperator(Acting):
         progress = self._session.progress
         text = f"{shown(progress.text)}, {bake_words.how_far(progress)}"
         if waiting:
-            text = shown(bake_words.WAITING)
+            awaits_mode = self._session.awaits_mode
+            text = shown(bake_words.AWAITS_MODE if awaits_mode else bake_words.AWAITS_PRESS)
+        elif self._session.preview_off:
+            text = f"{bake_words.previewed(self._session.preview_off)}   {text}"
         text = f"{self._session.handle.name}: {text}"
         self._progress.show(context, text, progress.share or 0.0)
 

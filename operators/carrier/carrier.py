@@ -40,6 +40,18 @@ def give(thing: bpy.types.Object, scene: bpy.types.Scene, surface: DrawnSurface)
     thing.palpate.carrier = made
 
 
+def take_unused(thing: bpy.types.Object) -> None:
+    """Take an object's carrier away, unless layers need it."""
+    carrier = thing.palpate.carrier
+    if carrier is None or any(layers.carrier_of(one) == carrier for one in layers.layers_of(thing)):
+        return
+    thing.palpate.carrier = None
+    mesh = carrier.data
+    bpy.data.objects.remove(carrier)
+    if not mesh.users:
+        bpy.data.meshes.remove(mesh)
+
+
 def _made(
     thing: bpy.types.Object, scene: bpy.types.Scene, mesh: bpy.types.Mesh, level: int
 ) -> bpy.types.Object:

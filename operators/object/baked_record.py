@@ -20,8 +20,18 @@ def record(
     fingerprint: Fingerprint,
 ) -> None:
     """Make ``body``, stored under ``file_name``, the object's: tetrahedra, key and figures."""
+    record_body(thing, body, file_name, fingerprint)
+    if thing.palpate.pin_mode == "BELOW":
+        pin_group.mark_below(thing, surface.base, thing.palpate.pin_fraction)
+
+
+def record_body(
+    thing: bpy.types.Object, body: SoftBody, file_name: str, fingerprint: Fingerprint
+) -> None:
+    """The same, without marking the pins on the mesh."""
     baked, compliance = thing.palpate, body.compliance
     embedded_body.embed(thing, body)
+    baked.preview_off = 0.0
     baked.body_key = body.key
     baked.body_file = file_name
     baked.fingerprint = fingerprint.to_text()
@@ -38,5 +48,3 @@ def record(
     if body.fit is not None:
         baked.body_to_mesh = body.fit.body_to_input
         baked.mesh_to_body = body.fit.input_to_body
-    if baked.pin_mode == "BELOW":
-        pin_group.mark_below(thing, surface.base, baked.pin_fraction)

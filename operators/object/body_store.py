@@ -28,6 +28,15 @@ from ..scene.package_preferences import PACKAGE, preferences
 from . import baked_settings, embedded_body
 
 FOLDER = "palpate"
+# Settings of an object that go with its body.
+FORGOTTEN = (
+    "body_key",
+    "body_file",
+    "fingerprint",
+    "baked_formulation",
+    "baked_form",
+    "preview_off",
+)
 NOT_SOFT = "{name} is not soft yet; press Make Soft first"
 
 # Damaged files and their modification times: the panel offers to rebuild them.
@@ -190,7 +199,7 @@ def forget(thing: bpy.types.Object) -> None:
     if path is not None and not shared:
         _delete(path)
     embedded_body.remove(thing)
-    for setting in ("body_key", "body_file", "fingerprint", "baked_formulation", "baked_form"):
+    for setting in FORGOTTEN:
         thing.palpate.property_unset(setting)
 
 

@@ -14,6 +14,8 @@ from . import body_store, hung_map
 
 # The body, its file, and the file's state when read.
 _kept: tuple[tuple[object, ...], SoftBody] | None = None
+# A body without a file: a preview.
+_unsaved: SoftBody | None = None
 
 
 def load(thing: bpy.types.Object) -> SoftBody:
@@ -24,6 +26,8 @@ def load(thing: bpy.types.Object) -> SoftBody:
     PalpateError
         As there.
     """
+    if _unsaved is not None and is_unsaved(thing):
+        return _unsaved
     if _kept is not None and _kept[0] == _stamp(thing):
         return _kept[1]
     body = body_store.load(thing)
@@ -40,10 +44,28 @@ def keep(thing: bpy.types.Object, body: SoftBody) -> None:
     _kept = None if stamp is None or in_file else (stamp, body)
 
 
+def keep_unsaved(body: SoftBody) -> None:
+    """Keep a body that has no file until it is dropped."""
+    global _unsaved  # noqa: PLW0603  one preview
+    _unsaved = body
+
+
+def drop_unsaved() -> None:
+    """Drop it. Safe to repeat."""
+    global _unsaved  # noqa: PLW0603  see keep_unsaved
+    _unsaved = None
+
+
+def is_unsaved(thing: bpy.types.Object) -> bool:
+    """Whether the object's body is the one without a file."""
+    return _unsaved is not None and _unsaved.key == thing.palpate.body_key
+
+
 def forget() -> None:
     """Free the memory."""
     global _kept  # noqa: PLW0603  see keep
     _kept = None
+    drop_unsaved()
     hung_map.forget()
     drawn_surface.forget()
 

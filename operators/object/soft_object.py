@@ -17,7 +17,7 @@ from ..pins import pin_group, stiff_region
 from ..scene import fingerprint
 from ..scene.drawn_surface import DrawnSurface
 from ..scene.fingerprint import Fingerprint
-from . import baked_settings, body_store, pin_change
+from . import baked_settings, body_store, kept_body, pin_change
 from .pin_change import PinChange
 
 
@@ -92,6 +92,8 @@ def with_file(thing: bpy.types.Object, status: BodyStatus) -> BodyStatus:
         return status
     status = replace(status, meshing=_other_meshing(thing.palpate))
     path = body_store.locate(thing)
+    if path is None and kept_body.is_unsaved(thing):
+        return status
     if path is None:
         return replace(status, fit=Fit.FILE_MISSING, text="the body file is missing")
     if body_store.is_known_damaged(path):

@@ -1,0 +1,1 @@
+"""Coarse body in a moment, to press until the bake is done."""
