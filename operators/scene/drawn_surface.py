@@ -88,8 +88,8 @@ class DrawnSurface:
         return replace(self.shape, pins=pins, stiffness=stiffness)
 
 
-# Surfaces read last, and their arrays as Blender had them: a large mesh takes long to read. Two, for
-# an object's own mesh and what its modifiers make of it.
+# Surfaces read last, and their arrays as Blender had them: a large mesh takes long to read. Two, of
+# an object: its own mesh, and what its modifiers make of it.
 _last: list[tuple[tuple[NDArray[np.generic], ...], DrawnSurface]] = []
 MOST_KEPT = 2
 
