@@ -16,6 +16,8 @@ from .lattice import lattice
 
 # Vertices of the surface that are compared, at most.
 COMPARED = 20_000
+# What a preview is off at least: it gives way otherwise than fine tetrahedra, wherever it lies.
+LEAST_OFF = 0.01
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,7 +26,8 @@ class Preview:
 
     Attributes
     ----------
-    off : largest distance of the surface's vertices from the lattice, as a share of the diagonal.
+    off : largest distance of the surface's vertices from the lattice, as a share of the diagonal,
+        and never less than a hundredth.
     """
 
     mesh: TetMesh
@@ -55,4 +58,4 @@ def _off(mesh: TetMesh, surface: Surface) -> float:
     triangle, alpha = closest_points(mesh.nodes, mesh.surface_triangles, asked)
     corners = mesh.nodes[mesh.surface_triangles[triangle]]
     away = np.linalg.norm(np.einsum("pc,pcx->px", alpha, corners) - asked, axis=1)
-    return float(away.max() / surface.diagonal)
+    return max(LEAST_OFF, float(away.max() / surface.diagonal))
