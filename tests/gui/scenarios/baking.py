@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import shutil
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 
 import bpy
+from mathutils import Vector
 from mouse_scene import depth, drag_in, end_press, mouse, open_mouse, start_press, type_key
 from shown import all_panels_open, replaced
 from stage import Stage, Wait, at_length
@@ -161,3 +163,30 @@ def _times_left() -> Iterator[list[str]]:
 def _little_memory(available: int) -> Iterator[None]:
     with replaced(bake_prediction, "available_memory", lambda: available):
         yield
+
+
+@at_length
+def a_coarse_body_is_pressed_while_the_fine_one_is_baked(stage: Stage) -> Wait:
+    bpy.ops.object.delete()
+    bpy.ops.mesh.primitive_monkey_add(size=0.1)
+    bpy.ops.object.shade_smooth()
+    with stage.view():
+        bpy.ops.view3d.view_selected()
+    yield from stage.open_sidebar("Palpate")
+    name, begun = bpy.context.object.name, time.monotonic()
+    with stage.view():
+        bpy.ops.palpate.make_soft("INVOKE_DEFAULT")
+    yield from stage.until(lambda: bake_session.current().preview_off, "the preview")
+    stage.note(seconds_to_the_preview=time.monotonic() - begun)
+    yield from stage.picture("previewed")
+    with stage.view():
+        bpy.ops.palpate.stroke(
+            place=bpy.data.objects[name].matrix_world @ Vector((0, -0.04, 0)), depth=0.01
+        )
+    assert bpy.data.objects[name].palpate.preview_off > 0.0
+    yield from stage.until(lambda: bake_session.current() is None, "the fine body")
+    stage.note(seconds_to_the_body=time.monotonic() - begun)
+    thing = bpy.data.objects[name]
+    assert thing.palpate.preview_off == 0.0
+    assert thing.modifiers[-1].name == "Press 1"
+    yield from stage.picture("fine")
