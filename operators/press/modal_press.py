@@ -58,6 +58,8 @@ class Pressing(Acting):
         reason = soft_object.refusal(context.object)
         if not reason and press_session.current() is not None:
             reason = "A press is going on; Enter keeps the shape, Escape restores it"
+        if not reason and _strokes(context):
+            reason = "A stroke is going on; let go of the button first"
         return reason or soft_object.refusal_unbaked(context.object)
 
 
@@ -189,6 +191,12 @@ class ModalPress(Pressing):
         if context.workspace is not None:
             context.workspace.status_text_set(None)
         redraw_views()
+
+
+def _strokes(context: bpy.types.Context) -> bool:
+    """Whether a stroke is being dragged: a script may ask for a press meanwhile."""
+    running = context.window.modal_operators if context.window is not None else ()
+    return any(operator.bl_idname == "PALPATE_OT_stroke" for operator in running)
 
 
 def _is_blenders(event: bpy.types.Event) -> bool:

@@ -252,6 +252,9 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
         thing = self._handle.find()
         if thing is None:
             raise PalpateError("{name} is gone; choose another object", name=self._handle.name)
+        if live_layer.find(thing) is None:
+            # A script, undo or another tool took it.
+            raise PalpateError("{name} has lost its live layer; stroke again", name=thing.name)
         return thing
 
     def _asked(self) -> Asked:
