@@ -1,0 +1,145 @@
+"""Played in the windowed Blender by `benchmarks/shape/redraw.py`, with vertex counts.
+
+Milliseconds of the processor, of all threads, medians: of what hands a step over (own), of
+evaluating the mesh, and of drawing it.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+from stage import Stage, Wait
+
+from bl_ext.user_default.palpate.operators.layer import live_layer
+from bl_ext.user_default.palpate.operators.object import drawn_body
+
+STEPS = 9
+GRAB = "brushes/essentials_brushes-mesh_sculpt.blend/Brush/Elastic Grab"
+Step = Callable[[int], object]
+
+
+def a_step_is_drawn(stage: Stage) -> Wait:
+    """Steps of a layer, a shape key and a sculpting stroke, noted by the counts of vertices."""
+    stage.area.spaces.active.show_gizmo = False
+    stage.area.spaces.active.overlay.show_overlays = False
+    for count in map(int, stage.arguments):
+        yield from _ball(stage, count)
+        thing = bpy.context.object
+        figures = {"vertices": len(thing.data.vertices)}
+        figures["layer"] = _steps(stage, _layer(thing))
+        live_layer.remove(thing)
+        figures["shape key"] = _steps(stage, _shape_key(thing))
+        thing.shape_key_clear()
+        figures["elastic grab"] = _grabbed(stage)
+        stage.note(**{str(count): figures})
+        yield
+
+
+def _ball(stage: Stage, count: int) -> Wait:
+    """A soft ball of about so many vertices."""
+    for thing in list(bpy.data.objects):
+        bpy.data.objects.remove(thing)
+    rings = round((count / 2) ** 0.5)
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=2 * rings, ring_count=rings, radius=0.1)
+    thing = bpy.context.object
+    thing.palpate.edge_length, thing.palpate.decimate_above = 0.08, 1000
+    bpy.ops.palpate.make_soft()
+    with stage.view():
+        bpy.ops.view3d.view_selected()
+    yield
+
+
+def _layer(thing: bpy.types.Object) -> Step:
+    drawn = drawn_body.open_body(thing, bpy.context.scene)
+    live_layer.hang(thing)
+    rng = np.random.default_rng(15)
+    moves = 1e-3 * rng.normal(size=(drawn.body.compliance.node_count, 3))
+
+    def step(number: int) -> None:
+        live_layer.write(thing, drawn.drawn_displacement(moves * (1 + 0.1 * number)))
+
+    return step
+
+
+def _shape_key(thing: bpy.types.Object) -> Step:
+    thing.shape_key_add(name="Basis")
+    key = thing.shape_key_add(name="Press")
+    key.value = 1.0
+    places = np.empty(3 * len(thing.data.vertices), dtype=np.float32)
+    key.points.foreach_get("co", places)
+
+    def step(number: int) -> None:
+        key.points.foreach_set("co", places * np.float32(1 + 0.001 * number))
+        thing.data.update_tag()
+
+    return step
+
+
+def _grabbed(stage: Stage) -> dict[str, float]:
+    """A stroke of many steps, each of which is evaluated by itself; drawn at its end."""
+    with stage.view():
+        bpy.ops.object.mode_set(mode="SCULPT")
+        bpy.ops.brush.asset_activate(
+            asset_library_type="ESSENTIALS", relative_asset_identifier=GRAB
+        )
+        region = stage.region("WINDOW")
+        x, y = region.width / 2, region.height / 2
+        path = [
+            {
+                "name": "",
+                "location": (0.0, 0.0, 0.0),
+                "mouse": (x + 3 * number, y),
+                "mouse_event": (x + 3 * number, y),
+                "pressure": 1.0,
+                "size": 100.0,
+                "pen_flip": False,
+                "is_start": number == 0,
+                "time": 0.1 * number,
+                "x_tilt": 0.0,
+                "y_tilt": 0.0,
+            }
+            for number in range(STEPS + 1)
+        ]
+        before = _places()
+        # The first stroke prepares what later ones have.
+        bpy.ops.sculpt.brush_stroke(stroke=path, mode="NORMAL")
+        begun = time.process_time()
+        bpy.ops.sculpt.brush_stroke(stroke=path, mode="NORMAL")
+        own = (time.process_time() - begun) / STEPS
+        drawing = _cost(_draw)
+        bpy.ops.object.mode_set(mode="OBJECT")
+    if np.array_equal(_places(), before):
+        raise RuntimeError("the stroke moved nothing")
+    return {"own": 1e3 * own, "evaluation": 0.0, "drawing": 1e3 * drawing}
+
+
+def _steps(stage: Stage, step: Step) -> dict[str, float]:
+    found = []
+    with stage.view():
+        for number in range(STEPS):
+            own = _cost(lambda number=number: step(number))
+            found.append((own, _cost(bpy.context.view_layer.update), _cost(_draw)))
+    medians = 1e3 * np.median(found, axis=0)
+    return dict(zip(("own", "evaluation", "drawing"), medians.tolist(), strict=True))
+
+
+def _places() -> NDArray[np.float32]:
+    vertices = bpy.context.object.data.vertices
+    places = np.empty(3 * len(vertices), dtype=np.float32)
+    vertices.foreach_get("co", places)
+    return places
+
+
+def _draw() -> None:
+    bpy.ops.wm.redraw_timer(type="DRAW", iterations=1)
+
+
+def _cost(work: Callable[[], object]) -> float:
+    """Seconds of the processor."""
+    begun = time.process_time()
+    work()
+    return time.process_time() - begun

@@ -1,0 +1,73 @@
+"""What a step of a press costs beside a shape key and beside Blender's own Elastic Grab.
+
+    python benchmarks/shape/redraw.py [--quick]
+
+A ball of 3,000, 126,000 and 504,000 vertices (``--quick``: without the last) in the windowed
+Blender, all in one run: a live layer whose vertices all move, a shape key that is written anew, and
+a step of a sculpting stroke. Milliseconds of the processor, of all threads, medians: what hands the
+step over, Blender's evaluation, and its drawing (in software here, and so most of it).
+
+Claims: the layer's own share within 10 ms for all, and a step of it, without drawing, at most
+`MOST_OF_KEY` times one of the shape key.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from pathlib import Path
+
+PROJECT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(PROJECT / "tests" / "gui"))
+
+from windowed_blender import WindowedBlender  # noqa: E402
+
+SCENARIO = "redraw_in_window::a_step_is_drawn"
+COUNTS = ("3000", "126000", "504000")
+MOST_OWN, MOST_OF_KEY = 10.0, 1.5
+LIMIT_SECONDS = 1200.0
+
+
+def main() -> int:
+    """Print the table; 1 where a claim does not hold."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--quick", action="store_true")
+    counts = COUNTS[:-1] if parser.parse_args().quick else COUNTS
+    program = PROJECT / os.environ.get("BLENDER_GUI", "../shared/blender-gui/blender-gui")
+    package = PROJECT / "build" / "packages" / "palpate-windowed.zip"
+    if not os.access(program, os.X_OK) or not package.is_file():
+        print("not measured: there is no Blender with a window, or no package (make test-gui)")
+        return 0
+    blender = WindowedBlender(
+        program.resolve(),
+        package,
+        PROJECT,
+        folder=str(PROJECT / "benchmarks" / "measuring" / "redraw"),
+        arguments=counts,
+        limit_seconds=LIMIT_SECONDS,
+        output=PROJECT / "build" / "redraw",
+    )
+    blender.play([SCENARIO])
+    outcome = blender.outcomes[SCENARIO]
+    is_kept = all(_table(outcome.figures[count]) for count in counts if count in outcome.figures)
+    print(outcome.failure or ("the claims hold" if is_kept else "the claims do NOT hold"))
+    return 0 if is_kept and not outcome.failure else 1
+
+
+def _table(figures: dict[str, dict[str, float]]) -> bool:
+    """Print the rows of one count; whether the claims hold."""
+    print(f"{figures['vertices']:,} vertices; ms    own  evaluation  drawing")
+    for name in ("layer", "shape key", "elastic grab"):
+        one = figures[name]
+        print(f"  {name:<18}{one['own']:9.1f}{one['evaluation']:12.1f}{one['drawing']:9.1f}")
+    layer, key = (
+        one["own"] + one["evaluation"] for one in (figures["layer"], figures["shape key"])
+    )
+    return figures["layer"]["own"] <= MOST_OWN and layer <= MOST_OF_KEY * key
+
+
+if __name__ == "__main__":
+    sys.exit(main())
