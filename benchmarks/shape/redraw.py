@@ -52,7 +52,7 @@ def main() -> int:
     )
     blender.play([SCENARIO])
     outcome = blender.outcomes[SCENARIO]
-    is_kept = all(_table(outcome.figures[count]) for count in counts if count in outcome.figures)
+    is_kept = all([_table(outcome.figures[count]) for count in counts if count in outcome.figures])
     print(outcome.failure or ("the claims hold" if is_kept else "the claims do NOT hold"))
     return 0 if is_kept and not outcome.failure else 1
 

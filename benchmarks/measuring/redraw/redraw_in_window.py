@@ -47,6 +47,8 @@ def _ball(stage: Stage, count: int) -> Wait:
     bpy.ops.mesh.primitive_uv_sphere_add(segments=2 * rings, ring_count=rings, radius=0.1)
     thing = bpy.context.object
     thing.palpate.edge_length, thing.palpate.decimate_above = 0.08, 1000
+    # No finer vertices than the shape key has.
+    thing.palpate.bake_from = "BASE"
     bpy.ops.palpate.make_soft()
     with stage.view():
         bpy.ops.view3d.view_selected()
@@ -96,7 +98,6 @@ def _grabbed(stage: Stage) -> dict[str, float]:
                 "mouse_event": (x + 3 * number, y),
                 "pressure": 1.0,
                 "size": 100.0,
-                "pen_flip": False,
                 "is_start": number == 0,
                 "time": 0.1 * number,
                 "x_tilt": 0.0,
