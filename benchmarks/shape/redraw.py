@@ -52,9 +52,9 @@ def main() -> int:
     )
     blender.play([SCENARIO])
     outcome = blender.outcomes[SCENARIO]
-    is_kept = all([_table(outcome.figures[count]) for count in counts if count in outcome.figures])
-    print(outcome.failure or ("the claims hold" if is_kept else "the claims do NOT hold"))
-    return 0 if is_kept and not outcome.failure else 1
+    kept = [_table(outcome.figures[count]) for count in counts if count in outcome.figures]
+    print(outcome.failure or ("the claims hold" if all(kept) else "the claims do NOT hold"))
+    return 0 if all(kept) and not outcome.failure else 1
 
 
 def _table(figures: dict[str, dict[str, float]]) -> bool:
