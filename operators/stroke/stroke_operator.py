@@ -21,7 +21,7 @@ from ..reporting.translated import reported, shown
 from ..scene import viewport
 from ..scene.body_frame import BodyFrame
 from ..scene.drawn_surface import frame_of, metres_per_unit
-from ..scene.object_handle import ObjectHandle
+from ..scene.object_handle import ObjectHandle, make_active
 from ..scene.probe_drag import View
 from ..session import press_session
 from ..tool.tool_sizes import chosen_sizes
@@ -140,7 +140,7 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
         finally:
             context.window.cursor_modal_restore()
         if context.object != thing:
-            _make_active(context, thing)
+            make_active(context, thing)
         self._typed = TypedAmount(self._drag.motion)
         live_layer.hang(thing)
         context.window_manager.modal_handler_add(self)
@@ -290,13 +290,6 @@ def _draw(thing: bpy.types.Object, drawn: DrawnBody, stroked: Stroked) -> None:
     moved = drawn.drawn_displacement(stroked.displacements, stroked.tools)
     live_layer.write(thing, moved)
     layer_traction.write(thing, tractions_of(thing, drawn, moved, patches_of(stroked.touches)))
-
-
-def _make_active(context: bpy.types.Context, thing: bpy.types.Object) -> None:
-    for other in context.selected_objects:
-        other.select_set(False)
-    thing.select_set(True)
-    context.view_layer.objects.active = thing
 
 
 classes = (PALPATE_OT_stroke,)
