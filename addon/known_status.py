@@ -190,7 +190,7 @@ def _mesh(thing: bpy.types.Object, scene: bpy.types.Scene) -> _KnownMesh | None:
         A transform that flattens the object.
     """
     # No handler reports a changed unit scale.
-    which = (thing.session_uid, drawn_surface.metres_per_unit(scene))
+    which = (thing.session_uid, drawn_surface.metres_per_unit(scene), thing.palpate.bake_from)
     known = _known.get(which)
     if known is not None and known.fits(thing):
         return known

@@ -16,6 +16,7 @@ from ...core.bake.cost.size import ShapeSize, bending
 from ...core.errors import PalpateError
 from ...core.mesh.formats.polygons import triangulated
 from ...core.mesh.surface import Surface
+from ..layer import stack
 from ..scene import drawn_surface, fingerprint
 from ..scene.body_frame import BodyFrame
 from ..scene.fingerprint import Fingerprint
@@ -36,19 +37,52 @@ class MeasuredMesh:
 
 
 @dataclass(frozen=True, eq=False)
-class MeshLook:
-    """Arrays of a mesh at rest, as Blender holds them.
+class MeshArrays:
+    """Arrays of a mesh, as Blender holds them.
 
     Attributes
     ----------
     local : float32 (p, 3), vertex coordinates in local units.
     corners, face_starts : int32, polygons as loops of vertex numbers.
-    frame : from local units to metres.
     """
 
     local: NDArray[np.float32]
     corners: NDArray[np.int32]
     face_starts: NDArray[np.int32]
+
+    @classmethod
+    def of(cls, mesh: bpy.types.Mesh) -> MeshArrays:
+        """Copy those of a mesh at rest."""
+        corners, starts = drawn_surface.polygons(mesh)
+        return cls(drawn_surface.rest_coordinates(mesh).reshape(-1, 3), corners, starts)
+
+    def surface(self, frame: BodyFrame) -> Surface:
+        """The surface, metres. Polygons are taken as fans.
+
+        Raises
+        ------
+        PalpateError
+            It cannot be baked.
+        """
+        corners, starts = self.corners.astype(np.int64), self.face_starts.astype(np.int64)
+        sizes = np.diff(starts, append=len(corners))
+        body = frame.body_from_local(self.local.astype(np.float64))
+        return Surface.checked(body, triangulated(corners, sizes))
+
+
+@dataclass(frozen=True, eq=False)
+class MeshLook:
+    """Arrays of an object.
+
+    Attributes
+    ----------
+    own : of its mesh at rest.
+    baked : of what would be baked: its mesh, or what modifiers make of it, as it is posed now.
+    frame : from local units to metres.
+    """
+
+    own: MeshArrays
+    baked: MeshArrays
     frame: BodyFrame
 
     @classmethod
@@ -61,22 +95,21 @@ class MeshLook:
             An object whose transform flattens it.
         """
         frame = drawn_surface.frame_of(thing, scene)
-        corners, starts = drawn_surface.polygons(thing.data)
-        local = drawn_surface.rest_coordinates(thing.data).reshape(-1, 3)
-        return cls(local, corners, starts, frame)
+        own = baked = MeshArrays.of(thing.data)
+        if thing.palpate.bake_from != "BASE" and stack.making(thing):
+            graph = bpy.context.evaluated_depsgraph_get()
+            baked = MeshArrays.of(thing.evaluated_get(graph).data)
+        return cls(own, baked, frame)
 
     def measured(self) -> MeasuredMesh:
-        """Measure it, without Blender. Polygons are taken as fans."""
-        local = self.local.astype(np.float64)
-        corners, starts = self.corners.astype(np.int64), self.face_starts.astype(np.int64)
-        body = self.frame.body_from_local(local)
-        shape = fingerprint.take(local, body, corners, starts)
+        """Measure it, without Blender."""
+        local = self.own.local.astype(np.float64)
+        corners, starts = self.own.corners.astype(np.int64), self.own.face_starts.astype(np.int64)
+        shape = fingerprint.take(local, self.frame.body_from_local(local), corners, starts)
         try:
-            sizes = np.diff(starts, append=len(corners))
-            surface = Surface.checked(body, triangulated(corners, sizes))
+            return MeasuredMesh(shape, shape_size(self.baked.surface(self.frame)))
         except PalpateError as problem:
             return MeasuredMesh(shape, problem)
-        return MeasuredMesh(shape, shape_size(surface))
 
 
 def shape_size(surface: Surface) -> ShapeSize:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 import bpy
 import numpy as np
 import pytest
@@ -95,6 +97,25 @@ def test_a_press_of_the_default_cube_that_is_cancelled_leaves_nothing(sessions, 
     assert (thing.modifiers.keys(), len(seen_places(thing))) == ([], 8)
     names = thing.palpate.carrier.data.attributes.keys()
     assert not [name for name in names if name.lower().startswith("palpate")]
+
+
+def test_strokes_on_a_carrier_are_undone_saved_and_gone_on_from(palpate, tmp_path):
+    made_soft(default_cube())
+    bpy.ops.ed.undo_push(message="before")
+    for place in ((0.1, 0.2, 1.0), (0.2, 0.1, 1.0)):
+        assert bpy.ops.palpate.stroke("EXEC_DEFAULT", True, place=place, **STROKE) == {"FINISHED"}
+    both = seen_places(bpy.data.objects["Cube"])
+    bpy.ops.ed.undo()
+    thing = bpy.data.objects["Cube"]
+    assert layer_names(thing) == ["Press 1"]
+    np.testing.assert_allclose(
+        seen_places(thing), carrier_places(thing) + moved(thing, "Press 1"), atol=1e-6
+    )
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "cube.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "cube.blend"))
+    thing = select(bpy.data.objects["Cube"])
+    assert bpy.ops.palpate.stroke(place=(0.2, 0.1, 1.0), **STROKE) == {"FINISHED"}
+    np.testing.assert_allclose(seen_places(thing), both, atol=1e-4)
 
 
 def test_its_own_vertices_are_taken_where_that_is_asked(palpate):
@@ -224,3 +245,28 @@ def test_an_animation_is_played_on_the_carriers_vertices(palpate, keep, tmp_path
     rest, seen = carrier_places(thing), seen_places(thing)
     assert len(seen) == len(rest)
     assert 0.1 < (rest - seen)[:, 2].max() < 0.2
+
+
+def test_the_panel_predicts_what_is_seen(palpate):
+    """A plane has no inside; with a Solidify modifier it has, which counts."""
+    bpy.ops.mesh.primitive_plane_add(size=1.0)
+    thing, scene = select(bpy.context.object), bpy.context.scene
+    known = part("addon.known_status")
+    with pytest.raises(part("core.errors").PalpateError):
+        _predicted(known, thing, scene)
+    thing.modifiers.new("Solidify", "SOLIDIFY").thickness = 0.3
+    bpy.context.view_layer.update()
+    known.forget()
+    assert _predicted(known, thing, scene).cost.peak_bytes > 0
+    thing.palpate.bake_from = "BASE"
+    with pytest.raises(part("core.errors").PalpateError):
+        _predicted(known, thing, scene)
+
+
+def _predicted(known, thing, scene):
+    for _ in range(200):
+        found = known.prediction(thing, scene)
+        if found is not None:
+            return found
+        time.sleep(0.05)
+    raise AssertionError("no prediction")
