@@ -66,7 +66,8 @@ def _object(name: str, places: list, faces: list) -> bpy.types.Object:
     thing = bpy.data.objects.new(name, mesh)
     bpy.context.scene.collection.objects.link(thing)
     bpy.context.view_layer.objects.active = thing
-    thing.palpate.edge_length = COARSE
+    # Pressed from all sides.
+    thing.palpate.edge_length, thing.palpate.pin_mode = COARSE, "CORE"
     return thing
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from mouse_scene import open_mouse, type_key
 from stage import Pixel, Stage, Wait
 
-from bl_ext.user_default.palpate.operators.layer import layers, live_layer
+from bl_ext.user_default.palpate.operators.layer import layers, live_layer, place_marks
 from bl_ext.user_default.palpate.operators.object import soft_object
 from bl_ext.user_default.palpate.operators.place import touched_place
 from bl_ext.user_default.palpate.operators.place.seen_place import SeenPlace
@@ -191,7 +191,8 @@ def _touched(stage: Stage, at: Pixel) -> SeenPlace | None:
 def _seen(stage: Stage, at: Pixel) -> np.ndarray:
     """Place at rest under a pixel, local coordinates."""
     seen = _touched(stage, at)
-    touched = touched_place.nearest(seen.thing, seen.frame, seen.seen)
+    with place_marks.marked(seen.thing):
+        touched = touched_place.nearest(seen.thing, seen.frame, seen.seen)
     return seen.frame.local_from_body(touched.rest)
 
 
@@ -247,6 +248,7 @@ def last_stroke(thing: bpy.types.Object) -> np.ndarray:
 
 
 def _rest(thing: bpy.types.Object) -> np.ndarray:
-    flat = np.empty(3 * len(thing.data.vertices), dtype=np.float32)
-    thing.data.vertices.foreach_get("co", flat)
+    mesh = layers.drawn_mesh(thing)
+    flat = np.empty(3 * len(mesh.vertices), dtype=np.float32)
+    mesh.vertices.foreach_get("co", flat)
     return flat.reshape(-1, 3)
