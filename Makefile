@@ -224,10 +224,11 @@ translations: $(VENV)/.installed ## new texts into addon/translations/*.po, and 
 	$(BIN)/python release/translations.py
 
 .PHONY: bench
-bench: $(VENV)/.servo-installed | build/reports ## how long things take on this machine, beside others; see build/reports/bench.txt
+bench: $(VENV)/.servo-installed build/packages/.made | build/reports ## how long things take on this machine, beside others; see build/reports/bench.txt
 	$(BIN)/pip install --quiet --editable '.[dev,bench]'
 	$(BIN)/palpate devices attack simulated --times 1000 $(REPORT)
-	for script in $(filter-out benchmarks/measuring/%,$(wildcard benchmarks/*/*.py)); do $(BIN)/python "$$script"; done $(REPORT)
+	$(BIN)/python benchmarks/files/fuzz.py --blender $(BPY_VENV)/bin/python $(REPORT)
+	for script in $(filter-out benchmarks/measuring/% benchmarks/files/fuzz.py,$(wildcard benchmarks/*/*.py)); do $(BIN)/python "$$script"; done $(REPORT)
 
 .PHONY: attack
 attack: $(VENV)/.servo-installed ## the table of docs/safety.md: a hostile device at the servo

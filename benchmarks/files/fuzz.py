@@ -1,9 +1,11 @@
 """Ten minutes of bytes that nobody meant, by the tests' own properties: bodies, meshes, the link.
 
-    python benchmarks/files/fuzz.py [--seconds 600]
+    python benchmarks/files/fuzz.py [--seconds 600] [--blender PYTHON]
 
 In ``make test`` the same properties see the same hundred examples each; here they see others for as
-long as there is time. A failure is printed with its smallest example, and the exit status is 1.
+long as there is time. With the Python of an environment that has Blender as a module, and a built
+package, what a .blend says in its properties has half of it. A failure is printed with its smallest
+example, and the exit status is 1.
 """
 
 from __future__ import annotations
@@ -24,20 +26,31 @@ PROPERTIES = (
     "tests/core/record/test_hostile_recordings.py",
     "tests/core/servo/test_link.py",
 )
+OF_BLEND_FILES = ("tests/addon/bake/test_fuzzed_properties.py",)
 # Examples of a property in one round: a few minutes on a usual machine.
 PROFILE = "long"
 
 
 def main() -> int:
-    """Go round with new seeds until the time is over."""
+    """Try all that there is; 1 where anything was found."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seconds", type=float, default=600.0)
-    end = time.monotonic() + parser.parse_args().seconds
+    parser.add_argument("--blender", help="Python of an environment with Blender as a module")
+    given = parser.parse_args()
+    parts = [(sys.executable, PROPERTIES)]
+    if given.blender:
+        parts.append((given.blender, OF_BLEND_FILES))
+    return max(tried(python, tests, given.seconds / len(parts)) for python, tests in parts)
+
+
+def tried(python: str, tests: tuple[str, ...], seconds: float) -> int:
+    """Go round with new seeds until the time, s, is over; 1 where anything was found."""
+    end = time.monotonic() + seconds
     rounds = 0
     while (left := end - time.monotonic()) > 0:
         seed = secrets.randbelow(2**31)
         options = [f"--hypothesis-profile={PROFILE}", f"--hypothesis-seed={seed}", "--timeout=0"]
-        command = [sys.executable, "-m", "pytest", "-q", "-x", *options, *PROPERTIES]
+        command = [python, "-m", "pytest", "-q", "-x", *options, *tests]
         try:
             ended = subprocess.run(command, cwd=ROOT, check=False, timeout=left)
         except subprocess.TimeoutExpired:

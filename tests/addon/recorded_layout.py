@@ -54,8 +54,8 @@ class RecordedLayout:
         self.written.icons.append(icon)
 
     def prop(self, data: Any, name: str, **_: Any) -> None:
-        """A property; fails where there is none of this name."""
-        assert name in data.bl_rna.properties, name
+        """A property; fails where there is none of this name, but for custom ones."""
+        assert name.startswith("[") or name in data.bl_rna.properties, name
         self.written.properties.append(name)
 
     def prop_enum(self, data: Any, name: str, value: str, **_: Any) -> None:

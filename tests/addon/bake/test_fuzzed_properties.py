@@ -14,7 +14,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from recorded_layout import drawn
-from soft_scene import part, select, status
+from soft_scene import part, press_down, select, status
 from users_home import fill_home, outside, save_soft_cube
 
 ACTS = (
@@ -24,10 +24,19 @@ ACTS = (
     ("rebuild_body", {}),
     ("pin_below", {}),
     ("fit_memory", {}),
+    ("stroke", {"motion": "PUSH", "place": (0.0, 0.0, 0.025), "radius": 0.01, "depth": 0.003}),
+    ("add_press_rig", {"use_cursor": False, "at": (0.0, 0.0, 0.025), "radius": 0.02}),
+    ("animate_recording", {}),
+    ("save_recording", {}),
+    ("press_frames", {}),
+    ("read_durometer", {}),
+    ("convert_layers", {}),
+    ("apply_layers", {}),
     ("make_soft", {}),
 )
 ARRAYS = ("nodes", "tets", "fixed", "young_scale")
-HOLDERS = ("object", "scene", "mesh", "custom")
+HOLDERS = ("object", "scene", "mesh", "custom", "layer", "group")
+CUSTOM = ["palpate", "nodes", "palpate_rest", "palpate_halved", "palpate_seen", "force_N"]
 
 numbers = st.one_of(
     st.sampled_from([0, 1, -1, 2**31 - 1, -(2**31), math.nan, math.inf, -math.inf, 1e300, -0.0]),
@@ -64,12 +73,23 @@ def plants(draw: st.DrawFn) -> tuple[str, int, object]:
     return draw(st.sampled_from(HOLDERS)), draw(st.integers(0, 200)), draw(values)
 
 
+def owned(
+    thing: bpy.types.Object, holder: str, number: int
+) -> tuple[bpy.types.bpy_struct, list[str]]:
+    """A holder, counted round where there are several, and names of properties that it may have."""
+    groups = {"object": thing.palpate, "scene": bpy.context.scene.palpate}
+    if holder in groups:
+        return groups[holder], names_of(groups[holder])
+    if holder in {"layer", "group"}:
+        found = thing.modifiers if holder == "layer" else bpy.data.node_groups
+        owner = found[number % len(found)]
+        return owner, [*owner.keys(), "palpate_group"]
+    return {"mesh": thing.data, "custom": thing}[holder], CUSTOM
+
+
 def plant(thing: bpy.types.Object, holder: str, number: int, value: object) -> None:
     """Give a property a value as a file has it; what Blender itself does not take is left out."""
-    mesh, scene = thing.data, bpy.context.scene
-    groups = {"object": thing.palpate, "scene": scene.palpate}
-    owner = {"mesh": mesh, "custom": thing, **groups}[holder]
-    names = names_of(groups[holder]) if holder in groups else ["palpate", "nodes", "palpate_rest"]
+    owner, names = owned(thing, holder, number)
     name = names[number % len(names)]
     owners = [owner]
     if hasattr(owner, "bl_system_properties_get"):
@@ -108,7 +128,11 @@ def stranger(palpate, tmp_path, monkeypatch):
         raise part("core.errors").PalpateError("not now")
 
     fill_home(tmp_path)
-    save_soft_cube(tmp_path)
+    thing = save_soft_cube(tmp_path)
+    press_down(thing)
+    for act in ("stroke", "add_press_rig"):
+        assert not said_by(act, dict(ACTS)[act])
+    bpy.ops.wm.save_mainfile()
     monkeypatch.setattr(part("core.bake.job").BakeJob, "_start", refuse)
     (tmp_path / "copy").mkdir()
     return tmp_path
