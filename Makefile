@@ -134,7 +134,7 @@ test: ## everything that must hold, in a few minutes
 	$(MAKE) test-core test-servo test-addon test-gui
 
 .PHONY: test-all
-test-all: test test-gui-at-length $(BLENDERS:%=test-addon-%) check-systems ## the same, the extension in every Blender, the servo for every system
+test-all: test test-gui-at-length test-drags $(BLENDERS:%=test-addon-%) check-systems ## the same, the extension in every Blender, the servo for every system
 
 build/reports:
 	mkdir -p $@
@@ -200,6 +200,10 @@ check-systems: $(VENV)/.installed
 .PHONY: test-gui
 test-gui: $(VENV)/.servo-installed $(WINDOWED_PACKAGE) | build/reports ## the package in a Blender with a window, where there is one
 	BLENDER_GUI='$(BLENDER_GUI)' $(BIN)/pytest -q tests/gui $(REPORT)
+
+.PHONY: test-drags
+test-drags: $(VENV)/.servo-installed $(WINDOWED_PACKAGE) ## twenty drags at random places of each sample body, at two sizes of the interface
+	BLENDER_GUI='$(BLENDER_GUI)' $(BIN)/python tests/gui/drags/play.py
 
 .PHONY: test-gui-at-length
 test-gui-at-length: $(VENV)/.servo-installed $(WINDOWED_PACKAGE) | build/reports ## the same with the scenarios that take long

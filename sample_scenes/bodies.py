@@ -58,7 +58,7 @@ def attach(thing: bpy.types.Object, tets: Tets) -> None:
     """Give an object these tetrahedra, as a bake would have, and let Rebuild Body do the rest."""
     scene = bpy.context.scene
     baked = thing.palpate
-    for name, array in zip(palpate("operators.object.body_store").EMBEDDED, tets, strict=True):
+    for name, array in zip(palpate("operators.object.embedded_body").ARRAYS, tets, strict=True):
         kind = np.float64 if array.dtype.kind == "f" else np.int32
         baked[name] = array.astype(kind).ravel()
     surface = palpate("operators.scene.drawn_surface").read(thing, scene)

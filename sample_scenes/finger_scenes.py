@@ -1,4 +1,4 @@
-"""The scenes about fingers: a pinch with two of them, and a fingertip with a radius."""
+"""The scenes about fingers: a pinch with two of them, a fingertip with a radius, kept dents."""
 
 import bodies
 import bpy
@@ -64,6 +64,45 @@ def keep_pinches() -> None:
         layers, layer = palpate("operators.layer.layers"), cube.modifiers.active
         layers.rename(cube, layer, "Pinched")
         layers.set_strength(cube, layer, 0.0)
+
+
+def dents_scene() -> list[bpy.types.Object]:
+    """Two cubes: one for dents that come one after the other, one for a poke with sliders."""
+    scene = studio.empty_scene("Dents")
+    cubes = []
+    for name, x in (("Dents", -APART), ("Poke", APART)):
+        cube = scenes.paper_cube(scene, name)
+        cube.location.x = x
+        cubes.append(cube)
+    scene.frame_start, scene.frame_end = FRAMES[0], FRAMES[-1]
+    aim = (0.0, 0.0, 0.023)
+    studio.backdrop(scene, (0.13, 0.27, 0.29), 0.30)
+    studio.lights(scene, aim)
+    studio.camera(scene, (0.10, -0.40, 0.20), aim, 88.0)
+    studio.render_settings(scene)
+    studio.open_view(scene, cubes[0], 0.21, aim)
+    return cubes
+
+
+def keep_dents() -> None:
+    """A push, a grab and a twist as layers with keyframes; a press rig, its sliders keyed."""
+    scene, (dents, poke) = bpy.context.scene, (bpy.data.objects[one] for one in ("Dents", "Poke"))
+    bpy.context.view_layer.objects.active = dents
+    stroke = bpy.ops.palpate.stroke
+    stroke(motion="PUSH", place=(-APART - 0.01, -0.005, 0.05), radius=0.008, depth=0.006)
+    corner = (-APART + 0.025, -0.025, 0.05)
+    stroke(motion="GRAB", place=corner, radius=0.015, by=(0.006, -0.006, 0.006))
+    stroke(motion="TWIST", place=(-APART, -0.025, 0.02), radius=0.012, angle=0.9)
+    bpy.ops.palpate.animate_layers()
+    bpy.context.view_layer.objects.active = poke
+    bpy.ops.palpate.add_press_rig(use_cursor=False, at=(APART, 0.0, 0.05), radius=0.12)
+    rig = palpate("operators.layer.press_rig").rigs_of(poke)[0]
+    inputs = palpate("operators.layer.modifier_inputs")
+    for frame, (aside, up) in zip(FRAMES, ((0, 0), (0, -0.8), (0.8, 0), (0, 0)), strict=True):
+        for axis, way in (("X", aside), ("Z", up)):
+            inputs.set_value(rig, axis, float(way))
+            poke.keyframe_insert(inputs.path(rig, axis), frame=frame)
+    scene.frame_set(FRAMES[1])
 
 
 def fingertip_scene() -> list[bpy.types.Object]:
@@ -142,4 +181,5 @@ def keyframes(
 def tets() -> dict[str, bodies.Tets]:
     """The stored tetrahedra of each object of these scenes."""
     cube = bodies.cube_tets()
-    return {"Nodes": cube, "Triangles": cube, "Mouse": bodies.stored_tets("mouse")}
+    cubes = dict.fromkeys(("Nodes", "Triangles", "Dents", "Poke"), cube)
+    return {**cubes, "Mouse": bodies.stored_tets("mouse")}

@@ -38,6 +38,7 @@ def main() -> int:
             "mouse": (lambda: [scenes.mouse_scene()], None),
             "drumstick": (lambda: [scenes.drumstick_scene()], None),
             "pinch": (finger_scenes.pinch_scene, finger_scenes.keep_pinches),
+            "dents": (finger_scenes.dents_scene, finger_scenes.keep_dents),
             "fingertip": (finger_scenes.fingertip_scene, None),
             "large": (lambda: [large_scene.hare_scene()], None),
         }.items():
@@ -64,7 +65,7 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--output", type=Path, default=HERE)
     parser.add_argument(
         "--only",
-        choices=["cube", "mouse", "drumstick", "pinch", "fingertip", "large"],
+        choices=["cube", "mouse", "drumstick", "pinch", "dents", "fingertip", "large"],
         help="make this one alone",
     )
     return parser.parse_args()

@@ -8,10 +8,17 @@ from pathlib import Path
 import bpy
 import numpy as np
 import pytest
-from soft_scene import body_of, key_names, part, select, status
+from soft_scene import body_of, key_names, part, rest_places, seen_places, select, status
+from without_palpate import without_palpate
 
 SCENES = Path(__file__).resolve().parents[2] / "sample_scenes"
-MATERIALS = {"cube": "PAPER_CUBE", "mouse": "PLUSH", "drumstick": "JELLY", "large": "PLUSH"}
+MATERIALS = {
+    "cube": "PAPER_CUBE",
+    "mouse": "PLUSH",
+    "drumstick": "JELLY",
+    "large": "PLUSH",
+    "dents": "PAPER_CUBE",
+}
 OBJECTS = {"large": "Hare"}
 # Places on top, metres: where the meat tapers over the bone, and where it is thick.
 OVER_BONE, OVER_MEAT = (0.048, 0.0, 0.0335), (-0.02, 0.0, 0.068)
@@ -43,6 +50,31 @@ def test_a_sample_scene_only_lacks_its_body_file(palpate, tmp_path, name):
     assert thing.palpate.material == MATERIALS[name]
 
 
+@pytest.mark.parametrize(
+    ("name", "objects", "frame"),
+    [
+        ("pinch", ("Nodes", "Triangles"), 1),
+        ("dents", ("Dents", "Poke"), 20),
+        ("dents", ("Dents", "Poke"), 37),
+    ],
+)
+def test_a_scene_plays_without_palpate(palpate, tmp_path, name, objects, frame):
+    shutil.copyfile(SCENES / f"{name}.blend", tmp_path / "copy.blend")
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "copy.blend"))
+    things = [bpy.data.objects[one] for one in objects]
+    layers = part("operators.layer.layers")
+    if name == "pinch":
+        for thing in things:
+            layers.set_strength(thing, layers.layers_of(thing)[0], 1.0)
+    bpy.context.scene.frame_set(frame)
+    here = {thing.name: seen_places(thing) for thing in things}
+    rest = {thing.name: rest_places(thing) for thing in things}
+    alone = without_palpate(tmp_path)
+    for one in objects:
+        assert np.abs(here[one] - rest[one]).max() > 1e-3
+        assert np.abs(here[one] - alone[one]).max() <= 1e-6
+
+
 def test_the_bone_in_the_drumstick_is_felt_and_only_where_it_is(palpate, tmp_path):
     thing = opened("drumstick", tmp_path)
     boned = {place: force(thing, place) for place in (OVER_BONE, OVER_MEAT)}
@@ -68,7 +100,11 @@ def test_the_pinched_cubes_open_ready_and_undented(pinch_file, name):
     thing = select(bpy.data.objects[name])
     found = status(thing)
     assert found.fit.name == "FILE_MISSING"
-    assert thing.data.shape_keys.key_blocks["Pinched"].value == 0.0
+    layers = part("operators.layer.layers")
+    assert thing.data.shape_keys is None
+    assert [(one.name, layers.strength(one)) for one in layers.layers_of(thing)] == [
+        ("Pinched", 0.0)
+    ]
 
 
 def test_the_cube_of_figure_5_is_pinched_as_the_paper_s_equation_10_says(pinch_file):

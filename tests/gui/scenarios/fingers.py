@@ -84,7 +84,7 @@ def two_handles_pinch_and_escape_restores_every_bit(stage: Stage) -> Wait:
     assert abs(_figures()[0].depth - held) < 1e-6
     yield from end_press(stage)
     assert _coordinates("Nodes") == before
-    assert bpy.data.objects["Nodes"].data.shape_keys.key_blocks.keys() == ["Basis", "Pinched"]
+    assert bpy.data.objects["Nodes"].modifiers.keys() == ["Pinched"]
 
 
 def two_empties_press_as_the_animation_leads_them(stage: Stage) -> Wait:

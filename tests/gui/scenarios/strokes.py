@@ -8,14 +8,11 @@ import bmesh
 import bpy
 import numpy as np
 from mouse_scene import open_mouse, type_key
-from stage import Pixel, Stage, Wait
+from random_drags import Drag, random_drags
+from stage import Stage, Wait
 
-from bl_ext.user_default.palpate.operators.layer import layers, live_layer, place_marks
+from bl_ext.user_default.palpate.operators.layer import layers, live_layer
 from bl_ext.user_default.palpate.operators.object import soft_object
-from bl_ext.user_default.palpate.operators.place import touched_place
-from bl_ext.user_default.palpate.operators.place.seen_place import SeenPlace
-from bl_ext.user_default.palpate.operators.place.seen_place import under_pointer as seen_place
-from bl_ext.user_default.palpate.operators.scene.viewport import under_pointer
 
 TOOL = "palpate.tool"
 DIRECTIONS = {
@@ -132,10 +129,12 @@ def _random_drags_on_bodies(stage: Stage, scale: float) -> Wait:
         bpy.context.preferences.view.ui_scale = scale
         yield 0.5
         yield from stage.open_sidebar("Palpate")
-        _choose_tool(stage)
         yield from _settled(stage)
-        yield from _random_drags(stage, name, rng, 5)
+        drags: list[Drag] = []
+        yield from random_drags(stage, name, rng, 5, drags)
         yield from stage.picture(name)
+        missed = [drag for drag in drags if not drag.hit]
+        assert not missed, f"{name}: {missed}"
 
 
 def _settled(stage: Stage) -> Wait:
@@ -144,56 +143,6 @@ def _settled(stage: Stage) -> Wait:
     while before != (before := (stage.region("UI").x, stage.region("UI").width)):
         yield 1.0
         yield
-
-
-def _random_drags(stage: Stage, name: str, rng: np.random.Generator, count: int) -> Wait:
-    for _ in range(count):
-        before = len(kept(bpy.data.objects[name]))
-        here = _visible_place(stage, name, rng)
-        at = _seen(stage, here)
-        angle = rng.uniform(0.0, 2.0 * math.pi)
-        end = (here[0] + 40 * math.cos(angle), here[1] + 40 * math.sin(angle))
-        yield from stage.drag([here, end], steps=4, release=False)
-        # Where it is held, the surface has moved.
-        yield from stage.event("LEFTMOUSE", "RELEASE", stage.mouse)
-        thing = bpy.data.objects[name]
-        yield from stage.until(
-            lambda n=before: len(kept(bpy.data.objects[name])) == n + 1, f"a stroke at {here}"
-        )
-        shift = np.linalg.norm(last_stroke(thing), axis=1)
-        rest = _rest(thing)[np.argmax(shift)]
-        missed = np.linalg.norm(rest - at)
-        assert missed < 0.2 * np.linalg.norm(thing.dimensions), f"pressed {missed} m off"
-
-
-def _visible_place(stage: Stage, name: str, rng: np.random.Generator) -> Pixel:
-    """A pixel at which the object is seen, not covered by a panel or a gizmo."""
-    region = stage.region("WINDOW")
-    for _ in range(2000):
-        x = region.x + rng.uniform(0.02, 0.98) * region.width
-        y = region.y + rng.uniform(0.02, 0.98) * region.height
-        here = under_pointer(stage.window, round(x), round(y))
-        # The sidebar's edge can be dragged, also from a little beside it.
-        if here is None or here.over_gizmos() or abs(x - stage.region("UI").x) < 20:
-            continue
-        touched = _touched(stage, (round(x), round(y)))
-        if touched is not None and touched.thing.name == name:
-            return round(x), round(y)
-    raise AssertionError(f"{name} is nowhere to be seen")
-
-
-def _touched(stage: Stage, at: Pixel) -> SeenPlace | None:
-    here = under_pointer(stage.window, round(at[0]), round(at[1]))
-    graph = bpy.context.evaluated_depsgraph_get()
-    return None if here is None else seen_place(bpy.context.scene, graph, here)
-
-
-def _seen(stage: Stage, at: Pixel) -> np.ndarray:
-    """Place at rest under a pixel, local coordinates."""
-    seen = _touched(stage, at)
-    with place_marks.marked(seen.thing):
-        touched = touched_place.nearest(seen.thing, seen.frame, seen.seen)
-    return seen.frame.local_from_body(touched.rest)
 
 
 def _soft_default_cube(stage: Stage) -> Wait:
@@ -245,10 +194,3 @@ def last_stroke(thing: bpy.types.Object) -> np.ndarray:
     moved = layers.displacement(thing, thing.modifiers[kept(thing)[-1]])
     assert moved is not None
     return moved
-
-
-def _rest(thing: bpy.types.Object) -> np.ndarray:
-    mesh = layers.drawn_mesh(thing)
-    flat = np.empty(3 * len(mesh.vertices), dtype=np.float32)
-    mesh.vertices.foreach_get("co", flat)
-    return flat.reshape(-1, 3)

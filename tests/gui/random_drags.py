@@ -194,6 +194,10 @@ def _undo_all(stage: Stage, name: str) -> Wait:
 def _look_from_elsewhere(stage: Stage, rng: np.random.Generator) -> Wait:
     tilt, turn = rng.uniform(math.radians(30), math.radians(110)), rng.uniform(0, 2 * math.pi)
     stage.area.spaces.active.region_3d.view_rotation = Euler((tilt, 0.0, turn)).to_quaternion()
+    with stage.view():
+        bpy.ops.view3d.view_selected()
+    # The view goes there in steps.
+    yield 1.0
     yield
     yield
 
