@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import bpy
-from stage import MODULE, Stage, Wait
+from stage import MODULE, Stage, Wait, at_length
+from storm.random_events import storm
 
 
 def the_extension_is_enabled_after_installation(stage: Stage) -> Wait:
@@ -36,3 +37,8 @@ def dragging_draws_a_selection_box(stage: Stage) -> Wait:
         bpy.ops.object.select_all(action="DESELECT")
     yield from stage.drag([(x - 200, y - 200), (x + 200, y + 200)])
     yield from stage.until(bpy.data.objects["Cube"].select_get, "the selection")
+
+
+@at_length
+def random_events_leave_the_meshes_and_nothing_running(stage: Stage) -> Wait:
+    yield from storm(stage, seed=16, count=200)

@@ -8,6 +8,7 @@ import bpy
 import numpy as np
 from stage import Pixel, Stage, Wait
 
+from bl_ext.user_default.palpate.operators.bake import bake_session
 from bl_ext.user_default.palpate.operators.layer import layers
 
 MOST_CLICKS = 8
@@ -38,7 +39,8 @@ def from_the_default_cube_to_a_rendered_animation_in_eight_clicks(stage: Stage) 
     yield from stage.picture("1-tool")
     soft = yield from stage.button(view, "TOOL_HEADER", "bpy.ops.palpate.make_soft(")
     yield from click("Make Soft in the header", soft)
-    yield from stage.until(lambda: bpy.data.objects["Cube"].palpate.body_key, "the bake")
+    yield from stage.until(lambda: bpy.data.objects["Cube"].palpate.body_key, "the first body")
+    yield from stage.until(lambda: bake_session.current() is None, "the bake")
     yield 0.3
     yield from stage.picture("2-soft")
 
