@@ -124,7 +124,7 @@ ON_ALL_CORES := --numprocesses auto --maxprocesses 4 --dist loadfile
 ENGINE_TESTS := tests/servo/engine tests/servo/contact
 
 # What compiles and downloads goes side by side; a make that knows how (4.0 and later) prints each part
-# in one piece. Tests come one after the other: some have deadlines, the others fill all cores.
+# in one piece. The parts of the tests come one after the other: some have deadlines, others fill all cores.
 SIDE_BY_SIDE := $(MAKE) --jobs=2 $(if $(filter output-sync,$(.FEATURES)),--output-sync)
 
 .PHONY: test
@@ -134,7 +134,13 @@ test: ## everything that must hold, in a few minutes
 	$(MAKE) test-core test-servo test-addon test-gui
 
 .PHONY: test-all
-test-all: test test-gui-at-length test-drags $(BLENDERS:%=test-addon-%) check-systems ## the same, the extension in every Blender, the servo for every system
+test-all: test test-at-length test-drags $(BLENDERS:%=test-addon-%) check-systems ## the same, the extension in every Blender, the servo for every system
+
+.PHONY: test-at-length
+test-at-length: $(VENV)/.servo-installed $(BPY_VENV)/.installed build/packages/.made $(WINDOWED_PACKAGE) | build/reports ## of all parts what takes long
+	$(BIN)/pytest -q -m at_length $(ON_ALL_CORES) $(ENGINE_TESTS) $(REPORT)
+	$(BPY_VENV)/bin/pytest -q -m at_length $(ON_ALL_CORES) tests/addon $(REPORT)
+	BLENDER_GUI='$(BLENDER_GUI)' $(BIN)/pytest -q -m at_length tests/gui $(REPORT)
 
 build/reports:
 	mkdir -p $@
@@ -157,8 +163,8 @@ test-core: $(VENV)/.servo-installed | build/reports ## core, engine, command lin
 	$(BIN)/pytest -q $(ON_ALL_CORES) tests/core $(ENGINE_TESTS) tests/simulated tests/cli tests/passivity tests/demo tests/release tests/test_architecture.py tests/test_docs.py tests/test_examples.py $(REPORT)
 
 .PHONY: test-servo
-test-servo: $(VENV)/.servo-installed | build/reports ## servo and firmware: they have deadlines, so one test after the other
-	$(BIN)/pytest -q tests/servo tests/firmware $(ENGINE_TESTS:%=--ignore=%) $(REPORT)
+test-servo: $(VENV)/.servo-installed | build/reports ## servo and firmware: they have deadlines and mostly wait, so two at once at most
+	$(BIN)/pytest -q --numprocesses auto --maxprocesses 2 --dist loadfile tests/servo tests/firmware $(ENGINE_TESTS:%=--ignore=%) $(REPORT)
 
 .PHONY: test-addon
 test-addon: test-addon-$(BPY) ## the package installed in Blender as a module, driven by its operators
@@ -204,10 +210,6 @@ test-gui: $(VENV)/.servo-installed $(WINDOWED_PACKAGE) | build/reports ## the pa
 .PHONY: test-drags
 test-drags: $(VENV)/.servo-installed $(WINDOWED_PACKAGE) ## twenty drags at random places of each sample body, at two sizes of the interface
 	BLENDER_GUI='$(BLENDER_GUI)' $(BIN)/python tests/gui/drags/play.py
-
-.PHONY: test-gui-at-length
-test-gui-at-length: $(VENV)/.servo-installed $(WINDOWED_PACKAGE) | build/reports ## the same with the scenarios that take long
-	BLENDER_GUI='$(BLENDER_GUI)' $(BIN)/pytest -q tests/gui --at-length $(REPORT)
 
 # ---------------------------------------------------------------------------- demo, benchmarks
 

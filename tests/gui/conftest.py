@@ -24,8 +24,8 @@ Before each scenario Blender loads its factory scene; the extension stays instal
 The scenarios that pytest selected are dealt to two Blenders, which play them side by side, each in
 the order of their files; should one crash or hang, that scenario fails and its rest runs in a new
 one. Pictures, Blender's output and its reports are left in build/gui/. `make test-gui` builds the
-package and plays all but those marked `@at_length`, which `make test-gui-at-length` and with it
-`make test-all` add; after that, one alone by `.venv/bin/pytest tests/gui -k dragging_dents`.
+package and plays all but those marked `@at_length`, which `make test-at-length`, a part of
+`make test-all`, plays; after that, one alone by `.venv/bin/pytest tests/gui -k dragging_dents`.
 
 `BLENDER_GUI` names the program that starts the windowed Blender, `PALPATE_PACKAGE` the zip. Without
 that program everything here is skipped.
@@ -36,6 +36,7 @@ from __future__ import annotations
 import ast
 import os
 from pathlib import Path
+from typing import Any
 
 import pytest
 from windowed_blender import WindowedBlender
@@ -44,12 +45,7 @@ HERE = Path(__file__).resolve().parent
 REPOSITORY = HERE.parents[1]
 
 
-def pytest_addoption(parser: pytest.Parser) -> None:
-    """Add the choice to play the long scenarios too."""
-    parser.addoption("--at-length", action="store_true", help="play the long scenarios too")
-
-
-def scenarios(*, at_length: bool) -> list[str]:
+def scenarios() -> list[Any]:
     """Return `file::function` of every scenario: public functions with one parameter, `stage`."""
     found = []
     for path in sorted((HERE / "scenarios").glob("*.py")):
@@ -58,17 +54,16 @@ def scenarios(*, at_length: bool) -> list[str]:
                 continue
             if [argument.arg for argument in node.args.args] != ["stage"]:
                 continue
-            marks = {mark.id for mark in node.decorator_list if isinstance(mark, ast.Name)}
-            if at_length or "at_length" not in marks:
-                found.append(f"{path.stem}::{node.name}")
+            named = {mark.id for mark in node.decorator_list if isinstance(mark, ast.Name)}
+            marks = [pytest.mark.at_length] if "at_length" in named else []
+            found.append(pytest.param(f"{path.stem}::{node.name}", marks=marks))
     return found
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     """Make one test of each scenario."""
     if "scenario" in metafunc.fixturenames:
-        at_length = bool(metafunc.config.getoption("--at-length", default=False))
-        metafunc.parametrize("scenario", scenarios(at_length=at_length))
+        metafunc.parametrize("scenario", scenarios())
 
 
 @pytest.fixture(scope="session")

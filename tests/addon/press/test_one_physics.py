@@ -33,7 +33,13 @@ PRESSES = {
 }
 
 
-@pytest.fixture(params=OBJECTS)
+@pytest.fixture(
+    params=[
+        "cube",
+        pytest.param("mouse", marks=pytest.mark.at_length),
+        pytest.param("large", marks=pytest.mark.at_length),
+    ]
+)
 def thing(request, palpate, tmp_path):
     copy = tmp_path / f"{request.param}.blend"
     shutil.copyfile(SCENES / copy.name, copy)

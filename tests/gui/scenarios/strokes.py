@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 from mouse_scene import open_mouse, type_key
 from random_drags import Drag, random_drags
-from stage import Stage, Wait
+from stage import Stage, Wait, at_length
 
 from bl_ext.user_default.palpate.operators.layer import layers, live_layer
 from bl_ext.user_default.palpate.operators.object import soft_object
@@ -23,6 +23,7 @@ DIRECTIONS = {
 }
 
 
+@at_length
 def the_default_cube_is_pushed_by_a_drag_in_every_direction(stage: Stage) -> Wait:
     cube = yield from _soft_default_cube(stage)
     _choose_tool(stage)
@@ -114,6 +115,7 @@ def random_drags_press_where_the_cursor_is(stage: Stage) -> Wait:
     yield from _random_drags_on_bodies(stage, 1.0)
 
 
+@at_length
 def random_drags_press_where_the_cursor_is_in_a_large_interface(stage: Stage) -> Wait:
     try:
         yield from _random_drags_on_bodies(stage, 1.75)

@@ -54,7 +54,7 @@ def test_none_gives_energy_to_motors(body, max_force):
     gives_nothing(books_of(native_body(body), alone, coupled, max_force))
 
 
-TOOL_LOOPS = 8
+TOOL_LOOPS = 4
 RADIUS = 0.004
 # Deeper than half a radius pushes are held near a direction that changes with them.
 DEEP = Span(RADIUS, (0.5, 2.0), (0.2, 1.0))
