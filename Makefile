@@ -138,7 +138,6 @@ test-all: test test-at-length test-drags $(BLENDERS:%=test-addon-%) check-system
 
 .PHONY: test-at-length
 test-at-length: $(VENV)/.servo-installed $(BPY_VENV)/.installed build/packages/.made $(WINDOWED_PACKAGE) | build/reports ## of all parts what takes long
-	$(BIN)/pytest -q -m at_length $(ON_ALL_CORES) $(ENGINE_TESTS) $(REPORT)
 	$(BPY_VENV)/bin/pytest -q -m at_length $(ON_ALL_CORES) tests/addon $(REPORT)
 	BLENDER_GUI='$(BLENDER_GUI)' $(BIN)/pytest -q -m at_length tests/gui $(REPORT)
 
