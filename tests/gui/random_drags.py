@@ -11,6 +11,7 @@ import bpy
 import numpy as np
 from bpy_extras.view3d_utils import (
     location_3d_to_region_2d,
+    region_2d_to_location_3d,
     region_2d_to_origin_3d,
     region_2d_to_vector_3d,
 )
@@ -198,8 +199,22 @@ def _look_from_elsewhere(stage: Stage, rng: np.random.Generator) -> Wait:
         bpy.ops.view3d.view_selected()
     # The view goes there in steps.
     yield 1.0
+    _clear_of_sidebar(stage)
     yield
     yield
+
+
+def _clear_of_sidebar(stage: Stage) -> None:
+    """Move the view aside, as a user does, where a wide sidebar covers its middle."""
+    region, covered = stage.region("WINDOW"), stage.region("UI").width
+    if covered < region.width / 3:
+        return
+    view = stage.area.spaces.active.region_3d
+    here, aside = (
+        region_2d_to_location_3d(region, view, (x, region.height / 2), view.view_location)
+        for x in (region.width / 2, region.width / 2 + covered / 2)
+    )
+    view.view_location += aside - here
 
 
 @contextmanager

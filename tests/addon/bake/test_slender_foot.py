@@ -15,7 +15,7 @@ def slender(thing):
 
 @pytest.mark.parametrize(
     ("size", "expected"),
-    [((1, 1, 1), False), ((1, 1, 1.9), False), ((1, 1, 2.2), True), ((3, 0.4, 1), True)],
+    [((1, 1, 1), False), ((1, 1, 1.1), False), ((1, 1, 1.4), True), ((3, 0.4, 1), True)],
 )
 def test_the_lesser_width_counts_beside_the_height(size, expected):
     bpy.ops.mesh.primitive_cube_add(size=0.1)
@@ -34,8 +34,11 @@ def test_up_is_the_world_s_as_the_object_stands():
     assert slender(select(thing))
 
 
-def test_a_ball_stands_broadly_and_a_cone_on_its_tip_does_not():
+def test_a_dome_stands_broadly_and_a_ball_and_a_cone_on_its_tip_do_not():
     bpy.ops.mesh.primitive_uv_sphere_add(radius=0.05)
-    assert not slender(select(bpy.context.object))
+    ball = bpy.context.object
+    assert slender(select(ball))
+    ball.data.transform(Matrix.Diagonal((1.0, 1.0, 0.5, 1.0)))
+    assert not slender(select(ball))
     bpy.ops.mesh.primitive_cone_add(radius1=0.0, radius2=0.05, depth=0.1)
     assert slender(select(bpy.context.object))
