@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from ..scene.drawn_surface import DrawnSurface
 from .pin_group import is_below, up_in_body
 
-# So many times as high as its foot is wide. A koala of 1.7, pinned by its foot, leant by more than its
-# dent in 27 of 40 pushes.
+# So many times as high as its foot is wide. A koala of 1.7, pinned by its foot, leant by more than
+# its dent in 27 of 40 pushes.
 SLENDER = 1.2
 DIRECTIONS = 36
 
