@@ -30,7 +30,7 @@ TOOL = "palpate.tool"
 Points = NDArray[np.float64]
 DRAG_PIXELS = 40.0
 # The sidebar's edge can be dragged, also from a little beside it.
-BESIDE_SIDEBAR = 20
+BESIDE_EDGE = 20
 # Of a button's radius; the strip belongs to the gizmo, too.
 STRIP = 1.6
 # Of the way that the pointer was dragged.
@@ -136,7 +136,9 @@ def visible_place(stage: Stage, name: str, rng: np.random.Generator) -> Pixel:
         here = under_pointer(stage.window, *at)
         if here is None or _beside_gizmos(here):
             continue
-        if abs(at[0] - stage.region("UI").x) > BESIDE_SIDEBAR and _world_under(stage, at, name):
+        sidebar, toolbar = stage.region("UI"), stage.region("TOOLS")
+        edges = sidebar.x, toolbar.x + toolbar.width
+        if min(abs(at[0] - edge) for edge in edges) > BESIDE_EDGE and _world_under(stage, at, name):
             return at
     raise AssertionError(f"{name} is nowhere to be seen")
 
