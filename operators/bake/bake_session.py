@@ -21,7 +21,7 @@ from ..object import baked_record, body_store, kept_body, preview_body, soft_obj
 from ..object.embedded_body import embedded
 from ..object.mesh_look import shape_size
 from ..object.preview_body import PreviewBody
-from ..pins import pin_group, stiff_region
+from ..pins import pin_group, slender_foot, stiff_region
 from ..reporting.acting import Acting
 from ..scene.drawn_surface import DrawnSurface
 from ..scene.fingerprint import Fingerprint, changed_body
@@ -45,6 +45,7 @@ class BakeSession:
     job: BakeJob
     progress: JobProgress
     rebuild: bool
+    held_by_core: bool
     preview: PreviewBody | None = None
 
     def poll(self) -> bool:
@@ -174,14 +175,15 @@ def start(
     scene: bpy.types.Scene,
     *,
     rebuild: bool = False,
-    previewed: bool = False,
+    by_hand: bool = False,
 ) -> BakeSession:
     """Start to bake an object in a child process.
 
     Parameters
     ----------
-    previewed : bake a coarse body, too, for an object that has none and is expected to wait for
-        longer than a preview takes.
+    by_hand : somebody looks on. An object without a body is held by its core if it stands on a
+        slender foot, and given a coarse body, too, if it is expected to wait for longer than a
+        preview takes.
     rebuild : only recompute the compliance, from the tetrahedra in the .blend with the present
         pins and material.
 
@@ -198,6 +200,8 @@ def start(
     if soft_object.refusal(thing):
         raise PalpateError(soft_object.refusal(thing))
     drawn = (body_source.read_again if rebuild else body_source.read)(thing, scene)
+    is_first = by_hand and not rebuild and not thing.palpate.body_key
+    held_by_core = is_first and slender_foot.hold_by_core(thing, drawn)
     surface = drawn.surface()
     fingerprint = drawn.fingerprint(pin_group.pin_rule(thing), stiff_region.stiff_rule(thing))
     settings = settings_of(thing, drawn)
@@ -207,9 +211,9 @@ def start(
     else:
         job = BakeJob(surface, settings, python=python)
     _current = BakeSession(
-        ObjectHandle.of(thing), drawn, fingerprint, settings, job, job.poll(), rebuild
+        ObjectHandle.of(thing), drawn, fingerprint, settings, job, job.poll(), rebuild, held_by_core
     )
-    if previewed and not thing.palpate.body_key and _takes_long(surface, settings):
+    if is_first and _takes_long(surface, settings):
         _current.preview = preview_body.start(thing, scene, drawn, fingerprint, settings, python)
     return _current
 

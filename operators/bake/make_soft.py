@@ -6,9 +6,7 @@ from ...core.bake.steps import BakeReport
 from ...core.body.soft_body import SoftBody
 from ...core.errors import CancelledError, PalpateError
 from ...core.softness.scales.materials import MATERIALS
-from ..carrier import body_source
 from ..object import soft_object
-from ..pins import slender_foot
 from ..reporting.acting import Acting
 from ..reporting.translated import reported, shown
 from ..scene.modal_progress import ModalProgress
@@ -45,22 +43,9 @@ class BakingOperator(Acting):
         return self.guarded(lambda: self._start(context))
 
     def _start(self, context: bpy.types.Context) -> set[str]:
-        self._hold(context.object, context.scene)
-        self._session = bake_session.start(
-            context.object, context.scene, rebuild=self.rebuild, previewed=not self.rebuild
-        )
-        self._progress = ModalProgress()
-        self._progress.begin(self, context, 1 / POLLS_PER_SECOND)
-        self._show(context)
-        return {"RUNNING_MODAL"}
-
-    def _hold(self, thing: bpy.types.Object, scene: bpy.types.Scene) -> None:
-        """Hold the object by its core if its foot is slender and nobody has chosen its pins."""
-        settings = thing.palpate
-        if settings.is_property_set("pin_mode") or settings.is_property_set("pin_fraction"):
-            return
-        if slender_foot.is_slender(body_source.read(thing, scene), settings.pin_fraction):
-            settings.pin_mode = "CORE"
+        thing = context.object
+        self._session = bake_session.start(thing, context.scene, rebuild=self.rebuild, by_hand=True)
+        if self._session.held_by_core:
             self.report(
                 {"INFO"},
                 reported(
@@ -69,6 +54,10 @@ class BakingOperator(Acting):
                     name=thing.name,
                 ),
             )
+        self._progress = ModalProgress()
+        self._progress.begin(self, context, 1 / POLLS_PER_SECOND)
+        self._show(context)
+        return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         try:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import bpy
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,6 +13,18 @@ from .pin_group import is_below, up_in_body
 # its dent in 27 of 40 pushes.
 SLENDER = 1.2
 DIRECTIONS = 36
+
+
+def hold_by_core(thing: bpy.types.Object, surface: DrawnSurface) -> bool:
+    """Hold an object by its core if its foot is slender and nobody has chosen its pins; returns
+    whether it now is.
+    """
+    settings = thing.palpate
+    chosen = settings.is_property_set("pin_mode") or settings.is_property_set("pin_fraction")
+    if chosen or not is_slender(surface, settings.pin_fraction):
+        return False
+    settings.pin_mode = "CORE"
+    return True
 
 
 def is_slender(surface: DrawnSurface, fraction: float) -> bool:

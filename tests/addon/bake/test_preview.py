@@ -25,7 +25,7 @@ def previewed(palpate, monkeypatch):
     bake = part("operators.bake.bake_session")
     monkeypatch.setattr(bake, "QUICK_SECONDS", 0.0)
     thing = cube()
-    session = bake.start(thing, bpy.context.scene, previewed=True)
+    session = bake.start(thing, bpy.context.scene, by_hand=True)
     end = time.monotonic() + 60.0
     while not session.preview_off:
         session.poll()
@@ -107,7 +107,7 @@ def test_a_cancelled_bake_ends_the_press_of_its_preview(previewed):
 def test_a_quick_bake_has_no_preview(palpate, monkeypatch):
     bake = part("operators.bake.bake_session")
     monkeypatch.setattr(bake, "QUICK_SECONDS", np.inf)
-    session = bake.start(cube(), bpy.context.scene, previewed=True)
+    session = bake.start(cube(), bpy.context.scene, by_hand=True)
     assert session.preview is None
     session.end()
 
