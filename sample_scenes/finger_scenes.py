@@ -43,6 +43,13 @@ def pinch_scene() -> list[bpy.types.Object]:
     chosen.tip, chosen.source, chosen.second = "POINT", "EMPTY", "EMPTY"
     chosen.source_empty = scene.objects["Nodes Left"]
     chosen.second_empty = scene.objects["Nodes Right"]
+    _show(scene, cubes)
+    studio.show_empties()
+    return cubes
+
+
+def _show(scene: bpy.types.Scene, cubes: list[bpy.types.Object]) -> None:
+    """Set the frames, and two cubes before a backdrop, lit and in view."""
     scene.frame_start, scene.frame_end = FRAMES[0], FRAMES[-1]
     aim = (0.0, 0.0, 0.023)
     studio.backdrop(scene, (0.13, 0.27, 0.29), 0.30)
@@ -50,8 +57,6 @@ def pinch_scene() -> list[bpy.types.Object]:
     studio.camera(scene, (0.10, -0.40, 0.20), aim, 88.0)
     studio.render_settings(scene)
     studio.open_view(scene, cubes[0], 0.21, aim)
-    studio.show_empties()
-    return cubes
 
 
 def keep_pinches() -> None:
@@ -74,13 +79,7 @@ def dents_scene() -> list[bpy.types.Object]:
         cube = scenes.paper_cube(scene, name)
         cube.location.x = x
         cubes.append(cube)
-    scene.frame_start, scene.frame_end = FRAMES[0], FRAMES[-1]
-    aim = (0.0, 0.0, 0.023)
-    studio.backdrop(scene, (0.13, 0.27, 0.29), 0.30)
-    studio.lights(scene, aim)
-    studio.camera(scene, (0.10, -0.40, 0.20), aim, 88.0)
-    studio.render_settings(scene)
-    studio.open_view(scene, cubes[0], 0.21, aim)
+    _show(scene, cubes)
     return cubes
 
 

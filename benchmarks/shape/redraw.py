@@ -21,7 +21,7 @@ from pathlib import Path
 PROJECT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(PROJECT / "tests" / "gui"))
 
-from windowed_blender import WindowedBlender  # noqa: E402
+from windowed_blender import WindowedBlender, package_of, program_of  # noqa: E402
 
 SCENARIO = "redraw_in_window::a_step_is_drawn"
 COUNTS = ("3000", "126000", "504000")
@@ -36,13 +36,12 @@ def main() -> int:
     )
     parser.add_argument("--quick", action="store_true")
     counts = COUNTS[:-1] if parser.parse_args().quick else COUNTS
-    program = PROJECT / os.environ.get("BLENDER_GUI", "../shared/blender-gui/blender-gui")
-    package = PROJECT / "build" / "packages" / "palpate-windowed.zip"
+    program, package = program_of(PROJECT), package_of(PROJECT)
     if not os.access(program, os.X_OK) or not package.is_file():
         print("not measured: there is no Blender with a window, or no package (make test-gui)")
         return 0
     blender = WindowedBlender(
-        program.resolve(),
+        program,
         package,
         PROJECT,
         folder=str(PROJECT / "benchmarks" / "measuring" / "redraw"),

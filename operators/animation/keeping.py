@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterator
 from functools import partial
+from pathlib import Path
 
 import bpy
 
@@ -32,10 +33,7 @@ def _as_cache(
     size: CacheSize,
 ) -> Baking:
     place = mesh_cache.place_for(thing, ".pc2", is_own_cache)
-    with point_cache(place, size) as cache:
-        for here in pressed:
-            cache.write(here.coordinates(drawn))
-            yield cache.written / size.samples
+    yield from _written(place, drawn, pressed, size)
     mesh_cache.play(thing, place, size)
 
 
@@ -62,13 +60,20 @@ def _as_exchange(
     target = mesh_cache.place_for(thing, kind.value, partial(exchange_file.is_played, thing))
     with ScratchFolder(SCRATCH_WORD) as folder:
         frames = folder.path / "frames.pc2"
-        with point_cache(frames, size) as cache:
-            for here in pressed:
-                cache.write(here.coordinates(drawn))
-                yield cache.written / size.samples
+        yield from _written(frames, drawn, pressed, size)
         with live_pressers.paused():
             path = exchange_file.write(thing, scene, frames, size, target, kind)
     exchange_file.play(thing, target, path)
+
+
+def _written(
+    place: Path, drawn: DrawnBody, pressed: Iterator[PressedFrame], size: CacheSize
+) -> Baking:
+    """Write all frames to a point cache."""
+    with point_cache(place, size) as cache:
+        for here in pressed:
+            cache.write(here.coordinates(drawn))
+            yield cache.written / size.samples
 
 
 KEEPERS: dict[str, Keeper] = {

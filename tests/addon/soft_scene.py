@@ -269,3 +269,12 @@ def _flat(points: Any) -> NDArray[np.float32]:
     flat = np.empty(3 * len(points), dtype=np.float32)
     points.foreach_get("co", flat)
     return flat
+
+
+def said_by(act: str, given: dict[str, object]) -> str:
+    """The message with which an operator refuses, empty where it does not."""
+    try:
+        getattr(bpy.ops.palpate, act)(**given)
+    except RuntimeError as refusal:
+        return str(refusal)
+    return ""

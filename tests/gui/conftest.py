@@ -39,7 +39,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from windowed_blender import WindowedBlender
+from windowed_blender import WindowedBlender, package_of, program_of
 
 HERE = Path(__file__).resolve().parent
 REPOSITORY = HERE.parents[1]
@@ -74,12 +74,11 @@ def windowed_blender(request: pytest.FixtureRequest) -> WindowedBlender:
         for item in request.session.items
         if isinstance(item, pytest.Function) and "scenario" in getattr(item, "fixturenames", ())
     ]
-    program = REPOSITORY / os.environ.get("BLENDER_GUI", "../shared/blender-gui/blender-gui")
-    package = REPOSITORY / os.environ.get("PALPATE_PACKAGE", "build/packages/palpate-windowed.zip")
+    program, package = program_of(REPOSITORY), package_of(REPOSITORY)
     if not os.access(program, os.X_OK):
         pytest.skip(f"no Blender with a window here: {program} is missing (set BLENDER_GUI)")
     if not package.is_file():
         pytest.fail(f"{package} is missing: run `make test-gui`")
-    blender = WindowedBlender(program.resolve(), package.resolve(), REPOSITORY)
+    blender = WindowedBlender(program, package, REPOSITORY)
     blender.play(selected)
     return blender

@@ -143,6 +143,18 @@ def _outcome(name: str, report: dict[str, object], log: str) -> Outcome:
     return Outcome(failure.strip(), tuple(str(picture) for picture in pictures), figures)
 
 
+def program_of(repository: Path) -> Path:
+    """What starts the windowed Blender: `BLENDER_GUI`, or its usual place."""
+    usual = "../shared/blender-gui/blender-gui"
+    return (repository / os.environ.get("BLENDER_GUI", usual)).resolve()
+
+
+def package_of(repository: Path) -> Path:
+    """The zip to install: `PALPATE_PACKAGE`, or the one of make."""
+    windowed = "build/packages/palpate-windowed.zip"
+    return (repository / os.environ.get("PALPATE_PACKAGE", windowed)).resolve()
+
+
 def uncover(folder: Path) -> None:
     """Unmount what an earlier folder of this name left in the windowed Blender's root.
 

@@ -14,7 +14,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from recorded_layout import drawn
-from soft_scene import part, press_down, select, status
+from soft_scene import part, press_down, said_by, select, status
 from users_home import fill_home, outside, save_soft_cube
 
 ACTS = (
@@ -103,15 +103,6 @@ def plant(thing: bpy.types.Object, holder: str, number: int, value: object) -> N
             one[name] = value
         except (TypeError, ValueError, OverflowError, KeyError, AttributeError, UnicodeError):
             continue
-
-
-def said_by(act: str, given: dict[str, object]) -> str:
-    """The message with which an operator refuses; empty where it does not."""
-    try:
-        getattr(bpy.ops.palpate, act)(**given)
-    except RuntimeError as refusal:
-        return str(refusal)
-    return ""
 
 
 def panels() -> list[type]:

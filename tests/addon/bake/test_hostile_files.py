@@ -10,7 +10,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 import pytest
-from soft_scene import error_of, layer_names, locate, part, press_down, select, status
+from soft_scene import error_of, layer_names, locate, part, press_down, said_by, select, status
 from users_home import KEY, fill_home, outside, save_soft_cube
 
 
@@ -230,15 +230,6 @@ def test_hostile_fingerprints_are_refused_without_a_traceback(saved):
             assert "Traceback" not in message, (text[:80], message)
     saved.palpate.fingerprint = good
     press_down(saved)
-
-
-def said_by(act: str, given: dict[str, object]) -> str:
-    """The message with which an operator refuses, empty where it does not."""
-    try:
-        getattr(bpy.ops.palpate, act)(**given)
-    except RuntimeError as refusal:
-        return str(refusal)
-    return ""
 
 
 FIGURES = {

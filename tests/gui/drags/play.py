@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
 import shutil
 import sys
 from pathlib import Path
@@ -19,7 +18,7 @@ HERE = Path(__file__).resolve().parent
 REPOSITORY = HERE.parents[2]
 sys.path.insert(0, str(HERE.parent))
 
-from windowed_blender import Outcome, WindowedBlender  # noqa: E402
+from windowed_blender import Outcome, WindowedBlender, package_of, program_of  # noqa: E402
 
 SCENARIO = "model_drags::drags_press_where_the_cursor_is"
 # Drawn by the processor, forty drags take minutes.
@@ -64,10 +63,9 @@ def play(path: Path) -> Outcome:
     output.mkdir(parents=True, exist_ok=True)
     # A copy, since bodies are stored beside a file.
     model = shutil.copyfile(path, output / path.name)
-    program = REPOSITORY / os.environ.get("BLENDER_GUI", "../shared/blender-gui/blender-gui")
     blender = WindowedBlender(
-        program.resolve(),
-        REPOSITORY / "build/packages/palpate-windowed.zip",
+        program_of(REPOSITORY),
+        package_of(REPOSITORY),
         REPOSITORY,
         folder="drags",
         arguments=(str(model),),

@@ -8,7 +8,6 @@ Its log, a picture and the figures are left in build/storm/.
 from __future__ import annotations
 
 import argparse
-import os
 import sys
 from pathlib import Path
 
@@ -16,7 +15,7 @@ HERE = Path(__file__).resolve().parent
 REPOSITORY = HERE.parents[2]
 sys.path.insert(0, str(HERE.parent))
 
-from windowed_blender import Outcome, WindowedBlender  # noqa: E402
+from windowed_blender import Outcome, WindowedBlender, package_of, program_of  # noqa: E402
 
 SCENARIO = "long_storm::random_events_leave_the_meshes_and_nothing_running"
 SECONDS_AN_EVENT = 0.16
@@ -39,10 +38,9 @@ def main() -> int:
 
 def play(seed: int, events: int) -> Outcome:
     """What became of one storm."""
-    program = REPOSITORY / os.environ.get("BLENDER_GUI", "../shared/blender-gui/blender-gui")
     blender = WindowedBlender(
-        program.resolve(),
-        REPOSITORY / "build/packages/palpate-windowed.zip",
+        program_of(REPOSITORY),
+        package_of(REPOSITORY),
         REPOSITORY,
         folder="storm",
         arguments=(str(seed), str(events)),
