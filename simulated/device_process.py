@@ -1,4 +1,4 @@
-"""Process of the simulated device, which speaks the link on a pseudo-terminal.
+"""Process of the simulated device, which speaks the link on a pseudo-terminal or a socket.
 
 Started as `palpate devices simulate`, or by `SimulatedDevice`.
 """
@@ -19,6 +19,7 @@ from .board.haply_board import HaplyBoard
 from .board.simulated_board import SimulatedBoard
 from .hand.options import SimulatedOptions, add_simulated_options, simulated_options
 from .hand.quaternion import unit
+from .lines import Lines
 
 LATE_SECONDS = 200e-6
 PRIORITY = 1
@@ -103,27 +104,21 @@ def run(
                 report = {"end": True, "realtime": realtime, **clock.report(), **board.report()}
                 _print_json(report, json_lines)
     finally:
-        board.terminal.unplug()
+        board.port.unplug()
 
 
 class _Commands:
-    """Commands from standard input, read without blocking."""
+    """Commands from standard input."""
 
     def __init__(self) -> None:
-        os.set_blocking(0, False)
+        self._come = Lines(0)
         self._parent = os.getppid()
-        self._begun = b""
 
     def obey(self, board: Board, clock: Clock) -> bool:
         """Execute pending commands; False when standard input or the parent has ended."""
-        try:
-            data = os.read(0, 4096)
-        except BlockingIOError:
-            return os.getppid() == self._parent
-        *lines, self._begun = (self._begun + data).split(b"\n")
-        for line in lines:
+        while (line := self._come.next()) is not None:
             self._do(line.decode().split(), board, clock)
-        return bool(data)
+        return not self._come.ended and os.getppid() == self._parent
 
     @staticmethod
     def _do(words: list[str], board: Board, clock: Clock) -> None:
@@ -158,10 +153,10 @@ def _ask_for_real_time() -> bool:
 
 def _say_where(board: Board, options: SimulatedOptions, json_lines: bool) -> None:
     if json_lines:
-        path = board.terminal.path
+        path = board.port.path
         _print_json({"port": path, "link": options.link or None, "pid": os.getpid()}, True)
     else:
-        _print(f"simulated device on {board.terminal.path} (stop with Ctrl-C)")
+        _print(f"simulated device on {board.port.path} (stop with Ctrl-C)")
 
 
 def _print_json(content: dict[str, object], json_lines: bool) -> None:
@@ -192,7 +187,7 @@ def add_haply_option(parser: argparse.ArgumentParser) -> None:
 
 def main() -> int:
     """Command line of this file."""
-    parser = argparse.ArgumentParser(description="A simulated haptic device on a pseudo-terminal.")
+    parser = argparse.ArgumentParser(description="A simulated haptic device.")
     add_simulated_options(parser)
     add_haply_option(parser)
     parser.add_argument(

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
-import os
-import selectors
 import subprocess
 import sys
-import time
 from collections.abc import Sequence
 from dataclasses import replace
 from types import TracebackType
@@ -20,10 +18,13 @@ from ..core.sentence import Sentence
 from .hand.options import SimulatedOptions
 from .hand.plant import Vector
 from .hand.quaternion import Quaternion
-from .wire.pseudo_terminal import require_pseudo_terminals
+from .lines import Lines
+from .wire.ports import ANY_SOCKET, HAS_PSEUDO_TERMINALS
 
 START_SECONDS = 20.0
 ANSWER_SECONDS = 10.0
+# Ctrl-C is for the host: the device must survive until the host has released it.
+NEW_GROUP = getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0)
 
 
 class SimulatedDevice:
@@ -32,8 +33,7 @@ class SimulatedDevice:
     `haply` is the model of a Haply 2DIY to simulate; without it the device speaks the link.
 
     `python` and `python_args` start Python; inside Blender these are `sys.executable`
-    and `bpy.app.python_args`. Raises PalpateError where there are no pseudo-terminals and when the
-    device does not start.
+    and `bpy.app.python_args`. Raises PalpateError when the device does not start.
     """
 
     def __init__(
@@ -44,16 +44,16 @@ class SimulatedDevice:
         python: str = sys.executable,
         python_args: Sequence[str] = (),
     ) -> None:
-        require_pseudo_terminals()
         options = options or SimulatedOptions()
         self._folder: ScratchFolder | None = None
-        if not options.link:
+        if not (options.link or HAS_PSEUDO_TERMINALS):
+            options = replace(options, link=ANY_SOCKET)
+        elif not options.link:
             # A link, so that it comes back at the same path after unplugging.
             self._folder = ScratchFolder("device")
             options = replace(options, link=str(self._folder.path / "port"))
         self.options = options
         model = [] if haply is None else [f"--haply={haply}"]
-        self._unread = b""
         self._last_report: dict[str, Any] | None = None
         try:
             self._process = subprocess.Popen(  # noqa: S603 - our own script, no shell
@@ -68,8 +68,8 @@ class SimulatedDevice:
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
-                # Ctrl-C is for the host: the device must survive until the host has released it.
                 start_new_session=True,
+                creationflags=NEW_GROUP,
             )
         except OSError as error:
             self._remove_folder()
@@ -79,6 +79,7 @@ class SimulatedDevice:
                 python=python,
                 reason=error.strerror,
             ) from error
+        self._said = Lines(_pipe(self._process.stdout).fileno())
         try:
             self.port: str = self._read_json(START_SECONDS)["port"]
         except BaseException:
@@ -147,40 +148,40 @@ class SimulatedDevice:
             self._folder.remove()
 
     def _end(self) -> dict[str, Any]:
+        # This stops it; one that has ended already does not take what is left to say.
+        with contextlib.suppress(OSError):
+            _pipe(self._process.stdin).close()
         try:
-            # Closes its standard input, which stops it.
-            rest, _ = self._process.communicate(timeout=ANSWER_SECONDS)
+            self._process.wait(ANSWER_SECONDS)
         except subprocess.TimeoutExpired:
             self._process.kill()
-            rest, _ = self._process.communicate()
-        lines = (self._unread + rest).splitlines()
-        last = json.loads(lines[-1]) if lines else {}
-        return last if last.get("end") else {}
+            self._process.wait()
+        self._said.wait_for_end()
+        last = b"{}"
+        while (line := self._said.next()) is not None:
+            last = line
+        for pipe in (self._process.stdout, self._process.stderr):
+            _pipe(pipe).close()
+        report: dict[str, Any] = json.loads(last)
+        return report if report.get("end") else {}
 
     def _command(self, line: str) -> None:
         pipe = _pipe(self._process.stdin)
         try:
             pipe.write(line.encode() + b"\n")
             pipe.flush()
-        except (BrokenPipeError, ValueError) as error:
+        except (OSError, ValueError) as error:
             raise PalpateError("the simulated device has ended; start it again") from error
 
     def _read_json(self, seconds: float) -> dict[str, Any]:
-        deadline = time.monotonic() + seconds
-        descriptor = _pipe(self._process.stdout).fileno()
-        with selectors.DefaultSelector() as selector:
-            selector.register(descriptor, selectors.EVENT_READ)
-            while b"\n" not in self._unread:
-                if not selector.select(max(0.0, deadline - time.monotonic())):
-                    raise PalpateError(
-                        "the simulated device has not answered for {seconds:g} s; start it again",
-                        seconds=seconds,
-                    )
-                piece = os.read(descriptor, 4096)
-                if not piece:
-                    raise PalpateError(self._reason_for_end())
-                self._unread += piece
-        line, self._unread = self._unread.split(b"\n", 1)
+        line = self._said.next(seconds)
+        if line is None and self._said.ended:
+            raise PalpateError(self._reason_for_end())
+        if line is None:
+            raise PalpateError(
+                "the simulated device has not answered for {seconds:g} s; start it again",
+                seconds=seconds,
+            )
         content: dict[str, Any] = json.loads(line)
         return content
 

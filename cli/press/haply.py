@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from ...core.errors import PalpateError
 from ...core.servo.haply_models import DEFAULT_MODEL, HAPLY_MODELS
-from ...core.servo.ports import PortError
+from ...core.servo.port_error import PortError
 from ...core.servo.session import HaplyDevice
 from ...simulated.hand.plant import Vector
 

@@ -20,7 +20,8 @@ from ...core.body.soft_body import SoftBody
 from ...core.errors import PalpateError
 from ...core.machine.stop_signals import stopped_by_signals
 from ...core.record.recording import check_recording_path, check_room, write_recording
-from ...core.servo.ports import BAUD, PortError, check_baud, check_port
+from ...core.servo.port_error import PortError
+from ...core.servo.ports import BAUD, check_baud, check_port
 from ...core.servo.session import STATES, LinkDevice, native_body, servo_on
 from ...core.servo.settings import Settings
 from ...core.stiffness.assembly import lame_parameters

@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 import errno
 import os
-import re
 import struct
 import sys
 import time
@@ -21,7 +20,9 @@ from ..sentence import Sentence
 from . import link
 from .haply_models import HAPI_USB_IDS
 from .latency_timer import ask_for_low_latency, explain_readings
+from .port_error import REASONS, PortError, port_error
 from .round_trip import RoundTrip
+from .socket_port import SocketPort, address_of, is_socket
 
 BAUD = 115200
 """Speed of a port whose speed nobody has said, bits a second."""
@@ -30,31 +31,11 @@ BAUDS = (300, 12_000_000)
 ANSWER_SECONDS = 2.5
 """Wait for HELLO: boards that restart when opened need up to two seconds."""
 HELLO_EVERY_SECONDS = 0.1
+READ_SECONDS = 0.02
 LISTEN_SECONDS = 0.4
 """Time to watch STATE: 25 bursts of an adapter with its default timer."""
 # Linux: whether another process has exclusive access; unnamed in Python 3.11.
 _TIOCGEXCL = 0x80045440
-
-_REASONS = {
-    errno.ENOENT: Sentence("there is no such port; plug the device in, or see 'palpate devices'"),
-    errno.EACCES: Sentence(
-        "no permission to open it; on Linux add yourself to the group that owns it "
-        "(often dialout) and log in again"
-    ),
-    errno.EPERM: Sentence("no permission to open it; ask whoever runs this computer"),
-    errno.EBUSY: Sentence("in use by another program; close that program"),
-    errno.ENOTTY: Sentence("not a serial port; see 'palpate devices' for those there are"),
-    errno.ENXIO: Sentence("nothing is connected to it; plug the device in"),
-    errno.EIO: Sentence("it has gone or does not work; plug the device in again"),
-}
-
-
-class PortError(PalpateError):
-    """Unusable port; `reason` is the message without the port's name."""
-
-    def __init__(self, path: str, reason: str) -> None:
-        super().__init__("{path}: {reason}", path=path, reason=reason)
-        self.reason = reason
 
 
 @dataclass(frozen=True)
@@ -164,12 +145,18 @@ def _ask(
     """Answer to HELLO, and what was heard after it."""
     _look_at(path, even_if_taken=False)
     try:
-        with serial.Serial(path, baud, timeout=0.02, write_timeout=0.5, exclusive=True) as port:
+        with _opened(path, baud) as port:
             return _exchange(path, port, seconds), list(_listen(port, listen_seconds, trip))
     except serial.SerialTimeoutException as error:
         raise PortError(path, _silence(seconds)) from error
-    except serial.SerialException as error:
-        raise _port_error(path, error) from error
+    except OSError as error:
+        raise port_error(path, error) from error
+
+
+def _opened(path: str, baud: int) -> serial.Serial | SocketPort:
+    if is_socket(path):
+        return SocketPort(path, timeout=READ_SECONDS)
+    return serial.Serial(path, baud, timeout=READ_SECONDS, write_timeout=0.5, exclusive=True)
 
 
 def check_port(path: str) -> None:
@@ -181,6 +168,9 @@ def check_port(path: str) -> None:
 
 
 def _look_at(path: str, *, even_if_taken: bool) -> None:
+    if is_socket(path):
+        address_of(path)
+        return
     if sys.platform == "win32":
         if even_if_taken:  # Else it is opened next; twice in a row is too much for some drivers.
             _open_once(path)
@@ -190,15 +180,15 @@ def _look_at(path: str, *, even_if_taken: bool) -> None:
     try:
         descriptor = os.open(path, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
     except OSError as error:
-        raise _port_error(path, error) from error
+        raise port_error(path, error) from error
     try:
         if not os.isatty(descriptor):
-            raise PortError(path, _REASONS[errno.ENOTTY])
+            raise PortError(path, REASONS[errno.ENOTTY])
         if sys.platform == "linux" and not even_if_taken:
             # The superuser may open exclusive ports, and would steal their bytes.
             taken = fcntl.ioctl(descriptor, _TIOCGEXCL, struct.pack("i", 0))
             if struct.unpack("i", taken)[0]:
-                raise PortError(path, _REASONS[errno.EBUSY])
+                raise PortError(path, REASONS[errno.EBUSY])
         # While the port is open: opening it again may restart a board.
         ask_for_low_latency(descriptor)
     finally:
@@ -210,10 +200,10 @@ def _open_once(path: str) -> None:
     try:
         os.close(os.open(path if path.startswith("\\\\") else rf"\\.\{path}", os.O_RDWR))
     except OSError as error:
-        raise _port_error(path, error) from error
+        raise port_error(path, error) from error
 
 
-def _exchange(path: str, port: serial.Serial, seconds: float) -> link.DeviceHello:
+def _exchange(path: str, port: serial.Serial | SocketPort, seconds: float) -> link.DeviceHello:
     decoder = link.Decoder()
     deadline = time.monotonic() + seconds
     next_hello = 0.0
@@ -242,7 +232,7 @@ def _exchange(path: str, port: serial.Serial, seconds: float) -> link.DeviceHell
 
 
 def _listen(
-    port: serial.Serial, seconds: float, trip: RoundTrip
+    port: serial.Serial | SocketPort, seconds: float, trip: RoundTrip
 ) -> Iterator[tuple[float, list[link.Message]]]:
     """Messages with their times; readings without bytes have none. Each STATE is answered."""
     decoder = link.Decoder()
@@ -274,27 +264,3 @@ def _silence(seconds: float) -> Sentence:
         "Palpate's link",
         seconds=seconds,
     )
-
-
-def _number_in_words(said: str) -> int | None:
-    """What pyserial says without an errno: a lock, on POSIX, or the error of Windows, as `repr`."""
-    of_windows = re.search(r"could not open port .*Error\((\d+), ", said)
-    if of_windows:
-        return int(of_windows[1])
-    return errno.EBUSY if "lock" in said else None
-
-
-def _port_error(path: str, error: OSError) -> PortError:
-    number = error.errno
-    if isinstance(error, serial.SerialException) and number in (None, errno.EAGAIN):
-        number = _number_in_words(str(error))
-    if number == errno.EACCES and sys.platform == "win32":
-        number = errno.EBUSY  # Ports there have no rights, only one owner at a time.
-    if number is None:
-        return PortError(
-            path, Sentence("cannot be used ({error}); plug the device in again", error=error)
-        )
-    unknown = Sentence(
-        "cannot be opened ({reason}); plug the device in again", reason=os.strerror(number)
-    )
-    return PortError(path, _REASONS.get(number, unknown))

@@ -175,7 +175,7 @@ def start_simulated(
     Raises
     ------
     PalpateError
-        It does not start, or this system has no pseudo-terminals.
+        It does not start.
     """
     up = drawn.frame.turn_to_body(towards)
     above, deep = SIMULATED_REST * drawn.size, min(SIMULATED_DEPTH * drawn.size, tip.deepest)

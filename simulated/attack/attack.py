@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -78,7 +79,18 @@ def _virtual_table(
 
 
 def real_table(attack: Attack, say: Callable[[str], None]) -> Table:
-    """Attack processes on pseudo-terminals: signals, the plug, a reader that stalls."""
+    """Attack processes on pseudo-terminals: signals, the plug, a reader that stalls.
+
+    Raises
+    ------
+    PalpateError
+        Windows has neither.
+    """
+    if sys.platform == "win32":
+        raise PalpateError(
+            "--real: Windows has no pseudo-terminals and no such signals; run it on Linux or "
+            "macOS, or without --real"
+        )
     say("processes on a pseudo-terminal")
     rows = [
         *process_rows(attack.times),

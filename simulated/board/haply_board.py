@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, replace
-from pathlib import Path
 
 from ...core.errors import PalpateError
 from ...core.servo.haply_models import DEFAULT_MODEL, haply_model
@@ -16,7 +15,7 @@ from ..hand.hand_schedule import HandSchedule
 from ..hand.options import SimulatedOptions
 from ..hand.plant import Plant, Vector
 from ..hand.quaternion import Quaternion
-from ..wire.pseudo_terminal import PseudoTerminal
+from ..wire.ports import device_port
 from ..wire.wire_faults import BadWire
 from .haply_firmware import PORTS, HaplyFirmware
 
@@ -75,20 +74,18 @@ class HaplyBoard:
             for way in (0, 1)
         )
         self.firmware = HaplyFirmware(self._counts)
-        self.terminal = PseudoTerminal(
-            Path(options.link) if options.link else None, RELEASE_AFTER_SECONDS
-        )
+        self.port = device_port(options.link, RELEASE_AFTER_SECONDS)
 
     def tick(self, now: float, steps: int) -> None:
         """Read the host, move by `steps` periods, answer."""
         self._schedule.keep_plug(now, self.unplug, self.plug_in)
-        self._to_device.put(self.terminal.read(now), now)
+        self._to_device.put(self.port.read(now), now)
         self.firmware.receive(self._to_device.take(now))
         self._to_host.put(self.firmware.run(now), now)
         if self.firmware.counters.setups:
             self._schedule.host_came(now)
         self._move(now, steps)
-        self.terminal.write(self._to_host.take(now))
+        self.port.write(self._to_host.take(now))
 
     def move_hand(self, now: float, position: Vector, seconds: float) -> None:
         """Leave the script: move the hand to `position` and stay."""
@@ -102,22 +99,22 @@ class HaplyBoard:
 
     def unplug(self) -> None:
         """Pull the plug, if it is in: the motors lose power too."""
-        if self.terminal.plugged:
+        if self.port.plugged:
             self._unplugged += 1
-            self.terminal.unplug()
+            self.port.unplug()
             self.firmware = HaplyFirmware(self._counts, self.firmware.counters)
 
     def plug_in(self) -> None:
         """Put the plug back, if it is out: the board restarts without configuration."""
-        if not self.terminal.plugged:
-            self.terminal.plug_in()
+        if not self.port.plugged:
+            self.port.plug_in()
 
     def report(self) -> dict[str, object]:
         """Counters and present state; SI units, angles in degrees."""
         plant = self.plant
         return {
             **asdict(self.firmware.counters),
-            "plugged": self.terminal.plugged,
+            "plugged": self.port.plugged,
             "unplugged": self._unplugged,
             "torques": [self.firmware.torque(port) for port in range(PORTS)],
             "angles": self._degrees,

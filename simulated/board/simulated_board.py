@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import asdict
-from pathlib import Path
 
 from ..hand.hand_schedule import HandSchedule
 from ..hand.options import SimulatedOptions
 from ..hand.plant import Plant, Vector
 from ..hand.quaternion import Quaternion
-from ..wire.pseudo_terminal import PseudoTerminal
+from ..wire.ports import device_port
 from ..wire.wire_faults import BadWire
 from .simulated_firmware import Firmware
 
@@ -33,12 +32,12 @@ class SimulatedBoard:
                 (2 * options.seed + 1, options.latency_timer),
             )
         )
-        self.terminal = PseudoTerminal(Path(options.link) if options.link else None)
+        self.port = device_port(options.link)
 
     def tick(self, now: float, steps: int) -> None:
         """Read the host, move by `steps` of the device's period, send STATE."""
         self._schedule.keep_plug(now, self.unplug, self.plug_in)
-        self._to_device.put(self.terminal.read(now), now)
+        self._to_device.put(self.port.read(now), now)
         answer = self.firmware.receive(self._to_device.take(now), now)
         if self.firmware.counters.hellos:
             self._schedule.host_came(now)
@@ -49,7 +48,7 @@ class SimulatedBoard:
             answer += self.firmware.orientation(turned)
         answer += self.firmware.state(now, self._encoders(), self._buttons(now))
         self._to_host.put(answer, now)
-        self.terminal.write(self._to_host.take(now))
+        self.port.write(self._to_host.take(now))
 
     def move_hand(self, now: float, position: Vector, seconds: float) -> None:
         """Leave the script: move the hand to `position` and stay."""
@@ -68,15 +67,15 @@ class SimulatedBoard:
 
     def unplug(self) -> None:
         """Pull the plug, if it is in."""
-        if self.terminal.plugged:
+        if self.port.plugged:
             self._unplugged += 1
-            self.terminal.unplug()
+            self.port.unplug()
 
     def plug_in(self) -> None:
         """Put the plug back, if it is out: the board restarts."""
-        if not self.terminal.plugged:
+        if not self.port.plugged:
             self.firmware.plug_in()
-            self.terminal.plug_in()
+            self.port.plug_in()
 
     def report(self) -> dict[str, object]:
         """Counters and present state; SI units."""
@@ -84,9 +83,9 @@ class SimulatedBoard:
         return {
             **asdict(self.firmware.counters),
             **asdict(self.firmware.decoder.errors),
-            "states_dropped": self.terminal.dropped,
+            "states_dropped": self.port.dropped,
             "limp": self.firmware.limp,
-            "plugged": self.terminal.plugged,
+            "plugged": self.port.plugged,
             "unplugged": self._unplugged,
             "felt_force": self.firmware.force,
             "hand_force": plant.hand_force,

@@ -72,7 +72,12 @@ class SimulatedOptions:
     unplug_for: float = _option(math.inf, "S", "until it is plugged in again")
     button_at: float | None = _option(None, "S", "when the button is pressed")
     button_for: float = _option(0.2, "S", "until it is released")
-    link: str = _option("", "PATH", "symbolic link that always leads to the port")
+    link: str = _option(
+        "",
+        "PATH",
+        "symbolic link that always leads to the port; or socket://127.0.0.1:PORT, a socket of this "
+        "computer instead of a pseudo-terminal (PORT 0: any free one)",
+    )
 
     def __post_init__(self) -> None:
         positive = ("rate_hz", "largest_force", "resolution_um", "mass")

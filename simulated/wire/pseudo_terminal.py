@@ -8,43 +8,28 @@ import tempfile
 from pathlib import Path
 
 from ...core.errors import PalpateError
+from .device_port import DevicePort
 
 if sys.platform != "win32":
     import fcntl
     import termios
     import tty
 
-RELEASE_AFTER_SECONDS = 0.5
-BACKLOG_BYTES = 256
-"""Unread bytes beyond which frames are dropped, as by a board's small buffer."""
 
-
-def require_pseudo_terminals() -> None:
-    """Raise PalpateError on Windows, which has none."""
-    if sys.platform == "win32":
-        raise PalpateError(
-            "the simulated device needs a pseudo-terminal, which Windows does not have; "
-            "use Linux, macOS or WSL, or plug in a real device"
-        )
-
-
-class PseudoTerminal:
+class PseudoTerminal(DevicePort):
     """Device's end of a serial port. `link` is a path that always leads to the host's end.
 
     A host silent for `release_after` seconds is assumed gone.
     """
 
-    def __init__(self, link: Path | None, release_after: float = RELEASE_AFTER_SECONDS) -> None:
-        require_pseudo_terminals()
+    def __init__(self, link: Path | None, release_after: float) -> None:
+        super().__init__()
         self.link = link
         self._release_after = release_after
         self._heard_at: float | None = None
         """When the host was heard last; None while there is none."""
-        self.dropped = 0
-        """Frames that found no room because nobody reads."""
         self._device_end = -1
         self._host_end = -1
-        self._backlog = b""
         self.plug_in()
 
     @property
@@ -67,7 +52,7 @@ class PseudoTerminal:
         # The host's end is kept open here too, or reads without a host would fail.
         tty.setraw(self._host_end)
         os.set_blocking(self._device_end, False)
-        self._backlog = b""
+        self._forget()
         if self.link:
             try:
                 _point(self.link, self._target)
@@ -85,7 +70,7 @@ class PseudoTerminal:
         os.close(self._device_end)
         self._device_end = self._host_end = -1
 
-    def read(self, now: float) -> bytes:
+    def read(self, now: float, /) -> bytes:
         """Bytes from the host; none while unplugged. `now` is in seconds."""
         heard = self._take()
         if heard:
@@ -104,19 +89,11 @@ class PseudoTerminal:
         except BlockingIOError:
             return b""
 
-    def write(self, data: bytes) -> None:
-        """Send frames to the host; dropped if it has stopped reading."""
-        if not self.plugged or not data:
-            return
-        if len(self._backlog) > BACKLOG_BYTES:
-            self.dropped += data.count(0)
-            data = b""
-        self._backlog += data
+    def _send(self, data: bytes) -> int:
         try:
-            sent = os.write(self._device_end, self._backlog)
+            return os.write(self._device_end, data)
         except BlockingIOError:
-            return
-        self._backlog = self._backlog[sent:]
+            return 0
 
     def _release(self) -> None:
         """Let the next host open the port, even if the last one locked it and was killed.

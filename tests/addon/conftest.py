@@ -37,7 +37,7 @@ USER_FOLDER = Path(tempfile.mkdtemp(prefix="palpate-addon-tests-"))
 os.environ["BLENDER_USER_RESOURCES"] = str(USER_FOLDER)
 
 import bpy  # noqa: E402 -- the environment comes first, see above
-from soft_scene import mesh_state, soft_cube  # noqa: E402
+from soft_scene import mesh_state, part, soft_cube  # noqa: E402
 
 # The same examples in every run, few of them: each opens and saves a file.
 settings.register_profile("repeatable", derandomize=True, deadline=None, max_examples=12)
@@ -118,7 +118,6 @@ def before(thing: bpy.types.Object) -> object:
 @pytest.fixture
 def silent_port() -> Iterator[str]:
     """A port with nobody behind it."""
-    device_end, host_end = os.openpty()
-    yield os.ttyname(host_end)
-    os.close(device_end)
-    os.close(host_end)
+    port = part("simulated.wire.ports").device_port("")
+    yield port.path
+    port.unplug()

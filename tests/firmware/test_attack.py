@@ -34,7 +34,7 @@ class Running:
     def __init__(self, firmware):
         self.board = SimulatedBoard(SimulatedOptions())
         self.board.firmware = firmware(self.board.firmware.hello)
-        self.port = self.board.terminal.path
+        self.port = self.board.port.path
         self._ends = threading.Event()
         self._thread = threading.Thread(target=self._run)
 
@@ -45,7 +45,7 @@ class Running:
     def __exit__(self, *_):
         self._ends.set()
         self._thread.join()
-        self.board.terminal.unplug()
+        self.board.port.unplug()
 
     def _run(self):
         begin = time.perf_counter()

@@ -1,10 +1,10 @@
 """The simulated 2DIY behind its pseudo-terminal, with the clock in the test's hand."""
 
 import math
-import os
 import struct
 
 import pytest
+from terminals import HostEnd
 
 from palpate.core.errors import PalpateError
 from palpate.core.servo.haply_models import HAPLY_MODELS
@@ -18,11 +18,11 @@ ADDRESS = 5
 class Bench:
     """A board, a host's end of its port, and time that passes only when told to."""
 
-    def __init__(self, folder, name="2diy-3.1", **options):
-        self.board = HaplyBoard(SimulatedOptions(link=str(folder / "port"), **options), name)
+    def __init__(self, name="2diy-3.1", **options):
+        self.board = HaplyBoard(SimulatedOptions(**options), name)
         self.model = HAPLY_MODELS[name]
         self.ticks = 0
-        self.host = os.open(folder / "port", os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
+        self.host = HostEnd(self.board.port.path)
 
     def pass_time(self, seconds):
         for _ in range(round(seconds / STEP)):
@@ -30,12 +30,9 @@ class Bench:
             self.board.tick(self.ticks * STEP, 1)
 
     def say(self, data):
-        os.write(self.host, data)
+        self.host.say(data)
         self.pass_time(3 * STEP)
-        try:
-            return os.read(self.host, 4096)
-        except BlockingIOError:
-            return b""
+        return self.host.hear()
 
     def by_port(self, values):
         return [values[self.model.ports.index(port)] for port in (0, 1)]
@@ -61,16 +58,16 @@ class Bench:
         return [angles[port] for port in self.model.ports]
 
     def close(self):
-        os.close(self.host)
-        self.board.terminal.unplug()
+        self.host.close()
+        self.board.port.unplug()
 
 
 @pytest.fixture
-def bench(tmp_path):
+def bench():
     benches = []
 
     def start(**options):
-        benches.append(Bench(tmp_path, **options))
+        benches.append(Bench(**options))
         return benches[-1]
 
     yield start
@@ -131,10 +128,10 @@ def test_bytes_vanish_and_flip_as_told(bench):
 
 def test_an_unknown_model_opens_no_port(tmp_path):
     with pytest.raises(PalpateError, match="no model"):
-        HaplyBoard(SimulatedOptions(link=str(tmp_path / "port")), "3diy")
+        HaplyBoard(SimulatedOptions(), "3diy")
     assert not (tmp_path / "port").exists()
 
 
 def test_a_2diy_that_should_tell_an_orientation_is_refused(tmp_path):
     with pytest.raises(PalpateError, match="omit --turning"):
-        HaplyBoard(SimulatedOptions(link=str(tmp_path / "port"), turning=10.0))
+        HaplyBoard(SimulatedOptions(turning=10.0))

@@ -20,4 +20,4 @@ pub use unix::Guardian;
 #[cfg(windows)]
 mod windows;
 #[cfg(windows)]
-pub use windows::Guardian;
+pub use windows::{Guardian, Handed};

@@ -2,7 +2,10 @@
 //! it.
 
 use std::io;
-use std::os::windows::io::{AsRawHandle, BorrowedHandle, FromRawHandle, OwnedHandle};
+use std::net::TcpStream;
+use std::os::windows::io::{
+    AsRawHandle, AsRawSocket, BorrowedHandle, FromRawHandle, OwnedHandle, RawHandle,
+};
 use std::os::windows::process::CommandExt;
 use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
@@ -20,6 +23,24 @@ use crate::guardian::program::{DISMISSED, Sheet, map_sheet};
 use crate::guardian::refusal::refused;
 use crate::guardian::watch::{Attention, PROGRAM, Watch, watch};
 
+/// A port that can be handed to another process.
+pub trait Handed {
+    /// Its handle, valid for as long as it is borrowed.
+    fn handle(&self) -> RawHandle;
+}
+
+impl Handed for OwnedHandle {
+    fn handle(&self) -> RawHandle {
+        self.as_raw_handle()
+    }
+}
+
+impl Handed for TcpStream {
+    fn handle(&self) -> RawHandle {
+        self.as_raw_socket() as RawHandle
+    }
+}
+
 /// A process that watches this one, for one open port.
 #[derive(Debug)]
 pub struct Guardian {
@@ -33,7 +54,7 @@ impl Guardian {
     ///
     /// # Errors
     /// When the system does not let it run.
-    pub fn of(port: &impl AsRawHandle) -> io::Result<Self> {
+    pub fn of(port: &impl Handed) -> io::Result<Self> {
         if PROGRAM.is_empty() {
             return Err(refused("this build has none"));
         }
@@ -43,7 +64,7 @@ impl Guardian {
         // SAFETY: the port is open for as long as it is borrowed, and a process's own handle always.
         let (port, host) = unsafe {
             let this_process = BorrowedHandle::borrow_raw(GetCurrentProcess());
-            let port = BorrowedHandle::borrow_raw(port.as_raw_handle());
+            let port = BorrowedHandle::borrow_raw(port.handle());
             (
                 port.try_clone_to_owned().map_err(refused)?,
                 this_process.try_clone_to_owned().map_err(refused)?,

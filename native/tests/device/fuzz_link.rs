@@ -11,7 +11,7 @@ use palpate_servo::device::link::LinkDevice;
 use palpate_servo::device::link::codec::Decoder;
 use palpate_servo::device::link::messages::{Message, parse};
 use palpate_servo::device::reason;
-use palpate_servo::device::serial::port::{Opener, Wire};
+use palpate_servo::device::serial::wire::{Opener, Wire};
 use palpate_servo::device::{Device, DeviceFrame, Fault, Reading};
 
 /// What C++ reads of the same streams (`tests/firmware/test_damage.py`).

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex};
 
 use palpate_servo::device::link::LinkDevice;
 use palpate_servo::device::link::codec::{Decoder, MAX_FRAME, encode};
-use palpate_servo::device::serial::port::{Opener, Wire};
+use palpate_servo::device::serial::wire::{Opener, Wire};
 use palpate_servo::device::{Device, DeviceFrame, Reading};
 use palpate_servo::guardian::Watch;
 

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use palpate_servo::device::link::codec::{Decoder, MAX_FRAME, encode};
-use palpate_servo::device::serial::port::{Opener, Wire};
+use palpate_servo::device::serial::wire::{Opener, Wire};
 use std::io;
 
 /// A device in memory that answers HELLO and then circles over the body, in and out; now and then

@@ -16,7 +16,7 @@ use palpate_servo::control::safety::Limits;
 use palpate_servo::device::Fault;
 use palpate_servo::device::link::LinkDevice;
 use palpate_servo::device::link::codec::{MAX_FRAME, encode};
-use palpate_servo::device::serial::port::{Opener, Wire};
+use palpate_servo::device::serial::wire::{Opener, Wire};
 use palpate_servo::servo::Servo;
 use palpate_servo::servo::settings::Options;
 use palpate_servo::servo::snapshot::{Published, Snapshot, State};

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+import sys
 import time
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import ExitStack
@@ -19,14 +20,16 @@ from .host import Host, device
 from .overheard import Overheard
 from .pressing import INTO_THE_CUBE, Way, press
 
-SIGNALS = (
-    signal.SIGKILL,
-    signal.SIGSEGV,
-    signal.SIGABRT,
-    signal.SIGQUIT,
-    signal.SIGTERM,
-    signal.SIGSTOP,
-)
+SIGNALS: tuple[signal.Signals, ...] = ()
+if sys.platform != "win32":
+    SIGNALS = (
+        signal.SIGKILL,
+        signal.SIGSEGV,
+        signal.SIGABRT,
+        signal.SIGQUIT,
+        signal.SIGTERM,
+        signal.SIGSTOP,
+    )
 KINDS = ("link", "haply")
 WAYS = {
     "link": INTO_THE_CUBE,

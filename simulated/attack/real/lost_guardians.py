@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
 import time
 from contextlib import ExitStack
 from dataclasses import dataclass
@@ -15,7 +16,9 @@ from .host import Host, eventually
 from .overheard import Overheard
 from .pressing import press
 
-SIGNALS = (signal.SIGKILL, signal.SIGSTOP)
+SIGNALS: tuple[signal.Signals, ...] = ()
+if sys.platform != "win32":
+    SIGNALS = (signal.SIGKILL, signal.SIGSTOP)
 
 
 @dataclass(frozen=True)
@@ -32,7 +35,7 @@ class Loss:
     """What was said when the host was killed while it pressed again."""
 
 
-def lose(kind: str, by: signal.Signals = signal.SIGKILL) -> Loss:
+def lose(kind: str, by: signal.Signals) -> Loss:
     """Press with a device, send its guardian a signal, press again, and kill the host."""
     with ExitStack() as stack:
         hand = stack.enter_context(hand_of(kind))

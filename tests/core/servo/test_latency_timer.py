@@ -1,12 +1,10 @@
 """An adapter that holds STATE back is recognised, explained, and asked to hurry where it can be."""
 
 import errno
-import fcntl
 import json
 import random
 import struct
 import sys
-import termios
 from pathlib import Path
 
 import pytest
@@ -24,6 +22,10 @@ from palpate.core.servo.ports import check_port, list_ports
 from palpate.simulated.hand.options import SimulatedOptions
 from palpate.simulated.simulated_process import SimulatedDevice
 from palpate.simulated.wire.wire_faults import BadWire
+
+if sys.platform != "win32":
+    import fcntl
+    import termios
 
 LOW_LATENCY = 1 << 13
 

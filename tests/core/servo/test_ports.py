@@ -2,10 +2,9 @@
 
 import dataclasses
 import errno
-import fcntl
 import json
 import os
-import termios
+import sys
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -14,9 +13,14 @@ import serial
 
 from palpate.cli.main import main
 from palpate.core.servo import ports
-from palpate.core.servo.ports import PortError, check_port, list_ports, say_hello
+from palpate.core.servo.port_error import PortError
+from palpate.core.servo.ports import check_port, list_ports, say_hello
 from palpate.simulated.hand.options import SimulatedOptions
 from palpate.simulated.simulated_process import SimulatedDevice
+
+if sys.platform != "win32":
+    import fcntl
+    import termios
 
 
 @pytest.fixture(autouse=True)
@@ -42,11 +46,12 @@ def test_a_device_answers_hello_as_often_as_it_is_asked(device):
         )
 
 
-def test_named_ports_are_asked_and_the_reasons_stand_beside_them(device, tmp_path, terminal):
+@pytest.mark.skipif(sys.platform == "win32", reason="any file opens as a port there")
+def test_named_ports_are_asked_and_the_reasons_stand_beside_them(device, tmp_path, silent_port):
     nowhere, file = tmp_path / "nowhere", tmp_path / "file"
     file.touch()
-    asked = list_ports([device.port, str(nowhere), str(file), terminal[1], device.port], 3.0)
-    assert [port.path for port in asked] == [device.port, str(nowhere), str(file), terminal[1]]
+    asked = list_ports([device.port, str(nowhere), str(file), silent_port, device.port], 3.0)
+    assert [port.path for port in asked] == [device.port, str(nowhere), str(file), silent_port]
     assert asked[0].hello.name == "Test"
     assert [port.hello for port in asked[1:]] == [None] * 3
     for port, reason in zip(
@@ -56,9 +61,9 @@ def test_named_ports_are_asked_and_the_reasons_stand_beside_them(device, tmp_pat
         assert bool(port.reason) == (port.hello is None)
 
 
-def test_only_usb_devices_are_asked_without_being_named(device, monkeypatch, terminal):
+def test_only_usb_devices_are_asked_without_being_named(device, monkeypatch, silent_port):
     usb = fake(device.port, manufacturer="Maker", product="Thing", vid=0x16C0, pid=0x483)
-    monkeypatch.setattr(ports, "comports", lambda: [usb, fake(terminal[1])])
+    monkeypatch.setattr(ports, "comports", lambda: [usb, fake(silent_port)])
     first, second = list_ports(seconds=20.0)
     assert (first.vendor, first.product, first.usb_id) == ("Maker", "Thing", "16c0:0483")
     assert first.hello.name == "Test"
@@ -98,6 +103,7 @@ def test_a_port_that_pyserial_holds_is_in_use(terminal, monkeypatch):
             say_hello(terminal[1], 5.0)
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="ports have no rights there")
 def test_a_port_without_permission_is_reported_with_the_remedy(monkeypatch):
     def refuse(*_):
         raise PermissionError(13, "Permission denied")

@@ -4,7 +4,7 @@ import math
 from contextlib import ExitStack
 
 import pytest
-from terminals import foreign_device, terminal  # noqa: F401
+from terminals import foreign_device, silent_port, terminal  # noqa: F401
 
 from palpate.core.body import body_file
 

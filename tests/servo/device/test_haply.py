@@ -5,14 +5,15 @@ protocol and the arm: what is pressed is what is felt, and nothing that goes wro
 import itertools
 import json
 import math
-import os
 import signal
 import subprocess
 import sys
 import time
 
 import numpy as np
+import psutil
 import pytest
+from terminals import HostEnd
 
 from palpate.cli.main import main
 from palpate.core.contact.single_press import touch_nearest
@@ -189,12 +190,13 @@ def test_a_pulled_plug_is_told_and_ends_in_a_new_start_at_rest(loop, press, even
 def test_a_board_that_hangs_is_stale_until_it_goes_on(loop, press, eventually):
     device, servo = loop()
     press(device, servo)
-    os.kill(device.pid, signal.SIGSTOP)
+    board = psutil.Process(device.pid)
+    board.suspend()
     try:
         eventually(lambda: servo.snapshot().fault == "stale", servo.snapshot)
         assert not servo.snapshot().output_force.any()
     finally:
-        os.kill(device.pid, signal.SIGCONT)
+        board.resume()
     # Where the hand went farther than 4 mm unseen, it is set down inside: out, and in again.
     device.move_hand(MODEL.rest, 0.2)
     eventually(lambda: math.dist(device.report()["position"], MODEL.rest) < 1e-3)
@@ -207,7 +209,7 @@ def test_a_board_that_hangs_is_stale_until_it_goes_on(loop, press, eventually):
 def test_a_board_that_is_killed_is_gone(loop, press, eventually):
     device, servo = loop()
     press(device, servo)
-    os.kill(device.pid, signal.SIGKILL)
+    psutil.Process(device.pid).kill()
     eventually(lambda: servo.snapshot().state == "fault", servo.snapshot)
     assert not servo.snapshot().output_force.any()
 
@@ -267,16 +269,17 @@ def test_the_command_names_a_port_where_no_board_answers(baked_file, capsys, mon
     assert "no answer from a hAPI board" in error
 
 
-def test_a_2diy_is_simulated_from_the_command_line():
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such signals")
+def test_a_2diy_is_simulated_from_the_command_line(eventually):
     command = [sys.executable, "-m", "palpate.cli.main", "devices", "simulate", "--haply", "--json"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
         try:
             port = json.loads(process.stdout.readline())["port"]
-            descriptor = os.open(port, os.O_RDWR | os.O_NOCTTY)
+            host = HostEnd(port)
             # Nobody's device: the address comes back alone.
-            os.write(descriptor, bytes([2, 77]))
-            assert os.read(descriptor, 16) == bytes([77])
-            os.close(descriptor)
+            host.say(bytes([2, 77]))
+            eventually(lambda: host.hear() == bytes([77]))
+            host.close()
             process.send_signal(signal.SIGTERM)
             assert json.loads(process.stdout.readline())["answers"] == 1
         finally:

@@ -1,7 +1,6 @@
 """`palpate servo` against devices that behave, misbehave or are not there."""
 
 import errno
-import fcntl
 import json
 import os
 import signal
@@ -22,6 +21,11 @@ from palpate.core.servo import ports
 from palpate.core.shape.paper.table_file import table_path
 from palpate.simulated.hand.options import SimulatedOptions
 from palpate.simulated.simulated_process import SimulatedDevice
+
+if sys.platform != "win32":
+    import fcntl
+
+SIGNALS = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such signals")
 
 ABOVE, DEEP = (0.026, 0.024, 0.06), (0.026, 0.024, 0.044)
 
@@ -118,6 +122,7 @@ def test_a_firmer_body_is_pressed_with_no_more_force_than_the_hand_has(cube):
     assert firm.by[2] == pytest.approx(-servo_command.HAND_FORCE / firm.hand_stiffness, rel=1e-3)
 
 
+@SIGNALS
 def test_ctrl_c_zeroes_the_force_and_still_reports(baked_file, device, eventually):
     with host(baked_file, device.port) as process:
         eventually(lambda: device.report()["forces"] > 100)
@@ -133,6 +138,7 @@ def test_ctrl_c_zeroes_the_force_and_still_reports(baked_file, device, eventuall
     assert device.report()["felt_force"] == [0.0, 0.0, 0.0]
 
 
+@SIGNALS
 def test_a_killed_host_does_not_keep_the_port_from_the_next_one(baked_file, device, eventually):
     for _ in range(2):
         before = device.report()["forces"]
@@ -144,6 +150,7 @@ def test_a_killed_host_does_not_keep_the_port_from_the_next_one(baked_file, devi
         eventually(lambda: not held_alone(device.port))
 
 
+@SIGNALS
 def test_unplugged_for_good_is_reported_and_no_failure(baked_file, device, eventually):
     with host(baked_file, device.port) as process:
         eventually(lambda: device.report()["forces"] > 100)
@@ -166,9 +173,9 @@ def test_a_file_is_no_port(baked_file, capsys):
     assert "not a serial port" in refused(capsys, baked_file, "--port", baked_file)
 
 
-def test_a_port_without_an_answer_is_an_error(baked_file, capsys, monkeypatch, terminal):
+def test_a_port_without_an_answer_is_an_error(baked_file, capsys, monkeypatch, silent_port):
     monkeypatch.setattr(servo_command, "HELLO_SECONDS", 0.5)
-    assert "does not answer HELLO" in refused(capsys, baked_file, "--port", terminal[1])
+    assert "does not answer HELLO" in refused(capsys, baked_file, "--port", silent_port)
 
 
 def test_a_device_of_another_protocol_is_an_error(baked_file, capsys, foreign_device):

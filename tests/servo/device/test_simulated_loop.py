@@ -1,7 +1,6 @@
 """The native servo and the simulated device, each with its own codec: the loop really closes."""
 
 import ctypes
-import fcntl
 import sys
 import time
 from pathlib import Path
@@ -17,6 +16,9 @@ from palpate.core.servo.session import displacements_of, native_body, servo_on
 from palpate.core.servo.settings import Settings
 from palpate.simulated.hand.options import SimulatedOptions
 from palpate.simulated.simulated_process import SimulatedDevice
+
+if sys.platform == "linux":
+    import fcntl
 
 # Over the middle of the cube's top (50 mm), a little off the mesh's symmetry.
 ABOVE = (0.026, 0.024, 0.06)

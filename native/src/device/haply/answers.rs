@@ -11,7 +11,7 @@ use crate::device::haply::message::{
 use crate::device::haply::model::Model;
 use crate::device::haply::newest::Newest;
 use crate::device::haply::pantograph::Pose;
-use crate::device::serial::port::Opener;
+use crate::device::serial::wire::Opener;
 use crate::guardian::Watch;
 
 /// A board is asked whether it knows this device this often, s.

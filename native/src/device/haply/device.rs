@@ -16,7 +16,7 @@ use crate::device::haply::newest::Newest;
 use crate::device::haply::speed::WindowSpeed;
 use crate::device::reason;
 use crate::device::serial::line::Line;
-use crate::device::serial::port::Opener;
+use crate::device::serial::wire::Opener;
 use crate::device::{Device, DeviceFrame, Fault, LinkReport, Probe, Reading};
 
 /// Answers of the address alone that say that a board has no such device.

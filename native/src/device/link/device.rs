@@ -12,7 +12,7 @@ use crate::device::link::orientation::Orientations;
 use crate::device::link::pacing::Pacing;
 use crate::device::reason;
 use crate::device::serial::line::Line;
-use crate::device::serial::port::Opener;
+use crate::device::serial::wire::Opener;
 use crate::device::speedometer::Speedometer;
 use crate::device::{Device, DeviceFrame, Fault, Greeting, LinkReport, Probe, Reading};
 

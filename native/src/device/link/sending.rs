@@ -7,7 +7,7 @@ use crate::device::link::device::LinkDevice;
 use crate::device::link::messages::{
     Answer, PROTOCOL, answering_payload, force_payload, hello_payload,
 };
-use crate::device::serial::port::Opener;
+use crate::device::serial::wire::Opener;
 use crate::guardian::Watch;
 
 /// HELLO is repeated this often until it is answered, s.

@@ -6,7 +6,7 @@ use crate::device::link::freshness::Freshness;
 use crate::device::link::messages::{DeviceState, FIRST_PROTOCOL, Message, PROTOCOL, Taken, parse};
 use crate::device::link::newest::Newest;
 use crate::device::link::sending::FAREWELLS;
-use crate::device::serial::port::Opener;
+use crate::device::serial::wire::Opener;
 use crate::device::speedometer::has_begun_anew;
 
 /// Code of a FAULT: nothing was heard for 20 ms.

@@ -3,7 +3,8 @@
 use std::io;
 
 use crate::device::serial::errands::{Done, Errand, Errands};
-use crate::device::serial::port::{SerialPort, SerialWire, Wire};
+use crate::device::serial::port::SerialPort;
+use crate::device::serial::wire::{TwinnedWire, Wire};
 use crate::guardian::{Guardian, Watch};
 
 /// A serial port, and whether its device keeps its force when nobody speaks to it any more.
@@ -45,7 +46,7 @@ pub struct GuardedWire {
     /// Before the wire: it is dismissed first.
     guardian: Option<Guardian>,
     errands: Errands,
-    wire: SerialWire,
+    wire: Box<dyn TwinnedWire>,
     needs_guardian: bool,
     /// Another guardian is being started.
     is_guarding: bool,

@@ -3,7 +3,7 @@
 use std::io::ErrorKind;
 use std::task::Poll;
 
-use crate::device::serial::port::{Opener, Wire};
+use crate::device::serial::wire::{Opener, Wire};
 use crate::guardian::Watch;
 
 /// A port that is gone is tried again this often, s.

@@ -8,7 +8,7 @@ use std::thread::{Builder, Thread};
 use rtrb::{Consumer, Producer, RingBuffer};
 
 use crate::device::serial::guarded::{GuardedPort, GuardedWire};
-use crate::device::serial::port::Opener;
+use crate::device::serial::wire::Opener;
 
 /// What opens one port, at the start and whenever it was away.
 ///

@@ -1,27 +1,42 @@
 //! An open port for a thread besides the tick's, for what may wait.
 
 use std::io;
-
+use std::net::TcpStream;
 #[cfg(windows)]
-use serialport::COMPort as Port;
+use std::os::windows::io::{AsRawHandle, OwnedHandle as Port};
+
 #[cfg(unix)]
-use serialport::TTYPort as Port;
-use serialport::{ClearBuffer, SerialPort};
+use serialport::{ClearBuffer, SerialPort, TTYPort as Port};
+#[cfg(windows)]
+use windows_sys::Win32::Devices::Communication::{PURGE_TXABORT, PURGE_TXCLEAR, PurgeComm};
 
 use crate::guardian::Guardian;
 
 /// The port once more.
 #[derive(Debug)]
-pub struct Twin(Port);
+pub enum Twin {
+    /// Of a serial port.
+    Serial(Port),
+    /// Of a simulated device's socket.
+    Socket(TcpStream),
+}
 
 impl Twin {
-    pub(super) fn of(port: Port) -> Self {
-        Self(port)
-    }
-
-    /// Throws away what has not left. A port that is gone has nothing that waits, and its next use tells.
+    /// Throws away what has not left, and ends a write under way. A port that is gone has nothing that
+    /// waits, and its next use tells; what a socket was given has left.
     pub fn discard(&self) {
-        let _ = self.0.clear(ClearBuffer::Output);
+        match self {
+            #[cfg(unix)]
+            Self::Serial(port) => {
+                let _ = port.clear(ClearBuffer::Output);
+            }
+            #[cfg(windows)]
+            Self::Serial(port) => {
+                // SAFETY: the port is open; the call touches no memory.
+                let _ = unsafe { PurgeComm(port.as_raw_handle(), PURGE_TXABORT | PURGE_TXCLEAR) };
+            }
+            Self::Socket(_) => {}
+        }
     }
 
     /// Starts a guardian for this port. Takes some milliseconds.
@@ -29,6 +44,9 @@ impl Twin {
     /// # Errors
     /// When the system does not let it run.
     pub fn guardian(&self) -> io::Result<Guardian> {
-        Guardian::of(&self.0)
+        match self {
+            Self::Serial(port) => Guardian::of(port),
+            Self::Socket(stream) => Guardian::of(stream),
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! Windows.
 
 use std::ffi::c_void;
+use std::ptr::{null, null_mut};
 
 use super::sheet::{Sheet, Written};
 
@@ -13,10 +14,36 @@ const STANDARD_ERROR: u32 = -12_i32 as u32;
 const READ_AND_WRITE_OF_A_MAPPING: u32 = 2 | 4;
 const NOT_YET: u32 = 258;
 
+/// A call that goes on without its caller.
+#[repr(C)]
+struct Overlapped {
+    systems: [usize; 2],
+    offset: u64,
+    done: Handle,
+}
+
+impl Overlapped {
+    const NONE: Self = Self {
+        systems: [0; 2],
+        offset: 0,
+        done: null_mut(),
+    };
+}
+
 #[link(name = "kernel32")]
 unsafe extern "system" {
+    fn CancelIoEx(file: Handle, call: *mut Overlapped) -> i32;
+    fn CloseHandle(object: Handle) -> i32;
+    fn CreateEventW(may: *const c_void, by_hand: i32, set: i32, name: *const u16) -> Handle;
     fn GetCurrentProcess() -> Handle;
     fn GetCurrentThread() -> Handle;
+    fn GetLastError() -> u32;
+    fn GetOverlappedResult(
+        file: Handle,
+        call: *mut Overlapped,
+        count: *mut u32,
+        is_waited_for: i32,
+    ) -> i32;
     fn GetStdHandle(which: u32) -> Handle;
     fn MapViewOfFile(from: Handle, may: u32, high: u32, low: u32, bytes: usize) -> *mut c_void;
     fn PurgeComm(port: Handle, what: u32) -> i32;
@@ -30,7 +57,7 @@ unsafe extern "system" {
         bytes: *const u8,
         count: u32,
         written: *mut u32,
-        overlapped: *mut c_void,
+        call: *mut Overlapped,
     ) -> i32;
 }
 
@@ -107,23 +134,34 @@ impl Port {
         let _ = unsafe { PurgeComm(self.0, ABORT_AND_CLEAR_OUTPUT) };
     }
 
-    /// Writes what fits within the port's time limit.
+    /// Writes what fits within a while: the host opened the port for calls that go on without their
+    /// caller.
     pub fn write(&mut self, bytes: &[u8]) -> Written {
-        let mut written = 0;
-        // SAFETY: the bytes are valid for reading and the count for writing; the port was not opened
-        // for overlapped calls.
-        let is_done = unsafe {
-            WriteFile(
-                self.0,
-                bytes.as_ptr(),
-                bytes.len() as u32,
-                &raw mut written,
-                std::ptr::null_mut(),
-            )
-        };
-        match is_done {
-            0 => Written::Gone,
-            _ => Written::Some(written as usize),
+        const UNDER_WAY: u32 = 997;
+        const ENDED_BEFORE: u32 = 995;
+        const PATIENCE_MS: u32 = 2;
+        // SAFETY: the call's memory and the bytes stay where they are until it is over: it is waited
+        // for, and ended where it takes too long.
+        unsafe {
+            let done = CreateEventW(null(), 1, 0, null());
+            let mut call = Overlapped {
+                done,
+                ..Overlapped::NONE
+            };
+            let (count, mut written) = (bytes.len() as u32, 0);
+            let begun = WriteFile(self.0, bytes.as_ptr(), count, null_mut(), &raw mut call) != 0
+                || GetLastError() == UNDER_WAY;
+            if begun && WaitForSingleObject(done, PATIENCE_MS) == NOT_YET {
+                CancelIoEx(self.0, &raw mut call);
+            }
+            let is_sound = begun
+                && (GetOverlappedResult(self.0, &raw mut call, &raw mut written, 1) != 0
+                    || GetLastError() == ENDED_BEFORE);
+            CloseHandle(done);
+            match is_sound {
+                true => Written::Some(written as usize),
+                false => Written::Gone,
+            }
         }
     }
 

@@ -9,7 +9,7 @@ use pyo3::types::{PyBytes, PyDict};
 use crate::device::Device;
 use crate::device::haply::device::HaplyDevice;
 use crate::device::link::LinkDevice;
-use crate::device::serial::port::{Opener, Wire};
+use crate::device::serial::wire::{Opener, Wire};
 use crate::python::body::surface::Body;
 use crate::python::device::haply::haply_setup;
 use crate::python::harness::stepping::Stepping;

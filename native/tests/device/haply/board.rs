@@ -5,7 +5,7 @@ use std::io::{self, ErrorKind};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use palpate_servo::device::haply::message::TORQUE_BYTES;
-use palpate_servo::device::serial::port::{Opener, Wire};
+use palpate_servo::device::serial::wire::{Opener, Wire};
 
 /// Torque at full duty, N m.
 pub const FULL: f32 = 0.156;

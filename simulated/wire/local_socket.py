@@ -1,0 +1,115 @@
+"""TCP socket of this computer as a serial port, where there are no pseudo-terminals."""
+
+from __future__ import annotations
+
+import socket
+
+from ...core.errors import PalpateError
+from ...core.servo.socket_port import SCHEME, address_of
+from .device_port import DevicePort
+
+BUFFER_BYTES = 4096
+"""What the system holds of each direction, about: a host that stops reading is noticed."""
+
+
+class LocalSocket(DevicePort):
+    """Device's end of a connection to `path`, such as `socket://127.0.0.1:4000`; 0: any free port.
+
+    It has one host at a time: whoever else connects is hung up on.
+
+    Raises PalpateError when nobody can listen there.
+    """
+
+    def __init__(self, path: str) -> None:
+        super().__init__()
+        self._address = address_of(path)
+        self._listening: socket.socket | None = None
+        self._host: socket.socket | None = None
+        self.plug_in()
+
+    @property
+    def plugged(self) -> bool:
+        """Whether the port exists."""
+        return self._listening is not None
+
+    @property
+    def path(self) -> str:
+        """Name of the port for the host."""
+        address, number = self._address
+        return f"{SCHEME}{address}:{number}"
+
+    def plug_in(self) -> None:
+        """Listen, at the same address as before."""
+        try:
+            listening = socket.create_server(self._address)
+        except OSError as error:
+            raise PalpateError(
+                "{path}: nobody can listen there ({reason}); choose port 0 for any free one",
+                path=self.path,
+                reason=error.strerror,
+            ) from error
+        for queue in (socket.SO_RCVBUF, socket.SO_SNDBUF):
+            listening.setsockopt(socket.SOL_SOCKET, queue, BUFFER_BYTES)
+        listening.setblocking(False)
+        self._listening = listening
+        self._address = listening.getsockname()
+        self._forget()
+
+    def unplug(self) -> None:
+        """Stop listening, and hang up."""
+        self._hang_up()
+        if self._listening:
+            self._listening.close()
+        self._listening = None
+
+    def read(self, _now: float, /) -> bytes:
+        """Bytes from the host; none while unplugged."""
+        heard = self._take()
+        # A new host may have spoken already.
+        return heard + self._take() if self._accept() else heard
+
+    def _take(self) -> bytes:
+        if self._host is None:
+            return b""
+        try:
+            heard = self._host.recv(4096)
+        except BlockingIOError:
+            return b""
+        except ConnectionError:
+            heard = b""
+        if not heard:
+            self._hang_up()
+        return heard
+
+    def _accept(self) -> bool:
+        """Let a host come if there is none, and hang up on all others; whether one has come."""
+        has_come = False
+        while self._listening:
+            try:
+                host, _ = self._listening.accept()
+            except (BlockingIOError, ConnectionError):
+                break
+            if self._host is None:
+                self._forget()
+                host.setblocking(False)
+                host.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+                self._host = host
+                has_come = True
+            else:
+                host.close()
+        return has_come
+
+    def _send(self, data: bytes) -> int:
+        if self._host is None:
+            return 0
+        try:
+            return self._host.send(data)
+        except (BlockingIOError, ConnectionError):
+            # That it is gone is found by reading: it may have said something before.
+            return 0
+
+    def _hang_up(self) -> None:
+        if self._host:
+            self._host.close()
+        self._host = None
+        self._forget()
