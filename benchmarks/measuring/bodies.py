@@ -81,6 +81,11 @@ def tets_of(name: str) -> tuple[TetMesh, NDArray[np.int64]]:
     return body.mesh, body.fixed
 
 
+def surface_of(name: str) -> Surface:
+    """The surface of such tetrahedra."""
+    return _boundary(tets_of(name)[0])
+
+
 def made_body(nodes: int) -> MeasuredBody:
     """The mouse's surface filled by fTetWild with about ``nodes`` nodes, kept in build/bodies.
 
@@ -113,12 +118,15 @@ def _make(file: Path, nodes: int) -> None:
 
 
 def _fill(edge_length: float, file: Path) -> None:
-    shape = stored_body(SHAPE).mesh
-    surface = Surface.checked(shape.nodes[shape.surface_nodes], shape.surface_local_triangles)
+    surface = _boundary(stored_body(SHAPE).mesh)
     mesh = tetrahedralize(surface, edge_length, EPSILON)
     height = mesh.nodes[mesh.surface_nodes, 2]
     lowest = np.argsort(height, kind="stable")[: round(PINNED_SHARE * len(height))]
     np.savez_compressed(file, X=mesh.nodes, T=mesh.tets, fixed=np.sort(mesh.surface_nodes[lowest]))
+
+
+def _boundary(mesh: TetMesh) -> Surface:
+    return Surface.checked(mesh.nodes[mesh.surface_nodes], mesh.surface_local_triangles)
 
 
 def _read(name: str, file: Path) -> MeasuredBody:

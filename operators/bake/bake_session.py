@@ -214,7 +214,7 @@ def start(
         ObjectHandle.of(thing), drawn, fingerprint, settings, job, job.poll(), rebuild, held_by_core
     )
     if is_first and _takes_long(surface, settings):
-        _current.preview = preview_body.start(thing, scene, drawn, fingerprint, settings, python)
+        _current.preview = preview_body.start(thing, scene, drawn, fingerprint, settings)
     return _current
 
 

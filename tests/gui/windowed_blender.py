@@ -49,6 +49,8 @@ class WindowedBlender:
     """For each scenario, against hanging only."""
     output: Path | None = None
     """Folder of pictures and logs; build/gui without one."""
+    screen: str = SCREEN
+    """Pixels of the window, across and down."""
     outcomes: dict[str, Outcome] = field(default_factory=dict)
 
     def play(self, scenarios: list[str]) -> None:
@@ -99,10 +101,11 @@ class WindowedBlender:
                 ),
                 encoding="utf-8",
             )
+            longest = max(LONGEST_RUN_SECONDS, int(self.limit_seconds) + SECONDS_TO_START)
             environment = os.environ | {
                 "BLENDER_USER_RESOURCES": user_folder,
-                "TIMEOUT": str(LONGEST_RUN_SECONDS),
-                "SCREEN": SCREEN,
+                "TIMEOUT": str(longest),
+                "SCREEN": self.screen,
             }
             command = [str(self.program), "run", "--enable-event-simulate", "--factory-startup"]
             command += ["--python-exit-code", "3", "--python", str(PLAYER), "--", str(job)]
@@ -115,7 +118,7 @@ class WindowedBlender:
                     stdin=subprocess.DEVNULL,
                     stdout=text,
                     stderr=subprocess.STDOUT,
-                    timeout=LONGEST_RUN_SECONDS + SECONDS_TO_START,
+                    timeout=longest + SECONDS_TO_START,
                 )
 
     def _read(self, log: Path, result: Path, scenarios: list[str]) -> dict[str, Outcome]:

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import threading
+
 import numpy as np
 import pytest
 
+from palpate.core.bake import preview_job
 from palpate.core.bake.preview.lattice import lattice
 from palpate.core.bake.preview.preview import preview
+from palpate.core.bake.preview_job import PreviewJob
 from palpate.core.bake.settings import BakeSettings
 from palpate.core.bake.steps import bake
 from palpate.core.errors import PalpateError
@@ -90,3 +94,34 @@ def test_pins_that_hold_nothing_are_refused():
     surface = ball()
     with pytest.raises(PalpateError, match="pins"):
         preview(surface, BakeSettings(pins=PinWeights(np.zeros(len(surface.vertices)))))
+
+
+def test_a_job_makes_the_body_of_a_preview():
+    settings = BakeSettings(pins=PinBelow(0.2))
+    made = PreviewJob(ball(), settings).result()
+    coarse = preview(ball(), settings)
+    assert made.off == coarse.off
+    assert made.body.key == bake(coarse.mesh, coarse.settings)[0].key
+
+
+def test_a_job_of_what_no_lattice_can_be_made_of_has_no_body():
+    nothing_held = BakeSettings(pins=PinWeights(np.zeros(len(ball().vertices))))
+    assert PreviewJob(ball(), nothing_held).result() is None
+
+
+def test_a_job_that_is_closed_has_no_body(monkeypatch):
+    begun, go_on = threading.Event(), threading.Event()
+
+    def waiting(*_):
+        begun.set()
+        go_on.wait()
+        return preview(ball(), BakeSettings())
+
+    monkeypatch.setattr(preview_job, "preview", waiting)
+    job = PreviewJob(ball(), BakeSettings())
+    begun.wait()
+    assert not job.finished
+    job.close()
+    go_on.set()
+    assert job.result() is None
+    assert job.finished

@@ -1,7 +1,8 @@
 """Random events at soft objects: whatever comes, the meshes stay, and nothing is left running.
 
 What comes is drawn by lot from a seed; when it comes depends on how quickly Blender draws, so that
-a storm is alike when it is repeated, but not the same.
+a storm is alike when it is repeated, but not the same. Events come in gusts, several between two
+frames, as of a hand that is quicker than the screen: what a storm takes is mostly drawing.
 """
 
 from __future__ import annotations
@@ -25,6 +26,9 @@ MODES = ("EDIT", "SCULPT", "OBJECT")
 STROKES = ("PUSH", "GRAB", "TWIST", "PINCH")
 # Most of what comes are moves of the pointer, near the object.
 SPREAD_PIXELS, ASIDE = 90.0, 0.2
+# A mouse tells of up to a thousand moves a second, and a screen shows sixty frames.
+MOST_IN_A_GUST = 64
+EVENTS_A_LINE = 500
 
 
 class Storm:
@@ -35,7 +39,7 @@ class Storm:
         self.rng = np.random.default_rng(seed)
         self.counts: Counter[str] = Counter()
         self.held = False
-        self.kinds: dict[Callable[[], Wait], float] = {
+        self.kinds: dict[Callable[[], None], float] = {
             self.move: 45.0,
             self.button: 20.0,
             self.wheel: 4.0,
@@ -53,81 +57,89 @@ class Storm:
         }
 
     def rage(self, count: int) -> Wait:
-        """Send so many events."""
+        """Send so many events, in gusts."""
         kinds = list(self.kinds)
         weights = np.array(list(self.kinds.values()))
-        for number in self.rng.choice(len(kinds), count, p=weights / weights.sum()):
+        gust = 0
+        lot = self.rng.choice(len(kinds), count, p=weights / weights.sum())
+        for sent, number in enumerate(lot, 1):
             # Elsewhere clicks and keys are there to change the mesh.
             kind = kinds[number] if bpy.context.mode == "OBJECT" else self.leave_mode
+            # What was sent to one file or mode is not for the next.
+            if gust <= 0 or kind in (self.mode, self.leave_mode, self.reload):
+                yield 0.0
+                gust = int(self.rng.integers(1, MOST_IN_A_GUST))
+            gust -= 1
             self.counts[kind.__name__] += 1
-            yield from kind()
+            kind()
+            if sent % EVENTS_A_LINE == 0:
+                print(f"storm: {sent:,} events", flush=True)
+        yield 0.0
 
-    def move(self) -> Wait:
-        yield from self.send("MOUSEMOVE", "NOTHING", self.place())
+    def move(self) -> None:
+        self.send("MOUSEMOVE", "NOTHING", self.place())
 
-    def button(self) -> Wait:
+    def button(self) -> None:
         self.held = not self.held
         shift = bool(self.rng.random() < 0.2)
         value = "PRESS" if self.held else "RELEASE"
-        yield from self.send("LEFTMOUSE", value, self.place(), shift=shift)
+        self.send("LEFTMOUSE", value, self.place(), shift=shift)
 
-    def wheel(self) -> Wait:
-        yield from self.send(self.one_of(("WHEELUPMOUSE", "WHEELDOWNMOUSE")), "PRESS")
+    def wheel(self) -> None:
+        self.send(self.one_of(("WHEELUPMOUSE", "WHEELDOWNMOUSE")), "PRESS")
 
-    def key(self) -> Wait:
-        kind = self.one_of(KEYS)
-        yield from self.send(kind, "PRESS")
-        yield from self.send(kind, "RELEASE")
+    def key(self) -> None:
+        self.type(self.one_of(KEYS))
 
-    def undo(self) -> Wait:
-        yield from self.send("Z", "PRESS", ctrl=True)
-        yield from self.send("Z", "RELEASE")
+    def undo(self) -> None:
+        self.type("Z", ctrl=True)
 
-    def redo(self) -> Wait:
-        yield from self.send("Z", "PRESS", ctrl=True, shift=True)
-        yield from self.send("Z", "RELEASE")
+    def redo(self) -> None:
+        self.type("Z", ctrl=True, shift=True)
 
-    def press(self) -> Wait:
+    def press(self) -> None:
         self.call(lambda: bpy.ops.palpate.press("INVOKE_DEFAULT"))
-        yield 0.0
 
-    def pinch(self) -> Wait:
+    def pinch(self) -> None:
         self.call(lambda: bpy.ops.palpate.pinch("INVOKE_DEFAULT"))
-        yield 0.0
 
-    def make_soft(self) -> Wait:
+    def make_soft(self) -> None:
         self.call(lambda: bpy.ops.palpate.make_soft("INVOKE_DEFAULT"))
-        yield 0.0
 
-    def tool(self) -> Wait:
+    def tool(self) -> None:
         name, stroke = self.one_of(TOOLS), self.one_of(STROKES)
         self.call(lambda: bpy.ops.wm.tool_set_by_id(name=name))
         bpy.context.scene.palpate.stroke = stroke
-        yield 0.0
 
-    def mode(self) -> Wait:
+    def mode(self) -> None:
+        """Change the mode, as a key would: not while a transform or the like has the keys."""
         mode = self.one_of(MODES)
-        self.call(lambda: bpy.ops.object.mode_set(mode=mode))
-        yield 0.0
+        if not self.others():
+            self.call(lambda: bpy.ops.object.mode_set(mode=mode))
 
-    def leave_mode(self) -> Wait:
-        self.call(lambda: bpy.ops.object.mode_set(mode="OBJECT"))
-        yield 0.0
+    def leave_mode(self) -> None:
+        """Back to Object Mode; what runs there is ended first."""
+        if self.others():
+            self.type("ESC")
+        else:
+            self.call(lambda: bpy.ops.object.mode_set(mode="OBJECT"))
 
-    def choose(self) -> Wait:
+    def others(self) -> list[str]:
+        """Modal operators that run and are not Palpate's."""
+        running = (one.bl_idname for one in self.stage.window.modal_operators)
+        return [name for name in running if not name.startswith("PALPATE")]
+
+    def choose(self) -> None:
         things = [thing for thing in bpy.context.scene.objects if thing.type == "MESH"]
         bpy.context.view_layer.objects.active = things[int(self.rng.integers(len(things)))]
-        yield 0.0
 
-    def save(self) -> Wait:
+    def save(self) -> None:
         self.call(bpy.ops.wm.save_mainfile)
-        yield 0.0
 
-    def reload(self) -> Wait:
+    def reload(self) -> None:
         """Open the file again, as it was saved last; what is held is let go."""
         self.held = False
         self.call(lambda: bpy.ops.wm.open_mainfile(filepath=bpy.data.filepath))
-        yield 0.1
 
     def place(self) -> Pixel:
         """A place in the view, mostly near the object."""
@@ -140,13 +152,16 @@ class Storm:
         right, high = region.x + region.width - 2, region.y + region.height - 2
         return (float(np.clip(x, left, right)), float(np.clip(y, low, high)))
 
-    def send(self, kind: str, value: str, at: Pixel | None = None, **held: bool) -> Wait:
-        """Send an event, and let Blender handle it."""
+    def type(self, kind: str, **held: bool) -> None:
+        self.send(kind, "PRESS", **held)
+        self.send(kind, "RELEASE")
+
+    def send(self, kind: str, value: str, at: Pixel | None = None, **held: bool) -> None:
+        """Send an event, which Blender handles before it draws again."""
         if at is not None:
             self.stage.mouse = at
         x, y = (round(coordinate) for coordinate in self.stage.mouse)
         self.stage.window.event_simulate(type=kind, value=value, x=x, y=y, **held)
-        yield 0.0
 
     def call(self, operator: Callable[[], object]) -> None:
         """Call an operator in the view; one may refuse, by a message."""
@@ -202,6 +217,7 @@ def storm(stage: Stage, seed: int, count: int) -> Wait:
 def _calm(stage: Stage) -> Wait:
     """Let go of everything, and end what runs, as a user would."""
     yield from stage.event("LEFTMOUSE", "RELEASE", stage.mouse)
+    yield from stage.key("ESC")
     if bpy.context.mode != "OBJECT":
         with stage.view():
             bpy.ops.object.mode_set(mode="OBJECT")
