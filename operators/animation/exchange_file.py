@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from enum import Enum
 from pathlib import Path
 
@@ -18,6 +18,7 @@ from ...core.errors import PalpateError
 from ...core.files.atomic_file import atomic_file
 from ...core.files.point_cache import CacheSize
 from ..layer import layers
+from ..traction.frame_tractions import FrameTractions, shown_by
 from . import mesh_cache
 
 TWIN, MESH = "palpate_surface", "palpate_surface_mesh"
@@ -28,6 +29,11 @@ class Exchange(Enum):
 
     ALEMBIC = ".abc"
     USD = ".usdc"
+
+    @property
+    def holds_attributes(self) -> bool:
+        """Whether Blender writes attributes of vertices into it, frame by frame."""
+        return self is Exchange.USD
 
     @property
     def is_built_in(self) -> bool:
@@ -43,8 +49,10 @@ def write(
     size: CacheSize,
     target: Path,
     kind: Exchange,
+    forces: FrameTractions | None = None,
 ) -> str:
-    """Write what a point cache has of an object's vertices; returns the surface's path in the file.
+    """Write what a point cache has of an object's vertices, and what they bear where that is given;
+    returns the surface's path in the file.
 
     A file that was there stays as it was until the new one is whole.
 
@@ -55,7 +63,8 @@ def write(
     """
     made = cache.with_suffix(kind.value)
     with _twin(thing, scene, cache, size) as twin:
-        _export(twin, scene, size, made, kind)
+        with nullcontext() if forces is None else shown_by(twin.data, forces):
+            _export(twin, scene, size, made, kind)
         path = _path_of(twin, kind)
     if not made.is_file():
         raise PalpateError(
@@ -70,15 +79,17 @@ def write(
     return path
 
 
-def play(thing: bpy.types.Object, target: Path, path: str) -> None:
-    """Let the object's modifier play a file, before all that deforms the mesh further."""
+def play(thing: bpy.types.Object, target: Path, path: str, *, attributes: bool) -> None:
+    """Let the object's modifier play a file, before all that deforms the mesh further; with the
+    attributes of its vertices, or their places alone.
+    """
     before = set(bpy.data.cache_files)
     bpy.ops.cachefile.open(filepath=str(target), relative_path=False)
     opened = next(one for one in bpy.data.cache_files if one not in before)
     opened.filepath = mesh_cache.shortest(target)
     modifier = mesh_cache.modifier_of(thing, "MESH_SEQUENCE_CACHE")
     modifier.cache_file, modifier.object_path = opened, path
-    modifier.read_data = {"VERT"}
+    modifier.read_data = {"VERT", "ATTRIBUTES"} if attributes else {"VERT"}
 
 
 def is_played(thing: bpy.types.Object, file: Path) -> bool:

@@ -11,6 +11,8 @@ import bpy
 from ...core.files.point_cache import CacheSize, is_own_cache, point_cache
 from ...core.files.scratch_folder import ScratchFolder
 from ..object.drawn_body import DrawnBody
+from ..traction.drawn_traction import patches_of, tractions_of
+from ..traction.frame_tractions import FrameTractions, frame_tractions
 from . import exchange_file, frame_keys, live_pressers, mesh_cache
 from .exchange_file import Exchange
 from .pressed_frames import PressedFrame
@@ -58,12 +60,35 @@ def _as_exchange(
     kind: Exchange,
 ) -> Baking:
     target = mesh_cache.place_for(thing, kind.value, partial(exchange_file.is_played, thing))
-    with ScratchFolder(SCRATCH_WORD) as folder:
+    with (
+        ScratchFolder(SCRATCH_WORD) as folder,
+        frame_tractions(folder.path / "forces", size.points, size.first_frame, size.step) as forces,
+    ):
         frames = folder.path / "frames.pc2"
+        told = kind.holds_attributes and thing.palpate.force_attributes
+        if told:
+            pressed = _noted(thing, drawn, pressed, forces)
         yield from _written(frames, drawn, pressed, size)
         with live_pressers.paused():
-            path = exchange_file.write(thing, scene, frames, size, target, kind)
-    exchange_file.play(thing, target, path)
+            path = exchange_file.write(
+                thing, scene, frames, size, target, kind, forces if told else None
+            )
+    exchange_file.play(thing, target, path, attributes=told)
+
+
+def _noted(
+    thing: bpy.types.Object,
+    drawn: DrawnBody,
+    pressed: Iterator[PressedFrame],
+    forces: FrameTractions,
+) -> Iterator[PressedFrame]:
+    """The frames, once what each of them bears is stored."""
+    for here in pressed:
+        borne = None
+        if here.moved is not None:
+            borne = tractions_of(thing, drawn, here.moved, patches_of(here.fingers))
+        forces.add(here.moved, borne)
+        yield here
 
 
 def _written(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import tempfile
 import time
@@ -16,6 +17,7 @@ PLAYER = Path(__file__).with_name("scenario_player.py")
 SECONDS_TO_START = 120
 LONGEST_RUN_SECONDS = 1800
 LINES_OF_LOG = 60
+TRACEBACK = re.compile(r"Traceback \(most recent call last\):\n(?:[ ].*\n)+")
 # Drawn by the processor, so every pixel takes time; the panels' text is still read easily.
 SCREEN = "1280x800"
 # A window that is drawn by the processor keeps about one core busy.
@@ -137,13 +139,20 @@ def _outcome(name: str, report: dict[str, object], log: str) -> Outcome:
     failure = str(report["failure"])
     if report["state"] == "running":
         failure = f"Blender ended in the middle of the scenario:\n{tail(printed)}"
-    elif "Traceback (most recent call last)" in printed:
+    elif any(is_of_a_file(one) for one in TRACEBACK.findall(printed)):
         failure += f"\nBlender printed a traceback meanwhile:\n{tail(printed)}"
     pictures = report["pictures"]
     figures = report["figures"]
     assert isinstance(pictures, list)
     assert isinstance(figures, dict)
     return Outcome(failure.strip(), tuple(str(picture) for picture in pictures), figures)
+
+
+def is_of_a_file(traceback: str) -> bool:
+    """Whether Python code of a file is in a traceback. In others are only Blender's own one-line
+    expressions, as for a tool's hint after the mode has changed.
+    """
+    return re.search(r'File "(?!<string>)', traceback) is not None
 
 
 def program_of(repository: Path) -> Path:

@@ -34,15 +34,14 @@ GRADED_NODES = 0.23
 # nil for boxes and large for limbs, between half and twice.
 NODE_SPREAD = 1.5
 
-# Seconds of fTetWild: NODE a node, and for following the surface DETAIL triangles^0.36 (bending /
-# diagonal + 0.3)^2.5 (epsilon / 0.003)^-0.7. It is not deterministic: the same mesh takes up to
-# three times as long as another time. Of 28 runs on eleven shapes, 24 were within a factor of two.
+# Seconds of fTetWild: NODE a node, and for following the surface DETAIL triangles^0.3 (bending /
+# diagonal) (epsilon / 0.003)^-0.7. It is not deterministic, and what makes it slow is not all in
+# these: of 25 runs on twenty shapes, 23 were within this factor, and the farthest off by three.
 NODE_SECONDS = 4.0e-4
-DETAIL_SECONDS = 1.8e-3
-DETAIL_EXPONENTS = (0.36, 2.5, -0.7)
-LEAST_DETAIL = 0.3
+DETAIL_SECONDS = 0.052
+DETAIL_EXPONENTS = (0.3, -0.7)
 USUAL_EPSILON = 0.003
-TETRAHEDRALIZE_SPREAD = 2.0
+TETRAHEDRALIZE_SPREAD = 2.2
 # Starting the child process and what it imports.
 START_SECONDS = 0.7
 
@@ -185,10 +184,10 @@ def predicted_mesh(size: ShapeSize, settings: BakeSettings) -> MeshSize:
 def tetrahedralize_seconds(size: ShapeSize, settings: BakeSettings, nodes: int) -> float:
     """Seconds of fTetWild for a surface that becomes so many nodes."""
     triangles = min(size.triangles, settings.decimate_above)
-    by_triangles, by_bending, by_epsilon = DETAIL_EXPONENTS
-    detail = (_bends(size) / size.diagonal + LEAST_DETAIL) ** by_bending
+    by_triangles, by_epsilon = DETAIL_EXPONENTS
     fineness = (settings.epsilon / USUAL_EPSILON) ** by_epsilon
-    following = DETAIL_SECONDS * triangles**by_triangles * detail * fineness
+    bends = _bends(size) / size.diagonal
+    following = DETAIL_SECONDS * triangles**by_triangles * bends * fineness
     return float(NODE_SECONDS * nodes + following)
 
 

@@ -125,3 +125,10 @@ def test_a_file_of_somebody_else_is_left_alone(tapped):
     assert bpy.ops.palpate.press_frames(keep="ALEMBIC") == {"FINISHED"}
     assert place.read_bytes() == b"of somebody else"
     assert bpy.data.cache_files[0].filepath.endswith("-animation-2.abc")
+
+
+def test_a_file_plays_places_alone_where_nobody_asked_for_forces(tapped):
+    assert bpy.ops.palpate.press_frames(keep="USD") == {"FINISHED"}
+    at(tapped, 6)
+    seen = tapped.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+    assert "palpate_pressure" not in seen.attributes

@@ -2,10 +2,23 @@
 
 from __future__ import annotations
 
+import csv
+
 import bpy
 import numpy as np
 import pytest
-from soft_scene import TOP, begin, cube, layer_names, moved, part, rest_places, wait
+from soft_scene import (
+    TOP,
+    begin,
+    cube,
+    empty,
+    layer_names,
+    moved,
+    part,
+    rest_places,
+    seen_places,
+    wait,
+)
 
 SHOWN = ("palpate_displacement", "palpate_normal", "palpate_pressure", "palpate_traction")
 PUSH = {"place": TOP, "radius": 0.02, "depth": 0.004}
@@ -172,3 +185,30 @@ def test_an_imprint_bears_nothing_once_it_is_let_go(fine):
     assert bpy.ops.palpate.stroke(**PUSH) == {"FINISHED"}
     assert shown(fine, "palpate_displacement").any()
     assert not shown(fine, "palpate_pressure").any()
+
+
+def test_a_baked_usd_file_plays_them_frame_by_frame(fine, tmp_path):
+    guide, scene, table = empty(), bpy.context.scene, tmp_path / "forces.csv"
+    for frame, height in ((1, 0.06), (3, 0.042), (5, 0.06)):
+        guide.location.z = height
+        guide.keyframe_insert("location", frame=frame)
+    scene.frame_start, scene.frame_end = 1, 5
+    scene.palpate.tip_radius, scene.palpate.tip = 0.02, "SPHERE"
+    scene.palpate.source, scene.palpate.source_empty = "EMPTY", guide
+    handlers = list(bpy.app.handlers.frame_change_pre)
+    assert bpy.ops.palpate.press_frames(keep="USD", forces=str(table)) == {"FINISHED"}
+    assert list(bpy.app.handlers.frame_change_pre) == handlers
+    rows = csv.DictReader(table.read_text(encoding="utf-8").splitlines())
+    forces = {int(row["frame"]): row for row in rows}
+    rest = rest_places(fine)
+    for frame in (3, 1, 2, 4):
+        scene.frame_set(frame)
+        traction, pressure = shown(fine, "palpate_traction"), shown(fine, "palpate_pressure")
+        felt = float(forces[frame]["force_N"])
+        total = np.linalg.norm((traction * shares(fine)[:, None]).sum(axis=0))
+        assert total == pytest.approx(felt, rel=0.1, abs=1e-6)
+        found = shown(fine, "palpate_normal") * pressure[:, None]
+        np.testing.assert_allclose(found, traction, rtol=0, atol=1e-3 * max(pressure.max(), 1.0))
+        places = rest + shown(fine, "palpate_displacement")
+        np.testing.assert_allclose(seen_places(fine), places, rtol=0, atol=1e-6)
+    assert float(forces[3]["force_N"]) > 0.01

@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterator
 
 import bpy
 import numpy as np
+from bpy_extras.view3d_utils import location_3d_to_region_2d
 from mouse_scene import BACK, mouse, own_copy
 from stage import MODULE, Pixel, Stage, Wait
 
@@ -73,7 +74,7 @@ class Storm:
             self.counts[kind.__name__] += 1
             kind()
             if sent % EVENTS_A_LINE == 0:
-                print(f"storm: {sent:,} events", flush=True)
+                print(f"storm: {sent:,} events {bpy.context.mode} {self.others()}", flush=True)
         yield 0.0
 
     def move(self) -> None:
@@ -120,7 +121,10 @@ class Storm:
     def leave_mode(self) -> None:
         """Back to Object Mode; what runs there is ended first."""
         if self.others():
+            # Some end by this, some by that; nothing is held any more.
             self.type("ESC")
+            self.held = False
+            self.send("LEFTMOUSE", "RELEASE")
         else:
             self.call(lambda: bpy.ops.object.mode_set(mode="OBJECT"))
 
@@ -147,7 +151,7 @@ class Storm:
         if self.rng.random() < ASIDE:
             x, y = self.rng.uniform(0.02, 0.98, size=2)
             return (region.x + x * region.width, region.y + y * region.height)
-        x, y = self.stage.pixel(BACK) + self.rng.normal(scale=SPREAD_PIXELS, size=2)
+        x, y = np.array(self.seen()) + self.rng.normal(scale=SPREAD_PIXELS, size=2)
         left, low = region.x + 1, region.y + 1
         right, high = region.x + region.width - 2, region.y + region.height - 2
         return (float(np.clip(x, left, right)), float(np.clip(y, low, high)))
@@ -155,6 +159,15 @@ class Storm:
     def type(self, kind: str, **held: bool) -> None:
         self.send(kind, "PRESS", **held)
         self.send(kind, "RELEASE")
+
+    def seen(self) -> Pixel:
+        """Where the object is drawn; the middle of the view where that has turned away."""
+        region = self.stage.region("WINDOW")
+        view = self.stage.area.spaces.active.region_3d
+        found = location_3d_to_region_2d(region, view, BACK)
+        if found is None:
+            return (region.x + region.width / 2, region.y + region.height / 2)
+        return (region.x + found.x, region.y + found.y)
 
     def send(self, kind: str, value: str, at: Pixel | None = None, **held: bool) -> None:
         """Send an event, which Blender handles before it draws again."""
