@@ -60,4 +60,4 @@ class PreviewJob:
 
     def _refuse_closed(self, *_: object) -> None:
         if self._closed.is_set():
-            raise CancelledError("the preview was given up")
+            raise CancelledError("bake: stopped, since nobody waits for the result any more")
