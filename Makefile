@@ -210,6 +210,10 @@ test-gui: $(VENV)/.servo-installed $(WINDOWED_PACKAGE) | build/reports ## the pa
 test-drags: $(VENV)/.servo-installed $(WINDOWED_PACKAGE) ## twenty drags at random places of each sample body, at two sizes of the interface
 	BLENDER_GUI='$(BLENDER_GUI)' $(BIN)/python tests/gui/drags/play.py
 
+.PHONY: release-check
+release-check: $(VENV)/.installed ## all that a release must hold, of every system, as a table
+	$(BIN)/python release/release_check.py
+
 # ---------------------------------------------------------------------------- demo, benchmarks
 
 .PHONY: demo
