@@ -31,6 +31,7 @@ from ..body.body_argument import add_body
 from .felt_option import add_felt, softening_table
 from .haply import add_haply_options, connect_haply
 from .servo_report import Felt, for_people, servo_report
+from .timing_check import add_check_timing
 
 if TYPE_CHECKING:
     from ...core.servo.session import FingerCounters, Servo, Snapshot
@@ -91,6 +92,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--rate", type=int, default=1000, metavar="HZ", help="ticks a second (default: %(default)s)"
     )
+    add_check_timing(parser)
     parser.add_argument(
         "--young", type=float, metavar="PA", help="Young's modulus (default: the body's own)"
     )
