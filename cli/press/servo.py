@@ -43,7 +43,6 @@ LONGEST_RECORDING_SECONDS = 3600.0
 HAND_FORCE = 1.5
 """Largest force of the simulated hand, N: half of its device's."""
 
-
 HELP = "touch a body with a device, at 1 kHz"
 DESCRIPTION = (
     "Run the real-time thread between a device and a body, then print what was "
@@ -220,8 +219,7 @@ def _highest_place(body: SoftBody) -> tuple[int, NDArray[np.float64], NDArray[np
 
 
 def _vector(values: NDArray[np.float64]) -> tuple[float, float, float]:
-    x, y, z = values.tolist()
-    return (x, y, z)
+    return (float(values[0]), float(values[1]), float(values[2]))
 
 
 def _connect(servo: Servo, port: str, baud: int | None, stopped: Sequence[int]) -> None:

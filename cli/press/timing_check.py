@@ -15,10 +15,8 @@ from collections.abc import Sequence
 from importlib import metadata
 from typing import Any
 
-from palpate_servo import Pointer
-
 from ...core.errors import PalpateError
-from ...core.servo.session import servo_on
+from ...core.servo.session import Pointer, servo_on
 from ...core.servo.settings import Settings
 from ...simulated.attack.target import ABOVE, EDGE, YOUNG_MODULUS, cube
 from .servo_report import for_people

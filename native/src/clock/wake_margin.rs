@@ -7,10 +7,11 @@
 /// Steps of the margin: 19 of 20 wakings come before the deadline where these balance.
 const STEP_DOWN_NS: u64 = 50;
 const STEP_UP_NS: u64 = 19 * STEP_DOWN_NS;
-/// At most this part of the period is spent busy-waiting: 4 % of one processor.
-const LARGEST_PART: u64 = 25;
+/// At most this part of the period is spent busy-waiting: 4 % of one processor. Windows' most exact
+/// timers go off twice in a millisecond, so there as much as lies between two of these is learned.
+const LARGEST_PART: u64 = if cfg!(windows) { 2 } else { 25 };
 /// At most this long, ns: beyond are waits that no busy-waiting saves.
-const LARGEST_NS: u64 = 100_000;
+const LARGEST_NS: u64 = if cfg!(windows) { 550_000 } else { 100_000 };
 
 /// Time before the deadline for which a thread sets its timer.
 #[derive(Debug)]
@@ -70,12 +71,15 @@ mod tests {
 
     #[test]
     fn the_margin_never_exceeds_its_part_of_the_period() {
-        for (period_ns, largest_ns) in
-            [(10_000_000, 100_000), (1_000_000, 40_000), (125_000, 5_000)]
-        {
+        let largest = if cfg!(windows) {
+            [550_000, 500_000, 62_500]
+        } else {
+            [100_000, 40_000, 5_000]
+        };
+        for (period_ns, largest_ns) in [10_000_000, 1_000_000, 125_000].into_iter().zip(largest) {
             let mut margin = Margin::new(period_ns);
             for _ in 0..1000 {
-                margin.learn(1_000_000);
+                margin.learn(10_000_000);
             }
             assert_eq!(margin.ns(), largest_ns);
         }
