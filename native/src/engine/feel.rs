@@ -7,6 +7,7 @@ use crate::algebra::MOST_POINTS;
 use crate::algebra::cholesky::dot;
 use crate::control::coupling::largest_eigenvalue;
 use crate::tool::collider::{Collider, Felt};
+use crate::tool::slot::Slot;
 
 impl Joint {
     /// Adds the forces of a tool on a body; `stuck` of its pushes are on points that stick.
@@ -29,8 +30,7 @@ impl Joint {
             let arm = slot.at.position + slot.moved - position;
             felt.force -= slot.force * young_modulus;
             felt.torque -= arm.cross(slot.force * young_modulus);
-            let held = slot.force.dot(slot.moved) + slot.spring * slot.push * slot.push;
-            felt.energy += 0.5 * held * young_modulus;
+            felt.energy += held(slot) * young_modulus;
             felt.pressed += 1;
             collider.take(slot);
         }
@@ -70,6 +70,15 @@ impl Joint {
             DVec3::new(zx, yz, product(2, 2)),
         )
     }
+}
+
+/// What a point holds, J at unit modulus, and with it the spring before it, where the tool is now. A
+/// tick whose bound on the work leaves the point a little off the tool has the body hold more or less
+/// than that, and the next one, which gets nearer, would seem to give or take the difference.
+fn held(slot: &Slot) -> f64 {
+    let spring = slot.spring * slot.push;
+    let off = slot.seen.0 + spring;
+    0.5 * (slot.force.dot(slot.moved) + spring * slot.push) - off * slot.push
 }
 
 /// The stiffness of a tool without friction, with what points that stick add aside: where all stick

@@ -77,6 +77,18 @@ def test_letting_go_of_what_sticks_is_a_jump(whole):
     assert largest[1] > 0.8 * largest[0]
 
 
+def test_a_tick_that_ends_before_its_equilibrium_is_found_asks_for_no_brake(cube_body, whole):
+    """What its bound on the work leaves to the next one is no energy that the body gained."""
+    radius, rate = 0.004, 4000
+    tool = native_tool(cube_body, whole, sphere(radius))
+    corners = np.array([[put(0.0226, 0.0268, depth)] for depth in (-0.016, -0.001)])
+    deep = np.array([[put(0.0221, 0.0268, 0.002)]])
+    path = along(np.concatenate([corners, deep, corners[::-1]]) + radius * UP, rate, speed=0.05)
+    feel = {"static_friction": 0.4, "dynamic_friction": 0.4}
+    forces, _ = fingers_at(whole, path[0], tool, rate, **feel).follow(path)
+    assert largest_change(forces) < 0.02 * np.linalg.norm(forces, axis=2).max()
+
+
 def share_of_work(fingers, path, settling=1):
     lift = np.linspace(0.006, 0, 60)[:, None, None] * UP
     fingers.follow(path[0] + lift)
