@@ -52,6 +52,9 @@ pub struct Pressed {
     pub push: DVec3,
     /// Its share of the energy of all by that law at these places and displacements, J.
     pub energy: f64,
+    /// What its own force puts into the body, J: others may put in as much again, or draw the surface
+    /// along until its share is less than nothing.
+    pub own_energy: f64,
     /// What is asked of the motors but for a brake, N.
     pub wanted: DVec3,
     /// By which law it presses.
@@ -94,9 +97,9 @@ impl Pressed {
         self.energy * share * (2.0 - share)
     }
 
-    /// 0 unless it presses, m.
+    /// How far it presses the surface in by itself, m; 0 unless it presses.
     fn depth(&self) -> f64 {
-        let depth = 2.0 * self.energy / self.push.length();
+        let depth = 2.0 * self.own_energy / self.push.length();
         if depth > SHALLOWEST && depth.is_finite() {
             depth
         } else {

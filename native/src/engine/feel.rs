@@ -35,8 +35,21 @@ impl Joint {
             collider.take(slot);
         }
         if felt.pressed > before {
+            felt.own_energy += self.own_energy(pair) * young_modulus;
             felt.stiffness += with_stuck(self.stiffness(pair), stuck) * young_modulus;
         }
+    }
+
+    /// What the pushes of a tool on a body put into it and the springs before it, J at unit modulus.
+    fn own_energy(&self, pair: [u8; 2]) -> f64 {
+        let mut pushes = [0.0; MOST_POINTS];
+        for (push, &number) in pushes.iter_mut().zip(&self.chosen) {
+            let slot = &self.patch.slots()[number];
+            if slot.is_of(pair) {
+                *push = slot.push;
+            }
+        }
+        self.problem.energy_of(&pushes[..self.chosen.len()])
     }
 
     /// sum_ij n_i [(N' C N)^-1]_ij n_j' over the points of a tool that press a body, at unit modulus.

@@ -183,6 +183,14 @@ impl Complementarity {
         self.decompositions
     }
 
+    /// 1/2 f A f of some forces.
+    pub fn energy_of(&self, forces: &[f64]) -> f64 {
+        let carry = (0..self.count).filter(|&i| forces[i] > 0.0);
+        carry
+            .map(|i| 0.5 * forces[i] * dot(self.row(i), forces))
+            .sum()
+    }
+
     /// A f + g.
     fn open(&mut self) {
         let (matrix, gaps, forces) = (&self.matrix, &self.gaps, &self.forces[..self.count]);

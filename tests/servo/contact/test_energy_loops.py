@@ -18,11 +18,11 @@ SPAN = Span()
 POINTS = (Tip(), Tip())
 
 
-def loops_of(body, count, span=SPAN):
+def loops_of(body, count, span=SPAN, seed=14):
     mesh = body.mesh
     free = ~np.isin(mesh.surface_nodes, body.fixed)
     nodes, triangles = mesh.nodes[mesh.surface_nodes], mesh.surface_local_triangles
-    return list(random_loops(nodes, triangles, free, count, 14, span))
+    return list(random_loops(nodes, triangles, free, count, seed, span))
 
 
 def books_of(surface, together, settings, motors=None, tips=POINTS):
@@ -81,6 +81,16 @@ def test_a_tool_and_a_point_beside_it_get_no_energy(body):
 def test_two_that_are_led_together_get_no_energy(body):
     pairs = list(random_pairs(loops_of(body, 10 * LOOPS), seed=14))[:LOOPS]
     gives_nothing(books_of(native_body(body, whole=True), pairs, Settings(YOUNG_MODULUS)))
+
+
+def test_who_is_drawn_along_by_a_deep_finger_pays_too(cube_body, whole):
+    """One is 46 mm deep in the cube; the other, on a surface that bulges towards it, pressed less
+    than that, so that its share of the energy was below nothing, and was asked for nothing.
+    """
+    pair = list(random_pairs(loops_of(cube_body, 150, seed=3), seed=3))[18]
+    assert max(loop.depth for loop in pair) > 0.046
+    coupled = Settings(YOUNG_MODULUS, coupling=Coupling(800.0, 4.0, passivity_control=True))
+    gives_nothing(books_of(whole, [pair], coupled, motors=3.0), 1)
 
 
 def test_the_papers_law_as_published_does(body):

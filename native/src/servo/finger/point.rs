@@ -195,7 +195,7 @@ impl Point {
             // As published: nobody pays.
             return touch;
         }
-        touch.with_energy(push, energy, self.is_settled(followed))
+        touch.with_energy(push, (energy, energy), self.is_settled(followed))
     }
 
     /// The contact of a finger among others.
@@ -225,10 +225,11 @@ impl Point {
             displacement: followed.displacement() - answer.by_others,
             force,
         };
-        let energy = answer.energy * young_modulus;
+        let by_others = 0.5 * answer.force.dot(answer.by_others);
+        let energy = [answer.energy, answer.energy - by_others].map(|e| e * young_modulus);
         let is_settled = answer.is_settled && self.is_settled(followed);
         let wanted = followed.drive(coupler, &seen);
-        Touch::of(followed, shot, wanted).with_energy(-force, energy, is_settled)
+        Touch::of(followed, shot, wanted).with_energy(-force, energy.into(), is_settled)
     }
 
     /// Whether the law stays as it is, and all of it is felt.

@@ -76,7 +76,7 @@ impl ToolTouch {
         let is_settled = followed.presence == 1.0 && followed.is_ramped;
         let mut touch = Touch::of(&followed, shot, coupled.force).with_energy(
             -coupled.spring,
-            felt.energy * share,
+            (felt.energy * share, felt.own_energy * share),
             is_settled,
         );
         (touch.pressed.turn, touch.pressed.torque) = (turn, felt.torque * -share);

@@ -40,12 +40,18 @@ impl Touch {
         }
     }
 
-    /// The same of a contact whose energy is known.
+    /// The same of a contact whose energy is known, and how much of it is its own force's.
     #[must_use]
-    pub(super) fn with_energy(self, push: DVec3, energy: f64, is_settled: bool) -> Self {
+    pub(super) fn with_energy(
+        self,
+        push: DVec3,
+        (energy, own_energy): (f64, f64),
+        is_settled: bool,
+    ) -> Self {
         let pressed = Pressed {
             push,
             energy,
+            own_energy,
             wanted: self.wanted,
             is_unsettled: !is_settled,
             ..self.pressed

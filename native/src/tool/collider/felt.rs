@@ -15,6 +15,8 @@ pub struct Felt {
     pub stiffness: DMat3,
     /// Of what it presses, J: its share of the body's, and what springs before its points hold.
     pub energy: f64,
+    /// What its own pushes put into that, were nobody else there, J.
+    pub own_energy: f64,
     /// Points that are pressed.
     pub pressed: usize,
     /// Linearisations it took.
@@ -33,6 +35,7 @@ impl Default for Felt {
             torque: DVec3::ZERO,
             stiffness: DMat3::ZERO,
             energy: 0.0,
+            own_energy: 0.0,
             pressed: 0,
             linearisations: 0,
             exact: false,
