@@ -36,6 +36,8 @@ const WIDE: usize = 8;
 pub struct Patch {
     slots: Vec<Slot>,
     numbers: SlotNumbers,
+    /// Displacements are those by the forces that the slots name: none of a slot that is gone.
+    is_displaced: bool,
     /// C_ij at unit modulus, [`blocks_at`] each loaded slot j.
     compliance: Vec<f64>,
     /// Forces whose displacements are summed up, and these.
@@ -55,6 +57,7 @@ impl Patch {
         Self {
             slots: Vec::with_capacity(MOST_POINTS),
             numbers: SlotNumbers::new(),
+            is_displaced: true,
             compliance: room(blocks_at(MOST_POINTS).start),
             forces: [[0.0; MOST_POINTS]; 3],
             moved: [[0.0; MOST_POINTS]; 3],
@@ -160,11 +163,12 @@ impl Patch {
         }
     }
 
-    /// Goes on with the sum from other forces than those that it has: none so far.
+    /// Begins to sum up how far changes of force move all slots, from where they are.
     pub(crate) fn begin_changes(&mut self) {
-        for axis in &mut self.forces {
-            axis[..self.slots.len()].fill(0.0);
+        if !self.is_displaced {
+            self.displace();
         }
+        self.begin_sum(|_| DVec3::ZERO, |slot| slot.moved);
     }
 
     /// How far a slot moves by the sum, m at unit modulus.
@@ -173,11 +177,13 @@ impl Patch {
         at(&self.moved, slot)
     }
 
-    /// Displaces the slots by the sum.
+    /// Displaces the slots by the sum, which is of their forces.
     pub(crate) fn end_displacing(&mut self) {
         for (i, slot) in self.slots.iter_mut().enumerate() {
             slot.moved = at(&self.moved, i);
+            slot.moved_by = slot.force;
         }
+        self.is_displaced = true;
     }
 
     #[inline]
@@ -252,6 +258,7 @@ impl Patch {
         let last = self.slots.len() - 1;
         let gone = self.slots[slot];
         self.numbers.remove([gone.tool, gone.body], gone.point);
+        self.is_displaced &= gone.moved_by == DVec3::ZERO;
         if slot != last {
             let own = self.compliance(last, last);
             for other in 0..last {
