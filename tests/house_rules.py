@@ -19,6 +19,7 @@ core/sentence.py core/errors.py core/progress.py core/quantities.py
 core/machine
 core/files
 core/mesh/formats core/mesh
+core/law
 core/stiffness
 core/compliance/ordering core/compliance/elimination core/compliance/compression core/compliance
 core/body

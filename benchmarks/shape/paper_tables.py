@@ -24,6 +24,7 @@ import numpy as np
 from palpate.benchmarks.measuring.bodies import tets_of
 from palpate.benchmarks.measuring.shape.figure_4 import draw_figure_4
 from palpate.core.body.soft_body import SoftBody
+from palpate.core.law.st_venant_kirchhoff import StVenantKirchhoff
 from palpate.core.shape.paper.paper_entries import SIGNS, EntryFinder, usual_largest_force
 from palpate.core.shape.paper.paper_table import PaperTable
 from palpate.core.shape.solid.free_solid import FreeSolid
@@ -61,7 +62,7 @@ def body(name: str) -> SoftBody:
 
 def compared(name: str, made: SoftBody, sample: int) -> bool:
     """Entries of random freedoms beside those of Newton's method alone."""
-    solid, wanted = FreeSolid.of(made), usual_largest_force(made.mesh)
+    solid, wanted = FreeSolid.of(made, StVenantKirchhoff()), usual_largest_force(made.mesh)
     finder = EntryFinder(solid)
     _ = finder.at_rest
     every = 3 * made.compliance.node_count

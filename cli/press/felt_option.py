@@ -24,7 +24,7 @@ def add_felt(parser: argparse.ArgumentParser) -> None:
         choices=FELT_CHOICES,
         default="linear",
         help="force of points: in proportion to the depth, as in the paper (linear, the default), "
-        "or softer where pressed in far, as a solid of large deformation is (corrected)",
+        "or as rubber is, mostly firmer where pressed in far (corrected)",
     )
 
 

@@ -23,7 +23,7 @@ def test_press_tells_the_corrected_force_and_draws_the_same(cube_file, figures_o
     table.fill()
     expected = corrected_forces(body, table.values, int(place.triangle[0]), place.alpha[0], by)
     assert felt["force"] == pytest.approx((-expected.sum(axis=0)).tolist())
-    assert 0 < felt["force"][2] < 0.9 * linear["force"][2]
+    assert felt["force"][2] > 1.05 * linear["force"][2] > 0
     assert felt["nodal_forces"] == linear["nodal_forces"]
     assert felt["max_displacement"] == linear["max_displacement"]
     # What was computed is there the next time.
@@ -31,7 +31,7 @@ def test_press_tells_the_corrected_force_and_draws_the_same(cube_file, figures_o
     assert figures_of(*press, "--felt", "corrected") == felt
 
 
-def test_a_deep_finger_gives_way_and_takes_less_from_a_shallow_one(cube_file, figures_of):
+def test_a_deep_finger_is_firmer_and_takes_more_from_a_shallow_one(cube_file, figures_of):
     press = ["press", cube_file, "--at", *AT, "--by", *BY]
     press += ["--at", "0.04", "0.03", "0.05", "--by", "0", "0", "-0.003"]
     linear = figures_of(*press)["contacts"]
@@ -39,8 +39,9 @@ def test_a_deep_finger_gives_way_and_takes_less_from_a_shallow_one(cube_file, fi
     deep, shallow = (
         (one["force"][2], other["force"][2]) for one, other in zip(linear, felt, strict=True)
     )
-    assert 0 < deep[1] < 0.9 * deep[0]
-    assert 0 < 1.1 * shallow[0] < shallow[1]
+    print(deep, shallow)
+    assert 0 < 1.03 * deep[0] < deep[1]
+    assert 0 < shallow[1] < shallow[0]
 
 
 def test_a_point_curve_bends_and_begins_as_the_linear_one(cube_file, figures_of):
@@ -48,7 +49,7 @@ def test_a_point_curve_bends_and_begins_as_the_linear_one(cube_file, figures_of)
     linear = figures_of(*curve)
     felt = figures_of(*curve, "--felt", "corrected")
     assert felt["stiffness_n_per_m"][0] == pytest.approx(linear["stiffness_n_per_m"][0])
-    assert (np.diff(felt["stiffness_n_per_m"]) < 0).all()
+    assert (np.diff(felt["stiffness_n_per_m"]) > 0).all()
     area = np.trapezoid(felt["stiffness_n_per_m"], felt["depth_m"])
     assert felt["force_n"][-1] == pytest.approx(area, rel=1e-3)
 

@@ -1,20 +1,20 @@
 """Large deformations by scikit-fem: its own assembly, Newton's method in even load steps.
 
-Nothing is shared with Palpate but the tetrahedra: the weak forms of a St. Venant-Kirchhoff body in
-total Lagrangian description are integrated by scikit-fem, and solved with scipy's sparse LU.
+Nothing is shared with Palpate but the tetrahedra: the weak forms of a law in total Lagrangian
+description are integrated by scikit-fem, and solved with scipy's sparse LU.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse.linalg import splu
 from skfem import Basis, BilinearForm, ElementTetP1, ElementVector, LinearForm, MeshTet
-from skfem.helpers import ddot, eye, grad, mul, trace, transpose
+from skfem.helpers import ddot, det, eye, grad, inv, mul, trace, transpose
 from skfem.models.elasticity import lame_parameters
 
 from palpate.core.mesh.tet_mesh import TetMesh
@@ -48,6 +48,35 @@ def _inner(v: Any, w: Any) -> Any:
     return ddot(mul(moved, stress), grad(v))
 
 
+def _inverse(gradient: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
+    """The deformation gradient, its determinant, and its inverse transposed."""
+    moved = gradient + eye(1.0 + 0.0 * gradient[0, 0], 3)
+    return moved, det(moved), transpose(inv(moved))
+
+
+@BilinearForm
+def _rubber_tangent(u: Any, v: Any, w: Any) -> Any:
+    _, volume, inverse = _inverse(grad(w["displacement"]))
+    change = grad(u)
+    back = w["shear"] - w["first"] * (volume - 1.0) * volume
+    changed = w["shear"] * change + back * mul(inverse, mul(transpose(change), inverse))
+    changed += w["first"] * (2.0 * volume - 1.0) * volume * ddot(inverse, change) * inverse
+    return ddot(changed, grad(v))
+
+
+@LinearForm
+def _rubber_inner(v: Any, w: Any) -> Any:
+    moved, volume, inverse = _inverse(grad(w["displacement"]))
+    pressure = w["first"] * (volume - 1.0) * volume
+    return ddot(w["shear"] * (moved - inverse) + pressure * inverse, grad(v))
+
+
+# The weak forms of a law: of its tangent and of its stress.
+Forms: TypeAlias = tuple[BilinearForm, LinearForm]
+ST_VENANT_KIRCHHOFF = (_tangent, _inner)
+NEO_HOOKEAN = (_rubber_tangent, _rubber_inner)
+
+
 @dataclass(frozen=True, eq=False)
 class NonlinearReference:
     """A body of 1 Pa by scikit-fem.
@@ -57,11 +86,13 @@ class NonlinearReference:
     mesh : its tetrahedra.
     free : (f,), the nodes that are not pinned.
     poisson_ratio : below 0.5.
+    forms : of the law, one of those above.
     """
 
     mesh: TetMesh
     free: NDArray[np.int64]
     poisson_ratio: float
+    forms: Forms
 
     @cached_property
     def _basis(self) -> Basis:
@@ -76,7 +107,7 @@ class NonlinearReference:
         ArithmeticError
             Newton's method does not converge.
         """
-        basis = self._basis
+        basis, (tangent_form, inner) = self._basis, self.forms
         first, shear = lame_parameters(1.0, self.poisson_ratio)
         freedoms = basis.nodal_dofs[:, self.free].T.ravel()
         u, load = np.zeros(basis.N), np.zeros(basis.N)
@@ -84,10 +115,10 @@ class NonlinearReference:
             load[freedoms] = step / load_steps * forces.ravel()
             for _ in range(MOST_ITERATIONS):
                 state = {"displacement": basis.interpolate(u), "first": first, "shear": shear}
-                rest = (load - _inner.assemble(basis, **state))[freedoms]
+                rest = (load - inner.assemble(basis, **state))[freedoms]
                 if np.abs(rest).max() < CONVERGED * np.abs(load).max():
                     break
-                tangent = _tangent.assemble(basis, **state).tocsc()[freedoms][:, freedoms]
+                tangent = tangent_form.assemble(basis, **state).tocsc()[freedoms][:, freedoms]
                 factor = splu(tangent, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
                 u[freedoms] += factor.solve(rest)
             else:

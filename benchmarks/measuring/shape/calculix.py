@@ -2,7 +2,8 @@
 
 Its elastic material with NLGEOM relates the second Piola-Kirchhoff stress to Lagrange's strain by
 Hooke's law (CalculiX CrunchiX user's manual 2.20, section on linear elastic materials), which is
-St. Venant-Kirchhoff's. Displacements are read as it prints them, with seven digits.
+St. Venant-Kirchhoff's; its hyperfoam is Storakers'. Its neo-Hookean rubber parts volume from shape
+in another way than Palpate's. Displacements are read as it prints them, with seven digits.
 """
 
 from __future__ import annotations
@@ -17,7 +18,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from palpate.core.law.foam import Foam
 from palpate.core.mesh.tet_mesh import TetMesh
+from palpate.core.stiffness.assembly import lame_parameters
 
 # CalculiX compares some numbers with fixed small ones, so it is given millimetres.
 MILLIMETRES = 1e3
@@ -35,14 +38,29 @@ def ccx_program() -> str | None:
     return shutil.which("ccx")
 
 
+def elastic(poisson_ratio: float) -> str:
+    """St. Venant-Kirchhoff's law of 1 Pa, as CalculiX reads it."""
+    return f"*ELASTIC\n1.0, {poisson_ratio}"
+
+
+def hyperfoam(law: Foam) -> str:
+    """A foam of 1 Pa, as CalculiX reads it."""
+    _, shear = lame_parameters(1.0, law.poisson_ratio)
+    constants = [f"{shear * term.share:.12e}, {term.exponent:.12e}" for term in law.terms]
+    ratios = [f"{law.poisson_ratio}"] * len(law.terms)
+    return f"*HYPERFOAM, N={len(law.terms)}\n" + ", ".join(constants + ratios)
+
+
 def calculix_displacements(
     mesh: TetMesh,
     fixed: NDArray[np.int64],
-    poisson_ratio: float,
+    material: str,
     nodal_forces: NDArray[np.float64],
     program: str = "ccx",
 ) -> NDArray[np.float64]:
     """Displacements (N, 3), metres, under forces (N, 3) at a modulus of 1 Pa.
+
+    ``material`` is what its input has for it: :func:`elastic` or :func:`hyperfoam`.
 
     Raises
     ------
@@ -51,7 +69,7 @@ def calculix_displacements(
     """
     with tempfile.TemporaryDirectory() as folder:
         job = Path(folder, "job")
-        job.with_suffix(".inp").write_text(_deck(mesh, fixed, poisson_ratio, nodal_forces))
+        job.with_suffix(".inp").write_text(_deck(mesh, fixed, material, nodal_forces))
         ran = subprocess.run(
             [program, "job"],
             cwd=folder,
@@ -74,7 +92,7 @@ def calculix_displacements(
 
 
 def _deck(
-    mesh: TetMesh, fixed: NDArray[np.int64], poisson_ratio: float, forces: NDArray[np.float64]
+    mesh: TetMesh, fixed: NDArray[np.int64], material: str, forces: NDArray[np.float64]
 ) -> str:
     # Fields longer than twenty characters are cut off.
     nodes = (
@@ -94,7 +112,7 @@ def _deck(
         nodes,
         "*ELEMENT, TYPE=C3D4, ELSET=EALL",
         tets,
-        f"*MATERIAL, NAME=SOFT\n*ELASTIC\n1.0, {poisson_ratio}",
+        f"*MATERIAL, NAME=SOFT\n{material}",
         "*SOLID SECTION, ELSET=EALL, MATERIAL=SOFT",
         "*BOUNDARY",
         (f"{node + 1},1,3" for node in fixed.tolist()),

@@ -16,6 +16,7 @@ from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from numpy.typing import NDArray
 
 from palpate.core.body.soft_body import SoftBody
+from palpate.core.law.st_venant_kirchhoff import StVenantKirchhoff
 from palpate.core.shape.paper.paper_formula import paper_displacements
 from palpate.core.shape.paper.paper_table import PaperTable
 from palpate.core.shape.solid.free_solid import FreeSolid
@@ -35,7 +36,7 @@ PRESSES = (
 def draw_figure_4(path: Path, table: PaperTable) -> None:
     """Draw it as a picture, and print how far the shapes are from Newton's."""
     body = table.body
-    solid = FreeSolid.of(body)
+    solid = FreeSolid.of(body, StVenantKirchhoff())
     figure = plt.figure(figsize=(10.5, 2.9 * len(PRESSES)), layout="constrained")
     for row, (name, share, millimetres) in enumerate(PRESSES):
         node, shapes = _shapes(table, solid, np.array(share), 1e-3 * np.array(millimetres))

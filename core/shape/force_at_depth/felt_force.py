@@ -1,7 +1,8 @@
 r"""The felt force at large depth: the choices, and the relation that ``corrected`` means.
 
-``linear`` is the paper's: the force is K u for a contact point moved by u, however far. A solid of
-large deformation softens where it is pressed in. ``corrected`` is the gradient of the energy ::
+``linear`` is the paper's: the force is K u for a contact point moved by u, however far. A solid by
+its material's law becomes firmer where it is pressed in (rubber, mostly) or softer (where it bends
+away, or foam). ``corrected`` is the gradient of the energy ::
 
     Phi(u) = P sqrt((P t)^2 + u.K u) - P^2 t      t = 1 + b.u      P^2 = k / w
            = u.K u / (S + t)                      S = sqrt(t^2 + w u.K u / k)
@@ -37,7 +38,7 @@ FeltName: TypeAlias = Literal["linear", "corrected"]
 FELT_CHOICES: tuple[FeltName, ...] = get_args(FeltName)
 EXPLANATIONS: dict[FeltName, str] = {
     "linear": "The paper's: in proportion to the depth, however deep",
-    "corrected": "As a solid of large deformation: softer where it is pressed in far",
+    "corrected": "As rubber is: mostly firmer where it is pressed in far",
 }
 
 # This share of the linear relation stays at any depth: the force never stops growing.

@@ -2,8 +2,8 @@
 
 Among all displacements of the body that move a node by u and leave every other free node without
 force, the energy is W(u). Its terms of order two to four are those of the linear field a = G u (the
-columns of the compliance over the node's own block) in the terms W2, W3, W4 of the energy of
-St. Venant and Kirchhoff::
+columns of the compliance over the node's own block) in the terms W2, W3, W4 of the energy by the
+material's law::
 
     W(u) = 1/2 u.K u + W3(a) + W4(a) - 1/2 q.(K^-1 - its part that moves the node) q    q = dW3/da
 
@@ -26,12 +26,18 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ...law.by_component import symmetric_part
+from ...law.st_venant_kirchhoff import second_stress
 from ..solid.free_solid import FreeSolid
-from ..solid.solid import StrainTerm
+from ..solid.solid import Solid
 from .felt_force import LEAST_SHARE
 
 # Nodes at a time: their fields are held at once, some megabytes each on a body of 10,000 tets.
 NODES_AT_ONCE = 4
+
+# The largest displacement gradient at which a law is asked for the terms of its stress: their
+# differences lose as many digits to rounding as to the terms beyond.
+LARGEST_GRADIENT = 1e-3
 
 # Of k b.C b, the least saturation. Tangents are at most ((1 + this) / this)^1.5 times that at rest.
 LEAST_SATURATION = 0.25
@@ -72,7 +78,7 @@ def _of_few(
     quartic = np.empty(count)
     forces = np.empty((count, size))
     for k, field in enumerate(fields):
-        quartic[k], forces[k] = _higher_terms(solid.solid.terms, field)
+        quartic[k], forces[k] = _higher_terms(solid.solid, field)
     moved = solid.factor.solve(forces.T)
     # What q does at the node itself, and what it would cost to leave that in place.
     cubic_slope = np.einsum("px,xpj,pji->pi", forces, columns, stiffness)
@@ -100,17 +106,19 @@ def _fitted(
     return np.column_stack([b, np.maximum(w, least)])
 
 
-def _higher_terms(
-    terms: tuple[StrainTerm, ...], field: NDArray[np.float64]
-) -> tuple[float, NDArray[np.float64]]:
+def _higher_terms(solid: Solid, field: NDArray[np.float64]) -> tuple[float, NDArray[np.float64]]:
     """W4 of a field (f, 3), and q = dW3/da (3f,)."""
-    quartic, forces = 0.0, np.zeros_like(field)
-    for term in terms:
-        gradient = term.displacement_gradients(field)
-        turned = gradient.transpose(0, 2, 1)
-        first = term.second_stress(0.5 * (gradient + turned))
-        square = 0.5 * (turned @ gradient)
-        second = term.second_stress(square)
-        quartic += 0.5 * float(term.volumes @ np.einsum("dij,dij->d", second, square))
-        forces += term.nodal_forces(gradient @ first + second)
-    return quartic, forces.reshape(-1)
+    quartic, forces = 0.0, np.zeros(field.T.shape)
+    for term in solid.terms:
+        gradient = term.by_component.of_displacements(field.T)
+        step = LARGEST_GRADIENT / float(np.abs(gradient).max())
+        # P(t H) = t P1 + t^2 P2 + t^3 P3 + ...: the derivatives of W2, W3 and W4 at H.
+        ahead, behind = (
+            solid.law.stressed(sign * step * gradient, *term.weighted_moduli).stress
+            for sign in (1.0, -1.0)
+        )
+        first = second_stress(symmetric_part(gradient), *term.weighted_moduli)
+        third = (0.5 * (ahead - behind) / step - first) / step**2
+        quartic += 0.25 * float(np.einsum("ijd,ijd->", third, gradient))
+        forces += term.by_component.nodal(0.5 * (ahead + behind) / step**2)
+    return quartic, forces.T.ravel()

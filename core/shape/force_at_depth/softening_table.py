@@ -25,7 +25,7 @@ from ..solid.free_solid import FreeSolid
 from .softening import NODES_AT_ONCE, node_softening
 
 # Counts changes of how softenings are computed: tables of an older kind are computed anew.
-KIND = "softening-1"
+KIND = "softening-2"
 
 # Measured: a node costs three columns, one more solve and one evaluation of the solid, each in
 # proportion to the tets; the factor in the background more than that on large bodies.

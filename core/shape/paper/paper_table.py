@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ...body.soft_body import SoftBody
 from ...errors import CancelledError
+from ...law.st_venant_kirchhoff import StVenantKirchhoff
 from ..solid.free_solid import FreeSolid
 from .paper_entries import EntryFinder, usual_largest_force
 from .paper_formula import PaperColumns
@@ -61,7 +62,7 @@ class PaperTable:
             By :meth:`cancel`; the node under way is not filled.
         """
         if self._finder is None:
-            self._finder = EntryFinder(FreeSolid.of(self.body))
+            self._finder = EntryFinder(FreeSolid.of(self.body, StVenantKirchhoff()))
         for node in nodes.tolist():
             three = [
                 self._finder.entries(3 * node + axis, self.wanted, self._may_go_on)

@@ -20,10 +20,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...compliance.elimination.cholesky import CholeskyFactor
-from ..solid.by_component import Array, product, symmetric_part, transposed_product
+from ...law.by_component import Array, product, symmetric_part, transposed_product
+from ...law.st_venant_kirchhoff import second_stress
 from ..solid.free_solid import FreeSolid
-from ..solid.gradients import Gradients
-from ..solid.strain_energy import EnergyTerm
+from ..solid.strain_term import StrainTerm
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +37,7 @@ class SeriesStart:
     displacements : (f, 3), u_0; None at rest.
     """
 
-    terms: Sequence[EnergyTerm]
+    terms: Sequence[StrainTerm]
     factor: CholeskyFactor
     displacements: NDArray[np.float64] | None = None
 
@@ -50,8 +50,7 @@ class SeriesStart:
         PalpateError
             The pins do not hold it.
         """
-        terms = [EnergyTerm.of(term, Gradients.of(term.gradients)) for term in body.solid.terms]
-        return cls(terms, body.factor)
+        return cls(body.solid.terms, body.factor)
 
     def moved(self, body: FreeSolid, displacements: NDArray[np.float64]) -> SeriesStart:
         """The same body in an equilibrium at displacements (f, 3).
@@ -82,32 +81,32 @@ class SeriesStart:
 class _PartialSeries:
     """The orders of gradient and stress in the domains of one term, as far as they are known."""
 
-    def __init__(self, term: EnergyTerm, start: NDArray[np.float64] | None) -> None:
+    def __init__(self, term: StrainTerm, start: NDArray[np.float64] | None) -> None:
         self._term = term
-        self._start = None if start is None else term.gradients.of_displacements(start.T)
+        self._start = None if start is None else term.by_component.of_displacements(start.T)
         self._gradients: list[Array] = []
         self._stresses: list[Array] = []
         self._known: Array | None = None
 
     def next_forces(self, newest: NDArray[np.float64]) -> NDArray[np.float64]:
         """Residual of a_1 ... a_k, of which a_k is given, in order k + 1, (f, 3)."""
-        gradient = self._term.gradients.of_displacements(newest.T)
+        gradient = self._term.by_component.of_displacements(newest.T)
         strain = gradient
         if self._start is not None:
             strain = gradient + transposed_product(self._start, gradient)
-        stress = self._term.second_stress(symmetric_part(strain))
+        stress = second_stress(symmetric_part(strain), *self._term.weighted_moduli)
         if self._known is not None:
             stress += self._known
         self._gradients.append(gradient)
         self._stresses.append(stress)
         # E and P of order k + 1, but for what is linear in a_(k + 1).
-        self._known = self._term.second_stress(_square(self._gradients))
+        self._known = second_stress(_square(self._gradients), *self._term.weighted_moduli)
         first_stress = self._known.copy()
         if self._start is not None:
             first_stress += product(self._start, self._known)
         for one, of_rest in zip(self._gradients, reversed(self._stresses), strict=True):
             first_stress += product(one, of_rest)
-        return self._term.gradients.nodal(first_stress).T
+        return self._term.by_component.nodal(first_stress).T
 
 
 def _square(gradients: Sequence[Array]) -> Array:

@@ -18,10 +18,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array, diags_array, eye_array, kron
 
+from ...law.of_material import law_of
 from ...mesh.tet_mesh import TetMesh
 from ...stiffness.assembly import lame_parameters
-from ..solid.solid import Solid, StrainTerm
+from ..solid.solid import Solid
 from ..solid.springs import Springs
+from ..solid.strain_term import StrainTerm
 from .lattice import CORNERS, Lattice
 
 # Directions from the middle to the four quarters.
@@ -92,7 +94,12 @@ class CoarseSolid:
         stiffness = shear * lattice.edge * part_modulus
         unseen = stiffness * part_volumes / lattice.edge**3
         springs = _pins(lattice, mesh, fixed, stiffness) + _unseen(lattice, unseen)
-        return cls(lattice, Solid(tuple(terms), lattice.node_count), Springs(springs), part_modulus)
+        return cls(
+            lattice,
+            Solid(tuple(terms), lattice.node_count, law_of(poisson_ratio)),
+            Springs(springs),
+            part_modulus,
+        )
 
     @property
     def stiffness(self) -> csr_array:

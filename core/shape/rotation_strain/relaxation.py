@@ -31,11 +31,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...compliance.elimination.cholesky import CholeskyFactor
-from ..solid.by_component import Array
-from ..solid.gradients import Gradients
-from ..solid.solid import StrainTerm
+from ...law.by_component import Array
+from ...law.law import Law
 from ..solid.springs import Springs
-from ..solid.strain_energy import EnergyTerm, StrainEnergy, Stressed
+from ..solid.strain_energy import StrainEnergy, StressedSolid
+from ..solid.strain_term import StrainTerm
 from .warp import RotationStrain, Warped
 
 # A parabola at least this far ahead of the end of a step takes the whole step: the energy is no
@@ -100,7 +100,7 @@ class Relaxation:
 
     @classmethod
     def of(
-        cls, terms: Sequence[StrainTerm], solve: Solve, springs: Springs | None = None
+        cls, terms: Sequence[StrainTerm], law: Law, solve: Solve, springs: Springs | None = None
     ) -> Relaxation:
         """Relaxation of the terms of a solid on its free nodes, the first of which has shear.
 
@@ -108,12 +108,8 @@ class Relaxation:
         ----------
         solve : by the stiffness of the terms and the springs.
         """
-        first, *others = terms
-        coordinates = RotationStrain.of(first, springs).factored()
-        # The first term has the same domains: half the memory to read in every frame.
-        own = EnergyTerm.of(first, coordinates.gradients)
-        others_own = (EnergyTerm.of(term, Gradients.of(term.gradients)) for term in others)
-        return cls(coordinates, StrainEnergy((own, *others_own), springs), solve)
+        coordinates = RotationStrain.of(terms[0], springs).factored()
+        return cls(coordinates, StrainEnergy(tuple(terms), law, springs), solve)
 
     def relaxed(self, forces: Array, steps: int) -> Array:
         """Displacements (3, f) of the free nodes under ``forces`` (3, f), after so many steps.
@@ -189,7 +185,7 @@ class _Place:
 
     linear: Array
     warped: Warped
-    stressed: Stressed
+    stressed: StressedSolid
     potential: float
 
     @classmethod

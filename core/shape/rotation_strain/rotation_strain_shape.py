@@ -172,4 +172,4 @@ class _OnLattice:
 
 def relaxation(solid: FreeSolid) -> Relaxation:
     """Relaxation of a body's shape."""
-    return Relaxation.of(solid.solid.terms, by_component(solid.factor))
+    return Relaxation.of(solid.solid.terms, solid.solid.law, by_component(solid.factor))

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..solid.by_component import Array, cross, cross_matrices, diagonal
+from ...law.by_component import Array, cross, cross_matrices, diagonal
 
 # Below this angle squared the closed form of the third coefficient loses digits, and four terms of
 # its series do not.

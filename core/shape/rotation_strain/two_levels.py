@@ -24,9 +24,9 @@ from scipy.sparse import csr_array
 
 from ...body.soft_body import SoftBody
 from ...compliance.elimination.cholesky import CholeskyFactor, RepeatedElimination
+from ...law.by_component import Array
 from ...stiffness.assembly import lame_parameters
 from ...stiffness.held_pins import pins_checked
-from ..solid.by_component import Array
 from .coarse_solid import CoarseSolid, by_axes, spring_of_each
 from .lattice import lattice_of
 from .relaxation import Load, Relaxation, Solve, by_component
@@ -75,7 +75,9 @@ class TwoLevels:
         at_rest = coarse.stiffness
         followed = _factor(at_rest + by_axes(csr_array(following @ surface)), lattice.positions)
         solved = _factor(at_rest, lattice.positions)
-        relaxation = Relaxation.of(coarse.solid.terms, by_component(solved), coarse.springs)
+        relaxation = Relaxation.of(
+            coarse.solid.terms, coarse.solid.law, by_component(solved), coarse.springs
+        )
         return cls(surface, following, by_component(followed), relaxation)
 
     def corrected(

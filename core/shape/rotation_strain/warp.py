@@ -5,10 +5,11 @@ falls into a strain e and a small rotation w. Taken as what they stand for, a st
 rotation, they ask for the deformation gradient F = exp([w]x) U; where that does not fit together,
 the displacement whose gradients come nearest is taken, a Poisson equation with the pins held.
 
-For the stretch Huang and others take U = I + e. Here it is U = e + (I + e^2 / 2)^-1, which agrees
-with the square root of I + 2 e to second order, so that Green's strain of U is e, and the stress of
-a St. Venant-Kirchhoff solid there is the one that the linear computation found; unlike the root it
-is defined, smooth and growing for every e. It matters where volume is nearly kept.
+For the stretch Huang and others take U = I + e. Here it is U = e + 3 I - 2 (I + e^2 / 4)^-1, which
+agrees with e + (I + e^2)^(1/2) to the fourth order. There U - U^-1 is 2 e, so that the stress of a
+neo-Hookean solid is the one that the linear computation found, and its volume exp(tr e) as nearly:
+it matters where volume is nearly kept. It grows with e everywhere, and nothing is inside out that
+is not pressed to e = -2.
 
 References
 ----------
@@ -26,10 +27,11 @@ from numpy.typing import NDArray
 from scipy.sparse import diags_array
 from scipy.sparse.linalg import SuperLU, splu
 
-from ..solid.by_component import (
+from ...law.by_component import (
     Array,
     axial,
     cross_matrices,
+    diagonal,
     identity_added,
     inverse_above_identity,
     product,
@@ -37,8 +39,8 @@ from ..solid.by_component import (
     transposed_product,
 )
 from ..solid.gradients import Gradients
-from ..solid.solid import StrainTerm
 from ..solid.springs import Springs
+from ..solid.strain_term import StrainTerm
 from .rotations import pulled_back_turns, rotations_less_identity
 
 
@@ -50,7 +52,7 @@ class Warped:
     ----------
     displacements : (3, f), of the free nodes.
     strain : e, (3, 3, m).
-    bounded : (I + e^2 / 2)^-1, (3, 3, m).
+    bounded : (I + e^2 / 4)^-1, (3, 3, m).
     rotation_vectors : w, (3, m).
     rotations : exp([w]x), (3, 3, m).
     """
@@ -85,7 +87,7 @@ class RotationStrain:
         what is soft, and bone stays bone.
         """
         weights = term.volumes * term.shear_modulus
-        return cls(Gradients.of(term.gradients), weights, springs)
+        return cls(term.by_component, weights, springs)
 
     def warp(self, linear: Array) -> Warped:
         """Warp linear displacements (3, f)."""
@@ -93,10 +95,10 @@ class RotationStrain:
         vectors = 0.5 * axial(gradient)
         strain = symmetric_part(gradient)
         turned = rotations_less_identity(vectors)
-        squared = 0.5 * product(strain, strain)
+        squared = 0.25 * product(strain, strain)
         bounded = inverse_above_identity(identity_added(squared))
         # I - (I + q)^-1 = q (I + q)^-1: what is small is never added to the identity.
-        stretch = strain - product(squared, bounded)
+        stretch = strain + 2.0 * product(squared, bounded)
         wanted = product(turned, stretch)
         wanted += turned
         wanted += stretch
@@ -117,12 +119,15 @@ class RotationStrain:
         stress = self.weights * self.gradients.of_displacements(solved)
         local = transposed_product(warped.rotations, stress)
         # The work R^T stress does on a turn, [a]x U, with a = J dw ...
-        turns = axial(product(local, e + bounded))
+        stretched = e - 2.0 * bounded
+        on_diagonal = diagonal(stretched)
+        on_diagonal += 3.0
+        turns = axial(product(local, stretched))
         moments = pulled_back_turns(warped.rotation_vectors, turns)
-        # ... and on dU = de - S (de e + e de) S / 2, S the bounded part.
+        # ... and on dU = de + S (de e + e de) S / 2, S the bounded part.
         local = symmetric_part(local)
         inner = product(product(bounded, local), bounded)
-        local -= symmetric_part(product(e, inner))
+        local += symmetric_part(product(e, inner))
         local += 0.5 * cross_matrices(moments)
         pulled_back = self.gradients.nodal(local)
         if self.springs is not None:

@@ -16,8 +16,11 @@ from ...compliance.elimination.cholesky import (
     RepeatedElimination,
 )
 from ...errors import PalpateError
+from ...law.law import Law
+from ...law.of_material import law_of
 from ...stiffness.held_pins import pins_checked
-from .solid import Solid, StrainTerm, solid
+from .solid import Solid, solid
+from .strain_term import StrainTerm
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,8 +43,10 @@ class FreeSolid:
     positions: NDArray[np.float64]
 
     @classmethod
-    def of(cls, body: SoftBody) -> FreeSolid:
+    def of(cls, body: SoftBody, law: Law | None = None) -> FreeSolid:
         """The solid of a body, with the strains its compliance was made with.
+
+        ``law`` is that of its material, unless another is given.
 
         Raises
         ------
@@ -50,7 +55,8 @@ class FreeSolid:
         """
         mesh = body.mesh
         pins_checked(mesh, body.fixed)
-        whole = solid(mesh, body.poisson_ratio, body.formulation, body.young_scale)
+        own_law = law_of(body.poisson_ratio) if law is None else law
+        whole = solid(mesh, body.poisson_ratio, own_law, body.formulation, body.young_scale)
         free = np.setdiff1d(np.arange(len(mesh.nodes)), body.fixed)
         terms = tuple(
             StrainTerm(
@@ -59,7 +65,7 @@ class FreeSolid:
             for term in whole.terms
         )
         surface = np.searchsorted(free, body.compliance.free_surface)
-        return cls(Solid(terms, len(free)), free, surface, mesh.nodes[free])
+        return cls(Solid(terms, len(free), own_law), free, surface, mesh.nodes[free])
 
     @property
     def node_count(self) -> int:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csr_array
 
-from .by_component import Array
+from ...law.by_component import Array
 
 
 @dataclass(frozen=True, eq=False)

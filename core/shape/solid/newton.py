@@ -1,10 +1,13 @@
 """Equilibrium under forces that do not follow the body, by Newton's method in load steps.
 
-Followed is the branch of stable equilibria that begins at rest: tangents are positive definite and
-no element inverts. Where that branch ends, :class:`NoEquilibrium` tells how much of the load it has
-carried. A load step that is taken at once could land on another branch; small ones cannot.
-St. Venant-Kirchhoff bodies end early in compression: their stress falls again once a cell has lost
-some tenths of its height.
+No element inverts on the way. By a law that does not give way, the energy of body and load falls
+with every step until it is lowest: where the tangent has directions that lead uphill, they are left
+out of it, and a body that buckles comes to rest beside.
+
+By St. Venant-Kirchhoff's law, whose stress falls again once a cell has lost some tenths of its
+height, followed is the branch of stable equilibria that begins at rest: tangents are positive
+definite throughout. Where that branch ends, :class:`NoEquilibrium` tells how much of the load it
+has carried. A load step that is taken at once could land on another branch; small ones cannot.
 
 References
 ----------
@@ -19,7 +22,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...compliance.elimination.cholesky import NotPositiveDefiniteError
+from ...compliance.elimination.cholesky import CholeskyFactor, NotPositiveDefiniteError
 from ...errors import PalpateError
 from ...progress import unwatched
 from .free_solid import FreeSolid
@@ -61,8 +64,7 @@ class NoEquilibrium(PalpateError):  # noqa: N818 - it is a result of mechanics, 
 
     def __init__(self, held: float, displacements: NDArray[np.float64]) -> None:
         super().__init__(
-            "large deformation: the body gives way at {held:.1%} of the load (St. "
-            "Venant-Kirchhoff solids collapse under strong compression); use less force or a "
+            "large deformation: the body gives way at {held:.1%} of the load; use less force or a "
             "stiffer body",
             held=held,
         )
@@ -188,10 +190,8 @@ def _newton(
         has_stalled = len(history) > 1 and history[-1] > STALLED * history[-2]
         if worst <= tolerance * load or (is_small and has_stalled):
             return _Step(True, point.displacements, tuple(history))
-        tangent = body.solid.tangent_blocks(point.displacements)
-        try:
-            factor = body.elimination.factor(tangent)
-        except NotPositiveDefiniteError:
+        factor = _factor(body, point.displacements)
+        if factor is None:
             break
         way = factor.solve(point.residual.ravel()).reshape(-1, 3)
         further = _searched(body, forces, point, way)
@@ -200,6 +200,17 @@ def _newton(
             return _Step(is_small, point.displacements, tuple(history))
         point = further
     return _Step(False, point.displacements, tuple(history))
+
+
+def _factor(body: FreeSolid, displacements: NDArray[np.float64]) -> CholeskyFactor | None:
+    """The factor of the tangent or, where the law does not give way, of its convex part."""
+    for convex in (False, True) if not body.solid.law.gives_way else (False,):
+        blocks = body.solid.tangent_blocks(displacements, convex=convex)
+        try:
+            return body.elimination.factor(blocks)
+        except NotPositiveDefiniteError:
+            continue
+    return None
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,12 +1,12 @@
-"""The St. Venant-Kirchhoff solid: Hooke's law between Green's strain and the second stress.
+"""The solid: a law of materials on tetrahedra, with the strains of their formulation.
 
 Total Lagrangian: all integrals are taken over the body at rest. Its tangent stiffness at rest is
-the K of :func:`palpate.core.stiffness.assembly.assemble`, of the same formulation.
+the K of :func:`palpate.core.stiffness.assembly.assemble`, of the same formulation, by every law.
 
 References
 ----------
 J. Bonet, R. D. Wood: Nonlinear Continuum Mechanics for Finite Element Analysis, Cambridge
-University Press, 2nd edition, 2008; the material in section 6.5, the tangent in section 9.
+University Press, 2nd edition, 2008; the tangent in section 9.
 """
 
 from __future__ import annotations
@@ -19,81 +19,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import bsr_array, coo_array, csr_array, diags_array
 
+from ...law.law import Law
 from ...mesh.tet_mesh import TetMesh
 from ...stiffness.assembly import lame_parameters, shape_gradients
 from ...stiffness.formulation import LINEAR, formulation_checked
 from ...stiffness.strain_smoothing import SmoothingDomains, edge_domains, node_domains, tet_domains
-from .tangent_pattern import NodePairs, TangentPattern
-
-
-@dataclass(frozen=True, eq=False)
-class StrainTerm:
-    """One part of the strain energy, with one deformation gradient for each of its domains.
-
-    Attributes
-    ----------
-    gradients : csr (3D, N), 1/metre; row ``3 d + J`` takes nodal values to their derivative along
-        J, averaged over domain d.
-    volumes : (D,), cubic metres.
-    first_lame, shear_modulus : (D,), for a body of 1 Pa.
-    """
-
-    gradients: csr_array
-    volumes: NDArray[np.float64]
-    first_lame: NDArray[np.float64]
-    shear_modulus: NDArray[np.float64]
-
-    def displacement_gradients(self, displacements: NDArray[np.float64]) -> NDArray[np.float64]:
-        """H = du/dX in every domain, (D, 3, 3), from displacements (N, 3)."""
-        by_axis = self.gradients @ displacements
-        return by_axis.reshape(-1, 3, 3).transpose(0, 2, 1)
-
-    def volume_ratios(self, displacements: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Det F of every domain, (D,); zero or less where it is inverted."""
-        gradient = self.displacement_gradients(displacements)
-        ratios: NDArray[np.float64] = np.linalg.det(np.eye(3) + gradient)
-        return ratios
-
-    def second_stress(self, strain: NDArray[np.float64]) -> NDArray[np.float64]:
-        """S = lambda tr(E) I + 2 mu E for Green's strains E (D, 3, 3), at unit modulus."""
-        stress = 2.0 * self.shear_modulus[:, None, None] * strain
-        pressure = self.first_lame * np.einsum("dii->d", strain)
-        stress[:, (0, 1, 2), (0, 1, 2)] += pressure[:, None]
-        return stress
-
-    def nodal_forces(self, first_stress: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Forces (N, 3) that first Piola-Kirchhoff stresses (D, 3, 3) exert on the nodes."""
-        weighted = self.volumes[:, None, None] * first_stress
-        forces: NDArray[np.float64] = self.gradients.T @ weighted.transpose(0, 2, 1).reshape(-1, 3)
-        return forces
-
-    def tangent_blocks(self, displacements: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Blocks (p, 3, 3) of the tangent stiffness, one for each of :attr:`pairs`."""
-        gradient = self.displacement_gradients(displacements)
-        stress = self.second_stress(green_strain(gradient))
-        moved = np.eye(3) + gradient
-        pairs, volumes = self.pairs, self.volumes[:, None, None]
-        at, each = pairs.domain, pairs.gradient_domain
-        # F g: how the gradients look from the deformed body.
-        forward = np.einsum("qij,qj->qi", moved[each], pairs.gradients)
-        pulled = np.einsum("qij,qj->qi", (volumes * stress)[each], pairs.gradients)
-        first, second = pairs.first, pairs.second
-        own, other = forward[first], forward[second]
-        first_lame, shear = (self.volumes * m for m in (self.first_lame, self.shear_modulus))
-        metric = shear[:, None, None] * (moved @ moved.transpose(0, 2, 1))
-        blocks: NDArray[np.float64] = (first_lame[at, None] * own)[:, :, None] * other[:, None, :]
-        blocks += (shear[at, None] * other)[:, :, None] * own[:, None, :]
-        near = np.einsum("pi,pi->p", pairs.gradients[first], pairs.gradients[second])
-        blocks += near[:, None, None] * metric[at]
-        initial = np.einsum("pi,pi->p", pulled[first], pairs.gradients[second])
-        for axis in range(3):
-            blocks[:, axis, axis] += initial
-        return blocks
-
-    @cached_property
-    def pairs(self) -> NodePairs:
-        """Every two nodes that share a domain, in ascending order, and each with itself."""
-        return NodePairs.of(self.gradients)
+from .strain_energy import StrainEnergy
+from .strain_term import StrainTerm
+from .tangent_pattern import TangentPattern
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,31 +37,27 @@ class Solid:
     ----------
     terms : the strain energy is their sum.
     node_count : N.
+    law : of the material.
     """
 
     terms: tuple[StrainTerm, ...]
     node_count: int
+    law: Law
 
     def energy(self, displacements: NDArray[np.float64]) -> float:
         """Strain energy at displacements (N, 3), joule at unit modulus."""
-        total = 0.0
-        for term in self.terms:
-            strain = green_strain(term.displacement_gradients(displacements))
-            density = 0.5 * np.einsum("dij,dij->d", term.second_stress(strain), strain)
-            total += float(term.volumes @ density)
-        return total
+        return self._energy.stressed(displacements.T).energy
 
     def forces(self, displacements: NDArray[np.float64]) -> NDArray[np.float64]:
         """Forces (N, 3) that hold the body at displacements (N, 3), newton at unit modulus.
 
         The gradient of :meth:`energy`; in equilibrium they are the forces from outside.
         """
-        total = np.zeros((self.node_count, 3))
-        for term in self.terms:
-            gradient = term.displacement_gradients(displacements)
-            stress = term.second_stress(green_strain(gradient))
-            total += term.nodal_forces(gradient @ stress + stress)
-        return total
+        return self._energy.forces(self._energy.stressed(displacements.T)).T
+
+    @cached_property
+    def _energy(self) -> StrainEnergy:
+        return StrainEnergy(self.terms, self.law)
 
     def tangent(self, displacements: NDArray[np.float64]) -> csr_array:
         """Tangent stiffness (3N, 3N) at displacements (N, 3), newton per metre at unit modulus.
@@ -140,9 +69,15 @@ class Solid:
         starts = np.searchsorted(pattern.rows, np.arange(self.node_count + 1))
         return bsr_array((blocks, pattern.columns, starts), shape=(size, size)).tocsr()
 
-    def tangent_blocks(self, displacements: NDArray[np.float64]) -> NDArray[np.float64]:
-        """The blocks (m, 3, 3) of :meth:`tangent` at the places of :attr:`pattern`."""
-        parts = [term.tangent_blocks(displacements) for term in self.terms]
+    def tangent_blocks(
+        self, displacements: NDArray[np.float64], *, convex: bool = False
+    ) -> NDArray[np.float64]:
+        """The blocks (m, 3, 3) of :meth:`tangent` at the places of :attr:`pattern`.
+
+        ``convex`` leaves out what would lower the energy at once: the blocks of a positive
+        semidefinite matrix, nearest domain by domain.
+        """
+        parts = [term.tangent_blocks(displacements, self.law, convex) for term in self.terms]
         return self.pattern.summed(np.concatenate(parts))
 
     @cached_property
@@ -162,6 +97,7 @@ class Solid:
 def solid(
     mesh: TetMesh,
     poisson_ratio: float,
+    law: Law,
     formulation: str = LINEAR,
     young_scale: NDArray[np.float64] | None = None,
 ) -> Solid:
@@ -171,6 +107,7 @@ def solid(
     ----------
     mesh : tetrahedra at rest, metres.
     poisson_ratio : between -1 and 0.5, both excluded.
+    law : of the material.
     formulation : as in :func:`palpate.core.stiffness.assembly.assemble`.
     young_scale : (M,), factor on Young's modulus for each tetrahedron; None where all are 1.
 
@@ -200,18 +137,11 @@ def solid(
     count = len(mesh.nodes)
     if formulation_checked(formulation) == LINEAR:
         whole = tet_domains(mesh.tet_volumes, scale)
-        return Solid((term(whole, first_lame, shear_modulus),), count)
+        return Solid((term(whole, first_lame, shear_modulus),), count, law)
     if first_lame <= 0:
-        return Solid((term(around(edge_domains), first_lame, shear_modulus),), count)
+        return Solid((term(around(edge_domains), first_lame, shear_modulus),), count, law)
     shear_term = term(around(edge_domains), 0.0, shear_modulus)
-    return Solid((shear_term, term(around(node_domains), first_lame, 0.0)), count)
-
-
-def green_strain(gradient: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Green's strain E = (H + H^T + H^T H) / 2 of displacement gradients H (..., 3, 3)."""
-    turned = gradient.swapaxes(-1, -2)
-    strain: NDArray[np.float64] = 0.5 * (gradient + turned + turned @ gradient)
-    return strain
+    return Solid((shear_term, term(around(node_domains), first_lame, 0.0)), count, law)
 
 
 def _tet_gradients(mesh: TetMesh) -> csr_array:

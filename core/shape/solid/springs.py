@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from scipy.sparse import csr_array
 
-from .by_component import Array
+from ...law.by_component import Array
 
 
 @dataclass(frozen=True, eq=False)

@@ -22,7 +22,7 @@ pub enum Felt {
     /// The paper's: in proportion, however deep.
     #[default]
     Linear,
-    /// That of a solid of large deformation: softer where it is pressed in far.
+    /// That of a solid by its material's law: softer or, as rubber mostly, firmer far in.
     Corrected,
 }
 

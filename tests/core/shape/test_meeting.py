@@ -58,9 +58,10 @@ def touch(body, at, by):
 
 
 SIDE, TOP = ((0.002, 0.024, 0.04), (0.006, 0.001, 0.0)), ((0.03, 0.02, 0.05), (0.003, 0.0, 0.002))
+DEEP = (TOP[0], (0.01, 0.0, 0.006))
 
 
-@pytest.mark.parametrize(("law", "press"), [(turning, SIDE), (turning, TOP), (newton, TOP)])
+@pytest.mark.parametrize(("law", "press"), [(turning, SIDE), (turning, TOP), (newton, DEEP)])
 def test_the_touched_place_goes_where_the_finger_goes(cube, law, press):
     made, load = touch(cube, *press)
     shape = MadeUp(cube, law)

@@ -106,7 +106,7 @@ def test_a_pinch_of_a_slender_part_is_felt_as_the_linear_one(arm):
 
 def test_what_is_felt_changes_continuously_with_the_places(arm):
     body, values = arm
-    along = np.linspace(0.01, 0.075, 400)
+    along = np.linspace(0.005, 0.075, 400)
     forces, strengths = [], []
     for x in along:
         at = np.array([[0.06, 0.011, 0.0], [x, 0.009, 0.02]])

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from bodies.bare_body import bare_body
 from referees.newton_entries import largest_carried, unit_load
-from referees.nonlinear_reference import NonlinearReference
+from referees.nonlinear_reference import ST_VENANT_KIRCHHOFF, NonlinearReference
 
 from palpate.core.errors import CancelledError
+from palpate.core.law.st_venant_kirchhoff import StVenantKirchhoff
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.shape.paper import paper_entries
 from palpate.core.shape.paper.paper_entries import SETTLED, EntryFinder, usual_largest_force
@@ -17,7 +18,7 @@ from palpate.core.shape.solid.newton import NoEquilibrium, equilibrium
 @pytest.fixture(scope="module")
 def cube():
     mesh, fixed = paper_cube(cells=2)
-    return FreeSolid.of(bare_body(mesh, fixed, 0.45)), mesh
+    return FreeSolid.of(bare_body(mesh, fixed, 0.45), StVenantKirchhoff()), mesh
 
 
 @pytest.fixture(scope="module")
@@ -29,7 +30,7 @@ def finder(cube):
 def test_entries_are_what_another_program_finds(cube, finder, freedom):
     body, mesh = cube
     found = finder.entries(freedom, usual_largest_force(mesh))
-    reference = NonlinearReference(mesh, body.free, 0.45)
+    reference = NonlinearReference(mesh, body.free, 0.45, ST_VENANT_KIRCHHOFF)
     for entries, load in zip(found.per_force, found.largest * [1, -1], strict=True):
         expected = reference.displacements(load * unit_load(body, freedom), 2)[body.surface] / load
         error = np.linalg.norm(entries - expected.ravel())

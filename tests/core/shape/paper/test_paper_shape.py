@@ -5,6 +5,7 @@ import pytest
 from bodies.baked_body import baked_body
 
 from palpate.core.errors import CancelledError
+from palpate.core.law.st_venant_kirchhoff import StVenantKirchhoff
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.shape.paper.paper_shape import PaperShape
 from palpate.core.shape.paper.paper_table import KIND, PaperTable
@@ -34,7 +35,7 @@ def test_under_the_largest_force_the_shape_is_newtons(cube, corner):
         found = shape.displacements(corner, force)
     finally:
         shape.close()
-    solid = FreeSolid.of(cube)
+    solid = FreeSolid.of(cube, StVenantKirchhoff())
     u = equilibrium(solid, solid.on_free_nodes(corner, force / MODULUS)).displacements
     expected = u[solid.surface]
     size = np.abs(expected).max()

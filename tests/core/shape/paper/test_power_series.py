@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from bodies.baked_body import baked_body
 
+from palpate.core.law.st_venant_kirchhoff import StVenantKirchhoff
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.shape.paper.power_series import SeriesStart
 from palpate.core.shape.solid.free_solid import FreeSolid
@@ -15,7 +16,9 @@ FORCE = 2e-6
 
 @pytest.fixture(scope="module", params=["linear", "smoothed"])
 def solid(request):
-    return FreeSolid.of(baked_body(*paper_cube(cells=3), formulation=request.param))
+    return FreeSolid.of(
+        baked_body(*paper_cube(cells=3), formulation=request.param), StVenantKirchhoff()
+    )
 
 
 @pytest.fixture(scope="module")

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from palpate.core.law.of_material import law_of
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.mesh.tet_mesh import TetMesh
 from palpate.core.shape.rotation_strain.coarse_solid import CoarseSolid
@@ -29,7 +30,9 @@ def test_evenly_strained_bodies_have_their_energy(wedge, poisson_ratio):
     coarse = CoarseSolid.of(lattice, mesh, NO_PINS, poisson_ratio, young_scale)
     slopes = np.array([[0.1, 0.3, 0.0], [-0.2, -0.1, 0.1], [0.0, 0.2, 0.05]])
     found = coarse.solid.energy(lattice.positions @ slopes.T)
-    expected = solid(mesh, poisson_ratio, young_scale=young_scale).energy(mesh.nodes @ slopes.T)
+    expected = solid(mesh, poisson_ratio, law_of(poisson_ratio), young_scale=young_scale).energy(
+        mesh.nodes @ slopes.T
+    )
     # Above the body by what parts are filled with at least.
     assert found == pytest.approx(expected, rel=5e-3)
 

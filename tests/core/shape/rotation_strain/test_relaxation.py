@@ -9,8 +9,7 @@ from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.shape.rotation_strain.relaxation import step_length
 from palpate.core.shape.rotation_strain.rotation_strain_shape import frame_plan, relaxation
 from palpate.core.shape.solid.free_solid import FreeSolid
-from palpate.core.shape.solid.newton import NoEquilibrium, equilibrium
-from palpate.core.shape.solid.strain_energy import RESISTS_BELOW
+from palpate.core.shape.solid.newton import equilibrium
 
 LENGTH = 5.0
 
@@ -47,8 +46,8 @@ def test_bends_come_nearer_to_the_true_one_with_every_step(poisson_ratio, formul
     assert linear > 0.1
     assert errors[0] < 0.5 * linear
     assert errors[1] < 0.2 * linear
-    assert errors[2] < 0.02 * linear
-    assert errors[3] < 0.002 * linear
+    assert errors[2] < 0.04 * linear
+    assert errors[3] < 0.01 * linear
 
 
 def test_a_bent_beam_with_a_stiff_half_comes_near():
@@ -131,7 +130,7 @@ def test_steps_end_where_the_parabola_is_lowest_and_a_little_beyond(start, slope
 def test_energy_and_forces_are_those_of_the_solid(formulation, rng):
     solid = beam(0.45, formulation)
     moved = 0.02 * rng.normal(size=(solid.node_count, 3))
-    assert min(solid.volume_ratios(moved)) > RESISTS_BELOW
+    assert min(solid.volume_ratios(moved)) > 0.0
     energy = relaxation(solid).energy
     there = energy.stressed(np.ascontiguousarray(moved.T))
     assert there.energy == pytest.approx(solid.energy(moved), rel=1e-12)
@@ -146,7 +145,7 @@ def test_forces_are_the_slope_of_the_energy_where_domains_collapse(rng):
     energy = relaxation(solid).energy
     moved, way = 0.1 * rng.normal(size=(2, 3, solid.node_count))
     ratios = solid.volume_ratios(moved.T)
-    assert min(ratios) < 0.0 < RESISTS_BELOW < max(ratios)
+    assert min(ratios) < 0.0 < max(ratios)
     ends = [energy.stressed(moved + sign * 1e-6 * way).energy for sign in (1, -1)]
     slope = (energy.forces(energy.stressed(moved)) * way).sum()
     assert slope == pytest.approx((ends[0] - ends[1]) / 2e-6, rel=1e-6)
@@ -158,12 +157,12 @@ def test_a_press_on_one_node_does_not_turn_the_body_inside_out():
     forces = np.zeros((solid.node_count, 3))
     forces[edge] = [0.0, 1.0, -1.0]
     forces *= 0.6 / np.abs(solid.linear(forces)).max()
-    with pytest.raises(NoEquilibrium):
-        equilibrium(solid, forces)
+    truth = equilibrium(solid, forces).displacements
     for steps in range(1, 4):
         found = relaxed(solid, forces, steps)
         assert min(solid.volume_ratios(found)) > 0.4
         assert np.abs(found).max() < 0.9
+    assert distance(found, truth) < 0.1 * distance(solid.linear(forces), truth)
 
 
 def test_small_bodies_get_more_steps_and_large_ones_a_lattice():

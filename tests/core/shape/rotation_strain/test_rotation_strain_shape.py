@@ -27,7 +27,7 @@ def test_it_comes_near_the_true_shape(cube):
     found = equilibrium(solid, solid.on_free_nodes(nodes, forces / cube.young_modulus))
     truth = found.displacements[solid.surface]
     error = np.linalg.norm(shape.displacements(nodes, forces) - truth)
-    assert error < 0.1 * np.linalg.norm(cube.deform(nodes, forces) - truth)
+    assert error < 0.25 * np.linalg.norm(cube.deform(nodes, forces) - truth)
 
 
 whole_or_on_a_lattice = pytest.mark.parametrize(

@@ -7,6 +7,7 @@ import pytest
 from bodies.baked_body import baked_body
 
 from palpate.core.errors import PalpateError
+from palpate.core.law.of_material import law_of
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.shape.solid.free_solid import FreeSolid
 from palpate.core.shape.solid.solid import solid
@@ -22,7 +23,7 @@ def body(request):
 
 def test_free_nodes_feel_what_the_whole_body_does(body):
     found = FreeSolid.of(body)
-    whole = solid(body.mesh, 0.3, body.formulation, body.young_scale)
+    whole = solid(body.mesh, 0.3, law_of(0.3), body.formulation, body.young_scale)
     u = np.zeros(body.mesh.nodes.shape)
     chance = np.random.default_rng(4)
     u[found.free] = 0.002 * chance.standard_normal((found.node_count, 3))

@@ -1,0 +1,1 @@
+"""Laws of materials: the energy of a strained place, its stress and its tangent."""
