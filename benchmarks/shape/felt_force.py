@@ -12,11 +12,11 @@ upright, and how many these are. The cube is followed so far, the mouse until it
 Claimed, of bodies with a Poisson's ratio of 0.3 and 0.45:
 
 * at nodes, straight in, the corrected force is nearer than the linear one in every row and in 95 %
-  of all presses, and its median error is less than half of the linear one's;
-* within triangles, straight in, it is nearer in every row up to a tenth of the thickness;
+  of all presses, and its median error is at most seven tenths of the linear one's;
 * everywhere it grows with the depth.
 
-Aslant it is nearer on some bodies and farther off on others: shown, and not claimed.
+Aslant, and within triangles, it is nearer on some bodies and farther off on others: shown, and not
+claimed.
 
 The exit status tells whether that holds. Takes minutes; a busy machine changes nothing else.
 """
@@ -48,8 +48,7 @@ BODIES = ("cube", "mouse-1.7k")
 SHARES = np.array([0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3])
 SLANT = np.radians(30.0)
 LEAST_NEARER = 0.95
-SHALLOW = 0.1
-LARGEST_MEDIAN_SHARE = 0.5
+LARGEST_MEDIAN_SHARE = 0.7
 KINDS = ("node", "node, aslant", "triangle", "triangle, aslant")
 
 
@@ -163,7 +162,7 @@ def _report(rows: list[Row]) -> bool:
                 np.array([getattr(row, law) for row in here]) for law in ("linear", "corrected")
             )
             left = float(np.median(corrected) / np.median(linear))
-            held &= left < _most_left(kind, share)
+            held &= kind != "node" or left <= LARGEST_MEDIAN_SHARE
             print(
                 f"{'':20s}{share:8.0%}{len(here):9d}{np.median(linear):10.1%}"
                 f"{np.median(corrected):11.2%}{corrected.max():9.1%}"
@@ -172,13 +171,6 @@ def _report(rows: list[Row]) -> bool:
     nearer, count = np.mean(at_nodes), len(at_nodes)
     print(f"  nearer than linear in {nearer:.0%} of {count} straight presses at nodes")
     return held and bool(nearer >= LEAST_NEARER)
-
-
-def _most_left(kind: str, share: float) -> float:
-    """Share of the linear relation's median error that is claimed to be left at most."""
-    if kind == "node":
-        return LARGEST_MEDIAN_SHARE
-    return 1.0 if kind == "triangle" and share <= SHALLOW else np.inf
 
 
 if __name__ == "__main__":

@@ -39,7 +39,6 @@ def test_a_deep_finger_is_firmer_and_takes_more_from_a_shallow_one(cube_file, fi
     deep, shallow = (
         (one["force"][2], other["force"][2]) for one, other in zip(linear, felt, strict=True)
     )
-    print(deep, shallow)
     assert 0 < 1.03 * deep[0] < deep[1]
     assert 0 < shallow[1] < shallow[0]
 
