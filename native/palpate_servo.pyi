@@ -758,6 +758,31 @@ def closest_points(
     there.
     """
 
+def polygons_on_line(
+    places: NDArray[np.float32],
+    corners: NDArray[np.int32],
+    starts: NDArray[np.int32],
+    origin: _Vector,
+    direction: _Vector,
+) -> NDArray[np.int64]:
+    """Numbers (k,) of all polygons that a line goes through, before its origin (3,) and behind it:
+    of a mesh of vertices (p, 3), the vertices of the corners of all polygons, and the first corner
+    of each. Polygons may be bent or have notches; between two at an edge no line slips through.
+
+    One pass over all of them: for a mesh that has changed since it was asked last. ValueError for a
+    number that is not finite, no direction, or polygons that do not fit.
+    """
+
+def nearest_polygon(
+    places: NDArray[np.float32],
+    corners: NDArray[np.int32],
+    starts: NDArray[np.int32],
+    point: _Vector,
+) -> int | None:
+    """Number of the polygon nearest to a point (3,), as of :func:`polygons_on_line`; None where
+    there is none. A bent one counts as flat.
+    """
+
 @final
 class CubicPlaces:
     """Places in triangles that are cubic Bezier patches.
@@ -767,10 +792,10 @@ class CubicPlaces:
     """
 
     def __new__(cls, patch: ArrayLike, alpha: ArrayLike, patches: int) -> Self: ...
-    def vectors(self, patches: ArrayLike) -> NDArray[np.float32]:
-        """Vectors (p, 3) at all places, by all cores, of control vectors (patches, 10, 3): of each
-        patch's corners; beside them, towards another corner (01, 02, 10, 12, 20, 21); in its
-        middle.
+    def write(self, patches: ArrayLike, moved: NDArray[np.float32]) -> None:
+        """Write the vectors at all places into ``moved`` (p, 3), by all cores, of control vectors
+        (patches, 10, 3): of each patch's corners; beside them, towards another corner (01, 02, 10,
+        12, 20, 21); in its middle. ValueError for arrays of another shape.
         """
 
 def device_coupling(rate_hz: int = 1000, *, encoder_step: float = 0.0) -> DeviceCoupling:

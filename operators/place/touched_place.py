@@ -10,7 +10,6 @@ from dataclasses import dataclass
 
 import bpy
 import numpy as np
-from mathutils import Vector
 from numpy.typing import NDArray
 
 from ...core.errors import PalpateError
@@ -18,8 +17,9 @@ from ..layer import layers, place_marks
 from ..layer.layer_groups import AT, PRESSED, REST
 from ..scene.body_frame import BodyFrame
 from ..scene.drawn_surface import rest_coordinates
+from . import seen_triangle
 from .seen_place import SeenPlace
-from .seen_triangle import outward_normal, triangle_at, turn_between
+from .seen_triangle import SeenTriangle, outward_normal, turn_between
 
 Array = NDArray[np.float64]
 
@@ -104,12 +104,9 @@ def under_ray(
     beside it.
     """
     start = _local(frame, origin)
-    along = (_local(frame, np.add(origin, direction)) - start).normalized()
-    seen = _evaluated(thing)
-    if not len(seen.data.polygons):
-        return None
-    hit, place, _, face = seen.ray_cast(start, along)
-    return _on_face(thing, frame, face, place) if hit else None
+    along = _local(frame, np.add(origin, direction)) - start
+    mesh = _evaluated(thing).data
+    return _of(thing, frame, mesh, seen_triangle.first_on_ray(mesh, start, along))
 
 
 def nearest(thing: bpy.types.Object, frame: BodyFrame, at: Array) -> TouchedPlace:
@@ -120,11 +117,11 @@ def nearest(thing: bpy.types.Object, frame: BodyFrame, at: Array) -> TouchedPlac
     PalpateError
         It shows no face.
     """
-    seen = _evaluated(thing)
-    if not len(seen.data.polygons):
+    mesh = _evaluated(thing).data
+    place = _of(thing, frame, mesh, seen_triangle.nearest(mesh, _local(frame, at)))
+    if place is None:
         raise PalpateError("{name} shows no face to touch; look at its modifiers", name=thing.name)
-    _, place, _, face = seen.closest_point_on_mesh(_local(frame, at))
-    return _on_face(thing, frame, face, place)
+    return place
 
 
 def _evaluated(thing: bpy.types.Object) -> bpy.types.Object:
@@ -135,14 +132,20 @@ def _evaluated(thing: bpy.types.Object) -> bpy.types.Object:
     return thing.evaluated_get(bpy.context.evaluated_depsgraph_get())
 
 
-def _local(frame: BodyFrame, at: Array) -> Vector:
-    return Vector(frame.local_from_body(frame.body_from_world(np.asarray(at, dtype=np.float64))))
+def _local(frame: BodyFrame, at: Array) -> Array:
+    return frame.local_from_body(frame.body_from_world(np.asarray(at, dtype=np.float64)))
 
 
-def _on_face(thing: bpy.types.Object, frame: BodyFrame, face: int, place: Vector) -> TouchedPlace:
-    mesh = _evaluated(thing).data
-    corners, alpha = triangle_at(mesh, face, place)
-    return _on_triangle(thing, frame, mesh, corners, alpha)
+def _of(
+    thing: bpy.types.Object,
+    frame: BodyFrame,
+    mesh: bpy.types.Mesh,
+    found: SeenTriangle | None,
+) -> TouchedPlace | None:
+    """The place that was found on the evaluated mesh, if any."""
+    if found is None:
+        return None
+    return _on_triangle(thing, frame, mesh, found.vertices.tolist(), found.alpha)
 
 
 def _on_triangle(

@@ -3,15 +3,57 @@
 use std::num::NonZero;
 use std::thread;
 
+use glam::DVec3;
+
 /// Control vectors of a patch.
 pub const CONTROLS: usize = 10;
 
-/// Control vectors in the order of [`weights`]; the fourth number is only there for the processor,
-/// which takes four at once.
-pub type Patch = [[f32; 4]; CONTROLS];
-
 /// Fewer places are not worth a thread of their own.
 const PLACES_A_THREAD: usize = 1 << 16;
+
+/// Coefficients of a vector; the fourth number is only there for the processor, which takes four at
+/// once.
+type Four = [f32; 4];
+
+/// Bernstein polynomials' control vectors times their numbers of ways, by the corner that is near:
+/// the corner's own, and those beside it in the order of the corners.
+#[derive(Debug, Clone, Copy)]
+pub struct Patch {
+    near: [[Four; 3]; 3],
+    middle: Four,
+}
+
+impl Patch {
+    /// Of control vectors: of the corners; beside them, towards another corner (01, 02, 10, 12, 20,
+    /// 21); and of the middle.
+    pub fn new([a, b, c, ab, ac, ba, bc, ca, cb, middle]: &[DVec3; CONTROLS]) -> Self {
+        let four = |times: f64, v: &DVec3| (times * v).extend(0.0).to_array().map(|x| x as f32);
+        Self {
+            near: [
+                [four(1.0, a), four(3.0, ab), four(3.0, ac)],
+                [four(3.0, ba), four(1.0, b), four(3.0, bc)],
+                [four(3.0, ca), four(3.0, cb), four(1.0, c)],
+            ],
+            middle: four(6.0, middle),
+        }
+    }
+
+    /// Exactly zero where all control vectors with a weight are.
+    #[inline]
+    fn at(&self, [a, b]: [f32; 2]) -> [f32; 3] {
+        let alpha = [a, b, 1.0 - a - b];
+        let mut sum = self.middle.map(|x| alpha[0] * alpha[1] * alpha[2] * x);
+        for (near, own) in self.near.iter().zip(alpha) {
+            let [one, two, three] = near;
+            sum = std::array::from_fn(|k| {
+                let beside = alpha[0] * one[k] + alpha[1] * two[k] + alpha[2] * three[k];
+                sum[k] + own * own * beside
+            });
+        }
+        let [x, y, z, _] = sum;
+        [x, y, z]
+    }
+}
 
 /// Places by the number of their patch and two of their area coordinates.
 #[derive(Debug)]
@@ -37,17 +79,17 @@ impl CubicPlaces {
         self.patch.is_empty()
     }
 
-    /// Vectors of all places, by all cores. `moved` is as long as the places are, and `patches` as
-    /// many as were promised.
-    pub fn evaluate(&self, patches: &[Patch], moved: &mut [[f32; 3]]) {
-        assert_eq!(moved.len(), self.len(), "a vector for each place");
+    /// Vectors of all places, one after the other, by all cores. `moved` has three numbers for each
+    /// place, and `patches` are as many as were promised.
+    pub fn evaluate(&self, patches: &[Patch], moved: &mut [f32]) {
+        assert_eq!(moved.len(), 3 * self.len(), "a vector for each place");
         let cores = thread::available_parallelism().map_or(1, NonZero::get);
         let share = self.len().div_ceil(cores).max(PLACES_A_THREAD);
         let mut parts = self
             .patch
             .chunks(share)
             .zip(self.alpha.chunks(share))
-            .zip(moved.chunks_mut(share));
+            .zip(moved.chunks_mut(3 * share));
         let own = parts.next();
         thread::scope(|scope| {
             for ((patch, alpha), moved) in parts {
@@ -60,33 +102,8 @@ impl CubicPlaces {
     }
 }
 
-fn in_turn(patches: &[Patch], numbers: &[u32], alphas: &[[f32; 2]], moved: &mut [[f32; 3]]) {
-    for ((&number, &alpha), moved) in numbers.iter().zip(alphas).zip(moved) {
-        let mut sum = [0.0; 4];
-        for (control, weight) in patches[number as usize].iter().zip(weights(alpha)) {
-            for (sum, part) in sum.iter_mut().zip(control) {
-                *sum += weight * part;
-            }
-        }
-        *moved = [sum[0], sum[1], sum[2]];
+fn in_turn(patches: &[Patch], numbers: &[u32], alphas: &[[f32; 2]], moved: &mut [f32]) {
+    for ((&number, &alpha), moved) in numbers.iter().zip(alphas).zip(moved.chunks_exact_mut(3)) {
+        moved.copy_from_slice(&patches[number as usize].at(alpha));
     }
-}
-
-/// Bernstein polynomials: of the corners; beside them, towards another corner (01, 02, 10, 12, 20,
-/// 21); and of the middle.
-fn weights([a, b]: [f32; 2]) -> [f32; CONTROLS] {
-    let c = 1.0 - a - b;
-    let (aa, bb, cc) = (3.0 * a * a, 3.0 * b * b, 3.0 * c * c);
-    [
-        a * a * a,
-        b * b * b,
-        c * c * c,
-        aa * b,
-        aa * c,
-        bb * a,
-        bb * c,
-        cc * a,
-        cc * b,
-        6.0 * a * b * c,
-    ]
 }

@@ -34,6 +34,8 @@ fn palpate_servo(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<tool::surface::ToolSurface>()?;
     module.add_class::<engine::ContactEngine>()?;
     module.add_function(wrap_pyfunction!(body::closest::closest_points, module)?)?;
+    module.add_function(wrap_pyfunction!(body::polygons::polygons_on_line, module)?)?;
+    module.add_function(wrap_pyfunction!(body::polygons::nearest_polygon, module)?)?;
     module.add_function(wrap_pyfunction!(device::coupling::device_coupling, module)?)?;
     module.add_function(wrap_pyfunction!(device::haply::haply_encoder_step, module)?)?;
     #[cfg(feature = "harness")]

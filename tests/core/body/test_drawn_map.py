@@ -93,7 +93,8 @@ def test_a_place_in_a_cubic_patch_is_its_bernstein_sum(rng):
             + alpha[2] * level[i, j, k + 1]
             for i, j, k in at
         }
-    found = CubicPlaces([0], alpha[None], 1).vectors(controls[None])
+    found = np.empty((1, 3), dtype=np.float32)
+    CubicPlaces([0], alpha[None], 1).write(controls[None], found)
     np.testing.assert_allclose(found[0], level[0, 0, 0], atol=1e-6)
 
 
@@ -101,3 +102,11 @@ def test_a_place_in_a_patch_that_is_not_there_is_refused():
     for number in (-1, 2, 2**40):
         with pytest.raises(ValueError, match="another patch"):
             CubicPlaces([number], [[1, 0, 0]], 2)
+
+
+def test_arrays_of_another_shape_are_refused():
+    places = CubicPlaces([0], [[1, 0, 0]], 2)
+    with pytest.raises(ValueError, match="patches has the shape"):
+        places.write(np.zeros((1, 10, 3)), np.empty((1, 3), dtype=np.float32))
+    with pytest.raises(ValueError, match="moved has the shape"):
+        places.write(np.zeros((2, 10, 3)), np.empty((2, 3), dtype=np.float32))

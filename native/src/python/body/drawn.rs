@@ -1,8 +1,7 @@
 //! `CubicPlaces`: places in curved triangles, moved with every frame.
 
-use numpy::{
-    AllowTypeChange, PyArray1, PyArray2, PyArrayLike1, PyArrayLike2, PyArrayLike3, PyArrayMethods,
-};
+use glam::DVec3;
+use numpy::{AllowTypeChange, PyArrayLike1, PyArrayLike2, PyArrayLike3, PyReadwriteArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -42,11 +41,12 @@ impl CubicPlaces {
             })
     }
 
-    fn vectors<'py>(
+    fn write(
         &self,
-        py: Python<'py>,
-        patches: PyArrayLike3<'py, f32, AllowTypeChange>,
-    ) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        py: Python<'_>,
+        patches: PyArrayLike3<'_, f64, AllowTypeChange>,
+        mut moved: PyReadwriteArray2<'_, f32>,
+    ) -> PyResult<()> {
         let patches = patches.as_array();
         if patches.shape() != [self.patches, CONTROLS, 3] {
             return Err(PyValueError::new_err(format!(
@@ -55,15 +55,23 @@ impl CubicPlaces {
                 self.patches
             )));
         }
+        if moved.as_array().shape() != [self.inner.len(), 3] {
+            return Err(PyValueError::new_err(format!(
+                "moved has the shape {:?}, not ({}, 3)",
+                moved.as_array().shape(),
+                self.inner.len()
+            )));
+        }
         let patches: Vec<Patch> = patches
             .outer_iter()
-            .map(|one| std::array::from_fn(|k| [one[[k, 0]], one[[k, 1]], one[[k, 2]], 0.0]))
+            .map(|one| {
+                Patch::new(&std::array::from_fn(|k| {
+                    DVec3::new(one[[k, 0]], one[[k, 1]], one[[k, 2]])
+                }))
+            })
             .collect();
-        let moved = py.detach(|| {
-            let mut moved = vec![[0.0; 3]; self.inner.len()];
-            self.inner.evaluate(&patches, &mut moved);
-            moved.into_flattened()
-        });
-        PyArray1::from_vec(py, moved).reshape([self.inner.len(), 3])
+        let moved = moved.as_slice_mut()?;
+        py.detach(|| self.inner.evaluate(&patches, moved));
+        Ok(())
     }
 }

@@ -3,4 +3,5 @@
 pub mod closest;
 pub mod compliance;
 pub mod drawn;
+pub mod polygons;
 pub mod surface;
