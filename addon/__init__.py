@@ -32,7 +32,7 @@ from .inspection import body_view
 from .overlay import view
 from .panels import sidebar
 from .properties import soft_object, softness
-from .toolbar import keys, palpate_tool
+from .toolbar import keys, palpate_tool, surface_circle
 
 # In the order of registration; properties first, since all others refer to them.
 modules = (
@@ -68,6 +68,7 @@ modules = (
     sidebar,
     view,
     body_view,
+    surface_circle,
     palpate_tool,
     keys,
     handlers,

@@ -38,6 +38,7 @@ class PalpateTool(bpy.types.WorkSpaceTool):
         _key("LEFTMOUSE", "palpate.stroke", shift=True, outward=True),
         _key("F", "palpate.stroke_size", what="RADIUS"),
         _key("F", "palpate.stroke_size", shift=True, what="STRENGTH"),
+        ("palpate.hover", {"type": "MOUSEMOVE", "value": "ANY", "any": True}, None),
     )
 
     @staticmethod

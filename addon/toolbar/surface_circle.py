@@ -1,6 +1,12 @@
-"""Circle of a stroke's radius, drawn on the surface under the pointer before it is touched."""
+"""Circle of a stroke's radius, drawn on the surface under the pointer before it is touched.
+
+The place is found when the pointer moves, before anything is drawn: a drawing must not evaluate,
+and what was evaluated last may be gone by then.
+"""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import bpy
 import gpu
@@ -11,7 +17,6 @@ from mathutils import Vector
 from numpy.typing import NDArray
 
 from ...core.errors import PalpateError
-from ...operators.layer import live_layer
 from ...operators.place.seen_place import SeenPlace, under_pointer
 from ...operators.scene import viewport
 from ...operators.scene.drawn_surface import metres_per_unit
@@ -23,30 +28,58 @@ INWARD, OUTWARD = (0.35, 0.75, 1.0, 0.9), (1.0, 0.65, 0.3, 0.9)
 LINE_PIXELS = 1.6
 
 
+@dataclass(frozen=True, eq=False)
+class _Found:
+    """Points (k, 3) of the circle, world coordinates, for a line of sight: origin and direction."""
+
+    line: tuple[NDArray[np.float64], NDArray[np.float64]]
+    points: NDArray[np.float64]
+
+
+_found: _Found | None = None
+
+
+class PALPATE_OT_hover(bpy.types.Operator):
+    bl_idname = "palpate.hover"
+    bl_label = "Show the Tool's Radius"
+    bl_description = "Find the surface under the pointer, where a circle shows the tool's radius"
+    bl_options = {"INTERNAL"}
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        global _found  # noqa: PLW0603  there is one pointer
+        here = viewport.under_pointer(context.window, event.mouse_x, event.mouse_y)
+        _found = None if here is None or context.mode != "OBJECT" else _find(context, here)
+        return {"PASS_THROUGH"}
+
+
 def draw(xy: tuple[int, int]) -> None:
     """Draw at a pointer in window coordinates; nothing beside soft objects."""
     context = bpy.context
-    if context.window is None or context.mode != "OBJECT":
+    if _found is None or context.window is None or context.mode != "OBJECT":
         return
     here = viewport.under_pointer(context.window, *xy)
     if here is None or context.region != here.region:
         return
-    if context.object is not None and live_layer.find(context.object) is not None:
-        # Pressed already; and to find a place on a mesh that has just changed takes long.
+    if not all(map(np.array_equal, _found.line, here.line_of_sight())):
+        # The view has moved under the pointer.
         return
+    points = _on_screen(_found.points, here)
+    if points is not None:
+        outward = context.scene.palpate.stroke_outward
+        _draw_line(points, OUTWARD if outward else INWARD, context)
+
+
+def _find(context: bpy.types.Context, here: Viewport) -> _Found | None:
     scene = context.scene
     try:
-        # As it was evaluated last: a drawing must not evaluate.
-        touched = under_pointer(scene, context.view_layer.depsgraph, here)
+        touched = under_pointer(scene, context.evaluated_depsgraph_get(), here)
         if touched is None:
-            return
+            return None
         radius = radius_for(scene, touched.thing) / metres_per_unit(scene)
     except PalpateError:
         # A flattened object; a stroke reports it with its remedy.
-        return
-    points = _on_screen(_circle(touched, radius), here)
-    if points is not None:
-        _draw_line(points, OUTWARD if scene.palpate.stroke_outward else INWARD, context)
+        return None
+    return _Found(here.line_of_sight(), _circle(touched, radius))
 
 
 def _circle(touched: SeenPlace, radius: float) -> NDArray[np.float64]:
@@ -85,3 +118,6 @@ def _draw_line(
     shader.uniform_float("color", color)
     batch.draw(shader)
     gpu.state.blend_set("NONE")
+
+
+classes = (PALPATE_OT_hover,)

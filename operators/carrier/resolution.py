@@ -13,11 +13,23 @@ from ..scene.drawn_surface import DrawnSurface
 # A fingertip, as a share of the body's size: that of the scene at first.
 FINGERTIP = 0.05
 # Faces are divided until they are half of the fingertip's radius: flat ones above that; smooth
-# ones, which would show that they are flat, only where a dent would be lost between them.
-FINE, COARSE_SMOOTH = 0.5, 2.0
+# ones only where a dent would be lost between their vertices.
+FINE, COARSE_SMOOTH = 0.5, 1.0
 MOST_FACES = 100_000
-# What may follow divided faces, since it moves flat ones as it moves whole ones.
-_MAY_FOLLOW = frozenset({"ARMATURE", "MESH_CACHE", "WEIGHTED_NORMAL"})
+# What may follow divided faces, since it moves flat ones as it moves whole ones, or none. All else
+# would make another shape of them, without any dent: subdivision a sharper one, Lattice a rounder.
+_MAY_FOLLOW = frozenset(
+    [
+        "ARMATURE",
+        "MESH_CACHE",
+        "UV_PROJECT",
+        "UV_WARP",
+        "VERTEX_WEIGHT_EDIT",
+        "VERTEX_WEIGHT_MIX",
+        "VERTEX_WEIGHT_PROXIMITY",
+        "WEIGHTED_NORMAL",
+    ]
+)
 
 
 def halvings(thing: bpy.types.Object, surface: DrawnSurface, *, as_seen: bool) -> int:

@@ -25,6 +25,8 @@ REST, AT, PRESSED = "palpate_rest", "palpate_at", "palpate_pressed"
 TRACTION = " Traction"
 SUM, BORNE = "palpate_displacement", "palpate_traction"
 PRESSURE, NORMAL = "palpate_pressure", "palpate_normal"
+# Normals of the corners of faces, while these are divided.
+SHADED = "palpate_shaded"
 AXES = ("X", "Y", "Z")
 DESCRIPTIONS = {
     DISPLACEMENT: "Attribute of the vertices that is added to their places, local units",
@@ -172,11 +174,12 @@ def _with(
     name: str,
     value: bpy.types.NodeSocket,
     kind: str = "FLOAT_VECTOR",
+    domain: str = "POINT",
 ) -> bpy.types.NodeSocket:
-    """Geometry with an attribute of its vertices."""
+    """Geometry with an attribute, of its vertices or what else it has."""
     stored = builder.node(
         "GeometryNodeStoreNamedAttribute",
-        {"data_type": kind, "domain": "POINT"},
+        {"data_type": kind, "domain": domain},
         Geometry=geometry,
         Name=name,
         Value=value,
@@ -185,8 +188,9 @@ def _with(
 
 
 def _fine(builder: GroupBuilder) -> bpy.types.NodeSocket:
-    """Geometry with its faces divided, shaped and shaded as it was: the edges of a flat face stay
-    sharp, and within it, where a dent comes, it is smooth.
+    """Geometry with its faces divided, shaped and shaded as it was: within a face the normals are
+    between those at its corners, and from there they turn with a dent. The edges of a flat face
+    stay sharp.
     """
     smooth = builder.node("GeometryNodeInputShadeSmooth")["Smooth"]
     flat_beside = builder.node(
@@ -195,18 +199,31 @@ def _fine(builder: GroupBuilder) -> bpy.types.NodeSocket:
         Value=builder.truth("NOT", smooth),
     )["Value"]
     sharp = builder.truth("NOT", builder.node("GeometryNodeInputEdgeSmooth")["Smooth"])
-    edged = builder.node(
-        "GeometryNodeStoreNamedAttribute",
-        {"data_type": "BOOLEAN", "domain": "EDGE"},
-        Geometry=builder.given("Geometry"),
-        Name="sharp_edge",
-        Value=builder.truth("OR", flat_beside, sharp),
-    )["Geometry"]
-    shaded = builder.node("GeometryNodeSetShadeSmooth", Geometry=edged, Shade_Smooth=True)
-    made = builder.node(
-        "GeometryNodeSubdivideMesh", Mesh=shaded["Geometry"], Level=builder.given(LEVEL)
+    edged = _with(
+        builder,
+        builder.given("Geometry"),
+        "sharp_edge",
+        builder.truth("OR", flat_beside, sharp),
+        "BOOLEAN",
+        "EDGE",
     )
-    return made["Mesh"]
+    normals = builder.node("GeometryNodeInputNormal")["Normal"]
+    told = _with(builder, edged, SHADED, normals, domain="CORNER")
+    shaded = builder.node("GeometryNodeSetShadeSmooth", Geometry=told, Shade_Smooth=True)
+    divided = builder.node(
+        "GeometryNodeSubdivideMesh", Mesh=shaded["Geometry"], Level=builder.given(LEVEL)
+    )["Mesh"]
+    between = builder.node(
+        "GeometryNodeInputNamedAttribute", {"data_type": "FLOAT_VECTOR"}, Name=SHADED
+    )["Attribute"]
+    turning = builder.node(
+        "GeometryNodeSetMeshNormal",
+        {"mode": "TANGENT_SPACE"},
+        Mesh=divided,
+        Custom_Normal=between,
+    )["Mesh"]
+    removed = builder.node("GeometryNodeRemoveAttribute", Geometry=turning, Name=SHADED)
+    return removed["Geometry"]
 
 
 def _layer(builder: GroupBuilder) -> bpy.types.NodeSocket:

@@ -13,8 +13,8 @@ import numpy as np
 from mathutils.geometry import tessellate_polygon
 from numpy.typing import NDArray
 
+from ...core.body.drawn_polygons import Polygons
 from ...core.mesh.closest_point import closest_area_coordinates
-from ...core.mesh.polygons import Polygons
 from ..scene import drawn_surface
 from ..scene.body_frame import BodyFrame
 
@@ -96,7 +96,8 @@ def _on_ray(
     seen = np.flatnonzero(facing)
     if not len(seen):
         return None
-    vertices, corners, outward, facing = (one[seen] for one in (vertices, corners, outward, facing))
+    vertices, corners = vertices[seen], corners[seen]
+    outward, facing = outward[seen], facing[seen]
     away = np.einsum("tx,tx->t", corners[:, 0] - origin, outward) / facing
     places = origin + away[:, None] * direction
     # Of edges (j, k), (k, i), (i, j), in shares of the triangle as the ray sees it.

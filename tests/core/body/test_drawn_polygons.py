@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from palpate_servo import nearest_polygon, polygons_on_line
 
+from palpate.core.body.drawn_polygons import Polygons
 from palpate.core.mesh.closest_point import closest_area_coordinates
-from palpate.core.mesh.polygons import Polygons
 
 
 @pytest.fixture
