@@ -21,6 +21,7 @@ from ..operators.press import (
     pinch,
     press,
     record,
+    remove_layer,
     save_recording,
     switch_force,
 )
@@ -59,6 +60,7 @@ modules = (
     apply_layers,
     add_press_rig,
     animate_layers,
+    remove_layer,
     remove_softness,
     read_durometer,
     force_curve,

@@ -13,6 +13,7 @@ from ..operators.animation import live_pressers
 from ..operators.bake import bake_session
 from ..operators.layer import live_layer
 from ..operators.object import body_store, kept_body
+from ..operators.scene import modal_stay
 from ..operators.scene.package_preferences import preferences
 from ..operators.session import press_session
 from ..operators.session.press_events import Moment
@@ -114,8 +115,7 @@ def _after_failed_save(*_: object) -> None:
 def _after_change(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     known_status.changed(depsgraph)
     updates = depsgraph.updates
-    if any(update.is_updated_geometry or update.is_updated_transform for update in updates):
-        body_view.forget()
+    body_view.changed(depsgraph)
     if any(update.is_updated_transform for update in updates):
         live_pressers.follow_all(scene)
 
@@ -156,6 +156,7 @@ def register() -> None:
 def unregister() -> None:
     """End everything and remove the handlers."""
     end_everything("Palpate was switched off; pressing has ended")
+    modal_stay.end_all(bpy.context)
     kept_body.forget()
     live_pressers.forget()
     known_status.end()

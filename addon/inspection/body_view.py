@@ -27,14 +27,23 @@ LIGHT, AMBIENT = np.array([-0.4, 0.6, 0.7]) / np.linalg.norm([-0.4, 0.6, 0.7]), 
 # How far the film of the pins lies before the surface, as a share of the view's distance.
 BEFORE = 5e-4
 
-# What was drawn last of each kind: what it depends on, and its world coordinates and colours.
-_known: dict[str, tuple[object, tuple[Array, Array]]] = {}
+# What was drawn last of each kind: what it depends on, object and mesh first, and its world
+# coordinates and colours.
+_known: dict[str, tuple[tuple[object, ...], tuple[Array, Array]]] = {}
 _handles: list[object] = []
 
 
 def forget() -> None:
-    """Compute all anew: a mesh, its transform or its weights changed."""
+    """Compute all anew: another file, another step of undo."""
     _known.clear()
+
+
+def changed(depsgraph: bpy.types.Depsgraph) -> None:
+    """Compute anew what a mesh or its weights were changed of; a transform is looked at."""
+    uids = {u.id.original.session_uid for u in depsgraph.updates if u.is_updated_geometry}
+    for kind, (which, _) in list(_known.items()):
+        if uids & {*which[:2]}:
+            del _known[kind]
 
 
 def draw() -> None:
@@ -48,21 +57,24 @@ def draw() -> None:
         return
     axes = np.array(context.region_data.view_matrix)[:3, :3]
     matrix = tuple(np.array(thing.matrix_world).ravel().tolist())
+    uids = thing.session_uid, thing.data.session_uid
     if chosen.show_tetrahedra and thing.palpate.body_key:
-        which = (thing.session_uid, thing.palpate.body_key, chosen.cut_axis, chosen.cut, matrix)
+        which = (*uids, thing.palpate.body_key, chosen.cut_axis, chosen.cut, matrix)
         _draw_tetrahedra(*_kept("tetrahedra", which, lambda: _tetrahedra(context)), axes)
     if chosen.show_pins:
         settings = thing.palpate
         rule = (settings.pin_mode, settings.pin_group, settings.pin_fraction)
-        faces, _ = _kept("pins", (thing.session_uid, *rule, matrix), lambda: _pins(context))
+        faces, _ = _kept("pins", (*uids, *rule, matrix), lambda: _pins(context))
         nearer = BEFORE * context.region_data.view_distance * axes[2]
         for depth_test, opacity in (("NONE", SEEN_THROUGH), ("LESS_EQUAL", 1.0)):
             colors = np.tile(PIN_COLOR * [1.0, 1.0, 1.0, opacity], (3 * len(faces), 1))
             _draw_triangles(faces + nearer, colors, depth_test)
 
 
-def _kept(kind: str, which: object, make: Callable[[], tuple[Array, Array]]) -> tuple[Array, Array]:
-    if _known.get(kind, (None,))[0] != which:
+def _kept(
+    kind: str, which: tuple[object, ...], make: Callable[[], tuple[Array, Array]]
+) -> tuple[Array, Array]:
+    if kind not in _known or _known[kind][0] != which:
         try:
             made = make()
         except PalpateError:

@@ -12,6 +12,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ..scene import curves
 from . import modifier_inputs, stack
 from .layer_groups import CARRIER, DISPLACEMENT, LEVEL, STRENGTH, TRACTION, Kind, group_of, kind_of
 
@@ -157,9 +158,10 @@ def rename(thing: bpy.types.Object, layer: bpy.types.NodesModifier, name: str) -
 
 
 def remove(thing: bpy.types.Object, layer: bpy.types.NodesModifier) -> None:
-    """Remove a layer, and its attributes where no other layer shows them."""
+    """Remove a layer, its animation, and its attributes where no other layer shows them."""
     mesh, name = mesh_of(thing, layer), attribute_name(layer)
-    thing.driver_remove(strength_path(layer))
+    # A layer that takes its name later would move by them.
+    curves.remove(thing, strength_path(layer))
     remove_modifier(thing, layer)
     shown = {
         attribute_name(other)

@@ -19,6 +19,7 @@ from ...core.mesh.surface import Surface
 from ..layer import stack
 from ..scene import drawn_surface, fingerprint
 from ..scene.body_frame import BodyFrame
+from ..scene.drawn_surface import polygons
 from ..scene.fingerprint import Fingerprint
 
 
@@ -51,10 +52,14 @@ class MeshArrays:
     face_starts: NDArray[np.int32]
 
     @classmethod
-    def of(cls, mesh: bpy.types.Mesh) -> MeshArrays:
-        """Copy those of a mesh at rest."""
-        corners, starts = drawn_surface.polygons(mesh)
-        return cls(drawn_surface.rest_coordinates(mesh).reshape(-1, 3), corners, starts)
+    def at_rest(cls, mesh: bpy.types.Mesh) -> MeshArrays:
+        """Copy those of an object's own mesh, at rest."""
+        return cls(drawn_surface.rest_coordinates(mesh).reshape(-1, 3), *polygons(mesh))
+
+    @classmethod
+    def evaluated(cls, mesh: bpy.types.Mesh) -> MeshArrays:
+        """Copy those of an evaluated mesh, as it is posed."""
+        return cls(drawn_surface.coordinates(mesh).reshape(-1, 3), *polygons(mesh))
 
     def surface(self, frame: BodyFrame) -> Surface:
         """The surface, metres. Polygons are taken as fans.
@@ -95,10 +100,10 @@ class MeshLook:
             An object whose transform flattens it.
         """
         frame = drawn_surface.frame_of(thing, scene)
-        own = baked = MeshArrays.of(thing.data)
+        own = baked = MeshArrays.at_rest(thing.data)
         if thing.palpate.bake_from != "BASE" and stack.making(thing):
             graph = bpy.context.evaluated_depsgraph_get()
-            baked = MeshArrays.of(thing.evaluated_get(graph).data)
+            baked = MeshArrays.evaluated(thing.evaluated_get(graph).data)
         return cls(own, baked, frame)
 
     def measured(self) -> MeasuredMesh:

@@ -118,6 +118,8 @@ def up_in_body(surface: DrawnSurface) -> NDArray[np.float64]:
 
 def _relative_height(surface: DrawnSurface) -> NDArray[np.float64]:
     height = surface.body @ up_in_body(surface)
+    if not height.size:
+        return height
     used = height[surface.triangles.ravel()] if surface.triangles.size else height
     low, span = used.min(), np.ptp(used)
     relative: NDArray[np.float64] = (height - low) / (span or 1.0)

@@ -9,6 +9,7 @@ from ..object import soft_object
 from ..reporting.acting import Acting
 from ..reporting.translated import reported, shown
 from ..scene import viewport
+from ..scene.modal_stay import ModalStay
 from ..scene.viewport import Viewport, redraw_views
 from ..session import press_session
 from ..session.pointer_hand import PointerHand
@@ -68,7 +69,7 @@ class ModalPress(Pressing):
 
     _session: PressSession
     _hand: PointerHand
-    _timer: bpy.types.Timer | None = None
+    _stay: ModalStay
     _status = ""
 
     def start(self, context: bpy.types.Context, source: Source, *, pinch: bool) -> set[str]:
@@ -99,9 +100,8 @@ class ModalPress(Pressing):
             raise
         finally:
             context.window.cursor_modal_restore()
-        manager = context.window_manager
-        self._timer = manager.event_timer_add(1 / FRAMES_PER_SECOND, window=context.window)
-        manager.modal_handler_add(self)
+        self._stay = ModalStay()
+        self._stay.begin(self, context, 1 / FRAMES_PER_SECOND)
         self._show(context)
         redraw_views()
         return {"RUNNING_MODAL"}
@@ -111,13 +111,13 @@ class ModalPress(Pressing):
             passed = self._handle(context, event)
         except PalpateError as problem:
             press_session.give_way("")
-            self._leave(context)
+            self._stay.end(context)
             self.report({"ERROR"}, reported(problem))
             return {"CANCELLED"}
         except BaseException:
             # A bug must not leave a running servo and a live layer on the mesh.
             press_session.give_way("Pressing has ended because of an error")
-            self._leave(context)
+            self._stay.end(context)
             raise
         for said in self._session.said:
             self.report({"WARNING" if said.warning else "INFO"}, reported(said.text))
@@ -125,7 +125,7 @@ class ModalPress(Pressing):
         if self._session.state.phase is not Phase.ENDED:
             self._show(context)
             return {"PASS_THROUGH"} if passed else {"RUNNING_MODAL"}
-        self._leave(context)
+        self._stay.end(context)
         if not self._session.kept_name:
             return {"CANCELLED"}
         self.report({"INFO"}, reported("Kept as layer '{layer}'", layer=self._session.kept_name))
@@ -134,7 +134,7 @@ class ModalPress(Pressing):
     def cancel(self, context: bpy.types.Context) -> None:
         """End with the operator: another file, unregister, or exit."""
         press_session.give_way("")
-        self._leave(context)
+        self._stay.end(context)
 
     def _handle(self, context: bpy.types.Context, event: bpy.types.Event) -> bool:
         """Handle an event; True to pass it on to Blender."""
@@ -182,15 +182,7 @@ class ModalPress(Pressing):
         status = f"Palpate: {shown(words.get(state.phase, ''))}"
         if status != self._status:
             self._status = status
-            context.workspace.status_text_set(status)
-
-    def _leave(self, context: bpy.types.Context) -> None:
-        if self._timer is not None:
-            context.window_manager.event_timer_remove(self._timer)
-            self._timer = None
-        if context.workspace is not None:
-            context.workspace.status_text_set(None)
-        redraw_views()
+            self._stay.say(context, status)
 
 
 def _strokes(context: bpy.types.Context) -> bool:

@@ -33,6 +33,15 @@ def is_animated(animated: bpy.types.ID, path: str) -> bool:
     return driven or any(bag.find(path) is not None for bag in bags(animated))
 
 
+def remove(animated: bpy.types.ID, path: str) -> None:
+    """Remove keyframes and driver of a property of a datablock, where it has any."""
+    animated.driver_remove(path)
+    for bag in bags(animated):
+        curve = bag.find(path)
+        if curve is not None:
+            bag.remove(curve)
+
+
 def curves(animated: bpy.types.ID) -> Iterator[bpy.types.FCurve]:
     """All curves of a datablock."""
     for bag in bags(animated):

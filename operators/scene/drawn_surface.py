@@ -155,15 +155,23 @@ def polygons(mesh: bpy.types.Mesh) -> tuple[NDArray[np.int32], NDArray[np.int32]
 
 def rest_coordinates(mesh: bpy.types.Mesh) -> NDArray[np.float32]:
     """Coordinates of the Basis, or of the mesh where it has no shape keys, flat float32 (3 p,)."""
-    coordinates = np.empty(3 * len(mesh.vertices), dtype=np.float32)
-    if not len(coordinates):
+    if not mesh.shape_keys:
+        return coordinates(mesh)
+    basis = np.empty(3 * len(mesh.vertices), dtype=np.float32)
+    mesh.shape_keys.reference_key.points.foreach_get("co", basis)
+    return basis
+
+
+def coordinates(mesh: bpy.types.Mesh) -> NDArray[np.float32]:
+    """Coordinates of a mesh as it is, flat float32 (3 p,).
+
+    Those of an evaluated mesh: its shape keys are still the base mesh's.
+    """
+    places = np.empty(3 * len(mesh.vertices), dtype=np.float32)
+    if len(places):
         # An empty mesh has no attribute "position".
-        return coordinates
-    if mesh.shape_keys:
-        mesh.shape_keys.reference_key.points.foreach_get("co", coordinates)
-    else:
-        mesh.attributes["position"].data.foreach_get("vector", coordinates)
-    return coordinates
+        mesh.attributes["position"].data.foreach_get("vector", places)
+    return places
 
 
 def frame_of(thing: bpy.types.Object, scene: bpy.types.Scene) -> BodyFrame:

@@ -13,6 +13,7 @@ from ..place import touched_place
 from ..reporting.translated import reported, shown
 from ..scene import viewport
 from ..scene.body_frame import Point, as_point
+from ..scene.modal_stay import ModalStay
 
 if TYPE_CHECKING:
 
@@ -40,19 +41,18 @@ class SoftnessOperator(OnSoft, _Operator):
     def _pick(self, context: bpy.types.Context) -> set[str]:
         self._drawn = open_body(context.object, context.scene)
         context.window.cursor_modal_set("EYEDROPPER")
-        context.workspace.status_text_set(
-            shown("Click the place on the object; right click to leave")
-        )
-        context.window_manager.modal_handler_add(self)
+        self._stay = ModalStay()
+        self._stay.begin(self, context)
+        self._stay.say(context, shown("Click the place on the object; right click to leave"))
         return MODAL
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if event.type in {"RIGHTMOUSE", "ESC"}:
-            self._leave(context)
+            self.cancel(context)
             return {"CANCELLED"}
         if event.type != "LEFTMOUSE" or event.value != "PRESS":
             return {"PASS_THROUGH"} if event.type.startswith(("WHEEL", "MIDDLE")) else MODAL
-        self._leave(context)
+        self.cancel(context)
         here = viewport.under_pointer(context.window, event.mouse_x, event.mouse_y)
         place = None if here is None else _met(context, self._drawn, here)
         if place is None:
@@ -71,9 +71,11 @@ class SoftnessOperator(OnSoft, _Operator):
         """Measure, store and report."""
         raise NotImplementedError
 
-    def _leave(self, context: bpy.types.Context) -> None:
-        context.window.cursor_modal_restore()
-        context.workspace.status_text_set(None)
+    def cancel(self, context: bpy.types.Context) -> None:
+        """Stop asking for a place: it was clicked, or another file, unregister, exit."""
+        if context.window is not None:
+            context.window.cursor_modal_restore()
+        self._stay.end(context)
 
 
 MODAL = {"RUNNING_MODAL"}

@@ -21,6 +21,7 @@ from ..reporting.translated import reported, shown
 from ..scene import viewport
 from ..scene.body_frame import BodyFrame
 from ..scene.drawn_surface import frame_of, metres_per_unit
+from ..scene.modal_stay import ModalStay
 from ..scene.object_handle import ObjectHandle, make_active
 from ..scene.probe_drag import View
 from ..session import press_session
@@ -143,8 +144,9 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
             make_active(context, thing)
         self._typed = TypedAmount(self._drag.motion)
         live_layer.hang(thing)
-        context.window_manager.modal_handler_add(self)
-        context.workspace.status_text_set(stroke_words.status(self._drag.motion))
+        self._stay = ModalStay()
+        self._stay.begin(self, context)
+        self._stay.say(context, stroke_words.status(self._drag.motion))
         return {"RUNNING_MODAL"}
 
     def _drag_from(self, event: bpy.types.Event, view: View, scene: bpy.types.Scene) -> StrokeDrag:
@@ -211,8 +213,7 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
         text = f"{stroke_words.figures(scene, asked, stroked)}{problem}"
         if self._typed.text:
             text = f"[{self._typed.text}|]   {text}"
-        context.area.header_text_set(text)
-        context.area.tag_redraw()
+        self._stay.head(context, text)
 
     def _finish(self, context: bpy.types.Context) -> set[str]:
         if self._last[0].nothing:
@@ -243,10 +244,7 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
         thing = self._handle.find()
         if give_up and thing is not None:
             live_layer.remove(thing)
-        context.workspace.status_text_set(None)
-        if context.area is not None:
-            context.area.header_text_set(None)
-        viewport.redraw_views()
+        self._stay.end(context)
 
     def _thing(self) -> bpy.types.Object:
         thing = self._handle.find()

@@ -11,6 +11,7 @@ from ..reporting.acting import Acting
 from ..reporting.translated import shown
 from ..scene import viewport
 from ..scene.drawn_surface import frame_of, metres_per_unit, size_of
+from ..scene.modal_stay import ModalStay
 from ..tool.tool_sizes import chosen_sizes
 from . import stroke_words
 
@@ -87,10 +88,9 @@ class PALPATE_OT_stroke_size(Acting, bpy.types.Operator):
         self._metres_per_pixel = 0.0 if view is None else view.metres_per_pixel
         self._before = getattr(context.scene.palpate, self._property(context))
         self._radius, self._start = radius_for(context.scene, thing), event.mouse_x
-        context.window_manager.modal_handler_add(self)
-        context.workspace.status_text_set(
-            shown("Move: More or less     [LMB] Take     [Esc] Restore")
-        )
+        self._stay = ModalStay()
+        self._stay.begin(self, context)
+        self._stay.say(context, shown("Move: More or less     [LMB] Take     [Esc] Restore"))
         self._follow(context, 0)
         return {"RUNNING_MODAL"}
 
@@ -99,7 +99,7 @@ class PALPATE_OT_stroke_size(Acting, bpy.types.Operator):
         if self.what == "STRENGTH":
             changed = self._before * 2.0 ** (pixels / DOUBLING_PIXELS)
             chosen.stroke_strength = min(max(changed, WEAKEST), STRONGEST)
-            self._tell(context, f"{shown('Strength')}: {chosen.stroke_strength:.2f}")
+            self._stay.head(context, f"{shown('Strength')}: {chosen.stroke_strength:.2f}")
             return
         metres = max(self._radius + pixels * self._metres_per_pixel, LEAST_SHARE * self._radius)
         if chosen.own_sizes:
@@ -107,7 +107,8 @@ class PALPATE_OT_stroke_size(Acting, bpy.types.Operator):
         else:
             chosen.tip_share = self._before * metres / self._radius
         metres = radius_for(context.scene, context.object)
-        self._tell(context, f"{shown('Radius')}: {stroke_words.length(context.scene, metres)}")
+        length = stroke_words.length(context.scene, metres)
+        self._stay.head(context, f"{shown('Radius')}: {length}")
 
     def _property(self, context: bpy.types.Context) -> str:
         """Name of the scene's property that is set."""
@@ -115,15 +116,8 @@ class PALPATE_OT_stroke_size(Acting, bpy.types.Operator):
             return "stroke_strength"
         return "tip_radius" if context.scene.palpate.own_sizes else "tip_share"
 
-    def _tell(self, context: bpy.types.Context, text: str) -> None:
-        if context.area is not None:
-            context.area.header_text_set(text)
-            context.area.tag_redraw()
-
     def _leave(self, context: bpy.types.Context, result: str) -> set[str]:
-        context.workspace.status_text_set(None)
-        if context.area is not None:
-            context.area.header_text_set(None)
+        self._stay.end(context)
         return {result}
 
 

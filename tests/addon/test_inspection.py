@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import bmesh
 import bpy
 import numpy as np
@@ -102,3 +104,46 @@ def test_a_mesh_too_coarse_for_its_dents_is_told_so(palpate):
     assert "Only 8 vertices are drawn" in drawn(panel, thing).text
     thing.palpate.free_surface_count = 8
     assert "vertices are drawn" not in drawn(panel, thing).text
+
+
+def changes(*things):
+    """What Blender would report of geometry that has changed."""
+    updates = [
+        SimpleNamespace(id=SimpleNamespace(original=thing), is_updated_geometry=True)
+        for thing in things
+    ]
+    return SimpleNamespace(updates=updates)
+
+
+def test_pins_are_computed_again_for_changes_of_their_own_mesh_alone(palpate, monkeypatch):
+    module = part("addon.inspection.body_view")
+    thing, other = cube(), mesh_object([(0, 0, 0)], [], "Other")
+    which = (thing.session_uid, thing.data.session_uid)
+    known = {"pins": (which, (np.zeros((0, 3, 3)), np.zeros((0, 3))))}
+    monkeypatch.setattr(module, "_known", known)
+    module.changed(changes(other, other.data))
+    assert known
+    module.changed(changes(thing.data))
+    assert not known
+
+
+def test_a_mesh_without_vertices_has_no_pins_to_show(palpate):
+    select(mesh_object([], [], "Empty"))
+    faces, _ = part("addon.inspection.body_view")._pins(bpy.context)
+    assert len(faces) == 0
+
+
+def test_a_keyed_mesh_with_more_vertices_drawn_is_measured_as_it_is_seen(palpate):
+    thing = cube(0.05)
+    thing.palpate.bake_from = "AUTO"
+    thing.shape_key_add(name="Basis")
+    wide = thing.shape_key_add(name="Wide")
+    for point in wide.data:
+        point.co.x *= 3.0
+    wide.value = 1.0
+    thing.modifiers.new("Two", "ARRAY").relative_offset_displace = (0.0, 2.0, 0.0)
+    look = part("operators.object.mesh_look").MeshLook.take(thing, bpy.context.scene)
+    assert len(look.own.local) == 8
+    assert np.ptp(look.own.local[:, 0]) == pytest.approx(0.05, rel=1e-6)
+    assert len(look.baked.local) == 16
+    assert np.ptp(look.baked.local[:, 0]) == pytest.approx(0.15, rel=1e-6)

@@ -26,6 +26,8 @@ class PALPATE_PT_layers(PalpatePanel, bpy.types.Panel):
             row = column.row(align=True)
             row.prop(layer, "show_viewport", text="")
             modifier_inputs.draw_slider(row, layer, STRENGTH, layer.name)
+            row = while_idle(row)
+            row.operator("palpate.remove_layer", text="", icon="X").layer = layer.name
         for rig in press_rig.rigs_of(thing):
             column = self.layout.column(align=True)
             column.label(text=rig.name, icon="EMPTY_AXIS", translate=False)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import bpy
-from soft_scene import TOP, cube, error_of, layer_names, part
+import numpy as np
+from soft_scene import TOP, cube, error_of, layer_names, moved, part, press_down
 
 
 def strengths(thing, frame):
@@ -41,3 +42,31 @@ def test_a_material_is_chosen_with_make_soft(palpate):
 
 def materials():
     return part("core.softness.scales.materials").MATERIALS
+
+
+def test_a_removed_dent_leaves_neither_attribute_nor_keyframes(palpate, thing):
+    press_down(thing)
+    press_down(thing)
+    attributes = {"Press 1", "Press 2"}
+    assert attributes <= set(thing.data.attributes.keys())
+    bpy.ops.palpate.animate_layers(frames=10)
+    second = moved(thing, "Press 2")
+    assert bpy.ops.palpate.remove_layer(layer="Press 1") == {"FINISHED"}
+    assert layer_names(thing) == ["Press 2"]
+    assert attributes & set(thing.data.attributes.keys()) == {"Press 2"}
+    np.testing.assert_array_equal(moved(thing, "Press 2"), second)
+    # The next dent takes the name, and stands still.
+    press_down(thing)
+    assert set(layer_names(thing)) == {"Press 1", "Press 2"}
+    layers, curves = part("operators.layer.layers"), part("operators.scene.curves")
+    animated = [
+        curves.is_animated(thing, layers.strength_path(thing.modifiers[name]))
+        for name in ("Press 1", "Press 2")
+    ]
+    assert animated == [False, True]
+
+
+def test_a_dent_that_is_not_there_is_not_removed(palpate, thing):
+    press_down(thing)
+    assert "no layer 'Press 7'" in error_of(lambda: bpy.ops.palpate.remove_layer(layer="Press 7"))
+    assert layer_names(thing) == ["Press 1"]

@@ -1,0 +1,34 @@
+"""Remove Dent: a kept press goes, and all that it left in the mesh."""
+
+from __future__ import annotations
+
+import bpy
+
+from ...core.errors import PalpateError
+from ..layer import layers
+from ..layer.layer_operator import OnLayers
+
+
+class PALPATE_OT_remove_layer(OnLayers, bpy.types.Operator):
+    bl_idname = "palpate.remove_layer"
+    bl_label = "Remove Dent"
+    bl_description = "Take a kept press back, with its keyframes and its attributes of the mesh"
+    bl_options = {"REGISTER", "UNDO"}
+
+    layer: bpy.props.StringProperty(
+        name="Layer", description="Name of its modifier", options={"SKIP_SAVE"}
+    )
+
+    def act(self, context: bpy.types.Context) -> None:
+        thing = context.object
+        found = next((one for one in layers.layers_of(thing) if one.name == self.layer), None)
+        if found is None:
+            raise PalpateError(
+                "{name}: it has no layer '{layer}'; choose one of those under Layers",
+                name=thing.name,
+                layer=self.layer,
+            )
+        layers.remove(thing, found)
+
+
+classes = (PALPATE_OT_remove_layer,)
