@@ -66,7 +66,11 @@ class BakeSession:
             self.end()
             raise
         if self.preview is not None:
-            self.preview.poll()
+            try:
+                self.preview.poll()
+            except PalpateError:
+                # The bake goes on without one, and says itself what is wrong with the object.
+                self._end_preview()
         return self.job.finished
 
     @property
@@ -128,13 +132,14 @@ class BakeSession:
         """Stop the child process, and remove its folder and the preview. Safe to repeat."""
         global _current  # noqa: PLW0603  one bake at a time
         self.job.close()
-        if self.preview is not None:
-            self._end_preview(self.preview)
-            self.preview = None
+        self._end_preview()
         if _current is self:
             _current = None
 
-    def _end_preview(self, preview: PreviewBody) -> None:
+    def _end_preview(self) -> None:
+        preview, self.preview = self.preview, None
+        if preview is None:
+            return
         press, thing = press_session.current(), self.handle.find()
         if press is not None and thing is not None and press.handle.find() == thing:
             press_session.give_way("The bake was cancelled, and its preview with it")

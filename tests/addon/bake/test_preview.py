@@ -104,6 +104,18 @@ def test_a_cancelled_bake_ends_the_press_of_its_preview(previewed):
     assert mesh_state(thing) == before
 
 
+def test_a_preview_that_fails_leaves_the_bake_alone(previewed, monkeypatch):
+    thing, session = previewed
+
+    def fails():
+        raise part("core.errors").PalpateError("the disk is full")
+
+    monkeypatch.setattr(session.preview, "poll", fails)
+    body = finish(session)
+    assert session.preview is None
+    assert thing.palpate.body_key == body.key
+
+
 def test_a_quick_bake_has_no_preview(palpate, monkeypatch):
     bake = part("operators.bake.bake_session")
     monkeypatch.setattr(bake, "QUICK_SECONDS", np.inf)
