@@ -20,9 +20,9 @@ from .board.simulated_board import SimulatedBoard
 from .hand.options import SimulatedOptions, add_simulated_options, simulated_options
 from .hand.quaternion import unit
 from .lines import Lines
+from .real_time import ask_for_real_time
 
 LATE_SECONDS = 200e-6
-PRIORITY = 1
 MOST_STEPS_AT_ONCE = 50
 """Steps at most after a gap in time; for the rest the device stands still."""
 
@@ -91,7 +91,7 @@ def run(
     try:
         with stopped_by_signals() as stopped:
             _say_where(board, options, json_lines)
-            realtime = _ask_for_real_time()
+            realtime = ask_for_real_time()
             clock = Clock(options.rate_hz)
             inbox = _Commands() if commands else None
             while not stopped:
@@ -138,17 +138,6 @@ class _Commands:
                 _print_json({**clock.report(), **board.report()}, True)
             case _:
                 raise PalpateError(f"simulated device: no such command: {' '.join(words)}")
-
-
-def _ask_for_real_time() -> bool:
-    """Ask for the highest priority that this user may have, below any servo."""
-    if sys.platform != "linux":
-        return False
-    try:
-        os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(PRIORITY))
-    except PermissionError:
-        return False
-    return True
 
 
 def _say_where(board: Board, options: SimulatedOptions, json_lines: bool) -> None:

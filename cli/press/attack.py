@@ -53,6 +53,12 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         help="processes on a pseudo-terminal instead of virtual time; real seconds",
     )
     parser.add_argument(
+        "--board",
+        type=Path,
+        metavar="PROGRAM",
+        help="with --real: also beside firmware/host/main.cpp, compiled",
+    )
+    parser.add_argument(
         "--publish", type=Path, metavar="FILE", help="put the tables into this document"
     )
     at_port = parser.add_argument_group("a device at a port")
@@ -115,6 +121,7 @@ def _tables(arguments: argparse.Namespace) -> Iterator[Table]:
         seed=arguments.seed,
         bodies=tuple(arguments.body),
         only=arguments.only,
+        board=arguments.board,
     )
     if arguments.real:
         return iter([real_table(attack, _say)])

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ...core.errors import PalpateError
+from .real.firmware_rows import firmware_rows
 from .real.guardians import guardian_rows
 from .real.lost_guardians import lost_guardian_rows
 from .real.processes import process_rows
-from .real.stalled_reader import stalled_reader_row
+from .real.stalled_reader import stalled_reader_rows
 from .table import Table
 from .target import Target, baked_target, cube_target
 from .virtual.cause import Cause
@@ -32,6 +33,8 @@ class Attack:
     seed: int = 1
     bodies: tuple[Path, ...] = ()
     only: str = ""
+    board: Path | None = None
+    """The firmware for boards, compiled for this computer."""
 
 
 def virtual_tables(attack: Attack, say: Callable[[str], None]) -> Iterator[Table]:
@@ -41,9 +44,7 @@ def virtual_tables(attack: Attack, say: Callable[[str], None]) -> Iterator[Table
     """
     causes = {kind: _chosen(kind, attack.only) for kind in attack.kinds}
     if not any(causes.values()):
-        raise PalpateError(
-            "no injection has {only} in its name; leave out --only for all", only=repr(attack.only)
-        )
+        raise _nothing_chosen(attack.only)
     for target in [cube_target(), *map(baked_target, attack.bodies)]:
         for kind in attack.kinds:
             yield _virtual_table(kind, target, causes[kind], attack, say)
@@ -91,11 +92,26 @@ def real_table(attack: Attack, say: Callable[[str], None]) -> Table:
             "--real: Windows has no pseudo-terminals and no such signals; run it on Linux or "
             "macOS, or without --real"
         )
-    say("processes on a pseudo-terminal")
+
+    def wanted(injected: str) -> bool:
+        is_wanted = attack.only in injected
+        if is_wanted:
+            say(f"on a pseudo-terminal: {injected}")
+        return is_wanted
+
     rows = [
-        *process_rows(attack.times),
-        stalled_reader_row(),
-        *guardian_rows(attack.times),
-        *lost_guardian_rows(attack.times),
+        *process_rows(attack.times, wanted),
+        *stalled_reader_rows(wanted),
+        *guardian_rows(attack.times, wanted),
+        *lost_guardian_rows(attack.times, wanted),
+        *(firmware_rows(attack.board, attack.times, wanted) if attack.board else []),
     ]
+    if not rows:
+        raise _nothing_chosen(attack.only)
     return Table("Real processes on a pseudo-terminal", tuple(rows))
+
+
+def _nothing_chosen(only: str) -> PalpateError:
+    return PalpateError(
+        "no injection has {only} in its name; leave out --only for all", only=repr(only)
+    )

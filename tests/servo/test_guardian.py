@@ -7,14 +7,20 @@ import sys
 import pytest
 
 from palpate.simulated.attack.real import guardians, lost_guardians, processes
+from palpate.simulated.attack.real.desk import KINDS, desk
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="looks for processes in /proc")
 
 
-@pytest.mark.parametrize("kind", guardians.KINDS)
+@pytest.fixture(params=KINDS)
+def at(request):
+    with desk(request.param) as at:
+        yield at
+
+
 @pytest.mark.parametrize("number", guardians.SIGNALS, ids=lambda number: number.name)
-def test_the_last_word_is_zero(number, kind):
-    last = guardians.end_by(number, kind)
+def test_the_last_word_is_zero(number, at):
+    last = guardians.end_by(number, at)
     assert last.pushed
     assert last.words
     assert not last.words[-1].pushes
@@ -29,8 +35,7 @@ def test_it_ends_with_its_host_and_hears_nothing_that_the_group_is_told():
             os.kill(own, number)
         processes.press(host, hand)
         assert own in guardians.guardians()
-        host.process.communicate()
-        assert host.process.returncode == 0
+        assert host.end() == 0
         assert own not in guardians.guardians()
 
 
@@ -41,10 +46,9 @@ def test_a_host_that_goes_on_has_its_port_back():
         processes.press(host, hand)
 
 
-@pytest.mark.parametrize("kind", guardians.KINDS)
 @pytest.mark.parametrize("number", lost_guardians.SIGNALS, ids=lambda number: number.name)
-def test_one_that_is_lost_is_noticed_and_another_takes_its_place(kind, number):
-    loss = lost_guardians.lose(kind, number)
+def test_one_that_is_lost_is_noticed_and_another_takes_its_place(number, at):
+    loss = lost_guardians.lose(at, number)
     assert loss.pushed
     assert loss.unguarded == 1
     assert loss.ms_to_zero < float("inf")

@@ -2,34 +2,42 @@
 
 from __future__ import annotations
 
-import json
+import multiprocessing
 import os
-import subprocess
-import sys
 import time
 from collections.abc import Callable
 from types import TracebackType
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 from ....core.errors import PalpateError
-from ....core.machine import run_module
 from ...hand.options import SimulatedOptions
 from ...simulated_process import SimulatedDevice
 from ..target import ABOVE
+from . import servo_host
+
+if TYPE_CHECKING:
+    # Windows has none.
+    from multiprocessing.context import ForkServerContext
 
 PATIENCE_SECONDS = 20.0
 
 
+def _nursery() -> ForkServerContext:
+    """Where hosts come from: a process that has imported for all of them what they need."""
+    nursery = multiprocessing.get_context("forkserver")
+    nursery.set_forkserver_preload(["__main__", servo_host.__name__])
+    return nursery
+
+
 class Host:
-    """`servo_host.py` as a process of its own, in a session of its own."""
+    """`servo_host.py` as a process of its own."""
 
     def __init__(self, port: str, kind: str = "link") -> None:
-        self.process = subprocess.Popen(  # noqa: S603 - our own module, no shell
-            [sys.executable, *run_module.command("simulated.attack.real.servo_host"), port, kind],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            text=True,
-        )
+        nursery = _nursery()
+        self._line, its_end = nursery.Pipe()
+        self.process = nursery.Process(target=servo_host.touch, args=(its_end, port, kind))
+        self.process.start()
+        its_end.close()
 
     def __enter__(self) -> Self:
         return self
@@ -41,15 +49,13 @@ class Host:
         trace: TracebackType | None,
     ) -> None:
         self.process.kill()
-        self.process.communicate()
+        self.process.join()
+        self._line.close()
 
     def ask(self, line: str) -> Any:
         """The answer to a line."""
-        if self.process.stdin is None or self.process.stdout is None:
-            raise RuntimeError("the host was started without pipes")
-        self.process.stdin.write(line + "\n")
-        self.process.stdin.flush()
-        return json.loads(self.process.stdout.readline())
+        self._line.send(line)
+        return self._line.recv()
 
     def report(self) -> dict[str, Any]:
         """Where the servo stands now."""
@@ -61,9 +67,22 @@ class Host:
         answer: list[dict[str, Any]] = self.ask("samples")
         return answer
 
+    @property
+    def pid(self) -> int:
+        """Process id."""
+        if self.process.pid is None:
+            raise RuntimeError("the host was not started")
+        return self.process.pid
+
     def signal(self, number: int) -> None:
         """Send the process a signal."""
-        os.kill(self.process.pid, number)
+        os.kill(self.pid, number)
+
+    def end(self) -> int | None:
+        """Have it end by itself; its exit code."""
+        self._line.close()
+        self.process.join()
+        return self.process.exitcode
 
 
 def eventually(condition: Callable[[], bool], what: str) -> None:

@@ -11,6 +11,8 @@ import time
 from types import TracebackType
 from typing import Self
 
+from ...real_time import ask_for_real_time
+
 if sys.platform != "win32":
     import tty
 
@@ -26,6 +28,7 @@ class Overheard:
         self._host, self._kept = os.openpty()
         # Kept open: a port that hangs up would tell the device that the host has gone.
         tty.setraw(self._kept)
+        os.set_blocking(self._host, False)
         self.port = os.ttyname(self._kept)
         self.said: list[tuple[float, bytes]] = []
         """What the host said, with the time (s, monotonic) at which it was heard."""
@@ -48,6 +51,8 @@ class Overheard:
             os.close(descriptor)
 
     def _pass_on(self) -> None:
+        # Whoever measures shall not be late itself.
+        ask_for_real_time()
         while not self._over.is_set():
             ready, _, _ = select.select([self._host, self._device], [], [], LOOK_SECONDS)
             if self._host in ready:
@@ -55,6 +60,7 @@ class Overheard:
                 self.said.append((time.monotonic(), heard))
                 os.write(self._device, heard)
             if self._device in ready:
-                # A host that is gone leaves what nobody reads.
+                said = os.read(self._device, 4096)
+                # Nobody reads between two hosts: what has no room is lost.
                 with contextlib.suppress(BlockingIOError):
-                    os.write(self._host, os.read(self._device, 4096))
+                    os.write(self._host, said)

@@ -4,11 +4,23 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
-from ...simulated_process import SimulatedDevice
+from ...hand.plant import Vector
 from ..target import ABOVE, DEEP
 from .host import Host, eventually
+
+
+class Hand(Protocol):
+    """A device that is told where its hand goes, and tells what it feels."""
+
+    port: str
+
+    def move_hand(self, position: Vector, seconds: float) -> None:
+        """Bring the hand to `position` (m) in `seconds`."""
+
+    def report(self) -> dict[str, Any]:
+        """Present state (see `SimulatedDevice.report`)."""
 
 
 @dataclass(frozen=True)
@@ -27,7 +39,7 @@ FELT = 0.3
 PRESSES = 5
 
 
-def press(host: Host, hand: SimulatedDevice, way: Way = INTO_THE_CUBE) -> None:
+def press(host: Host, hand: Hand, way: Way = INTO_THE_CUBE) -> None:
     """Bring the hand into the cube, out of it first.
 
     A machine that is held up meanwhile has the probe set down inside of the body: then again.

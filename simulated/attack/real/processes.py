@@ -6,13 +6,15 @@ import itertools
 import signal
 import time
 from collections import Counter
+from collections.abc import Callable
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from typing import Any
 
 from ...simulated_process import SimulatedDevice
 from ..table import Row, counted
 from .host import Host, device, eventually
-from .pressing import press, strength
+from .pressing import Hand, press, strength
 from .servo_host import RAMP_SECONDS
 
 STOPPED_SECONDS = 1.0
@@ -21,6 +23,9 @@ BURST_SECONDS = 0.050
 RELEASE_SECONDS = 0.6
 PERIOD = 1e-3
 WATCHDOG_SECONDS = 0.020
+SUSPENDED = f"SIGSTOP for {STOPPED_SECONDS:g} s, SIGCONT"
+KILLED = "SIGKILL"
+UNPLUGGED = "the plug pulled, and put back"
 ROUNDING = 1e-9
 DAMPING = 5e-3
 """What the coupling of devices with motors adds to the body's own force while nobody moves, N."""
@@ -89,7 +94,7 @@ def device_problems(report: dict[str, Any]) -> list[str]:
     return found
 
 
-def suspend(host: Host, hand: SimulatedDevice, seconds: float = STOPPED_SECONDS) -> Suspension:
+def suspend(host: Host, hand: Hand, seconds: float = STOPPED_SECONDS) -> Suspension:
     """Stop a host in the middle of a press by a signal, and let it go on."""
     press(host, hand)
     host.samples()
@@ -107,12 +112,12 @@ def suspend(host: Host, hand: SimulatedDevice, seconds: float = STOPPED_SECONDS)
     return Suspension(ticks[:cut], ticks[cut:], counted, meanwhile)
 
 
-def kill(port: str, hand: SimulatedDevice) -> dict[str, Any]:
+def kill(port: str, hand: Hand) -> dict[str, Any]:
     """Kill a host in the middle of a press; what the device then says."""
     with Host(port) as host:
         press(host, hand)
         host.signal(signal.SIGKILL)
-        host.process.wait()
+        host.process.join()
     eventually(lambda: bool(hand.report()["limp"]), "the device goes limp")
     return hand.report()
 
@@ -144,7 +149,7 @@ def suspended_row(times: int) -> Row:
         all_of_them = [suspend(host, hand) for _ in range(times)]
     broken = Counter(problem for one in all_of_them for problem in one.problems())
     return Row(
-        injected=f"SIGSTOP for {STOPPED_SECONDS:g} s, SIGCONT",
+        injected=SUSPENDED,
         times=times,
         told="suspended",
         force=max(t["output"] for one in all_of_them for t in one.after if t["state"] == "fault"),
@@ -155,17 +160,19 @@ def suspended_row(times: int) -> Row:
     )
 
 
-def killed_row(times: int) -> Row:
+def killed_row(
+    times: int, injected: str = KILLED, place: Callable[[], AbstractContextManager[Hand]] = device
+) -> Row:
     """SIGKILL: nobody says a last word."""
     reports = []
-    with device() as hand:
+    with place() as hand:
         for _ in range(times):
             reports.append(kill(hand.port, hand))
             # The simulated port lets the next host in when the last one has been silent for long.
             time.sleep(RELEASE_SECONDS)
     broken = Counter(problem for report in reports for problem in device_problems(report))
     return Row(
-        injected="SIGKILL",
+        injected=injected,
         times=times,
         told="(no host)",
         note=_limp(reports),
@@ -186,7 +193,7 @@ def unplugged_row(times: int) -> Row:
             broken.update(["force without a device"] if any(faulty) else [])
         broken.update([] if host.report()["faults"]["unplugged"] == times else ["not counted"])
     return Row(
-        injected="the plug pulled, and put back",
+        injected=UNPLUGGED,
         times=times,
         told="unplugged",
         force=most,
@@ -195,6 +202,7 @@ def unplugged_row(times: int) -> Row:
     )
 
 
-def process_rows(times: int = 4) -> list[Row]:
+def process_rows(times: int, wanted: Callable[[str], bool]) -> list[Row]:
     """Rows of hosts that are stopped, killed and unplugged; some seconds for each of `times`."""
-    return [suspended_row(times), killed_row(times), unplugged_row(times)]
+    rows = {SUSPENDED: suspended_row, KILLED: killed_row, UNPLUGGED: unplugged_row}
+    return [row(times) for injected, row in rows.items() if wanted(injected)]

@@ -1,14 +1,12 @@
 """A process that touches a small cube with the device at a port: to be stopped, or killed.
 
-It is told the port and the kind of device, link or haply, and reads lines: ``report`` prints state
-and fault counters, ``samples`` all ticks since the last time, a line of JSON each. It ends with its
-standard input.
+It is asked on a pipe: ``report`` for state and fault counters, ``samples`` for all ticks since the
+last time. It ends with the pipe.
 """
 
 from __future__ import annotations
 
-import json
-import sys
+from multiprocessing.connection import Connection
 from typing import Any
 
 import numpy as np
@@ -52,14 +50,16 @@ def report(servo: Servo) -> dict[str, Any]:
     }
 
 
-def main() -> int:
-    """Touch until standard input ends."""
+def touch(line: Connection, port: str, kind: str) -> None:
+    """Touch with the device at `port`, a haply or one that speaks the link, until nobody asks."""
     with Servo(cube(), Settings(YOUNG_MODULUS), ramp_seconds=RAMP_SECONDS) as servo:
-        if "haply" in sys.argv[2:]:
-            servo.start(HaplyDevice(sys.argv[1], rotation=UPRIGHT, translation=TOP))
+        if kind == "haply":
+            servo.start(HaplyDevice(port, rotation=UPRIGHT, translation=TOP))
         else:
-            servo.start(LinkDevice(sys.argv[1]))
-        for line in sys.stdin:
-            answer = samples(servo) if line.strip() == "samples" else report(servo)
-            print(json.dumps(answer), flush=True)
-    return 0
+            servo.start(LinkDevice(port))
+        while True:
+            try:
+                asked = line.recv()
+            except EOFError:
+                return
+            line.send(samples(servo) if asked == "samples" else report(servo))

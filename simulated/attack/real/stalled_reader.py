@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 
 from ....core.servo.session import Pointer, Servo
 from ....core.servo.settings import Settings
@@ -13,6 +14,7 @@ from .host import eventually
 PERIOD = 1e-3
 RING_TICKS = 100
 STOPPED_SECONDS = 1.0
+STALLED = f"no reader for {STOPPED_SECONDS:g} s, ring full"
 
 
 def stalled_reader_row(seconds: float = STOPPED_SECONDS) -> Row:
@@ -35,9 +37,14 @@ def stalled_reader_row(seconds: float = STOPPED_SECONDS) -> Row:
     if end["samples_lost"] != end["ticks"] - RING_TICKS:
         broken.append("samples not counted")
     return Row(
-        injected=f"no reader for {seconds:g} s, ring full",
+        injected=STALLED,
         times=1,
         told=shot.state,
         note=f"{gone} periods, longest tick {last['busy_us']['max']:.0f} us",
         broken=tuple(broken),
     )
+
+
+def stalled_reader_rows(wanted: Callable[[str], bool]) -> list[Row]:
+    """That row, if it is wanted."""
+    return [stalled_reader_row()] if wanted(STALLED) else []
