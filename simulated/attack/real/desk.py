@@ -99,7 +99,7 @@ class Desk:
         return [word for word in WORDS[self.kind](list(self.line.said)) if word.time >= since]
 
     def held_up_ms(self, begin: float) -> float:
-        """How long this computer held up bytes beside this line soon after a time, at the longest."""
+        """How long this computer held up bytes beside this line soon after a time."""
         end = begin + WATCHED_SECONDS
         time.sleep(max(0.0, end + ARRIVAL_SECONDS - time.monotonic()))
         return self.pulse.longest_ms(begin, end)
