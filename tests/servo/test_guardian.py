@@ -3,11 +3,15 @@
 import os
 import signal
 import sys
+import time
+from dataclasses import dataclass
 
 import pytest
 
 from palpate.simulated.attack.real import guardians, lost_guardians, processes
 from palpate.simulated.attack.real.desk import KINDS, desk
+from palpate.simulated.attack.real.host import NotReachedError
+from palpate.simulated.attack.real.pulse import Pulse
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="looks for processes in /proc")
 
@@ -44,6 +48,44 @@ def test_a_host_that_goes_on_has_its_port_back():
         suspension = processes.suspend(host, hand, 0.1)
         assert suspension.problems() == []
         processes.press(host, hand)
+
+
+@dataclass
+class Tried:
+    held_up_ms: float
+
+
+def test_what_the_computer_held_up_is_not_judged_and_tried_again():
+    coming = iter([9.0, 1.0, None, 7.0, 2.0, 3.0])
+
+    def once():
+        held_up_ms = next(coming)
+        if held_up_ms is None:
+            raise NotReachedError("nothing was pressed")
+        return Tried(held_up_ms)
+
+    tried = guardians.trials(3, once)
+    assert [one.held_up_ms for one in tried.judged] == [1.0, 2.0, 3.0]
+    assert tried.held_up == 3
+    assert "3 more not judged" in tried.note
+
+
+def test_where_nothing_can_be_judged_the_row_says_so():
+    tried = guardians.trials(2, lambda: Tried(50.0))
+    assert not tried.judged
+    row = guardians.ending_row("a signal", "(no host)", [], float("inf"), tried.note)
+    assert "this computer was held up: not judged" in row.broken
+
+
+def test_a_line_beside_tells_how_long_bytes_take():
+    with Pulse() as pulse:
+        begin = time.monotonic()
+        time.sleep(0.1)
+        end = time.monotonic()
+        time.sleep(0.05)
+    assert 1.0 < pulse.longest_ms(begin, end) < 1e3 * (end - begin)
+    # Nothing came in an hour that is not over.
+    assert pulse.longest_ms(end, end + 3600.0) > 3.5e6
 
 
 @pytest.mark.parametrize("number", lost_guardians.SIGNALS, ids=lambda number: number.name)

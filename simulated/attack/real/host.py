@@ -85,12 +85,16 @@ class Host:
         return self.process.exitcode
 
 
+class NotReachedError(PalpateError):
+    """Something that was waited for did not come."""
+
+
 def eventually(condition: Callable[[], bool], what: str) -> None:
-    """Wait for something; PalpateError when it does not come."""
+    """Wait for something; NotReachedError when it does not come."""
     deadline = time.monotonic() + PATIENCE_SECONDS
     while not condition():
         if time.monotonic() > deadline:
-            raise PalpateError(
+            raise NotReachedError(
                 "attack: waited {seconds:g} s in vain until {what}; give this computer less to do, "
                 "and try again",
                 seconds=PATIENCE_SECONDS,
