@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ...core.errors import PalpateError
-from .real.firmware_rows import firmware_rows
+from .real.firmware import firmware_rows
 from .real.guardians import guardian_rows
 from .real.lost_guardians import lost_guardian_rows
 from .real.processes import process_rows

@@ -1,15 +1,27 @@
-"""The firmware for boards (`firmware/host/main.cpp`, compiled) as a device for a real host."""
+"""The firmware for boards (`firmware/host/main.cpp`, compiled) beside a host that ends: what it is
+told, and its own watchdog.
+"""
 
 from __future__ import annotations
 
 import json
 import subprocess
+from collections.abc import Callable
+from contextlib import AbstractContextManager
+from functools import partial
 from pathlib import Path
 from types import TracebackType
 from typing import IO, Any, Self
 
 from ....core.errors import PalpateError
 from ...hand.plant import Vector
+from ..table import Row
+from ..target import ABOVE
+from .desk import Desk, desk
+from .guardians import ending_rows
+from .processes import KILLED, killed_row
+
+NAME = "firmware"
 
 
 class FirmwareBoard:
@@ -74,6 +86,19 @@ class FirmwareBoard:
         if not line:
             raise PalpateError("the board's program has ended; run it by hand to see what it says")
         return line
+
+
+def firmware_rows(program: Path, times: int, wanted: Callable[[str], bool]) -> list[Row]:
+    """Rows of hosts that end while they press with `program` (see `FirmwareBoard`)."""
+
+    def place() -> AbstractContextManager[Desk]:
+        return desk("link", FirmwareBoard(program, ABOVE))
+
+    injected = f"{KILLED}, {NAME}"
+    rows = ending_rows(place, NAME, times, wanted)
+    if wanted(injected):
+        rows.append(killed_row(times, injected, partial(FirmwareBoard, program, ABOVE)))
+    return rows
 
 
 def _pipe(stream: IO[str] | None) -> IO[str]:
