@@ -1,4 +1,6 @@
-"""The scenes about fingers: a pinch with two of them, a fingertip with a radius, kept dents."""
+"""The scenes about fingers: a pinch with two of them, a fingertip with a radius, kept dents, what
+stays in clay, and a baked animation.
+"""
 
 import bodies
 import bpy
@@ -23,6 +25,8 @@ FRAMES = (1, 20, 40, 60)
 # A finger's end, and the place on the mouse's back where it comes down, metres.
 FINGER_RADIUS, FINGER_LENGTH = 0.008, 0.045
 BACK, FINGER_DEPTH, FINGER_LIFT = (-0.018, -0.006, 0.0595), 0.009, 0.03
+# A thumb's print on a cube's top: x, y and radius, metres; frames from one sample to the next.
+THUMB, BAKED_STEP = (0.0, -0.012, 0.009), 3
 SKIN = (0.80, 0.50, 0.38)
 
 
@@ -104,6 +108,61 @@ def keep_dents() -> None:
     scene.frame_set(FRAMES[1])
 
 
+def imprint_scene() -> list[bpy.types.Object]:
+    """Two cubes that yield: clay keeps what is pressed into it, memory foam forgets it."""
+    scene = studio.empty_scene("Imprint")
+    cubes = []
+    for name, x, forget in (("Clay", -APART, 0.0), ("Foam", APART, 0.5)):
+        cube = scenes.paper_cube(scene, name)
+        cube.location.x = x
+        cube.palpate.yield_depth, cube.palpate.forget_time = 0.0005, forget
+        cubes.append(cube)
+    _show(scene, cubes)
+    return cubes
+
+
+def keep_imprints() -> None:
+    """Three fingertips and a thumb in clay, and a thumb in foam, which fades."""
+    stroke = bpy.ops.palpate.stroke
+    for name, prints in (
+        ("Clay", ((-0.013, 0.010, 0.006), (0.0, 0.013, 0.006), (0.013, 0.010, 0.006), THUMB)),
+        ("Foam", (THUMB,)),
+    ):
+        cube = bpy.data.objects[name]
+        bpy.context.view_layer.objects.active = cube
+        for x, y, radius in prints:
+            place = (cube.location.x + x, y, scenes.CUBE_EDGE)
+            stroke(motion="PUSH", place=place, radius=radius, depth=0.007)
+
+
+def animated_scene() -> list[bpy.types.Object]:
+    """A cube, and a finger that comes down on it, goes along and leaves."""
+    scene = studio.empty_scene("Animated")
+    cube = scenes.paper_cube(scene, "Animated")
+    empty = leading_empty(scene, "Finger", FINGER_RADIUS)
+    top = scenes.CUBE_EDGE + FINGER_RADIUS
+    for frame, (x, height) in zip(
+        FRAMES, ((-0.012, 0.02), (-0.012, -0.008), (0.012, -0.008), (0.012, 0.02)), strict=True
+    ):
+        empty.location = (x, 0.0, top + height)
+        empty.keyframe_insert("location", frame=frame)
+    finger = studio.link(scene, "Finger Skin", finger_mesh())
+    finger.parent = empty
+    finger.hide_select = True
+    chosen = scene.palpate
+    chosen.tip, chosen.tip_radius, chosen.source_empty = "SPHERE", FINGER_RADIUS, empty
+    _show(scene, [cube])
+    return [cube]
+
+
+def bake_animation() -> None:
+    """What the finger does, as a point cache beside the scene, which plays without Palpate."""
+    bpy.context.scene.palpate.source = "EMPTY"
+    if bpy.ops.palpate.press_frames(step=BAKED_STEP) != {"FINISHED"}:
+        raise RuntimeError("Animated: Bake Animation did not finish")
+    bpy.context.scene.frame_set(FRAMES[1] + 10)
+
+
 def fingertip_scene() -> list[bpy.types.Object]:
     """The plush mouse, and a finger that an Empty leads onto its back."""
     scene = studio.empty_scene("Fingertip")
@@ -180,5 +239,5 @@ def keyframes(
 def tets() -> dict[str, bodies.Tets]:
     """The stored tetrahedra of each object of these scenes."""
     cube = bodies.cube_tets()
-    cubes = dict.fromkeys(("Nodes", "Triangles", "Dents", "Poke"), cube)
+    cubes = dict.fromkeys(("Nodes", "Triangles", "Dents", "Poke", "Clay", "Foam", "Animated"), cube)
     return {**cubes, "Mouse": bodies.stored_tets("mouse")}

@@ -2,7 +2,8 @@
 
 BLENDER_PYTHON has the bpy module; use that of the oldest Blender we support, since newer ones read
 older files. The body files that appear in `palpate/` beside the scenes are not kept: the tetrahedra
-are inside the .blend, and Rebuild Body makes the same body from them.
+are inside the .blend, and Rebuild Body makes the same body from them. The cache that a scene plays
+is kept there.
 """
 
 import argparse
@@ -39,6 +40,8 @@ def main() -> int:
             "drumstick": (lambda: [scenes.drumstick_scene()], None),
             "pinch": (finger_scenes.pinch_scene, finger_scenes.keep_pinches),
             "dents": (finger_scenes.dents_scene, finger_scenes.keep_dents),
+            "imprint": (finger_scenes.imprint_scene, finger_scenes.keep_imprints),
+            "animated": (finger_scenes.animated_scene, finger_scenes.bake_animation),
             "fingertip": (finger_scenes.fingertip_scene, None),
             "large": (lambda: [large_scene.hare_scene()], None),
         }.items():
@@ -63,11 +66,7 @@ def _options() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--package", type=Path, required=True, help="the extension's zip")
     parser.add_argument("--output", type=Path, default=HERE)
-    parser.add_argument(
-        "--only",
-        choices=["cube", "mouse", "drumstick", "pinch", "dents", "fingertip", "large"],
-        help="make this one alone",
-    )
+    parser.add_argument("--only", metavar="NAME", help="make this one alone")
     return parser.parse_args()
 
 

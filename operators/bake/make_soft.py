@@ -5,10 +5,13 @@ import bpy
 from ...core.bake.steps import BakeReport
 from ...core.body.soft_body import SoftBody
 from ...core.errors import CancelledError, PalpateError
+from ...core.sentence import Sentence
+from ...core.softness.scales.for_size import material_for
 from ...core.softness.scales.materials import MATERIALS
 from ..object import soft_object
 from ..reporting.acting import Acting
 from ..reporting.translated import reported, shown
+from ..scene.drawn_surface import metres_per_unit
 from ..scene.modal_progress import ModalProgress
 from ..session import press_session
 from . import bake_session, bake_words
@@ -141,11 +144,41 @@ class PALPATE_OT_make_soft(BakingOperator, bpy.types.Operator):
 
     def _start(self, context: bpy.types.Context) -> set[str]:
         self._choose(context.object)
+        self._tell_material(context.object, suit_to_size(context.object, context.scene))
         return super()._start(context)
 
     def _choose(self, thing: bpy.types.Object) -> None:
         if self.material != AS_SET:
             thing.palpate.material = self.material
+
+    def _tell_material(self, thing: bpy.types.Object, size: float | None) -> None:
+        if size is not None:
+            self.report(
+                {"INFO"},
+                reported(
+                    "{name} measures {size:.2g} m, which {material} suits. "
+                    "Material chooses otherwise",
+                    name=thing.name,
+                    size=size,
+                    material=Sentence(MATERIALS[thing.palpate.material].name),
+                ),
+            )
+
+
+def suit_to_size(thing: bpy.types.Object, scene: bpy.types.Scene) -> float | None:
+    """Choose the material of an object without a body by its size, where nobody has said what it is
+    made of; returns the size, metres, or None where nothing was changed.
+    """
+    settings = thing.palpate
+    said = ("material", "young_modulus", "poisson_ratio")
+    if settings.body_key or any(map(settings.is_property_set, said)):
+        return None
+    size = metres_per_unit(scene) * float(thing.dimensions.length)
+    suits = material_for(size)
+    if suits == settings.material:
+        return None
+    settings.material = suits
+    return size
 
 
 classes = (PALPATE_OT_make_soft,)

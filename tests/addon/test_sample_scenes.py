@@ -56,10 +56,13 @@ def test_a_sample_scene_only_lacks_its_body_file(palpate, tmp_path, name):
         ("pinch", ("Nodes", "Triangles"), 1),
         ("dents", ("Dents", "Poke"), 20),
         ("dents", ("Dents", "Poke"), 37),
+        ("imprint", ("Clay", "Foam"), 1),
+        ("animated", ("Animated",), 30),
     ],
 )
 def test_a_scene_plays_without_palpate(palpate, tmp_path, name, objects, frame):
     shutil.copyfile(SCENES / f"{name}.blend", tmp_path / "copy.blend")
+    shutil.copytree(SCENES / "palpate", tmp_path / "palpate")
     bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "copy.blend"))
     things = [bpy.data.objects[one] for one in objects]
     layers = part("operators.layer.layers")
@@ -73,6 +76,21 @@ def test_a_scene_plays_without_palpate(palpate, tmp_path, name, objects, frame):
     for one in objects:
         assert np.abs(here[one] - rest[one]).max() > 1e-3
         assert np.abs(here[one] - alone[one]).max() <= 1e-6
+
+
+def test_clay_keeps_what_foam_forgets(palpate, tmp_path):
+    shutil.copyfile(SCENES / "imprint.blend", tmp_path / "copy.blend")
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "copy.blend"))
+    left = {}
+    for frame in (1, 13, 60):
+        bpy.context.scene.frame_set(frame)
+        for name in ("Clay", "Foam"):
+            thing = bpy.data.objects[name]
+            left[name, frame] = np.abs(seen_places(thing) - rest_places(thing)).max()
+    assert left["Clay", 60] == left["Clay", 1] > 4e-3
+    # A time constant of half a second, at 24 frames a second.
+    assert left["Foam", 13] == pytest.approx(np.exp(-1.0) * left["Foam", 1], rel=1e-3)
+    assert left["Foam", 60] < 0.01 * left["Foam", 1]
 
 
 def test_the_bone_in_the_drumstick_is_felt_and_only_where_it_is(palpate, tmp_path):
