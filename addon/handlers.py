@@ -17,6 +17,7 @@ from ..operators.scene import modal_stay
 from ..operators.scene.package_preferences import preferences
 from ..operators.session import press_session
 from ..operators.session.press_events import Moment
+from ..operators.tool import hull
 from ..operators.tool.tool_sizes import keep_exact_sizes
 from . import known_status
 from .inspection import body_view
@@ -38,6 +39,7 @@ def _forget() -> None:
     known_status.forget()
     body_view.forget()
     live_pressers.forget()
+    hull.forget()
 
 
 @persistent
@@ -112,17 +114,19 @@ def _after_failed_save(*_: object) -> None:
 
 
 @persistent
-def _after_change(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+def _after_change(_: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     known_status.changed(depsgraph)
     updates = depsgraph.updates
     body_view.changed(depsgraph)
+    live_pressers.changed(depsgraph)
     if any(update.is_updated_transform for update in updates):
-        live_pressers.follow_all(scene)
+        live_pressers.follow_all(depsgraph)
 
 
 @persistent
-def _after_frame_change(scene: bpy.types.Scene, *_: object) -> None:
-    live_pressers.follow_all(scene)
+def _after_frame_change(_: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+    live_pressers.changed(depsgraph)
+    live_pressers.follow_all(depsgraph)
 
 
 def _before_exit() -> None:

@@ -24,9 +24,8 @@ from ..shape.drawn_shape import closing_shape
 from ..traction.drawn_traction import patches_of, tractions_of
 from . import frame_keys, live_pressers, mesh_cache
 from .force_table import FrameRows
-from .imprinted_frames import imprinted
 from .keeping import ITEMS, KEEPERS, Baking, collected
-from .pressed_frames import PressedFrame, frame_kept, press_frames
+from .pressed_frames import PressedFrame, frame_kept, imprinted, press_frames
 
 MOST_KEYS = 2000
 # Seconds of pressing between two looks at the keyboard.

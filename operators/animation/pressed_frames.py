@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import bpy
 import numpy as np
@@ -12,8 +12,10 @@ from numpy.typing import NDArray
 
 from ...core.contact.press import ContactSettings, Press
 from ...core.contact.touches import Touch
+from ...core.imprint.yielding import Yielding
 from ...core.shape.meeting import settled
 from ...core.shape.shapes import Shape
+from ..imprint.surface_imprint import SurfaceImprint
 from ..layer import place_marks
 from ..object.drawn_body import DrawnBody
 from ..place import touched_place
@@ -47,14 +49,13 @@ class AnimatedPress:
     """
 
     thing: bpy.types.Object
-    scene: bpy.types.Scene
     drawn: DrawnBody
     shape: Shape
     _pressers: list[Presser] = field(default_factory=list)
     _press: Press | None = None
 
-    def now(self) -> PressedFrame:
-        """Result of the scene as it is.
+    def now(self, graph: bpy.types.Depsgraph) -> PressedFrame:
+        """Result of the scene as a graph has it.
 
         Raises
         ------
@@ -62,25 +63,25 @@ class AnimatedPress:
             A presser cannot press, nothing leads one, or their forces do not settle.
         """
         chosen = self.thing.palpate
-        found = pressers_of(self.thing, self.scene, self.drawn)
+        found = pressers_of(self.thing, graph, self.drawn)
         if self._press is None or not _same_tools(found, self._pressers):
             settings = ContactSettings(chosen.young_modulus, chosen.static_friction)
             self._press = Press(self.drawn.body, [one.tool for one in found], settings)
             self._pressers = found
-        touches = self._press.to([one.pose(self.scene, self._frame_at(one)) for one in found])
+        touches = self._press.to([one.pose(self._frame_at(one, graph)) for one in found])
         loads = loads_of(touches)
         moved = None
         if loads:
             met = settled(self.drawn.body, self.shape, loads, chosen.young_modulus)
             moved = self.drawn.drawn_displacement(met.displacements, pressing_tools(touches))
-        return PressedFrame(self.scene.frame_current, touches, moved)
+        return PressedFrame(graph.scene.frame_current, touches, moved)
 
-    def _frame_at(self, presser: Presser) -> BodyFrame:
+    def _frame_at(self, presser: Presser, graph: bpy.types.Depsgraph) -> BodyFrame:
         """Local frame of what is seen nearest to a presser; the body's where nothing is posed."""
         frame = self.drawn.frame
         if not place_marks.hung(self.thing):
             return frame
-        return touched_place.nearest(self.thing, frame, presser.place).frame(frame)
+        return touched_place.nearest(self.thing, frame, presser.place, graph).frame(frame)
 
 
 def press_frames(
@@ -91,10 +92,25 @@ def press_frames(
     shape: Shape,
 ) -> Iterator[PressedFrame]:
     """Lead the pressers through these frames, one result each; errors as of `AnimatedPress.now`."""
-    press = AnimatedPress(thing, scene, drawn, shape)
+    press = AnimatedPress(thing, drawn, shape)
     for frame in frames:
         scene.frame_set(frame)
-        yield press.now()
+        yield press.now(bpy.context.evaluated_depsgraph_get())
+
+
+def imprinted(
+    pressed: Iterable[PressedFrame], law: Yielding, drawn: DrawnBody, frames_per_second: float
+) -> Iterator[PressedFrame]:
+    """The frames of a body that yields, in their order: an imprint depends on all before it.
+
+    Tools meet the surface at rest, and press it by forces of the elastic body: an imprint changes
+    what is seen, not what is felt.
+    """
+    imprint = SurfaceImprint(drawn.frame)
+    for here in pressed:
+        moved = np.zeros_like(drawn.rest) if here.moved is None else here.moved
+        seen = imprint.seen(law, moved, here.frame / frames_per_second)
+        yield replace(here, moved=seen if seen.any() else None)
 
 
 def _same_tools(found: Sequence[Presser], before: Sequence[Presser]) -> bool:

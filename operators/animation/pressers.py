@@ -17,6 +17,7 @@ from ...core.contact.tool.pose import Pose
 from ...core.contact.tool.tools import Tool
 from ...core.errors import PalpateError
 from ..object.drawn_body import DrawnBody
+from ..place.evaluation import evaluated
 from ..scene.body_frame import BodyFrame
 from ..scene.drawn_surface import metres_per_unit
 from ..tool import hull, tool_turn
@@ -25,57 +26,74 @@ from ..tool.finger_tip import chosen_tip
 
 @dataclass(frozen=True, eq=False)
 class Presser:
-    """Tool that moves with an object, and turns with ``turner``."""
+    """Tool where an object is.
+
+    Attributes
+    ----------
+    place : float64 (3,), world coordinates.
+    axes : float64 (3, 3), the rotation of its axes in the world.
+    """
 
     tool: Tool
-    guide: bpy.types.Object
-    turner: bpy.types.Object
+    place: NDArray[np.float64]
+    axes: NDArray[np.float64]
 
-    @property
-    def place(self) -> NDArray[np.float64]:
-        """Where it is, (3,), world coordinates."""
-        return np.array(self.guide.matrix_world)[:3, 3]
+    @classmethod
+    def at(cls, tool: Tool, guide: bpy.types.Object, turner: bpy.types.Object) -> Presser:
+        """The tool where ``guide`` is, turned as ``turner``; both evaluated."""
+        place = np.array(guide.matrix_world, dtype=np.float64)[:3, 3]
+        return cls(tool, place, tool_turn.axes_of(turner))
 
-    def pose(self, scene: bpy.types.Scene, body: BodyFrame) -> Pose:
-        """Present pose in the body's coordinates."""
-        return Pose(body.body_from_world(self.place), tool_turn.as_object(self.turner, scene, body))
+    def pose(self, body: BodyFrame) -> Pose:
+        """Its pose in the body's coordinates."""
+        return Pose(body.body_from_world(self.place), body.rotation.T @ self.axes)
 
 
-def pressers_of(thing: bpy.types.Object, scene: bpy.types.Scene, drawn: DrawnBody) -> list[Presser]:
-    """Pressers of a soft object, as they are now.
+def pressers_of(
+    thing: bpy.types.Object, graph: bpy.types.Depsgraph, drawn: DrawnBody
+) -> list[Presser]:
+    """Pressers of a soft object where a graph has them.
 
     Raises
     ------
     PalpateError
         One of them cannot press, or there is none.
     """
+    scene = graph.scene
     if thing.palpate.pressers is not None:
-        return [_of_object(one, thing, scene) for one in thing.palpate.pressers.all_objects]
-    tool = chosen_tip(scene, thing, drawn.size).tool
+        return [_of_object(one, thing, graph) for one in thing.palpate.pressers.all_objects]
+    tool = chosen_tip(scene, thing, drawn.size, graph).tool
     if tool is None:
         raise PalpateError(
             "finger: a point has no shape to press along an animation; choose Fingertip, Plate, "
             "Rod or Mesh"
         )
     turner = tool_turn.guide_of(scene) if scene.palpate.tip_turn == "OBJECT" else None
-    return [Presser(tool, guide, turner or guide) for guide in _leading_objects(scene)]
+    guides = [evaluated(guide, graph) for guide in _leading_objects(scene)]
+    turned = None if turner is None else evaluated(turner, graph)
+    return [Presser.at(tool, guide, turned or guide) for guide in guides]
 
 
-def _of_object(one: bpy.types.Object, thing: bpy.types.Object, scene: bpy.types.Scene) -> Presser:
+def _of_object(
+    one: bpy.types.Object, thing: bpy.types.Object, graph: bpy.types.Depsgraph
+) -> Presser:
+    scene = graph.scene
     if one == thing:
         raise PalpateError(
             "pressers: {name} cannot press itself; take it out of the collection", name=thing.name
         )
     if one.type == "EMPTY":
-        scale = float(np.cbrt(abs(np.linalg.det(np.array(one.matrix_world)[:3, :3]))))
-        radius = one.empty_display_size * scale * metres_per_unit(scene)
-        return Presser(tools.sphere(radius), one, one)
+        seen = evaluated(one, graph)
+        scale = float(np.cbrt(abs(np.linalg.det(np.array(seen.matrix_world)[:3, :3]))))
+        radius = seen.empty_display_size * scale * metres_per_unit(scene)
+        return Presser.at(tools.sphere(radius), seen, seen)
     if one.type != "MESH":
         raise PalpateError(
             "pressers: {name} is neither a mesh nor an Empty; take it out of the collection",
             name=one.name,
         )
-    return Presser(convex(hull.hull_of(one, scene).corners), one, one)
+    seen = evaluated(one, graph)
+    return Presser.at(convex(hull.hull_of(one, scene, graph).corners), seen, seen)
 
 
 def _leading_objects(scene: bpy.types.Scene) -> tuple[bpy.types.Object, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from pathlib import Path
 
 import bpy
@@ -21,7 +21,9 @@ from ..layer import layers
 from ..scene import drawn_surface, ray
 from ..scene.body_frame import BodyFrame
 from ..scene.drawn_surface import DrawnSurface
+from ..scene.object_handle import ObjectHandle
 from . import body_store, kept_body, pin_change, soft_object
+from .embedded_body import embedded
 from .hung_map import hung_on
 from .soft_object import BodyStatus, Fit
 
@@ -141,12 +143,28 @@ class DrawnBody:
 
 def restores_quickly(thing: bpy.types.Object) -> bool:
     """Whether a missing body is restored so quickly that no progress or Escape is needed."""
-    return bool(bpy.app.background or thing.palpate.free_surface_count <= MOST_NODES_AT_ONCE)
+    return bpy.app.background or _is_small(ObjectHandle.of(thing), thing.palpate.body_key)
 
 
-def open_body(thing: bpy.types.Object, scene: bpy.types.Scene) -> DrawnBody:
+# A panel asks as often as it is drawn.
+@lru_cache(maxsize=8)
+def _is_small(handle: ObjectHandle, _key: str) -> bool:
+    """Counted of the tetrahedra: a file can say any number of them."""
+    try:
+        within = embedded(handle.find())
+    except PalpateError:
+        # There is nothing to compute, and Press says why.
+        return True
+    free = np.setdiff1d(within.mesh.surface_nodes, within.fixed)
+    return len(free) <= MOST_NODES_AT_ONCE
+
+
+def open_body(
+    thing: bpy.types.Object, scene: bpy.types.Scene, *, as_stored: bool = False
+) -> DrawnBody:
     """Load an object's body if it fits; a missing one of usual size is recomputed at once, and
-    added pins are applied where that needs no bake.
+    added pins are applied where that needs no bake. With ``as_stored`` nothing is computed and no
+    file is written: for handlers, which nobody asked to.
 
     Raises
     ------
@@ -159,7 +177,7 @@ def open_body(thing: bpy.types.Object, scene: bpy.types.Scene) -> DrawnBody:
     surface = body_source.read_again(thing, scene)
     status = soft_object.with_file(thing, soft_object.mesh_status(thing, surface))
     soft_object.refuse_changed(thing, status)
-    body = _body(thing, surface, status)
+    body = _stored(thing, status) if as_stored else _body(thing, surface, status)
     rest = drawn_surface.rest_coordinates(layers.drawn_mesh(thing))
     places = rest.reshape(-1, 3).astype(np.float64)
     return DrawnBody(
@@ -169,6 +187,21 @@ def open_body(thing: bpy.types.Object, scene: bpy.types.Scene) -> DrawnBody:
         frame=surface.frame,
         file=body_store.locate(thing),
     )
+
+
+def _stored(thing: bpy.types.Object, status: BodyStatus) -> SoftBody:
+    """Body of the object as its file has it.
+
+    Raises
+    ------
+    PalpateError
+        There is none, or the pins are to be applied first.
+    """
+    if status.fit is Fit.READY and status.pins.quick and not status.changed:
+        raise PalpateError(
+            "{name}: the pins have changed since; press Update Pins", name=thing.name
+        )
+    return kept_body.load(thing)
 
 
 def _body(thing: bpy.types.Object, surface: DrawnSurface, status: BodyStatus) -> SoftBody:

@@ -18,6 +18,7 @@ from ..layer.layer_groups import AT, PRESSED, REST
 from ..scene.body_frame import BodyFrame
 from ..scene.drawn_surface import rest_coordinates
 from . import seen_triangle
+from .evaluation import evaluated
 from .seen_place import SeenPlace
 from .seen_triangle import SeenTriangle, outward_normal, turn_between
 
@@ -109,15 +110,21 @@ def under_ray(
     return _of(thing, frame, mesh, seen_triangle.first_on_ray(mesh, start, along))
 
 
-def nearest(thing: bpy.types.Object, frame: BodyFrame, at: Array) -> TouchedPlace:
-    """Place of an object nearest to a point (3,), world coordinates.
+def nearest(
+    thing: bpy.types.Object,
+    frame: BodyFrame,
+    at: Array,
+    graph: bpy.types.Depsgraph | None = None,
+) -> TouchedPlace:
+    """Place of an object nearest to a point (3,), world coordinates, as a graph has it; without one
+    as the view does.
 
     Raises
     ------
     PalpateError
-        It shows no face.
+        It shows no face, or is not shown at all.
     """
-    mesh = _evaluated(thing).data
+    mesh = evaluated(thing, graph or bpy.context.evaluated_depsgraph_get()).data
     place = _of(thing, frame, mesh, seen_triangle.nearest(mesh, _local(frame, at)))
     if place is None:
         raise PalpateError("{name} shows no face to touch; look at its modifiers", name=thing.name)

@@ -132,4 +132,4 @@ def _turn_of(
     leader = leader or empty
     if loop.tip.tool is None or leader is None or lead.lead is Lead.DEVICE:
         return None
-    return tool_turn.as_rows(tool_turn.as_object(leader, scene, drawn.frame))
+    return tool_turn.as_rows(tool_turn.as_object(leader, drawn.frame))

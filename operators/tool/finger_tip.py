@@ -46,8 +46,14 @@ class FingerTip:
         )
 
 
-def chosen_tip(scene: bpy.types.Scene, pressed: bpy.types.Object, size: float) -> FingerTip:
-    """Finger tip that the scene chooses for ``pressed``, a body of this ``size``, metres.
+def chosen_tip(
+    scene: bpy.types.Scene,
+    pressed: bpy.types.Object,
+    size: float,
+    graph: bpy.types.Depsgraph | None = None,
+) -> FingerTip:
+    """Finger tip that the scene chooses for ``pressed``, a body of this ``size``, metres; a mesh as
+    a graph has it, without one as the view does.
 
     Raises
     ------
@@ -68,12 +74,14 @@ def chosen_tip(scene: bpy.types.Scene, pressed: bpy.types.Object, size: float) -
                     "tool: {name} cannot press itself; choose another mesh as the tool",
                     name=pressed.name,
                 )
-            return _of_object(chosen.tip_object, scene)
+            return _of_object(chosen.tip_object, scene, graph)
     return FingerTip()
 
 
-def _of_object(thing: bpy.types.Object | None, scene: bpy.types.Scene) -> FingerTip:
+def _of_object(
+    thing: bpy.types.Object | None, scene: bpy.types.Scene, graph: bpy.types.Depsgraph | None
+) -> FingerTip:
     if thing is None or thing.name not in scene.objects:
         raise PalpateError("tool: no mesh object is chosen; pick one under Finger")
-    shape = hull.hull_of(thing, scene)
+    shape = hull.hull_of(thing, scene, graph)
     return FingerTip(convex(shape.corners), shape.remark)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ...core.errors import PalpateError
 from ...core.sentence import Sentence
-from ..scene.drawn_surface import frame_of
+from ..scene.drawn_surface import frame_of, polygons
 
 Array = NDArray[np.float64]
 
@@ -24,6 +24,11 @@ MOST_CORNERS = 64
 HOLLOW = 0.01
 # Share of its size below which a hull is flat.
 FLAT = 1e-3
+
+# Hulls made last, by their object, with the mesh that each is of: as long as that stays the same it
+# is not made again in every frame.
+_made: dict[int, tuple[tuple[NDArray[np.generic], ...], _LocalHull]] = {}
+MOST_KEPT = 64
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,8 +41,19 @@ class Hull:
     remark: str
 
 
-def hull_of(thing: bpy.types.Object, scene: bpy.types.Scene) -> Hull:
-    """Convex hull of an object with modifiers and scale.
+@dataclass(frozen=True, eq=False)
+class _LocalHull:
+    """Corners (k, 3), local units, and whether the mesh was smaller than its hull."""
+
+    corners: Array
+    hollow: bool
+
+
+def hull_of(
+    thing: bpy.types.Object, scene: bpy.types.Scene, graph: bpy.types.Depsgraph | None = None
+) -> Hull:
+    """Convex hull of an object with modifiers and scale, as a graph has it; without one as the view
+    does.
 
     Raises
     ------
@@ -48,12 +64,13 @@ def hull_of(thing: bpy.types.Object, scene: bpy.types.Scene) -> Hull:
         raise PalpateError(
             "tool: {name} is not a mesh; choose a mesh object as the tool", name=thing.name
         )
+    evaluated = thing.evaluated_get(graph or bpy.context.evaluated_depsgraph_get())
     try:
-        frame = frame_of(thing, scene)
+        frame = frame_of(evaluated, scene)
     except PalpateError as problem:
         raise PalpateError("tool {name}: {problem}", name=thing.name, problem=problem) from problem
-    local, hollow = _blenders_hull(thing)
-    corners = frame.body_from_local(local)
+    local = _local_hull(thing, evaluated)
+    corners = frame.body_from_local(local.corners)
     if len(corners) < 4 or _thickness(corners) <= FLAT * float(np.ptp(corners, axis=0).max()):
         raise PalpateError(
             "tool: {name} has no volume; give it at least four vertices that are not in a plane, "
@@ -61,7 +78,7 @@ def hull_of(thing: bpy.types.Object, scene: bpy.types.Scene) -> Hull:
             name=thing.name,
         )
     few = _most_spread(corners)
-    return Hull(few, _remark(thing.name, len(corners), len(few), hollow=hollow))
+    return Hull(few, _remark(thing.name, len(corners), len(few), hollow=local.hollow))
 
 
 def _remark(name: str, corners: int, left: int, *, hollow: bool) -> str:
@@ -77,15 +94,37 @@ def _remark(name: str, corners: int, left: int, *, hollow: bool) -> str:
     return ""
 
 
-def _blenders_hull(thing: bpy.types.Object) -> tuple[Array, bool]:
-    """Corners (k, 3) of the hull, local units, and whether the mesh was smaller than it."""
-    evaluated = thing.evaluated_get(bpy.context.evaluated_depsgraph_get())
-    mesh, shape = evaluated.to_mesh(), bmesh.new()
+def _local_hull(thing: bpy.types.Object, evaluated: bpy.types.Object) -> _LocalHull:
+    """Hull of what an object is evaluated to: the one made last, if that was the same."""
+    mesh = evaluated.to_mesh()
+    try:
+        places = np.empty(3 * len(mesh.vertices), dtype=np.float32)
+        mesh.vertices.foreach_get("co", places)
+        arrays = (places, *polygons(mesh))
+        known = _made.pop(thing.session_uid, None)
+        if known is None or not all(map(np.array_equal, known[0], arrays)):
+            known = arrays, _blenders_hull(mesh)
+    finally:
+        evaluated.to_mesh_clear()
+    # The one asked for last is the last that is forgotten.
+    _made[thing.session_uid] = known
+    while len(_made) > MOST_KEPT:
+        del _made[next(iter(_made))]
+    return known[1]
+
+
+def forget() -> None:
+    """Free the memory of the hulls made last."""
+    _made.clear()
+
+
+def _blenders_hull(mesh: bpy.types.Mesh) -> _LocalHull:
+    shape = bmesh.new()
     try:
         shape.from_mesh(mesh)
         before = abs(shape.calc_volume())
         if len(shape.verts) < 4:
-            return np.zeros((0, 3)), False
+            return _LocalHull(np.zeros((0, 3)), hollow=False)
         made = bmesh.ops.convex_hull(shape, input=shape.verts, use_existing_faces=False)
         inside = {
             vertex for vertex in made["geom_interior"] if isinstance(vertex, bmesh.types.BMVert)
@@ -99,9 +138,8 @@ def _blenders_hull(thing: bpy.types.Object) -> tuple[Array, bool]:
         corners = np.array([vertex.co for vertex in on_hull - inside], dtype=np.float64)
     finally:
         shape.free()
-        evaluated.to_mesh_clear()
     corners = corners.reshape(-1, 3)
-    return corners, _volume(corners) > (1.0 + HOLLOW) * before
+    return _LocalHull(corners, hollow=_volume(corners) > (1.0 + HOLLOW) * before)
 
 
 def _volume(corners: Array) -> float:

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from ...core.contact.tool.pose import facing
 from ...core.errors import PalpateError
 from ..scene.body_frame import BodyFrame
-from ..scene.drawn_surface import metres_per_unit
 
 Array = NDArray[np.float64]
 Point = tuple[float, float, float]
@@ -37,7 +36,7 @@ def rotation(
     chosen = scene.palpate
     guide = guide_of(scene)
     if chosen.tip_turn == "OBJECT" and guide is not None:
-        return as_object(guide, scene, body)
+        return as_object(guide, body)
     right = WORLD_X if view_axes is None else view_axes[0]
     if chosen.tip_turn == "VIEW" and view_axes is not None:
         return facing(body.turn_to_body(view_axes[2]), body.turn_to_body(right))
@@ -50,7 +49,7 @@ def guide_of(scene: bpy.types.Scene) -> bpy.types.Object | None:
     return chosen.turn_object or (chosen.tip_object if chosen.tip == "MESH" else None)
 
 
-def as_object(thing: bpy.types.Object, scene: bpy.types.Scene, body: BodyFrame) -> Array:
+def as_object(thing: bpy.types.Object, body: BodyFrame) -> Array:
     """Tool to body (3, 3) of a tool that is turned as an object.
 
     Raises
@@ -58,12 +57,22 @@ def as_object(thing: bpy.types.Object, scene: bpy.types.Scene, body: BodyFrame) 
     PalpateError
         It is flattened to nothing.
     """
+    rotation: Array = body.rotation.T @ axes_of(thing)
+    return rotation
+
+
+def axes_of(thing: bpy.types.Object) -> Array:
+    """Rotation of an object (3, 3): its axes in the world.
+
+    Raises
+    ------
+    PalpateError
+        It is flattened to nothing.
+    """
     try:
-        turned = BodyFrame.of_matrix(np.array(thing.matrix_world), metres_per_unit(scene))
+        return BodyFrame.of_matrix(np.array(thing.matrix_world)).rotation
     except PalpateError as problem:
         raise PalpateError("{name}: {problem}", name=thing.name, problem=problem) from problem
-    rotation: Array = body.rotation.T @ turned.rotation
-    return rotation
 
 
 def as_rows(rotation: Array) -> Turn:

@@ -2,7 +2,7 @@
 
 import bpy
 
-from ....operators.animation import live_pressers
+from ....operators.animation import failures
 from ..base import PalpatePanel, named_properties, while_idle
 from ..sentence import say
 
@@ -17,9 +17,12 @@ class PALPATE_PT_animation(PalpatePanel, bpy.types.Panel):
         layout, thing = named_properties(self), context.object
         column = while_idle(layout)
         column.prop(thing.palpate, "pressers")
-        problem = live_pressers.problem_of(thing)
+        problem = failures.reason(thing)
         if problem:
             say(layout, context, problem, "ERROR")
+        if thing.palpate.pressers is not None:
+            column.prop(context.scene.render, "use_lock_interface")
+            say(layout, context, "Renders follow them only so; a farm needs Bake Animation", "INFO")
         column.operator("palpate.press_frames", icon="RENDER_ANIMATION")
         column.operator("palpate.animate_recording", icon="ANIM")
 

@@ -5,35 +5,14 @@ from __future__ import annotations
 import bpy
 import numpy as np
 import pytest
-from soft_scene import error_of, mesh_state, part, seen_places, soft_cube
-
-FRAMES = (1, 4, 7)
+from pressed_scene import tapped_by_ball
+from soft_scene import error_of, mesh_state, part, seen_places
 
 
 @pytest.fixture
 def pressed(palpate):
     """A cube with a ball that goes into and out of its top within the frames 1 to 7."""
-    thing, scene = soft_cube(), bpy.context.scene
-    ball = sphere("Ball", (0.0, 0.0, 0.07))
-    for frame, height in zip(FRAMES, (0.07, 0.041, 0.07), strict=True):
-        ball.location.z = height
-        ball.keyframe_insert("location", frame=frame)
-    scene.frame_set(1)
-    thing.palpate.pressers = collection("Hand", ball)
-    return thing
-
-
-def sphere(name, place, radius=0.02):
-    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=2, radius=radius, location=place)
-    bpy.context.object.name = name
-    return bpy.context.object
-
-
-def collection(name, *things):
-    made = bpy.data.collections.new(name)
-    for thing in things:
-        made.objects.link(thing)
-    return made
+    return tapped_by_ball()
 
 
 def test_frames_may_come_in_any_order(pressed):
@@ -88,21 +67,21 @@ def test_several_parts_press_together_and_an_empty_is_a_sphere(pressed):
     both = seen_places(pressed)
     moved = both - one
     assert moved[:, 0].min() < -1e-4
-    assert part("operators.animation.live_pressers").problem_of(pressed) == ""
+    assert part("operators.animation.failures").reason(pressed) == ""
 
 
 def test_what_cannot_press_is_told_and_the_rest_goes_on(pressed):
-    live = part("operators.animation.live_pressers")
+    failures = part("operators.animation.failures")
     light = bpy.data.objects.new("Lamp", bpy.data.lights.new("Lamp", "POINT"))
     bpy.context.scene.collection.objects.link(light)
     pressed.palpate.pressers.objects.link(light)
     bpy.context.scene.frame_set(2)
-    assert "Lamp is neither a mesh nor an Empty" in str(live.problem_of(pressed))
+    assert "Lamp is neither a mesh nor an Empty" in str(failures.reason(pressed))
     bpy.context.view_layer.objects.active = pressed
     assert "Lamp is neither" in error_of(bpy.ops.palpate.press_frames)
     pressed.palpate.pressers.objects.unlink(light)
     bpy.context.scene.frame_set(4)
-    assert live.problem_of(pressed) == ""
+    assert failures.reason(pressed) == ""
 
 
 def test_without_pressers_nothing_is_left(pressed):

@@ -110,7 +110,8 @@ def test_pressers_meet_a_posed_limb_where_it_is_seen(thing, posed, bake):
             assert bpy.ops.palpate.press_frames(current_only=True) == {"FINISHED"}
             name = f"Press {len(dents) + 1}"
         else:
-            part("operators.animation.live_pressers").follow(thing, scene)
+            graph = bpy.context.evaluated_depsgraph_get()
+            part("operators.animation.live_pressers").follow(thing, graph)
         dents.append(moved(thing, name).copy())
         # What is kept is seen, and would be met.
         hide_layers(thing)
