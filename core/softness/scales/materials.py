@@ -1,12 +1,16 @@
 """Material presets for prop makers: Young's modulus and Poisson's ratio, each with its source.
 
+The modulus is that of small strain, where light touch lives; what a material does beyond is its
+law's (:mod:`palpate.core.law`). A Shore value is what the tin says: a durometer goes in by strains
+of about one, and makers' silicones read two to three times as firm by it as they are when pulled
+a little.
+
 Real batches differ by a factor of two either way. ``basis`` is the origin of a modulus:
 
 measured    by the named paper
-derived     from the Shore value on the data sheet by the usual relation of its scale, so that a
-            virtual durometer reads the data sheet's value; ``measured_modulus`` is that of
-            published tensile tests
-estimate    from descriptions, or an order of magnitude
+derived     from the Shore value on the data sheet by the usual relation of its scale, for want of a
+            tensile test
+estimate    from descriptions, from what is alike, or an order of magnitude
 """
 
 from __future__ import annotations
@@ -15,12 +19,15 @@ from dataclasses import dataclass
 
 from .shore import Shore, young_from_shore
 
-SMOOTH_ON = "Shore and density by Smooth-On's data sheet; modulus derived from the Shore value"
 TENSILE = (
-    "; measured: Marechal et al. 2021, Soft Robotics 8, 284, neo-Hookean fit of their tensile data "
-    "up to 30 % strain"
+    "Marechal et al. 2021, Soft Robotics 8, 284: neo-Hookean fit of their tensile data up to 30 % "
+    "strain; Shore and density by Smooth-On's data sheet"
 )
 NGUYEN = "Nguyen et al. 2014, Ultrasound in Medicine and Biology 40, 168"
+SLAB = (
+    "which a slab of 380 x 380 x 100 mm on a smooth plate gives: the mean of what is firm at first "
+    "and yields"
+)
 
 
 @dataclass(frozen=True)
@@ -30,13 +37,12 @@ class Material:
     Attributes
     ----------
     name : in panels and tables.
-    young_modulus : pascal.
+    young_modulus : pascal, at small strain.
     poisson_ratio : without unit.
     source : of the figures.
     basis : "measured", "derived" or "estimate"; see above.
     shore : by the data sheet, where it gives one.
     density : kilograms per cubic metre, where it is known.
-    measured_modulus : pascal, by tensile tests at small strain, where ``basis`` is another.
     """
 
     name: str
@@ -46,28 +52,24 @@ class Material:
     basis: str = "estimate"
     shore: Shore | None = None
     density: float | None = None
-    measured_modulus: float | None = None
 
 
-def _by_shore(
-    name: str,
-    shore: Shore,
-    source: str = "any silicone of this Shore value",
-    poisson_ratio: float = 0.48,
-    density: float | None = None,
-    measured_modulus: float | None = None,
-) -> Material:
-    """Material with the modulus of its Shore value, to three digits."""
-    young = float(f"{young_from_shore(shore, poisson_ratio):.3g}")
-    return Material(name, young, poisson_ratio, source, "derived", shore, density, measured_modulus)
+def _silicone(name: str, shore: Shore, young_modulus: float, density: float) -> Material:
+    """Silicone by Smooth-On, as it was pulled."""
+    return Material(name, young_modulus, 0.48, TENSILE, "measured", shore, density)
 
 
-def _smooth_on(
-    name: str, shore: Shore, density: float, measured_modulus: float | None = None
-) -> Material:
-    """Silicone by Smooth-On."""
-    source = SMOOTH_ON if measured_modulus is None else SMOOTH_ON + TENSILE
-    return _by_shore(name, shore, source, 0.48, density, measured_modulus)
+def _eva() -> Material:
+    shore = Shore("A", 30.0)
+    return Material(
+        "EVA foam (Shore A 30)",
+        float(f"{young_from_shore(shore, 0.40):.3g}"),
+        0.40,
+        "EVA sheet sold by its Shore value; the relation is for rubber and stretched here to foam",
+        "derived",
+        shore,
+        200.0,
+    )
 
 
 # Files refer to the first seven by number: add new ones at the end only.
@@ -83,44 +85,57 @@ MATERIALS = {
         "Poisson's ratio of Hirota and Kaneko 1999; modulus an order of magnitude",
     ),
     "FOAM": Material("Upholstery foam", 30_000.0, 0.20),
-    "SILICONE_SOFT": _by_shore("Soft silicone (Shore 00-30)", Shore("00", 30.0)),
-    "SILICONE_FIRM": _by_shore("Firm silicone (Shore A 20)", Shore("A", 20.0)),
+    "SILICONE_SOFT": Material(
+        "Soft silicone (Shore 00-30)",
+        51_000.0,
+        0.48,
+        "as Ecoflex 00-30 below",
+        shore=Shore("00", 30.0),
+    ),
+    "SILICONE_FIRM": Material(
+        "Firm silicone (Shore A 20)",
+        394_000.0,
+        0.48,
+        "as Dragon Skin 20 below",
+        shore=Shore("A", 20.0),
+    ),
     "RUBBER": Material(
         "Rubber (Shore A 50)",
-        2_500_000.0,
+        2_200_000.0,
         0.49,
-        "any rubber of this Shore value",
-        "derived",
+        "natural rubber of 50 IRHD by Lindley 1978, Engineering design with natural rubber",
+        "measured",
         Shore("A", 50.0),
     ),
-    "ECOFLEX_10": _smooth_on("Ecoflex 00-10", Shore("00", 10.0), 1_040.0, 29_000.0),
-    "ECOFLEX_20": _smooth_on("Ecoflex 00-20", Shore("00", 20.0), 1_070.0),
-    "ECOFLEX_30": _smooth_on("Ecoflex 00-30", Shore("00", 30.0), 1_070.0, 51_000.0),
-    "ECOFLEX_50": _smooth_on("Ecoflex 00-50", Shore("00", 50.0), 1_070.0, 74_000.0),
-    "DRAGON_SKIN_10": _smooth_on("Dragon Skin 10", Shore("A", 10.0), 1_070.0, 147_000.0),
-    "DRAGON_SKIN_20": _smooth_on("Dragon Skin 20", Shore("A", 20.0), 1_080.0, 394_000.0),
-    "DRAGON_SKIN_30": _smooth_on("Dragon Skin 30", Shore("A", 30.0), 1_080.0, 587_000.0),
+    "ECOFLEX_10": _silicone("Ecoflex 00-10", Shore("00", 10.0), 29_000.0, 1_040.0),
+    "ECOFLEX_20": Material(
+        "Ecoflex 00-20",
+        38_000.0,
+        0.48,
+        "between Ecoflex 00-10 and 00-30; Shore and density by Smooth-On's data sheet",
+        shore=Shore("00", 20.0),
+        density=1_070.0,
+    ),
+    "ECOFLEX_30": _silicone("Ecoflex 00-30", Shore("00", 30.0), 51_000.0, 1_070.0),
+    "ECOFLEX_50": _silicone("Ecoflex 00-50", Shore("00", 50.0), 74_000.0, 1_070.0),
+    "DRAGON_SKIN_10": _silicone("Dragon Skin 10", Shore("A", 10.0), 147_000.0, 1_070.0),
+    "DRAGON_SKIN_20": _silicone("Dragon Skin 20", Shore("A", 20.0), 394_000.0, 1_080.0),
+    "DRAGON_SKIN_30": _silicone("Dragon Skin 30", Shore("A", 30.0), 587_000.0, 1_080.0),
     "PU_FOAM_SOFT": Material(
         "Soft polyurethane foam",
-        10_000.0,
+        7_000.0,
         0.20,
-        "secant of an indentation load deflection of 18 lbf (80 N on 323 cm2 at 25 %)",
+        f"indentation load deflection of 18 lbf (80 N on 323 cm2 at 25 %), {SLAB}",
         density=25.0,
     ),
     "LATEX_FOAM": Material(
         "Latex foam",
-        15_000.0,
+        11_000.0,
         0.20,
-        "secant of an indentation load deflection of 28 lbf (125 N on 323 cm2 at 25 %)",
+        f"indentation load deflection of 28 lbf (125 N on 323 cm2 at 25 %), {SLAB}",
         density=75.0,
     ),
-    "EVA_FOAM": _by_shore(
-        "EVA foam (Shore A 30)",
-        Shore("A", 30.0),
-        "EVA sheet sold by its Shore value; the relation is for rubber and stretched here to foam",
-        poisson_ratio=0.40,
-        density=200.0,
-    ),
+    "EVA_FOAM": _eva(),
     "GELATINE_3": Material(
         "Gelatine 3 %",
         6_000.0,

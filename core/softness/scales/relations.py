@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from .durometer_type import TYPE_00, TYPE_A, DurometerType
-from .indentation import hertz_force, indenter_force
+from .indentation import hertz_force, indenter_force, rubber_ball_force
 
 RUBBER_POISSON_RATIO = 0.5
 MEGAPASCAL = 1e6
@@ -75,6 +75,12 @@ def ball(reading: float) -> float:
     return _rubber_modulus(TYPE_00, reading, indenter_force(TYPE_00, TYPE_00.depth(reading)))
 
 
+def deep_ball(reading: float) -> float:
+    """Young's modulus in pascal at a Shore 00 reading: the ball as deep in neo-Hookean rubber."""
+    area = rubber_ball_force(TYPE_00.shaft, TYPE_00.depth(reading))
+    return _rubber_modulus(TYPE_00, reading, area)
+
+
 def _rubber_modulus(kind: DurometerType, reading: float, area: float) -> float:
     return (1.0 - RUBBER_POISSON_RATIO**2) * kind.force(reading) / area
 
@@ -86,6 +92,7 @@ RELATIONS = {
         Relation("boyce", "A", 20.0, 80.0, boyce, "Qi, Joyce and Boyce 2003"),
         Relation("cone", "A", 10.0, 90.0, cone, "Sneddon 1965 with the geometry of ASTM D2240"),
         Relation("mix", "00", 10.0, 90.0, mix, "Mix and Giacomin 2011"),
+        Relation("rubber", "00", 10.0, 90.0, deep_ball, "finite elements of neo-Hookean rubber"),
         Relation("ball", "00", 10.0, 90.0, ball, "Segedin 1957 with the geometry of ASTM D2240"),
     )
 }

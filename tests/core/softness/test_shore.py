@@ -110,6 +110,14 @@ def test_closed_forms_agree_with_sneddons_integral(kind, reading):
     assert indentation.indenter_force(kind, depth) == pytest.approx(expected, rel=5e-3)
 
 
+def test_rubber_under_a_deep_ball_is_what_finite_elements_found():
+    """Of benchmarks/contact/rubber_ball.py: force over Hertz's, at depths in radii."""
+    referee = {0.427: 0.9325, 0.854: 0.8645, 1.174: 0.8136, 1.494: 0.7560, 1.921: 0.6726}
+    for depth, share in referee.items():
+        found = indentation.rubber_ball_force(1.0, depth) / indentation.hertz_force(1.0, depth)
+        assert found == pytest.approx(share, abs=0.006)
+
+
 def test_a_shallow_ball_is_hertzs():
     shallow = indentation.ball_force(1.0, 1e-4)
     assert shallow == pytest.approx(indentation.hertz_force(1.0, 1e-4), rel=1e-4)
@@ -188,14 +196,17 @@ def test_unknown_scales_and_relations_are_refused():
         young_from_shore(Shore("A", 40), 0.6)
 
 
-def test_a_material_reads_on_a_durometer_what_its_tin_says():
-    named = [material for material in MATERIALS.values() if material.shore is not None]
-    assert len(named) > 9
-    for material in named:
-        shore = material.shore
-        read = shore_from_young(material.young_modulus, shore.scale, material.poisson_ratio)
-        assert read.value == pytest.approx(shore.value, abs=0.3), material.name
-        assert material.basis == "derived"
+def test_a_preset_is_as_firm_as_the_tensile_test_it_cites():
+    """Marechal et al. 2021, up to 30 % strain, kPa."""
+    pulled = {"ECOFLEX_10": 29, "ECOFLEX_30": 51, "ECOFLEX_50": 74}
+    pulled |= {"DRAGON_SKIN_10": 147, "DRAGON_SKIN_20": 394, "DRAGON_SKIN_30": 587}
+    for name, modulus in pulled.items():
+        material = MATERIALS[name]
+        assert material.young_modulus == 1e3 * modulus
+        assert material.basis == "measured"
+        # Docs say: 0.3 to 0.7 of what the relation makes of the tin's Shore value.
+        by_shore = young_from_shore(material.shore, material.poisson_ratio)
+        assert 0.3 < material.young_modulus / by_shore < 0.7
 
 
 def test_every_material_has_a_source_and_constants_that_can_be_baked():
@@ -204,12 +215,3 @@ def test_every_material_has_a_source_and_constants_that_can_be_baked():
         assert material.basis in {"measured", "derived", "estimate"}
         assert 0 <= material.poisson_ratio <= 0.49
         assert 500 <= material.young_modulus <= 1e7
-
-
-def test_measured_moduli_lie_within_the_factor_that_is_promised():
-    """Docs say: tensile tests at small strain give 0.3 to 0.7 of what the relation says."""
-    shares = [
-        m.measured_modulus / m.young_modulus for m in MATERIALS.values() if m.measured_modulus
-    ]
-    assert len(shares) == 6
-    assert 0.3 < min(shares) < max(shares) < 0.7
