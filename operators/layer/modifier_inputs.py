@@ -5,6 +5,8 @@ Until Blender 5.1 they are custom properties of the modifier; since 5.2 properti
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import bpy
 
 from .layer_groups import socket
@@ -12,10 +14,18 @@ from .layer_groups import socket
 
 def value(modifier: bpy.types.NodesModifier, name: str) -> object:
     """Value of an input; None where it has none."""
-    key = socket(modifier.node_group, name)
-    if _has_properties(modifier):
-        return getattr(modifier.properties.inputs, key).value
-    return modifier.get(key)
+    return _at(modifier, socket(modifier.node_group, name))
+
+
+def all_values(modifier: bpy.types.NodesModifier) -> Iterator[tuple[str, str, object]]:
+    """Identifiers of all inputs of a modifier, the paths to them from the object, and their values;
+    None of one without.
+    """
+    group = modifier.node_group
+    for item in group.interface.items_tree if group is not None else ():
+        if item.item_type == "SOCKET" and item.in_out == "INPUT":
+            key = item.identifier
+            yield key, _path(modifier, key), _at(modifier, key)
 
 
 def set_value(modifier: bpy.types.NodesModifier, name: str, given: object) -> None:
@@ -29,9 +39,7 @@ def set_value(modifier: bpy.types.NodesModifier, name: str, given: object) -> No
 
 def path(modifier: bpy.types.NodesModifier, name: str) -> str:
     """Path from the object to an input, for keyframes and drivers."""
-    key = socket(modifier.node_group, name)
-    inside = f".properties.inputs.{key}.value" if _has_properties(modifier) else f'["{key}"]'
-    return f'modifiers["{bpy.utils.escape_identifier(modifier.name)}"]{inside}'
+    return _path(modifier, socket(modifier.node_group, name))
 
 
 def draw_slider(
@@ -44,6 +52,18 @@ def draw_slider(
     else:
         owner, of_owner = modifier, f'["{key}"]'
     layout.prop(owner, of_owner, text=text, translate=False)
+
+
+def _at(modifier: bpy.types.NodesModifier, key: str) -> object:
+    if _has_properties(modifier):
+        # Geometry has none.
+        return getattr(getattr(modifier.properties.inputs, key, None), "value", None)
+    return modifier.get(key)
+
+
+def _path(modifier: bpy.types.NodesModifier, key: str) -> str:
+    inside = f".properties.inputs.{key}.value" if _has_properties(modifier) else f'["{key}"]'
+    return f'modifiers["{bpy.utils.escape_identifier(modifier.name)}"]{inside}'
 
 
 def _has_properties(modifier: bpy.types.NodesModifier) -> bool:

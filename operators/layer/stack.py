@@ -7,6 +7,7 @@ from typing import Any
 import bpy
 
 from ..scene import curves
+from . import modifier_inputs
 from .layer_groups import kind_of
 
 # What makes vertices or faces. Groups of geometry nodes may do anything.
@@ -122,7 +123,20 @@ def _words(thing: bpy.types.Object, modifier: bpy.types.Modifier) -> str:
             continue
         if not curves.is_animated(thing, modifier.path_from_id(name)):
             found.append(f"{name}={_word(one, getattr(modifier, name))}")
+    if modifier.type == "NODES":
+        found += (
+            f"{key}={_input_word(value)}"
+            for key, path, value in modifier_inputs.all_values(modifier)
+            if value is not None and not curves.is_animated(thing, path)
+        )
     return " ".join(found)
+
+
+def _input_word(value: Any) -> str:
+    if isinstance(value, bpy.types.ID):
+        return value.name
+    numbers = value if hasattr(value, "__len__") and not isinstance(value, str) else (value,)
+    return ",".join(f"{one:.6g}" if isinstance(one, float) else str(one) for one in numbers)
 
 
 def _word(one: bpy.types.Property, value: Any) -> str:
