@@ -30,6 +30,9 @@ const FREE: f64 = 1.0e-4;
 /// A contact point that moved by less than this share of the depth has stayed: then the work of the law
 /// is what the energy gains, however long the step.
 const SAME_PLACE: f64 = 1.0e-9;
+/// A finger is as deep as it would be with this share of its own energy at least: others may draw the
+/// surface along until its share of all is less than nothing.
+const LEAST_SHARE: f64 = 0.1;
 /// No depth, m: less cannot be divided by.
 const SHALLOWEST: f64 = 1.0e-100;
 /// A finger at rest loses its brake within this time, s.
@@ -52,8 +55,7 @@ pub struct Pressed {
     pub push: DVec3,
     /// Its share of the energy of all by that law at these places and displacements, J.
     pub energy: f64,
-    /// What its own force puts into the body, J: others may put in as much again, or draw the surface
-    /// along until its share is less than nothing.
+    /// What its own force alone puts into the body, J.
     pub own_energy: f64,
     /// What is asked of the motors but for a brake, N.
     pub wanted: DVec3,
@@ -97,9 +99,10 @@ impl Pressed {
         self.energy * share * (2.0 - share)
     }
 
-    /// How far it presses the surface in by itself, m; 0 unless it presses.
+    /// How deep it is, m; 0 unless it presses.
     fn depth(&self) -> f64 {
-        let depth = 2.0 * self.own_energy / self.push.length();
+        let energy = self.energy.max(LEAST_SHARE * self.own_energy);
+        let depth = 2.0 * energy / self.push.length();
         if depth > SHALLOWEST && depth.is_finite() {
             depth
         } else {
