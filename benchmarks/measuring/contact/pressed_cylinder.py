@@ -29,6 +29,8 @@ from skfem import (
 Array = NDArray[np.float64]
 
 CONVERGED = 1e-8
+# Where the energy tells no better place any more, this share may be left.
+ROUNDING = 1e-5
 MOST_ITERATIONS = 80
 SHORTEST_PART = 1e-6
 
@@ -75,12 +77,18 @@ class PressedCylinder:
             for _ in range(MOST_ITERATIONS):
                 rest, tangent, pushes = self._system(u, depth)
                 left = rest[free]
-                if np.abs(left).max() < CONVERGED * max(np.abs(pushes).max(), 1e-12):
+                share = np.abs(left).max() / max(np.abs(pushes).max(), 1e-12)
+                if share < CONVERGED:
                     break
                 own = tangent[free][:, free]
                 way = splu(own, permc_spec="MMD_AT_PLUS_A").solve(-left)
                 way *= -np.sign(left @ way)
-                u, energy = self._searched(u, depth, energy, way, float(left @ way))
+                further = self._searched(u, depth, energy, way, float(left @ way))
+                if further is None and share < ROUNDING:
+                    break
+                if further is None:
+                    raise ArithmeticError(f"no way down at a depth of {depth}")
+                u, energy = further
             else:
                 raise ArithmeticError(f"no end at a depth of {depth}")
             along = np.concatenate([basis.nodal_dofs[1], basis.facet_dofs[1]])
@@ -113,7 +121,7 @@ class PressedCylinder:
 
     def _searched(
         self, u: Array, depth: float, energy: float, way: Array, slope: float
-    ) -> tuple[Array, float]:
+    ) -> tuple[Array, float] | None:
         part = 1.0
         while part > SHORTEST_PART:
             trial = u.copy()
@@ -122,7 +130,7 @@ class PressedCylinder:
             if np.isfinite(reached) and reached <= energy + 1e-4 * part * slope + 1e-12 * energy:
                 return trial, reached
             part *= 0.5
-        raise ArithmeticError(f"no way down at a depth of {depth}")
+        return None
 
     def _energy(self, u: Array, depth: float) -> float:
         inside = {"u": self._basis.interpolate(u), **self._moduli}

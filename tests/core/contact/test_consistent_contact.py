@@ -87,6 +87,18 @@ def test_in_paper_mode_it_does_not(body):
     assert np.linalg.norm(moved - PRESS) > 0.05 * np.linalg.norm(PRESS)
 
 
+def test_in_paper_mode_it_stays_short_of_the_finger_inside_triangles(body, rng):
+    """As docs/contact.md has it: along the finger's way the point never goes farther than it."""
+    triangles = free_triangles(body)
+    for _ in range(40):
+        triangle, alpha, by = rng.choice(triangles), rng.dirichlet([1, 1, 1]), rng.normal(size=3)
+        by *= 0.002 / np.linalg.norm(by)
+        made = touch_at(body, int(triangle), alpha, by, ContactSettings(mode="paper"))
+        displacements = body.deform(made.triangle, made.nodal_forces)
+        share = contact_displacement(body, made, displacements) @ by / (by @ by)
+        assert 0.2 < share < 1.0 + 1e-9
+
+
 def test_no_other_forces_on_the_three_nodes_do_it_with_less_energy(body, rng):
     for triangle in rng.choice(free_triangles(body), 10):
         alpha = rng.dirichlet([1, 1, 1])
