@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -13,6 +13,13 @@ from ...core.grip.patch import Grip
 from ..object.drawn_body import DrawnBody
 from .motion import Asked, Motion
 from .pushing import Pushing, Stroked
+from .thickness import Thickness
+
+# Share of its thickness by which a push squeezes a body at most: beyond, it would come out on the
+# far side. It is reached to within a few percent, in some steps; where a part gives way as a whole,
+# each goes on as far as the one before tells.
+MOST_SQUEEZED, ALMOST, LEAST_SQUEEZED = 0.8, 0.97, 0.05
+MOST_STEPS = 6
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,8 +43,9 @@ class Stroke:
     young_modulus: float
     friction: float
 
-    def stroked(self, asked: Asked) -> Stroked:
-        """What a motion does.
+    def stroked(self, asked: Asked) -> tuple[Asked, Stroked]:
+        """What a motion does; and what was done of it, where it asked to go deeper than the body is
+        thick.
 
         Raises
         ------
@@ -46,11 +54,31 @@ class Stroke:
         """
         # A pull begins at a depth of -0.
         inward = asked.motion is Motion.PUSH and math.copysign(1.0, asked.amount) > 0.0
+        thickness = self._thickness
+        if not inward or thickness is None:
+            return asked, self._done(asked, inward=inward)
+        # From below: what has been pushed through itself does not come back as it was.
+        done = replace(asked, amount=min(asked.amount, MOST_SQUEEZED * thickness.metres))
+        for _ in range(MOST_STEPS):
+            stroked = self._done(done, inward=True)
+            moved = self.drawn.node_displacements(stroked.displacements)
+            share = thickness.squeezed(done.amount, moved)
+            if done.amount == asked.amount or share >= ALMOST * MOST_SQUEEZED:
+                break
+            farther = done.amount * MOST_SQUEEZED / max(share, LEAST_SQUEEZED)
+            done = replace(asked, amount=min(asked.amount, farther))
+        return (asked if done.amount == asked.amount else done), stroked
+
+    def _done(self, asked: Asked, *, inward: bool) -> Stroked:
         if inward and self._pushing.reaches:
             return self._pushing.to(asked, self.young_modulus)
         answer = self._held.answer(asked.shares(self.grips[0].normal), self.young_modulus)
         force = float(np.linalg.norm(answer.force))
         return Stroked(answer.displacements, force, answer.torque)
+
+    @cached_property
+    def _thickness(self) -> Thickness | None:
+        return Thickness.under(self.drawn, self.grips[0])
 
     @cached_property
     def _held(self) -> HeldPatch:

@@ -74,16 +74,19 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
         with place_marks.marked(thing):
             touched = touched_place.nearest(thing, frame, np.array(self.place))
         self._begin(thing, scene, frame, touched)
-        asked = self._asked()
-        if asked.nothing:
+        wanted = self._asked()
+        if wanted.nothing:
             raise PalpateError(
                 "stroke: it moves nothing; give it a depth, a way, an angle or a share"
             )
         live_layer.hang(thing)
         try:
-            stroked = self._stroke.stroked(asked)
+            asked, stroked = self._stroke.stroked(wanted)
             _draw(thing, self._stroke.drawn, stroked)
             self._keep(scene, thing, asked, stroked)
+            if asked is not wanted:
+                self._tell(asked, scene)
+                self.report({"WARNING"}, shown(stroke_words.ENDS))
         except BaseException:
             live_layer.remove(thing)
             raise
@@ -136,8 +139,7 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
             self._begin(thing, scene, frame, touched)
             self._drag = self._drag_from(event, view, scene)
             # What takes time is prepared before anything is changed, and a pinned place refused.
-            asked = self._drag.asked(touched.turn)
-            self._last = asked, self._stroke.stroked(asked)
+            self._last = self._stroke.stroked(self._drag.asked(touched.turn))
         finally:
             context.window.cursor_modal_restore()
         if context.object != thing:
@@ -201,10 +203,12 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
         cursor = event.mouse_x, event.mouse_y
         drag = self._drag.dragged(cursor, pressure, sliding=event.ctrl)
         self._drag = replace(drag, typed=self._typed.value(scene))
-        asked = self._drag.asked(self._touched.turn)
+        wanted = self._drag.asked(self._touched.turn)
         problem = ""
         try:
-            self._last = asked, self._stroke.stroked(asked)
+            self._last = self._stroke.stroked(wanted)
+            if self._last[0] is not wanted:
+                problem = f"   {shown(stroke_words.ENDS)}"
         except PalpateError as refused:
             # As far as it went; back from there the stroke goes on.
             problem = f"   {shown(refused)}"

@@ -149,5 +149,18 @@ def test_nothing_is_asked_at_first_and_nothing_moves(thing):
     grips = part("operators.stroke.grips").grips_at(drawn, np.array(TOP), 0.01, (True, True, False))
     stroke = strokes.Stroke(drawn, grips, 1000.0, 0.5)
     for kind, amount in ((motion.PUSH, 0.0), (motion.PUSH, -0.0), (motion.TWIST, 0.0)):
-        assert not stroke.stroked(asked(kind, amount)).displacements.any()
-    assert stroke.stroked(asked(motion.PUSH, 0.002)).displacements.any()
+        _, stroked = stroke.stroked(asked(kind, amount))
+        assert not stroked.displacements.any()
+    assert stroke.stroked(asked(motion.PUSH, 0.002))[1].displacements.any()
+
+
+def test_a_push_ends_where_the_body_does(thing):
+    """The cube is 5 cm high, and held by its foot: 4 cm are the most."""
+    for depth in (0.04, 0.2):
+        bpy.ops.palpate.stroke(place=TOP, radius=0.02, motion="PUSH", depth=depth)
+        thing.modifiers[-1].show_viewport = False
+    whole, farther = moved(thing, "Press 1"), moved(thing, "Press 2")
+    assert -whole[:, 2].min() > 0.01
+    assert np.allclose(farther, whole, atol=0.02 * np.abs(whole).max())
+    bottom = rest_places(thing)[:, 2].min()
+    assert (rest_places(thing) + farther)[:, 2].min() > bottom - 0.001
