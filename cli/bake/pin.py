@@ -16,6 +16,7 @@ from ...core.body.soft_body import SoftBody
 from ...core.errors import PalpateError
 from ...core.files.atomic_file import refuse_missing_folder
 from ...core.files.npz_archive import ArchiveError, read_array
+from ...core.files.ordinary_file import refuse_missing
 from ...core.files.small_text import read_small_text
 from ...core.stiffness.pins import PinBelow, pinned_nodes
 from ..body.body_argument import add_body
@@ -82,8 +83,7 @@ def _read_numbers(file: Path) -> NDArray[np.int64]:
     PalpateError
         There is no such file, or it holds something else than whole numbers.
     """
-    if not file.is_file():
-        raise PalpateError(f"{file}: there is no such file; give node numbers in a text file")
+    refuse_missing(file)
     try:
         if file.suffix.lower() == ".npy":
             numbers = read_array(file)

@@ -171,7 +171,8 @@ def _start_recording(servo: Servo, path: Path, seconds: float) -> None:
 def _write_recording(path: Path, servo: Servo) -> dict[str, object]:
     samples = servo.recording()
     write_recording(path, samples, STATES, servo.counters()["rate_hz"])
-    return {"file": str(path), "ticks": len(samples), "lost": servo.recording_lost}
+    ticks = len(np.unique(samples["tick"]))
+    return {"file": str(path), "ticks": ticks, "rows": len(samples), "lost": servo.recording_lost}
 
 
 def press_from_above(body: SoftBody, young_modulus: float) -> SimulatedOptions:

@@ -122,9 +122,13 @@ def load(
         Missing, truncated, damaged, foreign, or of another version. Names the file.
     """
     source = Path(path)
-    if not source.is_file():
+    if not source.exists():
         raise BodyFileError(
             "{source}: there is no such body file; bake the mesh first", source=source
+        )
+    if not source.is_file():
+        raise BodyFileError(
+            "{path}: is a folder, a device or a pipe; give an ordinary file", path=source
         )
     try:
         with opened(source) as archive:

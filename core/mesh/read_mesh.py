@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ..errors import PalpateError
 from ..files.npz_archive import ArchiveError, read_arrays
+from ..files.ordinary_file import refuse_missing
 from ..sentence import Sentence
 from .coordinates import refuse_rounded
 from .formats.obj import read_obj
@@ -33,7 +34,12 @@ def read_surface(path: Path, metres_per_unit: float = 1.0) -> Surface:
         No such file, an unknown kind, one too large, contents that cannot be read or cannot become
         a solid.
     """
-    _refuse_missing(path)
+    refuse_missing(path)
+    if path.suffix.lower() not in READERS:
+        raise PalpateError(
+            f"{path}: a file of kind '{path.suffix}' holds no surface; give obj, ply or stl, or to "
+            "bake tetrahedra as npz"
+        )
     size = path.stat().st_size
     if size > MOST_BYTES:
         raise PalpateError(
@@ -81,7 +87,7 @@ def read_tets(path: Path, metres_per_unit: float = 1.0) -> TetFile:
     PalpateError
         No such file, not an npz, arrays missing or unusable.
     """
-    _refuse_missing(path)
+    refuse_missing(path)
     try:
         arrays = read_arrays(path)
     except ArchiveError as problem:
@@ -118,16 +124,13 @@ def _node_numbers(fixed: NDArray[Any], node_count: int) -> NDArray[np.int64]:
             f"fixed: an array of {fixed.dtype} and shape {fixed.shape} names no nodes; give node "
             f"numbers as integers, or {node_count} booleans"
         )
+    # Before they become signed.
+    if fixed.size and fixed.max() >= node_count:
+        raise PalpateError(
+            f"fixed: names node {fixed.max()}, but nodes are numbered 0 to {node_count - 1}; count "
+            "from zero"
+        )
     return fixed.astype(np.int64).ravel()
 
 
 READERS = {".obj": lambda stream, _: read_obj(stream), ".ply": read_ply, ".stl": read_stl}
-
-
-def _refuse_missing(path: Path) -> None:
-    if not path.is_file():
-        raise PalpateError(f"{path}: there is no such file; check the path")
-    if path.suffix.lower() not in (*READERS, ".npz"):
-        raise PalpateError(
-            f"{path}: files of kind '{path.suffix}' cannot be read; give obj, ply, stl or npz"
-        )

@@ -171,16 +171,16 @@ def _tets_checked(tets: ArrayLike, node_count: int) -> NDArray[np.int64]:
             "tetrahedral mesh: tets are {kind}, expected integers; give node numbers",
             kind=given.dtype,
         )
-    array = given.astype(np.int64)
-    if array.min() < 0 or array.max() >= node_count:
-        wrong = int(array.min()) if array.min() < 0 else int(array.max())
+    # Before they become signed.
+    if given.min() < 0 or given.max() >= node_count:
+        wrong = int(given.min()) if given.min() < 0 else int(given.max())
         raise PalpateError(
             "tetrahedral mesh: a tetrahedron names node {wrong}, but nodes are numbered 0 to "
             "{last}; count from zero",
             wrong=wrong,
             last=node_count - 1,
         )
-    return array
+    return given.astype(np.int64)
 
 
 def _refuse_flat_or_inverted(nodes: NDArray[np.float64], tets: NDArray[np.int64]) -> None:

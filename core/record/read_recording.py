@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TextIO
 
 import numpy as np
 import palpate_servo
@@ -27,6 +28,8 @@ from .recording import (
 
 # Rate beyond which there is no servo.
 MOST_HZ = 1_000_000
+# Of a row of a CSV file; a servo's have some four hundred.
+MOST_CHARACTERS = 4_000
 CSV_FIELDS = [("tick", "=u8"), ("numbers", "=f8", (16,)), ("state", "U32")]
 
 
@@ -124,6 +127,17 @@ def _refuse_nonsense(samples: NDArray[np.void], states: Sequence[str]) -> None:
     for name in ("time", "probe", "proxy", "force", "output"):
         if not np.isfinite(samples[name]).all():
             raise ValueError(f"{name} is not finite")
+    for finger in np.unique(samples["finger"]):
+        if (np.diff(samples["time"][samples["finger"] == finger]) < 0.0).any():
+            raise ValueError("its times go back")
+
+
+def _lines(file: TextIO) -> Iterator[str]:
+    """Lines of a file, none of them longer than a servo's rows."""
+    while line := file.readline(MOST_CHARACTERS):
+        if len(line) == MOST_CHARACTERS:
+            raise ValueError(f"a line of over {MOST_CHARACTERS - 1} characters")
+        yield line
 
 
 def _read_csv(path: Path) -> Recording:
@@ -138,14 +152,18 @@ def _read_csv(path: Path) -> Recording:
             fields = np.dtype(CSV_FIELDS + ([] if is_alone else [("finger", "=u4")]))
             rows = np.empty(0, fields)
             # numpy warns of files without lines.
-            if first := file.readline():
-                lines = itertools.chain([first], file)
+            if first := next(_lines(file), ""):
+                lines = itertools.chain([first], _lines(file))
                 rows = np.loadtxt(lines, fields, delimiter=",", comments=None, ndmin=1)
     except OSError as problem:
         raise RecordingError(
             "{path}: cannot be read ({reason}); choose another file",
             path=path,
             reason=problem.strerror,
+        ) from problem
+    except MemoryError as problem:
+        raise RecordingError(
+            "{path}: does not fit into the memory of this computer; record less", path=path
         ) from problem
     except (ValueError, OverflowError) as problem:
         raise RecordingError(

@@ -8,10 +8,16 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
+from ..errors import PalpateError
+
 Array = NDArray[np.float64]
 
 # Standard deviation of a Gaussian, times its frequency of half power (-3 dB).
 HALF_POWER = float(np.sqrt(np.log(2.0)) / (2.0 * np.pi))
+# Where nothing was recorded for longer, s, the computer slept: the animation waits only so long.
+LONGEST_GAP = 1.0
+# As many as Blender numbers; and even ticks as a servo at 8 kHz counts in an hour.
+MOST_FRAMES, MOST_TICKS = 1_048_574, 28_800_000
 # Frequency of half power, over the frame rate. At half the rate, where aliases begin, 46 % of the
 # amplitude are left, at the whole rate 4 %, at 5/3 of it (40 Hz at 24 frames a second) 2 in 10,000.
 CUT_OFF = 1.0 / 3.0
@@ -38,19 +44,33 @@ def frames_of(samples: NDArray[np.void], finger: int, frames_per_second: float) 
 
     A Gaussian that halves the power at a third of the frame rate goes first, as a hand trembles and
     a force jumps faster than frames can tell; it has no overshoot, so nothing is deeper or stronger
-    than it was. Ticks that are missing are bridged by straight lines.
+    than it was. Ticks that are missing are bridged by straight lines, of a second at most.
 
     Raises
     ------
     ValueError
-        The finger has no ticks.
+        The finger has no ticks, or times that go back.
+    PalpateError
+        More frames than Blender numbers.
     """
     own = samples[samples["finger"] == finger]
     if not len(own):
         message = f"finger {finger} has no ticks"
         raise ValueError(message)
-    times = own["time"] - own["time"][0]
-    step = float(np.median(np.diff(times))) if len(times) > 1 else 1.0
+    steps = np.diff(own["time"], prepend=own["time"][:1])
+    if (steps < 0.0).any():
+        message = f"finger {finger} has times that go back"
+        raise ValueError(message)
+    times = np.cumsum(np.minimum(steps, LONGEST_GAP))
+    if times[-1] * frames_per_second > MOST_FRAMES:
+        raise PalpateError(
+            "recording: {seconds} s are more than the {most} frames that Blender numbers; record "
+            "less, or take a lower frame rate",
+            seconds=round(float(times[-1])),
+            most=MOST_FRAMES,
+        )
+    went = steps[steps > 0.0]
+    step = max(float(np.median(went)), times[-1] / MOST_TICKS) if len(went) else 1.0
     even = np.arange(0.0, times[-1] + 0.5 * step, step)
     wanted = np.arange(0.0, times[-1] + 0.5 / frames_per_second, 1.0 / frames_per_second)
     spread = HALF_POWER / (CUT_OFF * frames_per_second) / step

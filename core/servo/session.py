@@ -31,6 +31,8 @@ from ..contact.tool.native_tool import native_tool
 from ..errors import PalpateError
 from .settings import Settings
 
+LEAST_HZ, MOST_HZ = 100, 8000
+
 __all__ = [
     "STATES",
     "Body",
@@ -86,6 +88,13 @@ def servo_on(
     PalpateError
         A setting out of its range.
     """
+    if not LEAST_HZ <= rate_hz <= MOST_HZ:
+        raise PalpateError(
+            "servo: {rate} Hz is no rate of it; give {least} to {most}",
+            rate=rate_hz,
+            least=LEAST_HZ,
+            most=MOST_HZ,
+        )
     try:
         return Servo(
             surface,

@@ -16,7 +16,10 @@ import trimesh
     ("line", "said"),
     [
         ("bake none.obj -o out.npz", "none.obj"),
-        ("bake notes.txt -o out.npz", "obj, ply, stl or npz"),
+        ("bake folder.obj -o out.npz", "a folder, a device or a pipe"),
+        ("bake huge.npz -o out.npz", "node 9223372036854775808"),
+        ("bake held.npz -o out.npz", "names node 9223372036854775808"),
+        ("bake notes.txt -o out.npz", "obj, ply or stl"),
         ("bake broken.stl -o out.npz", "broken.stl"),
         ("bake broken.npz -o out.npz", "broken.npz"),
         ("bake empty.obj -o out.npz", "empty.obj"),
@@ -57,6 +60,8 @@ import trimesh
         ("pin {body} --nodes beyond.txt -o out.npz", "not a node"),
         ("pin {body} --nodes inner.txt -o out.npz", "inside the body"),
         ("pin {body} --nodes top.txt -o nowhere/out.npz", "nowhere"),
+        ("press {body} --at 0 0 0 --by 0 0 0 --tool convex:cube.npz", "obj, ply or stl"),
+        ("servo {body} --simulate --rate 99999999999999", "100 to 8000"),
         ("servo {body} --port ", "its name is empty"),
         ("servo {body} --haply ", "its name is empty"),
         ("servo {body} --simulate --second-port ", "its name is empty"),
@@ -93,6 +98,10 @@ def test_bad_input_gets_one_line_status_2_and_no_file(
     np.savez("cube.npz", X=mesh.nodes, T=mesh.tets, fixed=fixed)
     np.savez("nan.npz", X=mesh.nodes * np.nan, T=mesh.tets, fixed=fixed)
     np.savez("other.npz", a=1)
+    Path("folder.obj").mkdir()
+    huge = np.full(1, 2**63, np.uint64)
+    np.savez("huge.npz", X=mesh.nodes, T=np.where(mesh.tets == 0, huge, mesh.tets.astype("u8")))
+    np.savez("held.npz", X=mesh.nodes, T=mesh.tets, fixed=huge)
     with Path("single.npz").open("wb") as stream:
         np.save(stream, mesh.nodes)
     np.savez("halves.npz", X=mesh.nodes, T=mesh.tets, fixed=fixed + 0.5)
@@ -113,9 +122,13 @@ def test_bad_input_gets_one_line_status_2_and_no_file(
     Path("broken.npz").write_bytes(b"PK\x03\x04")
     Path("empty.obj").write_text("# nothing\n")
     Path("plane.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
-    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    before = contents(tmp_path)
     assert said in refusal(*(word.format(body=cube_file) for word in line.split(" ")))
-    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+    assert contents(tmp_path) == before
+
+
+def contents(folder):
+    return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
 
 
 def test_the_program_ends_with_the_status_and_the_line(tmp_path):

@@ -10,7 +10,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 from pathlib import Path
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,7 +20,14 @@ from ...contact.near_field.surface_shape import node_normals
 from ...errors import PalpateError
 from ...progress import Progress, unwatched
 from ..paper.outward_filling import OutwardFilling
-from ..paper.table_file import TableFileError, read_table, table_path, write_table
+from ..paper.table_file import (
+    Layout,
+    TableFileError,
+    read_table,
+    refuse,
+    table_path,
+    write_table,
+)
 from ..solid.free_solid import FreeSolid
 from .softening import NODES_AT_ONCE, node_softening
 
@@ -192,16 +199,25 @@ class SofteningTable:
         """Places in ``mesh.surface_nodes``, each once."""
         return np.searchsorted(self.body.mesh.surface_nodes, np.unique(np.asarray(nodes)))
 
+    def _read(self, path: Path) -> dict[str, NDArray[Any]]:
+        count = len(self._known)
+        layout: Layout = {"softening": (np.float64, (count, 4)), "known": (np.bool_, (count,))}
+        arrays = read_table(path, KIND, self.body.key, layout)
+        softening = arrays["softening"]
+        bent = softening[:, :3].any(axis=1)
+        if (softening[:, 3] < 0.0).any() or (softening[bent, 3] == 0.0).any():
+            refuse(path, "softening")
+        return arrays
+
     def _load(self) -> None:
         """Take over what the file knows and this table does not."""
         if self._path is None or not self._path.exists():
             return
         try:
-            arrays = read_table(self._path, KIND, self.body.key)
+            arrays = self._read(self._path)
         except TableFileError as problem:
             self.notice = problem.sentence
             return
-        # Their checksum is right, so they are what was written.
         new = arrays["known"] & ~self._known
         self._values[new], self._known[new] = arrays["softening"][new], True
         for listener in self._listeners:

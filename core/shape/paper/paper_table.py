@@ -13,7 +13,7 @@ from ...law.st_venant_kirchhoff import StVenantKirchhoff
 from ..solid.free_solid import FreeSolid
 from .paper_entries import EntryFinder, usual_largest_force
 from .paper_formula import PaperColumns
-from .table_file import TableFileError, read_table, write_table
+from .table_file import Layout, TableFileError, read_table, refuse, write_table
 
 # Files of this kind may also be older ones, of which every entry was solved by Newton's method.
 KIND = "newton-table"
@@ -98,8 +98,24 @@ class PaperTable:
         TableFileError
             It is damaged, of another body, or for another F0.
         """
-        stored = read_table(path, KIND, self.body.key)
+        count = len(self.is_filled)
+        rows = np.float32, (None, 3, 3 * count)
+        layout: Layout = {
+            "nodes": (np.int64, (None,)),
+            "wanted": (np.float64, ()),
+            "largest": (np.float64, (None, 3, 2)),
+            "positive": rows,
+            "negative": rows,
+        }
+        stored = read_table(path, KIND, self.body.key, layout)
         nodes, largest = stored["nodes"], stored["largest"]
+        if len(np.unique(nodes)) < len(nodes) or (nodes < 0).any() or (nodes >= count).any():
+            refuse(path, "nodes")
+        for name in ("largest", "positive", "negative"):
+            if len(stored[name]) != len(nodes):
+                refuse(path, name)
+        if (largest <= 0.0).any():
+            refuse(path, "largest")
         if float(stored["wanted"]) != self.wanted:
             raise TableFileError(
                 "{path}: made for another F0; its table is computed anew", path=path

@@ -33,7 +33,7 @@ class RationalSum:
 
     Attributes
     ----------
-    basis : (m, N), orthonormal columns.
+    basis : (m, N), orthonormal columns; for m below N the first m rows of such.
     terms : (N, N), upper triangular; column k - 1 is a_k in this basis.
     """
 
@@ -42,9 +42,13 @@ class RationalSum:
 
     @classmethod
     def of(cls, terms: Sequence[Array]) -> RationalSum:
-        """Of a_1 ... a_N, of one shape with at least N numbers; N at least 3."""
-        basis, triangular = np.linalg.qr(np.stack([term.ravel() for term in terms], axis=1))
-        return cls(basis, triangular)
+        """Of a_1 ... a_N, of one shape; N at least 3."""
+        columns = np.stack([term.ravel() for term in terms], axis=1)
+        size, order = columns.shape
+        # Zeros where a body has fewer freedoms than the series has terms.
+        padded = np.pad(columns, ((0, max(order - size, 0)), (0, 0)))
+        basis, triangular = np.linalg.qr(padded)
+        return cls(basis[:size], triangular)
 
     def at(self, share: float) -> tuple[Array, float]:
         """The sum (m,) at s, and what the last order changed of it, relative.

@@ -12,7 +12,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +25,10 @@ from ...files.own_file import is_free
 FORMAT = "palpate-table"
 VERSION = 1
 HEAD = ("format", "version", "kind", "key", "checksum")
+
+
+Layout = Mapping[str, tuple[type, tuple[int | None, ...]]]
+"""Type and shape of each array of a table, None for any length."""
 
 
 class TableFileError(PalpateError):
@@ -60,13 +64,18 @@ def write_table(path: Path, kind: str, key: str, arrays: Mapping[str, NDArray[An
         write_arrays(file, head | dict(arrays))
 
 
-def read_table(path: Path, kind: str, key: str) -> dict[str, NDArray[Any]]:
+def read_table(path: Path, kind: str, key: str, layout: Layout) -> dict[str, NDArray[Any]]:
     """The arrays of a table that :func:`write_table` wrote.
+
+    Parameters
+    ----------
+    layout : of the arrays: type and shape, None for any length.
 
     Raises
     ------
     TableFileError
-        Damaged or foreign, of another version or kind, or of another body.
+        Damaged or foreign, of another version or kind, of another body, arrays of another layout,
+        numbers that are not finite.
     """
     try:
         stored = read_arrays(path)
@@ -94,7 +103,34 @@ def read_table(path: Path, kind: str, key: str) -> dict[str, NDArray[Any]]:
         raise TableFileError(
             "{path}: damaged (its checksum does not match); its table is computed anew", path=path
         )
+    # A checksum is no secret: whoever sends a file can write it.
+    for name, (dtype, shape) in layout.items():
+        array = arrays.get(name)
+        if array is None or not _is_laid_out(array, dtype, shape):
+            refuse(path, name)
     return arrays
+
+
+def refuse(path: Path, name: str) -> NoReturn:
+    """Refuse what a table says under a name.
+
+    Raises
+    ------
+    TableFileError
+        Always.
+    """
+    raise TableFileError(
+        "{path}: what it holds as '{name}' cannot be; its table is computed anew",
+        path=path,
+        name=name,
+    )
+
+
+def _is_laid_out(array: NDArray[Any], dtype: type, shape: tuple[int | None, ...]) -> bool:
+    fits = array.ndim == len(shape) and all(
+        wanted in {None, length} for wanted, length in zip(shape, array.shape, strict=True)
+    )
+    return fits and array.dtype == dtype and bool(np.isfinite(array).all())
 
 
 def _checksum(kind: str, key: str, arrays: Mapping[str, NDArray[Any]]) -> str:

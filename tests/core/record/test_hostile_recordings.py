@@ -110,6 +110,8 @@ def test_few_bytes_become_no_large_recording(changed, tmp_path):
         (b"\n1,0.0", b"\n1,zero", "damaged"),
         (b"tick,", b"tock," * 1_000_000, "first line"),
         (b"tick,", b"\xff\xfe", "damaged|first line"),
+        (b"\n1,", b"\n1" + b"0" * 5000 + b",", "over 3999 characters"),
+        (b"\n1,0.0", b"\n1,7e9", "go back"),
     ],
 )
 def test_a_line_that_cannot_be_is_refused(sound, tmp_path, old, new, said):

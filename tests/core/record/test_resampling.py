@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from palpate.core.errors import PalpateError
 from palpate.core.record.recording import DTYPE
 from palpate.core.record.resampling import frames_of
 
@@ -62,3 +63,27 @@ def test_missing_ticks_are_bridged_and_fingers_kept_apart():
     np.testing.assert_allclose(two.depth, 2 * one.depth, atol=1e-12)
     with pytest.raises(ValueError, match="finger 2"):
         frames_of(both, 2, FPS)
+
+
+def test_a_computer_that_slept_leaves_a_second_of_rest():
+    awake = ticks(2.0, lambda t: 0.01 * t)
+    slept = awake.copy()
+    slept["time"][1000:] += 8 * 3600.0
+    frames = frames_of(slept, 0, FPS)
+    assert len(frames.depth) == 3 * FPS + 1
+    np.testing.assert_allclose(frames.depth[-6:], frames_of(awake, 0, FPS).depth[-6:], atol=1e-5)
+
+
+def test_ticks_at_one_time_are_bridged_and_times_that_go_back_refused():
+    pairs = ticks(1.0, lambda t: 0.01 * t)
+    pairs["time"][1::2] = pairs["time"][:-1:2]
+    assert frames_of(pairs, 0, FPS).depth[-1] == pytest.approx(0.01, rel=0.02)
+    with pytest.raises(ValueError, match="go back"):
+        frames_of(pairs[::-1], 0, FPS)
+
+
+def test_more_frames_than_blender_numbers_are_refused():
+    rare = ticks(60.0, lambda t: 0.01 * t)
+    rare["time"] = np.arange(len(rare), dtype=float)
+    with pytest.raises(PalpateError, match="frames that Blender numbers"):
+        frames_of(rare, 0, FPS)

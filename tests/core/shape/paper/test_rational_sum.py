@@ -43,3 +43,10 @@ def test_a_series_that_ends_is_summed_exactly():
     expected = sum(term * 0.7 ** (k + 1) for k, term in enumerate(terms))
     np.testing.assert_allclose(found, expected.ravel(), rtol=1e-10)
     assert changed < 1e-10
+
+
+def test_a_body_of_fewer_freedoms_than_terms_is_summed_too(series):
+    few = RationalSum.of(list((series.basis @ series.terms).T[:, :3]))
+    found, _ = few.at(-2.0)
+    expected = 1.0 - np.sqrt(1.0 + 2.0 / GIVE_WAY[:3])
+    np.testing.assert_allclose(found, expected, rtol=0.02)
