@@ -121,11 +121,8 @@ def run(arguments: argparse.Namespace) -> int:
         _check_ports([port, *others])
         stopped = stack.enter_context(stopped_by_signals())
         surface = native_body(body, whole=bool(others))
-        servo = servo_on(
-            surface,
-            Settings(young_modulus, mode=arguments.mode, felt=arguments.felt),
-            rate_hz=arguments.rate,
-        )
+        settings = Settings(young_modulus, mode=arguments.mode, felt=arguments.felt)
+        servo = servo_on(surface, settings, rate_hz=arguments.rate)
         table = None
         if arguments.felt == "corrected":
             table = stack.enter_context(softening_table(body, arguments.body))
