@@ -174,7 +174,7 @@ $(BLENDERS:%=test-addon-%): test-addon-%: .venv-bpy-%/.installed build/packages/
 
 # Under wine, in a root folder outside of the checkout, which is made if it is not there: 3 GB, as root.
 WINDOWS_ROOT ?= /var/tmp/palpate-windows
-WINDOWS_TESTS := tests/core tests/cli tests/servo
+WINDOWS_TESTS ?= tests/core tests/cli tests/simulated tests/servo
 WINDOWS_WHEELS := build/servo-of-windows
 
 $(WINDOWS_WHEELS)/.built: $(NATIVE_SOURCES) $(VENV)/.installed

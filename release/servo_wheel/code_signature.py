@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import struct
+from collections.abc import Iterator
 
 LC_CODE_SIGNATURE = 0x1D
 CODE_DIRECTORY = 0xFADE0C02
@@ -15,7 +16,7 @@ def signature_fault(image: bytes) -> str | None:
 
     An ad hoc signature has no signer: it is a table of hashes (Apple, `cs_blobs.h`).
     """
-    place = _place(image)
+    place = signature_place(image)
     if place is None:
         return "it is not signed"
     directory = _code_directory(image, place)
@@ -23,31 +24,56 @@ def signature_fault(image: bytes) -> str | None:
         return "its signature has no code directory"
     # magic, length, version, flags, hashOffset, identOffset, nSpecialSlots, nCodeSlots, codeLimit,
     # then the size and kind of a hash, the platform, and the page's size as a power of two.
-    hashes, _, _, slots, limit = struct.unpack_from(">5I", image, directory + 16)
-    size, kind, _, power = struct.unpack_from(">4B", image, directory + 36)
+    _, _, _, slots, limit = struct.unpack_from(">5I", image, directory + 16)
+    _, kind, _, power = struct.unpack_from(">4B", image, directory + 36)
     if kind != SHA256 or limit > place:
         return "its signature is of an unknown kind"
-    page = 1 << power
-    if slots != -(-limit // page):
+    if slots != -(-limit // (1 << power)):
         return "its signature covers another length"
-    for slot in range(slots):
-        piece = image[slot * page : min((slot + 1) * page, limit)]
-        start = directory + hashes + slot * size
-        if hashlib.sha256(piece).digest()[:size] != image[start : start + size]:
-            return f"page {slot} was changed after it was signed"
+    for page, (start, digest) in enumerate(_hashes(image, directory)):
+        if digest != image[start : start + len(digest)]:
+            return f"page {page} was changed after it was signed"
     return None
 
 
-def _place(image: bytes) -> int | None:
-    """Where the signature begins, by the load commands."""
+def signed_anew(image: bytes) -> bytes:
+    """Return a signed image with the hashes of its pages as they are now."""
+    place = signature_place(image)
+    directory = None if place is None else _code_directory(image, place)
+    if directory is None:
+        raise ValueError("the image has no signature that could be renewed")
+    signed = bytearray(image)
+    for start, digest in _hashes(image, directory):
+        signed[start : start + len(digest)] = digest
+    return bytes(signed)
+
+
+def _hashes(image: bytes, directory: int) -> Iterator[tuple[int, bytes]]:
+    """Yield of each page where its hash is written, and what it should be."""
+    hashes, _, _, slots, limit = struct.unpack_from(">5I", image, directory + 16)
+    size, _, _, power = struct.unpack_from(">4B", image, directory + 36)
+    page = 1 << power
+    for slot in range(slots):
+        piece = image[slot * page : min((slot + 1) * page, limit)]
+        yield directory + hashes + slot * size, hashlib.sha256(piece).digest()[:size]
+
+
+def commands(image: bytes) -> Iterator[tuple[int, int]]:
+    """Yield kind and place of each load command of a 64-bit image."""
     (count,) = struct.unpack_from("<I", image, 16)
     at = 32
     for _ in range(count):
         kind, length = struct.unpack_from("<II", image, at)
+        yield kind, at
+        at += length
+
+
+def signature_place(image: bytes) -> int | None:
+    """Return where the signature begins, by the load commands; None without one."""
+    for kind, at in commands(image):
         if kind == LC_CODE_SIGNATURE:
             (place,) = struct.unpack_from("<I", image, at + 8)
             return int(place)
-        at += length
     return None
 
 

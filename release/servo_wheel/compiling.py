@@ -14,6 +14,7 @@ from pathlib import Path
 
 from bundled_wheels import PackagingError
 from servo_wheel import apple_stubs, standard_library
+from servo_wheel.settled_uuid import settle_wheel
 from servo_wheel.target import MACOS_DEPLOYMENT_TARGET, Target
 
 # What a compiler may read from the environment and put into an image.
@@ -52,6 +53,8 @@ def compile_wheel(
         message = f"palpate_servo does not compile for {target.platform} ({target.triple})"
         raise PackagingError(message)
     (wheel,) = output.glob(f"palpate_servo-*-{target.tag}.whl")
+    if target.is_macos:
+        settle_wheel(wheel)
     return wheel
 
 

@@ -9,14 +9,14 @@ home=$root/windows/Python$number-bpy-$bpy
 python=${PYTHON:-python3}
 
 # Blender alone with pytest: what the extension imports must come from its own wheels.
-if [ ! -d "$home/Lib/site-packages/bpy" ]; then
+if [ ! -d "$home/Lib/site-packages/hypothesis" ]; then
     rm -rf "$home"
     cp -a "$root/windows/Python$number" "$home"
     rm -rf "$home/Lib/site-packages"
     # bpy asks for its own Python, and pip looks at the one that it runs in.
     "$python" -m pip install --quiet --disable-pip-version-check --no-compile --only-binary=:all: \
         --platform win_amd64 --implementation cp --python-version "${number:0:1}.${number:1}" \
-        --ignore-requires-python --target "$home/Lib/site-packages" "bpy==$bpy" pytest pytest-timeout colorama
+        --ignore-requires-python --target "$home/Lib/site-packages" "bpy==$bpy" pytest pytest-timeout hypothesis colorama
 fi
 mkdir -p "$root/windows/packages"
 cp "$package" "$root/windows/packages/"
