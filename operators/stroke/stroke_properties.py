@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import bpy
 
+from ..reporting.quantities import newtons
 from ..reporting.translated import shown
 
 MOTION_ITEMS = [
@@ -87,4 +88,4 @@ class StrokeProperties:
         layout.prop(self, "place")
         layout.prop(self, "radius")
         layout.prop(self, "mirrored", toggle=True)
-        layout.label(text=shown("Force: {force:.3g} N", force=self.force), translate=False)
+        layout.label(text=shown("Force: {force}", force=newtons(self.force)), translate=False)

@@ -6,6 +6,7 @@ import math
 
 import bpy
 
+from ..reporting.quantities import newtons
 from ..reporting.translated import shown
 from .motion import Asked, Motion
 from .pushing import Stroked
@@ -31,12 +32,12 @@ def figures(scene: bpy.types.Scene, asked: Asked, stroked: Stroked) -> str:
     """Amount and force of a stroke, such as "3.2 mm   1.25 N"."""
     match asked.motion:
         case Motion.TWIST:
-            return f"{math.degrees(asked.amount):.1f}°   {stroked.torque:.3g} N m"
+            return f"{math.degrees(asked.amount):.1f}°   {newtons(stroked.torque)} m"
         case Motion.PINCH:
-            return f"{100.0 * asked.amount:.0f} %   {stroked.force:.3g} N"
+            return f"{100.0 * asked.amount:.0f} %   {newtons(stroked.force)}"
         case Motion.GRAB if asked.by is not None:
-            return f"{length(scene, math.hypot(*asked.by))}   {stroked.force:.3g} N"
-    return f"{length(scene, asked.amount)}   {stroked.force:.3g} N"
+            return f"{length(scene, math.hypot(*asked.by))}   {newtons(stroked.force)}"
+    return f"{length(scene, asked.amount)}   {newtons(stroked.force)}"
 
 
 def length(scene: bpy.types.Scene, metres: float) -> str:
