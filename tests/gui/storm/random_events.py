@@ -61,16 +61,17 @@ class Storm:
         """Send so many events, in gusts."""
         kinds = list(self.kinds)
         weights = np.array(list(self.kinds.values()))
-        gust = 0
+        gust, turned = 0, False
         lot = self.rng.choice(len(kinds), count, p=weights / weights.sum())
         for sent, number in enumerate(lot, 1):
             # Elsewhere clicks and keys are there to change the mesh.
             kind = kinds[number] if bpy.context.mode == "OBJECT" else self.leave_mode
-            # What was sent to one file or mode is not for the next.
-            if gust <= 0 or kind in (self.mode, self.leave_mode, self.reload):
+            # What was sent to one file or mode is not for the next; undo may change the mode, too.
+            if gust <= 0 or turned or kind in (self.mode, self.leave_mode, self.reload):
                 yield 0.0
                 gust = int(self.rng.integers(1, MOST_IN_A_GUST))
             gust -= 1
+            turned = kind in (self.undo, self.redo)
             self.counts[kind.__name__] += 1
             kind()
             if sent % EVENTS_A_LINE == 0:
@@ -213,7 +214,8 @@ def storm(stage: Stage, seed: int, count: int) -> Wait:
     yield from _calm(stage)
     kept = sum(len(layers.layers_of(thing)) for thing in bpy.data.objects if thing.type == "MESH")
     stage.note(kept_layers=kept)
-    assert _meshes() == before
+    now = _meshes()
+    assert now == before, [name for name in before if now.get(name) != before[name]]
     assert press_session.current() is None
     assert bake_session.current() is None
     assert not [thing.name for thing in bpy.data.objects if _is_pressed(thing)]
