@@ -64,14 +64,16 @@ class Storm:
         gust, turned = 0, False
         lot = self.rng.choice(len(kinds), count, p=weights / weights.sum())
         for sent, number in enumerate(lot, 1):
-            # Elsewhere clicks and keys are there to change the mesh.
-            kind = kinds[number] if bpy.context.mode == "OBJECT" else self.leave_mode
+            kind = kinds[number]
             # What was sent to one file or mode is not for the next; undo may change the mode, too.
-            if gust <= 0 or turned or kind in (self.mode, self.leave_mode, self.reload):
+            if gust <= 0 or turned or kind in (self.mode, self.reload):
                 yield 0.0
                 gust = int(self.rng.integers(1, MOST_IN_A_GUST))
+            # Elsewhere clicks and keys are there to change the mesh.
+            if bpy.context.mode != "OBJECT":
+                kind = self.leave_mode
             gust -= 1
-            turned = kind in (self.undo, self.redo)
+            turned = kind in (self.undo, self.redo, self.mode, self.leave_mode)
             self.counts[kind.__name__] += 1
             kind()
             if sent % EVENTS_A_LINE == 0:
