@@ -68,6 +68,28 @@ def every_kind_of_stroke_is_kept_and_escape_restores(stage: Stage) -> Wait:
         cube = bpy.data.objects["Cube"]
 
 
+def a_push_goes_along_the_surface_with_ctrl(stage: Stage) -> Wait:
+    cube = yield from _soft_default_cube(stage)
+    _choose_tool(stage)
+    here = stage.pixel((-0.3, 0.0, 1.0))
+    yield from stage.move(here)
+    yield from stage.picture("circle")
+    yield from stage.drag([here, (here[0], here[1] - 40)], release=False)
+    before, (x, y) = _live_depth(cube), stage.mouse
+    assert before > 0.05
+    yield from stage.event("LEFT_CTRL", "PRESS", stage.mouse, ctrl=True)
+    for step in range(1, 11):
+        yield from stage.move((x + 7 * step, y), ctrl=True)
+    yield from stage.event("LEFT_CTRL", "RELEASE", stage.mouse)
+    yield from stage.picture("slid")
+    yield from stage.event("LEFTMOUSE", "RELEASE", stage.mouse)
+    yield from stage.until(lambda: len(kept(cube)) == 1, "the stroke")
+    done = bpy.context.window_manager.operators[-1].properties
+    assert math.hypot(*done["by"]) > 0.2, "it did not go along"
+    # As deep as before, to what the coarse dent shows of it.
+    assert math.isclose(-last_stroke(cube)[:, 2].min(), before, rel_tol=0.3)
+
+
 def a_depth_is_typed_while_dragging(stage: Stage) -> Wait:
     cube = yield from _soft_default_cube(stage)
     _choose_tool(stage)
