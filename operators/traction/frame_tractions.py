@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..layer.layer_groups import BORNE, NORMAL, PRESSURE, SUM
+from .point_attribute import point_attribute
 
 Vectors = NDArray[np.float32]
 KINDS = {SUM: "FLOAT_VECTOR", BORNE: "FLOAT_VECTOR", NORMAL: "FLOAT_VECTOR", PRESSURE: "FLOAT"}
@@ -68,8 +69,7 @@ def shown_by(mesh: bpy.types.Mesh, frames: FrameTractions) -> Iterator[None]:
     """The mesh has the attributes of each frame as it comes; see *Force as data* in the docs."""
     name = mesh.name
     for attribute, kind in KINDS.items():
-        if attribute not in mesh.attributes:
-            mesh.attributes.new(attribute, kind, "POINT")
+        point_attribute(mesh, attribute, kind)
 
     def show(scene: bpy.types.Scene, *_: object) -> None:
         _write(bpy.data.meshes[name], *frames.at(scene.frame_current_final))

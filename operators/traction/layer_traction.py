@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from ..layer import layers, live_layer, modifier_inputs
 from ..layer.layer_groups import CARRIER, DISPLACEMENT, STRENGTH, TRACTION, group_of
+from .point_attribute import point_attribute
 
 
 def write(thing: bpy.types.Object, tractions: NDArray[np.float32] | None) -> None:
@@ -23,13 +24,11 @@ def write_of(
     """The same of any layer."""
     mesh = layers.mesh_of(thing, layer)
     name = layers.attribute_name(layer) + TRACTION
-    attribute = mesh.attributes.get(name)
     if tractions is None:
-        if attribute is not None:
-            mesh.attributes.remove(attribute)
+        if name in mesh.attributes:
+            mesh.attributes.remove(mesh.attributes[name])
         return
-    if attribute is None:
-        attribute = mesh.attributes.new(name, "FLOAT_VECTOR", "POINT")
+    attribute = point_attribute(mesh, name, "FLOAT_VECTOR")
     if 3 * len(attribute.data) == len(tractions):
         attribute.data.foreach_set("vector", tractions)
         mesh.update_tag()

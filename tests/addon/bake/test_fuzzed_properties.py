@@ -35,8 +35,16 @@ ACTS = (
     ("make_soft", {}),
 )
 ARRAYS = ("nodes", "tets", "fixed", "young_scale")
-HOLDERS = ("object", "scene", "mesh", "custom", "layer", "group")
+HOLDERS = ("object", "scene", "mesh", "custom", "layer", "group", "attribute")
 CUSTOM = ["palpate", "nodes", "palpate_rest", "palpate_halved", "palpate_seen", "force_N"]
+
+ATTRIBUTES = ("rest", "at", "pressed", "displacement", "traction", "pressure", "normal", "softness")
+KINDS = (
+    ("INT", "POINT"),
+    ("FLOAT", "FACE"),
+    ("FLOAT_VECTOR", "CORNER"),
+    ("INT8", "EDGE"),
+)
 
 numbers = st.one_of(
     st.sampled_from([0, 1, -1, 2**31 - 1, -(2**31), math.nan, math.inf, -math.inf, 1e300, -0.0]),
@@ -87,8 +95,21 @@ def owned(
     return {"mesh": thing.data, "custom": thing}[holder], CUSTOM
 
 
+def plant_attribute(mesh: bpy.types.Mesh, number: int) -> None:
+    """Give an attribute that Palpate wrote, or would write, another type and domain."""
+    own = [one.name for one in mesh.attributes if not one.is_required and not one.is_internal]
+    names = [*own, *(f"palpate_{name}" for name in ATTRIBUTES)]
+    name = names[number % len(names)]
+    if name in mesh.attributes:
+        mesh.attributes.remove(mesh.attributes[name])
+    mesh.attributes.new(name, *KINDS[number % len(KINDS)])
+
+
 def plant(thing: bpy.types.Object, holder: str, number: int, value: object) -> None:
     """Give a property a value as a file has it; what Blender itself does not take is left out."""
+    if holder == "attribute":
+        plant_attribute(thing.data, number)
+        return
     owner, names = owned(thing, holder, number)
     name = names[number % len(names)]
     owners = [owner]

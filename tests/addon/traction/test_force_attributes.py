@@ -212,3 +212,18 @@ def test_a_baked_usd_file_plays_them_frame_by_frame(fine, tmp_path):
         places = rest + shown(fine, "palpate_displacement")
         np.testing.assert_allclose(seen_places(fine), places, rtol=0, atol=1e-6)
     assert float(forces[3]["force_N"]) > 0.01
+
+
+def test_what_a_file_has_under_an_attribute_s_name_makes_room_for_it(fine):
+    write_of = part("operators.traction.layer_traction").write_of
+    layers = part("operators.layer.layers")
+    assert bpy.ops.palpate.stroke(motion="PUSH", **PUSH) == {"FINISHED"}
+    (layer,) = layers.layers_of(fine)
+    mesh = layers.mesh_of(fine, layer)
+    name = layers.attribute_name(layer) + part("operators.layer.layer_groups").TRACTION
+    mesh.attributes.remove(mesh.attributes[name])
+    mesh.attributes.new(name, "INT", "POINT")
+    write_of(fine, layer, np.full(3 * len(mesh.vertices), 2.0, dtype=np.float32))
+    attribute = mesh.attributes[name]
+    assert (attribute.data_type, attribute.domain) == ("FLOAT_VECTOR", "POINT")
+    assert tuple(attribute.data[0].vector) == (2.0, 2.0, 2.0)
