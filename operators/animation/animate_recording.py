@@ -12,6 +12,7 @@ from ..press.save_recording import NOTHING, recorded, refusal_unrecorded
 from ..reporting.translated import reported
 from ..scene import curves, drawn_surface
 from ..scene.body_frame import BodyFrame
+from ..tool.tool_sizes import chosen_sizes
 
 PROBE_NAME = "Palpate Probe"
 
@@ -33,6 +34,12 @@ class PALPATE_OT_animate_recording(Pressing, bpy.types.Operator):
         thing, scene, kept = context.object, context.scene, recorded()
         if not len(kept.samples):
             raise PalpateError(NOTHING)
+        if kept.pressed is not None and kept.pressed.find() != thing:
+            raise PalpateError(
+                "{pressed} was recorded, not {name}; select that to animate its recording",
+                pressed=kept.pressed.name,
+                name=thing.name,
+            )
         frame = drawn_surface.frame_of(thing, scene)
         rate = scene.render.fps / scene.render.fps_base
         first = scene.frame_current
@@ -59,9 +66,10 @@ def _probe(
     probe = bpy.data.objects.new(PROBE_NAME, None)
     scene.collection.objects.link(probe)
     probe.empty_display_type = "SPHERE"
-    # Its parent's scale would change a size in the scene's units.
-    stretch = float(np.cbrt(abs(np.linalg.det(frame.metric))))
-    probe.empty_display_size = scene.palpate.tip_radius / stretch
+    # In the units of its parent, whose scale it has.
+    metres = float(np.cbrt(abs(np.linalg.det(frame.metric))))
+    sizes = chosen_sizes(scene, drawn_surface.size_of(thing, scene))
+    probe.empty_display_size = sizes.tip_radius / metres
     probe.parent = thing
     force = frame.turn_to_world(frames.force)
     probe["force_N"] = force[0].tolist()

@@ -92,14 +92,6 @@ def play(thing: bpy.types.Object, target: Path, path: str, *, attributes: bool) 
     modifier.read_data = {"VERT", "ATTRIBUTES"} if attributes else {"VERT"}
 
 
-def is_played(thing: bpy.types.Object, file: Path) -> bool:
-    """Whether a file is the one that the object's modifier plays."""
-    modifier = thing.modifiers.get(mesh_cache.MODIFIER_NAME)
-    if modifier is None or modifier.type != "MESH_SEQUENCE_CACHE" or modifier.cache_file is None:
-        return False
-    return Path(bpy.path.abspath(modifier.cache_file.filepath)) == file
-
-
 def _close(thing: bpy.types.Object) -> None:
     """Let go of the file that is played: where it is open it cannot be replaced."""
     modifier = thing.modifiers.get(mesh_cache.MODIFIER_NAME)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import bpy
 
+from ...core.files.own_file import is_ordinary
 from ...core.files.point_cache import CacheSize, is_own_cache, point_cache
 from ...core.files.scratch_folder import ScratchFolder
 from ..object.drawn_body import DrawnBody
@@ -59,7 +60,7 @@ def _as_exchange(
     *,
     kind: Exchange,
 ) -> Baking:
-    target = mesh_cache.place_for(thing, kind.value, partial(exchange_file.is_played, thing))
+    target = mesh_cache.place_for(thing, kind.value, is_ordinary)
     with (
         ScratchFolder(SCRATCH_WORD) as folder,
         frame_tractions(folder.path / "forces", size.points, size.first_frame, size.step) as forces,

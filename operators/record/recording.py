@@ -14,17 +14,21 @@ from numpy.typing import NDArray
 from ...core.errors import PalpateError
 from ...core.record.recording import DTYPE, write_recording
 from ...core.servo.session import STATES, Servo
+from ..scene.object_handle import ObjectHandle
 
 BYTES_A_TICK = DTYPE.itemsize
 
 
 @dataclass(frozen=True, eq=False)
 class Kept:
-    """Recorded ticks of an ended press, structured array (n,) of ``DTYPE``."""
+    """Recorded ticks of an ended press, structured array (n,) of ``DTYPE``, and the object that was
+    pressed; None where nobody says.
+    """
 
     samples: NDArray[np.void]
     rate_hz: int
     lost: int = 0
+    pressed: ObjectHandle | None = None
 
 
 @dataclass(eq=False)
@@ -36,6 +40,7 @@ class Recorder:
 
     servo: Servo
     rate_hz: int
+    pressed: ObjectHandle | None = None
     wanted: bool = False
     full: bool = False
     seconds: float = 0.0
@@ -83,7 +88,8 @@ class Recorder:
 
     def kept(self) -> Kept:
         """All ticks so far, a copy."""
-        return Kept(self.servo.recording(), self.rate_hz, self.servo.recording_lost)
+        lost = self.servo.recording_lost
+        return Kept(self.servo.recording(), self.rate_hz, lost, self.pressed)
 
 
 _last: Kept | None = None

@@ -14,6 +14,7 @@ from ...core.servo.session import Snapshot
 from ..object.drawn_body import DrawnBody
 from ..record import recording_writer
 from ..scene.body_frame import BodyFrame, as_point
+from ..scene.object_handle import ObjectHandle
 from ..tool import tool_turn
 from ..tool.finger_tip import FingerTip
 from ..tool.tool_turn import Point, Turn
@@ -40,6 +41,7 @@ def start_loop(
         The body cannot be touched, a device is not there, or the servo refuses a setting.
     """
     loop = ForceLoop.prepare(drawn, settings, scene.palpate.rate, tip, len(leads))
+    loop.recorder.pressed = ObjectHandle.of(thing)
     try:
         for lead in leads[1:]:
             if lead.lead is Lead.DEVICE:

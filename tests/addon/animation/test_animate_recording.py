@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import bpy
 import numpy as np
 import pytest
-from soft_scene import error_of, part, soft_cube
+from soft_scene import begin, error_of, part, select, soft_cube
 
 RATE = 1000
 
@@ -47,8 +49,9 @@ def test_the_probe_moves_as_the_finger_did_and_carries_its_force(tap):
     assert scene.frame_end >= 11 + fps
 
 
-def test_a_recorded_tap_is_baked_into_a_cache(tap):
+def test_a_recorded_tap_is_baked_into_a_cache(tap, tmp_path):
     thing, scene = soft_cube(), bpy.context.scene
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "tap.blend"))
     scene.frame_set(1)
     assert bpy.ops.palpate.animate_recording() == {"FINISHED"}
     scene.palpate.tip, scene.palpate.tip_radius = "SPHERE", 0.02
@@ -59,6 +62,36 @@ def test_a_recorded_tap_is_baked_into_a_cache(tap):
         evaluated = thing.evaluated_get(bpy.context.evaluated_depsgraph_get())
         heights.append(max(vertex.co.z for vertex in evaluated.data.vertices))
     assert heights[1] < heights[0] - 1e-4
+
+
+@pytest.mark.parametrize("own_sizes", [False, True])
+def test_the_empty_is_as_large_as_the_finger(tap, own_sizes):
+    thing, scene = soft_cube(), bpy.context.scene
+    thing.scale, scene.unit_settings.scale_length = (2, 2, 2), 0.01
+    bpy.context.view_layer.update()
+    chosen = scene.palpate
+    chosen.tip_radius, chosen.tip_share, chosen.own_sizes = 0.3, 20.0, own_sizes
+    assert bpy.ops.palpate.animate_recording() == {"FINISHED"}
+    bpy.context.view_layer.update()
+    probe = chosen.source_empty
+    radius = probe.empty_display_size * probe.matrix_world.to_scale().x
+    # 20 % of the cube's diagonal.
+    assert radius == pytest.approx(0.3 if own_sizes else 0.2 * 0.1 * 3**0.5, rel=1e-5)
+
+
+def test_only_what_was_recorded_is_animated(tap, sessions, states, monkeypatch):
+    first, second = soft_cube(), soft_cube()
+    recording, scene = part("operators.record.recording"), bpy.context.scene
+    kept = recording.last()
+    scene.palpate.record_from_start = True
+    begin(sessions, states, first)
+    sessions.give_way("")
+    pressed = recording.last().pressed
+    assert pressed.find() == first
+    monkeypatch.setattr(recording, "_last", replace(kept, pressed=pressed))
+    select(second)
+    assert f"{first.name} was recorded" in error_of(bpy.ops.palpate.animate_recording)
+    assert scene.palpate.source_empty is None
 
 
 def test_without_a_recording_it_is_refused(palpate, monkeypatch):

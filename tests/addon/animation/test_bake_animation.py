@@ -148,7 +148,7 @@ def test_nothing_is_left_of_a_bake_that_is_ended(tapped, tmp_path, monkeypatch):
 
 
 def test_a_foreign_file_of_the_cache_s_name_is_left_alone(tapped):
-    name = f"{bpy.path.clean_name(tapped.name)}-animation.pc2"
+    name = f"tapped-{bpy.path.clean_name(tapped.name)}-animation.pc2"
     place = part("operators.object.body_store").folder_for_new_files() / name
     place.parent.mkdir(exist_ok=True)
     place.write_bytes(b"POINTCACHE2\0 of somebody else")
@@ -195,8 +195,9 @@ def test_the_current_frame_alone_is_kept_as_a_press(chosen):
     assert layer_names(thing) == ["Press 1"]
 
 
-def test_animations_without_a_tool_or_a_leader_are_refused(chosen):
+def test_animations_without_a_tool_or_a_leader_are_refused(chosen, tmp_path):
     thing, guide = soft_cube(), empty()
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "refused.blend"))
     assert "choose Fingertip" in error_of(bpy.ops.palpate.press_frames)
     chosen.tip = "SPHERE"
     assert "nothing leads the tool" in error_of(bpy.ops.palpate.press_frames)

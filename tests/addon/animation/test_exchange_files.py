@@ -118,7 +118,7 @@ def test_nothing_is_left_of_one_that_is_ended(tapped, monkeypatch):
 
 
 def test_a_file_of_somebody_else_is_left_alone(tapped):
-    name = f"{bpy.path.clean_name(tapped.name)}-animation.abc"
+    name = f"tapped-{bpy.path.clean_name(tapped.name)}-animation.abc"
     place = part("operators.object.body_store").folder_for_new_files() / name
     place.parent.mkdir(exist_ok=True)
     place.write_bytes(b"of somebody else")
