@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from ...core.errors import PalpateError
 from ...core.shape.shapes import Shape, shape
+from ..carrier import changing
 from ..layer import layers, place_marks
 from ..object import body_store
 from ..object.drawn_body import DrawnBody, open_body
@@ -62,6 +63,8 @@ def follow_all(graph: bpy.types.Depsgraph) -> None:
     ExceptionGroup
         What nobody expected.
     """
+    if changing.is_aside(graph.scene):
+        return
     unexpected = []
     for handle in _pressed():
         thing = handle.find()

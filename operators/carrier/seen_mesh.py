@@ -89,11 +89,17 @@ def read(thing: bpy.types.Object, scene: bpy.types.Scene) -> SeenSurface:
 
 @contextmanager
 def made(
-    thing: bpy.types.Object, modifiers: Sequence[bpy.types.Modifier]
+    thing: bpy.types.Object,
+    modifiers: Sequence[bpy.types.Modifier],
+    layer: bpy.types.ViewLayer | None = None,
 ) -> Iterator[bpy.types.Mesh]:
-    """What these modifiers make of an object's mesh at rest: a copy, removed afterwards."""
+    """What these modifiers make of an object's mesh at rest, in a view layer or the present one: a
+    copy, removed afterwards.
+    """
     with _only(thing, modifiers):
-        graph = bpy.context.evaluated_depsgraph_get()
+        if layer is not None:
+            layer.update()
+        graph = bpy.context.evaluated_depsgraph_get() if layer is None else layer.depsgraph
         mesh = bpy.data.meshes.new_from_object(
             thing.evaluated_get(graph), preserve_all_data_layers=True, depsgraph=graph
         )

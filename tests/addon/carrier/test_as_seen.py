@@ -205,6 +205,31 @@ def test_vertices_that_change_from_frame_to_frame_are_refused_by_name(palpate):
     assert (scene.frame_current, thing.palpate.body_key) == (1, "")
 
 
+def test_looking_at_other_frames_moves_nothing(palpate):
+    thing, scene = default_cube(), bpy.context.scene
+    thing.modifiers.new("Weld", "WELD")
+    array = thing.modifiers.new("Array", "ARRAY")
+    array.count = 2
+    array.keyframe_insert("count", frame=1)
+    for frame, height in ((1, 0.0), (20, 1.0)):
+        thing.location.z = height
+        thing.keyframe_insert("location", frame=frame)
+    scene.frame_start, scene.frame_end = 1, 20
+    scene.frame_set(7, subframe=0.5)
+    thing["weight"] = 1.0
+    thing.keyframe_insert('["weight"]', frame=1)
+    # Moved by hand, and not keyed.
+    thing.location.x, thing["weight"] = 3.0, 2.0
+    bpy.context.view_layer.update()
+    place, scenes = thing.matrix_world.copy(), list(bpy.data.scenes)
+    part("operators.carrier.changing").refuse(thing, scene)
+    assert (thing.matrix_world, thing.location.x, thing["weight"]) == (place, 3.0, 2.0)
+    bpy.context.view_layer.update()
+    assert thing.matrix_world == place
+    assert (scene.frame_current, scene.frame_subframe) == (7, pytest.approx(0.5))
+    assert list(bpy.data.scenes) == scenes
+
+
 def test_another_number_of_vertices_than_was_baked_is_refused_when_pressed(palpate):
     thing, scene = default_cube(), bpy.context.scene
     solid = thing.modifiers.new("Bevel", "BEVEL")
