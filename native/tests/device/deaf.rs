@@ -115,6 +115,50 @@ fn an_older_device_that_went_limp_is_given_no_force_until_it_has_answered_a_hell
     assert!(bench.received().iter().all(|p| p[0] == 3 && p[9] == 1));
 }
 
+/// An older device off the body for 5 s, which answers HELLO so many ticks later: HELLO that it was asked,
+/// and whether it was ever deaf.
+fn in_the_air(lag: usize) -> (usize, bool) {
+    let (bench, mut device) = older();
+    let mut on_the_way = VecDeque::from(vec![0; lag]);
+    let (mut asked, mut deaf) = (0, false);
+    for tick in 101..5101_u32 {
+        bench.state(tick as u16, 1000, 0, 1);
+        let reading = read(&mut device, f64::from(tick) * 1e-3);
+        deaf |= reading == Reading::Fault(Fault::Deaf);
+        device.write(DVec3::ZERO, matches!(reading, Reading::At(_)), &FRAME());
+        let said = bench.received();
+        let hellos = said.iter().filter(|payload| payload[0] == 1).count();
+        if hellos > 0 && !deaf {
+            // It is limp until the next FORCE, which is there at once.
+            assert!(said.last().is_some_and(|payload| payload[0] == 3));
+        }
+        asked += hellos;
+        on_the_way.push_back(hellos);
+        for _ in 0..on_the_way.pop_front().unwrap_or(0) {
+            bench.hello(1, 2.5);
+        }
+    }
+    (asked, deaf)
+}
+
+#[test]
+fn an_older_device_is_asked_once_a_second_while_nothing_is_felt_and_a_constant_lag_is_deafness() {
+    for lag in [0, 20, 45] {
+        assert_eq!(in_the_air(lag), (5, false), "{lag}");
+    }
+    for lag in [55, 200] {
+        assert!(in_the_air(lag).1, "{lag}");
+    }
+}
+
+#[test]
+fn an_older_device_is_not_asked_while_it_pushes() {
+    let (bench, mut device) = older();
+    let deaf = ticks(&bench, &mut device, 101, 5000, |_| {});
+    assert!(deaf.iter().all(|deaf| !deaf));
+    assert!(bench.received().iter().all(|payload| payload[0] == 3));
+}
+
 #[test]
 fn what_was_thrown_away_behind_the_back_of_a_tick_is_said_again() {
     let (bench, mut device) = older();

@@ -106,6 +106,12 @@ impl<O: Opener> LinkDevice<O> {
         self.greeting.is_some_and(|g| g.protocol == self.protocol)
     }
 
+    /// What was said before is not waited for.
+    fn excuse(&mut self) {
+        self.freshness.forget();
+        self.doubt.excuse();
+    }
+
     /// Closes the line and forgets what was known of the device behind it.
     fn unplug(&mut self, now: f64) {
         self.line.close(now);
@@ -155,7 +161,7 @@ impl<O: Opener> Device for LinkDevice<O> {
     fn read(&mut self, now: f64, dt: f64, frame: &DeviceFrame) -> Reading {
         if now - self.now > STALE_SECONDS {
             // What the host did not look for is not late.
-            self.freshness.forget();
+            self.excuse();
         }
         (self.now, self.dt) = (now, dt);
         if !self.line.is_open() {
@@ -193,7 +199,7 @@ impl<O: Opener> Device for LinkDevice<O> {
             self.stale = true;
             self.speedometer.interrupt();
             self.orientations.interrupt();
-            self.freshness.forget();
+            self.excuse();
             if now - self.heard > RESET_SECONDS {
                 self.greet(now);
             }

@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::device::link::codec::{MAX_FRAME, encode};
 use crate::device::link::device::LinkDevice;
 use crate::device::link::messages::{
-    Answer, PROTOCOL, answering_payload, force_payload, hello_payload,
+    Answer, FIRST_PROTOCOL, PROTOCOL, answering_payload, force_payload, hello_payload,
 };
 use crate::device::serial::wire::Opener;
 use crate::guardian::Watch;
@@ -48,6 +48,9 @@ impl<O: Opener> LinkDevice<O> {
         let may_send = self.freshness.may_send(enable, now) && !self.doubt.stands();
         let is_due = self.pacing.is_due(now, dt) && may_send;
         if lets_go || is_due {
+            if is_due && force == DVec3::ZERO {
+                self.check();
+            }
             let payload = force_payload(self.sequence, force, enable);
             let said = if lets_go {
                 self.send_numbered(&payload, Self::send_at_once)
@@ -58,6 +61,15 @@ impl<O: Opener> LinkDevice<O> {
                 self.report.unsent += 1;
                 self.refused.get_or_insert(now);
             }
+        }
+    }
+
+    /// Asks a device of protocol 1 whether it hears, in front of a FORCE that is not felt. Where the line's
+    /// speed is known the driver tells what waits, and a slow line has no room for such answers.
+    fn check(&mut self) {
+        let is_blind = self.line.bits_per_second().is_none();
+        if is_blind && self.protocol == FIRST_PROTOCOL && self.doubt.checks(self.now) {
+            self.say_hello();
         }
     }
 

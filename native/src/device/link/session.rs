@@ -81,6 +81,9 @@ impl<O: Opener> LinkDevice<O> {
             self.freshness.refuse(now);
             self.doubt_it(now);
         }
+        if self.doubt.is_unanswered(now) {
+            self.doubt_it(now);
+        }
         if self.doubt.asks(now) {
             self.say_hello();
         }
