@@ -68,6 +68,13 @@ class BodyFrame:
         return cls(rotation, stretch, matrix[:3, 3].copy(), float(metres_per_unit))
 
     @property
+    def matrix(self) -> Array:
+        """The object's matrix (4, 4)."""
+        matrix = np.eye(4)
+        matrix[:3, :3], matrix[:3, 3] = self.rotation @ self.stretch, self.origin
+        return matrix
+
+    @property
     def mirrored(self) -> bool:
         """Whether the stretch mirrors the surface, so that triangles must be rewound."""
         return bool(np.linalg.det(self.stretch) < 0.0)

@@ -20,7 +20,7 @@ from ..reporting.acting import Acting
 from ..reporting.translated import reported, shown
 from ..scene import viewport
 from ..scene.body_frame import BodyFrame
-from ..scene.drawn_surface import frame_of, metres_per_unit
+from ..scene.drawn_surface import metres_per_unit
 from ..scene.modal_stay import ModalStay
 from ..scene.object_handle import ObjectHandle, make_active
 from ..scene.probe_drag import View
@@ -66,11 +66,11 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
         return ""
 
     def act(self, context: bpy.types.Context) -> None:
-        thing, scene = context.object, context.scene
+        thing, scene = self.remembered(context), context.scene
         reason = soft_object.refusal_unbaked(thing)
         if reason:
             raise PalpateError(reason)
-        frame = frame_of(thing, scene)
+        frame = self.remembered_frame(thing, scene)
         with place_marks.marked(thing):
             touched = touched_place.nearest(thing, frame, np.array(self.place))
         self._begin(thing, scene, frame, touched)
@@ -90,6 +90,8 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
         except BaseException:
             live_layer.remove(thing)
             raise
+        if context.object != thing:
+            make_active(context, thing)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if bpy.app.background:
@@ -128,7 +130,7 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
             self.motion = scene.palpate.stroke
         if not self.properties.is_property_set("mirrored"):
             self.mirrored = scene.palpate.stroke_mirrored
-        self.place = seen.seen
+        self.remember(seen)
         context.window.cursor_modal_set("WAIT")
         try:
             with place_marks.marked(thing):

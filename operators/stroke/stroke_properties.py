@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 import bpy
+import numpy as np
 
+from ...core.errors import PalpateError
+from ..place.seen_place import SeenPlace
 from ..reporting.quantities import newtons
 from ..reporting.translated import shown
+from ..scene.body_frame import BodyFrame
+from ..scene.drawn_surface import frame_of, metres_per_unit
 
 MOTION_ITEMS = [
     ("PUSH", "Push", "A fingertip presses in along the surface's normal; outward it pulls"),
@@ -77,7 +82,44 @@ class StrokeProperties:
         description="Pull, turn back or spread",
         options={"SKIP_SAVE", "HIDDEN"},
     )
+    # What was touched: when the redo panel has undone the stroke, another object is active.
+    object_name: bpy.props.StringProperty(options={"SKIP_SAVE", "HIDDEN"})
+    object_matrix: bpy.props.FloatVectorProperty(size=16, options={"SKIP_SAVE", "HIDDEN"})
     force: bpy.props.FloatProperty(options={"SKIP_SAVE", "HIDDEN"})
+
+    def remember(self, seen: SeenPlace) -> None:
+        """Take over what was touched."""
+        self.place, self.object_name = seen.seen, seen.thing.name
+        self.object_matrix = seen.frame.matrix.ravel()
+
+    def remembered(self, context: bpy.types.Context) -> bpy.types.Object | None:
+        """The object that was touched; the active one where none was.
+
+        Raises
+        ------
+        PalpateError
+            It is gone.
+        """
+        if not self.object_name:
+            return context.object
+        # Strokes are of objects of this file.
+        thing = bpy.data.objects.get((self.object_name, None))
+        if thing is None or thing.name not in context.view_layer.objects:
+            raise PalpateError("{name} is gone; choose another object", name=self.object_name)
+        return thing
+
+    def remembered_frame(self, thing: bpy.types.Object, scene: bpy.types.Scene) -> BodyFrame:
+        """Frame of the object, or of its instance that was touched.
+
+        Raises
+        ------
+        PalpateError
+            A transform that is not finite or flattens the object.
+        """
+        if not any(self.object_matrix):
+            return frame_of(thing, scene)
+        matrix = np.reshape(self.object_matrix, (4, 4))
+        return BodyFrame.of_matrix(matrix, metres_per_unit(scene))
 
     def draw(self, context: bpy.types.Context) -> None:
         layout: bpy.types.UILayout = self.layout  # type: ignore[attr-defined]  # of Operator
