@@ -15,7 +15,7 @@ from ...core.files.point_cache import CacheSize
 from ...core.sentence import Sentence
 from ..imprint import kept_imprint
 from ..imprint.surface_imprint import yielding_of
-from ..layer import layers, place_marks
+from ..layer import place_marks
 from ..object.drawn_body import DrawnBody, open_body
 from ..press.modal_press import Pressing
 from ..reporting.translated import reported, shown
@@ -137,12 +137,8 @@ class PALPATE_OT_press_frames(Pressing, bpy.types.Operator):
         table = Path(bpy.path.abspath(self.forces)) if self.forces else None
         if table is not None:
             refuse_unwritable(table)
-        if self.keep == "KEYS" and not self.current_only and layers.carrier(thing) is not None:
-            raise PalpateError(
-                "{name}: shape keys hold its own vertices alone, and more of them are drawn; keep "
-                "the animation as Mesh Cache",
-                name=thing.name,
-            )
+        if self.keep == "KEYS" and not self.current_only:
+            frame_keys.refuse(thing)
         drawn = open_body(thing, scene)
         rows = FrameRows(drawn, scene.render.fps / scene.render.fps_base)
         pressed = self._press(thing, scene, drawn, frames, rows)

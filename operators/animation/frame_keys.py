@@ -4,11 +4,32 @@ from __future__ import annotations
 
 import bpy
 
+from ...core.errors import PalpateError
+from ..layer import layers
+from ..layer.layer_operator import shared_refusal
 from ..object.drawn_body import DrawnBody
 from ..scene import curves
 from .pressed_frames import PressedFrame
 
 FRAME_NAME = "Press at"
+
+
+def refuse(thing: bpy.types.Object) -> None:
+    """Refuse an object that shape keys cannot play an animation for.
+
+    Raises
+    ------
+    PalpateError
+        More vertices are drawn than it has, or others share its mesh.
+    """
+    if layers.carrier(thing) is not None:
+        raise PalpateError(
+            "{name}: shape keys hold its own vertices alone, and more of them are drawn; keep the "
+            "animation as Mesh Cache",
+            name=thing.name,
+        )
+    if shared_refusal(thing):
+        raise PalpateError(shared_refusal(thing))
 
 
 def keep_frames(thing: bpy.types.Object, drawn: DrawnBody, pressed: list[PressedFrame]) -> int:

@@ -36,7 +36,7 @@ from . import failures, frame_keys, mesh_cache
 from .failures import Attempt
 from .pressed_frames import AnimatedPress
 
-LAYER_NAME = "Palpate Pressers"
+LAYER_NAME = layers.PRESSERS_NAME
 
 
 @dataclass(eq=False)

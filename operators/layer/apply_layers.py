@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 
 from ..reporting.translated import reported
 from . import layers
-from .layer_operator import OnLayers, plain_layers
+from .layer_operator import OnLayers, plain_layers, shared_refusal
 
 
 class PALPATE_OT_apply_layers(OnLayers, bpy.types.Operator):
@@ -20,10 +20,7 @@ class PALPATE_OT_apply_layers(OnLayers, bpy.types.Operator):
 
     @classmethod
     def refusal(cls, context: bpy.types.Context) -> str:
-        reason = super().refusal(context)
-        if not reason and context.object.data.users - context.object.data.use_fake_user > 1:
-            return "Other objects share its mesh; Object > Relations > Make Single User"
-        return reason
+        return super().refusal(context) or shared_refusal(context.object)
 
     def act(self, context: bpy.types.Context) -> None:
         thing = context.object

@@ -5,7 +5,7 @@ import bpy
 from ..reporting.translated import reported
 from ..scene.drawn_surface import rest_coordinates
 from . import layers
-from .layer_operator import OnLayers, plain_layers
+from .layer_operator import OnLayers, plain_layers, shared_refusal
 
 
 class PALPATE_OT_convert_layers(OnLayers, bpy.types.Operator):
@@ -16,6 +16,10 @@ class PALPATE_OT_convert_layers(OnLayers, bpy.types.Operator):
         "no modifiers"
     )
     bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def refusal(cls, context: bpy.types.Context) -> str:
+        return super().refusal(context) or shared_refusal(context.object)
 
     def act(self, context: bpy.types.Context) -> None:
         thing = context.object

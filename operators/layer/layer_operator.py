@@ -16,12 +16,12 @@ from . import layers, live_layer
 
 
 class OnLayers(Acting):
-    """Mixin for an operator on an object with layers that is not pressed now."""
+    """Mixin for an operator on an object with kept layers that is not pressed now."""
 
     @classmethod
     def refusal(cls, context: bpy.types.Context) -> str:
         thing = context.object
-        if thing is None or thing.type != "MESH" or not layers.layers_of(thing):
+        if thing is None or thing.type != "MESH" or not layers.kept_of(thing):
             return "Select a mesh object with layers; keep a press to make one"
         if not thing.is_editable or not thing.data.is_editable:
             return Sentence(
@@ -35,6 +35,15 @@ class OnLayers(Acting):
         return ""
 
 
+def shared_refusal(thing: bpy.types.Object) -> str:
+    """Reason why an object's dents cannot go into its mesh: others would have them; empty if none
+    would.
+    """
+    if thing.data.users - thing.data.use_fake_user > 1:
+        return "Other objects share its mesh; Object > Relations > Make Single User"
+    return ""
+
+
 @dataclass(frozen=True, eq=False)
 class PlainLayer:
     """Layer with its flat displacement (3 p,) of the object's own vertices at full strength."""
@@ -45,7 +54,7 @@ class PlainLayer:
 
 
 def plain_layers(thing: bpy.types.Object) -> list[PlainLayer]:
-    """Layers of an object, each of its own mesh and at a fixed strength.
+    """Kept layers of an object, each of its own mesh and at a fixed strength.
 
     Raises
     ------
@@ -53,7 +62,7 @@ def plain_layers(thing: bpy.types.Object) -> list[PlainLayer]:
         A layer is of another mesh, has lost its attribute, or its strength is animated.
     """
     found = []
-    for layer in layers.layers_of(thing):
+    for layer in layers.kept_of(thing):
         if layers.carrier_of(layer) is not None:
             raise PalpateError(
                 "{name}: '{layer}' is of the mesh that its modifiers make; Object > Convert > Mesh "

@@ -17,6 +17,8 @@ from . import modifier_inputs, stack
 from .layer_groups import CARRIER, DISPLACEMENT, LEVEL, STRENGTH, TRACTION, Kind, group_of, kind_of
 
 KEPT_NAME = "Press"
+# Layers that are written anew: by a press that goes on, and by Pressers as they move.
+LIVE_NAME, PRESSERS_NAME = "Palpate Live", "Palpate Pressers"
 FINE_NAME = "Palpate Fine"
 # Custom property of a carrier: how often the faces are halved for its vertices.
 HALVED, MOST_HALVED = "palpate_halved", 7
@@ -54,6 +56,11 @@ def seen_count(on: bpy.types.Object | None) -> int:
 def layers_of(thing: bpy.types.Object) -> list[bpy.types.NodesModifier]:
     """Modifiers of an object that are layers, in their order."""
     return [modifier for modifier in thing.modifiers if is_layer(modifier)]
+
+
+def kept_of(thing: bpy.types.Object) -> list[bpy.types.NodesModifier]:
+    """Layers of an object that stay as they are until somebody changes them."""
+    return [one for one in layers_of(thing) if one.name not in {LIVE_NAME, PRESSERS_NAME}]
 
 
 def is_layer(modifier: bpy.types.Modifier) -> bool:
@@ -177,7 +184,9 @@ def remove(thing: bpy.types.Object, layer: bpy.types.NodesModifier) -> None:
 
 
 def free_name(thing: bpy.types.Object, mesh: bpy.types.Mesh, stem: str = KEPT_NAME) -> str:
-    """The next "<stem> <n>" that nothing of an object, or of the mesh with the attributes, has."""
+    """The next "<stem> <n>" that nothing of an object, or of the mesh with the attributes, has; nor
+    with more words behind it, as attributes of layers and rigs have them.
+    """
     keys = thing.data.shape_keys
     taken = {
         *thing.modifiers.keys(),
@@ -186,7 +195,7 @@ def free_name(thing: bpy.types.Object, mesh: bpy.types.Mesh, stem: str = KEPT_NA
         *(keys.key_blocks.keys() if keys else ()),
     }
     number = 1
-    while f"{stem} {number}" in taken:
+    while any(f"{one} ".startswith(f"{stem} {number} ") for one in taken):
         number += 1
     return f"{stem} {number}"
 

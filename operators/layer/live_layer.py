@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 
 from . import layers, place_marks
 from .layer_groups import TRACTION
-
-LIVE_NAME = "Palpate Live"
+from .layers import LIVE_NAME
 
 
 def hang(thing: bpy.types.Object) -> None:

@@ -24,6 +24,8 @@ def add(thing: bpy.types.Object, answers: NDArray[np.float32]) -> bpy.types.Node
     name = layers.free_name(thing, mesh, STEM)
     for axis, answer in zip(AXES, answers, strict=True):
         attribute = mesh.attributes.new(f"{name} {axis}", "FLOAT_VECTOR", "POINT")
+        if attribute.name != f"{name} {axis}":
+            raise RuntimeError(f"{mesh.name} has an attribute {name} {axis}")
         attribute.data.foreach_set("vector", np.ascontiguousarray(answer, np.float32).ravel())
     mesh.update_tag()
     rig = layers.add_modifier(thing, name, Kind.RIG, {DISPLACEMENT: name})

@@ -35,7 +35,7 @@ class PALPATE_OT_animate_layers(OnLayers, bpy.types.Operator):
         first = frame = scene.frame_current
         still = [
             layer
-            for layer in layers.layers_of(thing)
+            for layer in layers.kept_of(thing)
             if not curves.is_animated(thing, layers.strength_path(layer))
         ]
         if not still:

@@ -207,3 +207,11 @@ def test_animations_without_a_tool_or_a_leader_are_refused(chosen, tmp_path):
     chosen.second, chosen.second_empty = "EMPTY", guide
     assert "both fingers" in error_of(bpy.ops.palpate.press_frames)
     assert key_names(thing) == []
+
+
+def test_shape_keys_that_others_would_play_too_are_refused(tapped):
+    twin = tapped.copy()
+    bpy.context.collection.objects.link(twin)
+    assert "Single User" in error_of(bpy.ops.palpate.press_frames, keep="KEYS")
+    assert key_names(tapped) == []
+    assert bpy.ops.palpate.press_frames(keep="CACHE") == {"FINISHED"}

@@ -9,6 +9,7 @@ from soft_scene import (
     begin,
     cube,
     error_of,
+    key_names,
     layer_names,
     mesh_state,
     moved,
@@ -195,3 +196,28 @@ def test_a_stranger_s_group_of_the_same_name_is_left_alone(palpate):
     assert not stranger.nodes
     dented = rest_places(thing) + moved(thing, "Press 1")
     np.testing.assert_allclose(seen_places(thing), dented, rtol=0, atol=1e-6)
+
+
+def test_layers_are_not_converted_for_all_that_share_a_mesh(thing):
+    press_down(thing)
+    twin = thing.copy()
+    bpy.context.collection.objects.link(twin)
+    dented = seen_places(twin)
+    assert "Single User" in error_of(bpy.ops.palpate.convert_layers)
+    np.testing.assert_array_equal(seen_places(twin), dented)
+    bpy.ops.object.make_single_user(object=True, obdata=True)
+    assert bpy.ops.palpate.convert_layers() == {"FINISHED"}
+
+
+@pytest.mark.parametrize("act", ["convert_layers", "apply_layers", "animate_layers"])
+def test_what_pressers_write_is_no_kept_dent(layers, thing, act):
+    layer = layers.add(thing, name := layers.PRESSERS_NAME)
+    layers.write(thing, layer, np.full(3 * len(thing.data.vertices), 0.01, dtype=np.float32))
+    assert not getattr(bpy.ops.palpate, act).poll()
+    press_down(thing)
+    assert getattr(bpy.ops.palpate, act)() == {"FINISHED"}
+    assert name in layer_names(thing)
+    assert layers.strength(thing.modifiers[name]) == 1.0
+    path = layers.strength_path(thing.modifiers[name])
+    assert not part("operators.scene.curves").is_animated(thing, path)
+    assert name not in key_names(thing)

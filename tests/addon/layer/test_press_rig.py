@@ -51,3 +51,13 @@ def test_a_slider_moves_the_place_by_the_radius_and_is_what_the_body_answers(thi
     made = part("operators.press.add_press_rig").answers(drawn, np.array(AT), 0.005)
     expected = drawn.drawn_displacement(held.displacements[:, :, 2] * 0.005)
     np.testing.assert_allclose(made[2].ravel(), expected, rtol=0, atol=1e-5)
+
+
+def test_a_rig_after_one_that_was_deleted_by_hand_has_its_own_answers(thing):
+    first, second = (np.random.default_rng(seed).random((3, 8, 3), np.float32) for seed in (1, 2))
+    rigs = part("operators.layer.press_rig")
+    thing.modifiers.remove(rigs.add(thing, first))
+    rig = rigs.add(thing, second)
+    rest = rest_places(thing)
+    set_sliders(thing, rig, (0.0, 1.0, 0.0))
+    np.testing.assert_allclose(seen_places(thing), rest + second[1], rtol=0, atol=1e-6)
