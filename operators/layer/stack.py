@@ -55,21 +55,13 @@ POSES = frozenset(
 )
 # What plays the places of all vertices.
 PLAYERS = ("MESH_CACHE", "MESH_SEQUENCE_CACHE")
-# Settings that change nothing about the mesh.
+# Settings that change nothing about the mesh, beside those that every modifier has.
 _ASIDE = frozenset(
     [
-        "name",
-        "is_active",
-        "is_override_data",
-        "use_pin_to_last",
-        "show_expanded",
-        "show_in_editmode",
-        "show_on_cage",
-        "show_render",
         "render_levels",
-        "execution_time",
-        "persistent_uid",
-        "type",
+        "render_steps",
+        "show_group_selector",
+        "show_manage_panel",
     ]
 )
 
@@ -110,26 +102,47 @@ def following(thing: bpy.types.Object, made_by: list[bpy.types.Modifier]) -> lis
 
 
 def words(thing: bpy.types.Object, made_by: list[bpy.types.Modifier]) -> str:
-    """Text that changes with the settings of modifiers; what is animated is left out."""
+    """Text that changes with the settings of modifiers; what is animated is left out.
+
+    What is as it is at first is left out, too: another Blender may have settings that this one has
+    not, and files of before have them so.
+    """
     return "; ".join(_words(thing, modifier) for modifier in made_by)
 
 
 def _words(thing: bpy.types.Object, modifier: bpy.types.Modifier) -> str:
-    found = [modifier.type]
+    found = []
     for one in modifier.bl_rna.properties:
         name = one.identifier
-        plain = one.type in {"BOOLEAN", "INT", "FLOAT", "STRING", "ENUM", "POINTER"}
-        if not plain or name in _ASIDE or name.startswith("rna_"):
+        if _is_aside(one) or curves.is_animated(thing, modifier.path_from_id(name)):
             continue
-        if not curves.is_animated(thing, modifier.path_from_id(name)):
-            found.append(f"{name}={_word(one, getattr(modifier, name))}")
+        word = _word(one, getattr(modifier, name))
+        if word != _word(one, _at_first(one)):
+            found.append(f"{name}={word}")
     if modifier.type == "NODES":
         found += (
             f"{key}={_input_word(value)}"
             for key, path, value in modifier_inputs.all_values(modifier)
             if value is not None and not curves.is_animated(thing, path)
         )
-    return " ".join(found)
+    return " ".join([modifier.type, *sorted(found)])
+
+
+def _is_aside(one: bpy.types.Property) -> bool:
+    plain = one.type in {"BOOLEAN", "INT", "FLOAT", "STRING", "ENUM", "POINTER"}
+    of_all = one.identifier in bpy.types.Modifier.bl_rna.properties
+    # Of a panel, whether it is open.
+    panel = one.identifier.startswith("open_") and one.identifier.endswith("_panel")
+    return not plain or of_all or panel or one.identifier in _ASIDE
+
+
+def _at_first(one: bpy.types.Property) -> Any:
+    """Value that a new modifier has."""
+    if one.type == "POINTER":
+        return None
+    if one.type == "ENUM" and one.is_enum_flag:
+        return one.default_flag
+    return one.default_array if getattr(one, "is_array", False) else one.default
 
 
 def _input_word(value: Any) -> str:
@@ -145,4 +158,6 @@ def _word(one: bpy.types.Property, value: Any) -> str:
     if one.type == "FLOAT":
         numbers = value if one.is_array else (value,)
         return ",".join(f"{number:.6g}" for number in numbers)
+    if one.type == "ENUM" and one.is_enum_flag:
+        return ",".join(sorted(value))
     return str(tuple(value) if getattr(one, "is_array", False) else value)

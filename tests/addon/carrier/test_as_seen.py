@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from types import SimpleNamespace
 
 import bpy
 import numpy as np
@@ -295,3 +296,44 @@ def _predicted(known, thing, scene):
             return found
         time.sleep(0.05)
     raise AssertionError("no prediction")
+
+
+def test_what_is_not_evaluated_is_refused_and_not_baked_from_the_base(palpate):
+    thing = half_sphere()
+    thing.hide_viewport = True
+    bpy.context.view_layer.update()
+    source = part("operators.carrier.body_source")
+    with pytest.raises(part("core.errors").PalpateError, match="disabled in viewports"):
+        source.read(thing, bpy.context.scene)
+    thing.hide_viewport = False
+    thing.hide_set(True)
+    surface = source.read(thing, bpy.context.scene)
+    assert surface.local[:, 0].min() < -0.9
+
+
+def test_words_of_modifiers_tell_what_was_set_and_no_more(palpate):
+    stack, thing = part("operators.layer.stack"), half_sphere()
+    modifier = thing.modifiers.new("Finer", "SUBSURF")
+    words = stack.words(thing, list(thing.modifiers))
+    assert words == "MIRROR use_axis=(True, False, False); SUBSURF"
+    modifier.open_advanced_panel = not modifier.open_advanced_panel
+    modifier.show_expanded, modifier.render_levels = False, 4
+    assert stack.words(thing, list(thing.modifiers)) == words
+    modifier.levels = 2
+    assert stack.words(thing, list(thing.modifiers)) == f"{words} levels=2"
+
+
+def test_settings_that_a_newer_blender_adds_change_no_words(palpate):
+    stack = part("operators.layer.stack")
+    flags = {"is_array": False, "is_enum_flag": False}
+    known = {"type": "INT", "identifier": "levels", "default": 1, **flags}
+    added = {"type": "BOOLEAN", "identifier": "use_new_way", "default": False, **flags}
+
+    def words(*properties):
+        described = SimpleNamespace(properties=[SimpleNamespace(**one) for one in properties])
+        modifier = SimpleNamespace(
+            type="SUBSURF", bl_rna=described, levels=3, use_new_way=False, path_from_id=str
+        )
+        return stack.words(bpy.data.objects["Cube"], [modifier])
+
+    assert words(known, added) == words(known) == "SUBSURF levels=3"
