@@ -11,6 +11,7 @@ from ..core.errors import PalpateError
 from ..core.files import scratch_folder
 from ..operators.animation import live_pressers
 from ..operators.bake import bake_session
+from ..operators.carrier import carrier
 from ..operators.layer import live_layer
 from ..operators.object import body_store, kept_body
 from ..operators.scene import modal_stay
@@ -60,8 +61,11 @@ def _after_load(*_: object) -> None:
 
 
 @persistent
-def _after_import(*_: object) -> None:
+def _after_import(context: bpy.types.BlendImportContext, *_: object) -> None:
     from_file.mend_all()
+    for item in context.import_items:
+        if isinstance(item.id, bpy.types.Object) and carrier.is_carrier(item.id):
+            carrier.unlink(item.id)
     known_status.forget()
 
 

@@ -40,6 +40,18 @@ def give(thing: bpy.types.Object, scene: bpy.types.Scene, surface: DrawnSurface)
     thing.palpate.carrier = made
 
 
+def is_carrier(thing: bpy.types.Object) -> bool:
+    """Whether an object is the carrier of another one, by its marks."""
+    return thing.type == "MESH" and HALVED in thing and SEEN in thing
+
+
+def unlink(made: bpy.types.Object) -> None:
+    """Take a carrier out of all collections: Blender links what is appended to one."""
+    for collection in made.users_collection:
+        if collection.library is None:
+            collection.objects.unlink(made)
+
+
 def take_unused(thing: bpy.types.Object) -> None:
     """Take an object's carrier away, unless layers need it."""
     carrier = thing.palpate.carrier
@@ -70,6 +82,8 @@ def _made(
         made.data = made_fine
         bpy.data.meshes.remove(coarse)
     made.data.name = name
+    # A Blender without Palpate that appends the object links this one to the scene, too.
+    made.hide_render = True
     _strip(made)
     return made
 

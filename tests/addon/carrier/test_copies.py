@@ -170,3 +170,19 @@ def test_an_object_of_another_file_is_refused_and_keeps_its_dents(palpate, tmp_p
     # What is linked shows its dents, and says why it cannot be pressed.
     np.testing.assert_allclose(seen_places(linked), dented, atol=1e-6)
     assert "make it local" in str(part("operators.object.soft_object").refusal(linked))
+
+
+def test_an_appended_object_brings_its_carrier_but_not_into_the_scene(palpate, tmp_path):
+    thing = select(bpy.data.objects["Cube"])
+    thing.palpate.edge_length = 0.2
+    assert bpy.ops.palpate.make_soft() == {"FINISHED"}
+    assert bpy.ops.palpate.stroke(place=(0.1, 0.2, 1.0), depth=0.1, radius=0.2) == {"FINISHED"}
+    dented, file = seen_places(thing), tmp_path / "given.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(file))
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+    bpy.ops.wm.append(filename="Cube", directory=f"{file}/Object/")
+    assert bpy.context.scene.objects.keys() == ["Cube"]
+    appended = bpy.data.objects["Cube"]
+    on = appended.palpate.carrier
+    assert (on.users_collection, on.hide_render) == ((), True)
+    np.testing.assert_allclose(seen_places(appended), dented, atol=1e-6)
