@@ -13,7 +13,8 @@ from ...core.bake.settings import BakeSettings
 from ...core.errors import PalpateError
 from ...core.machine.available_memory import available_memory
 from ...core.stiffness.pins import PinBelow, PinCore, Pins
-from ..pins import pin_group
+from ..pins import pin_group, stiff_region
+from ..scene.drawn_surface import DrawnSurface
 
 
 @dataclass(frozen=True)
@@ -80,4 +81,21 @@ def predict(size: ShapeSize, settings: BakeSettings) -> Prediction:
         available,
         compressed.peak_bytes <= available,
         edge_length_that_fits(size, settings, available),
+    )
+
+
+def all_settings_of(thing: bpy.types.Object, drawn: DrawnSurface) -> BakeSettings:
+    """Settings of a bake from the panel.
+
+    Raises
+    ------
+    PalpateError
+        A vertex group that is missing or empty.
+    """
+    chosen = thing.palpate
+    return replace(
+        settings_of(thing, pin_group.pins(thing, drawn)),
+        young_modulus=chosen.young_modulus,
+        time_limit=chosen.time_limit,
+        stiffness=stiff_region.stiff_region(thing, drawn),
     )

@@ -15,7 +15,8 @@ from ...core.body.soft_body import SoftBody
 from ...core.errors import CancelledError, PalpateError
 from ...core.mesh.surface import Surface
 from ...core.stiffness.pins import PinNodes
-from ..carrier import body_source, carrier
+from ..carrier import body_source, carrier, seen_mesh
+from ..carrier.seen_mesh import SeenSurface
 from ..layer import live_layer
 from ..object import baked_record, body_store, kept_body, preview_body, soft_object
 from ..object.embedded_body import embedded
@@ -39,6 +40,7 @@ class BakeSession:
     """Running bake. Make one with :func:`start`; it is :func:`current` until it ends."""
 
     handle: ObjectHandle
+    scene_uid: int
     surface: DrawnSurface
     fingerprint: Fingerprint
     settings: BakeSettings
@@ -65,7 +67,7 @@ class BakeSession:
         except PalpateError:
             self.end()
             raise
-        if self.preview is not None:
+        if self.preview is not None and not self.awaits_scene:
             try:
                 self.preview.poll()
             except PalpateError:
@@ -86,26 +88,36 @@ class BakeSession:
         return thing is not None and live_layer.find(thing) is not None
 
     @property
+    def awaits_scene(self) -> bool:
+        """Whether the result waits until its scene is shown, with the object evaluated in it."""
+        thing, scene = self.handle.find(), self._scene
+        if thing is None or scene is None:
+            return False
+        as_seen = isinstance(self.surface, SeenSurface)
+        away = scene != bpy.context.scene
+        return away or (as_seen and not seen_mesh.is_evaluated(thing))
+
+    @property
     def can_commit(self) -> bool:
         """Whether the result can be applied now."""
-        return not self.awaits_mode and not self.awaits_press
+        return not self.awaits_mode and not self.awaits_press and not self.awaits_scene
 
     @property
     def preview_off(self) -> float:
         """How far a preview that can be pressed is off, as a share of the size; 0 without one."""
         return self.preview.off if self.preview is not None and self.preview.key else 0.0
 
-    def commit(self, scene: bpy.types.Scene) -> tuple[SoftBody, BakeReport]:
+    def commit(self) -> tuple[SoftBody, BakeReport]:
         """Give the object its body. Ends the session in any case.
 
         Raises
         ------
         PalpateError
-            What went wrong in the bake; the object is gone or was changed meanwhile. Nothing is
+            What went wrong in the bake; the object or its scene is gone, or was changed. Nothing is
             changed and no file is left then.
         """
         try:
-            thing = self._unchanged_object(scene)
+            thing, scene = self._unchanged_object()
             places: list[Path] = []
 
             def place_for(found: SoftBody) -> Path:
@@ -114,7 +126,7 @@ class BakeSession:
 
             body, report = self.job.result(place_for)
             name = places[0].name
-            baked_record.record(thing, body, name, self.surface, self.fingerprint)
+            baked_record.record(thing, body, name, self.fingerprint)
             carrier.give(thing, scene, self.surface)
             kept_body.keep(thing, body)
             if not self.rebuild:
@@ -145,9 +157,13 @@ class BakeSession:
             press_session.give_way("The bake was cancelled, and its preview with it")
         preview.end()
 
-    def _unchanged_object(self, scene: bpy.types.Scene) -> bpy.types.Object:
-        thing = self.handle.find()
-        if thing is None:
+    @property
+    def _scene(self) -> bpy.types.Scene | None:
+        return next((one for one in bpy.data.scenes if one.session_uid == self.scene_uid), None)
+
+    def _unchanged_object(self) -> tuple[bpy.types.Object, bpy.types.Scene]:
+        thing, scene = self.handle.find(), self._scene
+        if thing is None or scene is None:
             raise PalpateError(
                 "{name}: it was deleted while it was being baked", name=self.handle.name
             )
@@ -164,7 +180,7 @@ class BakeSession:
                 "{name}: it was edited while it was being baked; press Make Soft again",
                 name=thing.name,
             )
-        return thing
+        return thing, scene
 
 
 _current: BakeSession | None = None
@@ -209,14 +225,15 @@ def start(
     held_by_core = is_first and slender_foot.hold_by_core(thing, drawn)
     surface = drawn.surface()
     fingerprint = drawn.fingerprint(pin_group.pin_rule(thing), stiff_region.stiff_rule(thing))
-    settings = settings_of(thing, drawn)
+    settings = bake_prediction.all_settings_of(thing, drawn)
     python = (sys.executable, *bpy.app.python_args)
     if rebuild:
         job = _rebuild_job(thing, fingerprint, settings, surface, python)
     else:
         job = BakeJob(surface, settings, python=python)
+    handle, scene_uid = ObjectHandle.of(thing), scene.session_uid
     _current = BakeSession(
-        ObjectHandle.of(thing), drawn, fingerprint, settings, job, job.poll(), rebuild, held_by_core
+        handle, scene_uid, drawn, fingerprint, settings, job, job.poll(), rebuild, held_by_core
     )
     if is_first and _takes_long(surface, settings):
         _current.preview = preview_body.start(thing, scene, drawn, fingerprint, settings)
@@ -241,7 +258,7 @@ def run(
     except BaseException:
         session.end()
         raise
-    return session.commit(scene)
+    return session.commit()
 
 
 def _rebuild_job(
@@ -264,23 +281,6 @@ def _rebuild_job(
     if old.stiffness == now.stiffness:
         settings = replace(settings, stiffness=within.stiffness)
     return BakeJob(within.mesh, settings, surface, python)
-
-
-def settings_of(thing: bpy.types.Object, drawn: DrawnSurface) -> BakeSettings:
-    """Settings of a bake from the panel.
-
-    Raises
-    ------
-    PalpateError
-        A vertex group that is missing or empty.
-    """
-    chosen = thing.palpate
-    return replace(
-        bake_prediction.settings_of(thing, pin_group.pins(thing, drawn)),
-        young_modulus=chosen.young_modulus,
-        time_limit=chosen.time_limit,
-        stiffness=stiff_region.stiff_region(thing, drawn),
-    )
 
 
 class OnSoft(Acting):

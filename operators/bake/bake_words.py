@@ -7,6 +7,7 @@ from ...core.quantities import duration
 from ..reporting.translated import shown
 
 AWAITS_MODE = "The body is ready; leave Edit Mode to receive it"
+AWAITS_SCENE = "The body is ready; show the object in its scene to receive it"
 AWAITS_PRESS = "The body is ready and comes when pressing ends"
 
 

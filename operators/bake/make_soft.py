@@ -84,7 +84,7 @@ class BakingOperator(Acting):
         self._show(context, waiting=finished)
         if not finished or not self._session.can_commit:
             return {"PASS_THROUGH"}
-        body, report = self._session.commit(context.scene)
+        body, report = self._session.commit()
         self._progress.end(context)
         self._tell(self._session.handle.name, body, report)
         return {"FINISHED"}
@@ -98,12 +98,19 @@ class BakingOperator(Acting):
         progress = self._session.progress
         text = f"{shown(progress.text)}, {bake_words.how_far(progress)}"
         if waiting:
-            awaits_mode = self._session.awaits_mode
-            text = shown(bake_words.AWAITS_MODE if awaits_mode else bake_words.AWAITS_PRESS)
+            text = shown(self._awaited)
         elif self._session.preview_off:
             text = f"{bake_words.previewed(self._session.preview_off)}   {text}"
         text = f"{self._session.handle.name}: {text}"
         self._progress.show(context, text, progress.share or 0.0)
+
+    @property
+    def _awaited(self) -> str:
+        if self._session.awaits_mode:
+            return bake_words.AWAITS_MODE
+        if self._session.awaits_scene:
+            return bake_words.AWAITS_SCENE
+        return bake_words.AWAITS_PRESS
 
     def _tell(self, name: str, body: SoftBody, report: BakeReport) -> None:
         for warning in report.warnings:

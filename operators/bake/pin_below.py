@@ -41,8 +41,9 @@ class PALPATE_OT_pin_below(Acting, bpy.types.Operator):
 
     def act(self, context: bpy.types.Context) -> None:
         thing = context.object
-        count = pin_group.mark_below(thing, drawn_surface.read(thing, context.scene), self.fraction)
-        thing.palpate.pin_group = pin_group.GROUP_NAME
+        drawn = drawn_surface.read(thing, context.scene)
+        group, count = pin_group.mark_below(thing, drawn, self.fraction)
+        thing.palpate.pin_group = group.name
         self.report({"INFO"}, reported("{count} vertices pinned", count=count))
 
 

@@ -23,7 +23,8 @@ def read(thing: bpy.types.Object, scene: bpy.types.Scene) -> DrawnSurface:
     Raises
     ------
     PalpateError
-        The modifiers make other vertices in other frames, or no faces; the transform flattens it.
+        The modifiers make other vertices in other frames, or no faces, or nothing evaluates them;
+        the transform flattens it.
     """
     own = drawn_surface.read(thing, scene)
     if thing.palpate.bake_from == "BASE" or not stack.making(thing):
@@ -39,8 +40,8 @@ def read_again(thing: bpy.types.Object, scene: bpy.types.Scene) -> DrawnSurface:
     Raises
     ------
     PalpateError
-        The modifiers make another number of vertices than when it was baked; the transform
-        flattens it.
+        The modifiers make another number of vertices than when it was baked, or nothing evaluates
+        them; the transform flattens it.
     """
     if not is_seen(thing):
         return drawn_surface.read(thing, scene)

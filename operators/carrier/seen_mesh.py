@@ -60,7 +60,7 @@ def read(thing: bpy.types.Object, scene: bpy.types.Scene) -> SeenSurface:
     Raises
     ------
     PalpateError
-        They make no faces; its transform flattens it.
+        They make no faces, or nothing evaluates them; its transform flattens it.
     """
     chosen = (thing.palpate.pin_group, thing.palpate.stiff_group)
     with made(thing, stack.making(thing)) as mesh:
@@ -87,6 +87,12 @@ def read(thing: bpy.types.Object, scene: bpy.types.Scene) -> SeenSurface:
     )
 
 
+def is_evaluated(thing: bpy.types.Object) -> bool:
+    """Whether the modifiers of an object are evaluated where the user is now."""
+    found: bool = thing.evaluated_get(bpy.context.evaluated_depsgraph_get()).is_evaluated
+    return found
+
+
 @contextmanager
 def made(
     thing: bpy.types.Object,
@@ -95,13 +101,25 @@ def made(
 ) -> Iterator[bpy.types.Mesh]:
     """What these modifiers make of an object's mesh at rest, in a view layer or the present one: a
     copy, removed afterwards.
+
+    Raises
+    ------
+    PalpateError
+        Nothing evaluates the modifiers: the object itself would be taken for what they make.
     """
     with _only(thing, modifiers):
         if layer is not None:
             layer.update()
         graph = bpy.context.evaluated_depsgraph_get() if layer is None else layer.depsgraph
+        evaluated = thing.evaluated_get(graph)
+        if modifiers and not evaluated.is_evaluated:
+            raise PalpateError(
+                "{name}: it is disabled in viewports or not in this view layer, so its modifiers "
+                "make nothing; enable it, with its collection (what is hidden by H is known)",
+                name=thing.name,
+            )
         mesh = bpy.data.meshes.new_from_object(
-            thing.evaluated_get(graph), preserve_all_data_layers=True, depsgraph=graph
+            evaluated, preserve_all_data_layers=True, depsgraph=graph
         )
     try:
         yield mesh

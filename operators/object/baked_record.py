@@ -6,29 +6,14 @@ import bpy
 
 from ...core.body.soft_body import SoftBody
 from ...core.compliance.compression.compressed_compliance import CompressedCompliance
-from ..pins import pin_group
-from ..scene.drawn_surface import DrawnSurface
 from ..scene.fingerprint import Fingerprint
 from . import embedded_body
 
 
 def record(
-    thing: bpy.types.Object,
-    body: SoftBody,
-    file_name: str,
-    surface: DrawnSurface,
-    fingerprint: Fingerprint,
-) -> None:
-    """Make ``body``, stored under ``file_name``, the object's: tetrahedra, key and figures."""
-    record_body(thing, body, file_name, fingerprint)
-    if thing.palpate.pin_mode == "BELOW":
-        pin_group.mark_below(thing, surface.base, thing.palpate.pin_fraction)
-
-
-def record_body(
     thing: bpy.types.Object, body: SoftBody, file_name: str, fingerprint: Fingerprint
 ) -> None:
-    """The same, without marking the pins on the mesh."""
+    """Make ``body``, stored under ``file_name``, the object's: tetrahedra, key and figures."""
     baked, compliance = thing.palpate, body.compliance
     embedded_body.embed(thing, body)
     baked.preview_off = 0.0

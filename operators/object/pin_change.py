@@ -127,7 +127,7 @@ def take_over(thing: bpy.types.Object, drawn: DrawnSurface) -> SoftBody:
     # Stiff regions are not applied here, so their record stays.
     old = Fingerprint.from_text(thing.palpate.fingerprint)
     fingerprint = drawn.fingerprint(pin_group.pin_rule(thing), old.stiffness)
-    baked_record.record(thing, body, path.name, drawn, fingerprint)
+    baked_record.record(thing, body, path.name, fingerprint)
     return body
 
 

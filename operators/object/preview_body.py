@@ -45,7 +45,7 @@ class PreviewBody:
         if thing.mode != "OBJECT" or thing.palpate.body_key:
             return
         body = made.body
-        baked_record.record_body(thing, body, "", self.fingerprint)
+        baked_record.record(thing, body, "", self.fingerprint)
         baked = thing.palpate
         baked.baked_edge_length = baked.baked_epsilon = 0.0
         self.off = baked.preview_off = made.off

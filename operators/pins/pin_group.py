@@ -93,16 +93,27 @@ def painted(thing: bpy.types.Object, surface: DrawnSurface | None = None) -> Pin
     return PinWeights(weights)
 
 
-def mark_below(thing: bpy.types.Object, surface: DrawnSurface, fraction: float) -> int:
-    """Group all vertices below ``fraction`` of the height; returns their number.
+def mark_below(
+    thing: bpy.types.Object, surface: DrawnSurface, fraction: float
+) -> tuple[bpy.types.VertexGroup, int]:
+    """Group all vertices below ``fraction`` of the height; the group, and their number.
 
-    Up is the world's Z axis, as the object stands now.
+    Up is the world's Z axis, as the object stands now. A group that was painted stays as it is.
     """
-    group = thing.vertex_groups.get(GROUP_NAME) or thing.vertex_groups.new(name=GROUP_NAME)
+    group = thing.vertex_groups.get(GROUP_NAME)
+    if group is None or not _is_below_a_height(group_weights(thing.data, group.index), surface):
+        group = thing.vertex_groups.new(name=GROUP_NAME)
     pinned = np.flatnonzero(is_below(surface, fraction))
     group.remove(range(len(surface.local)))
     group.add(pinned.tolist(), 1.0, "REPLACE")
-    return len(pinned)
+    return group, len(pinned)
+
+
+def _is_below_a_height(weights: NDArray[np.float64], surface: DrawnSurface) -> bool:
+    """Whether weights (p,) say no more than a height: 1 up to it, 0 above."""
+    height, held = _relative_height(surface), weights == 1.0
+    highest, lowest = height[held].max(initial=-np.inf), height[~held].min(initial=np.inf)
+    return bool(not weights[~held].any() and highest < lowest)
 
 
 def is_below(surface: DrawnSurface, fraction: float) -> NDArray[np.bool_]:

@@ -78,7 +78,7 @@ def _give_body(thing: bpy.types.Object, kept: Path) -> None:
     drawn = part("operators.scene.drawn_surface").read(thing, scene)
     pins = part("operators.pins.pin_group").pin_rule(thing)
     fingerprint = drawn.fingerprint(pins, part("operators.pins.stiff_region").stiff_rule(thing))
-    part("operators.object.baked_record").record(thing, body, file.name, drawn, fingerprint)
+    part("operators.object.baked_record").record(thing, body, file.name, fingerprint)
     thing.palpate.baked_edge_length = thing.palpate.edge_length
     thing.palpate.baked_epsilon = thing.palpate.epsilon
 

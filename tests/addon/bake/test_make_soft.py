@@ -32,8 +32,8 @@ def test_a_cube_gets_a_body_of_its_own_size_pinned_at_the_bottom(palpate):
     assert len(body.fixed) > 0
     assert body.mesh.nodes[body.fixed, 2].max() < -0.025 + 0.1 * 0.05 + 1e-4
     assert thing.palpate.node_count == len(body.mesh.nodes)
-    pinned = [v.index for v in thing.data.vertices if v.groups]
-    assert sorted(pinned) == [v.index for v in thing.data.vertices if v.co.z < 0]
+    # The mesh stays as it is.
+    assert not thing.vertex_groups
 
 
 def test_suzanne_with_an_ngon_and_open_seams_becomes_soft(palpate):
@@ -225,14 +225,14 @@ def test_an_object_edited_or_deleted_during_the_bake_gets_no_body(palpate):
     while not session.poll():
         time.sleep(0.02)
     with pytest.raises(error, match="edited"):
-        session.commit(bpy.context.scene)
+        session.commit()
     assert not thing.palpate.body_key
     session = bake.start(thing, bpy.context.scene)
     bpy.data.objects.remove(thing)
     while not session.poll():
         time.sleep(0.02)
     with pytest.raises(error, match="deleted"):
-        session.commit(bpy.context.scene)
+        session.commit()
     assert bake.current() is None
 
 
@@ -265,3 +265,66 @@ def test_a_preset_sets_the_material(palpate):
     thing.palpate.young_modulus *= 2
     assert thing.palpate.material == "CUSTOM"
     assert np.isclose(thing.palpate.young_modulus, 4.4e6)
+
+
+def weights_of(thing, name):
+    group = thing.vertex_groups[name].index
+    return part("operators.scene.drawn_surface").group_weights(thing.data, group).tolist()
+
+
+def test_what_a_user_painted_stays_as_it_is(palpate):
+    thing = cube()
+    painted = thing.vertex_groups.new(name="Pinned")
+    painted.add([7], 1.0, "REPLACE")
+    painted.add([6], 0.25, "REPLACE")
+    before = weights_of(thing, "Pinned")
+    assert bpy.ops.palpate.make_soft() == {"FINISHED"}
+    assert thing.vertex_groups.keys() == ["Pinned"]
+    assert weights_of(thing, "Pinned") == before
+    assert bpy.ops.palpate.pin_below(fraction=0.1) == {"FINISHED"}
+    assert weights_of(thing, "Pinned") == before
+    assert thing.palpate.pin_group == "Pinned.001"
+    assert sum(weights_of(thing, "Pinned.001")) == 4.0
+    # Some of a level bottom is no height.
+    only = thing.vertex_groups["Pinned"]
+    only.remove(range(8))
+    bottom = [one.index for one in thing.data.vertices if one.co.z < 0.0]
+    only.add(bottom[:2], 1.0, "REPLACE")
+    assert bpy.ops.palpate.pin_below(fraction=0.1) == {"FINISHED"}
+    assert sum(weights_of(thing, "Pinned")) == 2.0
+
+
+def test_a_bake_waits_until_its_scene_is_shown_again(palpate):
+    bake, thing, scene = part("operators.bake.bake_session"), cube(), bpy.context.scene
+    thing.palpate.bake_from = "AUTO"
+    thing.modifiers.new("Round", "BEVEL").width = 0.005
+    session = bake.start(thing, scene)
+    other = bpy.data.scenes.new("Other")
+    while not session.poll():
+        time.sleep(0.02)
+    assert session.can_commit
+    bpy.context.window.scene = other
+    assert session.awaits_scene
+    assert not session.can_commit
+    bpy.context.window.scene = scene
+    thing.hide_viewport = True
+    bpy.context.view_layer.update()
+    assert session.awaits_scene
+    thing.hide_viewport = False
+    bpy.context.view_layer.update()
+    assert session.can_commit
+    session.commit()
+    assert thing.palpate.body_key
+    assert thing.palpate.carrier is not None
+
+
+def test_a_bake_whose_scene_is_deleted_ends(palpate):
+    bake, thing, scene = part("operators.bake.bake_session"), cube(), bpy.context.scene
+    session = bake.start(thing, scene)
+    bpy.data.scenes.new("Other")
+    while not session.poll():
+        time.sleep(0.02)
+    bpy.data.scenes.remove(scene)
+    with pytest.raises(part("core.errors").PalpateError, match="deleted"):
+        session.commit()
+    assert bake.current() is None

@@ -44,7 +44,7 @@ def finish(session):
     """Wait for the fine body and give it to the object."""
     while not session.poll():
         time.sleep(0.01)
-    return session.commit(bpy.context.scene)[0]
+    return session.commit()[0]
 
 
 def test_a_preview_is_pressed_and_its_layer_outlives_it(previewed):
@@ -77,7 +77,7 @@ def test_a_running_press_goes_on_and_the_fine_body_waits_for_it(previewed):
     assert not session.can_commit
     press.post(states.Keep(dented=True))
     assert session.can_commit
-    session.commit(bpy.context.scene)
+    session.commit()
     assert layer_names(thing) == ["Press 1"]
 
 
