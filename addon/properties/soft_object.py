@@ -76,7 +76,7 @@ def _leave_material(name: str) -> Callable[[bpy.types.PropertyGroup, bpy.types.C
 
 def _press_anew(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
     live_pressers.look_again()
-    live_pressers.follow(settings.id_data, context.evaluated_depsgraph_get())
+    live_pressers.press_again(settings.id_data, context.evaluated_depsgraph_get())
 
 
 def _tell_forces(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:

@@ -4,8 +4,8 @@ Each state is computed from nothing, so that frames may come in any order. It is
 as it was last; Bake Animation keeps all frames, for files that play without Palpate.
 
 Places are those of the dependency graph that calls: in a render the originals do not move. Handlers
-call, so nothing is baked and no file is written, and what fails is not tried again until something
-that it depends on has changed.
+call, so nothing is baked and no file is written but where somebody has just asked for it, and what
+fails is not tried again until something that it depends on has changed.
 """
 
 from __future__ import annotations
@@ -81,8 +81,10 @@ def follow_all(graph: bpy.types.Depsgraph) -> None:
         raise ExceptionGroup(message, unexpected)
 
 
-def follow(thing: bpy.types.Object, graph: bpy.types.Depsgraph) -> None:
-    """Press an object as its pressers do in a graph, unless they are where they were."""
+def follow(thing: bpy.types.Object, graph: bpy.types.Depsgraph, *, asked: bool = False) -> None:
+    """Press an object as its pressers do in a graph, unless they are where they were. A missing
+    body is computed only where somebody has ``asked``.
+    """
     if _paused or press_session.current() is not None or not _can_be_written(thing):
         return
     if thing.palpate.pressers is None or mesh_cache.plays(thing) or frame_keys.plays(thing):
@@ -95,7 +97,7 @@ def follow(thing: bpy.types.Object, graph: bpy.types.Depsgraph) -> None:
     try:
         # To read a body may evaluate the object, which calls handlers.
         with paused():
-            _press(thing, graph, attempt.places)
+            _press(thing, graph, attempt.places, asked=asked)
     except Exception as problem:
         if thing.session_uid not in _followed:
             # Where its pressers are does not matter to an object that was not opened.
@@ -129,10 +131,10 @@ def changed(graph: bpy.types.Depsgraph) -> None:
 
 
 def press_again(thing: bpy.types.Object, graph: bpy.types.Depsgraph) -> None:
-    """Follow what presses an object, also where nothing has moved."""
+    """Follow what presses an object as somebody has asked, also where nothing has moved."""
     _drop(thing.session_uid)
     failures.forget(thing)
-    follow(thing, graph)
+    follow(thing, graph, asked=True)
 
 
 @contextmanager
@@ -196,13 +198,15 @@ def _press(
     thing: bpy.types.Object,
     graph: bpy.types.Depsgraph,
     places: NDArray[np.float32],
+    *,
+    asked: bool,
 ) -> None:
     if _is_unlocked(graph):
         raise PalpateError(
             "a render beside the window does not follow Pressers; tick Lock Interface here or in "
             "the menu Render, or press Bake Animation"
         )
-    followed = _opened(thing, graph)
+    followed = _opened(thing, graph, asked=asked)
     posed = place_marks.needed(thing)
     if not posed and followed.places is not None and np.array_equal(places, followed.places):
         return
@@ -225,7 +229,7 @@ def _press(
     layer_traction.write_of(thing, layer, borne)
 
 
-def _opened(thing: bpy.types.Object, graph: bpy.types.Depsgraph) -> _Followed:
+def _opened(thing: bpy.types.Object, graph: bpy.types.Depsgraph, *, asked: bool) -> _Followed:
     """The object's body, read again only once it, its material or its shape is another one."""
     frame = drawn_surface.frame_of(evaluated(thing, graph), graph.scene)
     known, followed, moved = _known_of(thing), _followed.get(thing.session_uid), None
@@ -233,7 +237,7 @@ def _opened(thing: bpy.types.Object, graph: bpy.types.Depsgraph) -> _Followed:
         moved = followed.drawn.moved_to(frame)
     if followed is None or moved is None:
         _drop(thing.session_uid)
-        drawn = open_body(thing, graph.scene, as_stored=True)
+        drawn = open_body(thing, graph.scene, as_stored=not asked)
         moved = drawn.moved_to(frame)
         if moved is None:
             raise PalpateError(

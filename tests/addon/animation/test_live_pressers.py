@@ -78,7 +78,7 @@ def test_what_cannot_press_is_told_and_the_rest_goes_on(pressed):
     bpy.context.scene.frame_set(2)
     assert "Lamp is neither a mesh nor an Empty" in str(failures.reason(pressed))
     bpy.context.view_layer.objects.active = pressed
-    assert "Lamp is neither" in error_of(bpy.ops.palpate.press_frames)
+    assert "Lamp is neither" in error_of(bpy.ops.palpate.press_frames, keep="KEYS")
     pressed.palpate.pressers.objects.unlink(light)
     bpy.context.scene.frame_set(4)
     assert failures.reason(pressed) == ""

@@ -58,6 +58,12 @@ def test_neither_opening_a_file_nor_playing_it_bakes_a_missing_body(pressed, tmp
     assert bpy.ops.palpate.rebuild_body() == {"FINISHED"}
     move_something(2)
     assert reason(thing) == ""
+    # So may a choice of Pressers.
+    locate(thing).unlink()
+    hand, thing.palpate.pressers = thing.palpate.pressers, None
+    thing.palpate.pressers = hand
+    assert reason(thing) == ""
+    assert locate(thing) is not None
 
 
 def test_new_pins_wait_for_a_click(pressed):
@@ -121,10 +127,10 @@ def test_a_bug_stops_no_other_object_and_is_raised(pressed, monkeypatch):
     scene.collection.objects.link(other)
     press, ball = live._press, bpy.data.objects["Ball"]
 
-    def broken(thing, *arguments):
+    def broken(thing, *arguments, **words):
         if thing == pressed:
             raise RuntimeError("broken")
-        press(thing, *arguments)
+        press(thing, *arguments, **words)
 
     with live.paused():
         scene.frame_set(4)

@@ -58,6 +58,38 @@ def pressers_are_followed_while_scrubbing(stage: Stage) -> Wait:
     assert np.abs(_places() - rest).max() < 1e-6
 
 
+class Looking(bpy.types.RenderEngine):
+    """Renders nothing, and notes where the vertices are in each frame."""
+
+    bl_idname, bl_label = "PALPATE_LOOKING", "Looking"
+    seen: dict[int, np.ndarray] = {}  # noqa: RUF012  Blender makes an engine of its own
+
+    def render(self, graph: bpy.types.Depsgraph) -> None:
+        self.seen[graph.scene.frame_current] = _places(graph)
+
+
+def a_render_beside_the_window_follows_pressers_once_that_is_locked(stage: Stage) -> Wait:
+    yield from _begin(stage)
+    scene, hand = bpy.context.scene, bpy.data.collections.new("Hand")
+    hand.objects.link(bpy.data.objects["Finger Skin"])
+    scene.frame_set(1)
+    _thing().palpate.pressers = hand
+    bpy.utils.register_class(Looking)
+    scene.render.engine, scene.render.filepath = Looking.bl_idname, str(stage.files / "looked_")
+    scene.render.resolution_x = scene.render.resolution_y = 8
+    scene.frame_start, scene.frame_end, scene.frame_step = 1, 21, 10
+    for locked in (False, True):
+        Looking.seen.clear()
+        scene.render.use_lock_interface = locked
+        with stage.view():
+            bpy.ops.render.render("INVOKE_DEFAULT", animation=True)
+        yield from stage.until(lambda: 21 in Looking.seen, "the last frame")
+        yield from stage.until(lambda: not bpy.app.is_job_running("RENDER"), "the render's end")
+        assert (np.abs(Looking.seen[21] - Looking.seen[1]).max() > 1e-3) == locked
+        yield from stage.picture("locked" if locked else "unlocked")
+    bpy.utils.unregister_class(Looking)
+
+
 def _caches(stage: Stage) -> list[Path]:
     return list((stage.files / "scene" / "palpate").glob("*.pc2*"))
 
@@ -86,8 +118,8 @@ def _thing() -> bpy.types.Object:
     return bpy.data.objects[NAME]
 
 
-def _places() -> np.ndarray:
-    evaluated = _thing().evaluated_get(bpy.context.evaluated_depsgraph_get())
+def _places(graph: bpy.types.Depsgraph | None = None) -> np.ndarray:
+    evaluated = _thing().evaluated_get(graph or bpy.context.evaluated_depsgraph_get())
     places = np.empty(3 * len(evaluated.data.vertices), np.float32)
     evaluated.data.vertices.foreach_get("co", places)
     return places
