@@ -56,6 +56,9 @@ class ContactSettings:
 
 USUAL = ContactSettings()
 
+# Times the body's size. A larger radius has no digits left for where it touches.
+LARGEST_RADIUS = 1e6
+
 
 @dataclass(frozen=True, eq=False)
 class PointGoal:
@@ -152,12 +155,21 @@ def _native_tips(
     """Contact points and shape of each tip. Equal points are shared, so that tools have a common
     near field.
     """
+    size = float(np.linalg.norm(np.ptp(body.mesh.nodes, axis=0)))
     surfaces: dict[int, ToolSurface] = {}
     native_tips: list[tuple[ToolSurface, NativeTool] | None] = [None] * len(tips)
     for number, tool in enumerate(tips):
         if tool is None:
             continue
         points, near = surface_and_correction(body, tool) if spread is None else spread
+        if tool.radius > LARGEST_RADIUS * size:
+            raise PalpateError(
+                "tool {name}: its radius of {radius:g} m is over {most:g} times the body's size; "
+                "give a plate",
+                name=tool.name,
+                radius=tool.radius,
+                most=LARGEST_RADIUS,
+            )
         if id(points) not in surfaces:
             surfaces[id(points)] = native_surface(native, points, near)
         native_tips[number] = surfaces[id(points)], native_shape(tool)

@@ -33,6 +33,7 @@ pub struct Body {
     corner_normals: Vec<[DVec3; 3]>,
     tree: Tree,
     size: f64,
+    reach: f64,
     response: Option<Response>,
     between_nodes: Option<BetweenNodes>,
     /// Softenings of the nodes, as far as they are known.
@@ -66,6 +67,7 @@ impl Body {
         }
         let tree = Tree::new(&faces);
         let size = tree.diagonal();
+        let reach = (nodes.iter()).fold(size, |most, node| most.max(node.abs().max_element()));
         let softenings = Softenings::unknown(nodes.len());
         Ok(Self {
             nodes,
@@ -79,6 +81,7 @@ impl Body {
             corner_normals,
             tree,
             size,
+            reach,
             response: None,
             between_nodes: None,
             softenings,
@@ -205,6 +208,11 @@ impl Body {
     #[inline]
     pub fn size(&self) -> f64 {
         self.size
+    }
+
+    /// The largest coordinate of a node, m, and the size at least: what coordinates are rounded by.
+    pub fn reach(&self) -> f64 {
+        self.reach
     }
 
     /// Sum of the normals of all triangles that meet in an edge.

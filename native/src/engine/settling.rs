@@ -17,7 +17,7 @@ use crate::proxy::SurfacePoint;
 
 /// Forces have settled when they change by less than this share of the largest one in a tick.
 const SETTLED: f64 = 1e-11;
-/// Rounding of a coordinate, as a share of the body's size, with room for what it makes of a force.
+/// Rounding of a coordinate, as a share of the largest one, with room for what it makes of a force.
 const ROUNDING: f64 = 1e-14;
 /// In so many ticks one after the other.
 const QUIET_TICKS: usize = 3;
@@ -180,7 +180,7 @@ impl Settling {
     /// A force of this size, N, is what coordinates are rounded by: a tool that grazes the body feels it
     /// or does not.
     fn rounding(&self) -> f64 {
-        ROUNDING * self.young_modulus * self.body.size() * self.body.size()
+        ROUNDING * self.young_modulus * self.body.size() * self.body.reach()
     }
 
     fn force(&self, number: usize) -> DVec3 {

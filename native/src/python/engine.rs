@@ -22,6 +22,9 @@ use crate::tool::coefficients::Friction;
 use crate::tool::collider::Collider;
 use crate::tool::slot::Slot;
 
+/// What area coordinates that were computed may be off.
+const ALPHA_ROUNDING: f64 = 1e-6;
+
 #[pyclass(module = "palpate_servo")]
 pub struct ContactEngine {
     inner: Settling,
@@ -125,18 +128,31 @@ impl ContactEngine {
         if let Ok((position, rotation)) = target.extract() {
             return Ok(Goal::Tool(pose(position, rotation)?));
         }
-        let (triangle, alpha, by): (u32, [f64; 3], [f64; 3]) = target.extract().map_err(|_| {
+        let (triangle, alpha, by): (i64, [f64; 3], [f64; 3]) = target.extract().map_err(|_| {
             PyValueError::new_err(format!(
                 "target {number} is neither (position, rotation) nor (triangle, alpha, by)"
             ))
         })?;
-        if triangle as usize >= self.body.triangles.len() {
+        let count = self.body.triangles.len();
+        let Some(triangle) = u32::try_from(triangle)
+            .ok()
+            .filter(|&t| (t as usize) < count)
+        else {
             return Err(PyValueError::new_err(format!(
-                "target {number} is on triangle {triangle}, beyond the {} of the body",
-                self.body.triangles.len()
+                "target {number} is on triangle {triangle}, and the body has 0 to {}",
+                count.saturating_sub(1)
+            )));
+        };
+        let alpha = finite("alpha", alpha)?;
+        if alpha.min_element() < -ALPHA_ROUNDING
+            || (alpha.element_sum() - 1.0).abs() > ALPHA_ROUNDING
+        {
+            return Err(PyValueError::new_err(format!(
+                "target {number} has the area coordinates {alpha}; give three that are not negative \
+                 and add up to 1"
             )));
         }
-        let alpha = finite("alpha", alpha)?.to_array();
+        let alpha = alpha.to_array();
         Ok(Goal::Point(
             SurfacePoint { triangle, alpha },
             finite("by", by)?,

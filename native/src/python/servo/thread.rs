@@ -148,7 +148,7 @@ impl Servo {
             ));
         }
         locked(&self.tools)[finger].clone_from(&made);
-        let Some(running) = self.current().filter(|r| finger < r.finger_count()) else {
+        let Some(running) = self.alive().filter(|r| finger < r.finger_count()) else {
             return Ok(());
         };
         py.detach(|| running.set_tip(finger, tip(made))).map_err(|_| {
