@@ -260,7 +260,10 @@ fn a_device_that_sends_rubbish_is_survived_and_believed_again() {
                 let mut reading = device.read(now, 1e-3, &frame);
                 if reading == Reading::Waiting(reason::NO_STATE) {
                     // Rubbish may hold a HELLO of another device, so this one begins a new session:
-                    // one tick without force tells so.
+                    // ticks without force tell so.
+                    for _ in 0..20 {
+                        device.write(DVec3::ZERO, false, &frame);
+                    }
                     now += 1e-3;
                     reading = device.read(now, 1e-3, &frame);
                 }

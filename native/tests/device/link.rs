@@ -90,33 +90,6 @@ fn silence_is_stale_and_the_return_takes_any_sequence() {
 }
 
 #[test]
-fn a_device_whose_clock_began_anew_in_a_silence_was_reset_and_is_set_down_anew() {
-    let (bench, mut device) = greeted();
-    assert!(matches!(read(&mut device, 0.001), Reading::At(p) if p.restart));
-    assert_eq!(read(&mut device, 0.300), Reading::Fault(Fault::Stale));
-    bench.hello(2, 2.5);
-    assert_eq!(read(&mut device, 0.301), Reading::Fault(Fault::Stale));
-    bench.state_at(20_000, 0, -20_000, 0, 1);
-    assert!(matches!(read(&mut device, 0.302), Reading::Waiting(_)));
-    bench.state_at(21_000, 1, -20_000, 0, 1);
-    assert!(matches!(read(&mut device, 0.303), Reading::At(p) if p.restart && p.speed == 0.0));
-    bench.state_at(22_000, 2, -20_000, 0, 1);
-    assert!(matches!(read(&mut device, 0.304), Reading::At(p) if !p.restart));
-}
-
-#[test]
-fn a_hello_with_other_figures_ends_the_session_and_one_with_the_same_does_not() {
-    let (bench, mut device) = greeted();
-    assert!(matches!(read(&mut device, 0.001), Reading::At(p) if p.max_force == 2.5));
-    bench.hello(2, 2.5);
-    assert!(matches!(read(&mut device, 0.002), Reading::At(p) if !p.restart));
-    bench.hello(2, 30.0);
-    bench.state(3, 9000, 0, 1);
-    assert!(matches!(read(&mut device, 0.003), Reading::Waiting(_)));
-    assert!(matches!(read(&mut device, 0.004), Reading::At(p) if p.restart && p.max_force == 30.0));
-}
-
-#[test]
 fn unplugging_is_found_and_the_same_port_opened_again() {
     let (bench, mut device) = greeted();
     read(&mut device, 0.001);
@@ -239,26 +212,6 @@ fn a_later_state_hides_nothing_of_the_tick() {
 }
 
 #[test]
-fn a_new_session_knows_nothing_of_the_last_one() {
-    let (bench, mut device) = greeted();
-    assert!(matches!(read(&mut device, 0.001), Reading::At(_)));
-    bench.send(&[4, 2, 7, 0]);
-    bench.hello(7, 2.5);
-    assert_eq!(read(&mut device, 0.002), Reading::Fault(Fault::Protocol));
-    bench.hello(2, 2.5);
-    // Neither the place of 498 ms ago nor the fault of the session before.
-    assert!(matches!(read(&mut device, 0.500), Reading::Waiting(_)));
-    // Its sequence is behind that of the session before.
-    bench.state(10, 3000, 0, 1);
-    let Reading::At(probe) = read(&mut device, 0.501) else {
-        panic!("did not come back");
-    };
-    // No sweep leads here from a place that is forgotten.
-    assert!(probe.restart && probe.position.x == 3e-3);
-    assert_eq!(device.report().out_of_order, 0);
-}
-
-#[test]
 fn faults_flags_and_buttons_of_the_device_are_passed_on() {
     let (bench, mut device) = greeted();
     read(&mut device, 0.001);
@@ -373,19 +326,6 @@ fn an_older_device_is_spoken_to_in_its_own_words() {
     bench.line().gone = false;
     read(&mut device, 0.3);
     assert_eq!(bench.received(), [[1, 2]]);
-}
-
-#[test]
-fn a_device_that_turns_out_to_be_older_in_a_session_begins_a_new_one() {
-    let (bench, mut device) = greeted();
-    assert!(matches!(read(&mut device, 0.001), Reading::At(_)));
-    bench.is_older();
-    bench.state(0, 1000, 0, 1);
-    assert!(matches!(read(&mut device, 0.002), Reading::Waiting(_)));
-    bench.hello(1, 2.5);
-    bench.state(1, 1000, 0, 1);
-    let readings = [0.003, 0.004].map(|now| read(&mut device, now));
-    assert!(matches!(readings[1], Reading::At(_)), "{readings:?}");
 }
 
 #[test]

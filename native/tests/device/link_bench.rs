@@ -4,6 +4,7 @@ use std::collections::VecDeque;
 use std::io::{self, ErrorKind};
 use std::sync::{Arc, Mutex};
 
+use glam::DVec3;
 use palpate_servo::device::link::LinkDevice;
 use palpate_servo::device::link::codec::{Decoder, MAX_FRAME, encode};
 use palpate_servo::device::serial::wire::{Opener, Wire};
@@ -201,6 +202,13 @@ pub fn position(reading: Reading) -> f64 {
     match reading {
         Reading::At(probe) => probe.position.x,
         other => panic!("no position but {other:?}"),
+    }
+}
+
+/// The ticks in which a device hears zero that may hold a force of the session before.
+pub fn let_go(device: &mut LinkDevice<Bench>) {
+    for _ in 0..20 {
+        device.write(DVec3::ZERO, false, &FRAME());
     }
 }
 

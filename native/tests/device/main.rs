@@ -14,3 +14,4 @@ mod link;
 mod link_bench;
 mod link_document;
 mod orientation;
+mod sessions;

@@ -1,6 +1,6 @@
 //! Orientations of the serial device: each with its STATE, and what holds when one is missing.
 
-use crate::link_bench::{Bench, FRAME, greeted, position, read};
+use crate::link_bench::{Bench, FRAME, greeted, let_go, position, read};
 use glam::DVec3;
 use palpate_servo::device::link::LinkDevice;
 use palpate_servo::device::{Device, DeviceFrame, Fault, Reading};
@@ -158,6 +158,7 @@ fn what_was_told_before_a_break_is_not_for_the_state_after_it() {
     bench.state(65_535, 1000, 0, 1);
     assert!(matches!(read(&mut device, 0.003), Reading::Waiting(_)));
     assert_eq!(orientations(&device), [1, 1, 0, 0], "another device");
+    let_go(&mut device);
     assert_eq!(pointing(read(&mut device, 0.004)), DVec3::X);
 }
 
@@ -182,8 +183,10 @@ fn another_session_may_be_one_without_orientation() {
     bench.hello(2, 30.0);
     bench.state(0, 1000, 0, 1);
     assert!(matches!(read(&mut device, 0.002), Reading::Waiting(_)));
-    assert_eq!(pointing(read(&mut device, 0.003)), DVec3::X);
+    let_go(&mut device);
     bench.state(1, 1000, 0, 1);
+    assert_eq!(pointing(read(&mut device, 0.003)), DVec3::X);
+    bench.state(2, 1000, 0, 1);
     assert_eq!(pointing(read(&mut device, 0.0225)), DVec3::X);
 }
 
@@ -195,6 +198,7 @@ fn a_reset_device_tells_its_orientation_with_its_first_state() {
     bench.turned(0, 2.0);
     bench.state_at(20_000, 0, 0, 0, 1);
     assert!(matches!(read(&mut device, 0.301), Reading::Waiting(_)));
+    let_go(&mut device);
     let reading = read(&mut device, 0.302);
     assert!(matches!(reading, Reading::At(p) if p.restart && p.speed == 0.0));
     assert!(pointing(reading).distance(DVec3::NEG_X) < 1e-4);

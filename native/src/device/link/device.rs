@@ -192,7 +192,8 @@ impl<O: Opener> Device for LinkDevice<O> {
         if device_fault {
             return Reading::Fault(Fault::Device);
         }
-        if std::mem::take(&mut self.begun_anew) {
+        // It hears zero as long as it may hold a force of the session before: then the force ramps.
+        if std::mem::take(&mut self.begun_anew) || self.farewells > 0 {
             return Reading::Waiting(reason::NO_STATE);
         }
         if now - self.heard > STALE_SECONDS {
@@ -238,7 +239,8 @@ impl<O: Opener> Device for LinkDevice<O> {
         if !self.line.is_open() {
             return;
         }
-        if self.is_greeted() {
+        // Also a device that greets anew may still hold a force of the session before.
+        if self.is_greeted() && self.farewells == 0 {
             self.say_force(frame.force_to_device(force), enable);
         } else {
             self.say_farewell();

@@ -125,6 +125,7 @@ impl<O: Opener> LinkDevice<O> {
             && self.stale
             && has_begun_anew(last.state.time_us, state.time_us, now - self.heard)
         {
+            self.farewells = FAREWELLS;
             self.begin_session(now);
         }
         if let Some(last) = &self.newest
