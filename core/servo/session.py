@@ -80,7 +80,7 @@ def servo_on(
         :class:`..shape.force_at_depth.softening_table.SofteningTable`.
     settings : to begin with.
     rate_hz : 100 to 8000.
-    max_force : newton; the clamp on the force of any device.
+    max_force : newton; the clamp on the force of any device, unless ``settings`` have one.
     record_seconds : length of samples kept until they are read.
 
     Raises

@@ -34,6 +34,13 @@ def rests(shot):
     return np.allclose(shot.contact_force, -shot.nodal_forces.sum(axis=0), rtol=1e-13, atol=0)
 
 
+def test_a_servo_that_has_stopped_takes_as_many_tools_as_it_is_given(cube, servo):
+    servo.start(Pointer(ABOVE))
+    servo.stop()
+    for _ in range(9):
+        servo.set_tool(None)
+
+
 def test_pressing_gives_the_formulas_force_and_leaving_gives_none(cube, servo, eventually):
     servo.start(Pointer(ABOVE))
     eventually(lambda: servo.snapshot().state == "free", servo.snapshot)

@@ -139,3 +139,18 @@ def test_a_modulus_that_is_none_is_refused(cube, modulus):
     with pytest.raises(PalpateError, match=f"modulus is {modulus} Pa"):
         cube.deform([0], [[0, 0, 1.0]], modulus)
     assert cube.modulus(None) == cube.young_modulus
+
+
+@pytest.mark.parametrize(
+    ("triangle", "alpha", "said"),
+    [
+        (0, [5.0, 5.0, 5.0], "add up to 1"),
+        (0, [2.0, -0.5, -0.5], "not negative"),
+        (0, [0.0, 0.0, 0.0], "add up to 1"),
+        (-1, [1.0, 0.0, 0.0], "triangle -1, and the body has 0 to"),
+        (10**9, [1.0, 0.0, 0.0], "triangle 1000000000, and the body has 0 to"),
+    ],
+)
+def test_a_place_that_is_none_is_refused(body, triangle, alpha, said):
+    with pytest.raises(PalpateError, match=said):
+        touch_at(body, triangle, alpha, PRESS)

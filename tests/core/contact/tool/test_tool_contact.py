@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from bodies.baked_body import baked_body
 from bodies.inner_corner import inner_corner
 from bodies.soft_block import soft_block
 from scipy.spatial.transform import Rotation
@@ -12,6 +13,7 @@ from palpate.core.contact.tool.pose import Pose
 from palpate.core.contact.tool.tool_surface import surface_and_correction
 from palpate.core.contact.tool.tools import plate, rod, sphere
 from palpate.core.errors import PalpateError
+from palpate.core.mesh.tet_mesh import TetMesh
 
 TOP = 0.05
 BOX = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * 0.012
@@ -244,3 +246,23 @@ def test_a_tool_that_grazes_the_surface_comes_to_rest(cube, air):
     at = cube.mesh.nodes[:, 2].max() + 0.014 + air
     touch = Press(cube, [sphere(0.014)]).to([Pose.at([0.025, 0.025, at])])[0]
     assert np.linalg.norm(touch.force) < 1e-10
+
+
+def test_a_tool_with_no_digits_left_for_where_it_touches_is_refused(cube):
+    with pytest.raises(PalpateError, match="times the body's size"):
+        press_tool(cube, sphere(1e6), Pose.at([0.025, 0.025, TOP + 1e6]))
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.4])
+def test_a_body_far_from_the_origin_is_pressed_as_one_near_it(cube, cube_mesh, friction):
+    mesh, fixed = cube_mesh
+    away = np.array([1e4, 0.0, 0.0])
+    moved_off = baked_body(TetMesh.checked(mesh.nodes + away, mesh.tets), fixed, 0.49, 10_000.0)
+    near, far = (
+        Press(body, [sphere(0.014)], ContactSettings(friction=friction)).to(
+            [Pose.at(np.add(origin, [0.0262, 0.0243, TOP + 0.01]))]
+        )[0]
+        for body, origin in ((cube, 0.0 * away), (moved_off, away))
+    )
+    # Which of equally near points are taken is a matter of rounding.
+    np.testing.assert_allclose(far.force, near.force, atol=2e-3 * np.linalg.norm(near.force))
