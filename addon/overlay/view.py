@@ -180,6 +180,9 @@ def _draw_patches(patches: list[Patch], top: float, view: View) -> None:
             (seen, "NONE", PATCH_SEEN_THROUGH),
             (order, "LESS_EQUAL", 1.0),
         ):
+            # Blender cannot draw nothing: all of a patch may face away.
+            if not len(chosen):
+                continue
             colors = color_of(patch.pressures[chosen] / top)
             part = discs(lifted[chosen], patch.normals[chosen], patch.radii[chosen], colors)
             _draw([part], [], depth_test, opacity, both_sides=True)

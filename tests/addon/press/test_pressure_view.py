@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from soft_scene import part
@@ -113,6 +115,22 @@ ROOM = (10.0, 10.0, 790.0, 590.0)
 
 def places(*corners):
     return np.array(corners, dtype=np.float64)
+
+
+@pytest.mark.parametrize(("facing", "drawn"), [(1.0, [4, 4]), (-1.0, [4])])
+def test_a_patch_that_faces_away_is_not_drawn_through_the_surface(
+    palpate, monkeypatch, facing, drawn
+):
+    view = part("addon.overlay.view")
+    normals = np.tile([0.0, 0.0, facing], (4, 1))
+    patch = SimpleNamespace(
+        places=np.zeros((4, 3)), normals=normals, radii=np.ones(4), pressures=np.ones(4)
+    )
+    found = []
+    monkeypatch.setattr(view, "discs", lambda places, *_: found.append(len(places)))
+    monkeypatch.setattr(view, "_draw", lambda *_, **__: None)
+    view._draw_patches([patch], 1.0, SimpleNamespace(axes=np.eye(3)))
+    assert found == drawn
 
 
 @pytest.mark.parametrize(
