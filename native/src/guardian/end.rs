@@ -1,10 +1,10 @@
-//! The end of a guardian that was dismissed.
+//! The end of a guardian that was dismissed, or left to say the last word.
 
 use std::process::Child;
 use std::time::Duration;
 
-/// Waits, of [`PAUSE`] each: it looks whether it was dismissed twenty times a second.
-const PAUSES: u32 = 50;
+/// Waits, of [`PAUSE`] each: it looks twenty times a second, and speaks for 70 ms at most.
+const PAUSES: u32 = 100;
 const PAUSE: Duration = Duration::from_millis(2);
 
 /// Waits for its end, and ends it where it does not come: it may have been stopped. A driver may keep it

@@ -18,7 +18,7 @@ mod system;
 mod system;
 
 use sheet::Written;
-pub use sheet::{DISMISSED, GUARDIAN, HOST, MOST_BYTES, Sheet};
+pub use sheet::{DISMISSED, GUARDIAN, HOST, LEFT, MOST_BYTES, Sheet};
 use system::{Port, handed_sheet, host_ends_within, leave_the_group};
 pub use system::{map_sheet, now_ns};
 
@@ -80,7 +80,7 @@ pub fn main() {
     leave_the_group();
     let Some(sheet) = handed_sheet() else { return };
     let mut port = Port::handed_over();
-    while sheet.holder.load(SeqCst) != DISMISSED {
+    while ![DISMISSED, LEFT].contains(&sheet.holder.load(SeqCst)) {
         sheet.looks.fetch_add(1, Release);
         let alive = sheet.alive_ns.load(Acquire);
         let silence = now_ns().saturating_sub(alive);

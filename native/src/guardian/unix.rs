@@ -12,7 +12,7 @@ use std::sync::atomic::Ordering::SeqCst;
 use crate::guardian::end::end;
 #[cfg(not(target_os = "linux"))]
 use crate::guardian::program::now_ns;
-use crate::guardian::program::{DISMISSED, Sheet, map_sheet};
+use crate::guardian::program::{DISMISSED, LEFT, Sheet, map_sheet};
 use crate::guardian::refusal::refused;
 use crate::guardian::watch::{Attention, PROGRAM, Watch, watch};
 
@@ -27,6 +27,7 @@ pub struct Guardian {
     child: Option<Child>,
     attention: Attention,
     process: u32,
+    is_dismissed: bool,
 }
 
 impl Guardian {
@@ -61,6 +62,7 @@ impl Guardian {
             child: Some(child),
             attention: Attention::default(),
             process: std::process::id(),
+            is_dismissed: false,
         })
     }
 
@@ -70,10 +72,15 @@ impl Guardian {
             (self.child.as_mut()).is_some_and(|child| matches!(child.try_wait(), Ok(None)));
         watch(self.sheet, last_word, &mut self.attention, is_there)
     }
+
+    /// The device was let go: nothing will be left to say.
+    pub fn dismiss(&mut self) {
+        self.is_dismissed = true;
+    }
 }
 
 impl Drop for Guardian {
-    /// The device was let go: nothing is left to say. In a fork the guardian is the parent's.
+    /// Has the last word said, unless it was dismissed. In a fork the guardian is the parent's.
     fn drop(&mut self) {
         let Some(mut child) = self.child.take() else {
             return;
@@ -81,7 +88,8 @@ impl Drop for Guardian {
         if self.process != std::process::id() {
             return;
         }
-        self.sheet.holder.store(DISMISSED, SeqCst);
+        let end_of_all = if self.is_dismissed { DISMISSED } else { LEFT };
+        self.sheet.holder.store(end_of_all, SeqCst);
         self.tie = None;
         end(&mut child);
         let at = std::ptr::from_ref(self.sheet).cast_mut();

@@ -19,7 +19,7 @@ use windows_sys::Win32::System::Memory::{
 use windows_sys::Win32::System::Threading::{CREATE_NO_WINDOW, GetCurrentProcess};
 
 use crate::guardian::end::end;
-use crate::guardian::program::{DISMISSED, Sheet, map_sheet};
+use crate::guardian::program::{DISMISSED, LEFT, Sheet, map_sheet};
 use crate::guardian::refusal::refused;
 use crate::guardian::watch::{Attention, PROGRAM, Watch, watch};
 
@@ -47,6 +47,7 @@ pub struct Guardian {
     sheet: &'static Sheet,
     child: Child,
     attention: Attention,
+    is_dismissed: bool,
 }
 
 impl Guardian {
@@ -82,6 +83,7 @@ impl Guardian {
             sheet,
             child,
             attention: Attention::default(),
+            is_dismissed: false,
         })
     }
 
@@ -90,12 +92,18 @@ impl Guardian {
         let is_there = matches!(self.child.try_wait(), Ok(None));
         watch(self.sheet, last_word, &mut self.attention, is_there)
     }
+
+    /// The device was let go: nothing will be left to say.
+    pub fn dismiss(&mut self) {
+        self.is_dismissed = true;
+    }
 }
 
 impl Drop for Guardian {
-    /// The device was let go: nothing is left to say.
+    /// Has the last word said, unless it was dismissed.
     fn drop(&mut self) {
-        self.sheet.holder.store(DISMISSED, SeqCst);
+        let end_of_all = if self.is_dismissed { DISMISSED } else { LEFT };
+        self.sheet.holder.store(end_of_all, SeqCst);
         end(&mut self.child);
         let at = MEMORY_MAPPED_VIEW_ADDRESS {
             Value: std::ptr::from_ref(self.sheet).cast_mut().cast(),

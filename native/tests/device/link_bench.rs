@@ -34,6 +34,8 @@ pub struct Line {
     pub has_discarded: bool,
     /// What the tick finds of its guardian.
     pub watch: Option<Watch>,
+    /// Its guardian was told that the device was let go.
+    pub dismissed: bool,
 }
 
 /// Largest damping of the bench, 0.01 N s/m.
@@ -160,6 +162,10 @@ impl Wire for Bench {
 
     fn queued(&mut self) -> usize {
         self.line().queued
+    }
+
+    fn dismiss(&mut self) {
+        self.line().dismissed = true;
     }
 
     fn discard(&mut self) {

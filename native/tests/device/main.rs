@@ -8,6 +8,8 @@ mod course;
 mod damage;
 mod deaf;
 mod fuzz_link;
+#[cfg(unix)]
+mod guardian;
 mod haply;
 mod line;
 mod link;

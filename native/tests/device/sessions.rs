@@ -157,3 +157,16 @@ fn a_device_that_turns_out_to_be_older_in_a_session_begins_a_new_one() {
     let_go(&mut device);
     assert!(matches!(read(&mut device, 0.004), Reading::At(_)));
 }
+
+#[test]
+fn a_line_that_is_left_full_is_left_to_the_guardian() {
+    for is_full in [false, true] {
+        let (bench, mut device) = greeted();
+        streamed(&bench, &mut device, 1..20);
+        bench.line().full = is_full;
+        bench.line().queued = if is_full { 500 } else { 0 };
+        bench.line().discards_later = true;
+        device.park();
+        assert_eq!(bench.line().dismissed, !is_full);
+    }
+}

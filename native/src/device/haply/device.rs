@@ -25,6 +25,8 @@ const LONE_ADDRESSES: usize = 3;
 const STALE_SECONDS: f64 = 0.02;
 /// Requests without torque when parking: one may be lost on the wire.
 const PARKING_REQUESTS: u32 = 3;
+/// Tries, 2 ms each: as long as a full line may take.
+const PARKING_PAUSES: u32 = 50;
 /// Reads in one tick at most, so that a flood of bytes cannot hold it up.
 const READS_PER_TICK: usize = 16;
 
@@ -256,16 +258,24 @@ impl<O: Opener> Device for HaplyDevice<O> {
     }
 
     fn park(&mut self) {
-        for _ in 0..PARKING_REQUESTS {
-            self.flight = Flight::default();
-            if self.line.is_open() {
-                self.request(None);
+        let mut taken = 0;
+        for _ in 0..PARKING_PAUSES {
+            if !self.line.is_open() {
+                break;
             }
+            self.flight = Flight::default();
+            self.limp = false;
+            self.request(None);
+            taken += u32::from(self.limp);
             // Time for the board to read before the line closes.
             std::thread::sleep(Duration::from_millis(2));
+            self.line.flush();
+            if taken >= PARKING_REQUESTS && self.line.queued() == 0 {
+                break;
+            }
         }
-        self.line.flush();
-        self.line.end();
+        let was_let_go = taken > 0 && self.line.queued() == 0;
+        self.line.end(was_let_go);
     }
 
     fn report(&self) -> LinkReport {

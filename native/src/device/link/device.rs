@@ -267,7 +267,8 @@ impl<O: Opener> Device for LinkDevice<O> {
             }
             std::thread::sleep(PARKING_PAUSE);
         }
-        self.line.end();
+        let was_let_go = self.line.queued() == 0;
+        self.line.end(was_let_go);
     }
 
     fn report(&self) -> LinkReport {

@@ -109,6 +109,12 @@ impl Wire for GuardedWire {
         self.guardian.is_some()
     }
 
+    fn dismiss(&mut self) {
+        if let Some(guardian) = &mut self.guardian {
+            guardian.dismiss();
+        }
+    }
+
     fn live(&mut self, last_word: &[u8]) -> Watch {
         self.look_what_is_done();
         let watch = match &mut self.guardian {
@@ -118,8 +124,10 @@ impl Wire for GuardedWire {
             None => Watch::Kept,
         };
         if watch == Watch::Absent
-            && let Some(gone) = self.guardian.take()
+            && let Some(mut gone) = self.guardian.take()
         {
+            // Another one takes its place; the device keeps its host.
+            gone.dismiss();
             self.is_guarding = true;
             self.errands.ask(Errand::Guard(gone));
         }

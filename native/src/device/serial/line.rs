@@ -65,8 +65,12 @@ impl<O: Opener> Line<O> {
         self.urgent_to = 0;
     }
 
-    /// Leaves the port for good, when no tick comes any more: closing may take its time.
-    pub fn end(&mut self) {
+    /// Leaves the port for good, when no tick comes any more: closing may take its time. A device that
+    /// was not let go is left to its guardian.
+    pub fn end(&mut self, was_let_go: bool) {
+        if let Some(wire) = self.wire.as_mut().filter(|_| was_let_go) {
+            wire.dismiss();
+        }
         self.close(f64::INFINITY);
         self.gone = None;
     }

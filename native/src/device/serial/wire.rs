@@ -46,6 +46,8 @@ pub trait Wire: Send {
     fn is_guarded(&self) -> bool {
         false
     }
+    /// The device was let go: its guardian has nothing more to say when the line is left.
+    fn dismiss(&mut self) {}
     /// Says that the servo lives, and what is to be said should it end.
     fn live(&mut self, _last_word: &[u8]) -> Watch {
         Watch::Kept

@@ -11,6 +11,8 @@ pub const HOST: u32 = 0;
 pub const GUARDIAN: u32 = 1;
 /// The host has let its device go and ends.
 pub const DISMISSED: u32 = 2;
+/// The host has left the port without letting the device go: the last word, and the end.
+pub const LEFT: u32 = 3;
 
 /// A last word.
 #[repr(C)]
@@ -30,7 +32,7 @@ pub struct Sheet {
     pub alive_ns: AtomicU64,
     /// How often the guardian has looked, round and round.
     pub looks: AtomicU32,
-    /// [`HOST`], [`GUARDIAN`] or [`DISMISSED`].
+    /// [`HOST`], [`GUARDIAN`], [`DISMISSED`] or [`LEFT`].
     pub holder: AtomicU32,
     /// Which of the two words counts; the host writes the other one.
     pub newest: AtomicU32,

@@ -19,6 +19,10 @@ pub struct Board {
     pub gone: bool,
     pub silent: bool,
     pub full: bool,
+    /// The line takes nothing so many times.
+    pub refusals: usize,
+    /// Its guardian was told that the device was let go.
+    pub dismissed: bool,
     /// Address of both motors and both encoders; 0 before a setup.
     pub address: u8,
     /// Torques of ports 0 and 1, N m.
@@ -156,7 +160,8 @@ impl Wire for Cable {
 
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let mut board = self.board();
-        if board.full {
+        if board.full || board.refusals > 0 {
+            board.refusals = board.refusals.saturating_sub(1);
             return Err(ErrorKind::WouldBlock.into());
         }
         if bytes.len() == TORQUE_BYTES {
@@ -168,6 +173,10 @@ impl Wire for Cable {
         }
         board.to_board.extend(bytes);
         Ok(bytes.len())
+    }
+
+    fn dismiss(&mut self) {
+        self.board().dismissed = true;
     }
 }
 

@@ -213,6 +213,37 @@ fn a_disabled_a_dropped_and_a_parked_device_are_limp() {
     }
 }
 
+fn pushing() -> Bench {
+    let mut bench = Bench::new();
+    bench.ticks(20);
+    bench.force = DVec3::new(0.0, -1.0, 0.0);
+    bench.ticks(3);
+    bench
+}
+
+#[test]
+fn who_parks_waits_for_a_line_that_takes_nothing_and_leaves_the_rest_to_the_guardian() {
+    let mut bench = pushing();
+    bench.board().refusals = 20;
+    bench.device().park();
+    bench.board().work();
+    assert_eq!(bench.board().torques, [0.0; 2]);
+    assert!(bench.board().dismissed);
+
+    let mut bench = pushing();
+    bench.board().full = true;
+    bench.device().park();
+    assert!(!bench.board().dismissed, "it alone can still say zero");
+}
+
+#[test]
+fn a_line_that_breaks_is_left_to_the_guardian() {
+    let mut bench = pushing();
+    bench.board().gone = true;
+    bench.tick();
+    assert!(!bench.board().dismissed);
+}
+
 #[test]
 fn silence_is_stale_after_20_ms_and_asks_on_without_torque() {
     let mut bench = Bench::new();
