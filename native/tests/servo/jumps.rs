@@ -54,9 +54,23 @@ impl Wire for Memory {
         Ok(length)
     }
 
+    /// Answers a HELLO, now and then asked for, at once.
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if bytes == frame(&[1, 1]) {
+            self.0.lock().unwrap().extend(frame(&hello()));
+        }
         Ok(bytes.len())
     }
+}
+
+/// HELLO of a device of the first protocol.
+fn hello() -> Vec<u8> {
+    let mut hello = vec![1, 1];
+    hello.extend([0; 16]);
+    hello.push(3);
+    hello.extend(3.0_f32.to_le_bytes());
+    hello.extend([0; 14]);
+    hello
 }
 
 impl Opener for Memory {
@@ -89,11 +103,6 @@ impl Run {
         let wire = Memory::default();
         let device = LinkDevice::open(wire.clone()).unwrap();
         let (servo, ends) = Servo::new(body, vec![Box::new(device)], RELEASED, &settings(), 1);
-        let mut hello = vec![1, 1];
-        hello.extend([0; 16]);
-        hello.push(3);
-        hello.extend(3.0_f32.to_le_bytes());
-        hello.extend([0; 14]);
         let run = Self {
             servo,
             snapshots: ends.snapshots,
@@ -108,8 +117,8 @@ impl Run {
             is_turned,
         };
         // A device of the first protocol is asked twice.
-        run.arrive(&frame(&hello));
-        run.arrive(&frame(&hello));
+        run.arrive(&frame(&hello()));
+        run.arrive(&frame(&hello()));
         run
     }
 

@@ -124,7 +124,7 @@ mod tests {
     fn it_is_asked_once_a_second_and_what_it_owes_is_late_after_50_ms() {
         let mut doubt = Doubt::default();
         assert!(doubt.checks(1.0) && !doubt.checks(1.001));
-        assert!(!doubt.is_unanswered(1.05) && doubt.is_unanswered(1.051));
+        assert!(!doubt.is_unanswered(1.0499) && doubt.is_unanswered(1.051));
         doubt.hear(1.06);
         assert!(!doubt.is_unanswered(1.07) && !doubt.checks(1.9) && doubt.checks(2.0));
         doubt.excuse();
