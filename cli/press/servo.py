@@ -169,7 +169,7 @@ def _write_recording(path: Path, servo: Servo) -> dict[str, object]:
     samples = servo.recording()
     write_recording(path, samples, STATES, servo.counters()["rate_hz"])
     ticks = len(np.unique(samples["tick"]))
-    return {"file": str(path), "ticks": ticks, "rows": len(samples), "lost": servo.recording_lost}
+    return {"file": str(path), "ticks": ticks, "lost": servo.recording_lost}
 
 
 def press_from_above(body: SoftBody, young_modulus: float) -> SimulatedOptions:

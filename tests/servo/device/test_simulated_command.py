@@ -189,7 +189,7 @@ def test_a_time_without_sense_is_an_error(baked_file, capsys, seconds):
 
 
 def test_a_rate_or_material_out_of_range_is_an_error(baked_file, capsys, device):
-    assert "rate_hz" in refused(capsys, baked_file, "--port", device.port, "--rate", "10")
+    assert "100 to 8000" in refused(capsys, baked_file, "--port", device.port, "--rate", "10")
     assert "modulus" in refused(capsys, baked_file, "--simulate", "--young", "-5")
 
 
