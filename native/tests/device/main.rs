@@ -6,7 +6,6 @@ mod codec;
 mod counting;
 mod course;
 mod damage;
-mod deaf;
 mod fuzz_link;
 #[cfg(unix)]
 mod guardian;
@@ -16,4 +15,4 @@ mod link;
 mod link_bench;
 mod link_document;
 mod orientation;
-mod sessions;
+mod session;

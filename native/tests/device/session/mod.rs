@@ -1,0 +1,4 @@
+//! What ends a session, and how one begins anew.
+
+mod begun_anew;
+mod deaf;
