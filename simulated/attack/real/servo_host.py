@@ -6,6 +6,8 @@ last time. It ends with the pipe.
 
 from __future__ import annotations
 
+import signal
+import sys
 from multiprocessing.connection import Connection
 from typing import Any
 
@@ -52,6 +54,9 @@ def report(servo: Servo) -> dict[str, Any]:
 
 def touch(line: Connection, port: str, kind: str) -> None:
     """Touch with the device at `port`, a haply or one that speaks the link, until nobody asks."""
+    if sys.platform != "win32":
+        # Shells let what runs in the background ignore it; here it is to end the process.
+        signal.signal(signal.SIGQUIT, signal.SIG_DFL)
     with Servo(cube(), Settings(YOUNG_MODULUS), ramp_seconds=RAMP_SECONDS) as servo:
         if kind == "haply":
             servo.start(HaplyDevice(port, rotation=UPRIGHT, translation=TOP))
