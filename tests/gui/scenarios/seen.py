@@ -51,7 +51,10 @@ def a_bent_elbow_is_dented_inward_from_outside_and_inside(stage: Stage) -> Wait:
         deepest = int(np.argmax(np.linalg.norm(moved, axis=1)))
         assert np.linalg.norm(before[deepest] - at) < 0.2, side
         assert moved[deepest] @ inward > 0.05, side
-        assert moved[deepest] @ inward > 0.9 * np.linalg.norm(moved[deepest]), side
+        # Which vertex is the deepest follows the tetrahedra, and those are others each time.
+        length = np.linalg.norm(moved, axis=1)
+        way = moved[length > 0.5 * length[deepest]].mean(axis=0)
+        assert way @ inward > 0.95 * np.linalg.norm(way), (side, way @ inward / np.linalg.norm(way))
         yield from type_key(stage, "Z", ctrl=True)
         thing = bpy.data.objects["Arm"]
 
