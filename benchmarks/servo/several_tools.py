@@ -72,7 +72,7 @@ def all_together() -> tuple[Together, ...]:
             np.array(tips),
             0.005,
             np.array([[0.003, 0.0, 0.0], [0.0, 0.003, 0.0]]),
-            (650.0, 715.0),
+            (650.0, 900.0),
         ),
         Together(
             "two plates, deep",

@@ -156,7 +156,6 @@ impl Joint {
         for place in 0..self.patch.slots().len() {
             let offset = self.offset_of(place, beside);
             let slot = &mut self.patch.slots_mut()[place];
-            slot.moved += offset - slot.offset;
             (slot.before, slot.offset) = (slot.offset, offset);
         }
         for (unknown, &place) in self.chosen.iter().enumerate() {

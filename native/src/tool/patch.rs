@@ -36,8 +36,6 @@ const WIDE: usize = 8;
 pub struct Patch {
     slots: Vec<Slot>,
     numbers: SlotNumbers,
-    /// Displacements are those by the forces that the slots name: none of a slot that is gone.
-    is_displaced: bool,
     /// C_ij at unit modulus, [`blocks_at`] each loaded slot j.
     compliance: Vec<f64>,
     /// Forces whose displacements are summed up, and these.
@@ -57,7 +55,6 @@ impl Patch {
         Self {
             slots: Vec::with_capacity(MOST_POINTS),
             numbers: SlotNumbers::new(),
-            is_displaced: true,
             compliance: room(blocks_at(MOST_POINTS).start),
             forces: [[0.0; MOST_POINTS]; 3],
             moved: [[0.0; MOST_POINTS]; 3],
@@ -163,12 +160,11 @@ impl Patch {
         }
     }
 
-    /// Begins to sum up how far changes of force move all slots, from where they are.
+    /// Goes on with the sum from other forces than those that it has: none so far.
     pub(crate) fn begin_changes(&mut self) {
-        if !self.is_displaced {
-            self.displace();
+        for axis in &mut self.forces {
+            axis[..self.slots.len()].fill(0.0);
         }
-        self.begin_sum(|_| DVec3::ZERO, |slot| slot.moved);
     }
 
     /// How far a slot moves by the sum, m at unit modulus.
@@ -177,13 +173,11 @@ impl Patch {
         at(&self.moved, slot)
     }
 
-    /// Displaces the slots by the sum, which is of their forces.
+    /// Displaces the slots by the sum.
     pub(crate) fn end_displacing(&mut self) {
         for (i, slot) in self.slots.iter_mut().enumerate() {
             slot.moved = at(&self.moved, i);
-            slot.moved_by = slot.force;
         }
-        self.is_displaced = true;
     }
 
     #[inline]
@@ -258,7 +252,6 @@ impl Patch {
         let last = self.slots.len() - 1;
         let gone = self.slots[slot];
         self.numbers.remove([gone.tool, gone.body], gone.point);
-        self.is_displaced &= gone.moved_by == DVec3::ZERO;
         if slot != last {
             let own = self.compliance(last, last);
             for other in 0..last {

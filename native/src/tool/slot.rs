@@ -34,8 +34,6 @@ pub struct Slot {
     pub moved: DVec3,
     /// The part of it that points cause, m.
     pub offset: DVec3,
-    /// The force of which the rest of it is, and of the other slots' displacements, N at unit modulus.
-    pub(super) moved_by: DVec3,
     /// The same before the points' forces were found anew, m.
     pub(crate) before: DVec3,
     /// Compliance between it and the tool along the normal, m/N at unit modulus.
@@ -72,7 +70,6 @@ impl Slot {
             slips: false,
             moved: DVec3::ZERO,
             offset: DVec3::ZERO,
-            moved_by: DVec3::ZERO,
             before: DVec3::ZERO,
             spring: 0.0,
             normal: DVec3::ZERO,
