@@ -66,11 +66,8 @@ def nearest(mesh: bpy.types.Mesh, point: Array) -> SeenTriangle | None:
 
 
 def _polygons(mesh: bpy.types.Mesh) -> Polygons:
-    places = np.empty(3 * len(mesh.vertices), dtype=np.float32)
-    if len(places):
-        # An empty mesh has no attribute "position".
-        mesh.attributes["position"].data.foreach_get("vector", places)
-    return Polygons(places.reshape(-1, 3), *drawn_surface.polygons(mesh))
+    places = drawn_surface.coordinates(mesh).reshape(-1, 3)
+    return Polygons(places, *drawn_surface.polygons(mesh))
 
 
 def _triangles(mesh: bpy.types.Mesh, face: int) -> tuple[NDArray[np.int64], Array]:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ...core.errors import PalpateError
 from ...core.sentence import Sentence
-from ..scene.drawn_surface import frame_of, polygons
+from ..scene.drawn_surface import coordinates, frame_of, polygons
 
 Array = NDArray[np.float64]
 
@@ -98,9 +98,7 @@ def _local_hull(thing: bpy.types.Object, evaluated: bpy.types.Object) -> _LocalH
     """Hull of what an object is evaluated to: the one made last, if that was the same."""
     mesh = evaluated.to_mesh()
     try:
-        places = np.empty(3 * len(mesh.vertices), dtype=np.float32)
-        mesh.vertices.foreach_get("co", places)
-        arrays = (places, *polygons(mesh))
+        arrays = (coordinates(mesh), *polygons(mesh))
         known = _made.pop(thing.session_uid, None)
         if known is None or not all(map(np.array_equal, known[0], arrays)):
             known = arrays, _blenders_hull(mesh)
