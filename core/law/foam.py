@@ -24,9 +24,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .barrier import FLATTEST, Derivatives
-from .by_component import Array, cofactors, determinants, diagonal, identity_added
+from .by_component import Array, cofactors, identity_added
 from .law import Stressed
-from .volume import change_of_cofactors, second_invariant, volume_tangent
+from .volume import change_of_cofactors, volume_change, volume_tangent
 
 # Two stretches nearer than this, relative, are taken for one where what they differ by divides.
 ALIKE = 1e-7
@@ -64,7 +64,7 @@ class Foam:
         """See :class:`.law.Law`."""
         left, stretches, right = _principal(gradient)
         along = self._along(stretches - 1.0)
-        volume = self._volume(_excess(gradient))
+        volume = self._volume(volume_change(gradient))
         density = shear_modulus * along.value.sum(axis=0) + first_lame * volume.value
         stress: Array = np.einsum("iad,ad,aJd->iJd", left, shear_modulus * along.slope, right)
         stress += first_lame * volume.slope * cofactors(identity_added(gradient))
@@ -75,7 +75,7 @@ class Foam:
     ) -> NDArray[np.float64]:
         """See :class:`.law.Law`."""
         moved = identity_added(gradient)
-        volume = self._volume(_excess(gradient))
+        volume = self._volume(volume_change(gradient))
         found = volume_tangent(moved, first_lame * volume.curvature)
         pressure = first_lame * volume.slope
         found += pressure[:, None, None] * change_of_cofactors(moved)
@@ -123,13 +123,6 @@ def _power_less_logarithm(excess: NDArray[np.float64], exponent: float) -> Deriv
 def _sum(parts: Iterable[tuple[float, Derivatives]]) -> Derivatives:
     weighted = [tuple(weight * each for each in derivatives) for weight, derivatives in parts]
     return Derivatives(*(np.sum(column, axis=0) for column in zip(*weighted, strict=True)))
-
-
-def _excess(gradient: Array) -> NDArray[np.float64]:
-    """J - 1, exact to rounding also where H is small."""
-    trace = diagonal(gradient).sum(axis=0)
-    found: NDArray[np.float64] = trace + second_invariant(gradient) + determinants(gradient)
-    return found
 
 
 def _principal(gradient: Array) -> tuple[Array, NDArray[np.float64], Array]:

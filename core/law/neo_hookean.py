@@ -25,7 +25,12 @@ from numpy.typing import NDArray
 from .barrier import barrier
 from .by_component import Array, cofactors, determinants, diagonal, identity_added
 from .law import Stressed
-from .volume import change_of_cofactors, second_invariant, volume_tangent
+from .volume import (
+    change_of_cofactors,
+    second_invariant,
+    volume_change,
+    volume_tangent,
+)
 
 
 @dataclass(frozen=True)
@@ -62,8 +67,7 @@ class NeoHookean:
         self, gradient: Array, first_lame: NDArray[np.float64], shear_modulus: NDArray[np.float64]
     ) -> NDArray[np.float64]:
         """See :class:`.law.Law`."""
-        trace = diagonal(gradient).sum(axis=0)
-        excess = trace + second_invariant(gradient) + determinants(gradient)
+        excess = volume_change(gradient)
         held = barrier(excess)
         pressure = shear_modulus * (held.slope - 1.0) + first_lame * excess
         slope = shear_modulus * held.curvature + first_lame

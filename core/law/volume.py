@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from .by_component import Array, cofactors
+from .by_component import Array, cofactors, determinants, diagonal
 
 # The sign of each even or odd order of three axes, zero where one comes twice.
 PERMUTATIONS = np.zeros((3, 3, 3))
@@ -21,6 +21,13 @@ def second_invariant(gradient: Array) -> NDArray[np.float64]:
     found: NDArray[np.float64] = h[0, 0] * h[1, 1] - h[0, 1] * h[1, 0]
     found += h[1, 1] * h[2, 2] - h[1, 2] * h[2, 1]
     found += h[2, 2] * h[0, 0] - h[2, 0] * h[0, 2]
+    return found
+
+
+def volume_change(gradient: Array) -> NDArray[np.float64]:
+    """J - 1 (d,), exact to rounding also where H is small."""
+    trace = diagonal(gradient).sum(axis=0)
+    found: NDArray[np.float64] = trace + second_invariant(gradient) + determinants(gradient)
     return found
 
 
