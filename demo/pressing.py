@@ -105,7 +105,7 @@ def _figures(session: Any, thing: bpy.types.Object, frames: Array) -> dict[str, 
     if moved is None or not session.state.pressed:
         reason = session.state.message or "nothing is touched"
         raise RuntimeError(f"the hand holds, but there is no press to keep: {reason}")
-    frame = session.drawn.frame
+    frame = session.frames[0]
     return {
         "servo": session.loop.servo.counters(),
         "press": {

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ...core.contact.tool.pose import Pose
 from ...core.contact.tool.tools import Tool
 from ...core.servo.session import FingerSnapshot
+from ...operators.scene.body_frame import BodyFrame
 from ...operators.session.press_session import PressSession
 from ...operators.session.press_state import Phase
 from ...operators.tool.tool_depth import depth_of
@@ -72,7 +73,7 @@ def readings(session: PressSession) -> tuple[Reading, ...]:
     if session.snapshot is None or session.state.phase is Phase.LOST:
         return (NOTHING,) * len(session.leads)
     # Compared by identity: each tick has its own.
-    now = (session.snapshot, session.drawn, session.seen.displacements)
+    now = (session.snapshot, session.drawn, session.seen.displacements, *session.places)
     before, known = _latest.get(session, ((), ()))
     if len(before) != len(now) or any(a is not b for a, b in zip(before, now, strict=True)):
         known = _readings(session)
@@ -84,14 +85,15 @@ def _readings(session: PressSession) -> tuple[Reading, ...]:
     snapshot = session.snapshot
     if snapshot is None:
         return ()
+    fingers = zip(snapshot.fingers, session.frames, strict=True)
     tool = session.tip.tool
     if tool is None:
-        return tuple(_of_point(session, finger) for finger in snapshot.fingers)
-    return tuple(_of_tool(session, finger, tool) for finger in snapshot.fingers)
+        return tuple(_of_point(session, *one) for one in fingers)
+    return tuple(_of_tool(session, *one, tool) for one in fingers)
 
 
-def _of_point(session: PressSession, finger: FingerSnapshot) -> Reading:
-    frame, turn = session.drawn.frame, np.eye(3)
+def _of_point(session: PressSession, finger: FingerSnapshot, frame: BodyFrame) -> Reading:
+    turn = np.eye(3)
     probe, proxy = np.asarray(finger.probe), np.asarray(finger.proxy)
     if not finger.touching:
         place = frame.world_from_body(probe)
@@ -113,8 +115,10 @@ def _of_point(session: PressSession, finger: FingerSnapshot) -> Reading:
     )
 
 
-def _of_tool(session: PressSession, finger: FingerSnapshot, tool: Tool) -> Reading:
-    frame, rotation = session.drawn.frame, np.asarray(finger.orientation)
+def _of_tool(
+    session: PressSession, finger: FingerSnapshot, frame: BodyFrame, tool: Tool
+) -> Reading:
+    rotation = np.asarray(finger.orientation)
     probe, turn = frame.world_from_body(np.asarray(finger.probe)), frame.rotation @ rotation
     pressures = np.asarray(finger.pressures)
     if not finger.touching or not np.any(pressures > 0.0):

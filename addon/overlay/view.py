@@ -250,11 +250,12 @@ def draw_hud() -> None:
 
 def _looked_at(session: PressSession, shown: list[Reading], view: View) -> Array:
     """Pixels (n, 2) of the body and of all that is drawn of its fingers."""
-    frame, tool = session.drawn.frame, session.tip.tool
-    places = [frame.world_from_body(session.seen.nodes()[session.drawn.body.mesh.surface_nodes])]
+    tool, metres = session.tip.tool, session.drawn.frame.metres_per_unit
+    nodes = session.seen.nodes()[session.drawn.body.mesh.surface_nodes]
+    places = [frame.world_from_body(nodes) for frame in dict.fromkeys(session.frames)]
     for figures in shown:
         around = np.zeros((1, 3)) if tool is None else _shape_of(tool).vertices
-        places.append(figures.probe + around @ figures.turn.T / frame.metres_per_unit)
+        places.append(figures.probe + around @ figures.turn.T / metres)
         if figures.force > 0.0:
             places.append(arrow_tip(figures, view.pixel_at(figures.contact))[0][None])
     return view.seen_all(np.concatenate(places))

@@ -38,9 +38,10 @@ def _of_device(session: PressSession) -> list[tuple[Array, Array]]:
     if session.state.source is not Source.DEVICE or loop is None or loop.figures.counters is None:
         return []
     device = loop.figures.counters["link"]["device"]
-    if device is None or loop.settings.device is None:
+    frame = loop.settings.devices[0]
+    if device is None or frame is None:
         return []
-    return _lines(np.array(device["half_extents"]), loop.settings.device, session.drawn.frame)
+    return _lines(np.array(device["half_extents"]), frame, session.frames[0])
 
 
 def _of_plane(context: bpy.types.Context) -> list[tuple[Array, Array]]:

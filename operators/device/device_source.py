@@ -60,11 +60,14 @@ def frame_of_matrix(matrix: Array, body: BodyFrame, scale: float) -> DeviceFrame
     )
 
 
-def home_of_device(thing: bpy.types.Object, scene: bpy.types.Scene, body: BodyFrame) -> DeviceFrame:
-    """Frame without an Empty: at the object's origin and axes, or upright through its top for a
-    planar device.
+def home_of_device(
+    thing: bpy.types.Object, scene: bpy.types.Scene, body: BodyFrame, finger: int = 0
+) -> DeviceFrame:
+    """Frame without an Empty of the first or the second finger's device: at the object's origin
+    and axes, or upright through its top for a planar device.
     """
-    if is_planar(scene):
+    planar = scene.palpate.second == "HAPLY" if finger else is_planar(scene)
+    if planar:
         return frame_of_matrix(upright_plane(thing), body, 1.0)
     return DeviceFrame(np.eye(3), np.zeros(3), 1.0)
 
@@ -81,9 +84,14 @@ def _in_pose(home: DeviceFrame, of_object: BodyFrame, local: BodyFrame) -> Devic
 
 
 def device_frame(
-    thing: bpy.types.Object, scene: bpy.types.Scene, body: BodyFrame, home: DeviceFrame
+    thing: bpy.types.Object,
+    scene: bpy.types.Scene,
+    body: BodyFrame,
+    home: DeviceFrame,
+    finger: int = 0,
 ) -> DeviceFrame:
-    """Frame of the device: of the chosen Empty, else ``home``, which is in the body at rest.
+    """Frame of the first or the second finger's device: of its Empty, else ``home``, which is in
+    the body at rest. ``body`` is the finger's local frame.
 
     Raises
     ------
@@ -91,27 +99,11 @@ def device_frame(
         The Empty is flattened to nothing.
     """
     chosen = scene.palpate
-    if chosen.device_frame is None:
+    empty = chosen.second_frame if finger else chosen.device_frame
+    if empty is None:
         of_object = drawn_surface.frame_of(thing, scene)
         return replace(_in_pose(home, of_object, body), scale=chosen.device_scale)
-    return _frame_of_empty(chosen.device_frame, body, chosen.device_scale)
-
-
-def second_frame(thing: bpy.types.Object, scene: bpy.types.Scene, body: BodyFrame) -> DeviceFrame:
-    """Frame of the second finger's device: of its Empty, else at the object's origin and axes, or
-    upright through its top for a planar device.
-
-    Raises
-    ------
-    PalpateError
-        The Empty is flattened to nothing.
-    """
-    chosen, scale = scene.palpate, scene.palpate.device_scale
-    if chosen.second_frame is not None:
-        return _frame_of_empty(chosen.second_frame, body, scale)
-    if chosen.second == "HAPLY":
-        return frame_of_matrix(upright_plane(thing), body, scale)
-    return DeviceFrame(np.eye(3), np.zeros(3), scale)
+    return _frame_of_empty(empty, body, chosen.device_scale)
 
 
 def _frame_of_empty(empty: bpy.types.Object, body: BodyFrame, scale: float) -> DeviceFrame:
@@ -162,12 +154,12 @@ def _top(drawn: DrawnBody, up: Array) -> Array:
 def start_simulated(
     drawn: DrawnBody,
     frame: DeviceFrame,
+    up: Array = FROM_ABOVE,
     haply: str | None = None,
-    towards: Array = FROM_ABOVE,
     tip: FingerTip = POINT,
 ) -> SimulatedDevice:
-    """Start the simulated device, whose hand presses the body from the world direction ``towards``
-    (3,) repeatedly, by default on its top, with the surface of its ``tip``.
+    """Start the simulated device, whose hand presses the body from the direction ``up`` (3,), body
+    axes, repeatedly, by default on its top, with the surface of its ``tip``.
 
     ``haply`` is the model of a Haply 2DIY to simulate: it presses in the device's plane, within
     its arms' reach.
@@ -177,7 +169,6 @@ def start_simulated(
     PalpateError
         It does not start.
     """
-    up = drawn.frame.turn_to_body(towards)
     above, deep = SIMULATED_REST * drawn.size, min(SIMULATED_DEPTH * drawn.size, tip.deepest)
     top = _top(drawn, up)
     lift = 0.0

@@ -22,7 +22,7 @@ from ..layer import place_marks
 from ..object.drawn_body import DrawnBody, open_body
 from ..place import touched_place
 from ..place.touched_place import TouchedPlace
-from ..scene.body_frame import Point, as_point
+from ..scene.body_frame import BodyFrame, Point, as_point
 from ..session.live_settings import contact_mode
 from ..shape.drawn_shape import closing_shape
 from ..shape.felt_table import softenings_for
@@ -109,7 +109,7 @@ def press_several(
     inward = np.array(
         [one.turn_to_body(way) * one.metres_per_unit for one, way in zip(frames, ways, strict=True)]
     )
-    made = _touches(thing, scene, drawn, tip.tool, places, inward)
+    made = _touches(thing, scene, drawn, tip.tool, places, inward, frames)
     with closing_shape(thing, drawn) as shape:
         met = settled(drawn.body, shape, loads_of(made), young_modulus)
     moved = drawn.drawn_displacement(met.displacements, pressing_tools(made))
@@ -142,15 +142,21 @@ def _touches(
     tool: Tool | None,
     places: Array,
     inward: Array,
+    frames: Sequence[BodyFrame],
 ) -> tuple[Touch, ...]:
-    """Points, or tools each set down at its place from outside and led in."""
+    """Points, or tools each set down at its place from outside and led in; ``frames`` are the local
+    ones.
+    """
     body, chosen = drawn.body, thing.palpate
     settings = ContactSettings(chosen.young_modulus, chosen.static_friction, contact_mode(scene))
     if tool is None:
         softenings = softenings_for(thing, drawn, places)
         return press_points(body, places, inward, settings, softenings=softenings)
     nearest = [nearest_place(body, place) for place in places]
-    turns = [tool_turn.rotation(scene, drawn.frame, -place.axis) for place in nearest]
+    turns = [
+        tool_turn.rotation(scene, frame, -place.axis)
+        for frame, place in zip(frames, nearest, strict=True)
+    ]
     starts = [set_down(body, tool, *one) for one in zip(nearest, turns, strict=True)]
     return press_tools(body, tool, starts, inward, settings)
 

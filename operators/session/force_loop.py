@@ -26,10 +26,12 @@ from ...core.servo.session import (
 )
 from ...simulated.simulated_process import SimulatedDevice
 from ..device import device_source
+from ..device.device_source import DeviceFrame
 from ..device.loop_figures import LoopFigures
 from ..object.drawn_body import DrawnBody
 from ..record import recording
 from ..record.recording import Recorder
+from ..scene.body_frame import BodyFrame
 from ..shape.felt_table import FeltTable
 from ..tool.finger_tip import FingerTip
 from ..tool.tool_turn import Point, Turn
@@ -92,8 +94,9 @@ class ForceLoop:
         with servo_errors():
             self.servo.add(Pointer(position))
 
-    def add_device(self, thing: bpy.types.Object, scene: bpy.types.Scene) -> None:
-        """Add a finger led by the scene's second device; before the start.
+    def add_device(self, scene: bpy.types.Scene, local: BodyFrame) -> None:
+        """Add a finger led by the scene's second device, in its frame of the settings; before the
+        start. ``local`` is the finger's frame of the body.
 
         Raises
         ------
@@ -101,10 +104,11 @@ class ForceLoop:
             There is no such device, or it cannot be used.
         """
         chosen = scene.palpate
-        frame = device_source.second_frame(thing, scene, self.drawn.frame)
+        frame = self._device_frame(1)
         if chosen.second == "SIMULATED":
+            up = local.turn_to_body(device_source.FROM_THE_SIDE)
             self.second_simulated = device_source.start_simulated(
-                self.drawn, frame, towards=device_source.FROM_THE_SIDE, tip=self.tip
+                self.drawn, frame, up, tip=self.tip
             )
             port = self.second_simulated.port
         else:
@@ -130,20 +134,22 @@ class ForceLoop:
         with servo_errors():
             self.servo.start(Pointer(position))
 
-    def start_device(self, scene: bpy.types.Scene, drawn: DrawnBody) -> None:
-        """Start with the chosen device, in its frame of the settings.
+    def start_device(self, scene: bpy.types.Scene, local: BodyFrame) -> None:
+        """Start with the chosen device, in its frame of the settings. ``local`` is the finger's
+        frame of the body.
 
         Raises
         ------
         PalpateError
             There is no such device, or it cannot be used.
         """
-        chosen, frame = scene.palpate, self.settings.device
-        if frame is None:
-            raise PalpateError("device: nothing says where it is; press again")
+        chosen, frame = scene.palpate, self._device_frame(0)
         haply = chosen.haply_model if device_source.is_planar(scene) else None
         if chosen.source == "SIMULATED":
-            self.simulated = device_source.start_simulated(drawn, frame, haply, tip=self.tip)
+            up = local.turn_to_body(device_source.FROM_ABOVE)
+            self.simulated = device_source.start_simulated(
+                self.drawn, frame, up, haply, tip=self.tip
+            )
             self.port = self.simulated.port
         else:
             self.port = device_source.port_of(scene)
@@ -152,6 +158,12 @@ class ForceLoop:
         with servo_errors():
             baud = chosen.baud if chosen.source == "SERIAL" else 0
             self.servo.start(_device_at(self.port, baud, frame, haply, at_rest))
+
+    def _device_frame(self, finger: int) -> DeviceFrame:
+        frame = self.settings.devices[finger]
+        if frame is None:
+            raise PalpateError("device: nothing says where it is; press again")
+        return frame
 
     def follow(self, settings: LiveSettings) -> None:
         """Apply changed settings.
@@ -209,7 +221,7 @@ class ForceLoop:
 
 
 def _device_at(
-    port: str, baud: int, frame: device_source.DeviceFrame, haply_model: str | None, at_rest: bool
+    port: str, baud: int, frame: DeviceFrame, haply_model: str | None, at_rest: bool
 ) -> LinkDevice | HaplyDevice:
     """Device at a port: a 2DIY of a model, ``at_rest`` if its handle is in the rest pose, or a
     device that speaks the link at ``baud``, 0 if that has no meaning.

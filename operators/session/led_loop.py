@@ -10,7 +10,9 @@ from numpy.typing import NDArray
 
 from ...core.errors import PalpateError
 from ...core.sentence import Sentence
-from ...core.servo.session import Snapshot
+from ...core.servo.session import FingerSnapshot, Snapshot
+from ..device import device_source
+from ..device.device_source import DeviceFrame
 from ..object.drawn_body import DrawnBody
 from ..record import recording_writer
 from ..scene.body_frame import BodyFrame, as_point
@@ -31,9 +33,11 @@ def start_loop(
     drawn: DrawnBody,
     settings: LiveSettings,
     leads: Sequence[FingerLead],
+    frames: Sequence[BodyFrame],
     tip: FingerTip,
 ) -> ForceLoop:
-    """Running loop for these fingers, recorded from its start if the scene chooses so.
+    """Running loop for these fingers, each in its local frame, recorded from its start if
+    the scene chooses so.
 
     Raises
     ------
@@ -43,23 +47,66 @@ def start_loop(
     loop = ForceLoop.prepare(drawn, settings, scene.palpate.rate, tip, len(leads))
     loop.recorder.pressed = ObjectHandle.of(thing)
     try:
-        for lead in leads[1:]:
+        for lead, frame in zip(leads[1:], frames[1:], strict=True):
             if lead.lead is Lead.DEVICE:
-                loop.add_device(thing, scene)
+                loop.add_device(scene, frame)
             else:
-                loop.add_pointer(_start_of(lead, drawn))
+                loop.add_pointer(_start_of(lead, drawn, frame))
         loop.give_tools(len(leads))
         if scene.palpate.record_from_start:
             # With all fingers added: memory is reserved for each.
             record(loop, scene, 0.0)
-        if settings.device is not None:
-            loop.start_device(scene, drawn)
+        if leads[0].lead is Lead.DEVICE:
+            loop.start_device(scene, frames[0])
         else:
-            loop.start_pointer(_start_of(leads[0], drawn))
+            loop.start_pointer(_start_of(leads[0], drawn, frames[0]))
     except BaseException:
         loop.stop()
         raise
     return loop
+
+
+def homes_of(
+    thing: bpy.types.Object, scene: bpy.types.Scene, frame: BodyFrame, leads: Sequence[FingerLead]
+) -> tuple[DeviceFrame | None, ...]:
+    """Frame of each finger's device where no Empty places it; None without a device."""
+    return tuple(
+        device_source.home_of_device(thing, scene, frame, finger)
+        if lead.lead is Lead.DEVICE
+        else None
+        for finger, lead in enumerate(leads)
+    )
+
+
+def present_settings(
+    thing: bpy.types.Object,
+    scene: bpy.types.Scene,
+    homes: Sequence[DeviceFrame | None],
+    frames: Sequence[BodyFrame],
+    before: Sequence[DeviceFrame | None] = (),
+) -> tuple[LiveSettings, list[str]]:
+    """Settings as they are now, and a sentence for each obstacle: a device keeps its frame of
+    ``before`` while its Empty is unusable. ``frames`` are the fingers' local ones.
+
+    Raises
+    ------
+    PalpateError
+        The Empty is unusable, and there is no frame from before.
+    """
+    devices: list[DeviceFrame | None] = []
+    troubles: list[str] = []
+    for finger, (home, local) in enumerate(zip(homes, frames, strict=True)):
+        found = None
+        if home is not None:
+            try:
+                found = device_source.device_frame(thing, scene, local, home, finger)
+            except PalpateError as problem:
+                if not before:
+                    raise
+                found = before[finger]
+                troubles.append(problem.sentence)
+        devices.append(found)
+    return LiveSettings.of(thing, scene, tuple(devices)), troubles
 
 
 def record(loop: ForceLoop, scene: bpy.types.Scene, now: float) -> None:
@@ -75,14 +122,18 @@ def record(loop: ForceLoop, scene: bpy.types.Scene, now: float) -> None:
 
 
 def lead_fingers(
-    loop: ForceLoop, leads: Sequence[FingerLead], scene: bpy.types.Scene, drawn: DrawnBody
+    loop: ForceLoop,
+    leads: Sequence[FingerLead],
+    scene: bpy.types.Scene,
+    frames: Sequence[BodyFrame],
 ) -> list[str]:
-    """Move fingers to their Empties, and rotate tools not rotated by the pointer.
+    """Move fingers to their Empties, each in its local frame, and rotate tools not rotated by the
+    pointer.
 
     Returns a sentence for each obstacle.
     """
     troubles: list[str] = []
-    for finger, lead in enumerate(leads):
+    for finger, (lead, frame) in enumerate(zip(leads, frames, strict=True)):
         empty = lead.empty.find() if lead.empty is not None else None
         if lead.empty is not None and empty is None:
             troubles.append(
@@ -90,36 +141,46 @@ def lead_fingers(
             )
         turn = None
         try:
-            turn = _turn_of(lead, empty, loop, scene, drawn)
+            turn = _turn_of(lead, empty, loop, scene, frame)
         except PalpateError as problem:
             troubles.append(problem.sentence)
-        loop.lead(finger, None if empty is None else _place_of(empty, drawn), turn)
+        loop.lead(finger, None if empty is None else _place_of(empty, frame), turn)
     return troubles
 
 
-def led_place(lead: FingerLead, snapshot: Snapshot | None, frame: BodyFrame) -> Array | None:
-    """Where a finger of an Empty or a device is, world coordinates; None while it touches, and for
-    the pointer's, which stays with what it touched.
+def free_places(
+    leads: Sequence[FingerLead], snapshot: Snapshot | None, frames: Sequence[BodyFrame]
+) -> list[Array | None]:
+    """Where fingers of Empties and devices are that touch nothing, (3,), world coordinates; None
+    for the others. ``frames`` are the fingers' local ones.
     """
-    if lead.lead is Lead.POINTER or (snapshot is not None and snapshot.touching):
+    told = (None,) * len(leads) if snapshot is None else snapshot.fingers
+    return [_free_place(*one) for one in zip(leads, told, frames, strict=True)]
+
+
+def _free_place(lead: FingerLead, finger: FingerSnapshot | None, frame: BodyFrame) -> Array | None:
+    """Where a finger of an Empty or a device is, world coordinates; None while it touches, and for
+    the pointer's, which stays with what it touched. ``frame`` is its local one.
+    """
+    if lead.lead is Lead.POINTER or (finger is not None and finger.touching):
         return None
     empty = lead.empty.find() if lead.empty is not None else None
     if empty is not None:
         return np.array(empty.matrix_world)[:3, 3]
-    return None if snapshot is None else frame.world_from_body(snapshot.fingers[0].probe)
+    return None if finger is None else frame.world_from_body(finger.probe)
 
 
-def _start_of(lead: FingerLead, drawn: DrawnBody) -> Point:
+def _start_of(lead: FingerLead, drawn: DrawnBody, frame: BodyFrame) -> Point:
     """Start of a finger: at its Empty, or outside the body for the pointer."""
     empty = lead.empty.find() if lead.empty is not None else None
     if empty is not None:
-        return _place_of(empty, drawn)
+        return _place_of(empty, frame)
     x, y, z = drawn.body.mesh.nodes.mean(axis=0).tolist()
     return (x, y, z + drawn.size)
 
 
-def _place_of(empty: bpy.types.Object, drawn: DrawnBody) -> Point:
-    return as_point(drawn.frame.body_from_world(np.array(empty.matrix_world)[:3, 3]))
+def _place_of(empty: bpy.types.Object, frame: BodyFrame) -> Point:
+    return as_point(frame.body_from_world(np.array(empty.matrix_world)[:3, 3]))
 
 
 def _turn_of(
@@ -127,11 +188,11 @@ def _turn_of(
     empty: bpy.types.Object | None,
     loop: ForceLoop,
     scene: bpy.types.Scene,
-    drawn: DrawnBody,
+    frame: BodyFrame,
 ) -> Turn | None:
     """Rotation of an object or the leading Empty; None for no change. Devices have their own."""
     leader = tool_turn.guide_of(scene) if scene.palpate.tip_turn == "OBJECT" else None
     leader = leader or empty
     if loop.tip.tool is None or leader is None or lead.lead is Lead.DEVICE:
         return None
-    return tool_turn.as_rows(tool_turn.as_object(leader, drawn.frame))
+    return tool_turn.as_rows(tool_turn.as_object(leader, frame))

@@ -35,14 +35,17 @@ def contact_mode(scene: bpy.types.Scene) -> ContactMode:
 
 @dataclass(frozen=True, eq=False)
 class LiveSettings:
-    """Settings of the servo, and the frame of the first finger's device, None without one."""
+    """Settings of the servo, and the frame of each finger's device, None without one."""
 
     servo: Settings
-    device: DeviceFrame | None
+    devices: tuple[DeviceFrame | None, ...]
 
     @classmethod
     def of(
-        cls, thing: bpy.types.Object, scene: bpy.types.Scene, device: DeviceFrame | None
+        cls,
+        thing: bpy.types.Object,
+        scene: bpy.types.Scene,
+        devices: tuple[DeviceFrame | None, ...],
     ) -> LiveSettings:
         """Present settings of object and scene.
 
@@ -58,6 +61,6 @@ class LiveSettings:
             mode=contact_mode(scene),
             felt=chosen_felt(thing),
             coupling=coupling_of(scene),
-            frames=(device,),
+            frames=devices,
         )
-        return cls(settings, device)
+        return cls(settings, devices)

@@ -11,10 +11,8 @@ from mathutils import Vector
 from numpy.typing import NDArray
 
 from ...core.contact.tool.pose import resting_on
-from ..layer import place_marks
 from ..place import touched_place
 from ..place.touched_place import TouchedPlace
-from ..scene import ray
 from ..scene.body_frame import as_point
 from ..scene.drawn_surface import frame_of
 from ..scene.package_preferences import preferences
@@ -71,15 +69,10 @@ class PointerHand:
         place = None if thing is None else self._touched(thing, here)
         if place is None:
             return
-        if not self.held or len(self.fingers) == 1:
-            # Both fingers of a pinch are in one local frame.
-            self.session.touch(place, thing)
-        drawn = self.session.drawn
-        point, normal = drawn.surface_place(place.rest)
-        view_axes = np.array(here.region_3d.view_matrix)[:3, :3]
-        start, turn = self._at_rest(point, normal, view_axes)
         finger = self._free_finger(here)
-        held = Held(start, normal, self.session.tip.deepest)
+        self.session.touch(place, thing, finger)
+        view_axes = np.array(here.region_3d.view_matrix)[:3, :3]
+        held, turn = self._at_rest(place.rest, view_axes, finger)
         if self._begin(here, event, finger, held):
             self.held[finger] = held
             self._set_down(finger, turn)
@@ -111,53 +104,42 @@ class PointerHand:
         self.session.post(Move(as_point(target), self._finger))
 
     def place_on_both_sides(self, region_3d: bpy.types.RegionView3D) -> None:
-        """Set two fingers down at the left and right of the body in the view."""
+        """Set two fingers down at the left and right of the object as it is seen."""
+        thing = self.session.handle.find()
+        if thing is None:
+            return
         axes = np.array(region_3d.view_matrix)[:3, :3]
-        self._face(axes[2])
-        drawn = self.session.drawn
-        right = drawn.frame.turn_to_body(axes[0])
-        nodes, triangles = drawn.body.mesh.nodes, drawn.body.mesh.surface_triangles
-        surface = drawn.surface_nodes
-        middle = 0.5 * (surface.min(axis=0) + surface.max(axis=0))
-        for finger, side in zip(self.fingers, (-right, right), strict=False):
-            hit = ray.first_hit(middle + 2.0 * drawn.size * side, -side, nodes, triangles)
-            if hit is None:
+        corners = np.array([thing.matrix_world @ Vector(corner) for corner in thing.bound_box])
+        middle = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
+        reach = float(np.linalg.norm(np.ptp(corners, axis=0)))
+        frame = frame_of(thing, self.session.scene)
+        for finger, side in zip(self.fingers, (-axes[0], axes[0]), strict=False):
+            place = touched_place.under_ray(thing, frame, middle + reach * side, -side)
+            if place is None:
                 # No surface, as in a ring: a click sets it down.
                 continue
-            corners = triangles[hit.triangle]
-            point, normal = drawn.surface_place(hit.alpha @ nodes[corners])
-            start, turn = self._at_rest(point, normal, axes)
-            self.held[finger] = Held(start, normal, self.session.tip.deepest)
+            self.session.touch(place, thing, finger)
+            self.held[finger], turn = self._at_rest(place.rest, axes, finger)
             self._set_down(finger, turn)
             self.session.post(Moment.RELEASE)
 
-    def _face(self, toward: Array) -> None:
-        """Take the local frame of what is seen of a posed body from a side (3,), world axes."""
-        thing = self.session.handle.find()
-        if thing is None or not place_marks.needed(thing):
-            return
-        size = max(thing.dimensions)
-        corners = np.array([thing.matrix_world @ Vector(corner) for corner in thing.bound_box])
-        middle = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
-        frame = frame_of(thing, self.session.scene)
-        place = touched_place.under_ray(thing, frame, middle + 2.0 * size * toward, -toward)
-        if place is None:
-            place = touched_place.nearest(thing, frame, middle)
-        self.session.touch(place, thing)
-
-    def _at_rest(self, point: Array, normal: Array, view_axes: Array) -> tuple[Array, Turn | None]:
-        """Position of a finger just out of contact, and rotation of its tool."""
+    def _at_rest(self, near: Array, view_axes: Array, finger: int) -> tuple[Held, Turn | None]:
+        """A finger just out of contact with the place nearest to a point (3,), metres, and the
+        rotation of its tool.
+        """
         session = self.session
+        point, normal = session.drawn.surface_place(near)
         tool = session.tip.tool
         if tool is None:
-            return point + SET_DOWN_HEIGHT * session.drawn.size * normal, None
-        rotation = tool_turn.rotation(session.scene, session.drawn.frame, normal, view_axes)
+            start = point + SET_DOWN_HEIGHT * session.drawn.size * normal
+            return Held(start, normal, session.tip.deepest), None
+        rotation = tool_turn.rotation(session.scene, session.frames[finger], normal, view_axes)
         pose = resting_on(tool, rotation, point, normal, session.seen.surface_samples)
-        return pose.position, tool_turn.as_rows(rotation)
+        return Held(pose.position, normal, session.tip.deepest), tool_turn.as_rows(rotation)
 
     def _begin(self, here: Viewport, event: bpy.types.Event, finger: int, held: Held) -> bool:
         """Start to drag a finger; False behind the viewer, where there is no scale."""
-        view = here.view_at(held.target, self.session.drawn.frame)
+        view = here.view_at(held.target, self.session.frames[finger])
         if view is None:
             return False
         cursor = (event.mouse_x, event.mouse_y)
@@ -192,7 +174,7 @@ class PointerHand:
         return nearest if self._pixels_away(here, nearest) <= GRAB_PIXELS * scale else None
 
     def _pixels_away(self, here: Viewport, finger: int) -> float:
-        place = self.session.drawn.frame.world_from_body(self.held[finger].target)
+        place = self.session.frames[finger].world_from_body(self.held[finger].target)
         seen = view3d_utils.location_3d_to_region_2d(here.region, here.region_3d, Vector(place))
         return np.inf if seen is None else float(np.hypot(*np.subtract(seen, here.cursor)))
 

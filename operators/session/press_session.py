@@ -17,17 +17,17 @@ import bpy
 from ...core.errors import PalpateError
 from ...core.sentence import Sentence
 from ...core.servo.session import Snapshot
-from ..device import device_source, servo_words
+from ..device import servo_words
 from ..device.device_source import DeviceFrame
 from ..layer import live_layer, place_marks
 from ..object.drawn_body import DrawnBody, open_body
 from ..place.touched_place import TouchedPlace
+from ..scene.body_frame import BodyFrame
 from ..scene.object_handle import ObjectHandle
 from ..tool.finger_tip import FingerTip, chosen_tip
 from .finger_leads import BOTH_POINTER, FingerLead, Lead, leads_of
 from .force_loop import ForceLoop
-from .led_loop import lead_fingers, led_place, record, start_loop
-from .live_settings import LiveSettings
+from .led_loop import free_places, homes_of, lead_fingers, present_settings, record, start_loop
 from .press_effects import Act, Effect, Say, StartServo, SwitchForce
 from .press_events import (
     BringBack,
@@ -42,7 +42,7 @@ from .press_events import (
     Start,
 )
 from .press_state import Phase, PressState, transition
-from .pressed_object import moved_along, reason_to_end
+from .pressed_object import local_frames, moved_along, places_along, reason_to_end
 from .seen_body import SeenBody
 
 
@@ -51,14 +51,15 @@ class PressSession:
     """Press of one object. Make one with :func:`begin`; it is :func:`current` until it ends.
 
     ``leads`` move the fingers, ``tip`` is their tool or point, ``seen`` the drawn body, ``area``
-    the address of the 3D view where it began, 0 for none, ``place`` what the pointer touched: the
-    body is felt and drawn in its local frame.
+    the address of the 3D view where it began, 0 for none, ``places`` what each finger touches: it
+    feels the body in the local frame of its own. ``homes`` are the frames of devices that no
+    Empty places, None for a finger without a device.
     """
 
     handle: ObjectHandle
     scene_name: str
     drawn: DrawnBody
-    home: DeviceFrame
+    homes: tuple[DeviceFrame | None, ...]
     leads: tuple[FingerLead, ...] = (FingerLead(Lead.POINTER),)
     tip: FingerTip = field(default_factory=FingerTip)
     state: PressState = field(default_factory=PressState)
@@ -66,7 +67,7 @@ class PressSession:
     snapshot: Snapshot | None = None
     kept_name: str = ""
     area: int = 0
-    place: TouchedPlace | None = None
+    places: tuple[TouchedPlace | None, ...] = ()
     said: list[Say] = field(default_factory=list)
     _problems: list[str] = field(default_factory=list)
     _reported: frozenset[str] = frozenset()
@@ -97,8 +98,11 @@ class PressSession:
         loop = self.loop
         if thing is None or loop is None:
             return True
-        loop.follow(self._settings(thing, loop.settings.device))
-        self._problems += lead_fingers(loop, self.leads, self.scene, self.drawn)
+        settings, problems = present_settings(
+            thing, self.scene, self.homes, self.frames, loop.settings.devices
+        )
+        loop.follow(settings)
+        self._problems += problems + lead_fingers(loop, self.leads, self.scene, self.frames)
         snapshot = loop.snapshot()
         moved = self.snapshot is None or snapshot.tick != self.snapshot.tick
         self.snapshot = snapshot
@@ -108,9 +112,9 @@ class PressSession:
             self.seen.draw(thing, snapshot, loop.settings.servo.young_modulus)
         return moved
 
-    def touch(self, place: TouchedPlace, thing: bpy.types.Object) -> None:
-        """Press at a place as it is seen from now on."""
-        self.place = place
+    def touch(self, place: TouchedPlace, thing: bpy.types.Object, finger: int = 0) -> None:
+        """Press at a place as it is seen from now on, by one of the fingers."""
+        self.places = (*self.places[:finger], place, *self.places[finger + 1 :])
         self._follow_frame(thing)
 
     def switch_force(self) -> None:
@@ -140,6 +144,11 @@ class PressSession:
         return SeenBody(self.drawn, self.tip)
 
     @property
+    def frames(self) -> tuple[BodyFrame, ...]:
+        """Local frame of the body of each finger."""
+        return local_frames(self.drawn.frame, self.places)
+
+    @property
     def pinches(self) -> bool:
         """Whether the pointer has two handles."""
         return self.leads == BOTH_POINTER
@@ -155,8 +164,8 @@ class PressSession:
             case Act.HANG_LIVE_LAYER:
                 self._with_object(live_layer.hang)
                 self.seen.drawn_contact = ()
-            case StartServo(source):
-                self._start_loop(source)
+            case StartServo():
+                self._start_loop()
             case SetDown() | Move() | SwitchForce():
                 self._running.carry_out(effect)
                 if isinstance(effect, SetDown) and not self.pinches:
@@ -188,19 +197,17 @@ class PressSession:
         self.kept_name, said = self.seen.keep(thing, self.scene, self.snapshot)
         self.said += said
 
-    def _start_loop(self, source: Source) -> None:
+    def _start_loop(self) -> None:
         thing = self.handle.find()
         if thing is None:
             raise PalpateError("{name} is gone; choose another object", name=self.handle.name)
-        frame = None
         if place_marks.hung(thing):
             bpy.context.view_layer.update()
         self._follow_frame(thing)
-        if source is Source.DEVICE:
-            frame = device_source.device_frame(thing, self.scene, self.drawn.frame, self.home)
-        settings = LiveSettings.of(thing, self.scene, frame)
-        self.loop = start_loop(thing, self.scene, self.drawn, settings, self.leads, self.tip)
-        self._problems += lead_fingers(self.loop, self.leads, self.scene, self.drawn)
+        scene, frames = self.scene, self.frames
+        settings, _ = present_settings(thing, scene, self.homes, frames)
+        self.loop = start_loop(thing, scene, self.drawn, settings, self.leads, frames, self.tip)
+        self._problems += lead_fingers(self.loop, self.leads, scene, frames)
 
     def _stop_loop(self) -> None:
         loop, self.loop = self.loop, None
@@ -219,21 +226,13 @@ class PressSession:
         return thing
 
     def _follow_frame(self, thing: bpy.types.Object) -> bool:
-        finger = led_place(self.leads[0], self.snapshot, self.drawn.frame)
-        moved, self.place = moved_along(thing, self.scene, self.drawn, self.place, finger)
-        if moved is not None:
-            self.drawn = self.seen.drawn = moved
-        return moved is not None
-
-    def _settings(self, thing: bpy.types.Object, before: DeviceFrame | None) -> LiveSettings:
-        """Present settings; a device keeps its frame while its Empty is unusable."""
-        scene, frame = self.scene, before
-        if before is not None:
-            try:
-                frame = device_source.device_frame(thing, scene, self.drawn.frame, self.home)
-            except PalpateError as problem:
-                self._problems.append(problem.sentence)
-        return LiveSettings.of(thing, scene, frame)
+        moved = moved_along(thing, self.scene, self.drawn)
+        if moved is None:
+            return False
+        self.drawn = self.seen.drawn = moved
+        free = free_places(self.leads, self.snapshot, self.frames)
+        self.places = places_along(thing, moved.frame, self.places, free)
+        return True
 
     def _report_problems(self, loop: ForceLoop) -> None:
         """Report each problem once, when it begins."""
@@ -282,8 +281,9 @@ def begin(
     leads = BOTH_POINTER if pinch else leads_of(scene, source)
     drawn = open_body(thing, scene)
     tip = chosen_tip(scene, thing, drawn.size)
-    home = device_source.home_of_device(thing, scene, drawn.frame)
-    session = PressSession(ObjectHandle.of(thing), scene.name, drawn, home, leads, tip)
+    homes = homes_of(thing, scene, drawn.frame, leads)
+    session = PressSession(ObjectHandle.of(thing), scene.name, drawn, homes, leads, tip)
+    session.places = (None,) * len(leads)
     session.said += [Say(tip.remark, warning=True)] if tip.remark else []
     _current = session
     try:

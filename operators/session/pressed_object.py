@@ -1,6 +1,8 @@
-"""Object under a press: whether it is still what the press began with."""
+"""Object under a press: whether it is still what the press began with, and where its places are."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import bpy
 import numpy as np
@@ -11,6 +13,7 @@ from ..layer import layers, live_layer, place_marks
 from ..object.drawn_body import DrawnBody
 from ..place import touched_place
 from ..place.touched_place import TouchedPlace
+from ..scene.body_frame import BodyFrame
 from ..scene.drawn_surface import frame_of
 
 Array = NDArray[np.float64]
@@ -30,23 +33,36 @@ def reason_to_end(thing: bpy.types.Object | None, drawn: DrawnBody, *, withdrawn
 
 
 def moved_along(
-    thing: bpy.types.Object,
-    scene: bpy.types.Scene,
-    drawn: DrawnBody,
-    place: TouchedPlace | None,
-    finger: Array | None = None,
-) -> tuple[DrawnBody | None, TouchedPlace | None]:
-    """The body where the object is now, in the local frame of a place; None if it was scaled,
-    sheared or flattened. And that place: the touched one as it is seen now, or the nearest one to a
-    ``finger`` (3,) that is free, world coordinates; None at rest.
-    """
+    thing: bpy.types.Object, scene: bpy.types.Scene, drawn: DrawnBody
+) -> DrawnBody | None:
+    """The body where the object is now; None if it was scaled, sheared or flattened."""
     try:
-        frame = frame_of(thing, scene)
+        return drawn.moved_to(frame_of(thing, scene))
     except PalpateError:
         # A flattened object has changed its scale too.
-        return None, place
-    if finger is not None and place_marks.hung(thing):
-        place = touched_place.nearest(thing, frame, finger)
-    elif place is not None:
-        place = place.followed(thing, frame)
-    return drawn.moved_to(frame if place is None else place.frame(frame)), place
+        return None
+
+
+def places_along(
+    thing: bpy.types.Object,
+    frame: BodyFrame,
+    places: Sequence[TouchedPlace | None],
+    free: Sequence[Array | None],
+) -> tuple[TouchedPlace | None, ...]:
+    """Each finger's place: the touched one as it is seen now, or the nearest one to a finger that
+    is ``free``, (3,), world coordinates; None at rest. ``frame`` is the object's.
+    """
+    marked = place_marks.hung(thing)
+    return tuple(
+        touched_place.nearest(thing, frame, finger)
+        if marked and finger is not None
+        else None
+        if place is None
+        else place.followed(thing, frame)
+        for place, finger in zip(places, free, strict=True)
+    )
+
+
+def local_frames(frame: BodyFrame, places: Sequence[TouchedPlace | None]) -> tuple[BodyFrame, ...]:
+    """Local frame of each finger's place, by the object's."""
+    return tuple(frame if place is None else place.frame(frame) for place in places)

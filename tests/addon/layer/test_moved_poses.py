@@ -58,10 +58,8 @@ def test_a_press_goes_along_with_a_pose_that_is_played(sessions, states, thing, 
         session.tick()
         turn = turn_of(posed)
         # The dent moves the touched triangle; its place is told without it.
-        np.testing.assert_allclose(session.place.turn, turn, atol=1e-4)
-        np.testing.assert_allclose(
-            session.drawn.frame.world_from_body(rest), turn @ rest, atol=1e-6
-        )
+        np.testing.assert_allclose(session.places[0].turn, turn, atol=1e-4)
+        np.testing.assert_allclose(session.frames[0].world_from_body(rest), turn @ rest, atol=1e-6)
     wait(session, lambda: np.isfinite(reading(session)[0].force_vector).all())
     now = np.array(reading(session)[0].force_vector)
     way = turn @ [0.0, 0.0, 1.0]
@@ -155,7 +153,7 @@ def test_handles_of_a_pinch_are_set_down_on_what_is_seen(sessions, states, thing
         view_matrix = np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1.0]])
 
     hand.place_on_both_sides(View)
-    sides = [session.drawn.frame.world_from_body(held.target) for held in hand.held.values()]
+    sides = [session.frames[k].world_from_body(held.target) for k, held in hand.held.items()]
     for side, sign in zip(sides, (-1.0, 1.0), strict=True):
         # Turned about X, both sides stay where they were along it.
         assert abs(side[0] - sign * 0.025) < 0.002

@@ -146,7 +146,7 @@ def test_a_session_has_the_seen_place_and_leaves_nothing(sessions, states, thing
     np.testing.assert_allclose(place.turn, turn, atol=1e-5)
     np.testing.assert_allclose(place.normal, outward, atol=1e-5)
     session.touch(place, thing)
-    np.testing.assert_allclose(session.drawn.frame.world_from_body(place.rest), seen, atol=1e-6)
+    np.testing.assert_allclose(session.frames[0].world_from_body(place.rest), seen, atol=1e-6)
     session.post(states.SetDown((*AT[:2], 0.02501)))
     session.post(states.Move((*AT[:2], 0.021)))
     session.post(states.Moment.RELEASE)

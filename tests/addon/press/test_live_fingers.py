@@ -98,8 +98,9 @@ def test_a_haply_presses_beside_the_pointer(sessions, states):
         begin(sessions, states, thing)
     device_source = part("operators.device.device_source")
     drawn = part("operators.object.drawn_body").open_body(thing, scene)
-    frame = device_source.second_frame(thing, scene, drawn.frame)
-    with device_source.start_simulated(drawn, frame, "2diy-3.1") as device:
+    home = device_source.home_of_device(thing, scene, drawn.frame, 1)
+    frame = device_source.device_frame(thing, scene, drawn.frame, home, 1)
+    with device_source.start_simulated(drawn, frame, haply="2diy-3.1") as device:
         chosen.second_port = device.port
         session = begin(sessions, states, thing)
         assert session.loop.settings.servo.coupling.stiffness < 800
