@@ -21,7 +21,8 @@ core/files
 core/mesh/formats core/mesh
 core/law
 core/stiffness
-core/compliance/ordering core/compliance/elimination core/compliance/compression core/compliance
+core/compliance/ordering core/compliance/free_body core/compliance/elimination
+core/compliance/compression core/compliance
 core/body
 core/contact/near_field core/contact/tool core/contact
 core/grip

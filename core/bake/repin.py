@@ -28,7 +28,7 @@ from ..machine.machine_speed import dgemm_rate
 from ..mesh.tet_mesh import TetMesh
 from ..stiffness.assembly import assemble
 from ..stiffness.freedoms import freedoms
-from ..stiffness.held_pins import pins_checked
+from ..stiffness.held_pins import free_or_pinned
 from .cost.prediction import estimate_cost
 from .cost.size import MeshSize
 from .settings import BakeSettings
@@ -73,7 +73,9 @@ def pin_more(body: SoftBody, added_nodes: ArrayLike) -> SoftBody:
     """The same body pinned at further nodes of its surface; equal to a bake with these pins.
 
     A dense compliance is downdated, L' = L - L_:P L_PP^-1 L_P: for the nodes that stay free: minus
-    the displacements by the forces that hold the nodes P. The relative error of its columns is at
+    the displacements by the forces that hold the nodes P. Of a free body these forces also balance
+    the load, and the body may move as a whole: six rows and columns R_P join L_PP, and R^T those of
+    L_P:. The relative error of the columns is at
     most :data:`LARGEST_ERROR`; where rounding would cause more, and for a compressed compliance
     (whose error L_PP^-1 would amplify), it is computed anew from the body's tetrahedra.
 
@@ -88,7 +90,7 @@ def pin_more(body: SoftBody, added_nodes: ArrayLike) -> SoftBody:
         A node inside the body, which needs a bake; no such node; nothing left to touch.
     """
     added = np.setdiff1d(np.asarray(added_nodes, dtype=np.int64), body.fixed)
-    fixed = pins_checked(body.mesh, np.union1d(body.fixed, added))
+    fixed = free_or_pinned(body.mesh, np.union1d(body.fixed, added))
     inside = np.setdiff1d(added, body.mesh.surface_nodes)
     if inside.size:
         raise PalpateError(
@@ -100,7 +102,7 @@ def pin_more(body: SoftBody, added_nodes: ArrayLike) -> SoftBody:
         return body
     compliance: Compliance | None = None
     if isinstance(body.compliance, (DenseCompliance, MappedCompliance)):
-        compliance = _downdated(body.compliance, body.free_index(added))
+        compliance = _downdated(body.compliance, body.free_index(added), _motions(body))
     return replace(
         body, fixed=fixed, older_key=None, compliance=compliance or _computed(body, fixed)
     )
@@ -127,21 +129,25 @@ def pin_more_seconds(
 
 
 def _downdated(
-    compliance: DenseCompliance | MappedCompliance, pinned: NDArray[np.int64]
+    compliance: DenseCompliance | MappedCompliance,
+    pinned: NDArray[np.int64],
+    motions: NDArray[np.float64],
 ) -> DenseCompliance | None:
-    """L' with ``pinned`` held, places among the free surface nodes; None if too inexact."""
+    """L' with ``pinned`` held, places among the free surface nodes; None if too inexact.
+
+    ``motions`` (3n, m) of the nodes need no force.
+    """
     count = compliance.node_count
     kept = np.setdiff1d(np.arange(count), pinned)
     pinned_rows, kept_rows = freedoms(pinned), freedoms(kept)
     stored = compliance.table.reshape(3 * count, 3 * count)
     loaded = stored[pinned_rows].astype(np.float64)
-    reach = loaded[:, kept_rows]
+    reach = np.concatenate([loaded[:, kept_rows], motions[kept_rows].T])
     try:
-        # (3p, 3k): for 1 N on a kept freedom, the forces that hold the pinned ones.
-        holding = cho_solve(cho_factor(loaded[:, pinned_rows]), reach)
+        holding = _holding(loaded[:, pinned_rows], motions[pinned_rows], reach)
     except LinAlgError:
         return None
-    noise = _rounding_noise(stored, pinned_rows, kept_rows, holding)
+    noise = _rounding_noise(stored, pinned_rows, kept_rows, holding[: len(pinned_rows)])
     table = np.empty((len(kept_rows), len(kept_rows)), dtype=np.float32)
     for first in range(0, len(kept_rows), ROWS_PER_PRODUCT):
         rows = slice(first, min(first + ROWS_PER_PRODUCT, len(kept_rows)))
@@ -157,6 +163,37 @@ def _downdated(
     return DenseCompliance(
         compliance.free_surface[kept], table.reshape(len(kept), 3, 3 * len(kept))
     )
+
+
+def _holding(
+    own: NDArray[np.float64], motions: NDArray[np.float64], reach: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """For 1 N on a kept freedom the forces that hold the pinned ones, and minus the motions, from
+    L_PP (3p, 3p), R_P (3p, m), and L_P: over R^T (3p + m, 3k).
+
+    The motions may be added to L_PP, as the forces balance: so it has a Cholesky factor, and the
+    motions follow from m equations more.
+    """
+    count = len(own)
+    held = cho_factor(own + motions @ motions.T)
+    wanted = reach[:count] + motions @ reach[count:]
+    forces: NDArray[np.float64] = cho_solve(held, wanted)
+    if not motions.size:
+        return forces
+    by_motions = cho_solve(held, motions)
+    moved = np.linalg.solve(motions.T @ by_motions, motions.T @ forces - reach[count:])
+    return np.concatenate([forces - by_motions @ moved, moved])
+
+
+def _motions(body: SoftBody) -> NDArray[np.float64]:
+    """Rigid motions of the free surface nodes, (3n, 6), as large as L; (3n, 0) of a pinned body."""
+    nodes = body.mesh.nodes[body.compliance.free_surface]
+    if not body.is_free:
+        return np.empty((3 * len(nodes), 0))
+    motions = body.inertia.modes(nodes).reshape(-1, 6)
+    softness = np.trace(body.compliance.diagonal(), axis1=1, axis2=2).mean()
+    scaled: NDArray[np.float64] = motions * np.sqrt(softness / (motions**2).mean(axis=0))
+    return scaled
 
 
 def _rounding_noise(

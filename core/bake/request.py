@@ -10,7 +10,7 @@ import numpy as np
 
 from ..mesh.surface import Surface
 from ..mesh.tet_mesh import TetMesh
-from ..stiffness.pins import PinBelow, PinCore, PinNodes, Pins, PinWeights
+from ..stiffness.pins import NoPins, PinBelow, PinCore, PinNodes, Pins, PinWeights
 from ..stiffness.regions import StiffRegion, TetScale
 from .settings import BakeSettings
 
@@ -49,6 +49,8 @@ class BakeRequest:
                 arrays["pin_weights"] = weights
             case PinNodes(nodes):
                 arrays["pin_nodes"] = nodes
+            case NoPins():
+                pass
         match settings.stiffness:
             case StiffRegion(weights, factor):
                 arrays["stiff_weights"] = weights
@@ -73,8 +75,10 @@ class BakeRequest:
             pins = PinCore(share, (x, y, z))
         elif "pin_weights" in arrays:
             pins = PinWeights(arrays["pin_weights"])
-        else:
+        elif "pin_nodes" in arrays:
             pins = PinNodes(arrays["pin_nodes"])
+        else:
+            pins = NoPins()
         stiffness: StiffRegion | TetScale | None = None
         if "stiff_weights" in arrays:
             stiffness = StiffRegion(arrays["stiff_weights"], plain.pop("stiff_factor"))

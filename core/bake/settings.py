@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from ..compliance.free_body.density import density_checked
 from ..errors import PalpateError
 from ..stiffness.assembly import lame_parameters
 from ..stiffness.formulation import AUTOMATIC, formulation_for
@@ -31,6 +32,7 @@ class BakeSettings:
     tolerance : largest relative column error from compression.
     stiffness : stiffer and softer regions; None for the same everywhere.
     threads : of BLAS at most; None for one on each idle core.
+    density : kg/m3, only stored; None for that of water where the body is free, else unknown.
     """
 
     poisson_ratio: float = 0.3
@@ -45,6 +47,7 @@ class BakeSettings:
     tolerance: float = 1e-3
     stiffness: StiffRegion | TetScale | None = None
     threads: int | None = None
+    density: float | None = None
 
     def checked(self) -> BakeSettings:
         """These settings, checked.
@@ -74,6 +77,8 @@ class BakeSettings:
                     low=low,
                     high=high,
                 )
+        if self.density is not None:
+            density_checked(self.density)
         formulation_for(self.formulation, self.poisson_ratio)
         if isinstance(self.pins, PinBelow):
             fraction_checked(self.pins.fraction)

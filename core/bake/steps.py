@@ -14,6 +14,7 @@ from ..body.soft_body import SoftBody
 from ..compliance.compression.compress import compress
 from ..compliance.elimination.plan import EliminationPlan, plan_surface_inverse
 from ..compliance.elimination.surface_columns import planned_columns
+from ..compliance.free_body.density import DEFAULT_DENSITY
 from ..compliance.protocol import Compliance
 from ..compliance.surface_compliance import planned_compliance
 from ..errors import CancelledError, PalpateError
@@ -29,8 +30,8 @@ from ..progress import unwatched
 from ..sentence import Sentence
 from ..stiffness.assembly import assemble
 from ..stiffness.formulation import formulation_for
-from ..stiffness.held_pins import pins_checked
-from ..stiffness.pins import pinned_nodes
+from ..stiffness.held_pins import free_or_pinned, pins_checked
+from ..stiffness.pins import NoPins, pinned_nodes
 from ..stiffness.regions import StiffRegion, TetScale, young_scale
 from .cost.memory import affordable_form
 from .cost.prediction import (
@@ -123,7 +124,10 @@ def bake(
         [] if fit is None or shell is None else fit_warnings(fit, mesh, shell, settings.epsilon)
     )
     with _explained(misfit):
-        fixed = pins_checked(mesh, pinned_nodes(settings.pins, mesh, surface))
+        # Only who asks for no pins gets a free body; a rule that finds none is refused.
+        is_free = isinstance(settings.pins, NoPins)
+        held = free_or_pinned if is_free else pins_checked
+        fixed = held(mesh, pinned_nodes(settings.pins, mesh, surface))
     formulation = formulation_for(settings.formulation, settings.poisson_ratio)
     scale = _young_scale(settings.stiffness, mesh, surface)
     with _timed(report.seconds, "stiffness"):
@@ -145,6 +149,7 @@ def bake(
         formulation,
         scale,
         fit,
+        density=settings.density or (DEFAULT_DENSITY if is_free else None),
     )
     told = [*size_warnings(mesh), *misfit, *warnings]
     return body, replace(report, fit=fit, warnings=told)

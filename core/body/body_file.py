@@ -9,6 +9,7 @@ checksum : hex digest over all other arrays but ``compliance``, which has its ow
 nodes (N, 3) f64, tets (M, 4) i64, surface_triangles (S, 3) i64, fixed (p,) i64, poisson_ratio f64,
 formulation text, young_modulus f64 (what the maker chose; not part of the key),
 young_scale (M,) f64 where the body is not equally stiff everywhere,
+density f64, kg/m3, of a free body (whose ``fixed`` is empty) and where it is known,
 fit (11,) f64 where the surface that it was made from was known; see :class:`..mesh.fit.Fit`.
 form : of the compliance, for a modulus of 1 Pa: ``dense`` or ``compressed``.
 free_surface (n,) i64.
@@ -32,6 +33,7 @@ from numpy.typing import NDArray
 from ..compliance.compression.compressed_compliance import CompressedCompliance
 from ..compliance.definite import refuse_indefinite
 from ..compliance.dense import DenseCompliance
+from ..compliance.free_body.density import density_checked
 from ..compliance.mapped import MappedCompliance, node_checksums
 from ..compliance.protocol import Compliance
 from ..errors import BodyFileError, PalpateError
@@ -41,7 +43,7 @@ from ..mesh.fit import Fit
 from ..mesh.tet_mesh import TetMesh, young_scale_checked
 from ..stiffness.assembly import lame_parameters
 from ..stiffness.formulation import formulation_checked
-from ..stiffness.held_pins import pins_checked
+from ..stiffness.held_pins import free_or_pinned
 from .body_key import body_key, is_key_of
 from .body_layout import HEAD, NEEDED_BY_FORM, TABLE, refuse_no_text, refuse_wrong_layout
 from .soft_body import SoftBody
@@ -93,6 +95,8 @@ def save(body: SoftBody, path: str | os.PathLike[str]) -> None:
         arrays["young_scale"] = body.young_scale
     if body.fit is not None:
         arrays["fit"] = body.fit.as_array()
+    if body.density is not None:
+        arrays["density"] = np.array(body.density)
     arrays |= _compliance_arrays(body.compliance)
     head = {
         "format": np.array(FORMAT),
@@ -232,7 +236,7 @@ def _body(stored: Arrays, compliance: Compliance) -> SoftBody:
     lame_parameters(young_modulus, poisson_ratio)
     body = SoftBody(
         mesh,
-        pins_checked(mesh, stored["fixed"]),
+        free_or_pinned(mesh, stored["fixed"]),
         poisson_ratio,
         compliance,
         young_modulus,
@@ -241,7 +245,10 @@ def _body(stored: Arrays, compliance: Compliance) -> SoftBody:
         if "young_scale" in stored
         else None,
         Fit.of_array(stored["fit"]) if "fit" in stored else None,
+        density=density_checked(float(stored["density"])) if "density" in stored else None,
     )
+    if body.is_free and body.density is None:
+        raise PalpateError("damaged (density missing)")
     key = str(stored["key"])
     if key != body.key and is_key_of(
         key, mesh, body.fixed, poisson_ratio, body.formulation, body.young_scale

@@ -27,7 +27,7 @@ NEEDED_BY_FORM = {
     "dense": (TABLE, "compliance_diagonal", "compliance_checksums"),
     "compressed": ("tolerance", *(PREFIX + name for name in LAYOUT)),
 }
-OPTIONAL = ("young_scale", "fit")
+OPTIONAL = ("young_scale", "fit", "density")
 TEXTS = ("format", "key", "checksum", "formulation", "form")
 MOST_BYTES_OF_TEXT = 1_000
 FIGURES_OF_FIT = 11
@@ -109,6 +109,7 @@ def _shapes(heads: Mapping[str, ArrayHead]) -> dict[str, tuple[str, tuple[int, .
         "fit": ("f", (FIGURES_OF_FIT,)),
         "poisson_ratio": ("fi", ()),
         "young_modulus": ("fi", ()),
+        "density": ("fi", ()),
         "tolerance": ("fi", ()),
         TABLE: ("f", (free, 3, 3 * free)),
         "compliance_diagonal": ("f", (free, 3, 3)),

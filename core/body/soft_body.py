@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..compliance.free_body.inertia import Inertia
 from ..compliance.protocol import Compliance
 from ..errors import PalpateError
 from ..mesh.closest_point import ClosestPoints
@@ -24,13 +25,15 @@ class SoftBody:
     Attributes
     ----------
     mesh : the tetrahedra at rest.
-    fixed : int64, numbers of the pinned nodes, ascending.
+    fixed : int64, numbers of the pinned nodes, ascending; none of a free body.
     poisson_ratio : of the compliance.
-    compliance : of the free surface nodes, at unit modulus.
+    compliance : of the free surface nodes, at unit modulus; of a free body that of loads which its
+        inertia balances, without rigid motion, see :mod:`..compliance.free_body`.
     young_modulus : pascal; the default of a touch. Not baked in.
     formulation : of the stiffness; see :mod:`..stiffness.formulation`.
     young_scale : float64 (M,), factor of Young's modulus per tetrahedron; None where all are 1.
     fit : to the surface that the mesh was made from; None where that is not known.
+    density : kg/m3, of a free body always; else None where it is not known.
     older_key : of a body file from before -0.0 was 0.0 for the key; else None.
     """
 
@@ -43,6 +46,7 @@ class SoftBody:
     young_scale: NDArray[np.float64] | None = None
     fit: Fit | None = None
     older_key: str | None = None
+    density: float | None = None
 
     @cached_property
     def key(self) -> str:
@@ -50,6 +54,31 @@ class SoftBody:
         return self.older_key or body_key(
             self.mesh, self.fixed, self.poisson_ratio, self.formulation, self.young_scale
         )
+
+    @property
+    def is_free(self) -> bool:
+        """Whether nothing is pinned: the body as a whole may move."""
+        return not len(self.fixed)
+
+    @cached_property
+    def inertia(self) -> Inertia:
+        """Mass, centre and moments over the density."""
+        return Inertia.of(self.mesh)
+
+    @property
+    def mass(self) -> float:
+        """Kilograms.
+
+        Raises
+        ------
+        PalpateError
+            The density is not known.
+        """
+        if self.density is None:
+            raise PalpateError(
+                "the body has no density, so its mass is not known; bake it again with one"
+            )
+        return self.density * self.inertia.volume
 
     @cached_property
     def contact_blocks(self) -> NDArray[np.float64]:

@@ -10,8 +10,8 @@ from ..mesh.tet_mesh import TetMesh
 from ..progress import Progress, unwatched
 from .dense import DenseCompliance
 from .elimination.inverse import inverse_table
-from .elimination.numeric import inverse_factor
 from .elimination.plan import EliminationPlan, plan_surface_inverse
+from .elimination.surface_columns import metered_columns
 from .elimination.work import Meter
 
 
@@ -35,14 +35,14 @@ def surface_compliance(
     ----------
     mesh : the body.
     stiffness : (3N, 3N) at E = 1 Pa, from :func:`palpate.core.stiffness.assembly.assemble`.
-    fixed : numbers of the pinned nodes.
+    fixed : numbers of the pinned nodes; none for a free body, see :mod:`.free_body`.
     progress : called with the share of the time done, 0 to 1; may raise to cancel.
     dtype : of the result; the computation is float64.
 
     Raises
     ------
     PalpateError
-        Pins that do not hold the body, or leave nothing to touch.
+        Pins that do not hold the body, or leave nothing to touch; a free body of several pieces.
     """
     plan = plan_surface_inverse(mesh, stiffness, fixed, dtype, lambda _: progress(0.0))
     return planned_compliance(plan, progress, dtype)
@@ -55,7 +55,7 @@ def planned_compliance(
 ) -> DenseCompliance:
     """Carry out a plan of :func:`palpate.core.compliance.elimination.plan.plan_surface_inverse`."""
     meter = Meter(plan.weight, progress)
-    factor = inverse_factor(plan.matrix, plan.symbolic, meter)
-    table = inverse_table(factor, plan.ranks, dtype, meter)
+    source = metered_columns(plan, meter)
+    table = inverse_table(source.factor, source.ranks, dtype, meter, source.rigid)
     progress(1.0)
     return DenseCompliance(plan.free_surface, table)

@@ -1,4 +1,4 @@
-"""Check that pins hold a body, so that its stiffness has an inverse."""
+"""Check that pins hold a body, or that it can be without any."""
 
 from __future__ import annotations
 
@@ -9,6 +9,25 @@ from ..errors import PalpateError
 from ..mesh.tet_mesh import TetMesh
 from ..sentence import Sentence
 from .pins import holds
+
+
+def free_or_pinned(mesh: TetMesh, fixed: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Pinned nodes as :func:`pins_checked` has them; none at all are those of a free body.
+
+    Raises
+    ------
+    PalpateError
+        A free body of several pieces, of which each could move by itself; pins that do not hold.
+    """
+    if len(fixed):
+        return pins_checked(mesh, fixed)
+    if mesh.component_count > 1:
+        raise PalpateError(
+            "pins: the body is made of {count} pieces, and without pins each would move by itself; "
+            "join them in the mesh, or pin each piece",
+            count=mesh.component_count,
+        )
+    return np.empty(0, dtype=np.int64)
 
 
 def pins_checked(mesh: TetMesh, fixed: NDArray[np.int64]) -> NDArray[np.int64]:

@@ -49,7 +49,12 @@ class PinCore:
     up: tuple[float, float, float] = (0.0, 0.0, 1.0)
 
 
-Pins = PinBelow | PinCore | PinWeights | PinNodes
+@dataclass(frozen=True)
+class NoPins:
+    """Pin nothing: a free body, held by what it meets."""
+
+
+Pins = PinBelow | PinCore | PinWeights | PinNodes | NoPins
 
 # A piece is a shell when nothing in it is as deep as this share of its diagonal.
 SHALLOW = 0.03
@@ -73,6 +78,8 @@ def pinned_nodes(
         A fraction outside 0 to 1, weights without a surface or not one per vertex, or a rule that
         pins nothing.
     """
+    if isinstance(pins, NoPins):
+        return np.empty(0, dtype=np.int64)
     if isinstance(pins, PinNodes):
         return np.unique(pins.nodes)
     if isinstance(pins, PinBelow):

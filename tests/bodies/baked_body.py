@@ -19,9 +19,19 @@ def baked_body(
     formulation: str = "linear",
     young_scale: NDArray[np.float64] | None = None,
     dtype: type[np.floating] = np.float32,
+    density: float | None = None,
 ) -> SoftBody:
-    """As a bake makes it, in memory; the compliance in ``dtype``."""
+    """As a bake makes it, in memory; the compliance in ``dtype``. Without pins, a free body."""
     stiffness = assemble(mesh, poisson_ratio, formulation=formulation, young_scale=young_scale)
     table = surface_compliance(mesh, stiffness, fixed, dtype=dtype)
     pins = np.unique(fixed)
-    return SoftBody(mesh, pins, poisson_ratio, table, young_modulus, formulation, young_scale)
+    return SoftBody(
+        mesh,
+        pins,
+        poisson_ratio,
+        table,
+        young_modulus,
+        formulation,
+        young_scale,
+        density=density,
+    )

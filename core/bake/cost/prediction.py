@@ -16,7 +16,7 @@ from ...machine.machine_speed import dgemm_rate
 from ...mesh.surface import Surface
 from ...mesh.tet_mesh import TetMesh
 from ...stiffness.formulation import LINEAR, formulation_for
-from ...stiffness.pins import PinBelow, PinCore, PinNodes, Pins, PinWeights
+from ...stiffness.pins import NoPins, PinBelow, PinCore, PinNodes, Pins, PinWeights
 from ..settings import BakeSettings
 from .bake_cost import COMPRESSING_SHARE, PROCESS_GROWTH, BakeCost, compressing_flops
 from .memory import automatic_form, memory_refusal
@@ -247,7 +247,7 @@ def _pinned_share(pins: Pins, surface_nodes: int) -> float:
         case PinBelow(fraction):
             # As if the surface were spread evenly over the height.
             return min(1.0, fraction)
-        case PinCore():
+        case PinCore() | NoPins():
             return 0.0
         case PinWeights(weights):
             return float(np.mean(weights >= 0.5)) if len(weights) else 0.0

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -11,6 +11,7 @@ from scipy.linalg.blas import dgemm, dsyrk
 
 from ...machine.blas_threads import threads_by_work
 from ...stiffness.freedoms import freedoms
+from ..free_body.rigid_part import RigidPart
 from .numeric import LoadRows
 from .upper_tiles import tile_edges
 from .work import MOVE_WEIGHT, REAL_BYTES, FrontWork, Meter
@@ -23,7 +24,11 @@ ROWS_RENUMBERED = 96
 
 
 def inverse_table(
-    factor: list[LoadRows], ranks: NDArray[np.int64], dtype: type[np.floating], meter: Meter
+    factor: Sequence[LoadRows],
+    ranks: NDArray[np.int64],
+    dtype: type[np.floating],
+    meter: Meter,
+    rigid: RigidPart | None = None,
 ) -> NDArray[np.floating]:
     """Inverse at the loaded nodes, (n, 3, 3n), exactly symmetric.
 
@@ -32,6 +37,7 @@ def inverse_table(
     factor : from :func:`palpate.core.compliance.elimination.numeric.inverse_factor`.
     ranks : int64 (n,), for each loaded node in order of elimination, its place in the table.
     dtype : of the table; the sums are float64.
+    rigid : of a free body, taken away; in order of elimination.
     """
     count = 3 * len(ranks)
     # Loads that meet in no front have no interaction: entries stay zero.
@@ -41,7 +47,7 @@ def inverse_table(
     with threads_by_work() as suit:
         for index, columns in enumerate(tiles):
             for rows in tiles[: index + 1]:
-                block = _tile(factor, rows, columns, suit, meter)
+                block = _tile(factor, rows, columns, suit, meter, rigid)
                 table[rows, columns] = block
                 table[columns, rows] = table[rows, columns].T
     _renumber(table, ranks, meter)
@@ -87,13 +93,14 @@ def inverse_bytes(node_count: int, itemsize: int) -> int:
 
 
 def _tile(
-    factor: list[LoadRows],
+    factor: Sequence[LoadRows],
     rows: slice,
     columns: slice,
     suit: Callable[[float], None],
     meter: Meter,
+    rigid: RigidPart | None,
 ) -> NDArray[np.float64]:
-    """Tile of W^T W, both halves also on the diagonal."""
+    """Tile of W^T W less the rigid part, both halves also on the diagonal."""
     block = np.zeros((rows.stop - rows.start, columns.stop - columns.start), order="F")
     for part in factor:
         left, right = _meeting(part, rows), _meeting(part, columns)
@@ -104,6 +111,8 @@ def _tile(
             corner = (left.start - rows.start, right.start - columns.start)
             _add_gram(part, left, right, block, corner)
             meter.add(flops)
+    if rigid is not None:
+        block -= rigid.at(rows).against(rigid.at(columns))
     if rows == columns:
         block = np.triu(block)
         block += np.triu(block, 1).T

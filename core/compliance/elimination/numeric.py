@@ -20,6 +20,7 @@ from scipy.linalg.blas import dgemm, dtrsm
 from scipy.linalg.lapack import dpotrf
 
 from ...machine.blas_threads import threads_by_work
+from ..free_body.carried_loads import CarriedLoads
 from ..ordering.symbolic import Front, SymbolicFactor
 from .block_matrix import BlockMatrix
 from .extend_add import extend_add, runs_between
@@ -56,8 +57,15 @@ class _Update:
     loads: NDArray[np.float64]
 
 
-def inverse_factor(matrix: BlockMatrix, symbolic: SymbolicFactor, meter: Meter) -> list[LoadRows]:
+def inverse_factor(
+    matrix: BlockMatrix,
+    symbolic: SymbolicFactor,
+    meter: Meter,
+    carried: CarriedLoads | None = None,
+) -> list[LoadRows]:
     """W for unit loads on the loaded nodes: W^T W is the inverse at those nodes.
+
+    Loads on all nodes are ``carried`` through beside them.
 
     Raises
     ------
@@ -77,7 +85,9 @@ def inverse_factor(matrix: BlockMatrix, symbolic: SymbolicFactor, meter: Meter) 
             shape = work.loaded_rows, work.loads
             own = room[used : used + shape[0] * shape[1]].reshape(shape, order="F")
             used += own.size
-            updates[index] = _eliminated(index, entries, blocks, symbolic, updates, own, meter)
+            updates[index] = _eliminated(
+                index, entries, blocks, symbolic, updates, own, meter, carried
+            )
             if own.size:
                 result.append(LoadRows(3 * front.load_start, 3 * front.load_stop, own))
     return result
@@ -91,6 +101,7 @@ def _eliminated(
     updates: dict[int, _Update],
     own: NDArray[np.float64],
     meter: Meter,
+    carried: CarriedLoads | None,
 ) -> _Update:
     """Eliminate a front; its rows of W are written to ``own``, zeros before."""
     front = symbolic.fronts[index]
@@ -129,10 +140,14 @@ def _eliminated(
     meter.add(CHOLESKY_WEIGHT * work.cholesky_flops)
     _solve_transposed(factor, border, meter)
     schur.subtract_gram(border, meter.add)
+    if carried is not None:
+        carried.eliminate(front, factor, border)
     if skipped:
         factor = np.asfortranarray(factor[skipped:, skipped:])
         border = np.asfortranarray(border[skipped:])
     _solve_transposed(factor, own, meter)
+    if carried is not None:
+        carried.meet(front, own)
     _subtract_product(border, own, passed, meter)
     return _Update(schur, passed)
 

@@ -11,7 +11,9 @@ from scipy.sparse import csr_array
 
 from ...mesh.tet_mesh import TetMesh
 from ...progress import Progress, unwatched
-from ...stiffness.held_pins import pins_checked
+from ...stiffness.held_pins import free_or_pinned
+from ..free_body.hold import held
+from ..free_body.inertia import RigidMotions
 from ..ordering.dissection import dissect
 from ..ordering.symbolic import SymbolicFactor, analyse
 from .block_matrix import BlockMatrix, free_blocks
@@ -30,6 +32,7 @@ class EliminationPlan:
     symbolic : fronts and order; nodes are counted among the free ones.
     ranks : int64 (n,), for each loaded node in order of elimination, its place in free_surface.
     table_itemsize : bytes of a number of the resulting table; 0 for none.
+    motions : of a body without pins, whose matrix is held by springs; else None.
     """
 
     free_surface: NDArray[np.int64]
@@ -37,6 +40,7 @@ class EliminationPlan:
     symbolic: SymbolicFactor
     ranks: NDArray[np.int64]
     table_itemsize: int
+    motions: RigidMotions | None = None
 
     @cached_property
     def works(self) -> list[FrontWork]:
@@ -83,10 +87,12 @@ def plan_surface_inverse(
 
     ``progress`` is called with the approximate share done; it may raise to cancel.
 
+    Without any pins in ``fixed`` it is that of a free body; see :mod:`..free_body`.
+
     Raises
     ------
     PalpateError
-        Pins that do not hold the body, or leave nothing to touch.
+        Pins that do not hold the body, or leave nothing to touch; a free body of several pieces.
     """
     return _planned(mesh, stiffness, fixed, np.dtype(dtype).itemsize, progress)
 
@@ -108,17 +114,19 @@ def _planned(
     itemsize: int,
     progress: Progress,
 ) -> EliminationPlan:
-    pins = pins_checked(mesh, fixed)
+    pins = free_or_pinned(mesh, fixed)
+    is_free = not len(pins)
     free = np.setdiff1d(np.arange(len(mesh.nodes)), pins)
     free_surface = np.setdiff1d(mesh.surface_nodes, pins)
     loaded = np.zeros(len(free), dtype=bool)
     loaded[np.searchsorted(free, free_surface)] = True
     progress(0.0)
-    matrix = free_blocks(stiffness, free)
+    matrix = free_blocks(held(mesh, stiffness) if is_free else stiffness, free)
     progress(0.0)
     edges = matrix.edges
     dissection = dissect(edges, mesh.nodes[free], loaded, progress=progress)
     symbolic = analyse(dissection, edges, loaded)
     progress(1.0)
     ranks = np.searchsorted(free_surface, free[symbolic.loaded])
-    return EliminationPlan(free_surface, matrix, symbolic, ranks, itemsize)
+    motions = RigidMotions.of(mesh) if is_free else None
+    return EliminationPlan(free_surface, matrix, symbolic, ranks, itemsize, motions)

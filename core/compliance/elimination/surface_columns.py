@@ -12,6 +12,8 @@ from scipy.sparse import csr_array
 from ...mesh.tet_mesh import TetMesh
 from ...progress import Progress, unwatched
 from ...stiffness.freedoms import freedoms
+from ..free_body.carried_loads import CarriedLoads
+from ..free_body.rigid_part import RigidPart
 from .numeric import LoadRows, inverse_factor
 from .plan import EliminationPlan, plan_factor
 from .work import Meter
@@ -29,11 +31,13 @@ class SurfaceColumns:
     free_surface : int64 (n,), node numbers, ascending.
     factor : the fronts' rows of W; loads in order of elimination.
     ranks : int64 (n,), for each loaded node in that order, its place in ``free_surface``.
+    rigid : of a body without pins, in order of elimination: what is taken away from W^T W.
     """
 
     free_surface: NDArray[np.int64]
     factor: tuple[LoadRows, ...]
     ranks: NDArray[np.int64]
+    rigid: RigidPart | None = None
 
     @property
     def node_count(self) -> int:
@@ -64,6 +68,8 @@ class SurfaceColumns:
                     target += moved
                 else:
                     target[:, reached] += moved
+        if self.rigid is not None:
+            eliminated -= self.rigid.against(self.rigid.at(wanted))
         by_node = eliminated.reshape(self.node_count, 3, -1)
         return by_node[order].reshape(3 * self.node_count, -1)
 
@@ -73,6 +79,8 @@ class SurfaceColumns:
         for part in self.factor:
             loads = part.rows.T.reshape((part.stop - part.start) // 3, 3, -1)
             eliminated[part.start // 3 : part.stop // 3] += loads @ loads.transpose(0, 2, 1)
+        if self.rigid is not None:
+            eliminated -= self.rigid.diagonal()
         return eliminated[np.argsort(self.ranks)]
 
 
@@ -88,7 +96,7 @@ def factor_for_columns(
     ----------
     mesh : the body.
     stiffness : (3N, 3N) at E = 1 Pa.
-    fixed : numbers of the pinned nodes.
+    fixed : numbers of the pinned nodes; none for a free body.
     progress : called with the share of the time done, 0 to 1; may raise to cancel.
 
     Raises
@@ -102,6 +110,18 @@ def factor_for_columns(
 
 def planned_columns(plan: EliminationPlan, progress: Progress = unwatched) -> SurfaceColumns:
     """Carry out a plan of :func:`palpate.core.compliance.elimination.plan.plan_factor`."""
-    factor = inverse_factor(plan.matrix, plan.symbolic, Meter(plan.weight, progress))
+    columns = metered_columns(plan, Meter(plan.weight, progress))
     progress(1.0)
-    return SurfaceColumns(plan.free_surface, tuple(factor), plan.ranks)
+    return columns
+
+
+def metered_columns(plan: EliminationPlan, meter: Meter) -> SurfaceColumns:
+    """The same as a part of a work that is metered as a whole."""
+    if plan.motions is None:
+        factor = inverse_factor(plan.matrix, plan.symbolic, meter)
+        return SurfaceColumns(plan.free_surface, tuple(factor), plan.ranks)
+    carried = CarriedLoads(plan.motions.loads, plan.symbolic)
+    factor = inverse_factor(plan.matrix, plan.symbolic, meter, carried)
+    modes = plan.motions.modes[freedoms(plan.symbolic.loaded)]
+    rigid = RigidPart.of(modes, carried.moved, carried.energy)
+    return SurfaceColumns(plan.free_surface, tuple(factor), plan.ranks, rigid)

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from bodies.baked_body import baked_body
 
 from palpate.core.bake import repin
 from palpate.core.bake.cost.prediction import estimate_cost
@@ -192,3 +193,23 @@ def test_the_time_foretold_grows_with_pins_and_is_a_bakes_for_a_compressed_body(
     assert 0 < few < many
     compressed = BakeSettings(form="compressed")
     assert pin_more_seconds(size, compressed, 3_000, 1) == estimate_cost(size, compressed).seconds
+
+
+@pytest.mark.parametrize("name", ["cube", "mouse"])
+def test_a_free_body_takes_its_first_pins_as_a_bake_with_them(name, rng, request):
+    pinned_before = request.getfixturevalue(name)
+    mesh, ratio = pinned_before.mesh, pinned_before.poisson_ratio
+    free = baked_body(mesh, [], ratio, 1e4, density=900.0)
+    for added in (pinned_before.fixed, *list(choices(free, rng).values())[1:]):
+        pins = np.intersect1d(added, mesh.surface_nodes)
+        pinned = pin_more(free, pins)
+        free_surface, exact = baked(free, pins)
+        np.testing.assert_array_equal(pinned.compliance.free_surface, free_surface)
+        np.testing.assert_array_equal(pinned.fixed, pins)
+        assert largest_error(pinned, exact) < 2e-6
+        assert pinned.density == 900.0
+        table = pinned.compliance.table.reshape(exact.shape)
+        np.testing.assert_array_equal(table, table.T)
+    with pytest.raises(PalpateError, match="could move away"):
+        pin_more(free, free.mesh.surface_nodes[:2])
+    assert pin_more(free, []) is free

@@ -70,7 +70,7 @@ def test_a_bar_under_tension_stretches_as_the_closed_form_says():
     np.testing.assert_allclose(moved, expected, atol=1e-12)
 
 
-@pytest.mark.parametrize("fixed", [[], [0], [0, 1], [0, 1, 2, 3, 4]])
+@pytest.mark.parametrize("fixed", [[0], [0, 1], [0, 1, 2, 3, 4]])
 def test_pins_that_do_not_hold_the_body_are_refused(cube_mesh, fixed):
     mesh, _ = cube_mesh  # nodes 0 to 4 lie on one edge
     with pytest.raises(PalpateError, match="could move away"):
