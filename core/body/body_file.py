@@ -248,7 +248,7 @@ def _body(stored: Arrays, compliance: Compliance) -> SoftBody:
         density=density_checked(float(stored["density"])) if "density" in stored else None,
     )
     if body.is_free and body.density is None:
-        raise PalpateError("damaged (density missing)")
+        raise PalpateError("damaged ({missing} missing)", missing="density")
     key = str(stored["key"])
     if key != body.key and is_key_of(
         key, mesh, body.fixed, poisson_ratio, body.formulation, body.young_scale
