@@ -7,8 +7,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from random import Random
-
-import serial
+from typing import Protocol
 
 from ....core.errors import PalpateError
 from ....core.servo import link
@@ -21,16 +20,37 @@ FORCE_EVERY = 0.004
 LOOK_EVERY = 0.0005
 
 
+class Port(Protocol):
+    """What is asked of a `serial.Serial`."""
+
+    @property
+    def port(self) -> str | None:
+        """Its name."""
+
+    @property
+    def in_waiting(self) -> int:
+        """How many bytes can be read at once."""
+
+    def read(self, size: int, /) -> bytes:
+        """Bytes of the device, at most so many."""
+
+    def write(self, data: bytes, /) -> int | None:
+        """Hands bytes to the device."""
+
+
 @dataclass
 class Conversation:
     """What was said and heard at an open port; forces in mN.
 
-    `largest_mn` is what is asked for at the most, in any direction.
+    `largest_mn` is what is asked for at the most, in any direction; `now` and `wait` are its
+    clock, s.
     """
 
-    port: serial.Serial
+    port: Port
     largest_mn: int
     dice: Random
+    now: Callable[[], float] = time.monotonic
+    wait: Callable[[float], None] = time.sleep
     hello: link.DeviceHello | None = None
     states: list[link.State] = field(default_factory=list)
     faults: list[tuple[link.Fault, int]] = field(default_factory=list)
@@ -39,8 +59,9 @@ class Conversation:
     sequence: int = 0
     """Of the last FORCE."""
     longest_pause: float = 0.0
-    """Between two things that were said, s."""
+    """Between two things that were said, or between two STATE that were heard, s."""
     _said_at: float = 0.0
+    _heard_at: float = 0.0
     _decoder: link.Decoder = field(default_factory=link.Decoder)
 
     def greet(self, protocol: int = link.PROTOCOL) -> link.DeviceHello:
@@ -48,8 +69,8 @@ class Conversation:
 
         Raises PalpateError if nothing that speaks a protocol of ours answers.
         """
-        deadline = time.monotonic() + ANSWER_SECONDS
-        while time.monotonic() < deadline:
+        deadline = self.now() + ANSWER_SECONDS
+        while self.now() < deadline:
             self.hello = None
             self.say(b"\0" + link.encode(link.HostHello(protocol)))
             self.listen(HELLO_EVERY, self.is_greeted)
@@ -68,7 +89,7 @@ class Conversation:
         raise PalpateError(
             "{port}: no device that speaks the link answers; check port, cable and power, see "
             "'palpate devices'",
-            port=self.port.port,
+            port=str(self.port.port),
         )
 
     def forget(self) -> None:
@@ -77,19 +98,19 @@ class Conversation:
 
     def say(self, data: bytes) -> None:
         """Send bytes."""
-        now = time.monotonic()
+        now = self.now()
         self.longest_pause = max(self.longest_pause, now - self._said_at)
         self._said_at = now
         self.port.write(data)
 
     def listen(self, seconds: float, until: Callable[[], bool] = lambda: False) -> None:
         """Hear for so long, or until something is so."""
-        deadline = time.monotonic() + seconds
+        deadline = self.now() + seconds
         while True:
             self._take()
-            if until() or time.monotonic() >= deadline:
+            if until() or self.now() >= deadline:
                 return
-            time.sleep(LOOK_EVERY)
+            self.wait(LOOK_EVERY)
 
     def force(self, ahead: int = 1) -> bytes:
         """The frame of the next FORCE, `ahead` of the last one, as fresh as what was heard."""
@@ -109,9 +130,9 @@ class Conversation:
 
     def drive(self, seconds: float) -> int:
         """Say sound forces for so long; returns the device's time when the last one was said."""
-        deadline = time.monotonic() + seconds
+        deadline = self.now() + seconds
         said = self.device_time
-        while time.monotonic() < deadline:
+        while self.now() < deadline:
             frame = self.force()
             said = self.device_time
             self.say(frame)
@@ -134,9 +155,12 @@ class Conversation:
 
     def _take(self) -> None:
         data = self.port.read(self.port.in_waiting or 0)
+        now = self.now()
         for message in self._decoder.feed(data):
             match message:
                 case link.State():
+                    self.longest_pause = max(self.longest_pause, now - self._heard_at)
+                    self._heard_at = now
                     self.states.append(message)
                 case link.Fault():
                     self.faults.append((message, len(self.states)))

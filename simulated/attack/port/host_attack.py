@@ -26,7 +26,8 @@ ATTACK_SECONDS = (0.1, 0.15)
 GRACE_SECONDS = 0.06
 FOREIGN_SECONDS = 0.05
 HELD_UP_SECONDS = 0.012
-"""Who falls silent for longer cannot blame the device."""
+"""Who falls silent or deaf for longer cannot blame the device."""
+HELD_UP = "this computer, the line or the device was held up: not judged"
 TRIES = 20
 FOREIGN = "HELLO of another protocol"
 
@@ -64,26 +65,31 @@ def _opened(attack: HostAttack) -> Iterator[serial.Serial]:
 
 
 def host_table(attack: HostAttack, say: Callable[[str], None]) -> Table:
-    """Attack the device; a row for each kind.
+    """Attack the device at the port; a row for each kind.
 
     Raises PalpateError when the port cannot be used or nothing answers.
     """
-    rows = []
     with _opened(attack) as port:
         talk = Conversation(port, round(attack.largest_force * 1e3), Random())  # noqa: S311
-        hello = talk.greet()
-        name, protocol = hello.name, hello.protocol
-        try:
-            for one in ATTACKS:
-                if attack.only not in one.name or (one.only_second and not talk.is_second):
-                    continue
-                say(f"{name}: {one.name}")
-                rows.append(_row(talk, attack, one))
-            if attack.only in FOREIGN:
-                say(f"{name}: {FOREIGN}")
-                rows.append(_foreign_row(talk, attack))
-        finally:
-            _let_go(talk)
+        return table_of(talk, attack, say)
+
+
+def table_of(talk: Conversation, attack: HostAttack, say: Callable[[str], None]) -> Table:
+    """Attack the device that one talks with, as `host_table`; `attack.path` is not used."""
+    hello = talk.greet()
+    name, protocol = hello.name, hello.protocol
+    rows = []
+    try:
+        for one in ATTACKS:
+            if attack.only not in one.name or (one.only_second and not talk.is_second):
+                continue
+            say(f"{name}: {one.name}")
+            rows.append(_row(talk, attack, one))
+        if attack.only in FOREIGN:
+            say(f"{name}: {FOREIGN}")
+            rows.append(_foreign_row(talk, attack))
+    finally:
+        _let_go(talk)
     title = f"A hostile host at {name!r}, which speaks protocol {protocol}"
     return Table(title, tuple(rows))
 
@@ -111,7 +117,7 @@ def _row(talk: Conversation, attack: HostAttack, one: Attack) -> Row:
             if talk.longest_pause < HELD_UP_SECONDS:
                 break
         else:
-            found = ["this computer was held up: not judged"]
+            found = [HELD_UP]
         broken.update(found)
         told.update(f"FAULT {fault.code}" for fault, _ in talk.faults)
         slowest = max(slowest, limp_ms)
