@@ -44,12 +44,12 @@ class FrameRows:
 
     def add(self, here: PressedFrame) -> None:
         """Add a frame."""
-        for number, finger in enumerate(here.fingers):
+        for number, (finger, force) in enumerate(zip(here.fingers, here.forces, strict=True)):
             strength = float(np.linalg.norm(finger.force))
             self.largest_force = max(self.largest_force, strength)
             figures = (
                 here.frame / self.frames_per_second,
-                *self.drawn.frame.turn_to_world(finger.force),
+                *force,
                 strength,
                 finger.area,
                 finger.largest_pressure,

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from ...core.contact.press import ContactSettings, Press
 from ...core.contact.touches import Touch
+from ...core.errors import PalpateError
 from ...core.imprint.yielding import Yielding
 from ...core.shape.meeting import settled
 from ...core.shape.shapes import Shape
@@ -19,8 +20,10 @@ from ..imprint.surface_imprint import SurfaceImprint
 from ..layer import place_marks
 from ..object.drawn_body import DrawnBody
 from ..place import touched_place
+from ..place.evaluation import evaluated
 from ..press.press_once import loads_of, pressing_tools
 from ..scene.body_frame import BodyFrame
+from ..scene.drawn_surface import frame_of
 from .pressers import Presser, pressers_of
 
 # Share of a tool's rounding by which it may differ from frame to frame.
@@ -29,12 +32,13 @@ SAME = 1e-3
 
 @dataclass(frozen=True, eq=False)
 class PressedFrame:
-    """Result of a frame: each finger's touch, and the flat displacements (3 p,) of the drawn
-    vertices, local units; None where none moves.
+    """Result of a frame: each finger's touch and force (k, 3), N in world axes, and the flat
+    displacements (3 p,) of the drawn vertices, local units; None where none moves.
     """
 
     frame: int
     fingers: tuple[Touch, ...]
+    forces: NDArray[np.float64]
     moved: NDArray[np.float32] | None
 
     def coordinates(self, drawn: DrawnBody) -> NDArray[np.float32]:
@@ -44,8 +48,8 @@ class PressedFrame:
 
 @dataclass(eq=False)
 class AnimatedPress:
-    """Press of a body by objects that move; goes on from the last frame while these keep their
-    shapes, and begins anew where they do not.
+    """Press of a body that may move by objects that move; goes on from the last frame while these
+    keep their shapes, and begins anew where they do not.
     """
 
     thing: bpy.types.Object
@@ -60,21 +64,42 @@ class AnimatedPress:
         Raises
         ------
         PalpateError
-            A presser cannot press, nothing leads one, or their forces do not settle.
+            A presser cannot press, nothing leads one, their forces do not settle, or the object
+            is scaled otherwise here.
         """
         chosen = self.thing.palpate
+        self._go_along(graph)
         found = pressers_of(self.thing, graph, self.drawn)
         if self._press is None or not _same_tools(found, self._pressers):
             settings = ContactSettings(chosen.young_modulus, chosen.static_friction)
             self._press = Press(self.drawn.body, [one.tool for one in found], settings)
             self._pressers = found
-        touches = self._press.to([one.pose(self._frame_at(one, graph)) for one in found])
+        frames = [self._frame_at(one, graph) for one in found]
+        touches = self._press.to(
+            [one.pose(frame) for one, frame in zip(found, frames, strict=True)]
+        )
+        forces = [
+            frame.turn_to_world(made.force) for frame, made in zip(frames, touches, strict=True)
+        ]
         loads = loads_of(touches)
         moved = None
         if loads:
             met = settled(self.drawn.body, self.shape, loads, chosen.young_modulus)
             moved = self.drawn.drawn_displacement(met.displacements, pressing_tools(touches))
-        return PressedFrame(graph.scene.frame_current, touches, moved)
+        return PressedFrame(graph.scene.frame_current, touches, np.array(forces), moved)
+
+    def _go_along(self, graph: bpy.types.Depsgraph) -> None:
+        """Take the body where its object is in a graph."""
+        frame = frame_of(evaluated(self.thing, graph), graph.scene)
+        moved = self.drawn.moved_to(frame)
+        if moved is None:
+            raise PalpateError(
+                "{name}: in frame {frame} it is scaled otherwise than when it was made soft; "
+                "remove the keyframes of its scale, or bake the frames before",
+                name=self.thing.name,
+                frame=graph.scene.frame_current,
+            )
+        self.drawn = moved
 
     def _frame_at(self, presser: Presser, graph: bpy.types.Depsgraph) -> BodyFrame:
         """Local frame of what is seen nearest to a presser; the body's where nothing is posed."""
