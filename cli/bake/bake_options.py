@@ -9,13 +9,14 @@ from pathlib import Path
 import numpy as np
 
 from ...core.bake.settings import FORMS, BakeSettings
+from ...core.compliance.free_body.density import DEFAULT_DENSITY
 from ...core.errors import PalpateError
 from ...core.mesh.read_mesh import TetFile, read_surface, read_tets
 from ...core.mesh.surface import Surface
 from ...core.mesh.tet_mesh import TetMesh
 from ...core.softness.scales.shore import Shore, young_from_shore
 from ...core.stiffness.formulation import AUTOMATIC, FORMULATIONS
-from ...core.stiffness.pins import PinBelow, PinNodes, Pins
+from ...core.stiffness.pins import NoPins, PinBelow, PinNodes, Pins
 from ...core.stiffness.regions import TetScale
 from ..softness.materials import material_named
 
@@ -65,7 +66,13 @@ def add_bake_options(parser: argparse.ArgumentParser) -> None:
         help="give up tetrahedralization after so many seconds (default: %(default)g)",
     )
     pins = parser.add_argument_group("pins")
-    pins.add_argument(
+    held = pins.add_mutually_exclusive_group()
+    held.add_argument(
+        "--pins",
+        choices=("none",),
+        help="pin nothing: a free body, held by what it meets, such as a floor",
+    )
+    held.add_argument(
         "--pin-below",
         type=float,
         metavar="FRACTION",
@@ -96,6 +103,13 @@ def add_bake_options(parser: argparse.ArgumentParser) -> None:
         type=float,
         metavar="NU",
         help=f"Poisson's ratio (default: {default.poisson_ratio:g})",
+    )
+    material.add_argument(
+        "--density",
+        type=float,
+        metavar="KG/M3",
+        help="of the body, for its weight (default: the preset's, or for --pins none "
+        f"{DEFAULT_DENSITY:g})",
     )
     material.add_argument(
         "--formulation",
@@ -174,6 +188,7 @@ def _settings(
         tolerance=arguments.tolerance,
         stiffness=None if scale is None else TetScale(scale),
         threads=threads,
+        density=_density(arguments),
     ).checked()
 
 
@@ -186,7 +201,17 @@ def _material(arguments: argparse.Namespace) -> tuple[float, float]:
     return start.young_modulus if arguments.young is None else arguments.young, ratio
 
 
+def _density(arguments: argparse.Namespace) -> float | None:
+    """Density in kg/m3: as given, or the preset's."""
+    given: float | None = arguments.density
+    if given is None and arguments.material is not None:
+        return float(arguments.material.density)
+    return given
+
+
 def _pins(arguments: argparse.Namespace, tets: TetFile | None) -> Pins:
+    if arguments.pins == "none":
+        return NoPins()
     if arguments.pin_below is not None:
         return PinBelow(arguments.pin_below, AXES[arguments.up])
     if tets is not None and tets.fixed is not None:

@@ -26,7 +26,8 @@ def run(arguments: argparse.Namespace) -> int:
     for name, material in MATERIALS.items():
         shore = "" if material.shore is None else f", Shore {material.shore}"
         constants = f"{_pascal(material.young_modulus)}, {material.poisson_ratio:g}{shore}"
-        print(f"{name.lower().replace('_', '-'):16}{material.name}: {constants}")
+        weight = f"{material.density:g} kg/m3"
+        print(f"{name.lower().replace('_', '-'):16}{material.name}: {constants}, {weight}")
         print(f"{'':16}{material.basis}: {material.source}")
     return 0
 

@@ -113,6 +113,27 @@ def test_pins_of_the_file_are_taken_unless_told_otherwise(tmp_path, figures_of):
     assert figures_of(*words, "--pin-below", 0.5)["fixed_nodes"] > 300
 
 
+@pytest.mark.parametrize("form", ["dense", "compressed"])
+def test_a_body_may_have_no_pins_until_it_is_given_some(form, tmp_path, figures_of):
+    free, material = tmp_path / "free.npz", ["--material", "plush", "--form", form]
+    figures = figures_of("bake", MOUSE, "-o", free, "--pins", "none", *material)
+    assert (figures["fixed_nodes"], figures["density"], figures["form"]) == (0, 40.0, form)
+    assert figures["mass_kg"] == pytest.approx(40.0 * figures["volume_m3"], rel=1e-9)
+    assert figures_of("info", free)["mass_kg"] == figures["mass_kg"]
+    denser = figures_of("bake", MOUSE, "-o", free, "--pins", "none", *material, "--density", 80)
+    assert (denser["key"], denser["density"]) == (figures["key"], 80.0)
+    pinned, baked = tmp_path / "pinned.npz", tmp_path / "baked.npz"
+    numbers = tmp_path / "fixed.npy"
+    with np.load(MOUSE) as mouse:
+        np.save(numbers, mouse["fixed"])
+    later = figures_of("pin", free, "--nodes", numbers, "-o", pinned)
+    once = figures_of("bake", MOUSE, "-o", baked, *material)
+    assert (later["key"], later["density"]) == (once["key"], 80.0)
+    press = ["--at", 0.03, 0.03, 0.06, "--by", 0, 0, "-1e-3"]
+    forces = [figures_of("press", body, *press)["force"] for body in (baked, pinned)]
+    np.testing.assert_allclose(forces[1], forces[0], rtol=2e-3)
+
+
 def test_more_of_a_body_is_pinned_without_a_bake(cube_file, tmp_path, figures_of, cube_mesh):
     mesh, fixed = cube_mesh
     figures = figures_of("pin", cube_file, "--below", 0.3, "-o", tmp_path / "low.npz")

@@ -21,6 +21,7 @@ from ...files.patience import remove_folder
 from ...machine.blas_threads import blas_threads
 from ..elimination.numeric import LoadRows
 from ..elimination.surface_columns import SurfaceColumns
+from ..free_body.rigid_part import RigidPart
 from .cluster_columns import ClusterColumns, ClusterTask
 from .compress import MapClusters
 
@@ -61,17 +62,21 @@ class StoredColumns:
         """The source, its factor mapped while it is referred to: then the folder can be removed."""
         with np.load(self.folder / INDEX_FILE, allow_pickle=False) as index:
             free_surface, ranks, parts = index["free_surface"], index["ranks"], index["parts"]
+            rigid = RigidPart(index["modes"], index["response"]) if "modes" in index else None
         rows = np.load(self.folder / ROWS_FILE, mmap_mode="r")
         ends = np.cumsum((parts[:, 1] - parts[:, 0]) * parts[:, 2])
         factor = tuple(
             LoadRows(int(start), int(stop), piece.reshape((int(count), -1), order="F"))
             for (start, stop, count), piece in zip(parts, np.split(rows, ends[:-1]), strict=True)
         )
-        return SurfaceColumns(free_surface, factor, ranks)
+        return SurfaceColumns(free_surface, factor, ranks, rigid)
 
 
 def store(columns: SurfaceColumns, folder: Path) -> StoredColumns:
     """Write the factor into ``folder``, as one array that is mapped in a moment."""
+    rigid = {}
+    if columns.rigid is not None:
+        rigid = {"modes": columns.rigid.modes, "response": columns.rigid.response}
     parts = [(part.start, part.stop, len(part.rows)) for part in columns.factor]
     np.savez(
         folder / INDEX_FILE,
@@ -79,6 +84,7 @@ def store(columns: SurfaceColumns, folder: Path) -> StoredColumns:
         free_surface=columns.free_surface,
         ranks=columns.ranks,
         parts=np.array(parts, dtype=np.int64),
+        **rigid,
     )
     count = sum(part.rows.size for part in columns.factor)
     rows = np.lib.format.open_memmap(folder / ROWS_FILE, "w+", np.float64, (count,))

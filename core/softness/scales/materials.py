@@ -1,4 +1,4 @@
-"""Material presets for prop makers: Young's modulus and Poisson's ratio, each with its source.
+"""Material presets for prop makers: Young's modulus, Poisson's ratio and density, with sources.
 
 The modulus is that of small strain, where light touch lives; what a material does beyond is its
 law's (:mod:`palpate.core.law`). A Shore value is what the tin says: a durometer goes in by strains
@@ -39,24 +39,24 @@ class Material:
     name : in panels and tables.
     young_modulus : pascal, at small strain.
     poisson_ratio : without unit.
+    density : kilograms per cubic metre.
     source : of the figures.
     basis : "measured", "derived" or "estimate"; see above.
     shore : by the data sheet, where it gives one.
-    density : kilograms per cubic metre, where it is known.
     """
 
     name: str
     young_modulus: float
     poisson_ratio: float
+    density: float
     source: str = "order of magnitude"
     basis: str = "estimate"
     shore: Shore | None = None
-    density: float | None = None
 
 
 def _silicone(name: str, shore: Shore, young_modulus: float, density: float) -> Material:
     """Silicone by Smooth-On, as it was pulled."""
-    return Material(name, young_modulus, 0.48, TENSILE, "measured", shore, density)
+    return Material(name, young_modulus, 0.48, density, TENSILE, "measured", shore)
 
 
 def _eva() -> Material:
@@ -65,30 +65,48 @@ def _eva() -> Material:
         "EVA foam (Shore A 30)",
         float(f"{young_from_shore(shore, 0.40):.3g}"),
         0.40,
+        200.0,
         "EVA sheet sold by its Shore value; the relation is for rubber and stretched here to foam",
         "derived",
         shore,
-        200.0,
     )
 
 
 # Files refer to the first seven by number: add new ones at the end only.
 MATERIALS = {
-    "PLUSH": Material("Plush toy", 1_000.0, 0.30),
+    "PLUSH": Material(
+        "Plush toy",
+        1_000.0,
+        0.30,
+        40.0,
+        "order of magnitude; density with its cloth, of a bear of 300 g and 7.5 litres",
+    ),
     "JELLY": Material(
-        "Jelly", 5_000.0, 0.45, f"a little softer than gelatine of 3 % ({NGUYEN}: 6.0 kPa)"
+        "Jelly",
+        5_000.0,
+        0.45,
+        1_000.0,
+        f"a little softer than gelatine of 3 % ({NGUYEN}: 6.0 kPa); density of water",
     ),
     "PAPER_CUBE": Material(
         "Paper's soft cube",
         10_000.0,
         0.49,
-        "Poisson's ratio of Hirota and Kaneko 1999; modulus an order of magnitude",
+        1_000.0,
+        "Poisson's ratio of Hirota and Kaneko 1999; modulus an order of magnitude, density water's",
     ),
-    "FOAM": Material("Upholstery foam", 30_000.0, 0.20),
+    "FOAM": Material(
+        "Upholstery foam",
+        30_000.0,
+        0.20,
+        35.0,
+        "order of magnitude; density of seat cushions, which have 1.5 to 2.5 lb/ft3",
+    ),
     "SILICONE_SOFT": Material(
         "Soft silicone (Shore 00-30)",
         51_000.0,
         0.48,
+        1_070.0,
         "as Ecoflex 00-30 below",
         shore=Shore("00", 30.0),
     ),
@@ -96,6 +114,7 @@ MATERIALS = {
         "Firm silicone (Shore A 20)",
         394_000.0,
         0.48,
+        1_080.0,
         "as Dragon Skin 20 below",
         shore=Shore("A", 20.0),
     ),
@@ -103,7 +122,9 @@ MATERIALS = {
         "Rubber (Shore A 50)",
         2_200_000.0,
         0.49,
-        "natural rubber of 50 IRHD by Lindley 1978, Engineering design with natural rubber",
+        1_080.0,
+        "natural rubber of 50 IRHD by Lindley 1978, Engineering design with natural rubber; "
+        "density of a mixture with 30 parts of carbon black in 100",
         "measured",
         Shore("A", 50.0),
     ),
@@ -112,9 +133,9 @@ MATERIALS = {
         "Ecoflex 00-20",
         38_000.0,
         0.48,
+        1_070.0,
         "between Ecoflex 00-10 and 00-30; Shore and density by Smooth-On's data sheet",
         shore=Shore("00", 20.0),
-        density=1_070.0,
     ),
     "ECOFLEX_30": _silicone("Ecoflex 00-30", Shore("00", 30.0), 51_000.0, 1_070.0),
     "ECOFLEX_50": _silicone("Ecoflex 00-50", Shore("00", 50.0), 74_000.0, 1_070.0),
@@ -125,53 +146,53 @@ MATERIALS = {
         "Soft polyurethane foam",
         7_000.0,
         0.20,
+        25.0,
         f"indentation load deflection of 18 lbf (80 N on 323 cm2 at 25 %), {SLAB}",
-        density=25.0,
     ),
     "LATEX_FOAM": Material(
         "Latex foam",
         11_000.0,
         0.20,
+        75.0,
         f"indentation load deflection of 28 lbf (125 N on 323 cm2 at 25 %), {SLAB}",
-        density=75.0,
     ),
     "EVA_FOAM": _eva(),
     "GELATINE_3": Material(
         "Gelatine 3 %",
         6_000.0,
         0.49,
+        1_000.0,
         f"{NGUYEN}: shear modulus 2.0 kPa, times 3",
         "measured",
-        density=1_000.0,
     ),
     "GELATINE_5": Material(
         "Gelatine 5 %",
         12_500.0,
         0.49,
+        1_010.0,
         f"{NGUYEN}: shear modulus 4.2 kPa, times 3",
         "measured",
-        density=1_010.0,
     ),
     "BALLISTIC_GEL": Material(
         "Ballistic gel 10 %",
         60_000.0,
         0.49,
+        1_030.0,
         f"carried on from 3 to 7 % gelatine ({NGUYEN}) with their exponent of 1.9",
-        density=1_030.0,
     ),
     "STUFFING": Material(
         "Firm toy stuffing",
         3_000.0,
         0.20,
+        30.0,
         "order of magnitude; the plush toy above, filled tighter",
-        density=30.0,
     ),
     "FLESH": Material(
         "Skin over flesh",
         8_000.0,
         0.48,
+        1_050.0,
         "what an indenter feels on a forearm as a whole, about 5 to 10 kPa; order of "
         "magnitude after Pailler-Mattei et al. 2008, Medical Engineering and Physics 30, 599",
-        density=1_050.0,
     ),
 }

@@ -215,3 +215,4 @@ def test_every_material_has_a_source_and_constants_that_can_be_baked():
         assert material.basis in {"measured", "derived", "estimate"}
         assert 0 <= material.poisson_ratio <= 0.49
         assert 500 <= material.young_modulus <= 1e7
+        assert 20 <= material.density <= 1_200

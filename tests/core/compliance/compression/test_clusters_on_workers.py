@@ -20,7 +20,11 @@ def columns(mouse_mesh):
     return factor_for_columns(mesh, assemble(mesh, 0.3), fixed)
 
 
-def test_stored_columns_are_the_same(columns, tmp_path, rng):
+@pytest.mark.parametrize("is_free", [False, True])
+def test_stored_columns_are_the_same(is_free, columns, mouse_mesh, tmp_path, rng):
+    if is_free:
+        mesh, _ = mouse_mesh
+        columns = factor_for_columns(mesh, assemble(mesh, 0.3), np.empty(0, dtype=np.int64))
     stored = store(columns, tmp_path)
     nodes = rng.choice(columns.node_count, 20, replace=False)
     assert stored.node_count == columns.node_count

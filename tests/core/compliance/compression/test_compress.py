@@ -43,6 +43,11 @@ def pinned_here_and_there():
     return mesh, rng.choice(mesh.surface_nodes, len(mesh.surface_nodes) // 3, replace=False)
 
 
+def without_pins(stretch):
+    mesh, _ = stretched(7, stretch)
+    return mesh, np.empty(0, dtype=np.int64)
+
+
 BODIES = {
     "held from below": held_from_below,
     "pinned here and there": pinned_here_and_there,
@@ -50,6 +55,8 @@ BODIES = {
     "bar on its side": lambda: stretched(7, (5, 1, 1)),
     "thin plate": lambda: stretched(7, (1, 1, 0.03)),
     "two pieces": two_pieces,
+    "free block": lambda: without_pins((1, 1, 1)),
+    "free bar": lambda: without_pins((5, 1, 1)),
     "a few nodes": lambda: stretched(2, (1, 1, 1)),
     "one cell": lambda: stretched(1, (1, 1, 1)),
 }
