@@ -14,6 +14,7 @@ from ..operators.bake import bake_session
 from ..operators.carrier import carrier
 from ..operators.layer import live_layer
 from ..operators.object import body_store, kept_body
+from ..operators.played import cache_place
 from ..operators.scene import modal_stay
 from ..operators.scene.package_preferences import preferences
 from ..operators.session import press_session
@@ -81,36 +82,48 @@ def _after_undo(*_: object) -> None:
 
 
 @persistent
-def _before_save(*_: object) -> None:
+def _before_save(path: str = "", *_: object) -> None:
     session = press_session.current()
     if session is not None:
         session.post(Moment.SAVE_BEGINS)
+    if path:
+        try:
+            cache_place.take_along(Path(path))
+        except PalpateError as problem:
+            _tell(problem)
     _found_before_save.clear()
     for thing in bpy.data.objects:
-        path = body_store.locate(thing)
-        if path is not None:
-            _found_before_save[path.name] = path
+        file = body_store.locate(thing)
+        if file is not None:
+            _found_before_save[file.name] = file
 
 
 @persistent
 def _after_save(path: str = "", *_: object) -> None:
     written = Path(path or bpy.data.filepath)
+    is_open_file = written == Path(bpy.data.filepath)
+    cache_place.settle(is_open_file=is_open_file)
     try:
         if written.suffix == ".blend" and _found_before_save:
-            body_store.gather_beside(
-                written,
-                _found_before_save,
-                is_open_file=written == Path(bpy.data.filepath),
-            )
+            body_store.gather_beside(written, _found_before_save, is_open_file=is_open_file)
     except PalpateError as problem:
-        # A handler has no report, only the console and the panel's state line.
-        print(f"palpate: {problem}")  # noqa: T201
+        _tell(problem)
     finally:
-        _after_failed_save()
+        _end_of_save()
 
 
 @persistent
 def _after_failed_save(*_: object) -> None:
+    cache_place.settle(is_open_file=False)
+    _end_of_save()
+
+
+def _tell(problem: PalpateError) -> None:
+    """A handler has no report, only the console and the panel's state line."""
+    print(f"palpate: {problem}")  # noqa: T201
+
+
+def _end_of_save() -> None:
     known_status.forget_files()
     session = press_session.current()
     if session is not None:

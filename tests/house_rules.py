@@ -45,6 +45,7 @@ operators/pins
 operators/object
 operators/traction
 operators/imprint
+operators/played
 operators/tool
 operators/device
 operators/record

@@ -17,12 +17,13 @@ from ..imprint import kept_imprint
 from ..imprint.surface_imprint import yielding_of
 from ..layer import place_marks
 from ..object.drawn_body import DrawnBody, open_body
+from ..played import mesh_cache
 from ..press.modal_press import Pressing
 from ..reporting.translated import reported, shown
 from ..scene.modal_progress import ModalProgress
 from ..shape.drawn_shape import closing_shape
 from ..traction.drawn_traction import patches_of, tractions_of
-from . import frame_keys, live_pressers, mesh_cache
+from . import frame_keys, live_pressers
 from .force_table import FrameRows
 from .keeping import ITEMS, KEEPERS, Baking, collected
 from .pressed_frames import PressedFrame, frame_kept, imprinted, press_frames

@@ -18,8 +18,8 @@ from ...core.errors import PalpateError
 from ...core.files.atomic_file import atomic_file
 from ...core.files.point_cache import CacheSize
 from ..layer import layers
+from ..played import mesh_cache
 from ..traction.frame_tractions import FrameTractions, shown_by
-from . import mesh_cache
 
 TWIN, MESH = "palpate_surface", "palpate_surface_mesh"
 

@@ -8,13 +8,13 @@ from pathlib import Path
 
 import bpy
 
-from ...core.files.own_file import is_ordinary
-from ...core.files.point_cache import CacheSize, is_own_cache, point_cache
+from ...core.files.point_cache import CacheSize, point_cache
 from ...core.files.scratch_folder import ScratchFolder
 from ..object.drawn_body import DrawnBody
+from ..played import cache_place, mesh_cache
 from ..traction.drawn_traction import patches_of, tractions_of
 from ..traction.frame_tractions import FrameTractions, frame_tractions
-from . import exchange_file, frame_keys, live_pressers, mesh_cache
+from . import exchange_file, frame_keys, live_pressers
 from .exchange_file import Exchange
 from .pressed_frames import PressedFrame
 
@@ -35,7 +35,7 @@ def _as_cache(
     pressed: Iterator[PressedFrame],
     size: CacheSize,
 ) -> Baking:
-    place = mesh_cache.place_for(thing, ".pc2", is_own_cache)
+    place = cache_place.place_for(thing, cache_place.CACHE_SUFFIX)
     yield from _written(place, drawn, pressed, size)
     mesh_cache.play(thing, place, size)
 
@@ -60,7 +60,7 @@ def _as_exchange(
     *,
     kind: Exchange,
 ) -> Baking:
-    target = mesh_cache.place_for(thing, kind.value, is_ordinary)
+    target = cache_place.place_for(thing, kind.value)
     with (
         ScratchFolder(SCRATCH_WORD) as folder,
         frame_tractions(folder.path / "forces", size.points, size.first_frame, size.step) as forces,

@@ -26,13 +26,14 @@ from ..layer import layers, place_marks
 from ..object import body_store
 from ..object.drawn_body import DrawnBody, open_body
 from ..place.evaluation import evaluated
+from ..played import mesh_cache
 from ..scene import drawn_surface
 from ..scene.object_handle import ObjectHandle
 from ..session import press_session
 from ..shape.drawn_shape import chosen_shape
 from ..traction import layer_traction
 from ..traction.drawn_traction import patches_of, tractions_of
-from . import failures, frame_keys, mesh_cache
+from . import failures, frame_keys
 from .failures import Attempt
 from .pressed_frames import AnimatedPress
 

@@ -70,10 +70,17 @@ def folder_for_new_files() -> Path:
     PalpateError
         The folder next to the .blend is a link to somewhere else.
     """
-    return _folder_beside(Path(bpy.data.filepath)) if bpy.data.filepath else _unsaved_folder()
+    return folder_beside(Path(bpy.data.filepath)) if bpy.data.filepath else _unsaved_folder()
 
 
-def _folder_beside(blend: Path) -> Path:
+def folder_beside(blend: Path) -> Path:
+    """Folder next to a .blend.
+
+    Raises
+    ------
+    PalpateError
+        It is a link to somewhere else.
+    """
     folder = blend.parent / FOLDER
     if not stays_within(folder, blend.parent):
         raise PalpateError(
@@ -254,7 +261,7 @@ def gather_beside(blend: Path, found: dict[str, Path], *, is_open_file: bool) ->
         The folder cannot be written, or leads elsewhere.
     """
     for name, source in found.items():
-        target = _folder_beside(blend) / name
+        target = folder_beside(blend) / name
         if os.path.lexists(target) or not is_own(source, body_file.FORMAT):
             continue
         body_file.adopt(source, target)

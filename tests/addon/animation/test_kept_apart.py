@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 import pytest
 from pressed_scene import tapped_by_ball
-from soft_scene import error_of, part, seen_places, select
+from soft_scene import seen_places, select
 
 KINDS = ["CACHE", "ALEMBIC"]
 
@@ -84,15 +84,3 @@ def test_names_that_become_the_same_word_have_files_of_their_own(shot):
     assert bake(shot) != first
     np.testing.assert_array_equal(dent(other), seen)
     assert np.abs(dent(shot) - seen).max() > 1e-5
-
-
-def test_an_animation_waits_for_the_blend_to_be_saved(palpate):
-    thing = tapped_by_ball()
-    select(thing)
-    folder = part("operators.object.body_store").folder_for_new_files()
-    for keep in KINDS:
-        assert "save it first" in error_of(bpy.ops.palpate.press_frames, keep=keep)
-    assert not list(folder.glob("*-animation*"))
-    assert not [one for one in thing.modifiers if one.name == "Palpate Animation"]
-    keys = {"frame_start": 1, "frame_end": 4, "keep": "KEYS"}
-    assert bpy.ops.palpate.press_frames(**keys) == {"FINISHED"}

@@ -2,70 +2,17 @@
 
 from __future__ import annotations
 
-import itertools
-import os
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 import bpy
 
-from ...core.errors import PalpateError
 from ...core.files.point_cache import CacheSize
 from ..layer import layers
 from ..layer.stack import PLAYERS
-from ..object import body_store
 
 MODIFIER_NAME = "Palpate Animation"
-
-
-def place_for(thing: bpy.types.Object, suffix: str, is_own: Callable[[Path], bool]) -> Path:
-    """Where the object's animation is written: beside its body file,
-    ``<.blend>-<object>-animation`` and suffix.
-
-    Nothing is there, or what is Palpate's own and only this object plays; if anything else is, the
-    next name is taken. Another object, or another .blend of the folder, keeps its animation so.
-
-    Raises
-    ------
-    PalpateError
-        There is no .blend yet; the folder beside it leads elsewhere.
-    """
-    if not bpy.data.filepath:
-        raise PalpateError(
-            "{name}: its animation becomes a file beside the .blend, and this is not saved yet; "
-            "save it first, or keep the animation as Shape Keys",
-            name=thing.name,
-        )
-    folder = body_store.folder_for_new_files()
-    word = bpy.path.clean_name(f"{Path(bpy.data.filepath).stem}-{thing.name}")
-    names = itertools.chain(
-        (f"{word}-animation{suffix}",),
-        (f"{word}-animation-{n}{suffix}" for n in itertools.count(2)),
-    )
-    places = (folder / name for name in names)
-    return next(
-        place
-        for place in places
-        if not os.path.lexists(place) or (is_own(place) and _players(place) == [thing])
-    )
-
-
-def _players(file: Path) -> list[bpy.types.Object]:
-    """Objects that play a file."""
-    found = file.resolve()
-    return [one for one in bpy.data.objects if _played(one) == found]
-
-
-def _played(thing: bpy.types.Object) -> Path | None:
-    """File that the object's modifier plays, shown or not."""
-    modifier = thing.modifiers.get(MODIFIER_NAME)
-    holder = getattr(modifier, "cache_file", modifier)
-    # The one has its path itself, the other the path of a data-block.
-    if modifier is None or modifier.type not in PLAYERS or holder is None or not holder.filepath:
-        return None
-    library = getattr(holder, "library", thing.library)
-    return Path(bpy.path.abspath(holder.filepath, library=library)).resolve()
 
 
 def plays(thing: bpy.types.Object) -> bool:

@@ -1,0 +1,1 @@
+"""Files that animations play from, and the modifier that plays them."""
