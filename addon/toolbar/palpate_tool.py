@@ -15,9 +15,9 @@ ICON = Path(__file__).with_name("palpate_icon")
 
 
 def _key(
-    kind: str, operator: str, *, shift: bool = False, **properties: object
+    kind: str, operator: str, *, shift: bool = False, value: str = "PRESS", **properties: object
 ) -> tuple[object, ...]:
-    event = {"type": kind, "value": "PRESS", **({"shift": True} if shift else {})}
+    event = {"type": kind, "value": value, **({"shift": True} if shift else {})}
     return (operator, event, {"properties": list(properties.items())})
 
 
@@ -36,6 +36,9 @@ class PalpateTool(bpy.types.WorkSpaceTool):
     bl_keymap = (
         _key("LEFTMOUSE", "palpate.stroke"),
         _key("LEFTMOUSE", "palpate.stroke", shift=True, outward=True),
+        # A drag that meets nothing soft: Object Mode would move what is selected by it.
+        _key("LEFTMOUSE", "view3d.select_box", value="CLICK_DRAG", mode="SET"),
+        _key("LEFTMOUSE", "view3d.select_box", shift=True, value="CLICK_DRAG", mode="ADD"),
         _key("F", "palpate.stroke_size", what="RADIUS"),
         _key("F", "palpate.stroke_size", shift=True, what="STRENGTH"),
         ("palpate.hover", {"type": "MOUSEMOVE", "value": "ANY", "any": True}, None),

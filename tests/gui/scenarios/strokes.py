@@ -68,6 +68,26 @@ def every_kind_of_stroke_is_kept_and_escape_restores(stage: Stage) -> Wait:
         cube = bpy.data.objects["Cube"]
 
 
+def a_drag_beside_the_object_selects_and_moves_nothing(stage: Stage) -> Wait:
+    cube = yield from _soft_default_cube(stage)
+    _choose_tool(stage)
+    with stage.view():
+        bpy.ops.view3d.view_axis(type="FRONT")
+    yield 0.5
+    beside, across = stage.pixel((-1.6, 0.0, 1.4)), stage.pixel((0.0, 0.0, 0.0))
+    others = [one for one in bpy.context.view_layer.objects if one != cube]
+    for name, held in (("a-box", False), ("more", True)):
+        for one in others:
+            one.select_set(held)
+        cube.select_set(not held)
+        yield from stage.drag([beside, across], shift=held)
+        yield from stage.picture(f"{name}-is-selected")
+        assert cube.select_get(), f"{name}: what the box met is not selected"
+        assert all(one.select_get() == held for one in others), name
+    assert not any(cube.location), f"it was moved to {cube.location}"
+    assert not kept(cube)
+
+
 def a_push_goes_along_the_surface_with_ctrl(stage: Stage) -> Wait:
     cube = yield from _soft_default_cube(stage)
     _choose_tool(stage)
