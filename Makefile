@@ -175,22 +175,44 @@ $(BLENDERS:%=test-addon-%): test-addon-%: .venv-bpy-%/.installed build/packages/
 # Under wine, in a root folder outside of the checkout, which is made if it is not there: 3 GB, as root.
 WINDOWS_ROOT ?= /var/tmp/palpate-windows
 WINDOWS_TESTS ?= tests/core tests/cli tests/simulated tests/servo
+# Those that wait for nothing in real time, in two minutes.
+WINDOWS_SHORT_TESTS := tests/simulated tests/core/files/windows tests/core/body/test_mapped_body.py \
+  tests/core/contact/test_same_on_every_system.py
+WINDOWS_ADDON_TESTS ?= tests/addon
 WINDOWS_WHEELS := build/servo-of-windows
+WINDOWS_PACKAGES := build/packages-windows
 
 $(WINDOWS_WHEELS)/.built: $(NATIVE_SOURCES) $(VENV)/.installed
 	$(BIN)/python release/compile_servo.py windows-x64 --features python,harness --output $(@D)
 	touch $@
 
-.PHONY: test-windows
-test-windows: $(WINDOWS_WHEELS)/.built | build/reports ## servo, core and command line in the Python of Windows, under wine
+$(WINDOWS_PACKAGES)/.made: $(NATIVE_SOURCES) $(EXTENSION_SOURCES) $(VENV)/.installed | $(BPY_VENV)/.installed
+	$(BIN)/python release/package_all.py windows-x64 --blender $(BPY_VENV) --output $(@D)
+	touch $@
+
+.PHONY: windows-root
+windows-root:
 	release/windows/make_root.sh $(WINDOWS_ROOT)
+
+.PHONY: test-windows
+test-windows: test-windows-native test-windows-python test-windows-addon ## all of it for Windows, under wine; see docs/releasing.md
+
+.PHONY: test-windows-native
+test-windows-native: windows-root | build/reports ## the servo's own tests, under wine
+	release/windows/test_native.sh $(WINDOWS_ROOT) $(REPORT)
+
+.PHONY: test-windows-python
+test-windows-python: windows-root $(WINDOWS_WHEELS)/.built | build/reports ## servo, core, simulated devices and command line in the Python of Windows, under wine
 	PYTHON=$(BIN)/python release/windows/test.sh $(WINDOWS_ROOT) $(WINDOWS_WHEELS)/*.whl 313 $(WINDOWS_TESTS) $(REPORT)
 
+.PHONY: test-windows-shortly
+test-windows-shortly: windows-root $(WINDOWS_WHEELS)/.built | build/reports ## of these, what does not depend on time
+	PYTHON=$(BIN)/python release/windows/test.sh $(WINDOWS_ROOT) $(WINDOWS_WHEELS)/*.whl 313 $(WINDOWS_SHORT_TESTS) $(REPORT)
+
 .PHONY: test-windows-addon
-test-windows-addon: $(VENV)/.installed | build/reports ## the package for Windows (make package-all) in Blender as a module, under wine
-	release/windows/make_root.sh $(WINDOWS_ROOT)
+test-windows-addon: windows-root $(WINDOWS_PACKAGES)/.made | build/reports ## the package in Blender as a module for Windows, under wine
 	PYTHON=$(BIN)/python release/windows/test_addon.sh $(WINDOWS_ROOT) \
-	  build/packages-all/palpate-[0-9]*-windows_x64.zip 313 5.2.3 tests/addon $(REPORT)
+	  $(WINDOWS_PACKAGES)/palpate-[0-9]*-windows_x64.zip 313 5.2.3 $(WINDOWS_ADDON_TESTS) $(REPORT)
 
 # Compiles without linking, for those systems whose standard library rustup has put here.
 .PHONY: check-systems

@@ -21,6 +21,7 @@ from package_all import table
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 REPORTS = REPOSITORY / "build" / "reports"
+WINDOWS = ("native", "python", "addon")
 HEADINGS = ("what", "outcome", "minutes", "closing line")
 
 
@@ -60,7 +61,7 @@ def steps() -> list[Step]:
         *map(_make, ("lint", "test-native", "check-systems", "package-all")),
         *map(_make, ("test-core", "test-servo", "test-gui", "test-at-length", "demo")),
         *(_make(f"test-addon-{blender.version}") for blender in blenders()),
-        *(_make(target, under_wine) for target in ("test-windows", "test-windows-addon")),
+        *(_make(f"test-windows-{part}", under_wine) for part in WINDOWS),
     ]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import time
 from typing import TYPE_CHECKING, Any
@@ -10,6 +11,7 @@ import pytest
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from pathlib import Path
 
 # One thread for BLAS: results do not depend on the number of cores, and the servo keeps its own.
 for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
@@ -32,3 +34,16 @@ def eventually() -> Callable[..., Any]:
         return value
 
     return wait
+
+
+@pytest.fixture
+def link() -> Callable[[Path, Path], None]:
+    """Make a symbolic link at a place; skips where there are none (wine has none)."""
+
+    def make(place: Path, leads_to: Path) -> None:
+        with contextlib.suppress(OSError):
+            place.symlink_to(leads_to)
+        if not place.is_symlink():
+            pytest.skip("no symbolic links here")
+
+    return make

@@ -17,7 +17,7 @@ LAYERS = {
 ROOMS_OF_PYTHON = """
 core/sentence.py core/errors.py core/progress.py core/quantities.py
 core/machine
-core/files
+core/files/windows core/files
 core/mesh/formats core/mesh
 core/law
 core/stiffness

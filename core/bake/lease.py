@@ -18,7 +18,7 @@ from pathlib import Path
 
 from ..files.atomic_file import atomic_file, refuse_unwritable
 from ..files.held_lock import abandoned, hold, is_same_file
-from ..files.patience import remove_file
+from ..files.windows.patience import remove_file
 
 PREFIX = ".palpate-bake-"
 

@@ -39,6 +39,8 @@ from ..compliance.protocol import Compliance
 from ..errors import BodyFileError, PalpateError
 from ..files.atomic_file import atomic_file
 from ..files.npz_archive import Archive, ArchiveError, opened, write_arrays
+from ..files.windows.long_path import reaching
+from ..files.windows.shared_reading import open_shared
 from ..mesh.fit import Fit
 from ..mesh.tet_mesh import TetMesh, young_scale_checked
 from ..stiffness.assembly import lame_parameters
@@ -56,9 +58,8 @@ FORMAT = "palpate-body"
 VERSION = 2
 FORMS = tuple(NEEDED_BY_FORM)
 
-# Bytes from which tables are memory-mapped. Not on Windows, where a mapped file can be neither
-# replaced nor deleted: a new bake would fail while the old body is in use.
-MAPPED_FROM_BYTES = 64_000_000 if os.name == "posix" else None
+MAPPED_FROM_BYTES = 64_000_000
+"""Tables from here on are memory-mapped."""
 
 
 def save(body: SoftBody, path: str | os.PathLike[str]) -> None:
@@ -126,11 +127,11 @@ def load(
         Missing, truncated, damaged, foreign, or of another version. Names the file.
     """
     source = Path(path)
-    if not source.exists():
+    if not reaching(source).exists():
         raise BodyFileError(
             "{source}: there is no such body file; bake the mesh first", source=source
         )
-    if not source.is_file():
+    if not reaching(source).is_file():
         raise BodyFileError(
             "{path}: is a folder, a device or a pipe; give an ordinary file", path=source
         )
@@ -149,7 +150,7 @@ def adopt(finished: Path, target: Path) -> None:
     UnwritableError
         The target cannot be written; nothing is left there.
     """
-    with atomic_file(target, make_folders=True) as file, finished.open("rb") as source:
+    with atomic_file(target, make_folders=True) as file, open_shared(finished) as source:
         shutil.copyfileobj(source, file)
 
 

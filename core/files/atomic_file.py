@@ -13,7 +13,9 @@ from typing import IO
 
 from ..errors import PalpateError
 from .held_lock import abandoned, hold, is_same_file
-from .patience import patiently, remove_file
+from .windows.long_path import reaching
+from .windows.patience import remove_file
+from .windows.set_aside import sweep_aside, take_place
 
 UNFINISHED = ".tmp"
 UNFINISHED_WORD = re.compile(r"\.[0-9a-f]{8}\.tmp")
@@ -32,10 +34,11 @@ def refuse_unwritable(target: Path) -> None:
         The target is a folder or a device, or its folder cannot be made or written.
     """
     target = _followed(target)
-    folder = next(parent for parent in target.parents if parent.exists())
-    if target.is_dir():
+    found = reaching(target)
+    folder = next(parent for parent in found.parents if parent.exists())
+    if found.is_dir():
         raise UnwritableError("{target}: is a folder; name a file in it", target=target)
-    if target.exists() and not target.is_file():
+    if found.exists() and not found.is_file():
         raise UnwritableError("{target}: is no ordinary file; choose another name", target=target)
     if not folder.is_dir():
         raise UnwritableError(
@@ -83,18 +86,19 @@ def atomic_file(
     """
     refuse_unwritable(target)
     target = _followed(target) if follows_links else target
+    place = reaching(target)
     unfinished = None
     try:
         if make_folders:
-            target.parent.mkdir(parents=True, exist_ok=True)
-        _sweep(target)
-        unfinished, begun = _begun(target)
+            place.parent.mkdir(parents=True, exist_ok=True)
+        sweep_aside(place.parent)
+        _sweep(place)
+        unfinished, begun = _begun(place)
         with begun as file:
             yield file
             file.flush()
             os.fsync(file.fileno())
-        begun_file = unfinished
-        patiently(lambda: begun_file.replace(target))
+        take_place(unfinished, place)
     except OSError as problem:
         raise UnwritableError(
             "{target}: cannot be written ({reason}); choose a folder you may write to, with "
@@ -129,4 +133,4 @@ def _sweep(target: Path) -> None:
 
 def _followed(target: Path) -> Path:
     # Before Python 3.13 Path.resolve raises on circular links.
-    return Path(os.path.realpath(target))
+    return Path(os.path.realpath(target)) if target.is_symlink() else target.absolute()

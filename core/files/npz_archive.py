@@ -7,6 +7,7 @@ so that a large one can be memory-mapped instead of read. ``numpy.load`` reads b
 from __future__ import annotations
 
 import mmap
+import os
 import struct
 import zipfile
 from collections.abc import Iterator, Mapping
@@ -21,6 +22,7 @@ from numpy.typing import NDArray
 
 from ..errors import PalpateError
 from .npz_members import MOST_HEAD_BYTES, MembersError, array_head, head_of, listed
+from .windows.shared_reading import open_shared
 
 # Alignment to which numpy pads the header of an array.
 ALIGNMENT = 64
@@ -116,9 +118,18 @@ class Archive:
                 path=self._path,
                 name=name,
             )
-        mapping = mmap.mmap(self._stream.fileno(), 0, access=mmap.ACCESS_READ)
+        mapping = _mapped(self._stream)
         array = np.frombuffer(mapping, dtype, count, first).reshape(shape)
         return MappedArray(array, mapping, end)
+
+
+def _mapped(stream: IO[bytes]) -> mmap.mmap:
+    """The whole file, mapped; on Windows that would leave the stream's descriptor at its start."""
+    descriptor = stream.fileno()
+    place = os.lseek(descriptor, 0, os.SEEK_CUR)
+    mapping = mmap.mmap(descriptor, 0, access=mmap.ACCESS_READ)
+    os.lseek(descriptor, place, os.SEEK_SET)
+    return mapping
 
 
 @contextmanager
@@ -131,7 +142,7 @@ def opened(path: Path) -> Iterator[Archive]:
         It cannot be opened, or is found damaged, truncated or no archive within the block.
     """
     try:
-        stream = path.open("rb")
+        stream = open_shared(path)
     except OSError as problem:
         raise ArchiveError(
             "{path}: cannot be opened ({reason})", path=path, reason=problem.strerror
@@ -174,8 +185,8 @@ def read_array(path: Path) -> NDArray[Any]:
         It cannot be opened, is no array, one of objects, or not as long as its shape.
     """
     try:
-        with path.open("rb") as stream:
-            head_of(stream.read(MOST_HEAD_BYTES), path.stat().st_size, "it")
+        with open_shared(path) as stream:
+            head_of(stream.read(MOST_HEAD_BYTES), os.fstat(stream.fileno()).st_size, "it")
             stream.seek(0)
             array: NDArray[Any] = npy.read_array(stream, allow_pickle=False)
     except (OSError, MembersError, ValueError) as problem:

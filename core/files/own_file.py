@@ -8,6 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
+from .windows.long_path import reaching
+from .windows.shared_reading import open_shared
+
 # The first array of an archive by `npz_archive.write_arrays` ends within these bytes.
 HEAD_BYTES = 512
 ARCHIVE_MAGIC = b"PK\x03\x04"
@@ -18,7 +21,7 @@ FIRST_MEMBER_AT = 30
 def is_ordinary(path: Path) -> bool:
     """Whether a file is there that is neither a link nor a folder, device or pipe."""
     try:
-        return stat.S_ISREG(os.lstat(path).st_mode)
+        return stat.S_ISREG(os.lstat(reaching(path)).st_mode)
     except (OSError, ValueError):
         return False
 
@@ -31,7 +34,7 @@ def is_own(path: Path, word: str) -> bool:
     if not is_ordinary(path):
         return False
     try:
-        with path.open("rb") as file:
+        with open_shared(path) as file:
             head = file.read(HEAD_BYTES)
     except OSError:
         return False
@@ -42,7 +45,7 @@ def is_own(path: Path, word: str) -> bool:
 
 def is_free(path: Path, word: str) -> bool:
     """Whether a file of Palpate's may be written here: nothing is there, or such a file."""
-    return not os.path.lexists(path) or is_own(path, word)
+    return not os.path.lexists(reaching(path)) or is_own(path, word)
 
 
 def stays_within(folder: Path, parent: Path) -> bool:

@@ -12,7 +12,7 @@ from types import TracebackType
 from typing import Self
 
 from .held_lock import abandoned, hold, is_same_file
-from .patience import remove_folder
+from .windows.patience import remove_folder
 
 PREFIX = "palpate-"
 LOCK_FILE = "in-use.lock"

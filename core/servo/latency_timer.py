@@ -123,7 +123,7 @@ def remedy(path: str = "", system: str = sys.platform) -> Sentence:
     name = Path(os.path.realpath(path)).name if path else "ttyUSB0"
     return Sentence(
         "run 'echo 1 | sudo tee {timer}', or for good put {rule} into a file in /etc/udev/rules.d",
-        timer=_DRIVER / name / "latency_timer",
+        timer=(_DRIVER / name / "latency_timer").as_posix(),
         rule='ACTION=="add", SUBSYSTEM=="usb-serial", DRIVER=="ftdi_sio", ATTR{latency_timer}="1"',
     )
 

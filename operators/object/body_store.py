@@ -24,6 +24,8 @@ from ...core.body.body_name import KEY_LETTERS, body_name, is_body_name
 from ...core.body.soft_body import SoftBody
 from ...core.errors import PalpateError
 from ...core.files.own_file import is_free, is_ordinary, is_own, stays_within
+from ...core.files.windows.long_path import reaching
+from ...core.files.windows.set_aside import discard
 from ..scene.package_preferences import PACKAGE, preferences
 from . import baked_settings, embedded_body
 
@@ -58,7 +60,7 @@ def place_for(thing: bpy.types.Object, key: str) -> Path:
     folder, word = folder_for_new_files(), bpy.path.clean_name(thing.name)
     places = (folder / body_name(word, key, number) for number in itertools.count(1))
     chosen = next(place for place in places if is_free(place, body_file.FORMAT))
-    (_replaced.add if os.path.lexists(chosen) else _replaced.discard)(chosen)
+    (_replaced.add if os.path.lexists(reaching(chosen)) else _replaced.discard)(chosen)
     return chosen
 
 
@@ -158,7 +160,7 @@ def load_file(path: Path, key: str) -> SoftBody:
     try:
         return _with_key(body_file.load(path), key, path)
     except BodyFileError:
-        _damaged[path] = path.stat().st_mtime_ns
+        _damaged[path] = reaching(path).stat().st_mtime_ns
         raise
 
 
@@ -173,7 +175,7 @@ def _with_key(body: SoftBody, key: str, path: Path) -> SoftBody:
 
 def is_known_damaged(path: Path) -> bool:
     """Whether :func:`load` found this file damaged, and it is unchanged since."""
-    return path in _damaged and _damaged[path] == path.stat().st_mtime_ns
+    return path in _damaged and _damaged[path] == reaching(path).stat().st_mtime_ns
 
 
 def restore(thing: bpy.types.Object) -> SoftBody:
@@ -213,7 +215,7 @@ def forget(thing: bpy.types.Object) -> None:
 def _delete(path: Path) -> None:
     """Delete a body file of Palpate's; leave anything else."""
     if is_own(path, body_file.FORMAT):
-        path.unlink()
+        discard(path)
 
 
 def present() -> set[Path]:
@@ -227,7 +229,7 @@ def stamp(thing: bpy.types.Object) -> tuple[Path, int, int] | None:
     path = locate(thing)
     if path is None:
         return None
-    about = path.lstat()
+    about = reaching(path).lstat()
     return path, about.st_ino, about.st_mtime_ns
 
 
@@ -262,7 +264,7 @@ def gather_beside(blend: Path, found: dict[str, Path], *, is_open_file: bool) ->
     """
     for name, source in found.items():
         target = folder_beside(blend) / name
-        if os.path.lexists(target) or not is_own(source, body_file.FORMAT):
+        if os.path.lexists(reaching(target)) or not is_own(source, body_file.FORMAT):
             continue
         body_file.adopt(source, target)
         if is_open_file and source.parent == _unsaved_folder():

@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ...files.patience import remove_folder
+from ...files.windows.patience import remove_folder
 from ...machine.blas_threads import blas_threads
 from ..elimination.numeric import LoadRows
 from ..elimination.surface_columns import SurfaceColumns

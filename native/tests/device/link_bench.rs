@@ -126,7 +126,7 @@ impl Wire for Bench {
     fn waiting(&mut self) -> io::Result<usize> {
         let line = self.line();
         match line.gone {
-            true => Err(io::Error::from_raw_os_error(libc::EIO)),
+            true => Err(io::ErrorKind::BrokenPipe.into()),
             false => Ok(line.to_host.len()),
         }
     }

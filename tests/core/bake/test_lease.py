@@ -6,7 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from palpate.core.bake.lease import lease
-from palpate.core.files import patience
+from palpate.core.files.windows import patience
 
 
 def test_a_lease_is_seen_while_it_is_held(tmp_path):

@@ -39,10 +39,10 @@ def test_what_begins_otherwise_is_not_palpates(tmp_path, content):
     assert not is_own(path, WORD)
 
 
-def test_links_pipes_and_folders_are_not_palpates(cube, tmp_path):
+def test_links_pipes_and_folders_are_not_palpates(cube, tmp_path, link):
     body_file.save(cube, tmp_path / "body.npz")
-    (tmp_path / "link").symlink_to(tmp_path / "body.npz")
-    (tmp_path / "dangling").symlink_to(tmp_path / "nothing")
+    link(tmp_path / "link", tmp_path / "body.npz")
+    link(tmp_path / "dangling", tmp_path / "nothing")
     (tmp_path / "folder").mkdir()
     os.mkfifo(tmp_path / "pipe")
     for name in ("link", "dangling", "folder", "pipe"):
@@ -51,17 +51,17 @@ def test_links_pipes_and_folders_are_not_palpates(cube, tmp_path):
     assert is_free(tmp_path / "nothing", WORD)
 
 
-def test_a_folder_stays_within_its_parent_unless_it_is_a_link_out(tmp_path):
+def test_a_folder_stays_within_its_parent_unless_it_is_a_link_out(tmp_path, link):
     (tmp_path / "scene" / "bodies").mkdir(parents=True)
-    (tmp_path / "scene" / "in").symlink_to(tmp_path / "scene" / "bodies")
-    (tmp_path / "scene" / "out").symlink_to(tmp_path)
+    link(tmp_path / "scene" / "in", tmp_path / "scene" / "bodies")
+    link(tmp_path / "scene" / "out", tmp_path)
     for name, stays in (("bodies", True), ("in", True), ("none yet", True), ("out", False)):
         assert stays_within(tmp_path / "scene" / name, tmp_path / "scene") == stays
 
 
-def test_a_table_replaces_neither_what_a_link_leads_to_nor_another_file(tmp_path):
+def test_a_table_replaces_neither_what_a_link_leads_to_nor_another_file(tmp_path, link):
     (tmp_path / "letter").write_text("dear")
-    (tmp_path / "link.npz").symlink_to(tmp_path / "letter")
+    link(tmp_path / "link.npz", tmp_path / "letter")
     for name in ("link.npz", "letter"):
         with pytest.raises(UnwritableError, match="no table"):
             write_table(tmp_path / name, "softening", KEY, {})
@@ -70,9 +70,9 @@ def test_a_table_replaces_neither_what_a_link_leads_to_nor_another_file(tmp_path
     write_table(tmp_path / "new.npz", "softening", KEY, {"a": np.eye(2)})
 
 
-def test_a_file_may_take_a_links_place(tmp_path):
+def test_a_file_may_take_a_links_place(tmp_path, link):
     (tmp_path / "letter").write_text("dear")
-    (tmp_path / "link").symlink_to(tmp_path / "letter")
+    link(tmp_path / "link", tmp_path / "letter")
     with atomic_file(tmp_path / "link", follows_links=False) as file:
         file.write(b"new")
     assert (tmp_path / "letter").read_text() == "dear"

@@ -117,14 +117,23 @@ def test_the_remedy_is_that_of_the_system(system, words):
     assert words in remedy("/dev/ttyUSB3", system)
 
 
-def test_the_timer_is_read_where_the_driver_tells_it(tmp_path):
+@pytest.fixture
+def driver(tmp_path):
+    """A folder as FTDI's driver shows it, with an adapter at ttyUSB0."""
     (tmp_path / "ttyUSB0").mkdir()
     (tmp_path / "ttyUSB0" / "latency_timer").write_text("16\n")
-    assert latency_timer_ms("/dev/ttyUSB0", tmp_path) == 16
-    by_id = tmp_path / "usb-FTDI-port0"
-    by_id.symlink_to("/dev/ttyUSB0")
-    assert latency_timer_ms(str(by_id), tmp_path) == 16
-    assert latency_timer_ms("/dev/ttyACM0", tmp_path) is None
+    return tmp_path
+
+
+def test_the_timer_is_read_where_the_driver_tells_it(driver):
+    assert latency_timer_ms("/dev/ttyUSB0", driver) == 16
+    assert latency_timer_ms("/dev/ttyACM0", driver) is None
+
+
+def test_the_timer_is_found_by_a_link_to_its_port(driver, link):
+    by_id = driver / "usb-FTDI-port0"
+    link(by_id, Path("/dev/ttyUSB0"))
+    assert latency_timer_ms(str(by_id), driver) == 16
 
 
 linux = pytest.mark.skipif(sys.platform != "linux", reason="a request of Linux")

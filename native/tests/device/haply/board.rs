@@ -144,7 +144,7 @@ impl Wire for Cable {
     fn waiting(&mut self) -> io::Result<usize> {
         let board = self.board();
         match board.gone {
-            true => Err(io::Error::from_raw_os_error(libc::EIO)),
+            true => Err(io::ErrorKind::BrokenPipe.into()),
             false => Ok(board.to_host.len()),
         }
     }

@@ -2,7 +2,7 @@
 
 import pytest
 
-from palpate.core.files.patience import PAUSES, patiently, remove_file, remove_folder
+from palpate.core.files.windows.patience import PAUSES, patiently, remove_file, remove_folder
 
 
 class Refusing:
