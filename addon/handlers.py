@@ -14,6 +14,7 @@ from ..operators.bake import bake_session
 from ..operators.carrier import carrier
 from ..operators.layer import live_layer
 from ..operators.object import body_store, kept_body
+from ..operators.place import drawn_meshes
 from ..operators.played import cache_place
 from ..operators.scene import modal_stay
 from ..operators.scene.package_preferences import preferences
@@ -42,6 +43,7 @@ def _forget() -> None:
     body_view.forget()
     live_pressers.forget()
     hull.forget()
+    drawn_meshes.forget()
 
 
 @persistent
@@ -134,6 +136,7 @@ def _end_of_save() -> None:
 def _after_change(_: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     known_status.changed(depsgraph)
     updates = depsgraph.updates
+    drawn_meshes.changed(depsgraph)
     body_view.changed(depsgraph)
     live_pressers.changed(depsgraph)
     if any(update.is_updated_transform for update in updates):
@@ -142,6 +145,7 @@ def _after_change(_: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
 
 @persistent
 def _after_frame_change(_: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+    drawn_meshes.changed(depsgraph)
     live_pressers.changed(depsgraph)
     live_pressers.follow_all(depsgraph)
 

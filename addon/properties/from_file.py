@@ -7,16 +7,22 @@ the file. So they are looked at once, where they come in, and everybody else may
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from typing import Any
 
 import bpy
 
 
-def mend(group: bpy.types.PropertyGroup) -> list[str]:
-    """Give impossible values of a group their defaults; the names of these properties."""
-    properties = [one for one in group.bl_rna.properties if not one.is_readonly]
+def mend(group: bpy.types.PropertyGroup, held: Collection[str]) -> list[str]:
+    """Give impossible values among those ``held`` of a group, by name, their defaults; the names of
+    these properties.
+    """
+    known = group.bl_rna.properties
+    properties = [known[name] for name in held if name in known]
     found = [
-        one.identifier for one in properties if not allows(one, getattr(group, one.identifier))
+        one.identifier
+        for one in properties
+        if not one.is_readonly and not allows(one, getattr(group, one.identifier))
     ]
     for name in found:
         group.property_unset(name)
@@ -25,17 +31,22 @@ def mend(group: bpy.types.PropertyGroup) -> list[str]:
 
 def mend_all() -> None:
     """The same for whatever is open; the console tells of it."""
-    for owner in filter(_has_values, (*bpy.data.objects, *bpy.data.scenes)):
-        if names := mend(owner.palpate):
+    for owner in (*bpy.data.objects, *bpy.data.scenes):
+        held = _held(owner)
+        if held and (names := mend(owner.palpate, held)):
             # A handler has no report.
             print(f"palpate: {owner.name}: impossible values, now as at first: {', '.join(names)}")  # noqa: T201
 
 
-def _has_values(owner: bpy.types.ID) -> bool:
-    """Whether a file holds values of Palpate's for an object or a scene; quickly, for thousands."""
+def _held(owner: bpy.types.ID) -> Collection[str]:
+    """Names of the values of Palpate's that a file holds for an object or a scene: of most there
+    are none, and of thousands all are asked.
+    """
     # Blender 5.0 keeps what extensions define apart from what users do.
-    held = owner.bl_system_properties_get() if bpy.app.version >= (5, 0) else owner
-    return held is not None and bool(held.get("palpate"))
+    kept = owner.bl_system_properties_get() if bpy.app.version >= (5, 0) else owner
+    group = None if kept is None else kept.get("palpate")
+    # A stranger may have put anything there.
+    return list(getattr(group, "keys", tuple)())
 
 
 def allows(one: bpy.types.Property, value: Any) -> bool:

@@ -15,7 +15,7 @@ from ...core.errors import PalpateError
 from ..scene.body_frame import BodyFrame
 from ..scene.drawn_surface import metres_per_unit
 from ..scene.viewport import Viewport
-from . import seen_triangle
+from . import drawn_meshes, seen_triangle
 
 Array = NDArray[np.float64]
 
@@ -23,8 +23,6 @@ Array = NDArray[np.float64]
 SEEN_THROUGH = frozenset({"BOUNDS", "WIRE"})
 # What is hidden lies behind what hides it by more than rounding, as a share of the way to it.
 BEFORE = 1.0 - 1e-5
-# Share of a box by which rounding may put a face beside it.
-MARGIN = 1e-5
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,11 +91,10 @@ class _Met:
 
 def _first_soft(graph: bpy.types.Depsgraph, origin: Array, direction: Array) -> _Met | None:
     first = None
-    for instance in graph.object_instances:
-        thing = instance.object
-        if thing.type != "MESH" or not instance.show_self or not thing.original.palpate.body_key:
+    for thing, placed in drawn_meshes.on_ray(graph, origin, direction):
+        if not thing.original.palpate.body_key:
             continue
-        matrix = np.array(instance.matrix_world)
+        matrix = np.array(placed)
         turn = matrix[:3, :3]
         if not np.linalg.det(turn):
             continue
@@ -119,13 +116,11 @@ def _is_hidden(graph: bpy.types.Depsgraph, eye: Vector, seen: Vector) -> bool:
     """Whether something that is not soft is between an eye and what it sees. Of each such mesh
     Blender keeps a tree, since it does not change while another is pressed.
     """
-    for instance in graph.object_instances:
-        thing = instance.object
-        if thing.type != "MESH" or not instance.show_self or thing.display_type in SEEN_THROUGH:
+    way = np.array(seen - eye)
+    for thing, matrix in drawn_meshes.on_ray(graph, np.array(eye), way, BEFORE):
+        if thing.display_type in SEEN_THROUGH or thing.original.palpate.body_key:
             continue
-        if thing.original.palpate.body_key:
-            continue
-        into = instance.matrix_world.inverted_safe()
+        into = matrix.inverted_safe()
         start = into @ eye
         along = into @ seen - start
         if _meets(thing.bound_box, start, along, BEFORE):
@@ -143,7 +138,7 @@ def _meets(
 ) -> bool:
     """Whether a ray goes through a box of Blender's, no farther than so many of its lengths."""
     enters, leaves = 0.0, farthest
-    margin = MARGIN * math.dist(box[0], box[6])
+    margin = drawn_meshes.MARGIN * math.dist(box[0], box[6])
     for axis in range(3):
         low, high = box[0][axis] - margin - start[axis], box[6][axis] + margin - start[axis]
         if along[axis] == 0.0:
