@@ -17,21 +17,14 @@ STAGES = {
 
 
 def stage(log: str) -> Sentence:
-    """The latest stage named in ``log``, with the pass and worst energy while it improves.
-
-    fTetWild stops once the worst energy has fallen to 10, which is the only progress it shows.
-    """
+    """The latest stage named in ``log``, with the pass while it improves."""
     reached = "reading the mesh"
     for words, meaning in STAGES.items():
         if words in log:
             reached = meaning
     passes = re.findall(r"/ pass (\d+) /", log)
-    energies = re.findall(r"max_energy = ([0-9.e+]+)", log)
-    if reached == "improving tetrahedra" and passes and energies:
+    if reached == "improving tetrahedra" and passes:
         return Sentence(
-            "{stage}, pass {number}, worst energy {energy:.0f} (goal 10)",
-            stage=Sentence(reached),
-            number=int(passes[-1]) + 1,
-            energy=float(energies[-1]),
+            "{stage}, pass {number}", stage=Sentence(reached), number=int(passes[-1]) + 1
         )
     return Sentence(reached)

@@ -12,9 +12,11 @@ from ..scene.drawn_surface import DrawnSurface
 
 # A fingertip, as a share of the body's size: that of the scene at first.
 FINGERTIP = 0.05
-# Faces are divided until they are half of the fingertip's radius: flat ones above that; smooth
-# ones only where a dent would be lost between their vertices.
-FINE, COARSE_SMOOTH = 0.5, 1.0
+# Faces are divided until they are so much of the fingertip's radius: flat ones above that, for a
+# dent stretches them to twice their size; smooth ones only where it would be lost between vertices.
+FINE, COARSE_SMOOTH = 0.3, 1.0
+# Share of the area whose faces are judged; a dent may be anywhere, but few wide ones do not count.
+JUDGED = 0.9
 MOST_FACES = 100_000
 # What may follow divided faces, since it moves flat ones as it moves whole ones, or none. All else
 # would make another shape of them, without any dent: subdivision a sharper one, Lattice a rounder.
@@ -38,7 +40,7 @@ def halvings(thing: bpy.types.Object, surface: DrawnSurface, *, as_seen: bool) -
     if not set(stack.following(thing, made_by)) <= _MAY_FOLLOW or not len(surface.face_starts):
         return 0
     radius = FINGERTIP * float(np.linalg.norm(np.ptp(surface.body, axis=0)))
-    length = _typical_edge(surface)
+    length = _wide_edge(surface)
     if length <= (COARSE_SMOOTH if _is_smooth(thing) else FINE) * radius:
         return 0
     wanted = math.ceil(math.log2(length / (FINE * radius)))
@@ -55,12 +57,12 @@ def _is_smooth(thing: bpy.types.Object) -> bool:
     return bool(2 * np.count_nonzero(smooth) > len(smooth))
 
 
-def _typical_edge(surface: DrawnSurface) -> float:
-    """Edge of a square as wide as the faces in which half of the area is, metres."""
+def _wide_edge(surface: DrawnSurface) -> float:
+    """Edge of a square as wide as the widest of the judged faces, metres."""
     places = surface.body[surface.corners]
     counts = np.diff(surface.face_starts, append=len(surface.corners))
     middles = np.add.reduceat(places, surface.face_starts) / counts[:, None]
     away = np.linalg.norm(places - np.repeat(middles, counts, axis=0), axis=1)
     lengths = np.sort(math.sqrt(2.0) * np.maximum.reduceat(away, surface.face_starts))
     share = np.cumsum(lengths**2)
-    return float(lengths[np.searchsorted(share, 0.5 * share[-1])])
+    return float(lengths[np.searchsorted(share, JUDGED * share[-1])])

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 
 from ..reporting.translated import reported
 from . import layers
-from .layer_operator import OnLayers, plain_layers, shared_refusal
+from .layer_operator import FINER, OnLayers, plain_layers, shared_refusal
 
 
 class PALPATE_OT_apply_layers(OnLayers, bpy.types.Operator):
@@ -34,6 +34,8 @@ class PALPATE_OT_apply_layers(OnLayers, bpy.types.Operator):
         thing.data.update()
         count = len(shown)
         self.report({"INFO"}, reported("{count} layers are in the mesh now", count=count))
+        if any(layer.is_finer for layer in shown):
+            self.report({"WARNING"}, reported(FINER))
 
 
 def _move(mesh: bpy.types.Mesh, moved: NDArray[np.float32]) -> None:

@@ -5,7 +5,7 @@ import bpy
 from ..reporting.translated import reported
 from ..scene.drawn_surface import rest_coordinates
 from . import layers
-from .layer_operator import OnLayers, plain_layers, shared_refusal
+from .layer_operator import FINER, OnLayers, plain_layers, shared_refusal
 
 
 class PALPATE_OT_convert_layers(OnLayers, bpy.types.Operator):
@@ -38,6 +38,8 @@ class PALPATE_OT_convert_layers(OnLayers, bpy.types.Operator):
         thing.data.update()
         count = len(found)
         self.report({"INFO"}, reported("{count} layers are shape keys now", count=count))
+        if any(layer.is_finer for layer in found):
+            self.report({"WARNING"}, reported(FINER))
 
 
 classes = (PALPATE_OT_convert_layers,)

@@ -12,7 +12,12 @@ from ...core.errors import PalpateError
 from ...core.sentence import Sentence
 from ..reporting.acting import Acting
 from ..scene import curves
+from ..scene.drawn_surface import rest_coordinates
 from . import layers, live_layer
+
+FINER = "The dents were finer than the mesh is; undo, and Object > Convert > Mesh keeps them so"
+# Of a dent's depth that the mesh's own vertices must have, so that it counts as theirs.
+SHOWN = 0.5
 
 
 class OnLayers(Acting):
@@ -51,6 +56,8 @@ class PlainLayer:
     modifier: bpy.types.NodesModifier
     displacement: NDArray[np.float32]
     strength: float
+    is_finer: bool
+    """Whether what is seen of it has vertices between those."""
 
 
 def plain_layers(thing: bpy.types.Object) -> list[PlainLayer]:
@@ -59,17 +66,11 @@ def plain_layers(thing: bpy.types.Object) -> list[PlainLayer]:
     Raises
     ------
     PalpateError
-        A layer is of another mesh, has lost its attribute, or its strength is animated.
+        A layer is of other vertices or lost between those of the mesh, has lost its attribute,
+        or its strength is animated.
     """
     found = []
     for layer in layers.kept_of(thing):
-        if layers.carrier_of(layer) is not None:
-            raise PalpateError(
-                "{name}: '{layer}' is of the mesh that its modifiers make; Object > Convert > Mesh "
-                "makes what is seen the mesh",
-                name=thing.name,
-                layer=layer.name,
-            )
         displacement = layers.displacement(thing, layer)
         if displacement is None:
             raise PalpateError(
@@ -83,5 +84,30 @@ def plain_layers(thing: bpy.types.Object) -> list[PlainLayer]:
                 name=thing.name,
                 layer=layer.name,
             )
-        found.append(PlainLayer(layer, displacement.ravel(), layers.strength(layer)))
+        own, is_finer = displacement, layers.carrier_of(layer) is not None
+        if is_finer:
+            own = displacement[: len(thing.data.vertices)]
+            _refuse_lost(thing, layer, displacement, own)
+        found.append(PlainLayer(layer, own.ravel(), layers.strength(layer), is_finer))
     return found
+
+
+def _refuse_lost(
+    thing: bpy.types.Object,
+    layer: bpy.types.NodesModifier,
+    seen: NDArray[np.float32],
+    own: NDArray[np.float32],
+) -> None:
+    """Refuse a layer of a carrier, (m, 3), that the mesh's own vertices, (p, 3), cannot show."""
+    # Faces that are divided keep the numbers of their corners.
+    fine, rest = rest_coordinates(layers.mesh_of(thing, layer)), rest_coordinates(thing.data)
+    is_divided = len(fine) >= len(rest) and np.allclose(
+        fine[: len(rest)], rest, rtol=0.0, atol=1e-6
+    )
+    if not is_divided or np.abs(own).max() < SHOWN * np.abs(seen).max():
+        raise PalpateError(
+            "{name}: '{layer}' needs other vertices than the mesh's own; Object > Convert > Mesh "
+            "makes what is seen the mesh",
+            name=thing.name,
+            layer=layer.name,
+        )
