@@ -14,14 +14,12 @@ from ..operators.bake import (
     update_pins,
 )
 from ..operators.device import refresh_devices
-from ..operators.layer import apply_layers, convert_layers
+from ..operators.kept import animate_layers, apply_layers, convert_layers, remove_layer
 from ..operators.press import (
     add_press_rig,
-    animate_layers,
     pinch,
     press,
     record,
-    remove_layer,
     save_recording,
     switch_force,
 )

@@ -39,6 +39,7 @@ simulated/attack/virtual simulated/attack/real simulated/attack/port simulated/a
 operators/reporting
 operators/scene
 operators/layer
+operators/kept
 operators/place
 operators/carrier
 operators/pins

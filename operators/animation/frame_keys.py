@@ -5,8 +5,8 @@ from __future__ import annotations
 import bpy
 
 from ...core.errors import PalpateError
+from ..kept.layer_operator import shared_refusal
 from ..layer import layers
-from ..layer.layer_operator import shared_refusal
 from ..object.drawn_body import DrawnBody
 from ..scene import curves
 from .pressed_frames import PressedFrame

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from ...core.errors import PalpateError
 from ...core.sentence import Sentence
+from ..layer import layers, live_layer
 from ..reporting.acting import Acting
 from ..scene import curves
 from ..scene.drawn_surface import rest_coordinates
-from . import layers, live_layer
 
 FINER = "The dents were finer than the mesh is; undo, and Object > Convert > Mesh keeps them so"
 # Of a dent's depth that the mesh's own vertices must have, so that it counts as theirs.

@@ -2,9 +2,9 @@
 
 import bpy
 
+from ..layer import layers
 from ..reporting.translated import reported
 from ..scene.drawn_surface import rest_coordinates
-from . import layers
 from .layer_operator import FINER, OnLayers, plain_layers, shared_refusal
 
 

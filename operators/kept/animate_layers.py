@@ -6,9 +6,9 @@ import bpy
 
 from ...core.errors import PalpateError
 from ..layer import layers
-from ..layer.layer_operator import OnLayers
 from ..reporting.translated import reported
 from ..scene import curves
+from .layer_operator import OnLayers
 
 FRAMES_A_DENT = 12
 

@@ -6,7 +6,7 @@ import bpy
 
 from ...core.errors import PalpateError
 from ..layer import layers
-from ..layer.layer_operator import OnLayers
+from .layer_operator import OnLayers
 
 
 class PALPATE_OT_remove_layer(OnLayers, bpy.types.Operator):

@@ -4,8 +4,8 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ..layer import layers
 from ..reporting.translated import reported
-from . import layers
 from .layer_operator import FINER, OnLayers, plain_layers, shared_refusal
 
 

@@ -1,0 +1,1 @@
+"""Operators on kept layers: what becomes of them."""
