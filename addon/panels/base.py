@@ -2,6 +2,9 @@
 
 import bpy
 
+from ...core.softness.scales.materials import MATERIALS
+from ...operators.bake.make_soft import suited
+from ...operators.reporting.translated import shown
 from ...operators.session import press_session
 
 NAME_SHARE = 0.55
@@ -50,3 +53,16 @@ def draw_box(
     box.label(text=title, icon=icon)
     draw_rows(box, rows)
     return box
+
+
+def draw_material(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw the material of the active object: the chosen one, or that which Make Soft will choose
+    by its size.
+    """
+    thing = context.object
+    suits = suited(thing, context.scene)
+    if suits is None:
+        layout.prop(thing.palpate, "material", text="")
+        return
+    text = shown("{material}, by size", material=shown(MATERIALS[suits].name))
+    layout.prop_menu_enum(thing.palpate, "material", text=text, translate=False)

@@ -18,6 +18,7 @@ from ...operators.session.press_state import Phase
 from .. import known_status
 from ..overlay.reading import readings
 from . import cost
+from .base import draw_material
 from .sentence import say
 
 # Coloured squares: green, orange and red mean motors on, about to come, and something wrong.
@@ -106,7 +107,7 @@ def draw_idle(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     if refusal:
         say(layout, context, refusal, "INFO")
         return
-    layout.prop(thing.palpate, "material", text="")
+    draw_material(layout, context)
     column = layout.column(align=True)
     column.scale_y = 1.5
     status = known_status.body_status(thing, context.scene)

@@ -7,6 +7,7 @@ import bpy
 from ...operators.layer import layers
 from ...operators.object import soft_object
 from ...operators.reporting.translated import shown
+from ..panels.base import draw_material
 from . import surface_circle
 
 IDNAME = "palpate.tool"
@@ -51,7 +52,7 @@ class PalpateTool(bpy.types.WorkSpaceTool):
         """Draw the settings in the header of the tool, or in its panel."""
         chosen, thing = context.scene.palpate, context.object
         if thing is not None and not soft_object.refusal(thing) and not thing.palpate.body_key:
-            layout.prop(thing.palpate, "material", text="")
+            draw_material(layout, context)
             layout.operator("palpate.make_soft", icon="MOD_SOFT")
             return
         layout.prop(chosen, "stroke", text="")

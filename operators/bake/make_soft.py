@@ -47,7 +47,19 @@ class BakingOperator(Acting):
 
     def _start(self, context: bpy.types.Context) -> set[str]:
         thing = context.object
-        self._session = bake_session.start(thing, context.scene, rebuild=self.rebuild, by_hand=True)
+        # A large mesh takes a second to read.
+        context.window.cursor_modal_set("WAIT")
+        try:
+            self._begin(thing, context.scene)
+        finally:
+            context.window.cursor_modal_restore()
+        self._progress = ModalProgress()
+        self._progress.begin(self, context, 1 / POLLS_PER_SECOND)
+        self._show(context)
+        return {"RUNNING_MODAL"}
+
+    def _begin(self, thing: bpy.types.Object, scene: bpy.types.Scene) -> None:
+        self._session = bake_session.start(thing, scene, rebuild=self.rebuild, by_hand=True)
         if self._session.held_by_core:
             self.report(
                 {"INFO"},
@@ -57,10 +69,6 @@ class BakingOperator(Acting):
                     name=thing.name,
                 ),
             )
-        self._progress = ModalProgress()
-        self._progress.begin(self, context, 1 / POLLS_PER_SECOND)
-        self._show(context)
-        return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         try:
@@ -172,20 +180,26 @@ class PALPATE_OT_make_soft(BakingOperator, bpy.types.Operator):
             )
 
 
-def suit_to_size(thing: bpy.types.Object, scene: bpy.types.Scene) -> float | None:
-    """Choose the material of an object without a body by its size, where nobody has said what it is
-    made of; returns the size, metres, or None where nothing was changed.
+def suited(thing: bpy.types.Object, scene: bpy.types.Scene) -> str | None:
+    """The material that Make Soft chooses by an object's size: where nobody has said what it is
+    made of, and it has no body yet. None elsewhere.
     """
     settings = thing.palpate
     said = ("material", "young_modulus", "poisson_ratio")
     if settings.body_key or any(map(settings.is_property_set, said)):
         return None
-    size = metres_per_unit(scene) * float(thing.dimensions.length)
-    suits = material_for(size)
-    if suits == settings.material:
+    return material_for(metres_per_unit(scene) * float(thing.dimensions.length))
+
+
+def suit_to_size(thing: bpy.types.Object, scene: bpy.types.Scene) -> float | None:
+    """Choose the material of an object without a body by its size, where nobody has said what it is
+    made of; returns the size, metres, or None where nothing was changed.
+    """
+    settings, suits = thing.palpate, suited(thing, scene)
+    if suits is None or suits == settings.material:
         return None
     settings.material = suits
-    return size
+    return metres_per_unit(scene) * float(thing.dimensions.length)
 
 
 classes = (PALPATE_OT_make_soft,)

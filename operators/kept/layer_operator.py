@@ -24,9 +24,14 @@ class OnLayers(Acting):
     """Mixin for an operator on an object with kept layers that is not pressed now."""
 
     @classmethod
+    def layers_for(cls, thing: bpy.types.Object) -> list[bpy.types.NodesModifier]:
+        """Layers that the operator can do something with."""
+        return layers.kept_of(thing)
+
+    @classmethod
     def refusal(cls, context: bpy.types.Context) -> str:
         thing = context.object
-        if thing is None or thing.type != "MESH" or not layers.kept_of(thing):
+        if thing is None or thing.type != "MESH" or not cls.layers_for(thing):
             return "Select a mesh object with layers; keep a press to make one"
         if not thing.is_editable or not thing.data.is_editable:
             return Sentence(

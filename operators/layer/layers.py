@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..scene import curves
-from . import modifier_inputs, stack
+from . import modifier_inputs, remains, stack
 from .layer_groups import CARRIER, DISPLACEMENT, LEVEL, STRENGTH, TRACTION, Kind, group_of, kind_of
 
 KEPT_NAME = "Press"
@@ -83,7 +83,11 @@ def add(thing: bpy.types.Object, name: str) -> bpy.types.NodesModifier:
 
     Blender gives another name where this one is taken.
     """
-    attribute = drawn_mesh(thing).attributes.new(name, "FLOAT_VECTOR", "POINT")
+    mesh = drawn_mesh(thing)
+    remains.sweep(mesh)
+    attribute = mesh.attributes.new(name, "FLOAT_VECTOR", "POINT")
+    if name != LIVE_NAME:
+        remains.note(mesh, attribute.name)
     return add_modifier(thing, name, kind_for(thing), {DISPLACEMENT: attribute.name})
 
 
@@ -159,6 +163,7 @@ def rename(thing: bpy.types.Object, layer: bpy.types.NodesModifier, name: str) -
         traction = mesh_of(thing, layer).attributes.get(attribute.name + TRACTION)
         attribute.name = name
         modifier_inputs.set_value(layer, DISPLACEMENT, attribute.name)
+        remains.note(mesh_of(thing, layer), attribute.name)
         if traction is not None:
             traction.name = attribute_name(layer) + TRACTION
     layer.name = name
@@ -166,20 +171,12 @@ def rename(thing: bpy.types.Object, layer: bpy.types.NodesModifier, name: str) -
 
 def remove(thing: bpy.types.Object, layer: bpy.types.NodesModifier) -> None:
     """Remove a layer, its animation, and its attributes where no other layer shows them."""
-    mesh, name = mesh_of(thing, layer), attribute_name(layer)
+    mesh = mesh_of(thing, layer)
+    remains.note(mesh, attribute_name(layer))
     # A layer that takes its name later would move by them.
     curves.remove(thing, strength_path(layer))
     remove_modifier(thing, layer)
-    shown = {
-        attribute_name(other)
-        for user in bpy.data.objects
-        for other in layers_of(user)
-        if mesh_of(user, other) == mesh
-    }
-    for one in (name, name + TRACTION):
-        attribute = mesh.attributes.get(one)
-        if attribute is not None and name not in shown:
-            mesh.attributes.remove(attribute)
+    remains.sweep(mesh)
     mesh.update_tag()
 
 

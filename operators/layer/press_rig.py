@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from . import layers
+from . import layers, remains
 from .layer_groups import AXES, DISPLACEMENT, Kind
 
 STEM = "Push"
@@ -21,12 +21,14 @@ def add(thing: bpy.types.Object, answers: NDArray[np.float32]) -> bpy.types.Node
     Y and Z; its sliders begin at 0.
     """
     mesh = layers.drawn_mesh(thing)
+    remains.sweep(mesh)
     name = layers.free_name(thing, mesh, STEM)
     for axis, answer in zip(AXES, answers, strict=True):
         attribute = mesh.attributes.new(f"{name} {axis}", "FLOAT_VECTOR", "POINT")
         if attribute.name != f"{name} {axis}":
             raise RuntimeError(f"{mesh.name} has an attribute {name} {axis}")
         attribute.data.foreach_set("vector", np.ascontiguousarray(answer, np.float32).ravel())
+    remains.note(mesh, name)
     mesh.update_tag()
     rig = layers.add_modifier(thing, name, Kind.RIG, {DISPLACEMENT: name})
     rig.show_expanded = True

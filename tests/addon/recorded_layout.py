@@ -63,6 +63,11 @@ class RecordedLayout:
         assert value in data.bl_rna.properties[name].enum_items
         self.prop(data, name)
 
+    def prop_menu_enum(self, data: Any, name: str, *, text: str, **_: Any) -> None:
+        """A menu with a text of its own."""
+        self.prop(data, name)
+        self.written.lines.append(text)
+
     def prop_search(self, data: Any, name: str, place: Any, names: str, **_: Any) -> None:
         """A property with a list to choose from."""
         assert hasattr(place, names)

@@ -23,6 +23,9 @@ class PALPATE_PT_layers(PalpatePanel, bpy.types.Panel):
         thing = context.object
         column = self.layout.column(align=True)
         for layer in layers.layers_of(thing):
+            if layer.name == layers.LIVE_NAME:
+                # The press itself, which keeps it or takes it away.
+                continue
             row = column.row(align=True)
             row.prop(layer, "show_viewport", text="")
             modifier_inputs.draw_slider(row, layer, STRENGTH, layer.name)

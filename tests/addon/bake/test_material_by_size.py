@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import bpy
 import pytest
+from recorded_layout import drawn
 from soft_scene import cube, part, soft_cube
 
 
@@ -41,3 +42,12 @@ def test_a_soft_object_keeps_its_material(palpate):
     thing = soft_cube()
     assert suit(thing) is None
     assert thing.palpate.material == "PLUSH"
+
+
+def test_the_panel_says_beforehand_what_make_soft_will_choose(palpate):
+    panel = part("addon.panels.sidebar").PALPATE_PT_main
+    thing = cube(0.02)
+    assert "silicone" in drawn(panel, thing).text
+    assert "by size" in drawn(panel, thing).text
+    suit(thing)
+    assert "by size" not in drawn(panel, thing).text
