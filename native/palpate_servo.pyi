@@ -647,8 +647,10 @@ class Servo:
         """Prepare a servo; ValueError for settings that cannot be, a rate beyond 100 to 8000 Hz or
         limits without sense.
 
-        max_force N, max_slew N/s, max_speed (device) and glide_speed (pointer) m/s. On a body
-        without a compliance both modes are the paper's.
+        max_force N, max_slew N/s, ramp_seconds 0.05 to 3600, max_speed (device) and glide_speed
+        (pointer) m/s. record_seconds, 0 to 60, is how long samples() keeps what is not read: its
+        memory, 144 bytes a tick and finger, is taken at the start. On a body without a compliance
+        both modes are the paper's.
         """
 
     def set(self, settings: ServoSettings) -> None:

@@ -81,7 +81,8 @@ def servo_on(
     settings : to begin with.
     rate_hz : 100 to 8000.
     max_force : newton; the clamp on the force of any device, unless ``settings`` have one.
-    record_seconds : length of samples kept until they are read.
+    record_seconds : length of samples kept until they are read, 0 to 60; their memory is taken at
+        the start. ``Servo.start_recording`` keeps more.
 
     Raises
     ------

@@ -151,7 +151,7 @@ def test_a_broken_rule_is_printed():
 
 
 def test_the_force_limit_may_be_changed_while_a_body_is_touched(eventually):
-    with Servo(cube(), Settings(1e4), ramp_seconds=0.01) as servo:
+    with Servo(cube(), Settings(1e4), ramp_seconds=0.05) as servo:
         servo.start(Pointer(ABOVE))
         eventually(lambda: servo.snapshot().state == "free", servo.snapshot)
         servo.set_target(DEEP)

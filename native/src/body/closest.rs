@@ -63,7 +63,9 @@ pub fn closest_points(
     points: &[DVec3],
 ) -> Result<Vec<Closest>, BodyError> {
     if triangles.is_empty() {
-        return Err(BodyError("there are no triangles".to_owned()));
+        return Err(BodyError(
+            "there are no triangles; give at least one".to_owned(),
+        ));
     }
     let faces = measure_faces(nodes, triangles)?;
     let tree = Tree::new(&faces);

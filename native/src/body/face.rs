@@ -122,7 +122,7 @@ pub(crate) fn measure_faces(
             let area_vector = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
             let normal = area_vector
                 .try_normalize()
-                .ok_or_else(|| BodyError(format!("triangle {t} has no area")))?;
+                .ok_or_else(|| BodyError(format!("triangle {t} has no area; leave it out")))?;
             let longest = [0, 1, 2]
                 .map(|k: usize| corners[k].distance_squared(corners[(k + 1) % 3]))
                 .into_iter()

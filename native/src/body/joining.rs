@@ -49,7 +49,8 @@ pub(crate) fn join_edges(
             .collect();
         if low == high || opposite.len() * 2 != edge.len() {
             return Err(BodyError(format!(
-                "the surface is not closed or not oriented at the edge between nodes {low} and {high}"
+                "the surface is not closed or not oriented at the edge between nodes {low} and {high}; \
+                 two triangles must share each edge, in opposite directions"
             )));
         }
         for half_edge in half_edges.clone().filter(|h| forward(h)) {

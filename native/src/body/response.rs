@@ -100,10 +100,14 @@ pub fn places_of(free_nodes: &[u32], node_count: usize) -> Result<Vec<u32>, Body
     for (place, &node) in free_nodes.iter().enumerate() {
         match places.get_mut(node as usize) {
             Some(free @ &mut PINNED) => *free = place as u32,
-            Some(_) => return Err(BodyError(format!("node {node} is named free twice"))),
+            Some(_) => {
+                return Err(BodyError(format!(
+                    "node {node} is named free twice; name each once"
+                )));
+            }
             None => {
                 return Err(BodyError(format!(
-                    "free node {node} is beyond the {} nodes given",
+                    "free node {node} is beyond the {} nodes given; they are numbered from 0",
                     node_count
                 )));
             }

@@ -103,7 +103,7 @@ impl Body {
     ) -> Result<Self, BodyError> {
         if free_nodes.len() != compliance.node_count() {
             return Err(BodyError(format!(
-                "{} free nodes are named for a compliance of {}",
+                "{} free nodes are named for a compliance of {}; name as many",
                 free_nodes.len(),
                 compliance.node_count()
             )));
@@ -246,10 +246,16 @@ fn check_arrays(
     contact_blocks: &[DMat3],
 ) -> Result<(), BodyError> {
     if triangles.is_empty() {
-        return Err(BodyError("the body has no triangles".into()));
+        return Err(BodyError(
+            "the body has no triangles; give at least four".into(),
+        ));
     }
     if triangles.len() > (u32::MAX / 4) as usize {
-        return Err(BodyError("the body has too many triangles".into()));
+        return Err(BodyError(format!(
+            "the body has {} triangles; it may have at most {}",
+            triangles.len(),
+            u32::MAX / 4
+        )));
     }
     if contact_blocks.len() != nodes.len() {
         return Err(BodyError(format!(
@@ -260,16 +266,20 @@ fn check_arrays(
     }
     if let Some(i) = nodes.iter().position(|p| !p.is_finite()) {
         return Err(BodyError(format!(
-            "node {i} has a coordinate that is not finite"
+            "node {i} is at {}; each coordinate must be finite",
+            nodes[i]
         )));
     }
     if let Some(i) = contact_blocks.iter().position(|b| !b.is_finite()) {
-        return Err(BodyError(format!("contact block {i} is not finite")));
+        return Err(BodyError(format!(
+            "contact block {i} is {}; each number must be finite",
+            contact_blocks[i]
+        )));
     }
     for (t, triangle) in triangles.iter().enumerate() {
         if triangle.iter().any(|&n| n as usize >= nodes.len()) {
             return Err(BodyError(format!(
-                "triangle {t} names a node beyond the {} nodes given",
+                "triangle {t} names {triangle:?}, of which one is beyond the {} nodes given",
                 nodes.len()
             )));
         }

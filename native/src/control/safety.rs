@@ -1,7 +1,7 @@
 //! Limits between a computed force and a motor: pure, and on by default.
 //!
 //! Going to zero is never delayed: permission withdrawn, a fault or a number that is not finite
-//! give zero in the same tick. Growing is limited three times, by ramp, clamp and slew.
+//! give zero in the same tick, and so goes what points against the force wanted. Growing is limited three times, by ramp, clamp and slew.
 
 use glam::DVec3;
 
@@ -84,11 +84,12 @@ impl Safety {
         };
         let clamped = shorten(shorten(wanted, limits.max_force) + brake, limits.max_force);
         let ramped = clamped * self.gain;
-        let change = shorten(ramped - self.output, limits.max_slew * dt);
-        let is_slewed = change != ramped - self.output;
+        let last = without_opposed(self.output, ramped);
+        let change = shorten(ramped - last, limits.max_slew * dt);
+        let is_slewed = change != ramped - last;
         // Without slew exactly what is wanted, else what the last force and the change make of it.
         self.output = if is_slewed {
-            shorten(self.output + change, ramped.length())
+            shorten(last + change, ramped.length())
         } else {
             ramped
         };
@@ -106,6 +107,13 @@ impl Safety {
             by,
         })
     }
+}
+
+/// What of a force does not point against what is wanted now: that part goes at once, like all of a
+/// force that is no longer wanted.
+fn without_opposed(force: DVec3, wanted: DVec3) -> DVec3 {
+    let way = wanted.normalize_or_zero();
+    force - way * force.dot(way).min(0.0)
 }
 
 /// The vector, cut to `length` if it is longer, with its direction.
@@ -217,6 +225,35 @@ mod tests {
         assert!(turned.distance(DVec3::X) <= 0.1 + 1e-12);
         let gone = safety.limit(DVec3::ZERO, DVec3::ZERO, &limits, DT).unwrap();
         assert_eq!((gone.force, gone.by), (DVec3::ZERO, ""));
+    }
+
+    /// Along whatever way the force wanted goes from one tick to the next, nothing that is sent points
+    /// against it, and what it grows and turns by stays within the slew.
+    #[test]
+    fn a_force_that_turns_round_never_points_the_old_way() {
+        let limits = Limits {
+            max_slew: 1000.0,
+            ..OPEN
+        };
+        for degrees in 0..=180 {
+            let (sine, cosine) = f64::from(degrees).to_radians().sin_cos();
+            let turned = DVec3::new(cosine, sine, 0.0) * 3.0;
+            let mut safety = Safety::default();
+            for _ in 0..10 {
+                safety.limit(DVec3::X * 3.0, DVec3::ZERO, &limits, DT);
+            }
+            let mut last = DVec3::X * 3.0;
+            for tick in 0..10 {
+                let sent = safety.limit(turned, DVec3::ZERO, &limits, DT);
+                let force = sent.expect("sound numbers").force;
+                let along = force.dot(turned);
+                assert!(along >= -1e-12, "{degrees} degrees, tick {tick}: {force}");
+                let dropped = (-last.dot(turned) / 3.0).max(0.0);
+                assert!(force.distance(last) <= 1.0 + dropped + 1e-9);
+                last = force;
+            }
+            assert!(last.distance(turned) < 1e-9, "{degrees}: {last}");
+        }
     }
 
     #[test]

@@ -1,5 +1,8 @@
 //! Vectors and matrices between Python and the crate, and checks of single numbers.
 
+use std::fmt::Display;
+use std::ops::RangeInclusive;
+
 use glam::{DMat3, DVec3};
 use numpy::{AllowTypeChange, PyArray1, PyArray2, PyArrayLike2, PyArrayLike3, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
@@ -20,9 +23,16 @@ pub fn finite(name: &str, v: Triple) -> PyResult<DVec3> {
         Ok(v)
     } else {
         Err(PyValueError::new_err(format!(
-            "{name} has a coordinate that is not finite"
+            "{name} is {v}; each of its coordinates must be finite"
         )))
     }
+}
+
+/// Refusal of an array by its shape, beside the one that it must have.
+pub fn misshaped(name: &str, shape: &[usize], wanted: impl Display) -> PyErr {
+    PyValueError::new_err(format!(
+        "{name} has the shape {shape:?}; it must be {wanted}"
+    ))
 }
 
 pub fn positive(name: &str, value: f64) -> PyResult<f64> {
@@ -73,7 +83,7 @@ pub fn rotation(name: &str, rows: Rows) -> PyResult<DMat3> {
         Ok(turn)
     } else {
         Err(PyValueError::new_err(format!(
-            "{name} is no rotation; give orthogonal unit columns, right-handed, without scale"
+            "{name} is {rows:?}, no rotation; give orthogonal unit columns, right-handed, without scale"
         )))
     }
 }
@@ -88,12 +98,15 @@ pub fn check_rate(rate_hz: u32) -> PyResult<()> {
     }
 }
 
-pub fn check_seconds(name: &str, seconds: f64) -> PyResult<()> {
-    if (0.0..=3600.0).contains(&seconds) {
+/// A time that a setting may be, s.
+pub fn check_seconds(name: &str, seconds: f64, range: RangeInclusive<f64>) -> PyResult<()> {
+    if range.contains(&seconds) {
         Ok(())
     } else {
         Err(PyValueError::new_err(format!(
-            "{name} is {seconds}; it must be from 0 to 3600"
+            "{name} is {seconds}; it must be from {} to {} seconds",
+            range.start(),
+            range.end()
         )))
     }
 }
@@ -108,10 +121,7 @@ pub fn pose(position: Triple, rows: Rows) -> PyResult<Pose> {
 pub fn vectors(name: &str, array: &PyArrayLike2<'_, f64, AllowTypeChange>) -> PyResult<Vec<DVec3>> {
     let array = array.as_array();
     if array.ncols() != 3 {
-        return Err(PyValueError::new_err(format!(
-            "{name} has {} columns, not three",
-            array.ncols()
-        )));
+        return Err(misshaped(name, array.shape(), "(n, 3)"));
     }
     let rows = array.rows().into_iter();
     Ok(rows.map(|r| DVec3::new(r[0], r[1], r[2])).collect())
@@ -123,9 +133,7 @@ pub fn matrices(
 ) -> PyResult<Vec<DMat3>> {
     let array = array.as_array();
     if array.shape()[1..] != [3, 3] {
-        return Err(PyValueError::new_err(format!(
-            "{name} must have the shape (n, 3, 3)"
-        )));
+        return Err(misshaped(name, array.shape(), "(n, 3, 3)"));
     }
     let block = |b: numpy::ndarray::ArrayView2<'_, f64>| {
         DMat3::from_cols_array_2d(&[0, 1, 2].map(|c| [0, 1, 2].map(|r| b[[r, c]])))

@@ -173,7 +173,7 @@ fn check(body: &Body, points: &[Point], near: Option<&NearField>) -> Result<(), 
     for (i, point) in points.iter().enumerate() {
         if (point.nodes.iter()).any(|&node| node as usize >= body.nodes.len()) {
             return refuse(format!(
-                "contact point {i} is on a node beyond the {} of the body",
+                "contact point {i} is on a node beyond the {} of the body; give the body's own",
                 body.nodes.len()
             ));
         }
@@ -182,16 +182,27 @@ fn check(body: &Body, points: &[Point], near: Option<&NearField>) -> Result<(), 
             && point.alpha.iter().all(|a| a.is_finite());
         if !(numbers && point.area > 0.0 && point.area.is_finite()) {
             return refuse(format!(
-                "contact point {i} has numbers that are not finite or no area"
+                "contact point {i} at {}, normal {}, area {}: all must be finite and the area more than zero",
+                point.position, point.normal, point.area
             ));
         }
     }
     let Some(near) = near else { return Ok(()) };
     if near.nodes.len() != body.nodes.len() || near.points.len() != points.len() {
-        return refuse("the near field is of another body or other contact points".into());
+        return refuse(format!(
+            "the near field is of {} nodes and {} contact points, the body and the tool of {} and {}; \
+             make it for these",
+            near.nodes.len(),
+            near.points.len(),
+            body.nodes.len(),
+            points.len()
+        ));
     }
     if !near.is_sound() {
-        return refuse("the near field has numbers that cannot be reckoned with".into());
+        return refuse(
+            "the near field has numbers that are not finite or cannot be; give what native_tool gives"
+                .into(),
+        );
     }
     Ok(())
 }

@@ -93,7 +93,8 @@ impl Tool {
         }
         if let Some(i) = core.iter().position(|p| !p.is_finite()) {
             return refuse(format!(
-                "core point {i} has a coordinate that is not finite"
+                "core point {i} is {}; each coordinate must be finite",
+                core[i]
             ));
         }
         if !(radius.is_finite() && radius > 0.0) {

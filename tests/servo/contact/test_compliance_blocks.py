@@ -143,7 +143,7 @@ def test_a_table_whose_file_was_cut_short_is_not_read(tmp_path, baked):
 @pytest.mark.parametrize(
     ("table", "error", "reason"),
     [
-        (np.zeros((2, 3, 5)), ValueError, "not \\(n, 3, 3n\\)"),
+        (np.zeros((2, 3, 5)), ValueError, r"must be \(n, 3, 3n\)"),
         (np.zeros((1, 3, 3), np.int32), TypeError, "no array of"),
         (np.zeros((2, 3, 12))[:, :, ::2], ValueError, "not contiguous"),
     ],

@@ -22,13 +22,13 @@ def test_closest_point_is_the_cubes(cube):
         (lambda n, t, b: (n, t[:-1], b), "not closed"),
         (lambda n, t, b: (n, t[:, ::-1], b), "inside out"),
         (lambda n, t, b: (n, t, b[:-1]), "97 blocks for 98 nodes"),
-        (lambda n, t, b: (np.where(n == n.max(), np.nan, n), t, b), "not finite"),
-        (lambda n, t, b: (n, t, b * np.inf), "contact block 0 is not finite"),
+        (lambda n, t, b: (np.where(n == n.max(), np.nan, n), t, b), "must be finite"),
+        (lambda n, t, b: (n, t, b * np.inf), "contact block 0 is .* must be finite"),
         (lambda n, t, b: (n, t + 1, b), "beyond the 98 nodes"),
         (lambda n, t, b: (n, t - 1, b), "names the node -1"),
         (lambda n, t, b: (n * [1, 1, 0], t, b), "no area"),
         (lambda n, t, b: (n, t[:0], b), "no triangles"),
-        (lambda n, t, b: (n[:, :2], t, b), "nodes has 2 columns"),
+        (lambda n, t, b: (n[:, :2], t, b), r"nodes has the shape \[\d+, 2\]; it must be \(n, 3\)"),
     ],
 )
 def test_a_surface_that_cannot_be_touched_is_refused_with_the_reason(cube, change, reason):

@@ -145,7 +145,7 @@ def test_paths_and_tools_without_sense_are_refused(whole, fingertip):
     fingers = fingers_at(whole, [[0.1, 0.1, 0.1]])
     with pytest.raises(ValueError, match=r"\(2, 2, 3\), expected \(ticks, 1, 3\)"):
         fingers.follow(np.zeros((2, 2, 3)))
-    with pytest.raises(ValueError, match="not finite"):
+    with pytest.raises(ValueError, match="must be finite"):
         fingers.follow(np.full((1, 1, 3), np.nan))
     with pytest.raises(ValueError, match="no finger 1"):
         fingers.set_tool(fingertip, np.eye(3), 1)

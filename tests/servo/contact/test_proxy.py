@@ -92,7 +92,7 @@ def test_on_a_node_the_area_coordinates_are_exact(cube):
 
 def test_a_position_that_is_not_finite_is_refused(cube):
     proxy = Proxy(cube.native)
-    with pytest.raises(ValueError, match="not finite"):
+    with pytest.raises(ValueError, match="must be finite"):
         proxy.move([0.0, np.nan, 0.0])
 
 

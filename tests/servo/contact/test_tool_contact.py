@@ -119,13 +119,13 @@ def test_wrong_arrays_are_refused(body, surface):
     points, correction = surface_and_correction(body, TOOLS["sphere"])
     arrays = [points.positions, points.normals, points.triangles, points.alphas, points.areas]
     ToolSurface(surface, *arrays)
-    with pytest.raises(ValueError, match="a row for each"):
+    with pytest.raises(ValueError, match="positions, .* areas; give each as many rows"):
         ToolSurface(surface, *arrays[:-1], points.areas[1:])
     near = correction.arrays()
     for name, remark in {"own": "a row for each", "normals": "a row for each"}.items():
         with pytest.raises(ValueError, match=remark):
             ToolSurface(surface, *arrays, near | {name: near[name][1:]})
-    with pytest.raises(ValueError, match="cannot be reckoned with"):
+    with pytest.raises(ValueError, match="not finite or cannot be; give what"):
         ToolSurface(surface, *arrays, near | {"edges": 0 * near["edges"]})
     with pytest.raises(ValueError, match="near has later, which this palpate_servo does not know"):
         ToolSurface(surface, *arrays, near | {"later": near["own"]})

@@ -1,5 +1,5 @@
-"""A device that says anything at all, between sound words of an honest one: the force stays within
-its limits and under its flag, and a device of the link that is plugged in anew is believed again."""
+"""A device that says anything at all, between sound words of an honest one: the force keeps its
+limits and its flag, and a device of the link that is plugged in anew is believed again."""
 
 import pytest
 from hypothesis import given

@@ -60,7 +60,10 @@ impl Compressed {
         let nodes = parts.places.len();
         let clusters = parts.tile_counts.len();
         if clusters == 0 || parts.near_scale.len() % (3 * clusters) != 0 {
-            return refuse("near_scale does not fit the number of clusters".into());
+            return refuse(format!(
+                "near_scale has {} numbers for {clusters} clusters; it must have as many for each",
+                parts.near_scale.len()
+            ));
         }
         let rows = parts.near_scale.len() / clusters;
         let mut first_tile = vec![0; clusters + 1];
@@ -69,7 +72,9 @@ impl Compressed {
         }
         let tiles = first_tile[clusters];
         let Some(tile_pairs) = tiles.checked_mul(tiles) else {
-            return refuse("tile_counts are too large".into());
+            return refuse(
+                "tile_counts add up to more tiles than can be numbered; make the body again".into(),
+            );
         };
         let near_blocks = parts.near_steps.len();
         let narrow = parts.narrow.len() / (TILE * TILE);
@@ -88,7 +93,11 @@ impl Compressed {
                 return refuse(format!("{name} has {found} numbers, not {expected}"));
             }
         }
-        let beyond = |name: &str| refuse(format!("{name} points beyond what there is"));
+        let beyond = |name: &str| {
+            refuse(format!(
+                "{name} points beyond what there is; make the body again"
+            ))
+        };
         if (parts.places.iter()).any(|&place| 3 * place as usize >= rows * clusters) {
             return beyond("places");
         }
@@ -107,7 +116,9 @@ impl Compressed {
             return beyond("tile_table");
         }
         if (0..clusters).any(|c| parts.near_table[c * clusters + c] == 0) {
-            return refuse("a cluster is no neighbour of itself".into());
+            return refuse(
+                "near_table leaves out a cluster as its own neighbour; make the body again".into(),
+            );
         }
         let mut by_place: Vec<(u32, u32)> = parts.places.iter().copied().zip(0..).collect();
         by_place.sort_unstable();

@@ -18,8 +18,13 @@ pub fn closest_points<'py>(
     let nodes = vectors("nodes", &nodes)?;
     let points = vectors("points", &points)?;
     let triangles = triangle_rows(&triangles)?;
-    if !nodes.iter().chain(&points).all(|p| p.is_finite()) {
-        return Err(PyValueError::new_err("a coordinate is not finite"));
+    for (name, places) in [("nodes", &nodes), ("points", &points)] {
+        if let Some(row) = places.iter().position(|place| !place.is_finite()) {
+            return Err(PyValueError::new_err(format!(
+                "{name} has {} in row {row}; each coordinate must be finite",
+                places[row]
+            )));
+        }
     }
     let beyond = triangles
         .iter()
@@ -27,7 +32,7 @@ pub fn closest_points<'py>(
         .find(|&&n| n as usize >= nodes.len());
     if let Some(number) = beyond {
         return Err(PyValueError::new_err(format!(
-            "a triangle names the node {number}, of {}",
+            "a triangle names the node {number}, and there are {}; they are numbered from 0",
             nodes.len()
         )));
     }

@@ -1,5 +1,6 @@
 //! `Compliance`: the arrays of either form, held and not copied.
 
+use std::fmt::Display;
 use std::ptr::NonNull;
 use std::sync::Arc;
 
@@ -14,7 +15,7 @@ use pyo3::types::PyDict;
 
 use crate::body::compliance::table::Table;
 use crate::body::compliance::{self, Compressed, CompressedParts, Dense, Either};
-use crate::python::vectors::{Matrix, square, table};
+use crate::python::vectors::{Matrix, misshaped, square, table};
 
 /// Prefix of the names of a compressed compliance's arrays.
 const PREFIX: &str = "compressed_";
@@ -31,11 +32,7 @@ impl Compliance {
         let shape: Vec<usize> = table.getattr("shape")?.extract()?;
         let nodes = match shape[..] {
             [nodes, 3, freedoms] if freedoms == 3 * nodes => nodes,
-            _ => {
-                return Err(PyValueError::new_err(format!(
-                    "table has the shape {shape:?}, not (n, 3, 3n)"
-                )));
-            }
+            _ => return Err(misshaped("table", &shape, "(n, 3, 3n)")),
         };
         let table = either("table", table)?;
         made(Dense::new(nodes, table).map(compliance::Compliance::Dense))
@@ -45,9 +42,11 @@ impl Compliance {
     fn compressed(arrays: &Bound<'_, PyDict>) -> PyResult<Self> {
         let array = |name: &str| {
             let key = format!("{PREFIX}{name}");
-            arrays
-                .get_item(&key)?
-                .ok_or_else(|| PyKeyError::new_err(key))
+            arrays.get_item(&key)?.ok_or_else(|| {
+                PyKeyError::new_err(format!(
+                    "{key} is missing; give all arrays of a compressed compliance"
+                ))
+            })
         };
         let parts = CompressedParts {
             places: copied::<i32, u32>("places", &array("places")?)?,
@@ -80,7 +79,7 @@ impl Compliance {
         let count = self.inner.node_count();
         if i >= count || j >= count {
             return Err(PyIndexError::new_err(format!(
-                "block ({i}, {j}) is beyond the {count} nodes"
+                "block ({i}, {j}) is beyond the {count} nodes; they are numbered from 0"
             )));
         }
         square(py, self.inner.block(i, j))
@@ -94,18 +93,15 @@ impl Compliance {
     ) -> PyResult<Matrix<'py>> {
         let (forces, nodes) = (nodal_forces.as_array(), nodes.as_array());
         if forces.ncols() != 3 || forces.nrows() != nodes.len() {
-            return Err(PyValueError::new_err(format!(
-                "nodal_forces has the shape {:?}, not ({}, 3)",
-                forces.shape(),
-                nodes.len()
-            )));
+            let wanted = format!("({}, 3), a row for each node", nodes.len());
+            return Err(misshaped("nodal_forces", forces.shape(), wanted));
         }
         let count = self.inner.node_count();
         let loads = (nodes.iter().zip(forces.rows()))
             .map(|(&node, force)| match usize::try_from(node) {
                 Ok(node) if node < count => Ok((node, DVec3::new(force[0], force[1], force[2]))),
                 _ => Err(PyIndexError::new_err(format!(
-                    "node {node} is beyond the {count} nodes"
+                    "node {node} is beyond the {count} nodes; they are numbered from 0"
                 ))),
             })
             .collect::<PyResult<Vec<_>>>()?;
@@ -130,8 +126,11 @@ fn plain<'a, 'py, T: Element>(
     array: &'a Bound<'py, PyAny>,
 ) -> PyResult<&'a Bound<'py, PyArrayDyn<T>>> {
     let array = array.cast::<PyArrayDyn<T>>().map_err(|_| {
+        let kind = array
+            .getattr("dtype")
+            .map_or_else(|_| array.get_type().to_string(), |d| d.to_string());
         PyTypeError::new_err(format!(
-            "{name} is no array of {}",
+            "{name} is no array of {} but of {kind}; give it as the body file has it",
             std::any::type_name::<T>()
         ))
     })?;
@@ -170,14 +169,19 @@ where
 }
 
 /// Numbers that address memory: looked at once, and nobody can change them afterwards.
-fn copied<T: Element + Copy, U: TryFrom<T>>(
+fn copied<T: Element + Copy + Display, U: TryFrom<T>>(
     name: &str,
     array: &Bound<'_, PyAny>,
 ) -> PyResult<Vec<U>> {
     let array = plain::<T>(name, array)?;
-    let beyond = |_| PyValueError::new_err(format!("{name} has numbers below zero"));
     let numbers: Vec<T> = array.to_vec()?;
-    (numbers.into_iter())
-        .map(|number| U::try_from(number).map_err(beyond))
+    (numbers.into_iter().enumerate())
+        .map(|(place, number)| {
+            U::try_from(number).map_err(|_| {
+                PyValueError::new_err(format!(
+                    "{name} has {number} as its number {place}; none may be below zero"
+                ))
+            })
+        })
         .collect()
 }

@@ -6,6 +6,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::drawn::{self, CONTROLS, Patch};
+use crate::python::vectors::misshaped;
 
 #[pyclass(frozen, module = "palpate_servo")]
 pub struct CubicPlaces {
@@ -23,11 +24,8 @@ impl CubicPlaces {
     ) -> PyResult<Self> {
         let (patch, alpha) = (patch.as_array(), alpha.as_array());
         if alpha.shape() != [patch.len(), 3] {
-            return Err(PyValueError::new_err(format!(
-                "alpha has the shape {:?}, not ({}, 3)",
-                alpha.shape(),
-                patch.len()
-            )));
+            let wanted = format!("({}, 3), a row for each place", patch.len());
+            return Err(misshaped("alpha", alpha.shape(), wanted));
         }
         // What does not fit is as wrong as what is too large.
         let numbers = patch
@@ -37,7 +35,9 @@ impl CubicPlaces {
         drawn::CubicPlaces::new(numbers.collect(), alphas.collect(), patches)
             .map(|inner| Self { inner, patches })
             .ok_or_else(|| {
-                PyValueError::new_err(format!("a place names another patch than the {patches}"))
+                PyValueError::new_err(format!(
+                    "a place names a patch beyond the {patches} that there are; they are numbered from 0"
+                ))
             })
     }
 
@@ -49,18 +49,12 @@ impl CubicPlaces {
     ) -> PyResult<()> {
         let patches = patches.as_array();
         if patches.shape() != [self.patches, CONTROLS, 3] {
-            return Err(PyValueError::new_err(format!(
-                "patches has the shape {:?}, not ({}, {CONTROLS}, 3)",
-                patches.shape(),
-                self.patches
-            )));
+            let wanted = format!("({}, {CONTROLS}, 3)", self.patches);
+            return Err(misshaped("patches", patches.shape(), wanted));
         }
         if moved.as_array().shape() != [self.inner.len(), 3] {
-            return Err(PyValueError::new_err(format!(
-                "moved has the shape {:?}, not ({}, 3)",
-                moved.as_array().shape(),
-                self.inner.len()
-            )));
+            let wanted = format!("({}, 3), a row for each place", self.inner.len());
+            return Err(misshaped("moved", moved.as_array().shape(), wanted));
         }
         let patches: Vec<Patch> = patches
             .outer_iter()

@@ -1,6 +1,6 @@
 //! Polygons of a drawn mesh on a line, and near a point.
 
-use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -21,7 +21,9 @@ pub fn polygons_on_line<'py>(
 ) -> PyResult<Bound<'py, PyArray1<i64>>> {
     let (origin, along) = (finite("origin", origin)?, finite("direction", direction)?);
     if along.try_normalize().is_none() {
-        return Err(PyValueError::new_err("direction has no length"));
+        return Err(PyValueError::new_err(format!(
+            "direction is {along}; give one with a length"
+        )));
     }
     let polygons = polygons(&places, &corners, &starts)?;
     let found = py.detach(|| polygons.on_line(origin, along));
@@ -47,10 +49,13 @@ fn polygons<'a>(
     starts: &'a Numbers<'_>,
 ) -> PyResult<Polygons<'a>> {
     let refused = || {
-        PyValueError::new_err(
-            "places (p, 3), corners and starts must lie whole in memory; corners name places, and \
-             starts ascend from 0",
-        )
+        PyValueError::new_err(format!(
+            "places {:?}, corners {:?} and starts {:?} make no polygons; places must be (p, 3), corners \
+             name places, and starts ascend from 0",
+            places.shape(),
+            corners.shape(),
+            starts.shape()
+        ))
     };
     let found = Polygons::new(places.as_slice()?, corners.as_slice()?, starts.as_slice()?);
     let found = found.filter(|_| places.as_array().ncols() == 3);

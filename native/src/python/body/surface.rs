@@ -15,7 +15,7 @@ use crate::contact::touch;
 use crate::python::body::compliance::Compliance;
 use crate::python::servo::settings::{contact_mode, felt_choice};
 use crate::python::vectors::{
-    Matrix, Rows, Triple, Vector, array, finite, matrices, rows, vectors,
+    Matrix, Rows, Triple, Vector, array, finite, matrices, misshaped, rows, vectors,
 };
 
 #[pyclass(frozen, module = "palpate_servo")]
@@ -43,7 +43,7 @@ impl Body {
         let mut inner = surface::Body::new(nodes, triangles, blocks).map_err(refused)?;
         if let Some(compliance) = compliance {
             let free_nodes = match free_nodes {
-                Some(numbers) => node_numbers(&numbers)?,
+                Some(numbers) => node_numbers("free_nodes", &numbers)?,
                 None => (0..inner.nodes.len() as u32).collect(),
             };
             inner = if whole {
@@ -68,32 +68,31 @@ impl Body {
         nodes: PyArrayLike1<'_, i64, AllowTypeChange>,
         softenings: PyArrayLike2<'_, f64, AllowTypeChange>,
     ) -> PyResult<()> {
-        let (numbers, rows) = (node_numbers(&nodes)?, softenings.as_array());
+        let (numbers, rows) = (node_numbers("nodes", &nodes)?, softenings.as_array());
         if rows.shape() != [numbers.len(), 4] {
-            return Err(PyValueError::new_err(
-                "softenings must have four numbers for each of the nodes",
-            ));
+            let wanted = format!("({}, 4), a row for each node", numbers.len());
+            return Err(misshaped("softenings", rows.shape(), wanted));
         }
         let count = self.inner.nodes.len();
         if let Some(&node) = numbers.iter().find(|&&node| node as usize >= count) {
             return Err(PyValueError::new_err(format!(
-                "node {node} is beyond the {count} nodes of the body"
+                "node {node} is beyond the {count} nodes of the body; they are numbered from 0"
             )));
         }
-        let read = |row: ArrayView1<'_, f64>| {
+        let read = |(number, row): (usize, ArrayView1<'_, f64>)| {
             let softening = Softening {
                 slope: DVec3::new(row[0], row[1], row[2]),
                 saturation: row[3],
             };
-            softening.is_sound().then_some(softening)
+            softening.is_sound().then_some(softening).ok_or_else(|| {
+                PyValueError::new_err(format!(
+                    "softenings has {row} in row {number}; each must be finite, the fourth number not \
+                     negative, and positive where one of the others is not zero"
+                ))
+            })
         };
-        let sound: Option<Vec<Softening>> = rows.rows().into_iter().map(read).collect();
-        let sound = sound.ok_or_else(|| {
-            PyValueError::new_err(
-                "softenings must be finite, the fourth number not negative, and positive where one \
-                 of the others is not zero",
-            )
-        })?;
+        let sound = rows.rows().into_iter().enumerate().map(read);
+        let sound = sound.collect::<PyResult<Vec<Softening>>>()?;
         // The interpreter's lock is held: one thread tells at a time.
         for (&node, softening) in numbers.iter().zip(&sound) {
             self.inner.softenings.tell(node, softening);
@@ -170,16 +169,22 @@ impl Body {
             return Ok(());
         }
         Err(PyValueError::new_err(format!(
-            "triangle {triangle} is beyond the {} triangles of the body",
+            "triangle {triangle} is beyond the {} triangles of the body; they are numbered from 0",
             self.inner.triangles.len()
         )))
     }
 }
 
-fn node_numbers(numbers: &PyArrayLike1<'_, i64, AllowTypeChange>) -> PyResult<Vec<u32>> {
+fn node_numbers(
+    name: &str,
+    numbers: &PyArrayLike1<'_, i64, AllowTypeChange>,
+) -> PyResult<Vec<u32>> {
     let number = |&n: &i64| {
-        u32::try_from(n)
-            .map_err(|_| PyValueError::new_err(format!("free_nodes names the node {n}")))
+        u32::try_from(n).map_err(|_| {
+            PyValueError::new_err(format!(
+                "{name} names the node {n}; nodes are numbered from 0"
+            ))
+        })
     };
     numbers.as_array().iter().map(number).collect()
 }
@@ -188,7 +193,7 @@ fn node_numbers(numbers: &PyArrayLike1<'_, i64, AllowTypeChange>) -> PyResult<Ve
 pub fn triangle_rows(given: &PyArrayLike2<'_, i64, AllowTypeChange>) -> PyResult<Vec<[u32; 3]>> {
     let triangles = given.as_array();
     if triangles.ncols() != 3 {
-        return Err(PyValueError::new_err("triangles must have three columns"));
+        return Err(misshaped("triangles", triangles.shape(), "(m, 3)"));
     }
     triangles
         .rows()
@@ -197,7 +202,10 @@ pub fn triangle_rows(given: &PyArrayLike2<'_, i64, AllowTypeChange>) -> PyResult
         .map(|(t, r)| {
             let index = |k: usize| {
                 u32::try_from(r[k]).map_err(|_| {
-                    PyValueError::new_err(format!("triangle {t} names the node {}", r[k]))
+                    PyValueError::new_err(format!(
+                        "triangle {t} names the node {}; nodes are numbered from 0",
+                        r[k]
+                    ))
                 })
             };
             Ok([index(0)?, index(1)?, index(2)?])

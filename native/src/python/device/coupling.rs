@@ -16,9 +16,9 @@ pub fn device_coupling(
 ) -> PyResult<Bound<'_, PyDict>> {
     check_rate(rate_hz)?;
     if !(encoder_step >= 0.0 && encoder_step.is_finite()) {
-        return Err(PyValueError::new_err(
-            "encoder_step must be finite and at least 0 m",
-        ));
+        return Err(PyValueError::new_err(format!(
+            "encoder_step is {encoder_step}; it must be finite and at least 0 m"
+        )));
     }
     let coupling = Coupling::for_encoders(rate_hz, encoder_step);
     let found = PyDict::new(py);

@@ -1,5 +1,7 @@
 //! Models and angles of a 2DIY, from what Python gives.
 
+use std::ops::RangeInclusive;
+
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -24,6 +26,9 @@ pub fn haply_encoder_step(model: &str) -> PyResult<f64> {
     known_model(model).map(Model::encoder_step)
 }
 
+/// Angles of an arm, degrees.
+const TURN: RangeInclusive<f32> = -360.0..=360.0;
+
 /// Model and calibration for what the user said; angles given (degrees) are always set.
 pub fn haply_setup(
     model: &str,
@@ -32,10 +37,14 @@ pub fn haply_setup(
     baud: Option<u32>,
 ) -> PyResult<(&'static Model, Calibration)> {
     let model = known_model(model)?;
-    if angles.is_some_and(|angles| angles.iter().any(|a| a.is_nan() || a.abs() > 360.0)) {
-        return Err(PyValueError::new_err(
-            "angles must be between -360 and 360 degrees",
-        ));
+    if let Some(angle) = angles
+        .into_iter()
+        .flatten()
+        .find(|angle| !TURN.contains(angle))
+    {
+        return Err(PyValueError::new_err(format!(
+            "angles has {angle}; each must be from -360 to 360 degrees"
+        )));
     }
     if baud == Some(PROGRAMMING_BAUD) {
         return Err(PyValueError::new_err(

@@ -19,6 +19,20 @@ pub(super) fn check_finger(finger: usize) -> PyResult<()> {
     )))
 }
 
+/// Longest time of which samples are kept, s: their memory is handed out at the start, for a tick must
+/// not ask for any. At the highest rate 69 MB a finger.
+const MOST_KEPT_SECONDS: f64 = 60.0;
+
+pub(super) fn check_kept(seconds: f64) -> PyResult<()> {
+    if (0.0..=MOST_KEPT_SECONDS).contains(&seconds) {
+        return Ok(());
+    }
+    Err(PyValueError::new_err(format!(
+        "record_seconds is {seconds}; it must be from 0 to {MOST_KEPT_SECONDS}: so long samples are kept \
+         until they are read; for a longer time call start_recording"
+    )))
+}
+
 pub(super) fn no_thread(error: std::io::Error) -> PyErr {
     PyOSError::new_err(format!(
         "the system gives the servo no thread ({error}); close other programs and start again"

@@ -1,5 +1,7 @@
 //! Settings of a servo, from the names and numbers that Python gives.
 
+use std::ops::RangeInclusive;
+
 use glam::DMat3;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -17,6 +19,10 @@ use crate::python::vectors::{
 use crate::servo::settings::FingerSettings;
 use crate::servo::settings::{Options, Settings};
 
+/// Shortest and longest ramp, s. A force that comes back must be felt coming: a hand's first reflexes
+/// take 20 to 50 ms.
+const RAMPS: RangeInclusive<f64> = 0.05..=3600.0;
+
 /// What stays as it is while a servo runs.
 pub fn options(
     rate_hz: u32,
@@ -26,7 +32,7 @@ pub fn options(
     max_speed: f64,
 ) -> PyResult<Options> {
     check_rate(rate_hz)?;
-    check_seconds("ramp_seconds", ramp_seconds)?;
+    check_seconds("ramp_seconds", ramp_seconds, RAMPS)?;
     Ok(Options {
         rate_hz,
         limits: Limits {
@@ -88,14 +94,16 @@ impl GivenCoupling {
     /// ValueError for numbers without sense.
     pub fn checked(&self) -> PyResult<Coupling> {
         if self.stiffness.is_nan() || self.stiffness <= 0.0 {
-            return Err(PyValueError::new_err(
-                "stiffness must be more than 0 N/m; infinite for none",
-            ));
+            return Err(PyValueError::new_err(format!(
+                "stiffness is {}; it must be more than 0 N/m, infinite for the body's own",
+                self.stiffness
+            )));
         }
         if !self.damping.is_finite() || self.damping < 0.0 {
-            return Err(PyValueError::new_err(
-                "damping must be finite and at least 0 N s/m",
-            ));
+            return Err(PyValueError::new_err(format!(
+                "damping is {}; it must be finite and at least 0 N s/m",
+                self.damping
+            )));
         }
         Ok(Coupling {
             stiffness: self.stiffness,
@@ -201,9 +209,10 @@ impl Chosen {
 pub fn feel(shading: bool, static_friction: f64, dynamic_friction: f64) -> PyResult<Feel> {
     let are_coefficients = static_friction.is_finite() && dynamic_friction >= 0.0;
     if !are_coefficients || dynamic_friction > static_friction {
-        return Err(PyValueError::new_err(
-            "friction must be 0 <= dynamic_friction <= static_friction",
-        ));
+        return Err(PyValueError::new_err(format!(
+            "static_friction is {static_friction} and dynamic_friction {dynamic_friction}; they must be \
+             finite, 0 <= dynamic_friction <= static_friction"
+        )));
     }
     Ok(Feel {
         shading,
@@ -215,14 +224,14 @@ pub fn feel(shading: bool, static_friction: f64, dynamic_friction: f64) -> PyRes
 
 /// May mirror: a device's axes may be left-handed.
 pub fn device_frame(rotation: Rows, translation: Triple, scale: f64) -> PyResult<DeviceFrame> {
-    let rotation: DMat3 = matrix(rotation);
-    if !is_orthonormal(&rotation) {
-        return Err(PyValueError::new_err(
-            "rotation is not orthonormal; a device frame may turn and scale, not shear",
-        ));
+    let turn: DMat3 = matrix(rotation);
+    if !is_orthonormal(&turn) {
+        return Err(PyValueError::new_err(format!(
+            "rotation is {rotation:?}, not orthonormal; a device frame may turn and scale, not shear"
+        )));
     }
     Ok(DeviceFrame {
-        rotation,
+        rotation: turn,
         translation: finite("translation", translation)?,
         scale: positive("scale", scale)?,
         epoch: 0,

@@ -1,5 +1,6 @@
 //! `Servo`: starts, leads and stops the native thread.
 
+use std::ops::RangeInclusive;
 use std::sync::{Arc, Mutex};
 
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
@@ -14,7 +15,7 @@ use crate::device::Device;
 use crate::python::body::surface::Body;
 use crate::python::device::setups::{DeviceSetup, Lead};
 use crate::python::servo::counters::{finger_counters, stage_counters, timing_counters};
-use crate::python::servo::refusals::{NOT_WHOLE, check_finger};
+use crate::python::servo::refusals::{NOT_WHOLE, check_finger, check_kept};
 use crate::python::servo::samples::{structured, structured_pieces};
 use crate::python::servo::settings::{Chosen, Given, options};
 use crate::python::servo::snapshot::Snapshot;
@@ -26,6 +27,9 @@ use crate::servo::settings::FingerSettings;
 use crate::servo::settings::Options;
 use crate::servo::snapshot::{Published, Sample};
 use crate::servo::thread::Running;
+
+/// Lengths of a recording, s.
+const RECORDINGS: RangeInclusive<f64> = 0.0..=3600.0;
 
 #[pyclass(frozen, module = "palpate_servo")]
 pub struct Servo {
@@ -62,7 +66,7 @@ impl Servo {
         glide_speed: f64,
         record_seconds: f64,
     ) -> PyResult<Self> {
-        check_seconds("record_seconds", record_seconds)?;
+        check_kept(record_seconds)?;
         let options = options(rate_hz, max_force, max_slew, ramp_seconds, max_speed)?;
         let brought = FingerSettings {
             coupling: Coupling::for_devices(rate_hz),
@@ -194,7 +198,7 @@ impl Servo {
 
     #[pyo3(signature = (seconds=600.0))]
     fn start_recording(&self, py: Python<'_>, seconds: f64) -> PyResult<usize> {
-        check_seconds("seconds", positive("seconds", seconds)?)?;
+        check_seconds("seconds", positive("seconds", seconds)?, RECORDINGS)?;
         let ticks = (seconds * f64::from(self.options.rate_hz)).ceil() as usize;
         let samples = ticks.saturating_mul(self.finger_count());
         match self.alive() {

@@ -67,10 +67,10 @@ pub fn near_field(arrays: &Bound<'_, PyDict>) -> PyResult<NearField> {
         || slopes.len() != 3 * nodes
         || [softness_of_points.len(), own.len()] != [points; 2]
     {
-        return Err(PyValueError::new_err(
-            "near must have a row for each node of the surface (three of slopes) and one for each \
-             contact point",
-        ));
+        return Err(PyValueError::new_err(format!(
+            "near is of {nodes} nodes (by normals) and {points} contact points (by shares), and not all of \
+             its arrays have a row for each (three of slopes); give what native_tool gives"
+        )));
     }
     let node = |k: usize| NodeField {
         normal: normals[k],

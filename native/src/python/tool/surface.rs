@@ -41,7 +41,12 @@ impl ToolSurface {
         let count = positions.len();
         if [normals.len(), alphas.len(), triangles.len(), areas.len()] != [count; 4] {
             return Err(PyValueError::new_err(format!(
-                "normals, triangles, alphas and areas must have a row for each of the {count} positions"
+                "there are {count} positions, {} normals, {} triangles, {} alphas and {} areas; give each \
+                 as many rows",
+                normals.len(),
+                triangles.len(),
+                alphas.len(),
+                areas.len()
             )));
         }
         let points = (0..count)
@@ -50,7 +55,8 @@ impl ToolSurface {
                 let nodes = triangle.and_then(|t| body.inner.triangles.get(t));
                 let nodes = *nodes.ok_or_else(|| {
                     PyValueError::new_err(format!(
-                        "contact point {i} is on triangle {}, beyond the {} of the body",
+                        "contact point {i} is on triangle {}, beyond the {} of the body; they are \
+                         numbered from 0",
                         triangles[i],
                         body.inner.triangles.len()
                     ))
