@@ -119,7 +119,7 @@ def test_wrong_arrays_are_refused(body, surface):
     points, correction = surface_and_correction(body, TOOLS["sphere"])
     arrays = [points.positions, points.normals, points.triangles, points.alphas, points.areas]
     ToolSurface(surface, *arrays)
-    with pytest.raises(ValueError, match="positions, .* areas; give each as many rows"):
+    with pytest.raises(ValueError, match=r"positions, .* areas; give each as many rows"):
         ToolSurface(surface, *arrays[:-1], points.areas[1:])
     near = correction.arrays()
     for name, remark in {"own": "a row for each", "normals": "a row for each"}.items():
