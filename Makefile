@@ -118,6 +118,7 @@ build/packages/palpate-windowed.zip: build/servo/.built $(EXTENSION_SOURCES) | $
 # Each part leaves its output in build/reports, so that its closing lines can be read together.
 
 REPORT = 2>&1 | tee build/reports/$@.txt
+APPENDED = 2>&1 | tee --append build/reports/$@.txt
 ON_ALL_CORES := --numprocesses auto --maxprocesses 4 --dist loadfile
 
 # What the engine answers does not depend on when it is asked.
@@ -258,12 +259,18 @@ translations: $(VENV)/.installed ## new texts into addon/translations/*.po, and 
 bench: $(VENV)/.servo-installed build/packages/.made | build/reports ## how long things take on this machine, beside others; see build/reports/bench.txt
 	$(BIN)/pip install --quiet --editable '.[dev,bench]'
 	$(BIN)/palpate devices attack simulated --times 1000 $(REPORT)
-	$(BIN)/python benchmarks/files/fuzz.py --blender $(BPY_VENV)/bin/python $(REPORT)
-	for script in $(filter-out benchmarks/measuring/% benchmarks/files/fuzz.py,$(wildcard benchmarks/*/*.py)); do $(BIN)/python "$$script"; done $(REPORT)
+	$(BIN)/python benchmarks/files/fuzz.py --blender $(BPY_VENV)/bin/python $(APPENDED)
+	$(BIN)/python benchmarks/servo/servo_timing.py --link $(APPENDED)
+	for script in $(filter-out benchmarks/measuring/% benchmarks/files/fuzz.py,$(wildcard benchmarks/*/*.py)); do $(BIN)/python "$$script"; done $(APPENDED)
 
 .PHONY: attack
-attack: $(VENV)/.servo-installed ## the table of docs/safety.md: a hostile device at the servo
+attack: $(VENV)/.servo-installed build/board ## the tables of docs/safety.md: a hostile device at the servo, and processes that end
 	$(BIN)/palpate devices attack simulated --times 200 --publish docs/safety.md
+	$(BIN)/palpate devices attack simulated --real --board build/board --times 50 --publish docs/safety.md
+
+build/board: firmware/host/main.cpp $(wildcard firmware/palpate_link/src/*)
+	mkdir -p $(@D)
+	$(CXX) -std=c++17 -O1 -I firmware/palpate_link/src $< -o $@
 
 # ------------------------------------------------------------------------------------------ rest
 

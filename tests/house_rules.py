@@ -35,7 +35,8 @@ core/softness/scales core/softness
 core
 simulated/wire simulated/hand simulated/board simulated
 simulated/attack/table.py simulated/attack/target.py
-simulated/attack/virtual simulated/attack/real simulated/attack/port simulated/attack
+simulated/attack/virtual simulated/attack/real/line simulated/attack/real simulated/attack/port
+simulated/attack
 operators/reporting
 operators/scene
 operators/layer

@@ -13,7 +13,7 @@ from ...core.errors import PalpateError
 from ...core.servo.ports import BAUD
 from ...simulated.attack.attack import KINDS, Attack, real_table, virtual_tables
 from ...simulated.attack.port.host_attack import HostAttack, host_table
-from ...simulated.attack.published import publish
+from ...simulated.attack.published import REAL, VIRTUAL, publish
 from ...simulated.attack.table import Table
 
 HELP = "attack the servo as a hostile device, or a device as a hostile host"
@@ -37,7 +37,13 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--times", type=int, default=40, help="of each kind (default: 40)")
     parser.add_argument("--seed", type=int, default=1, help="same seed, same table (default: 1)")
-    parser.add_argument("--only", default="", metavar="TEXT", help="injections with this in them")
+    parser.add_argument(
+        "--only",
+        nargs="+",
+        default=[],
+        metavar="TEXT",
+        help="injections with one of these in their names",
+    )
     parser.add_argument(
         "--body",
         type=Path,
@@ -59,7 +65,10 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         help="with --real: also beside firmware/host/main.cpp, compiled",
     )
     parser.add_argument(
-        "--publish", type=Path, metavar="FILE", help="put the tables into this document"
+        "--publish",
+        type=Path,
+        metavar="FILE",
+        help="put the tables into this document; those of --real have a place of their own",
     )
     at_port = parser.add_argument_group("a device at a port")
     at_port.add_argument(
@@ -100,7 +109,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print(json.dumps({"tables": [dataclasses.asdict(table) for table in tables]}))
     if arguments.publish is not None:
-        publish(arguments.publish, tables)
+        publish(arguments.publish, tables, REAL if arguments.real else VIRTUAL)
     return EXIT_BROKEN if any(table.broken for table in tables) else 0
 
 
@@ -120,7 +129,7 @@ def _tables(arguments: argparse.Namespace) -> Iterator[Table]:
         times=arguments.times,
         seed=arguments.seed,
         bodies=tuple(arguments.body),
-        only=arguments.only,
+        only=tuple(arguments.only),
         board=arguments.board,
     )
     if arguments.real:
@@ -133,7 +142,7 @@ def _at_port(arguments: argparse.Namespace) -> Table:
         path=arguments.target,
         times=arguments.times,
         seed=arguments.seed,
-        only=arguments.only,
+        only=tuple(arguments.only),
         largest_force=arguments.max_force,
         allowance_ms=arguments.allowance,
         baud=arguments.baud,

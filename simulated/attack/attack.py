@@ -13,7 +13,7 @@ from .real.guardians import guardian_rows
 from .real.lost_guardians import lost_guardian_rows
 from .real.processes import process_rows
 from .real.stalled_reader import stalled_reader_rows
-from .table import Table
+from .table import Table, is_chosen
 from .target import Target, baked_target, cube_target
 from .virtual.cause import Cause
 from .virtual.causes import CAUSES, HAPLY_CAUSES
@@ -26,13 +26,13 @@ KINDS = ("link1", "link2", "haply")
 
 @dataclass(frozen=True)
 class Attack:
-    """What is tried; `bodies` are touched beside the cube, `only` is a part of a cause's name."""
+    """What is tried; `bodies` are touched beside the cube, `only` are parts of causes' names."""
 
     kinds: tuple[str, ...] = KINDS
     times: int = 40
     seed: int = 1
     bodies: tuple[Path, ...] = ()
-    only: str = ""
+    only: tuple[str, ...] = ()
     board: Path | None = None
     """The firmware for boards, compiled for this computer."""
 
@@ -50,12 +50,12 @@ def virtual_tables(attack: Attack, say: Callable[[str], None]) -> Iterator[Table
             yield _virtual_table(kind, target, causes[kind], attack, say)
 
 
-def _chosen(kind: str, only: str) -> list[Cause]:
+def _chosen(kind: str, only: tuple[str, ...]) -> list[Cause]:
     if kind == "haply":
         causes = HAPLY_CAUSES
     else:
         causes = tuple(cause for cause in CAUSES if int(kind[-1]) in cause.protocols)
-    return [cause for cause in causes if only in cause.name]
+    return [cause for cause in causes if is_chosen(cause.name, only)]
 
 
 def _virtual_table(
@@ -94,7 +94,7 @@ def real_table(attack: Attack, say: Callable[[str], None]) -> Table:
         )
 
     def wanted(injected: str) -> bool:
-        is_wanted = attack.only in injected
+        is_wanted = is_chosen(injected, attack.only)
         if is_wanted:
             say(f"on a pseudo-terminal: {injected}")
         return is_wanted
@@ -111,7 +111,8 @@ def real_table(attack: Attack, say: Callable[[str], None]) -> Table:
     return Table("Real processes on a pseudo-terminal", tuple(rows))
 
 
-def _nothing_chosen(only: str) -> PalpateError:
+def _nothing_chosen(only: tuple[str, ...]) -> PalpateError:
     return PalpateError(
-        "no injection has {only} in its name; leave out --only for all", only=repr(only)
+        "no injection has {only} in its name; leave out --only for all",
+        only=" or ".join(map(repr, only)),
     )

@@ -9,29 +9,30 @@ from ...core.errors import PalpateError
 from ...core.files.atomic_file import atomic_file
 from .table import Table
 
-BEGIN = "<!-- attack: begin -->"
-END = "<!-- attack: end -->"
+VIRTUAL, REAL = "attack", "real attack"
+"""Places in a document."""
 
 
-def published(text: str, tables: Iterable[Table]) -> str:
-    """The document with these tables instead of what stood there.
+def published(text: str, tables: Iterable[Table], place: str = VIRTUAL) -> str:
+    """The document with these tables instead of what stood at this place.
 
     Raises PalpateError for a document without a place for them.
     """
-    before, begin, rest = text.partition(BEGIN)
-    _, end, after = rest.partition(END)
+    first, last = f"<!-- {place}: begin -->", f"<!-- {place}: end -->"
+    before, begin, rest = text.partition(first)
+    _, end, after = rest.partition(last)
     if not (begin and end):
         raise PalpateError(
             "no place for the tables; put a line {begin} and a line {end} there",
-            begin=BEGIN,
-            end=END,
+            begin=first,
+            end=last,
         )
     lines = "\n\n".join("\n".join(table.lines()) for table in tables)
-    return f"{before}{BEGIN}\n```text\n{lines}\n```\n{END}{after}"
+    return f"{before}{first}\n```text\n{lines}\n```\n{last}{after}"
 
 
-def publish(path: Path, tables: Iterable[Table]) -> None:
-    """Put the tables into a document. Raises PalpateError, OSError."""
-    text = published(path.read_text(encoding="utf-8"), tables)
+def publish(path: Path, tables: Iterable[Table], place: str = VIRTUAL) -> None:
+    """Put the tables into a document, at this place. Raises PalpateError, OSError."""
+    text = published(path.read_text(encoding="utf-8"), tables, place)
     with atomic_file(path) as file:
         file.write(text.encode())

@@ -53,6 +53,11 @@ class Table:
             yield "  ".join(columns).rstrip()
 
 
+def is_chosen(injected: str, only: tuple[str, ...]) -> bool:
+    """Whether a name has one of these parts; all have none."""
+    return not only or any(part in injected for part in only)
+
+
 HEAD = ("injected", "times", "told", "force", "frames", "motors", "slew", "to zero", "back in", "")
 
 

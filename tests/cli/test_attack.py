@@ -6,9 +6,10 @@ import pytest
 
 from palpate.cli.main import main
 from palpate.core.errors import PalpateError
-from palpate.simulated.attack.published import BEGIN, END, published
+from palpate.simulated.attack.published import REAL, published
 from palpate.simulated.attack.table import Row, Table
 
+BEGIN, END = "<!-- attack: begin -->", "<!-- attack: end -->"
 KEPT = Table("kept", (Row("a fault", 3, "stale", ()),))
 
 
@@ -61,6 +62,20 @@ def test_tables_are_published_between_two_lines_that_stay(tmp_path):
     assert text.endswith(f"```\n{END}\nafter\n")
     assert "noise" in text
     assert "\nold\n" not in text
+
+
+def test_tables_of_real_processes_have_a_place_of_their_own():
+    real = "<!-- real attack: begin -->\nold\n<!-- real attack: end -->\n"
+    text = published(f"{BEGIN}\nvirtual\n{END}\n{real}", [KEPT], REAL)
+    assert "virtual" in text
+    assert "\nold\n" not in text
+    assert text.index("a fault") > text.index(END)
+
+
+def test_several_parts_of_names_may_be_chosen(capsys):
+    only = ["--only", "of noise", "a STATE twice"]
+    assert attack("simulated:link2", "--times", "1", *only) == 0
+    assert capsys.readouterr().out.count(" ok") == 2
 
 
 def test_a_document_without_a_place_for_tables_is_left_alone():

@@ -26,7 +26,7 @@ def broken_rules(table):
     return {row.injected: [rule.partition(" (")[0] for rule in row.broken] for row in table.rows}
 
 
-def attack_in_virtual_time(firmware, only=""):
+def attack_in_virtual_time(firmware, *only):
     """What such a board breaks; no clock, no line and no other process have a part in it."""
     board = VirtualBoard(firmware)
     dice = Random(1)  # noqa: S311 - a hostile host, no secret

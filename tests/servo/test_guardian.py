@@ -11,7 +11,7 @@ import pytest
 from palpate.simulated.attack.real import guardians, lost_guardians, processes
 from palpate.simulated.attack.real.desk import KINDS, desk
 from palpate.simulated.attack.real.host import NotReachedError
-from palpate.simulated.attack.real.pulse import Pulse
+from palpate.simulated.attack.real.line.pulse import Pulse
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="looks for processes in /proc")
 
@@ -25,6 +25,13 @@ def at(request):
 @pytest.mark.parametrize("number", guardians.SIGNALS, ids=lambda number: number.name)
 def test_the_last_word_is_zero(number, at):
     last = guardians.end_by(number, at)
+    assert last.pushed
+    assert last.words
+    assert not last.words[-1].pushes
+
+
+def test_the_last_word_is_zero_on_a_port_that_another_has_taken(at):
+    last = guardians.end_by(signal.SIGKILL, at, taken=True)
     assert last.pushed
     assert last.words
     assert not last.words[-1].pushes

@@ -245,17 +245,11 @@ fn check_arrays(
     triangles: &[[u32; 3]],
     contact_blocks: &[DMat3],
 ) -> Result<(), BodyError> {
-    if triangles.is_empty() {
-        return Err(BodyError(
-            "the body has no triangles; give at least four".into(),
-        ));
-    }
-    if triangles.len() > (u32::MAX / 4) as usize {
-        return Err(BodyError(format!(
-            "the body has {} triangles; it may have at most {}",
-            triangles.len(),
-            u32::MAX / 4
-        )));
+    let most = u32::MAX / 4;
+    if triangles.is_empty() || triangles.len() > most as usize {
+        let count = triangles.len();
+        let reason = format!("the body has {count} triangles; it must have from 1 to {most}");
+        return Err(BodyError(reason));
     }
     if contact_blocks.len() != nodes.len() {
         return Err(BodyError(format!(

@@ -186,7 +186,7 @@ fn parts_that_do_not_belong_together_are_refused() {
         "own_blocks has 99 numbers, not 90",
     );
     refused(|p| p.near_table[1] = 4, "near_table points beyond");
-    refused(|p| p.near_table[0] = 0, "no neighbour of itself");
+    refused(|p| p.near_table[0] = 0, "as its own neighbour");
     refused(|p| p.tile_table[2] = 1 << 20, "tile_table points beyond");
     refused(|p| p.tile_table[2] = i32::MIN, "tile_table points beyond");
     refused(|p| p.tile_counts[0] = 3, "basis has");

@@ -237,11 +237,13 @@ fn surfaces_that_do_not_fit_are_refused() {
     assert_eq!(with(&|_, _| ()), "none");
     assert!(with(&|points, _| points.clear()).contains("no contact points"));
     assert!(with(&|points, _| points[3].nodes[0] = 98).contains("point 3 is on a node beyond"));
-    assert!(with(&|points, _| points[2].area = 0.0).contains("point 2 has"));
-    assert!(with(&|_, near| near.nodes.truncate(5)).contains("of another body"));
-    assert!(with(&|_, near| near.points.truncate(5)).contains("other contact points"));
-    assert!(with(&|_, near| near.nodes[1].edge = 0.0).contains("cannot be reckoned"));
-    assert!(with(&|_, near| near.points[1].own.x_axis.x = f64::NAN).contains("cannot be reckoned"));
+    assert!(with(&|points, _| points[2].area = 0.0).contains("point 2 at"));
+    assert!(with(&|_, near| near.nodes.truncate(5)).contains("is of 5 nodes and"));
+    assert!(with(&|_, near| near.points.truncate(5)).contains("and 5 contact points, the"));
+    assert!(with(&|_, near| near.nodes[1].edge = 0.0).contains("not finite or cannot be"));
+    assert!(
+        with(&|_, near| near.points[1].own.x_axis.x = f64::NAN).contains("not finite or cannot be")
+    );
     let bare = ToolSurface::new(crate::bodies::cube(), good.points().to_vec(), None);
     assert!(bare.expect_err("no compliance").0.contains("whole"));
 }

@@ -14,7 +14,7 @@ import serial
 from ....core.errors import PalpateError
 from ....core.servo import link
 from ....core.servo.ports import check_port
-from ..table import Row, Table, counted
+from ..table import Row, Table, counted, is_chosen
 from .conversation import FORCE_EVERY, TIMES, Conversation
 from .hostile_words import ATTACKS, Attack
 
@@ -41,8 +41,8 @@ class HostAttack:
     seed: int = 1
     largest_force: float = 0.2
     """Asked for at the most, N."""
-    only: str = ""
-    """Part of an injection's name."""
+    only: tuple[str, ...] = ()
+    """Parts of injections' names."""
     allowance_ms: float = 10.0
     """For the line and this computer, beside two STATE."""
     baud: int = 115200
@@ -81,11 +81,11 @@ def table_of(talk: Conversation, attack: HostAttack, say: Callable[[str], None])
     rows = []
     try:
         for one in ATTACKS:
-            if attack.only not in one.name or (one.only_second and not talk.is_second):
+            if not is_chosen(one.name, attack.only) or (one.only_second and not talk.is_second):
                 continue
             say(f"{name}: {one.name}")
             rows.append(_row(talk, attack, one))
-        if attack.only in FOREIGN:
+        if is_chosen(FOREIGN, attack.only):
             say(f"{name}: {FOREIGN}")
             rows.append(_foreign_row(talk, attack))
     finally:

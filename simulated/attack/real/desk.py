@@ -13,9 +13,9 @@ from ...board.haply_firmware import TORQUES
 from ...hand.options import SimulatedOptions
 from ...simulated_process import SimulatedDevice
 from .host import Host, device
-from .overheard import Overheard
+from .line.overheard import Overheard
+from .line.pulse import Pulse
 from .pressing import INTO_THE_CUBE, Hand, Way, press
-from .pulse import Pulse
 
 KINDS = ("link", "haply")
 WAYS = {
@@ -113,7 +113,11 @@ def opened(kind: str) -> SimulatedDevice:
 
 
 @contextmanager
-def desk(kind: str, hand: AbstractContextManager[Hand] | None = None) -> Iterator[Desk]:
-    """A device of this kind, a simulated one unless told otherwise, listened to."""
-    with hand or opened(kind) as there, Overheard(there.port) as line, Pulse() as pulse:
+def desk(
+    kind: str, hand: AbstractContextManager[Hand] | None = None, baud: int | None = None
+) -> Iterator[Desk]:
+    """A device of this kind, a simulated one unless told otherwise, listened to; its line carries
+    `baud` bits a second, or as many as come.
+    """
+    with hand or opened(kind) as there, Overheard(there.port, baud) as line, Pulse() as pulse:
         yield Desk(kind, there, line, pulse)

@@ -6,8 +6,10 @@ from __future__ import annotations
 
 import json
 import subprocess
+import time
+from collections import Counter
 from collections.abc import Callable
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, nullcontext
 from functools import partial
 from pathlib import Path
 from types import TracebackType
@@ -17,11 +19,17 @@ from ....core.errors import PalpateError
 from ...hand.plant import Vector
 from ..table import Row
 from ..target import ABOVE
-from .desk import Desk, desk
+from .desk import WAYS, Desk, desk
 from .guardians import ending_rows
-from .processes import KILLED, killed_row
+from .host import Host, eventually
+from .lost_guardians import leave_alone
+from .pressing import Hand
+from .processes import KILLED, SUSPENDED, killed_row, suspended_row
 
 NAME = "firmware"
+SLOW_BAUDS = (57_600, 115_200)
+"""Too slow for the thousand STATE a second that it sends."""
+BEHIND_SECONDS = 0.5
 
 
 class FirmwareBoard:
@@ -94,11 +102,51 @@ def firmware_rows(program: Path, times: int, wanted: Callable[[str], bool]) -> l
     def place() -> AbstractContextManager[Desk]:
         return desk("link", FirmwareBoard(program, ABOVE))
 
-    injected = f"{KILLED}, {NAME}"
+    board = partial(FirmwareBoard, program, ABOVE)
+    others: dict[str, Callable[[str], Row]] = {
+        f"{KILLED}, {NAME}": lambda name: killed_row(times, name, board),
+        f"SIGKILL to the host and its guardian, {NAME}": lambda name: killed_row(
+            times, name, board, leave_alone
+        ),
+        f"{SUSPENDED}, {NAME}": lambda name: suspended_row(times, name, board),
+    }
+    for baud in SLOW_BAUDS:
+        others[f"behind {baud} baud, {NAME}"] = partial(slow_row, board, baud, times)
     rows = ending_rows(place, NAME, times, wanted)
-    if wanted(injected):
-        rows.append(killed_row(times, injected, partial(FirmwareBoard, program, ABOVE)))
-    return rows
+    return rows + [row(injected) for injected, row in others.items() if wanted(injected)]
+
+
+def slow_row(
+    board: Callable[[], AbstractContextManager[Hand]], baud: int, times: int, injected: str
+) -> Row:
+    """A line that is too slow: the host says so, and whatever the hand does there is no force."""
+    told = Counter[str]()
+    with board() as hand, desk("link", nullcontext(hand), baud) as at:
+        for _ in range(times):
+            with at.host() as host:
+                told.update([told_late(host)])
+                way = WAYS[at.kind]
+                hand.move_hand(way.deep, way.seconds)
+                time.sleep(BEHIND_SECONDS)
+        strongest = float(hand.report()["largest_force"])
+    return Row(
+        injected=injected,
+        times=times,
+        told=told.most_common(1)[0][0],
+        felt=strongest,
+        broken=("force behind a line that is too slow",) if strongest > 0.0 else (),
+    )
+
+
+def told_late(host: Host) -> str:
+    """Wait until a host says that words come too late; by which name."""
+
+    def late() -> str:
+        faults = host.report()["faults"]
+        return next((name for name in ("deaf", "stale") if faults[name]), "")
+
+    eventually(lambda: bool(late()), "the host says that the line is too slow")
+    return late()
 
 
 def _pipe(stream: IO[str] | None) -> IO[str]:

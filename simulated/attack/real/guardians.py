@@ -6,7 +6,7 @@ import signal
 import sys
 import time
 from collections.abc import Callable, Sequence
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -55,9 +55,11 @@ class LastWords:
         return (zeros[0].time - self.sent) * 1e3 if zeros else float("inf")
 
 
-def end_by(number: signal.Signals, at: Desk) -> LastWords:
-    """Press with a device, send its host a signal, and listen."""
-    with at.host() as host:
+def end_by(number: signal.Signals, at: Desk, *, taken: bool = False) -> LastWords:
+    """Press with a device, send its host a signal, and listen; another program may have taken the
+    port.
+    """
+    with at.host() as host, at.line.taken() if taken else nullcontext():
         at.press(host)
         (own,) = guardians(host.pid)
         before = any(word.pushes for word in at.words())
@@ -88,8 +90,16 @@ def guardians(host: int | None = None) -> list[int]:
 
 
 def guardian_rows(times: int, wanted: Callable[[str], bool]) -> list[Row]:
-    """A row for each signal and each kind of device."""
-    return [row for kind in KINDS for row in ending_rows(partial(desk, kind), kind, times, wanted)]
+    """A row for each signal and each kind of device, and one for a port that another has taken."""
+    rows = []
+    for kind in KINDS:
+        place = partial(desk, kind)
+        rows += ending_rows(place, kind, times, wanted)
+        injected = f"SIGKILL to the host, its port taken by another, {kind}"
+        if wanted(injected):
+            by = partial(end_by, signal.SIGKILL, taken=True)
+            rows.append(_ended_row(place, injected, times, by))
+    return rows
 
 
 def ending_rows(
@@ -102,14 +112,22 @@ def ending_rows(
     rows = []
     for number in SIGNALS:
         injected = f"{number.name} to the host, {name}"
-        if not wanted(injected):
-            continue
-        with place() as at:
-            ended = trials(times, partial(end_by, number, at))
-        pushed = [one.pushed for one in ended.judged]
-        worst = max((one.ms_to_zero for one in ended.judged), default=float("inf"))
-        rows.append(ending_row(injected, "(no host)", pushed, worst, ended.note))
+        if wanted(injected):
+            rows.append(_ended_row(place, injected, times, partial(end_by, number)))
     return rows
+
+
+def _ended_row(
+    place: Callable[[], AbstractContextManager[Desk]],
+    injected: str,
+    times: int,
+    end: Callable[[Desk], LastWords],
+) -> Row:
+    with place() as at:
+        ended = trials(times, partial(end, at))
+    pushed = [one.pushed for one in ended.judged]
+    worst = max((one.ms_to_zero for one in ended.judged), default=float("inf"))
+    return ending_row(injected, "(no host)", pushed, worst, ended.note)
 
 
 class Trial(Protocol):

@@ -14,11 +14,15 @@ from itertools import product
 from ..table import Row
 from .desk import KINDS, Desk, desk
 from .guardians import LastWords, ending_row, guardians, trials
-from .host import eventually
+from .host import Host, eventually
+from .processes import killed_row
 
 SIGNALS: tuple[signal.Signals, ...] = ()
 if sys.platform != "win32":
     SIGNALS = (signal.SIGKILL, signal.SIGSTOP)
+
+
+ALONE = "SIGKILL to the host and its guardian, link"
 
 
 @dataclass(frozen=True)
@@ -70,9 +74,19 @@ def lose(at: Desk, by: signal.Signals) -> Loss:
         )
 
 
+def leave_alone(host: Host) -> None:
+    """End a host and its guardian at once: the last word is a force, and nobody is there."""
+    own = guardians(host.pid)
+    # A host that is stopped does not see that its guardian has ended.
+    host.signal(signal.SIGSTOP)
+    for pid in own:
+        os.kill(pid, signal.SIGKILL)
+    host.signal(signal.SIGKILL)
+
+
 def lost_guardian_rows(times: int, wanted: Callable[[str], bool]) -> list[Row]:
-    """A row for each kind of device and signal."""
-    rows = []
+    """A row for each kind of device and signal, and one for a host that ends with its guardian."""
+    rows = [killed_row(times, ALONE, end=leave_alone)] if wanted(ALONE) else []
     for kind, by in product(KINDS, SIGNALS):
         injected = f"{by.name} to the guardian, then SIGKILL to the host, {kind}"
         if not wanted(injected):

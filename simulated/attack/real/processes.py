@@ -112,11 +112,16 @@ def suspend(host: Host, hand: Hand, seconds: float = STOPPED_SECONDS) -> Suspens
     return Suspension(ticks[:cut], ticks[cut:], counted, meanwhile)
 
 
-def kill(port: str, hand: Hand) -> dict[str, Any]:
+def killed(host: Host) -> None:
+    """Kill it."""
+    host.signal(signal.SIGKILL)
+
+
+def kill(port: str, hand: Hand, end: Callable[[Host], None] = killed) -> dict[str, Any]:
     """Kill a host in the middle of a press; what the device then says."""
     with Host(port) as host:
         press(host, hand)
-        host.signal(signal.SIGKILL)
+        end(host)
         host.process.join()
     eventually(lambda: bool(hand.report()["limp"]), "the device goes limp")
     return hand.report()
@@ -143,13 +148,17 @@ def _limp(reports: list[dict[str, Any]]) -> str:
     )
 
 
-def suspended_row(times: int) -> Row:
+def suspended_row(
+    times: int,
+    injected: str = SUSPENDED,
+    place: Callable[[], AbstractContextManager[Hand]] = device,
+) -> Row:
     """SIGSTOP for a second, SIGCONT."""
-    with device() as hand, Host(hand.port) as host:
+    with place() as hand, Host(hand.port) as host:
         all_of_them = [suspend(host, hand) for _ in range(times)]
     broken = Counter(problem for one in all_of_them for problem in one.problems())
     return Row(
-        injected=SUSPENDED,
+        injected=injected,
         times=times,
         told="suspended",
         force=max(t["output"] for one in all_of_them for t in one.after if t["state"] == "fault"),
@@ -161,13 +170,16 @@ def suspended_row(times: int) -> Row:
 
 
 def killed_row(
-    times: int, injected: str = KILLED, place: Callable[[], AbstractContextManager[Hand]] = device
+    times: int,
+    injected: str = KILLED,
+    place: Callable[[], AbstractContextManager[Hand]] = device,
+    end: Callable[[Host], None] = killed,
 ) -> Row:
-    """SIGKILL: nobody says a last word."""
+    """SIGKILL: the host says no last word."""
     reports = []
     with place() as hand:
         for _ in range(times):
-            reports.append(kill(hand.port, hand))
+            reports.append(kill(hand.port, hand, end))
             # The simulated port lets the next host in when the last one has been silent for long.
             time.sleep(RELEASE_SECONDS)
     broken = Counter(problem for report in reports for problem in device_problems(report))
@@ -175,6 +187,7 @@ def killed_row(
         injected=injected,
         times=times,
         told="(no host)",
+        zero_ms=max(report["limp_after"] for report in reports) * 1e3,
         note=_limp(reports),
         broken=counted(broken),
     )

@@ -5,8 +5,7 @@ import math
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from link_messages import bits, messages, rotations
-from link_vectors import VECTORS
+from link_vectors import VECTORS, bits, messages, rotations
 
 from palpate.core.servo import link
 

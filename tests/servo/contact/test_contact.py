@@ -27,7 +27,7 @@ def test_closest_point_is_the_cubes(cube):
         (lambda n, t, b: (n, t + 1, b), "beyond the 98 nodes"),
         (lambda n, t, b: (n, t - 1, b), "names the node -1"),
         (lambda n, t, b: (n * [1, 1, 0], t, b), "no area"),
-        (lambda n, t, b: (n, t[:0], b), "no triangles"),
+        (lambda n, t, b: (n, t[:0], b), "has 0 triangles; it must have from 1"),
         (lambda n, t, b: (n[:, :2], t, b), r"nodes has the shape \[\d+, 2\]; it must be \(n, 3\)"),
     ],
 )

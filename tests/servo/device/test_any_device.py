@@ -4,7 +4,7 @@ limits and its flag, and a device of the link that is plugged in anew is believe
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from link_messages import messages
+from link_vectors import messages
 
 from palpate.core.servo import link
 from palpate.simulated.attack.target import cube_target

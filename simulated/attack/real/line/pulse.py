@@ -12,7 +12,7 @@ import time
 from types import TracebackType
 from typing import Self
 
-from ...real_time import ask_for_real_time
+from ....real_time import ask_for_real_time
 
 if sys.platform != "win32":
     import tty
@@ -55,6 +55,10 @@ class Pulse:
         sent = [begin, *(one for one, _ in beats), end]
         pauses = (after - before for before, after in itertools.pairwise(sent))
         return 1e3 * max([*pauses, *(came - one for one, came in beats)])
+
+    def delays(self) -> list[float]:
+        """How long each took, s."""
+        return [came - sent for sent, came in self._beats]
 
     def forget(self) -> None:
         """Begin anew."""
