@@ -22,7 +22,7 @@ for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 # and no limit of time, which a busy machine would break. In `long` each round is short, so that all
 # properties have many turns (benchmarks/files/fuzz.py).
 settings.register_profile("repeatable", derandomize=True, deadline=None)
-settings.register_profile("long", max_examples=1000, deadline=None, database=None)
+settings.register_profile("long", max_examples=250, deadline=None, database=None)
 settings.load_profile("repeatable")
 
 

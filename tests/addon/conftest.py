@@ -41,7 +41,7 @@ from soft_scene import mesh_state, part, soft_cube  # noqa: E402
 
 # The same examples in every run, few of them: each opens and saves a file.
 settings.register_profile("repeatable", derandomize=True, deadline=None, max_examples=12)
-settings.register_profile("long", max_examples=1000, deadline=None, database=None)
+settings.register_profile("long", max_examples=250, deadline=None, database=None)
 settings.load_profile("repeatable")
 
 
