@@ -64,7 +64,7 @@ def refuse_missing_folder(target: Path) -> None:
         It does not.
     """
     folder = target.absolute().parent
-    if not folder.exists():
+    if not reaching(folder).exists():
         raise UnwritableError(
             "{target}: there is no folder {folder}; make it first", target=target, folder=folder
         )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from ..errors import PalpateError
+from .windows.long_path import reaching
 
 
 def refuse_missing(path: Path) -> None:
@@ -15,9 +16,10 @@ def refuse_missing(path: Path) -> None:
     PalpateError
         It is none.
     """
-    if path.is_file():
+    found = reaching(path)
+    if found.is_file():
         return
-    if path.exists():
+    if found.exists():
         raise PalpateError(
             "{path}: is a folder, a device or a pipe; give an ordinary file", path=path
         )

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from .atomic_file import atomic_file
 from .own_file import is_ordinary
+from .windows.shared_reading import open_shared
 
 MAGIC = b"POINTCACHE2\0"
 VERSION = 1
@@ -92,7 +93,7 @@ def is_own_cache(path: Path) -> bool:
     """Whether an ordinary file is a cache that Palpate wrote."""
     if not is_ordinary(path):
         return False
-    with path.open("rb") as file:
+    with open_shared(path) as file:
         begins = file.read(len(MAGIC)) == MAGIC
         file.seek(0, 2)
         file.seek(max(0, file.tell() - len(TRAILER)))

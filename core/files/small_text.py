@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import PalpateError
+from .windows.shared_reading import open_shared
 
 
 def read_small_text(path: Path, most_bytes: int) -> str:
@@ -20,7 +21,7 @@ def read_small_text(path: Path, most_bytes: int) -> str:
         It is no UTF-8.
     """
     try:
-        with path.open("rb") as stream:
+        with open_shared(path) as stream:
             content = stream.read(most_bytes + 1)
     except OSError as problem:
         raise PalpateError(

@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 from ..errors import PalpateError
 from ..files.npz_archive import ArchiveError, read_arrays
 from ..files.ordinary_file import refuse_missing
+from ..files.windows.long_path import reaching
+from ..files.windows.shared_reading import open_shared
 from ..sentence import Sentence
 from .coordinates import refuse_rounded
 from .formats.obj import read_obj
@@ -40,14 +42,14 @@ def read_surface(path: Path, metres_per_unit: float = 1.0) -> Surface:
             f"{path}: a file of kind '{path.suffix}' holds no surface; give obj, ply or stl, or to "
             "bake tetrahedra as npz"
         )
-    size = path.stat().st_size
+    size = reaching(path).stat().st_size
     if size > MOST_BYTES:
         raise PalpateError(
             f"{path}: has {size / 1e9:.1f} GB, and a surface at most {MOST_BYTES / 1e9:g} GB; "
             "decimate it before you export it"
         )
     try:
-        with path.open("rb") as stream:
+        with open_shared(path) as stream:
             vertices, triangles = READERS[path.suffix.lower()](stream, size)
     except MeshFormatError as problem:
         raise PalpateError(
