@@ -399,6 +399,10 @@ class Tool:
         Raises ValueError for other numbers of points, numbers that are not finite, no radius.
         """
 
+    @staticmethod
+    def endless(reach: float) -> Tool:
+        """All that is below z = 0 of its frame. reach, m, stands for its size: that of what lies on it."""
+
     @property
     def stride(self) -> float:
         """How far the tool moves in one tick at most, m."""
@@ -436,6 +440,8 @@ PointTarget: TypeAlias = tuple[int, _Vector, _Vector]
 """Triangle, area coordinates there, and how far from that place, m."""
 PoseTarget: TypeAlias = tuple[_Vector, _Matrix]
 """Position, m, and rotation of a tool."""
+LaidTool: TypeAlias = tuple[ToolSurface, Tool, _Vector, _Matrix, float]
+"""Contact points, shape, position and rotation in the world, coefficient of friction."""
 
 class SettledPoint(TypedDict):
     """What a point came to."""
@@ -485,6 +491,67 @@ class SettledTool(TypedDict):
     """Surface nodes that carry force, (k,)."""
     nodal_forces: NDArray[np.float64]
     """On these nodes, (k, 3), N."""
+
+@final
+class Resting:
+    """A body that nobody holds, with tools and supports on it, without a clock.
+
+    Poses are those in the world; what touches() tells is in the body's frame.
+    """
+
+    def __init__(
+        self,
+        body: Body,
+        *,
+        mass: float,
+        centre: Sequence[float],
+        inertia: Sequence[Sequence[float]],
+        young_modulus: float,
+        drag_time: float,
+        gravity: Sequence[float],
+        tools: Sequence[LaidTool],
+        supports: Sequence[LaidTool],
+    ) -> None:
+        """Lay the body down with its frame that of the world.
+
+        mass, kg; centre of mass, m, and inertia about it, kg m^2, at rest; under a force its speed is
+        that over the mass times drag_time, s; gravity, m/s^2. Tools and supports: contact points on
+        the body, shape, position, rotation, coefficient of friction.
+
+        Raises ValueError for more tools than MAX_FINGERS or supports than MOST_SUPPORTS, one for
+        another body, and numbers that cannot be.
+        """
+
+    position: Final[NDArray[np.float64]]
+    """Of the body's frame in the world, (3,), m."""
+    rotation: Final[NDArray[np.float64]]
+    """Takes directions of the body to those of the world, (3, 3)."""
+    elastic: Final[float]
+    """The elastic energy in the body, J."""
+    time: Final[float]
+    """Of all ticks, s."""
+
+    def place(self, position: Sequence[float], rotation: Sequence[Sequence[float]]) -> None:
+        """Lay the body elsewhere."""
+
+    def lead_tool(
+        self, number: int, position: Sequence[float], rotation: Sequence[Sequence[float]]
+    ) -> None:
+        """Where a tool goes from the next tick on, by a stride in each."""
+
+    def lead_support(
+        self, number: int, position: Sequence[float], rotation: Sequence[Sequence[float]]
+    ) -> None:
+        """Where a support is from the next tick on."""
+
+    def tick(self, dt: float) -> None:
+        """Go on by dt s. Raises RuntimeError where a force is no number."""
+
+    def settle(self) -> None:
+        """Tick until nothing changes any more. Raises RuntimeError where the body does not rest."""
+
+    def touches(self) -> list[SettledTool]:
+        """What each tool feels, and then each support."""
 
 @final
 class ContactEngine:

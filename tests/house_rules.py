@@ -82,6 +82,7 @@ proxy
 tool
 fingers
 engine
+rest
 servo
 harness
 python/vectors.rs python/servo/settings.rs python/body python/device python/tool python/servo

@@ -22,5 +22,6 @@ pub mod harness;
 pub mod proxy;
 #[cfg(feature = "python")]
 mod python;
+pub mod rest;
 pub mod servo;
 pub mod tool;

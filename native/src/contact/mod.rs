@@ -3,4 +3,5 @@
 pub mod cone;
 pub mod cones;
 pub mod ground;
+pub mod mobility;
 pub mod touch;

@@ -126,6 +126,7 @@ impl Joint {
         let own = |slot: &&Slot| slot.is_of(pair);
         let pushes = self.patch.slots().iter().filter(own);
         let hold = TiltLimit::of(pushes.map(|slot| (slot.push * slot.normal, slot.at.normal)));
+        let hold = hold.filter(|_| !tool.is_endless());
         let hold = hold.map(|hold| hold.seen_from(&pose.rotation));
         let (mut gap, mut turned, mut gives) = (0.0_f64, 0.0, 0.0_f64);
         for slot in self.patch.slots_mut().iter_mut() {

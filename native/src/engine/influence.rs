@@ -12,7 +12,8 @@ use super::joint::{Beside, Joint};
 use crate::algebra::MOST_POINTS;
 use crate::algebra::cholesky::dot;
 use crate::contact::cones::MAX_FINGERS;
-use crate::contact::ground::Ground;
+use crate::contact::ground::{Ground, MOST_BODIES};
+use crate::contact::mobility::Mobility;
 use crate::contact::touch::{contact_compliance, inverse_of_definite};
 use crate::control::coupling::largest_eigenvalue;
 use crate::fingers::press::{Press, Reaction, numbered};
@@ -56,6 +57,8 @@ impl Joint {
             return DMat3::ZERO;
         };
         let nodes = ground.body.triangles[press.hold.triangle as usize];
+        let from = ground.place(press.hold.triangle, press.hold.alpha);
+        let carried = ground.carried(at.position, from);
         let (recent, blocks) = (&mut self.influence.recent, self.patch.blocks_mut());
         let mut of_node = |seen: u32| {
             let mut sum = DMat3::ZERO;
@@ -66,7 +69,7 @@ impl Joint {
             }
             sum
         };
-        at.mean(|seen| recent.of(seen, || of_node(seen)))
+        at.mean(|seen| recent.of(seen, || of_node(seen))) + carried
     }
 
     /// The same for a slot that has just come in.
@@ -79,13 +82,13 @@ impl Joint {
         self.patch.slots_mut()[place].offset = self.offset_of(place, beside);
     }
 
-    /// How far the points move a slot, m.
+    /// How far the points and the body's weight move a slot, m.
     fn offset_of(&self, place: usize, beside: &Beside<'_>) -> DVec3 {
         let (forces, by_slot) = (beside.several.forces(), &self.influence.by_slot[place]);
-        numbered(beside.presses)
+        let by_points = numbered(beside.presses)
             .filter(|(_, press)| press.touches)
-            .map(|(p, _)| by_slot[p] * forces[p] * self.influence.reduced[p])
-            .sum()
+            .map(|(p, _)| by_slot[p] * forces[p] * self.influence.reduced[p]);
+        drift(&self.mobilities, &self.patch.slots()[place]) + by_points.sum::<DVec3>()
     }
 
     /// How far points move a place in a triangle, m.
@@ -178,7 +181,8 @@ impl Joint {
         let (last, first) = columns.split_at_mut(MOST_POINTS);
         for (k, &unknown) in face.iter().enumerate() {
             let slot = &slots[self.chosen[unknown]];
-            last[k] = gaps[unknown] - slot.normal.dot(slot.offset);
+            let by_points = slot.offset - drift(&self.mobilities, slot);
+            last[k] = gaps[unknown] - slot.normal.dot(by_points);
             for (p, _) in numbered(beside.presses) {
                 let along = by_slot[self.chosen[unknown]][p].transpose() * slot.normal;
                 for axis in 0..3 {
@@ -212,7 +216,9 @@ impl Joint {
         }
         for (p, press) in numbered(beside.presses) {
             let own = (grounds.get(usize::from(press.body))).and_then(|ground| {
+                let at = ground.place(press.hold.triangle, press.hold.alpha);
                 contact_compliance(ground.body, press.hold.triangle, press.hold.alpha)
+                    .map(|own| own + ground.carried(at, at))
             });
             let taken = own.map_or(0.0, |own| share_taken(&own, &-reaction.by[p][p]));
             self.influence.reduced[p] = (MOST_TAKEN / taken).sqrt().min(1.0);
@@ -220,6 +226,12 @@ impl Joint {
         reaction.reduce(&self.influence.reduced);
         reaction
     }
+}
+
+/// How far its weight takes the body of a slot, m.
+fn drift(mobilities: &[Option<Mobility>; MOST_BODIES], slot: &Slot) -> DVec3 {
+    let mobility = mobilities[usize::from(slot.body)];
+    mobility.map_or(DVec3::ZERO, |mobility| mobility.drift)
 }
 
 /// The largest share of a compliance that is taken, in any direction.

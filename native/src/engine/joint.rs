@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use crate::algebra::MOST_POINTS;
-use crate::contact::cones::MAX_FINGERS;
-use crate::contact::ground::{Ground, MOST_BODIES};
+use crate::contact::ground::{Ground, MOST_BODIES, MOST_TOOLS};
+use crate::contact::mobility::{Mobility, Motion};
 use crate::fingers::press::{Answers, Presses};
 use crate::fingers::several::Several;
 use crate::tool::coefficients::AllPosed;
@@ -31,8 +31,8 @@ pub struct Led<'a> {
     pub presence: f64,
 }
 
-/// All tools, by the number of their finger.
-pub type AllLed<'a> = [Option<Led<'a>>; MAX_FINGERS];
+/// All tools: those of fingers by their numbers, then supports.
+pub type AllLed<'a> = [Option<Led<'a>>; MOST_TOOLS];
 
 /// The points beside the tools.
 pub(super) struct Beside<'a> {
@@ -57,10 +57,13 @@ pub struct Joint {
     pub(super) entering: Vec<(f64, u32)>,
     pub(super) effort: Effort,
     /// Whose slots there are.
-    eras: [Option<u64>; MAX_FINGERS],
+    eras: [Option<u64>; MOST_TOOLS],
     bodies: [Option<u32>; MOST_BODIES],
+    /// How the bodies moved as a whole in the last tick.
+    pub(super) mobilities: [Option<Mobility>; MOST_BODIES],
+    pub(super) motions: [Motion; MOST_BODIES],
     /// Tools that have the same contact points, by body.
-    pub(super) kin: [[[bool; MAX_FINGERS]; MAX_FINGERS]; MOST_BODIES],
+    pub(super) kin: [[[bool; MOST_TOOLS]; MOST_TOOLS]; MOST_BODIES],
 }
 
 impl Default for Joint {
@@ -73,9 +76,11 @@ impl Default for Joint {
             chosen: Vec::with_capacity(MOST_POINTS),
             entering: Vec::with_capacity(MOST_ENTERING + 1),
             effort: Effort::default(),
-            eras: [None; MAX_FINGERS],
+            eras: [None; MOST_TOOLS],
             bodies: [None; MOST_BODIES],
-            kin: [[[false; MAX_FINGERS]; MAX_FINGERS]; MOST_BODIES],
+            mobilities: [None; MOST_BODIES],
+            motions: [Motion::default(); MOST_BODIES],
+            kin: [[[false; MOST_TOOLS]; MOST_TOOLS]; MOST_BODIES],
         }
     }
 }
@@ -91,8 +96,9 @@ impl Joint {
     ) {
         self.effort = Effort::default();
         self.begin(grounds, led);
+        self.set_moving(grounds);
         self.offset(grounds, beside);
-        let mut all_in = [true; MAX_FINGERS];
+        let mut all_in = [true; MOST_TOOLS];
         for (number, all_in) in all_in.iter_mut().enumerate() {
             for body in 0..grounds.len() {
                 if self.eras[number].is_some() {
@@ -143,11 +149,12 @@ impl Joint {
                 tool.collider.fail();
             }
         }
+        self.move_on(grounds, beside);
     }
 
     /// Tools take their way; slots of those that are not there any more, or feel nothing, go.
     fn begin(&mut self, grounds: &[Ground<'_>], led: &mut AllLed<'_>) {
-        let mut eras = [None; MAX_FINGERS];
+        let mut eras = [None; MOST_TOOLS];
         for (era, tool) in eras.iter_mut().zip(led.iter_mut()) {
             let Some(Led {
                 collider,
@@ -188,7 +195,7 @@ impl Joint {
 
     /// The tools that feel the bodies, where they are.
     fn posed(&self, led: &AllLed<'_>) -> AllPosed {
-        let mut posed = [None; MAX_FINGERS];
+        let mut posed = [None; MOST_TOOLS];
         for (number, posed) in posed.iter_mut().enumerate() {
             let led = led[number].as_ref().filter(|_| self.eras[number].is_some());
             *posed = led.and_then(|led| led.collider.posed());

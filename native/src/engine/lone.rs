@@ -59,8 +59,9 @@ impl LoneTool {
             body: &body,
             number: 0,
             young_modulus,
+            mobility: None,
         };
-        let mut led = [const { None }; crate::contact::cones::MAX_FINGERS];
+        let mut led = [const { None }; crate::contact::ground::MOST_TOOLS];
         led[0] = Some(Led {
             collider: &mut self.collider,
             goal: *goal,

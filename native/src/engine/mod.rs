@@ -11,10 +11,12 @@ pub mod goals;
 mod influence;
 pub mod joint;
 pub mod lone;
+mod moving;
 mod responses;
 pub mod settling;
 
 use crate::contact::ground::Ground;
+use crate::contact::mobility::Motion;
 use crate::fingers::press::{Answers, Presses, Reaction};
 use crate::fingers::several::Several;
 use joint::{AllLed, Beside, Joint};
@@ -41,7 +43,8 @@ impl Engine {
         if !has_points {
             self.several.release();
         }
-        if led.iter().all(Option::is_none) && self.joint.is_idle() {
+        let are_held = grounds.iter().all(|ground| ground.mobility.is_none());
+        if led.iter().all(Option::is_none) && self.joint.is_idle() && are_held {
             let none = Reaction::default();
             return has_points.then(|| self.several.solve(grounds, presses, &none, dt))?;
         }
@@ -53,5 +56,15 @@ impl Engine {
         };
         self.joint.tick(grounds, led, &mut beside);
         beside.answers
+    }
+
+    /// How a body that nobody holds moved as a whole in the last tick, in its own frame.
+    pub fn motion(&self, body: usize) -> Motion {
+        self.joint.motion(body)
+    }
+
+    /// The elastic energy that tools held in a body in the last tick, J at unit modulus.
+    pub fn elastic(&self, body: usize) -> f64 {
+        self.joint.elastic(body)
     }
 }

@@ -10,7 +10,7 @@ use super::joint::{AllLed, Led};
 use crate::body::softening::{Felt, Softening};
 use crate::body::surface::Body;
 use crate::contact::cones::MAX_FINGERS;
-use crate::contact::ground::Ground;
+use crate::contact::ground::{Ground, MOST_TOOLS};
 use crate::contact::touch::{ContactMode, softened_touch, touch};
 use crate::fingers::press::{Answers, Press, Presses};
 use crate::proxy::SurfacePoint;
@@ -141,7 +141,7 @@ impl Settling {
     fn tick(&mut self, goals: &[Goal]) -> Result<(usize, f64), Unsettled> {
         let before: Vec<DVec3> = (0..goals.len()).map(|number| self.force(number)).collect();
         let presses = self.presses(goals);
-        let mut led: AllLed<'_> = [const { None }; MAX_FINGERS];
+        let mut led: AllLed<'_> = [const { None }; MOST_TOOLS];
         for (led, (toucher, goal)) in led.iter_mut().zip(self.touchers.iter_mut().zip(goals)) {
             if let (Toucher::Tool(collider), Goal::Tool(pose)) = (toucher, goal) {
                 *led = Some(Led {
@@ -155,6 +155,7 @@ impl Settling {
             body: &self.body,
             number: 0,
             young_modulus: self.young_modulus,
+            mobility: None,
         };
         // Nothing fades in or out here: whatever was asked for is there at once.
         let dt = f64::INFINITY;

@@ -14,7 +14,7 @@ use crate::contact::cones::{Blocks, Cone, MAX_FINGERS, Members, Vectors, mean, s
 use crate::contact::ground::Ground;
 use crate::contact::touch::{contact_compliance, inverse_of_definite};
 use crate::control::coupling::series_compliance;
-use crate::fingers::press::{Answer, Answers, Presses, Reaction, numbered};
+use crate::fingers::press::{Answer, Answers, Press, Presses, Reaction, numbered};
 use crate::fingers::softened::{Pressing, Softened};
 
 /// Where the others hold a finger, it still finds this share of the compliance it finds alone.
@@ -77,6 +77,7 @@ impl Several {
         let mut alone = self.coupled_compliance(grounds, presses)?;
         tell_apart(&mut alone, &Members::of(presses))?;
         let compliance = tools.on(&alone);
+        let drift = |press: &Press| grounds[usize::from(press.body)].drift();
         let touching = presses.map(|press| press.filter(|p| p.touches));
         let members = Members::of(&touching);
         let held = members.held(&compliance)?;
@@ -94,14 +95,14 @@ impl Several {
             answers[p].seen_stiffness = series_share(&held[p], spring) * held[p];
             answers[p].spring = spring;
             answers[p].felt_share = 1.0;
-            asked[p] = press.displacement - tools.moved[p];
+            asked[p] = press.displacement - tools.moved[p] - drift(&press);
             let own = alone[p][p] + DMat3::IDENTITY * between[p];
             cones[p] = Cone::about(press.push, &own)?;
         }
         self.forces = solve_distinct(&series, &asked, &cones, &members, &self.forces)?;
         for (p, press) in numbered(presses) {
             let by_all = members.numbers().map(|q| compliance[p][q] * self.forces[q]);
-            let by_all = by_all.sum::<DVec3>() + tools.moved[p];
+            let by_all = by_all.sum::<DVec3>() + tools.moved[p] + drift(&press);
             let force = self.forces[p];
             answers[p].by_others = by_all - alone[p][p] * force;
             if press.touches {
@@ -147,8 +148,11 @@ impl Several {
     fn coupled_compliance(&mut self, grounds: &[Ground<'_>], presses: &Presses) -> Option<Blocks> {
         let mut compliance = [[DMat3::ZERO; MAX_FINGERS]; MAX_FINGERS];
         for (p, press) in numbered(presses) {
-            let Ground { body, number, .. } = *grounds.get(usize::from(press.body))?;
-            compliance[p][p] = contact_compliance(body, press.hold.triangle, press.hold.alpha)?;
+            let ground = grounds.get(usize::from(press.body))?;
+            let Ground { body, number, .. } = *ground;
+            let at = |press: &Press| ground.place(press.hold.triangle, press.hold.alpha);
+            compliance[p][p] = contact_compliance(body, press.hold.triangle, press.hold.alpha)?
+                + ground.carried(at(&press), at(&press));
             let before = numbered(presses).take_while(|&(q, _)| q < p);
             for (q, other) in before.filter(|(_, other)| other.body == press.body) {
                 let triangles = [press.hold.triangle, other.hold.triangle];
@@ -157,7 +161,7 @@ impl Several {
                     cross.blocks = blocks_between(body, triangles)?;
                     (cross.triangles, cross.body) = (triangles, number);
                 }
-                let mut sum = DMat3::ZERO;
+                let mut sum = ground.carried(at(&press), at(&other));
                 for (row, a) in cross.blocks.iter().zip(press.hold.alpha) {
                     for (block, b) in row.iter().zip(other.hold.alpha) {
                         sum += *block * (a * b);

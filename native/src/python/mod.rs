@@ -5,6 +5,7 @@ mod device;
 mod engine;
 #[cfg(feature = "harness")]
 mod harness;
+mod rest;
 mod servo;
 mod tool;
 mod vectors;
@@ -13,6 +14,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
 use crate::contact::cones::MAX_FINGERS;
+use crate::contact::ground::MOST_SUPPORTS;
 use crate::control::safety::LIMITERS;
 use crate::control::state::State;
 use crate::device::Fault;
@@ -33,6 +35,7 @@ fn palpate_servo(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<tool::shape::Tool>()?;
     module.add_class::<tool::surface::ToolSurface>()?;
     module.add_class::<engine::ContactEngine>()?;
+    module.add_class::<rest::Resting>()?;
     module.add_function(wrap_pyfunction!(body::closest::closest_points, module)?)?;
     module.add_function(wrap_pyfunction!(body::polygons::polygons_on_line, module)?)?;
     module.add_function(wrap_pyfunction!(body::polygons::nearest_polygon, module)?)?;
@@ -45,6 +48,7 @@ fn palpate_servo(module: &Bound<'_, PyModule>) -> PyResult<()> {
         .call_method1("register", (&stop_all,))?;
     module.add_function(stop_all)?;
     module.add("MAX_FINGERS", MAX_FINGERS)?;
+    module.add("MOST_SUPPORTS", MOST_SUPPORTS)?;
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("STATES", PyTuple::new(py, State::ALL.map(State::name))?)?;
     let reasons = reason::ALL.into_iter().chain(Fault::ALL.map(after));

@@ -20,7 +20,7 @@ use triple_buffer::{Input, Output, triple_buffer};
 
 use crate::body::surface::Body;
 use crate::contact::cones::MAX_FINGERS;
-use crate::contact::ground::Ground;
+use crate::contact::ground::{Ground, MOST_TOOLS};
 use crate::contact::touch::ContactMode;
 use crate::control::toll::Toll;
 use crate::device::{Device, Fault};
@@ -183,7 +183,7 @@ impl Servo {
                 finger.press(followed[k].as_ref()?)
             });
         }
-        let mut led = [const { None }; MAX_FINGERS];
+        let mut led = [const { None }; MOST_TOOLS];
         for ((led, finger), followed) in led.iter_mut().zip(&mut self.fingers).zip(followed) {
             *led = (followed.as_ref()).and_then(|followed| finger.lead(followed, are_several));
         }
@@ -191,6 +191,7 @@ impl Servo {
             body: moment.body,
             number: moment.body_number,
             young_modulus: settings.young_modulus,
+            mobility: None,
         };
         let answers = (self.engine).tick(&[ground], &presses, &mut led, moment.dt);
         each(&mut self.fingers, |k, finger| {

@@ -2,7 +2,7 @@
 
 use super::shape::Pose;
 use super::slot::Slot;
-use crate::contact::cones::MAX_FINGERS;
+use crate::contact::ground::MOST_TOOLS;
 
 /// Coefficients of friction; zero for none.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -55,4 +55,4 @@ pub(crate) struct Posed {
 }
 
 /// All tools in one tick, by number.
-pub(crate) type AllPosed = [Option<Posed>; MAX_FINGERS];
+pub(crate) type AllPosed = [Option<Posed>; MOST_TOOLS];

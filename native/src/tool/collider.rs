@@ -100,6 +100,11 @@ impl Collider {
         self.friction = friction;
     }
 
+    /// Whether it has friction.
+    pub fn rubs(&self) -> bool {
+        !self.friction.is_none()
+    }
+
     /// Where the tool is: behind the pose asked for where that is farther than it may go.
     pub fn pose(&self) -> Option<&Pose> {
         self.pose.as_ref()

@@ -15,8 +15,7 @@ use super::blocks::{Blocks, Recent};
 use super::points::ToolSurface;
 use super::slot::Slot;
 use crate::algebra::{MOST_POINTS, room};
-use crate::contact::cones::MAX_FINGERS;
-use crate::contact::ground::Ground;
+use crate::contact::ground::{Ground, MOST_TOOLS};
 
 /// Numbers of a slot: how those up to it give way to a force on it, an entry of the blocks after the
 /// other, row by row, each for all of them and without room for more: what is read in one go comes
@@ -199,7 +198,7 @@ impl Patch {
         surface: &ToolSurface,
         pair: [u8; 2],
         point: u32,
-        kin: &[bool; MAX_FINGERS],
+        kin: &[bool; MOST_TOOLS],
     ) {
         let new = self.slots.len();
         debug_assert!(new < MOST_POINTS && self.slot(pair, point).is_none());
@@ -215,8 +214,9 @@ impl Patch {
             }
             let near = surface.near().filter(|_| kin[usize::from(other.tool)]);
             let points = [(point, at), (other.point, &{ other.at })];
+            let carried = ground.carried(at.position, other.at.position);
             let block = self.response(ground, near, points);
-            self.put(new, slot, block);
+            self.put(new, slot, block + carried);
         }
         let own = self.compliance(new, new);
         let gives = [own.x_axis.x, own.y_axis.y, own.z_axis.z];

@@ -75,9 +75,33 @@ pub struct Tool {
     high: DVec3,
     middle: DVec3,
     stride: f64,
+    is_endless: bool,
 }
 
 impl Tool {
+    /// All that is below z = 0 in its frame: a floor without an edge. `reach`, m, stands for its size
+    /// where one is asked for, and is that of what lies on it.
+    ///
+    /// # Errors
+    /// [`HullError`] for a reach that is not positive.
+    pub fn endless(reach: f64) -> Result<Self, HullError> {
+        let ball = Self::new(&[DVec3::ZERO], reach)?;
+        Ok(Self {
+            low: DVec3::splat(f64::NEG_INFINITY),
+            high: DVec3::new(f64::INFINITY, f64::INFINITY, 0.0),
+            radius: 0.0,
+            stride: f64::INFINITY,
+            is_endless: true,
+            ..ball
+        })
+    }
+
+    /// Whether it is a half-space, which has one normal and no other side.
+    #[inline]
+    pub fn is_endless(&self) -> bool {
+        self.is_endless
+    }
+
     /// A tool around its core points.
     ///
     /// # Errors
@@ -116,6 +140,7 @@ impl Tool {
             middle,
             stride: STRIDE_PER_INNER_RADIUS * inner_radius,
             hull,
+            is_endless: false,
         })
     }
 
@@ -152,6 +177,9 @@ impl Tool {
     /// Signed distance of a point, negative inside, and the outward unit normal there.
     #[inline]
     pub fn distance(&self, point: DVec3) -> (f64, DVec3) {
+        if self.is_endless {
+            return (point.z, DVec3::Z);
+        }
         let (distance, normal) = self.hull.distance(point, CLEAR * self.radius);
         (distance - self.radius, normal)
     }

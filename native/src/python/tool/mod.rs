@@ -4,3 +4,4 @@ pub mod made;
 mod near_field;
 pub mod shape;
 pub mod surface;
+pub mod told;

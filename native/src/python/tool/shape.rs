@@ -23,6 +23,13 @@ impl Tool {
         Ok(Self { inner })
     }
 
+    #[staticmethod]
+    fn endless(reach: f64) -> PyResult<Self> {
+        let refused = |e: crate::tool::shape::hull::HullError| PyValueError::new_err(e.to_string());
+        let inner = shape::Tool::endless(reach).map_err(refused)?;
+        Ok(Self { inner })
+    }
+
     #[getter]
     fn stride(&self) -> f64 {
         self.inner.stride()

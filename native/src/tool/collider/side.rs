@@ -91,8 +91,12 @@ impl Side {
             && !self.is_outside(tool, &pose.moved(-self.carried))
     }
 
-    /// Whether a tool is clear of the body at rest: no point in it, nor it in the body.
+    /// Whether a tool is clear of the body at rest: no point in it, nor it in the body. One without
+    /// another side always is: there is one way out of it.
     pub(super) fn is_outside(&self, tool: &Tool, pose: &Pose) -> bool {
+        if tool.is_endless() {
+            return true;
+        }
         let mut overlaps = false;
         self.surface.tree().visit(
             |middle, radius| tool.least_distance(pose.to_tool(middle)) <= radius,

@@ -1,10 +1,11 @@
 //! How a point that enters gives way to forces on another: the finite elements, and below their fineness
-//! the near field.
+//! the near field; and how bodies that nobody holds go along as a whole.
 
 use glam::DMat3;
 
 use super::Patch;
 use crate::contact::ground::Ground;
+use crate::contact::mobility::Mobility;
 use crate::tool::near_field::NearField;
 use crate::tool::points::Point;
 
@@ -63,5 +64,24 @@ impl Patch {
         };
         let mut found = |node: u32| kept.of(node, || entered.mean(|a| block(a, node)));
         other.mean(&mut found)
+    }
+
+    /// From now on a body moves otherwise as a whole.
+    pub(crate) fn move_otherwise(&mut self, body: u8, [before, now]: [Option<Mobility>; 2]) {
+        let carried = |mobility: Option<Mobility>, p, q| {
+            mobility.map_or(DMat3::ZERO, |mobility| mobility.between(p, q))
+        };
+        for i in 0..self.slots.len() {
+            for j in 0..=i {
+                let pair = [i, j].map(|slot| (self.slots[slot].body, self.slots[slot].at.position));
+                if let [(p_body, p), (q_body, q)] = pair
+                    && p_body == body
+                    && q_body == body
+                {
+                    let change = carried(now, p, q) - carried(before, p, q);
+                    self.put(i, j, self.compliance(i, j) + change);
+                }
+            }
+        }
     }
 }

@@ -1,0 +1,68 @@
+//! How bodies that nobody holds move as a whole, from tick to tick.
+
+use glam::DVec3;
+
+use super::joint::{Beside, Joint};
+use crate::contact::ground::Ground;
+use crate::contact::mobility::Motion;
+use crate::fingers::press::{Press, numbered};
+
+impl Joint {
+    /// How the body at a place of the list moved in the last tick; not at all where it is held.
+    pub(super) fn motion(&self, body: usize) -> Motion {
+        self.motions[body]
+    }
+
+    /// Takes over how bodies are to move in this tick.
+    pub(super) fn set_moving(&mut self, grounds: &[Ground<'_>]) {
+        for (body, before) in self.mobilities.iter_mut().enumerate() {
+            let now = grounds.get(body).and_then(|ground| ground.mobility);
+            let is_alike = match (&*before, &now) {
+                (Some(before), Some(now)) => before.is_alike(now),
+                (None, None) => true,
+                _ => false,
+            };
+            if !is_alike {
+                self.patch.move_otherwise(body as u8, [*before, now]);
+            }
+            *before = now;
+        }
+    }
+
+    /// Finds how bodies move by what presses them, and sees their contact points from where they go.
+    pub(super) fn move_on(&mut self, grounds: &[Ground<'_>], beside: &Beside<'_>) {
+        for body in 0..self.mobilities.len() {
+            self.motions[body] = Motion::default();
+            let (Some(mobility), Some(ground)) = (self.mobilities[body], grounds.get(body)) else {
+                continue;
+            };
+            let slots = self.patch.slots().iter();
+            let own = slots.filter(|slot| usize::from(slot.body) == body);
+            let by_tools = own.map(|slot| (slot.at.position, slot.force));
+            let acts = |press: &Press| press.touches && usize::from(press.body) == body;
+            let forces = beside.several.forces();
+            let by_points = numbered(beside.presses)
+                .filter(|(_, press)| acts(press))
+                .map(|(p, press)| {
+                    (
+                        ground.place(press.hold.triangle, press.hold.alpha),
+                        forces[p],
+                    )
+                });
+            let motion = mobility.motion(by_tools.chain(by_points));
+            for slot in self.patch.slots_mut() {
+                if usize::from(slot.body) == body {
+                    slot.moved -= motion.at(slot.at.position);
+                }
+            }
+            self.motions[body] = motion;
+        }
+    }
+
+    /// The elastic energy that tools hold in a body, J at unit modulus.
+    pub(super) fn elastic(&self, body: usize) -> f64 {
+        let slots = self.patch.slots().iter();
+        let own = slots.filter(|slot| usize::from(slot.body) == body && slot.force != DVec3::ZERO);
+        own.map(|slot| 0.5 * slot.force.dot(slot.moved)).sum()
+    }
+}
