@@ -401,7 +401,10 @@ class Tool:
 
     @staticmethod
     def endless(reach: float) -> Tool:
-        """All that is below z = 0 of its frame. reach, m, stands for its size: that of what lies on it."""
+        """All that is below z = 0 of its frame; reach, m, stands for its size where one is asked for.
+
+        Displacements on it are found to some millionths of that.
+        """
 
     @property
     def stride(self) -> float:
@@ -532,7 +535,7 @@ class Resting:
     """Of all ticks, s."""
 
     def place(self, position: Sequence[float], rotation: Sequence[Sequence[float]]) -> None:
-        """Lay the body elsewhere."""
+        """Lay the body elsewhere; all that touches it is set down anew."""
 
     def lead_tool(
         self, number: int, position: Sequence[float], rotation: Sequence[Sequence[float]]
@@ -882,6 +885,8 @@ def stop_all() -> None:
 
 MAX_FINGERS: int
 """Fingers of a servo at most."""
+MOST_SUPPORTS: int
+"""Supports that can bear a body."""
 STATES: tuple[str, ...]
 """Names of the states, in the order of their numbers in samples()."""
 FAULTS: tuple[str, ...]

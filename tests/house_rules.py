@@ -25,6 +25,7 @@ core/compliance/ordering core/compliance/free_body core/compliance/elimination
 core/compliance/compression core/compliance
 core/body
 core/contact/near_field core/contact/tool core/contact
+core/rest
 core/grip
 core/shape/solid core/shape/paper core/shape/rotation_strain core/shape/force_at_depth core/shape
 core/bake/settings.py core/bake/cost core/bake/preview core/bake

@@ -22,6 +22,15 @@ def soft_block(
 
     ``jitter`` shakes the nodes by this share of a cell; those on a face stay in it.
     """
+    mesh = block_mesh(size, cells, jitter)
+    fixed = np.flatnonzero(mesh.nodes[:, 2] == 0.0)
+    return baked_body(mesh, fixed, poisson_ratio, 100_000.0, "smoothed")
+
+
+def block_mesh(
+    size: tuple[float, float, float], cells: tuple[int, int, int], jitter: float = 0.0
+) -> TetMesh:
+    """The mesh of such a block."""
     parts = np.array(cells)
     at = np.indices(parts + 1).reshape(3, -1).T
     shaken = np.random.default_rng(1999).uniform(-jitter, jitter, at.shape)
@@ -34,6 +43,4 @@ def soft_block(
             path[[1, 2]] = path[[2, 1]]
         steps = (corner[:, None] + path).transpose(2, 0, 1)
         tets.append(np.ravel_multi_index(tuple(steps), tuple((parts + 1).tolist())))
-    mesh = TetMesh.checked(nodes, np.concatenate(tets))
-    fixed = np.flatnonzero(at[:, 2] == 0)
-    return baked_body(mesh, fixed, poisson_ratio, 100_000.0, "smoothed")
+    return TetMesh.checked(nodes, np.concatenate(tets))

@@ -56,6 +56,8 @@ pub struct Joint {
     /// What points enter, nearest first.
     pub(super) entering: Vec<(f64, u32)>,
     pub(super) effort: Effort,
+    /// How often a tick may take up its bounded work.
+    pub(super) turns: usize,
     /// Whose slots there are.
     eras: [Option<u64>; MOST_TOOLS],
     bodies: [Option<u32>; MOST_BODIES],
@@ -76,6 +78,7 @@ impl Default for Joint {
             chosen: Vec::with_capacity(MOST_POINTS),
             entering: Vec::with_capacity(MOST_ENTERING + 1),
             effort: Effort::default(),
+            turns: 1,
             eras: [None; MOST_TOOLS],
             bodies: [None; MOST_BODIES],
             mobilities: [None; MOST_BODIES],
@@ -109,7 +112,15 @@ impl Joint {
         // Slots have gone and come.
         self.find_influence(grounds, beside);
         let posed = self.posed(led);
-        let (linearisations, exact) = self.settle(grounds, led, &posed, beside);
+        let (mut linearisations, mut exact) = self.settle(grounds, led, &posed, beside);
+        for _ in 1..self.turns {
+            if exact {
+                break;
+            }
+            self.effort.multiplications = 0;
+            let (more, found) = self.settle(grounds, led, &posed, beside);
+            (linearisations, exact) = (linearisations + more, found);
+        }
         let mut are_numbers = self.patch.slots().iter().all(|slot| slot.moved.is_finite());
         for (number, tool) in posed.iter().enumerate() {
             let (Some(tool), Some(led)) = (tool, &mut led[number]) else {

@@ -58,6 +58,13 @@ impl Engine {
         beside.answers
     }
 
+    /// An engine for whoever has no clock: a tick may take up its bounded work so often.
+    pub fn patient(turns: usize) -> Self {
+        let mut engine = Self::default();
+        engine.joint.turns = turns;
+        engine
+    }
+
     /// How a body that nobody holds moved as a whole in the last tick, in its own frame.
     pub fn motion(&self, body: usize) -> Motion {
         self.joint.motion(body)

@@ -107,10 +107,10 @@ impl Resting {
 
     fn place(&mut self, position: Triple, rotation: Rows) -> PyResult<()> {
         let pose = pose(position, rotation)?;
-        self.inner.prop.placement = Placement {
+        self.inner.place(Placement {
             position: pose.position,
             rotation: DQuat::from_mat3(&pose.rotation).normalize(),
-        };
+        });
         Ok(())
     }
 

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::placement::Placement;
 use super::prop::Prop;
 use crate::body::surface::Body;
 use crate::contact::cones::{MAX_FINGERS, mean};
@@ -23,14 +24,22 @@ const LONGEST_RUBBING: f64 = 0.5;
 const SHORTEST: f64 = 1e-3;
 /// On the way to rest it moves by this share of the distance between contact points in a tick, about.
 const WAY_PER_SPACING: f64 = 0.25;
+/// While it goes by more than this share of its size in a millisecond, ticks may be as long as that.
+const BRISK: f64 = 1e-4;
+const MILLISECOND: f64 = 1e-3;
+/// How often a tick takes up the work that one of the servo has to be done with.
+const TURNS: usize = 20;
 /// It rests when what is left of all wrenches is less than this share of the largest.
 const AT_REST: f64 = 1e-8;
 /// And forces change by less than this share of the largest.
 const SETTLED: f64 = 1e-8;
 /// In so many ticks one after the other.
 const QUIET_TICKS: usize = 3;
-/// Ticks that it is given.
+/// Ticks that it is given, and how many times its size it may go meanwhile.
 const MOST_TICKS: usize = 20_000;
+const MOST_SIZES: f64 = 20.0;
+/// Tools are at their goals if they miss them by this share of the body's size.
+const AT_GOAL: f64 = 1e-9;
 
 /// Why a body does not rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,7 +77,7 @@ impl Resting {
             young_modulus,
             prop,
             fingers,
-            engine: Engine::default(),
+            engine: Engine::patient(TURNS),
             time: 0.0,
         }
     }
@@ -76,6 +85,15 @@ impl Resting {
     /// Pa.
     pub fn young_modulus(&self) -> f64 {
         self.young_modulus
+    }
+
+    /// Lays the body elsewhere: all that touches it is set down anew.
+    pub fn place(&mut self, placement: Placement) {
+        self.prop.placement = placement;
+        let tools = self.fingers.iter_mut().map(|(tool, _)| tool);
+        let supports = self.prop.supports.iter_mut();
+        let all = tools.chain(supports.map(|support| &mut support.collider));
+        all.for_each(Collider::lift);
     }
 
     /// Since it was set down, s.
@@ -142,7 +160,7 @@ impl Resting {
     /// # Errors
     /// [`Restless`]; the body is where it came to.
     pub fn settle(&mut self) -> Result<(), Restless> {
-        let (mut quiet, mut speed) = (0, 0.0);
+        let (mut quiet, mut speed, mut gone) = (0, 0.0, 0.0);
         let mut before = self.wrenches();
         let longest = self.longest_tick();
         let mut dt = SHORTEST * longest;
@@ -159,8 +177,17 @@ impl Resting {
                 return Ok(());
             }
             let way = motion.most(self.body.size());
-            speed = way / dt;
+            (speed, gone) = (way / dt, gone + way);
+            if gone > MOST_SIZES * self.body.size() {
+                break;
+            }
             let most = (WAY_PER_SPACING * self.spacing() / way).clamp(0.1, 2.0);
+            let is_brisk = speed * MILLISECOND > BRISK * self.body.size();
+            let longest = if is_brisk {
+                longest.max(MILLISECOND)
+            } else {
+                longest
+            };
             dt = (dt * most).clamp(SHORTEST * longest, longest);
         }
         Err(Restless::Moving(self.time, speed))
@@ -169,7 +196,7 @@ impl Resting {
     /// The longest tick in which contact with friction, if there is any, is found, s.
     fn longest_tick(&self) -> f64 {
         let blocks = self.body.contact_blocks.iter();
-        let stiffness: f64 = blocks.map(|block| mean(block)).sum();
+        let stiffness: f64 = blocks.map(mean).sum();
         let gives = self.body.nodes.len() as f64 / (stiffness * self.young_modulus);
         let rubs = self.colliders().any(Collider::rubs);
         let times = if rubs { LONGEST_RUBBING } else { LONGEST };
@@ -181,6 +208,20 @@ impl Resting {
         let surfaces = self.colliders().filter_map(|tool| tool.surface(0));
         surfaces.fold(self.body.size(), |least, surface| {
             least.min(surface.spacing())
+        })
+    }
+
+    /// Whether tools and supports are where they are to be.
+    fn are_at_goals(&self) -> bool {
+        let placement = &self.prop.placement;
+        let supports = self.prop.supports.iter();
+        let supports = supports.map(|support| (&support.collider, &support.pose));
+        let tools = self.fingers.iter().map(|(tool, pose)| (tool, pose));
+        tools.chain(supports).all(|(tool, goal)| {
+            tool.pose().is_some_and(|pose| {
+                let (way, turn) = pose.way_to(&placement.to_body(goal));
+                way.length() <= AT_GOAL * self.body.size() && turn.length() <= AT_GOAL
+            })
         })
     }
 
@@ -201,7 +242,8 @@ impl Resting {
             .fold(0.0_f64, |most, (a, b)| most.max(a.distance(*b)));
         let (force, torque) = self.wrench();
         let left = force + self.prop.placement.direction_to_body(weight);
-        left.length() <= AT_REST * largest
+        self.are_at_goals()
+            && left.length() <= AT_REST * largest
             && torque.length() <= AT_REST * largest * self.body.size()
             && change <= SETTLED * largest
     }

@@ -80,7 +80,7 @@ pub struct Tool {
 
 impl Tool {
     /// All that is below z = 0 in its frame: a floor without an edge. `reach`, m, stands for its size
-    /// where one is asked for, and is that of what lies on it.
+    /// where one is asked for: displacements on it are found to some millionths of that.
     ///
     /// # Errors
     /// [`HullError`] for a reach that is not positive.

@@ -1,0 +1,1 @@
+"""Free bodies at rest on a floor and fixed tools, pressed by others."""

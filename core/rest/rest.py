@@ -1,0 +1,86 @@
+"""Where a free body is, and what touches it there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..body.soft_body import SoftBody
+from ..contact.tool.pose import Pose
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class BodyTouch:
+    """Touch of a tool or support with a free body.
+
+    Attributes
+    ----------
+    force : float64 (3,), on the tool, newton, in the world.
+    torque : float64 (3,), on the tool about its reference point, newton metres, in the world.
+    places : float64 (p, 3), pressed places where they are now, metres, in the world.
+    pushes : float64 (p,), normal forces there, newton, all > 0.
+    areas : float64 (p,), the places' shares of the surface, square metres.
+    nodes : int64 (k,), nodes of the mesh that carry force.
+    nodal_forces : float64 (k, 3), on these, newton, in the body's own frame.
+    """
+
+    force: Array
+    torque: Array
+    places: Array
+    pushes: Array
+    areas: Array
+    nodes: NDArray[np.int64]
+    nodal_forces: Array
+
+    @property
+    def pressures(self) -> Array:
+        """Normal pressure at the pressed places, (p,), pascal."""
+        pressures: Array = self.pushes / self.areas
+        return pressures
+
+
+@dataclass(frozen=True, eq=False)
+class Rest:
+    """A free body in the world.
+
+    Attributes
+    ----------
+    body : it.
+    placement : of its frame in the world.
+    tools, supports : what touches it.
+    elastic : elastic energy in it, joule.
+    time : seconds on the way here, by its drag.
+    """
+
+    body: SoftBody
+    placement: Pose
+    tools: tuple[BodyTouch, ...]
+    supports: tuple[BodyTouch, ...]
+    elastic: float
+    time: float
+
+    @property
+    def centre(self) -> Array:
+        """Centre of mass in the world, (3,), metres."""
+        return self.to_world(self.body.inertia.centre)
+
+    def to_world(self, places: Array) -> Array:
+        """Places (..., 3) of the body's frame in the world, metres."""
+        moved: Array = places @ self.placement.rotation.T + self.placement.position
+        return moved
+
+    def displacements(self, young_modulus: float | None = None) -> Array:
+        """Elastic displacements (n, 3) of the surface nodes in the body's frame, metres."""
+        touches = [*self.tools, *self.supports]
+        nodes = np.concatenate([np.empty(0, np.int64), *(touch.nodes for touch in touches)])
+        forces = np.concatenate([np.empty((0, 3)), *(touch.nodal_forces for touch in touches)])
+        return self.body.deform(nodes, forces, young_modulus)
+
+    def surface(self, young_modulus: float | None = None) -> Array:
+        """The surface nodes (n, 3), moved and deformed, metres, in the world."""
+        nodes = self.body.mesh.nodes[self.body.compliance.free_surface]
+        return self.to_world(nodes + self.displacements(young_modulus))

@@ -1,0 +1,39 @@
+"""Bodies without pins: blocks, and balls that are finest at their poles."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from palpate.core.body.soft_body import SoftBody
+from palpate.core.mesh.tet_mesh import TetMesh
+
+from .baked_body import baked_body
+from .soft_block import block_mesh
+
+NO_PINS = np.empty(0, dtype=np.int64)
+
+
+def free_block(
+    size: tuple[float, float, float],
+    cells: tuple[int, int, int],
+    young_modulus: float = 100_000.0,
+    density: float = 1000.0,
+) -> SoftBody:
+    """A box of ``size`` metres from the origin, in ``cells``."""
+    mesh = block_mesh(size, cells)
+    return baked_body(mesh, NO_PINS, 0.3, young_modulus, density=density)
+
+
+def free_ball(
+    radius: float, cells: int, young_modulus: float = 100_000.0, density: float = 1000.0
+) -> SoftBody:
+    """A ball about (0, 0, radius): a block of ``cells`` each way, blown up."""
+    cube = block_mesh((2.0, 2.0, 2.0), (cells, cells, cells))
+    at = cube.nodes - 1.0
+    at[:, :2] *= 0.5 + 0.5 * np.abs(at[:, :2])
+    length = np.linalg.norm(at, axis=1)
+    blown = np.abs(at).max(axis=1) / np.where(length > 0.0, length, 1.0)
+    nodes = radius * (at * blown[:, None] + np.array([0.0, 0.0, 1.0]))
+    return baked_body(
+        TetMesh.checked(nodes, cube.tets), NO_PINS, 0.3, young_modulus, density=density
+    )
