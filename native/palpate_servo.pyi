@@ -401,9 +401,8 @@ class Tool:
 
     @staticmethod
     def endless(reach: float) -> Tool:
-        """All that is below z = 0 of its frame; reach, m, stands for its size where one is asked for.
-
-        Displacements on it are found to some millionths of that.
+        """All that is below z = 0 of its frame; displacements on it are found to some millionths
+        of its reach, m.
         """
 
     @property
@@ -507,44 +506,47 @@ class Resting:
         body: Body,
         *,
         mass: float,
-        centre: Sequence[float],
-        inertia: Sequence[Sequence[float]],
+        centre: _Vector,
+        inertia: _Matrix,
         young_modulus: float,
         drag_time: float,
-        gravity: Sequence[float],
+        gravity: _Vector,
         tools: Sequence[LaidTool],
         supports: Sequence[LaidTool],
     ) -> None:
         """Lay the body down with its frame that of the world.
 
-        mass, kg; centre of mass, m, and inertia about it, kg m^2, at rest; under a force its speed is
-        that over the mass times drag_time, s; gravity, m/s^2. Tools and supports: contact points on
-        the body, shape, position, rotation, coefficient of friction.
+        mass, kg; centre of mass, m, and inertia about it, kg m^2, at rest; under a force its speed
+        is that over the mass times drag_time, s; gravity, m/s^2. Tools and supports: contact points
+        on the body, shape, position, rotation, coefficient of friction.
 
         Raises ValueError for more tools than MAX_FINGERS or supports than MOST_SUPPORTS, one for
         another body, and numbers that cannot be.
         """
 
-    position: Final[NDArray[np.float64]]
-    """Of the body's frame in the world, (3,), m."""
-    rotation: Final[NDArray[np.float64]]
-    """Takes directions of the body to those of the world, (3, 3)."""
-    elastic: Final[float]
-    """The elastic energy in the body, J."""
-    time: Final[float]
-    """Of all ticks, s."""
+    @property
+    def position(self) -> NDArray[np.float64]:
+        """Of the body's frame in the world, (3,), m."""
 
-    def place(self, position: Sequence[float], rotation: Sequence[Sequence[float]]) -> None:
+    @property
+    def rotation(self) -> NDArray[np.float64]:
+        """Takes directions of the body to those of the world, (3, 3)."""
+
+    @property
+    def elastic(self) -> float:
+        """The elastic energy in the body, J."""
+
+    @property
+    def time(self) -> float:
+        """Of all ticks, s."""
+
+    def place(self, position: _Vector, rotation: _Matrix) -> None:
         """Lay the body elsewhere; all that touches it is set down anew."""
 
-    def lead_tool(
-        self, number: int, position: Sequence[float], rotation: Sequence[Sequence[float]]
-    ) -> None:
+    def lead_tool(self, number: int, position: _Vector, rotation: _Matrix) -> None:
         """Where a tool goes from the next tick on, by a stride in each."""
 
-    def lead_support(
-        self, number: int, position: Sequence[float], rotation: Sequence[Sequence[float]]
-    ) -> None:
+    def lead_support(self, number: int, position: _Vector, rotation: _Matrix) -> None:
         """Where a support is from the next tick on."""
 
     def tick(self, dt: float) -> None:

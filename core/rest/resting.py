@@ -32,8 +32,8 @@ EARTH = (0.0, 0.0, -9.81)
 # Contact points for supports lie apart by this share of the root of the body's surface: a flat side
 # of a cube has some fifty.
 SUPPORT_SPACING = 1.0 / 14.0
-# Displacements on a floor are found to some millionths of so many times how far a body sags, or of this
-# share of its size.
+# Displacements on a floor are found to some millionths of so many times how far a body sags, or of
+# this share of its size.
 REACH_PER_SAG = 30.0
 LEAST_REACH = 1e-4
 
@@ -72,8 +72,8 @@ class Resting:
     >>> settings = BakeSettings(poisson_ratio=0.3, young_modulus=1e5, pins=NoPins(), density=1000.0)
     >>> cube, _ = bake(paper_cube()[0], settings)
     >>> rest = Resting(cube, [Floor()]).settle()
-    >>> [round(float(force), 3) for force in rest.supports[0].force]  # on the floor: its weight
-    [0.0, 0.0, -1.226]
+    >>> round(float(rest.supports[0].force[2]), 3)  # on the floor: its weight
+    -1.226
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ class Resting:
         self.body = body
         self._modulus = body.modulus(settings.young_modulus)
         native = native_body(body, whole=True)
-        surface = _surface(body, native, settings.spacing) if supports else None
+        surface = _surface(body, native, settings.spacing)
         try:
             self._native = NativeResting(
                 native,
@@ -186,13 +186,18 @@ class Resting:
 
     def _felt(self) -> Rest:
         for number, told in enumerate(self._native.touches()):
-            if not told["free"]:
-                is_tool = number < self._tool_count
+            if told["free"]:
+                continue
+            if number < self._tool_count:
                 raise PalpateError(
-                    "{what} {number} is within the body, which does not feel it; begin outside",
-                    what="tool" if is_tool else "support",
-                    number=number if is_tool else number - self._tool_count,
+                    "tool {number} is within the body, which does not feel it; begin outside",
+                    number=number,
                 )
+            raise PalpateError(
+                "support {number} is within the body, which does not feel it; lay the body down "
+                "clear of it",
+                number=number - self._tool_count,
+            )
         return self.rest
 
     @property
@@ -225,8 +230,7 @@ def _floor_reach(body: SoftBody, settings: RestSettings) -> float:
     return min(size, max(REACH_PER_SAG * sag, LEAST_REACH * size))
 
 
-def _laid(surface: ToolSurface | None, support: Floor | Support, reach: float) -> LaidTool:
-    assert surface is not None
+def _laid(surface: ToolSurface, support: Floor | Support, reach: float) -> LaidTool:
     if isinstance(support, Floor):
         return surface, NativeTool.endless(reach), *_at(support.pose), support.friction
     return surface, native_shape(support.tool), *_at(support.pose), support.friction

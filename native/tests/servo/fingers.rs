@@ -175,6 +175,7 @@ fn on(body: &Body) -> Ground<'_> {
         body,
         number: 0,
         young_modulus: 1.0,
+        mobility: None,
     }
 }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use palpate_servo::body::surface::Body;
 use palpate_servo::contact::cones::MAX_FINGERS;
-use palpate_servo::contact::ground::{Ground, MOST_BODIES};
+use palpate_servo::contact::ground::{Ground, MOST_BODIES, MOST_TOOLS};
 use palpate_servo::engine::Engine;
 use palpate_servo::engine::joint::Led;
 use palpate_servo::fingers::press::{Answer, Press};
@@ -40,6 +40,7 @@ fn grounds<'a>(bodies: &[&'a Arc<Body>], moduli: &[f64]) -> Vec<Ground<'a>> {
         body,
         number: number as u32,
         young_modulus: *modulus,
+        mobility: None,
     };
     bodies.map(ground).collect()
 }
@@ -51,7 +52,7 @@ fn tick(
     tools: &mut [(&mut Collider, Pose)],
     points: &[Press],
 ) -> Vec<Answer> {
-    let mut led = [const { None }; MAX_FINGERS];
+    let mut led = [const { None }; MOST_TOOLS];
     for (led, (collider, goal)) in led.iter_mut().zip(tools) {
         *led = Some(Led {
             collider,

@@ -15,7 +15,7 @@ AIR, SQUEEZE, LIFT = 0.001, 0.0015, 0.04
 
 
 def pinch(gap, height):
-    """Poses of the two plates about the middle of the cube, m beyond its sides and over its place."""
+    """Poses of the two plates about the middle of the cube, m off its sides and over its place."""
     middle = 0.025 + height
     return [
         Pose.at([-gap, 0.025, middle], LEFT),

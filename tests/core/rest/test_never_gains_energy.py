@@ -1,4 +1,4 @@
-"""Thrown down anyhow, a body comes to rest without gaining energy on the way, and stays on the floor."""
+"""Thrown down anyhow, a body comes to rest on the floor, and never gains energy on the way."""
 
 import numpy as np
 import pytest
