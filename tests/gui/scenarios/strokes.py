@@ -7,6 +7,7 @@ import math
 import bmesh
 import bpy
 import numpy as np
+from bl_keymap_utils import keymap_hierarchy
 from mouse_scene import open_mouse, type_key
 from random_drags import Drag, random_drags
 from stage import Stage, Wait, at_length
@@ -108,6 +109,47 @@ def a_push_goes_along_the_surface_with_ctrl(stage: Stage) -> Wait:
     assert math.hypot(*done["by"]) > 0.2, "it did not go along"
     # As deep as before, to what the coarse dent shows of it.
     assert math.isclose(-last_stroke(cube)[:, 2].min(), before, rel_tol=0.3)
+
+
+def a_stroke_is_undone_and_done_again_by_keys(stage: Stage) -> Wait:
+    cube = yield from _soft_default_cube(stage)
+    _choose_tool(stage)
+    name, strokes = cube.name, []
+    for number in (1, 2):
+        here = stage.pixel(_place_on_cube(number))
+        yield from stage.drag([here, (here[0], here[1] - 90)])
+        yield from stage.until(
+            lambda n=number: len(kept(bpy.data.objects[name])) == n, "the stroke that is kept"
+        )
+        strokes.append(last_stroke(bpy.data.objects[name]))
+    for count in (1, 0):
+        yield from type_key(stage, "Z", ctrl=True)
+        yield from stage.until(
+            lambda n=count: len(kept(bpy.data.objects[name])) == n, "one stroke fewer"
+        )
+    yield from stage.picture("undone")
+    for number, stroke in enumerate(strokes, start=1):
+        yield from type_key(stage, "Z", ctrl=True, shift=True)
+        yield from stage.until(
+            lambda n=number: len(kept(bpy.data.objects[name])) == n, "the stroke again"
+        )
+        np.testing.assert_array_equal(last_stroke(bpy.data.objects[name]), stroke)
+    yield from stage.picture("done-again")
+
+
+def shortcuts_stand_in_the_preferences(stage: Stage) -> Wait:
+    """Where Blender's own list of keymaps looks for them."""
+    yield from stage.picture("start")
+    listed = {name: within for name, _, _, within in _all_keymaps()}
+    assert "3D View Tool: Object, Palpate" in listed
+    keyed = {
+        item.idname
+        for keys in bpy.context.window_manager.keyconfigs.user.keymaps
+        if keys.name in listed
+        for item in keys.keymap_items
+        if item.idname.startswith("palpate.") or getattr(item.properties, "name", "") == TOOL
+    }
+    assert {"palpate.stroke", "palpate.stroke_size", "wm.tool_set_by_id"} <= keyed
 
 
 def a_depth_is_typed_while_dragging(stage: Stage) -> Wait:
@@ -226,6 +268,14 @@ def _live_depth(thing: bpy.types.Object) -> float:
     moved = None if live is None else layers.displacement(thing, live)
     assert moved is not None
     return float(np.linalg.norm(moved, axis=1).max())
+
+
+def _all_keymaps(within: list | None = None) -> list[tuple]:
+    """Keymaps as the preferences list them, with those inside others."""
+    found = []
+    for entry in keymap_hierarchy.generate() if within is None else within:
+        found += [entry, *_all_keymaps(entry[3])]
+    return found
 
 
 def kept(thing: bpy.types.Object) -> list[str]:
