@@ -244,12 +244,19 @@ demo: $(VENV)/.servo-installed build/packages/.made ## the main job on a plush m
 	$(BIN)/python demo/make_demo.py --blender $(BPY_VENV)/bin/python \
 	  --package build/packages/palpate-[0-9]*.zip --output build/demo
 
-# The steps are played in the window, so the pictures are what a user sees.
-.PHONY: tutorial
-tutorial: $(VENV)/.servo-installed $(WINDOWED_PACKAGE) ## the pictures of docs/tutorial.md
-	BLENDER_GUI='$(BLENDER_GUI)' $(BIN)/pytest -q tests/gui -k newcomer
-	for picture in build/gui/newcomer-*-[1-9]-*.png; do \
-	  cp "$$picture" "docs/images/tutorial-$${picture##*-}"; done
+# What is seen in the window is played there, so the pictures are what a user sees. Pictures of
+# measurements are made by their benchmarks: cost_against_size.py --docs, passivity_map.py --docs, locking.py --picture.
+PICTURED := newcomer or comes_back or shows_its_patch_and_force or two_handles_pinch
+.PHONY: pictures
+pictures: $(VENV)/.servo-installed $(BPY_VENV)/.installed build/packages/.made $(WINDOWED_PACKAGE) ## the pictures of all documents anew, but those of measurements
+	BLENDER_GUI='$(BLENDER_GUI)' $(BIN)/pytest -q tests/gui -k '$(PICTURED)'
+	$(BIN)/python demo/window_pictures.py
+	$(BPY_VENV)/bin/python demo/picture_scene.py sample_scenes/drumstick.blend docs/images/drumstick.png
+	$(BIN)/python demo/make_demo.py --blender $(BPY_VENV)/bin/python \
+	  --package build/packages/palpate-[0-9]*.zip --output build/demo --readme docs/images/press.png
+	$(BPY_VENV)/bin/python demo/picture_shapes.py \
+	  --package build/packages/palpate-[0-9]*.zip --output docs/images/shapes.png
+	$(BIN)/python benchmarks/shape/paper_tables.py --picture docs/images/figure-4.png
 
 .PHONY: translations
 translations: $(VENV)/.installed ## new texts into addon/translations/*.po, and old ones out

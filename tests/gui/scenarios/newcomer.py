@@ -1,5 +1,5 @@
 """A newcomer's way, by clicks on real buttons alone, without a setting. Its pictures are those of
-docs/tutorial.md (`make tutorial`).
+docs/tutorial.md (`make pictures`).
 """
 
 from __future__ import annotations
