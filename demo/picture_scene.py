@@ -10,7 +10,7 @@ from pathlib import Path
 import bpy
 from photographing import photograph
 
-WIDTH, HEIGHT, SAMPLES = 720, 480, 64
+WIDTH, HEIGHT, SAMPLES = 720, 480, 24
 
 
 def main() -> int:

@@ -13,21 +13,23 @@ PROJECT = Path(__file__).resolve().parent.parent
 PLAYED, SHOWN = PROJECT / "build" / "gui", PROJECT / "docs" / "images"
 # Left, upper, right and lower edge, pixels of the window; None for all of it.
 Box = tuple[int, int, int, int] | None
+# The view beside the toolbar and the sidebar.
+IN_VIEW = (56, 100, 764, 716)
 NEWCOMER = "newcomer-from_the_default_cube_to_a_rendered_animation_in_eight_clicks"
 STEPS = ("tool", "soft", "stroke", "kept", "animated", "rendered")
 # What becomes of which picture of a scenario.
 PICTURES: dict[str, tuple[str, Box]] = {
     "device.png": (
         "pressing-the_simulated_device_presses_is_unplugged_and_comes_back-device",
-        (0, 24, 1060, 745),
+        (56, 100, 1020, 716),
     ),
     "fingertip.png": (
         "fingers-a_fingertip_led_by_the_mouse_shows_its_patch_and_force-pressed",
-        (0, 75, 780, 745),
+        IN_VIEW,
     ),
     "pinch.png": (
         "fingers-two_handles_pinch_and_escape_restores_every_bit-pinched",
-        (0, 75, 780, 745),
+        IN_VIEW,
     ),
     **{
         f"tutorial-{step}.png": (f"{NEWCOMER}-{number}-{step}", None)

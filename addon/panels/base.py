@@ -65,4 +65,7 @@ def draw_material(layout: bpy.types.UILayout, context: bpy.types.Context) -> Non
         layout.prop(thing.palpate, "material", text="")
         return
     text = shown("{material}, by size", material=shown(MATERIALS[suits].name))
-    layout.prop_menu_enum(thing.palpate, "material", text=text, translate=False)
+    # A header draws a menu as bare words; the arrow says that it opens.
+    layout.prop_menu_enum(
+        thing.palpate, "material", text=text, translate=False, icon="DOWNARROW_HLT"
+    )

@@ -29,6 +29,9 @@ from bl_ext.user_default.palpate.operators.object import body_store
 from bl_ext.user_default.palpate.operators.session import press_session
 from bl_ext.user_default.palpate.operators.session.press_state import Phase
 
+# Of one moment, until one shows it.
+MOST_PICTURES = 5
+
 
 def dragging_dents_the_surface_and_enter_keeps_the_shape(stage: Stage) -> Wait:
     yield from open_mouse(stage)
@@ -228,7 +231,12 @@ def the_simulated_device_presses_is_unplugged_and_comes_back(stage: Stage) -> Wa
     bpy.context.scene.palpate.source = "SIMULATED"
     yield from start_press(stage)
     yield from stage.until(lambda: depth() > 0.008, "the device's press")
-    yield from stage.picture("device")
+    # Its hand goes on while a slow computer draws; the picture is to show it pressing.
+    for _ in range(MOST_PICTURES):
+        yield from stage.picture("device")
+        if depth() > 0.0:
+            break
+        yield from stage.until(lambda: depth() > 0.008, "its next press")
     session = press_session.current()
     session.loop.simulated.unplug()
     yield from stage.until(lambda: phase() is Phase.LOST, "the message")
