@@ -7,6 +7,7 @@ from contextlib import suppress
 
 import numpy as np
 import pytest
+from bodies.baked_body import baked_body
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -17,10 +18,11 @@ from palpate.core.files.npz_archive import write_arrays
 ODD = [np.nan, np.inf, -np.inf, -1.0, 0.0, 1e300, 2.0**31, -(2.0**63)]
 
 
-@pytest.fixture(scope="module")
-def content(cube, tmp_path_factory):
+@pytest.fixture(scope="module", params=["pinned", "free"])
+def content(request, cube, tmp_path_factory):
     path = tmp_path_factory.mktemp("fuzzed") / "cube.npz"
-    body_file.save(cube, path)
+    is_free = request.param == "free"
+    body_file.save(baked_body(cube.mesh, [], density=1e3) if is_free else cube, path)
     return path.read_bytes()
 
 
@@ -43,6 +45,7 @@ def sound(body):
     blocks = body.contact_blocks
     assert np.isfinite(blocks).all()
     assert np.linalg.eigvalsh(blocks).min() > 0.0
+    assert not body.is_free or 0.0 < body.mass < np.inf
     return body
 
 
