@@ -12,9 +12,13 @@ from ..core.errors import PalpateError
 from .bake import bake, pin
 from .body import info
 from .press import devices, press, servo
+from .rest import settle
 from .softness import curve, durometer, materials, shore, softness
 
-COMMANDS = (bake, info, pin, press, servo, devices, materials, shore, durometer, curve, softness)
+COMMANDS = (
+    *(bake, info, pin, press, settle, servo, devices),
+    *(materials, shore, durometer, curve, softness),
+)
 EXIT_ERROR = 2
 
 

@@ -24,6 +24,9 @@ from ...core.shape.shapes import FORMER_NAMES, SHAPES, shape, shape_name
 from ...core.stiffness.assembly import lame_parameters
 from ..body.body_argument import add_body
 from ..body.figure_lines import as_lines
+from ..rest.floor_options import add_floor
+from ..rest.press_resting import pressed_on_floor, refuse_beside_floor, refuse_floor
+from ..rest.rest_figures import rest_figures, touch_figures
 from .felt_option import add_felt, refuse_with_tool, softenings_for
 from .press_tool import pressed_tools, tool_figures, tool_summary
 from .tool_option import KINDS, tool_from
@@ -65,7 +68,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "--tool",
         metavar="TOOL",
         help=f"press this instead of a point: {KINDS} (metres); its -z side is set down at --at, "
-        "against the surface, and moved by --by",
+        "against the surface, and moved by --by; a body without pins lies on a floor",
     )
     parser.add_argument(
         "--friction",
@@ -74,6 +77,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         help="coefficient of friction between --tool and body (default: 0)",
     )
     add_felt(parser)
+    add_floor(parser)
     parser.add_argument(
         "--shape",
         choices=(*SHAPES, *FORMER_NAMES),
@@ -95,6 +99,9 @@ def run(arguments: argparse.Namespace) -> int:
     body = body_file.load(arguments.body)
     young_modulus = body.young_modulus if arguments.young is None else arguments.young
     lame_parameters(young_modulus, body.poisson_ratio)
+    if arguments.tool is not None and body.is_free:
+        return _press_resting(arguments, body, young_modulus)
+    refuse_floor(arguments, body)
     if arguments.tool is not None:
         return _press_tool(arguments, body, young_modulus)
     if arguments.friction is not None:
@@ -128,6 +135,17 @@ def _press_tool(arguments: argparse.Namespace, body: SoftBody, young_modulus: fl
     common = _common_figures(arguments, displacements, young_modulus)
     figures = [(tool_figures if arguments.json else tool_summary)(touch) for touch in touches]
     _print(arguments, figures, common)
+    return 0
+
+
+def _press_resting(arguments: argparse.Namespace, body: SoftBody, young_modulus: float) -> int:
+    refuse_beside_floor(arguments)
+    rest = pressed_on_floor(arguments, body, tool_from(arguments.tool), young_modulus)
+    if arguments.displacements is not None:
+        with atomic_file(arguments.displacements) as file:
+            np.save(file, rest.displacements(young_modulus))
+    contacts = [{"tool": arguments.tool, **touch_figures(touch)} for touch in rest.tools]
+    _print(arguments, contacts, rest_figures(rest, young_modulus))
     return 0
 
 

@@ -3,18 +3,19 @@
 Quadratic hexahedra of scikit-fem, a quarter of the cube with its symmetries, graded towards the
 sphere. The body is linear, so its top stands for all of it (static condensation); the contact is
 not: it is integrated over the deformed surface, by a penalty in the sphere's own distance, and
-solved by Newton's method.
+solved by Newton's method. The cube's bottom is fixed, or lies on a smooth floor: on springs as firm
+as the penalty, which are taken away where it lifts off.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
-from scipy.sparse import block_diag, coo_array, csr_array
+from scipy.sparse import block_diag, coo_array, csr_array, diags_array
 from scipy.sparse.linalg import splu
 from skfem import Basis, ElementHex2, ElementVector, FacetBasis, MeshHex
 from skfem.models.elasticity import lame_parameters, linear_elasticity
@@ -42,6 +43,23 @@ class _Surface:
     moved: csr_array
 
 
+@dataclass(frozen=True, eq=False)
+class _Floor:
+    """Springs ``firmness`` (q,) under the bottom, whose rise is ``upright`` (q, n) times u."""
+
+    firmness: NDArray[np.float64]
+    upright: csr_array
+
+    def lifted(self, u: NDArray[np.float64]) -> tuple[NDArray[np.float64], csr_array]:
+        """Forces (n,) that undo the springs where the bottom is above the floor, and their
+        negative slope.
+        """
+        rise = self.upright @ u
+        undone = self.firmness * (rise > 0.0)
+        slope = -(self.upright.T @ diags_array(undone) @ self.upright)
+        return self.upright.T @ (undone * rise), csr_array(slope)
+
+
 def reference_forces(
     edge: float,
     radius: float,
@@ -49,10 +67,12 @@ def reference_forces(
     young: float,
     poisson_ratio: float,
     cells: int = 6,
+    *,
+    on_floor: bool = False,
 ) -> list[float]:
     """Forces, newton, on a sphere pressed straight down on the middle of the top of a cube with its
-    bottom fixed, at ascending ``depths``; metres and pascal. ``cells`` quadratic elements across
-    the quarter.
+    bottom fixed, or ``on_floor``, at ascending ``depths``; metres and pascal. ``cells`` quadratic
+    elements across the quarter.
 
     Raises
     ------
@@ -65,33 +85,42 @@ def reference_forces(
     element = ElementVector(ElementHex2())
     inside = Basis(mesh, element, intorder=4)
     stiffness = linear_elasticity(*lame_parameters(young, poisson_ratio)).assemble(inside)
+    low = inside.get_dofs(lambda x: x[2] < 1e-9 * edge).all()
     held = np.concatenate(
         [
-            inside.get_dofs(lambda x: x[2] < 1e-9 * edge).all(),
+            low[:0] if on_floor else low,
             inside.get_dofs(lambda x: x[0] < 1e-9 * edge).all(["u^1"]),
             inside.get_dofs(lambda x: x[1] < 1e-9 * edge).all(["u^2"]),
         ]
     )
     free = np.setdiff1d(np.arange(inside.N), held)
-    upper = np.intersect1d(free, inside.get_dofs(lambda x: x[2] > edge * (1 - 1e-9)).all())
+    upper = inside.get_dofs(lambda x: x[2] > edge * (1 - 1e-9)).all()
+    upper = np.intersect1d(free, np.union1d(upper, low) if on_floor else upper)
     place = np.searchsorted(free, upper)
+    factor = PENALTY * young / first
+    floor = None
+    if on_floor:
+        bottom = _surface(mesh, element, lambda x: x[2] < 1e-9 * edge)
+        upright = bottom.moved[2::3]
+        stiffness = stiffness + factor * upright.T @ diags_array(bottom.weights) @ upright
+        floor = _Floor(factor * bottom.weights, upright[:, upper])
     loads = np.zeros((len(free), len(upper)))
     loads[place, np.arange(len(upper))] = 1.0
     compliance = splu(stiffness.tocsr()[free][:, free].tocsc()).solve(loads)[place]
-    whole = _surface(mesh, element, edge)
+    whole = _surface(mesh, element, lambda x: x[2] > edge * (1 - 1e-9))
     top = _Surface(whole.places, whole.weights, whole.moved[:, upper])
-    factor = PENALTY * young / first
     u = np.zeros(len(upper))
     forces = []
     for depth in depths:
         centre = np.array([0.0, 0.0, edge + radius - depth])
-        u = _equilibrium(top, compliance, u, centre, radius, factor)
+        u = _equilibrium(top, floor, compliance, u, centre, radius, factor)
         forces.append(-4.0 * _contact(top, u, centre, radius, factor)[2])
     return forces
 
 
 def _equilibrium(
     top: _Surface,
+    floor: _Floor | None,
     compliance: NDArray[np.float64],
     u: NDArray[np.float64],
     centre: NDArray[np.float64],
@@ -99,8 +128,16 @@ def _equilibrium(
     factor: float,
 ) -> NDArray[np.float64]:
     """Displacements (n,) that the penalty's own forces cause, by Newton's method with halving."""
-    for _ in range(MOST_ITERATIONS):
+
+    def pushed(u: NDArray[np.float64]) -> tuple[NDArray[np.float64], csr_array]:
         push, spring, _ = _contact(top, u, centre, radius, factor)
+        if floor is None:
+            return push, spring
+        pull, soft = floor.lifted(u)
+        return push + pull, spring + soft
+
+    for _ in range(MOST_ITERATIONS):
+        push, spring = pushed(u)
         missing = u - compliance @ push
         size = float(np.linalg.norm(missing))
         if size <= CONVERGED * radius:
@@ -109,7 +146,7 @@ def _equilibrium(
         share = 1.0
         while share > SMALLEST_STEP:
             tried = u - share * way
-            left = tried - compliance @ _contact(top, tried, centre, radius, factor)[0]
+            left = tried - compliance @ pushed(tried)[0]
             if np.linalg.norm(left) < size:
                 break
             share *= 0.5
@@ -117,8 +154,12 @@ def _equilibrium(
     raise ArithmeticError("the reference did not converge; press in smaller steps")
 
 
-def _surface(mesh: MeshHex, element: ElementVector, edge: float) -> _Surface:
-    facets = mesh.facets_satisfying(lambda x: x[2] > edge * (1 - 1e-9))
+def _surface(
+    mesh: MeshHex,
+    element: ElementVector,
+    side: Callable[[NDArray[np.float64]], NDArray[np.bool_]],
+) -> _Surface:
+    facets = mesh.facets_satisfying(side)
     basis = FacetBasis(mesh, element, facets=facets, intorder=8)
     count = basis.dx.size
     rows, columns, values = [], [], []

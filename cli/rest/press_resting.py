@@ -1,0 +1,96 @@
+"""The part of ``palpate press`` that presses a body which lies on a floor."""
+
+from __future__ import annotations
+
+import argparse
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.body.soft_body import SoftBody
+from ...core.contact.place import nearest_place
+from ...core.contact.single_press import pairs_checked, set_down
+from ...core.contact.tool.pose import Pose
+from ...core.contact.tool.tools import Tool
+from ...core.errors import PalpateError
+from ...core.rest.rest import Rest
+from ...core.rest.resting import Resting, RestSettings
+from .floor_options import floor_under, gravity
+
+
+def refuse_floor(arguments: argparse.Namespace, body: SoftBody) -> None:
+    """Refuse a point on a body without pins, and a floor under one that is pinned.
+
+    Raises
+    ------
+    PalpateError
+        Names the option.
+    """
+    if body.is_free:
+        raise PalpateError(
+            "--tool: a body without pins is pressed by tools only, as it lies on its floor; give "
+            "one, such as sphere:0.008, or pin the body ('palpate pin')"
+        )
+    for option in ("floor", "floor_friction", "gravity"):
+        if getattr(arguments, option) is not None:
+            raise PalpateError(
+                f"--{option.replace('_', '-')}: the body is pinned and lies on nothing; bake it "
+                "with --pins none, or leave the option out"
+            )
+
+
+def refuse_beside_floor(arguments: argparse.Namespace) -> None:
+    """Refuse what a body on its floor cannot be pressed with.
+
+    Raises
+    ------
+    PalpateError
+        Names the option.
+    """
+    if arguments.mode is not None:
+        raise PalpateError("--mode: it is about points; leave it out with --tool")
+    if arguments.felt != "linear" or arguments.shape != "linear":
+        raise PalpateError(
+            "--felt, --shape: a body without pins has the linear ones only; leave them out, or pin "
+            "the body ('palpate pin')"
+        )
+
+
+def pressed_on_floor(
+    arguments: argparse.Namespace, body: SoftBody, tool: Tool, young_modulus: float
+) -> Rest:
+    """Let the body settle on its floor, set tools of one kind down on it and move them.
+
+    ``--at`` is where the surface lies then. The tools move without turning, and the body rests
+    again at the end.
+
+    Raises
+    ------
+    PalpateError
+        Coordinates that are not three finite numbers; a body that does not come to rest.
+    """
+    places, ways = pairs_checked(arguments.at, arguments.by)
+    floor = floor_under(arguments, body)
+    settings = RestSettings(young_modulus, arguments.friction or 0.0, gravity(arguments))
+    alone = Resting(body, [floor], settings=settings).settle()
+    starts = [_set_down(alone, tool, place) for place in places]
+    resting = Resting(
+        body,
+        [floor],
+        [(tool, start) for start in starts],
+        placement=alone.placement,
+        settings=settings,
+    )
+    resting.settle()
+    resting.lead(
+        [Pose(start.position + way, start.rotation) for start, way in zip(starts, ways, strict=True)]
+    )
+    return resting.settle()
+
+
+def _set_down(alone: Rest, tool: Tool, place: NDArray[np.float64]) -> Pose:
+    """Pose in the world of a tool on the body's surface at rest, nearest to a place there."""
+    turn = alone.placement.rotation
+    own = (place - alone.placement.position) @ turn
+    laid = set_down(alone.body, tool, nearest_place(alone.body, own))
+    return Pose(alone.to_world(laid.position), turn @ laid.rotation)

@@ -1,0 +1,52 @@
+"""``palpate settle``: lay a body without pins on a floor until it rests."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+
+import numpy as np
+
+from ...core.body import body_file
+from ...core.files.atomic_file import atomic_file
+from ...core.rest.resting import Resting, RestSettings
+from ..body.body_argument import add_body
+from ..body.figure_lines import as_lines
+from .floor_options import add_floor, floor_under, gravity
+from .rest_figures import rest_figures
+
+HELP = "lay a body without pins on a floor until it rests"
+DESCRIPTION = (
+    "Let a body that was baked without pins sink, slide and tip until it rests, and print where it "
+    "lies and what the floor bears."
+)
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add the command's options."""
+    add_body(parser)
+    add_floor(parser)
+    parser.add_argument(
+        "--young", type=float, metavar="PA", help="Young's modulus (default: the body's own)"
+    )
+    parser.add_argument(
+        "--surface",
+        type=Path,
+        metavar="OUT.npy",
+        help="write the surface nodes where they come to lie, float64 (n, 3)",
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Load, settle, print."""
+    body = body_file.load(arguments.body)
+    modulus = body.modulus(arguments.young)
+    settings = RestSettings(modulus, gravity=gravity(arguments))
+    rest = Resting(body, [floor_under(arguments, body)], settings=settings).settle()
+    if arguments.surface is not None:
+        with atomic_file(arguments.surface) as file:
+            np.save(file, rest.surface(modulus))
+    figures = rest_figures(rest, modulus)
+    print(json.dumps(figures) if arguments.json else as_lines(figures))
+    return 0
