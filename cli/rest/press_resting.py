@@ -82,9 +82,8 @@ def pressed_on_floor(
         settings=settings,
     )
     resting.settle()
-    resting.lead(
-        [Pose(start.position + way, start.rotation) for start, way in zip(starts, ways, strict=True)]
-    )
+    pairs = zip(starts, ways, strict=True)
+    resting.lead([Pose(start.position + way, start.rotation) for start, way in pairs])
     return resting.settle()
 
 

@@ -15,9 +15,7 @@ def rest_figures(rest: Rest, young_modulus: float) -> dict[str, object]:
         "centre_of_mass": rest.centre.tolist(),
         "mass_kg": rest.body.mass,
         "floor": touch_figures(rest.supports[0]),
-        "max_displacement": float(
-            np.linalg.norm(rest.displacements(young_modulus), axis=1).max()
-        ),
+        "max_displacement": float(np.linalg.norm(rest.displacements(young_modulus), axis=1).max()),
         "elastic_energy": rest.elastic,
         "young_modulus": young_modulus,
     }

@@ -43,18 +43,26 @@ def _in_memory(compliance: Compliance) -> NativeCompliance:
     return native_compliance(compliance)
 
 
-def native_body(body: SoftBody, *, whole: bool = False) -> Body:
+def native_body(body: SoftBody, *, whole: bool = False, may_move: bool = False) -> Body:
     """Native rest surface, contact blocks and compliance of a body, copied.
 
     Of the compliance it keeps the blocks of all nodes and edges, a megabyte at 20,000 nodes, so
     that no tick reads a file or waits for memory. A ``whole`` body, for several fingers and tools,
     keeps all of it; a mapped table is checked and read into memory here.
 
+    A body without pins is for those who move it as a whole, which ``may_move`` says.
+
     Raises
     ------
     PalpateError
-        A boundary on which a god object cannot walk, or a file that was truncated while in use.
+        A boundary on which a god object cannot walk, or a file that was truncated while in use; a
+        body without pins that would not move.
     """
+    if body.is_free and not may_move:
+        raise PalpateError(
+            "the body has no pins and would move away here; lay it on a floor ('palpate settle', "
+            "'palpate press' with a tool), or pin it ('palpate pin')"
+        )
     try:
         return Body(
             body.mesh.nodes[body.mesh.surface_nodes],

@@ -114,7 +114,7 @@ class Resting:
         reach = _floor_reach(body, settings)
         self.body = body
         self._modulus = body.modulus(settings.young_modulus)
-        native = native_body(body, whole=True)
+        native = native_body(body, whole=True, may_move=True)
         surface = _surface(body, native, settings.spacing)
         try:
             self._native = NativeResting(

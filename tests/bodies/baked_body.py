@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from palpate.core.body.soft_body import SoftBody
 from palpate.core.compliance.surface_compliance import surface_compliance
@@ -13,7 +13,7 @@ from palpate.core.stiffness.assembly import assemble
 
 def baked_body(
     mesh: TetMesh,
-    fixed: NDArray[np.int64],
+    fixed: ArrayLike,
     poisson_ratio: float = 0.3,
     young_modulus: float = 10_000.0,
     formulation: str = "linear",
@@ -24,7 +24,7 @@ def baked_body(
     """As a bake makes it, in memory; the compliance in ``dtype``. Without pins, a free body."""
     stiffness = assemble(mesh, poisson_ratio, formulation=formulation, young_scale=young_scale)
     table = surface_compliance(mesh, stiffness, fixed, dtype=dtype)
-    pins = np.unique(fixed)
+    pins = np.unique(np.asarray(fixed, dtype=np.int64))
     return SoftBody(
         mesh,
         pins,

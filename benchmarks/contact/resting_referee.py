@@ -1,0 +1,75 @@
+"""A ball on a table under a plate, beside another finite element method.
+
+    python benchmarks/contact/resting_referee.py [--edge-length F]
+
+The referee is scikit-fem, axially symmetric, with its own contact at plate and table; see
+``benchmarks/measuring/contact/resting_ball.py``. A ball of 60 mm, baked without pins, lies on a
+smooth floor without weight, and a plate comes down on it. Claimed: force on plate and floor within
+5 % at each depth. The ball that is glued up to a tenth of its height is the referee's alone: what
+a body feels too firm by when it is held there. The exit status tells whether that holds.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+
+import numpy as np
+
+from palpate.benchmarks.measuring.contact.resting_ball import RestingBall
+from palpate.core.bake.settings import BakeSettings
+from palpate.core.bake.steps import bake
+from palpate.core.contact.tool.pose import Pose, resting_on
+from palpate.core.contact.tool.tools import plate
+from palpate.core.mesh.surface import Surface
+from palpate.core.rest.resting import Resting, RestSettings
+from palpate.core.rest.support import Floor
+from palpate.core.stiffness.pins import NoPins
+from palpate.tests.bodies.golden_sphere import golden_sphere
+
+RADIUS, POISSON_RATIO, YOUNG_MODULUS = 0.03, 0.45, 1e4
+DEPTHS = (0.001, 0.002, 0.004, 0.012)
+LARGEST_ERROR = 0.05
+
+
+def main() -> int:
+    """Print the table; the exit status tells whether the claim holds."""
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--edge-length", type=float, default=0.06, metavar="F")
+    settings = BakeSettings(
+        poisson_ratio=POISSON_RATIO,
+        young_modulus=YOUNG_MODULUS,
+        pins=NoPins(),
+        edge_length=parser.parse_args().edge_length,
+        epsilon=1e-3,
+    )
+    body, _ = bake(Surface(*golden_sphere(3000, RADIUS)), settings)
+    surface = body.mesh.nodes[body.mesh.surface_nodes]
+    low, high = surface[:, 2].min(), surface[:, 2].max()
+    radius = 0.5 * (high - low)
+    tool, up = plate(0.05, 0.05), np.array([0.0, 0.0, 1.0])
+    start = resting_on(tool, np.eye(3), high * up, up, surface)
+    weightless = RestSettings(friction=0.0, gravity=(0.0, 0.0, 0.0))
+    resting = Resting(body, [Floor(low, friction=0.0)], [(tool, start)], settings=weightless)
+    resting.step()
+    table = RestingBall(POISSON_RATIO)
+    glued = RestingBall(POISSON_RATIO, glued=0.2)
+    held = True
+    print(f"{len(body.mesh.nodes)} nodes")
+    print("depth, mm   referee, N   glued / resting   Palpate's plate, floor / referee")
+    for depth in DEPTHS:
+        share = depth / radius
+        alone, _ = table.under_plate(share)
+        firmer = glued.under_plate(share)[0] / alone
+        resting.lead([Pose(start.position - depth * up, start.rotation)])
+        rest = resting.settle()
+        force = alone * YOUNG_MODULUS * radius**2
+        ratios = np.array([rest.tools[0].force[2], -rest.supports[0].force[2]]) / force
+        print(f"{1e3 * depth:9.1f}{force:13.4f}{firmer:18.2f}     {ratios.round(4)}", flush=True)
+        held &= bool((np.abs(ratios - 1.0) <= LARGEST_ERROR).all())
+    print("the claim holds" if held else "THE CLAIM DOES NOT HOLD")
+    return 0 if held else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
