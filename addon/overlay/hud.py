@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ...core.quantities import area, pressure
 from ...operators.device.servo_words import REASONS, Signal, standing
+from ...operators.reporting.quantities import newtons, scene_length
 from ...operators.reporting.translated import shown
 from ...operators.session.press_events import Source
 from ...operators.session.press_session import PressSession
@@ -175,7 +176,8 @@ def _measured(figures: tuple[Reading, ...], session: PressSession) -> list[Line]
     lines = []
     for number, one in enumerate(figures, start=1):
         name = f"{number}   " if len(figures) > 1 else ""
-        lines.append(Line(f"{name}{one.force:.3f} N     {1000 * one.depth:.1f} mm", LARGE, WHITE))
+        depth = scene_length(bpy.context.scene, one.depth)
+        lines.append(Line(f"{name}{newtons(one.force)}     {depth}", LARGE, WHITE))
         if session.tip.tool is not None and one.touching:
             words = f"{shown('Contact Area')} {area(one.area)}     "
             words += f"{shown('Largest Pressure')} {pressure(one.largest_pressure)}"
@@ -243,7 +245,7 @@ def _device_lines(session: PressSession, measured: list[Line]) -> list[Line]:
         lines.append(Line(shown(now.why), NORMAL, WARNING if fault else WHITE))
     if now.signal in {Signal.FORCE, Signal.RETURNING}:
         given = sum(component**2 for component in snapshot.output_force) ** 0.5
-        lines.append(Line(f"{shown('The device gives')} {given:.3f} N", NORMAL, WHITE))
+        lines.append(Line(f"{shown('The device gives')} {newtons(given)}", NORMAL, WHITE))
     if now.limit:
         lines.append(Line(shown(now.limit), NORMAL, WARNING))
     if session.state.message and session.state.phase is not Phase.LOST:

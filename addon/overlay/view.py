@@ -19,6 +19,7 @@ from mathutils import Vector
 from numpy.typing import NDArray
 
 from ...core.contact.tool.tools import Tool
+from ...operators.reporting.quantities import newtons
 from ...operators.scene.package_preferences import preferences
 from ...operators.session import press_session
 from ...operators.session.press_session import PressSession
@@ -270,7 +271,7 @@ def _labels(
         name = f"{number}  " if len(session.leads) > 1 else ""
         if figures.force > 0.0 and (name or figured):
             tip, _ = arrow_tip(figures, view.pixel_at(figures.contact))
-            labels.append(Label(f"{name}{figures.force:.3f} N", view.seen(tip)))
+            labels.append(Label(f"{name}{newtons(figures.force)}", view.seen(tip)))
         elif name:
             labels.append(Label(name.strip(), view.seen(figures.probe)))
     return labels

@@ -11,6 +11,7 @@ from ...operators.object import soft_object
 from ...operators.object.drawn_body import restores_quickly
 from ...operators.object.pin_change import PinFit
 from ...operators.object.soft_object import BodyStatus, Fit
+from ...operators.reporting.quantities import newtons, scene_length
 from ...operators.reporting.translated import shown
 from ...operators.session.press_events import Source
 from ...operators.session.press_session import PressSession
@@ -64,8 +65,9 @@ def draw_press(layout: bpy.types.UILayout, context: bpy.types.Context, press: Pr
         say(layout, context, press.state.message, "ERROR")
     for figures in readings(press):
         row = layout.row()
-        row.label(text=f"{figures.force:.3f} N", icon="FORCE_FORCE", translate=False)
-        row.label(text=f"{1000 * figures.depth:.1f} mm", icon="DRIVER_DISTANCE", translate=False)
+        row.label(text=newtons(figures.force), icon="FORCE_FORCE", translate=False)
+        depth = scene_length(context.scene, figures.depth)
+        row.label(text=depth, icon="DRIVER_DISTANCE", translate=False)
     if press.state.phase is not Phase.LOST:
         say(layout, context, "Enter keeps the shape, Escape restores it", "INFO")
 

@@ -8,12 +8,12 @@ import numpy as np
 from ...core.errors import PalpateError
 from ..place.seen_place import under_pointer
 from ..reporting.acting import Acting
+from ..reporting.quantities import scene_length
 from ..reporting.translated import shown
 from ..scene import viewport
 from ..scene.drawn_surface import frame_of, metres_per_unit, size_of
 from ..scene.modal_stay import ModalStay
 from ..tool.tool_sizes import chosen_sizes
-from . import stroke_words
 
 # Pixels over which the strength doubles.
 DOUBLING_PIXELS = 100.0
@@ -107,7 +107,7 @@ class PALPATE_OT_stroke_size(Acting, bpy.types.Operator):
         else:
             chosen.tip_share = self._before * metres / self._radius
         metres = radius_for(context.scene, context.object)
-        length = stroke_words.length(context.scene, metres)
+        length = scene_length(context.scene, metres)
         self._stay.head(context, f"{shown('Radius')}: {length}")
 
     def _property(self, context: bpy.types.Context) -> str:

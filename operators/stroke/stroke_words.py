@@ -6,7 +6,7 @@ import math
 
 import bpy
 
-from ..reporting.quantities import newtons
+from ..reporting.quantities import newtons, scene_length
 from ..reporting.translated import shown
 from .motion import Asked, Motion
 from .pushing import Stroked
@@ -36,14 +36,5 @@ def figures(scene: bpy.types.Scene, asked: Asked, stroked: Stroked) -> str:
         case Motion.PINCH:
             return f"{100.0 * asked.amount:.0f} %   {newtons(stroked.force)}"
         case Motion.GRAB if asked.by is not None:
-            return f"{length(scene, math.hypot(*asked.by))}   {newtons(stroked.force)}"
-    return f"{length(scene, asked.amount)}   {newtons(stroked.force)}"
-
-
-def length(scene: bpy.types.Scene, metres: float) -> str:
-    """A length in the scene's unit system."""
-    system = scene.unit_settings.system
-    if system == "NONE":
-        return f"{metres:.4g}"
-    text: str = bpy.utils.units.to_string(system, "LENGTH", metres, precision=3)
-    return text
+            return f"{scene_length(scene, math.hypot(*asked.by))}   {newtons(stroked.force)}"
+    return f"{scene_length(scene, asked.amount)}   {newtons(stroked.force)}"

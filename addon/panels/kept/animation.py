@@ -22,7 +22,8 @@ class PALPATE_PT_animation(PalpatePanel, bpy.types.Panel):
             say(layout, context, problem, "ERROR")
         if thing.palpate.pressers is not None:
             column.prop(context.scene.render, "use_lock_interface")
-            say(layout, context, "Renders follow them only so; a farm needs Bake Animation", "INFO")
+            text = "Lock Interface lets renders show them; a farm needs Bake Animation"
+            say(column, context, text, "INFO")
         column.operator("palpate.press_frames", icon="RENDER_ANIMATION")
         column.operator("palpate.animate_recording", icon="ANIM")
 

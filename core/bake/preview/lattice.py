@@ -34,6 +34,8 @@ SMOOTHINGS = 12
 # Nodes are drawn onto the surface so many times, each time by ways that are halved so often, where
 # a tetrahedron would have less than this share of the smallest of a cell.
 DRAWINGS, HALVES, LEAST_VOLUME = 3, 6, 0.1
+# Of the diagonal's square: smaller triangles are nowhere that their neighbours are not.
+LEAST_AREA = 1e-14
 
 
 def lattice(surface: Surface, cells: int = CELLS) -> TetMesh:
@@ -110,8 +112,9 @@ def _drawn_onto(mesh: TetMesh, surface: Surface, least: float) -> TetMesh:
     which becomes smaller than ``least``.
     """
     outer = mesh.surface_nodes
-    triangle, alpha = closest_points(surface.vertices, surface.triangles, mesh.nodes[outer])
-    onto = np.einsum("pc,pcx->px", alpha, surface.vertices[surface.triangles[triangle]])
+    triangles = surface.triangles[surface.areas > LEAST_AREA * surface.diagonal**2]
+    triangle, alpha = closest_points(surface.vertices, triangles, mesh.nodes[outer])
+    onto = np.einsum("pc,pcx->px", alpha, surface.vertices[triangles[triangle]])
     way = _carried_inside(mesh, onto - mesh.nodes[outer])
     share = np.ones((len(way), 1))
     for _ in range(HALVES):

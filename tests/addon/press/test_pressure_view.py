@@ -110,6 +110,22 @@ def test_quantities_keep_their_digits_at_any_size(palpate):
     assert quantities.pressure(2.5e6) == "2.5 MPa"
 
 
+@pytest.mark.parametrize(
+    ("force", "depth", "told"),
+    [
+        (25.416, 0.1542, "25.4 N     15.4 cm"),
+        (3.2e-5, 1.2e-5, "32 µN     12 µm"),
+        (2.4e6, 60.3, "2.4 MN     60.3 m"),
+        (1e-14, 0.0, "0 N     0 m"),
+    ],
+)
+def test_force_and_depth_are_read_at_any_size_of_the_object(palpate, force, depth, told):
+    hud = part("addon.overlay.hud")
+    figures = SimpleNamespace(force=force, depth=depth, touching=False)
+    session = SimpleNamespace(tip=SimpleNamespace(tool=None))
+    assert [line.text for line in hud._measured((figures,), session)] == [told]
+
+
 ROOM = (10.0, 10.0, 790.0, 590.0)
 
 

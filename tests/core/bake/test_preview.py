@@ -53,6 +53,16 @@ def test_a_ball_is_filled_nearly():
     assert away.max() < surface.diagonal / 16
 
 
+def test_triangles_without_area_change_nothing():
+    whole = box([0.0, 0.0, 0.0], [0.05, 0.04, 0.03])
+    middle = 0.5 * (whole.vertices[0] + whole.vertices[1])
+    vertices = np.vstack([whole.vertices, middle, whole.vertices[0]])
+    flat = np.array([[0, 8, 1], [0, 9, 3], [2, 2, 3]])
+    surface = Surface.checked(vertices, np.concatenate([flat, whole.triangles]))
+    np.testing.assert_allclose(lattice(surface).nodes, lattice(whole).nodes, atol=1e-12)
+    assert preview(surface, BakeSettings(pins=PinBelow(0.1))).off == pytest.approx(0.01)
+
+
 @pytest.mark.parametrize("thickness", [0.05, 0.004, 0.0004])
 def test_thin_parts_are_filled_in_one_piece(thickness):
     mesh = lattice(box([0.0, 0.0, 0.0], [0.1, 0.1, thickness]))
