@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from ...core.errors import PalpateError
-from ...core.servo.ports import BAUD
+from ...core.servo.ports import BAUD, check_port
 from ...simulated.attack.attack import KINDS, Attack, real_table, virtual_tables
 from ...simulated.attack.port.host_attack import HostAttack, host_table
 from ...simulated.attack.published import REAL, VIRTUAL, publish
@@ -147,6 +147,7 @@ def _at_port(arguments: argparse.Namespace) -> Table:
         allowance_ms=arguments.allowance,
         baud=arguments.baud,
     )
+    check_port(attack.path)
     warning = (
         f"{attack.path}: its motors will push for some minutes, in all directions and by jerks, "
         f"with up to {attack.largest_force:g} N as told. Hold nothing that matters; pull the plug "

@@ -6,6 +6,7 @@ import argparse
 import dataclasses
 import json
 
+from ...core.servo.port_error import named
 from ...core.servo.ports import BAUD, Port, check_baud, list_ports
 from ...simulated import device_process
 from ...simulated.hand.options import add_simulated_options, simulated_options
@@ -85,4 +86,4 @@ def _line(port: Port) -> str:
             answer += ", tells its orientation"
         if port.round_trip_ms is not None:
             answer += f", round trip {port.round_trip_ms:.1f} ms"
-    return f"{port.path}  {f'[{what}]  ' if what else ''}{answer}"
+    return f"{named(port.path)}  {f'[{what}]  ' if what else ''}{answer}"

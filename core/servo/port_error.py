@@ -34,8 +34,13 @@ class PortError(PalpateError):
     """Unusable port; `reason` is the message without the port's name."""
 
     def __init__(self, path: str, reason: str) -> None:
-        super().__init__("{path}: {reason}", path=path, reason=reason)
+        super().__init__("{path}: {reason}", path=named(path), reason=reason)
         self.reason = reason
+
+
+def named(path: str) -> str:
+    """A port's path as it is shown, none as the quotes around nothing."""
+    return path or "''"
 
 
 def _number_in_words(said: str) -> int | None:

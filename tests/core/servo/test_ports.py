@@ -122,6 +122,15 @@ def test_command_prints_one_line_a_port(device, capsys):
     assert "no such port" in second
 
 
+def test_a_port_without_a_name_is_shown_as_such(capsys):
+    assert main(["devices", "--port", ""]) == 0
+    assert "''  there is no such port" in capsys.readouterr().out
+    assert main(["devices", "attack", ""]) == 2
+    said = capsys.readouterr().err
+    assert "'': there is no such port; plug the device in" in said
+    assert "will push" not in said
+
+
 def test_a_device_that_turns_its_stylus_is_told_as_such(capsys):
     with SimulatedDevice(SimulatedOptions(name="Test", turning=0.0)) as turning:
         assert main(["devices", "--port", turning.port]) == 0
