@@ -12,6 +12,7 @@ from palpate.simulated.attack.real import guardians, lost_guardians, processes
 from palpate.simulated.attack.real.desk import KINDS, desk
 from palpate.simulated.attack.real.host import NotReachedError
 from palpate.simulated.attack.real.line.pulse import Pulse
+from palpate.simulated.attack.real.trials import trials
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="looks for processes in /proc")
 
@@ -71,14 +72,14 @@ def test_what_the_computer_held_up_is_not_judged_and_tried_again():
             raise NotReachedError("nothing was pressed")
         return Tried(held_up_ms)
 
-    tried = guardians.trials(3, once)
+    tried = trials(3, once)
     assert [one.held_up_ms for one in tried.judged] == [1.0, 2.0, 3.0]
     assert tried.held_up == 3
     assert "3 more not judged" in tried.note
 
 
 def test_where_nothing_can_be_judged_the_row_says_so():
-    tried = guardians.trials(2, lambda: Tried(50.0))
+    tried = trials(2, lambda: Tried(50.0))
     assert not tried.judged
     row = guardians.ending_row("a signal", "(no host)", [], float("inf"), tried.note)
     assert "this computer was held up: not judged" in row.broken

@@ -10,6 +10,7 @@ import time
 from collections import Counter
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from types import TracebackType
@@ -25,6 +26,7 @@ from .host import Host, eventually
 from .lost_guardians import leave_alone
 from .pressing import Hand
 from .processes import KILLED, SUSPENDED, killed_row, suspended_row
+from .trials import trials
 
 NAME = "firmware"
 SLOW_BAUDS = (57_600, 115_200)
@@ -120,22 +122,37 @@ def slow_row(
     board: Callable[[], AbstractContextManager[Hand]], baud: int, times: int, injected: str
 ) -> Row:
     """A line that is too slow: the host says so, and whatever the hand does there is no force."""
-    told = Counter[str]()
     with board() as hand, desk("link", nullcontext(hand), baud) as at:
-        for _ in range(times):
-            with at.host() as host:
-                told.update([told_late(host)])
-                way = WAYS[at.kind]
-                hand.move_hand(way.deep, way.seconds)
-                time.sleep(BEHIND_SECONDS)
+        tried = trials(times, partial(press_behind, at))
         strongest = float(hand.report()["largest_force"])
+    told = Counter(one.told for one in tried.judged).most_common(1)
     return Row(
         injected=injected,
-        times=times,
-        told=told.most_common(1)[0][0],
+        times=len(tried.judged),
+        told=told[0][0] if told else "",
         felt=strongest,
-        broken=("force behind a line that is too slow",) if strongest > 0.0 else (),
+        note=tried.note,
+        broken=("force behind a line that is too slow",) if strongest > 0.0 else tried.unjudged,
     )
+
+
+@dataclass(frozen=True)
+class Behind:
+    """A host behind a slow line, and by which name it told that."""
+
+    told: str
+    held_up_ms: float = 0.0
+    """A line that is held up is slower still."""
+
+
+def press_behind(at: Desk) -> Behind:
+    """Bring the hand into the body of a host that has told that words come too late."""
+    with at.host() as host:
+        told = told_late(host)
+        way = WAYS[at.kind]
+        at.hand.move_hand(way.deep, way.seconds)
+        time.sleep(BEHIND_SECONDS)
+    return Behind(told)
 
 
 def told_late(host: Host) -> str:

@@ -10,11 +10,11 @@ from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Generic, Protocol, TypeVar
 
 from ..table import Row
 from .desk import KINDS, Desk, Word, desk
-from .host import NotReachedError, eventually
+from .host import eventually
+from .trials import trials
 
 SIGNALS: tuple[signal.Signals, ...] = ()
 if sys.platform != "win32":
@@ -28,9 +28,6 @@ if sys.platform != "win32":
     )
 SETTLING_SECONDS = 0.3
 PROMISED_MS = 20.0
-ALLOWED_MS = 5.0
-"""A guardian waits for 12 ms; what a computer holds up beyond the rest of 20 is not its doing."""
-MOST_HELD_UP = 5
 
 
 @dataclass(frozen=True)
@@ -128,48 +125,6 @@ def _ended_row(
     pushed = [one.pushed for one in ended.judged]
     worst = max((one.ms_to_zero for one in ended.judged), default=float("inf"))
     return ending_row(injected, "(no host)", pushed, worst, ended.note)
-
-
-class Trial(Protocol):
-    """Something that was tried on a computer that may have been busy."""
-
-    @property
-    def held_up_ms(self) -> float:
-        """How long this computer held up a line that has nothing to do with it."""
-
-
-T = TypeVar("T", bound=Trial)
-
-
-@dataclass(frozen=True)
-class Trials(Generic[T]):
-    """What was tried, without what this computer held up, whatever came of that."""
-
-    judged: tuple[T, ...]
-    held_up: int
-
-    @property
-    def note(self) -> str:
-        """What is said of the others, if anything."""
-        return f"{self.held_up} more not judged: computer busy" if self.held_up else ""
-
-
-def trials(times: int, once: Callable[[], T]) -> Trials[T]:
-    """Try until so many can be judged, or five times as many could not."""
-    judged: list[T] = []
-    held_up = 0
-    while len(judged) < times and held_up <= MOST_HELD_UP * times:
-        try:
-            one = once()
-        except NotReachedError:
-            # Nothing was pressed, or the computer was too busy to see it.
-            held_up += 1
-            continue
-        if one.held_up_ms > ALLOWED_MS:
-            held_up += 1
-        else:
-            judged.append(one)
-    return Trials(tuple(judged), held_up)
 
 
 def ending_row(injected: str, told: str, pushed: Sequence[bool], worst_ms: float, note: str) -> Row:

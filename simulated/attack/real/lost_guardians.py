@@ -13,9 +13,10 @@ from itertools import product
 
 from ..table import Row
 from .desk import KINDS, Desk, desk
-from .guardians import LastWords, ending_row, guardians, trials
+from .guardians import LastWords, ending_row, guardians
 from .host import Host, eventually
 from .processes import killed_row
+from .trials import trials
 
 SIGNALS: tuple[signal.Signals, ...] = ()
 if sys.platform != "win32":

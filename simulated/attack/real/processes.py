@@ -16,6 +16,7 @@ from ..table import Row, counted
 from .host import Host, device, eventually
 from .pressing import Hand, press, strength
 from .servo_host import RAMP_SECONDS
+from .trials import trials
 
 STOPPED_SECONDS = 1.0
 STEADY_TICKS = 20
@@ -43,6 +44,11 @@ class Suspension:
     """Faults called "suspended"."""
     device: dict[str, Any]
     """What the device said meanwhile."""
+
+    @property
+    def held_up_ms(self) -> float:
+        """How long nobody had let the device look when it went limp."""
+        return float(self.device["limp_look"]) * 1e3
 
     @property
     def gap(self) -> float:
@@ -112,6 +118,18 @@ def suspend(host: Host, hand: Hand, seconds: float = STOPPED_SECONDS) -> Suspens
     return Suspension(ticks[:cut], ticks[cut:], counted, meanwhile)
 
 
+@dataclass(frozen=True)
+class Ending:
+    """What a device said when its host was gone."""
+
+    device: dict[str, Any]
+
+    @property
+    def held_up_ms(self) -> float:
+        """How long nobody had let the device look when it went limp."""
+        return float(self.device["limp_look"]) * 1e3
+
+
 def killed(host: Host) -> None:
     """Kill it."""
     host.signal(signal.SIGKILL)
@@ -140,12 +158,13 @@ def unplug(host: Host, hand: SimulatedDevice) -> tuple[list[dict[str, Any]], dic
     return host.samples(), meanwhile
 
 
-def _limp(reports: list[dict[str, Any]]) -> str:
-    slowest = max(reports, key=lambda report: report["limp_after"])
-    return (
+def _limp(reports: list[dict[str, Any]], *others: str) -> str:
+    slowest = max(reports, key=lambda report: report["limp_after"], default=None)
+    limp = slowest and (
         f"limp after {slowest['limp_after'] * 1e3:.1f} ms, "
         f"looked {slowest['limp_look'] * 1e3:.1f} ms before"
     )
+    return "; ".join(part for part in (limp, *others) if part)
 
 
 def suspended_row(
@@ -155,17 +174,19 @@ def suspended_row(
 ) -> Row:
     """SIGSTOP for a second, SIGCONT."""
     with place() as hand, Host(hand.port) as host:
-        all_of_them = [suspend(host, hand) for _ in range(times)]
-    broken = Counter(problem for one in all_of_them for problem in one.problems())
+        tried = trials(times, lambda: suspend(host, hand))
+    broken = Counter(problem for one in tried.judged for problem in one.problems())
+    at_fault = [t["output"] for one in tried.judged for t in one.after if t["state"] == "fault"]
+    back = [one.ramp[-1]["time"] - one.after[0]["time"] for one in tried.judged]
     return Row(
         injected=injected,
-        times=times,
+        times=len(tried.judged),
         told="suspended",
-        force=max(t["output"] for one in all_of_them for t in one.after if t["state"] == "fault"),
+        force=max(at_fault, default=None),
         zero_ms=0.0,
-        back_ms=max(one.ramp[-1]["time"] - one.after[0]["time"] for one in all_of_them) * 1e3,
-        note=_limp([one.device for one in all_of_them]),
-        broken=counted(broken),
+        back_ms=max(back, default=0.0) * 1e3,
+        note=_limp([one.device for one in tried.judged], tried.note),
+        broken=counted(broken) or tried.unjudged,
     )
 
 
@@ -176,20 +197,23 @@ def killed_row(
     end: Callable[[Host], None] = killed,
 ) -> Row:
     """SIGKILL: the host says no last word."""
-    reports = []
     with place() as hand:
-        for _ in range(times):
-            reports.append(kill(hand.port, hand, end))
-            # The simulated port lets the next host in when the last one has been silent for long.
+
+        def once() -> Ending:
+            # The simulated port lets a host in when the last one has been silent for long.
             time.sleep(RELEASE_SECONDS)
+            return Ending(kill(hand.port, hand, end))
+
+        tried = trials(times, once)
+    reports = [one.device for one in tried.judged]
     broken = Counter(problem for report in reports for problem in device_problems(report))
     return Row(
         injected=injected,
-        times=times,
+        times=len(reports),
         told="(no host)",
-        zero_ms=max(report["limp_after"] for report in reports) * 1e3,
-        note=_limp(reports),
-        broken=counted(broken),
+        zero_ms=max((report["limp_after"] for report in reports), default=float("inf")) * 1e3,
+        note=_limp(reports, tried.note),
+        broken=counted(broken) or tried.unjudged,
     )
 
 
