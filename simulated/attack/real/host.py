@@ -53,9 +53,15 @@ class Host:
         self._line.close()
 
     def ask(self, line: str) -> Any:
-        """The answer to a line."""
-        self._line.send(line)
-        return self._line.recv()
+        """The answer to a line. Raises NotReachedError when it has ended."""
+        try:
+            self._line.send(line)
+            return self._line.recv()
+        except (EOFError, ConnectionError) as error:
+            raise NotReachedError(
+                "attack: the host has ended, with what it said above; give this computer less to "
+                "do, and try again"
+            ) from error
 
     def report(self) -> dict[str, Any]:
         """Where the servo stands now."""
