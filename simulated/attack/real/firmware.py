@@ -29,8 +29,8 @@ from .processes import KILLED, SUSPENDED, killed_row, suspended_row
 from .trials import trials
 
 NAME = "firmware"
-SLOW_BAUDS = (57_600, 115_200)
-"""Too slow for the thousand STATE a second that it sends."""
+SLOW_BAUDS = (9_600, 19_200)
+"""Too slow for any force in protocol 2, however few STATE a board that is held up sends."""
 BEHIND_SECONDS = 0.5
 
 
