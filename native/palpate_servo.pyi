@@ -549,8 +549,11 @@ class Resting:
     def lead_support(self, number: int, position: _Vector, rotation: _Matrix) -> None:
         """Where a support is from the next tick on."""
 
-    def tick(self, dt: float) -> None:
-        """Go on by dt s. Raises RuntimeError where a force is no number."""
+    def tick(self, dt: float, *, hurried: bool = False) -> None:
+        """Go on by dt s, hurried by as much work as the servo's tick may take at most.
+
+        Raises RuntimeError where a force is no number.
+        """
 
     def settle(self) -> None:
         """Tick until nothing changes any more. Raises RuntimeError where the body does not rest."""

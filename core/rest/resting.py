@@ -162,13 +162,24 @@ class Resting:
         Raises
         ------
         PalpateError
+            A force is no number; a tool or support that was set down within the body.
+        """
+        self.tick(seconds)
+        return self._felt()
+
+    def tick(self, seconds: float = 1e-3, *, hurried: bool = False) -> None:
+        """Go on by a tick; hurried by as much work as the servo's may take at most, the rest of
+        which is left to the next.
+
+        Raises
+        ------
+        PalpateError
             A force is no number.
         """
         try:
-            self._native.tick(seconds)
+            self._native.tick(seconds, hurried=hurried)
         except (ValueError, RuntimeError) as problem:
             raise PalpateError("rest: {problem}", problem=problem) from problem
-        return self._felt()
 
     def settle(self) -> Rest:
         """Go on until tools are at their goals, wrenches cancel and nothing changes any more.

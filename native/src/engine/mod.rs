@@ -58,11 +58,9 @@ impl Engine {
         beside.answers
     }
 
-    /// An engine for whoever has no clock: a tick may take up its bounded work so often.
-    pub fn patient(turns: usize) -> Self {
-        let mut engine = Self::default();
-        engine.joint.turns = turns;
-        engine
+    /// For whoever has no clock: from now on a tick may take up its bounded work so often.
+    pub fn set_turns(&mut self, turns: usize) {
+        self.joint.turns = turns;
     }
 
     /// How a body that nobody holds moved as a whole in the last tick, in its own frame.

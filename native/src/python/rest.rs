@@ -130,9 +130,10 @@ impl Resting {
         Ok(())
     }
 
-    fn tick(&mut self, dt: f64) -> PyResult<()> {
+    #[pyo3(signature = (dt, *, hurried=false))]
+    fn tick(&mut self, dt: f64, hurried: bool) -> PyResult<()> {
         let dt = positive("dt", dt)?;
-        self.inner.tick(dt).map(drop).map_err(restless)
+        self.inner.tick(dt, hurried).map(drop).map_err(restless)
     }
 
     fn settle(&mut self, py: Python<'_>) -> PyResult<()> {

@@ -77,7 +77,7 @@ impl Resting {
             young_modulus,
             prop,
             fingers,
-            engine: Engine::patient(TURNS),
+            engine: Engine::default(),
             time: 0.0,
         }
     }
@@ -123,11 +123,12 @@ impl Resting {
         self.fingers.iter().map(|(tool, _)| tool).chain(supports)
     }
 
-    /// One tick of `dt` s: how the body moved, in its frame.
+    /// One tick of `dt` s: how the body moved, in its frame. A hurried one is bounded like the servo's.
     ///
     /// # Errors
     /// [`Restless::NotANumber`].
-    pub fn tick(&mut self, dt: f64) -> Result<Motion, Restless> {
+    pub fn tick(&mut self, dt: f64, is_hurried: bool) -> Result<Motion, Restless> {
+        self.engine.set_turns(if is_hurried { 1 } else { TURNS });
         let mobility = self.prop.mobility(self.young_modulus, dt);
         let ground = Ground {
             body: &self.body,
@@ -165,7 +166,7 @@ impl Resting {
         let longest = self.longest_tick();
         let mut dt = SHORTEST * longest;
         for _ in 0..MOST_TICKS {
-            let motion = self.tick(dt)?;
+            let motion = self.tick(dt, false)?;
             let now = self.wrenches();
             quiet = if self.is_quiet(&before, &now) {
                 quiet + 1
