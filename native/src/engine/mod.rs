@@ -13,6 +13,7 @@ pub mod joint;
 pub mod lone;
 mod moving;
 mod responses;
+mod stillness;
 pub mod settling;
 
 use crate::contact::ground::Ground;

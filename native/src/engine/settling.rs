@@ -7,6 +7,7 @@ use glam::DVec3;
 use super::Engine;
 use super::goals::{Goal, PointTouch, Toucher, Unsettled, between};
 use super::joint::{AllLed, Led};
+use super::stillness::{MOST_TICKS, SETTLED, Stillness};
 use crate::body::softening::{Felt, Softening};
 use crate::body::surface::Body;
 use crate::contact::cones::MAX_FINGERS;
@@ -15,14 +16,8 @@ use crate::contact::touch::{ContactMode, softened_touch, touch};
 use crate::fingers::press::{Answers, Press, Presses};
 use crate::proxy::SurfacePoint;
 
-/// Forces have settled when they change by less than this share of the largest one in a tick.
-const SETTLED: f64 = 1e-11;
 /// Rounding of a coordinate, as a share of the largest one, with room for what it makes of a force.
 const ROUNDING: f64 = 1e-14;
-/// In so many ticks one after the other.
-const QUIET_TICKS: usize = 3;
-/// Ticks that a place is given to settle.
-const MOST_TICKS: usize = 5000;
 /// Steps that a way may take.
 const MOST_STEPS: usize = 10_000;
 
@@ -126,11 +121,11 @@ impl Settling {
 
     /// Ticks at one place until the forces stay.
     fn rest_at(&mut self, goals: &[Goal]) -> Result<(), Unsettled> {
-        let (mut quiet, mut moving) = (0, (0, f64::INFINITY));
+        let (mut stillness, mut moving) = (Stillness::default(), (0, f64::INFINITY));
         for _ in 0..MOST_TICKS {
             moving = self.tick(goals)?;
-            quiet = if moving.1 <= SETTLED { quiet + 1 } else { 0 };
-            if quiet == QUIET_TICKS {
+            stillness.take(moving.1);
+            if stillness.is_reached() {
                 return Ok(());
             }
         }
