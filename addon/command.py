@@ -14,7 +14,6 @@ import bpy
 
 from ..core.contact.touches import ToolTouch
 from ..core.errors import PalpateError
-from ..core.shape.force_at_depth.felt_force import FELT_CHOICES
 from ..core.shape.shapes import FORMER_NAMES, SHAPES, shape_name
 from ..core.softness.scales.materials import MATERIALS
 from ..operators.bake import bake_session
@@ -134,12 +133,10 @@ def press(arguments: argparse.Namespace) -> dict[str, object]:
 
 
 def _choose(thing: bpy.types.Object, arguments: argparse.Namespace) -> None:
-    """Set tip, contact mode, shape and force law from the options."""
+    """Set tip, contact mode and shape from the options."""
     chosen = bpy.context.scene.palpate
     if arguments.radius is not None:
         chosen.tip_radius = _within(chosen, "tip_radius", "radius", arguments.radius)
-    if arguments.felt is not None:
-        thing.palpate.felt = arguments.felt.upper()
     if arguments.shape is not None:
         asked = "table" if arguments.shape == "paper" else arguments.shape
         thing.palpate.shape = asked.upper().replace("-", "_")
@@ -229,7 +226,6 @@ def _parser() -> argparse.ArgumentParser:
     two.add_argument("--radius", type=float, metavar="R", help="of fingertip or rod, scene units")
     shapes = (*SHAPES, *FORMER_NAMES)
     two.add_argument("--shape", choices=shapes, help="how it deforms; else as the object says")
-    two.add_argument("--felt", choices=FELT_CHOICES, help="force; else as the object says")
     two.add_argument("--keep", action="store_true", help="keep a layer and save the file")
     two.set_defaults(run=press)
     return parser

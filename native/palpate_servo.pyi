@@ -18,7 +18,6 @@ _Vector: TypeAlias = Sequence[float] | NDArray[np.floating[Any]]
 _Matrix: TypeAlias = Sequence[_Vector] | NDArray[np.floating[Any]]
 
 ContactMode: TypeAlias = Literal["paper", "consistent"]
-FeltName: TypeAlias = Literal["linear", "corrected"]
 
 class Lateness(TypedDict):
     """Time from the deadline to the waking, us; percentiles to 3 %."""
@@ -226,14 +225,6 @@ class Body:
 
     @property
     def node_count(self) -> int: ...
-    def set_softenings(self, nodes: ArrayLike, softenings: ArrayLike) -> None:
-        """How nodes (k,) depart from the linear relation: b (1/m) and w (1/m^2) of each, (k, 4).
-
-        Also while a servo touches the body; the first that is told of a node counts. What was not
-        told is linear. ValueError for other shapes, nodes beyond the body, or numbers that make no
-        relation.
-        """
-
     def contact(
         self,
         triangle: int,
@@ -241,13 +232,11 @@ class Body:
         displacement: _Vector,
         young_modulus: float,
         mode: ContactMode = "consistent",
-        felt: FeltName = "linear",
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Nodal forces (3, 3) and force on the finger (3,), N: equations (11) to (14), or the force
         of least energy that moves the contact point by exactly the displacement (consistent).
 
-        Without a compliance both modes are the paper's. "corrected" is felt with the softenings
-        that were told. ValueError for another mode or felt force.
+        Without a compliance both modes are the paper's. ValueError for another mode.
         """
 
     def surface_displacement(
@@ -298,17 +287,6 @@ class FingerSnapshot:
     @property
     def contact_force(self) -> NDArray[np.float64]:
         """(14), N, before coupling and safety, body axes."""
-
-    @property
-    def felt(self) -> FeltName:
-        """Which relation was to be felt."""
-
-    @property
-    def felt_share(self) -> float:
-        """How much of the corrected relation is in contact_force, 0 to 1: all of it where the
-        softenings of the touched nodes were told, nothing was changed within 50 ms, and no other
-        finger holds the place.
-        """
 
     @property
     def output_force(self) -> NDArray[np.float64]:
@@ -577,12 +555,11 @@ class ContactEngine:
         young_modulus: float,
         friction: float = 0.0,
         mode: ContactMode = "consistent",
-        felt: FeltName = "linear",
     ) -> None:
         """Take a tip for each finger, a tool or None for a point. Nothing is touched yet.
 
         Tools that share one ToolSurface feel each other's near field. friction is of tools: points
-        stick to the place that they are given. Softenings are those that the body was told.
+        stick to the place that they are given.
 
         Raises ValueError for more fingers than MAX_FINGERS, several on a body that is not whole, a
         tool for another body, and numbers that cannot be.
@@ -693,8 +670,6 @@ class ServoSettings(Protocol):
     def dynamic_friction(self) -> float: ...
     @property
     def mode(self) -> ContactMode: ...
-    @property
-    def felt(self) -> FeltName: ...
     @property
     def coupling(self) -> _Coupling | None: ...
     @property

@@ -27,7 +27,7 @@ core/body
 core/contact/near_field core/contact/tool core/contact
 core/rest
 core/grip
-core/shape/solid core/shape/paper core/shape/rotation_strain core/shape/force_at_depth core/shape
+core/shape/solid core/shape/paper core/shape/rotation_strain core/shape
 core/bake/settings.py core/bake/cost core/bake/preview core/bake
 core/servo/link core/servo
 core/record

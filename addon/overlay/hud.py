@@ -54,7 +54,7 @@ PINCH_STATES = {
     Phase.HOLDING: "Held: drag a handle, look around, or keep it",
 }
 EMPTY_STATES = {Phase.FEELING: "The Empty leads: move it, or play the animation"}
-SHAPE, FELT = "Shape {share} %", "Felt force {share} %"
+SHAPE = "Shape {share} %"
 ABOVE = "Above the surface: drag inward, or turn the wheel"
 TOO_SMALL = "No deeper with this tool: a larger one goes on"
 KEYS = {
@@ -195,12 +195,8 @@ def _state(session: PressSession, phase: Phase) -> str:
 
 def _shape_lines(session: PressSession) -> list[Line]:
     """Progress of the tables at the touched place."""
-    felt = 1.0 if session.loop is None else session.loop.felt.ready
-    return [
-        Line(shown(text, share=f"{100 * ready:.0f}"), NORMAL, GREY)
-        for text, ready in ((SHAPE, session.seen.shape.ready), (FELT, felt))
-        if ready < 1.0
-    ]
+    ready = session.seen.shape.ready
+    return [Line(shown(SHAPE, share=f"{100 * ready:.0f}"), NORMAL, GREY)] if ready < 1.0 else []
 
 
 def _buried_lines(session: PressSession) -> list[Line]:

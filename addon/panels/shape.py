@@ -1,4 +1,4 @@
-"""Large deformation: drawn shape, its cost and progress, and the force law."""
+"""Large deformation: drawn shape, its cost and progress."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -6,14 +6,13 @@ from typing import Any
 import bpy
 
 from ...core.quantities import duration, memory, waiting
-from ...core.shape.force_at_depth.softening_table import whole_table_seconds
 from ...core.shape.shape_cost import BodySize, ShapeCost, shape_cost
 from ...core.shape.shapes import shape_name
 from ...operators.reporting.translated import shown
 from ...operators.session import press_session
 from ...operators.session.press_session import PressSession
 from ...operators.shape.drawn_shape import chosen_shape
-from ..properties.shape import FELT_ITEMS, FORMER_ITEM, SHAPE_ITEMS
+from ..properties.shape import FORMER_ITEM, SHAPE_ITEMS
 from .base import PalpatePanel, draw_rows, named_properties
 from .sentence import say
 
@@ -38,10 +37,6 @@ class PALPATE_PT_shape(PalpatePanel, bpy.types.Panel):
         press = press_session.current()
         if press is not None and press.handle.find() == thing:
             draw_progress(layout, context, press)
-        layout.prop(settings, "felt")
-        say(layout, context, _explained(FELT_ITEMS, settings.felt), "BLANK1")
-        if settings.felt == "CORRECTED":
-            _draw_felt(layout, context, thing)
 
 
 def draw_progress(
@@ -90,26 +85,6 @@ def _draw_cost(
         )
     if cost.table_seconds:
         say(box, context, "Computed around the touched place first, and kept", "INFO", boxed=True)
-
-
-def _draw_felt(
-    layout: bpy.types.UILayout, context: bpy.types.Context, thing: bpy.types.Object
-) -> None:
-    """Draw the cost of the corrected force law, and its limits."""
-    baked, press = thing.palpate, press_session.current()
-    if context.scene.palpate.tip != "POINT":
-        say(layout, context, "Tools feel the linear force", "INFO")
-        return
-    if context.scene.palpate.second != "NONE" or (press is not None and len(press.leads) > 1):
-        say(layout, context, "Linear where two fingers hold a slender part", "INFO")
-    if baked.free_surface_count:
-        box = layout.box().column(align=True)
-        size = (baked.node_count, baked.tet_count, baked.free_surface_count)
-        draw_rows(box, [("Whole Surface, About", waiting(whole_table_seconds(*size)))])
-        say(box, context, "Found around the touched place first, and kept", "INFO", boxed=True)
-    if press is not None and press.loop is not None and press.loop.felt.problem:
-        say(layout, context, press.loop.felt.problem, "ERROR")
-        say(layout, context, "The linear force is felt", "BLANK1")
 
 
 def _explained(items: Sequence[tuple[Any, ...]], chosen: str) -> str:

@@ -1,6 +1,5 @@
-"""Properties of an object for large deformation: drawn shape and force law."""
+"""Properties of an object for large deformation: the drawn shape."""
 
-from ...core.shape.force_at_depth.felt_force import EXPLANATIONS as FELT_EXPLANATIONS
 from ...core.shape.shapes import EXPLANATIONS, SERIES_IS_PAPER
 from .kinds import choice
 
@@ -12,10 +11,6 @@ SHAPE_ITEMS = [
 ]
 # Held by older files and scripts only; no panel offers it.
 FORMER_ITEM = ("SERIES", "Series", str(SERIES_IS_PAPER), "", 2)
-FELT_ITEMS = [
-    ("LINEAR", "Linear", FELT_EXPLANATIONS["linear"]),
-    ("CORRECTED", "Corrected", FELT_EXPLANATIONS["corrected"]),
-]
 
 
 class ShapeProperties:
@@ -27,4 +22,3 @@ class ShapeProperties:
         [*SHAPE_ITEMS, FORMER_ITEM],
         "LINEAR",
     )
-    felt: choice("Felt Force", "How the force follows from large depths", FELT_ITEMS, "LINEAR")

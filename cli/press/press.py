@@ -27,7 +27,6 @@ from ..body.figure_lines import as_lines
 from ..rest.floor_options import add_floor
 from ..rest.press_resting import pressed_on_floor, refuse_beside_floor, refuse_floor
 from ..rest.rest_figures import rest_figures, touch_figures
-from .felt_option import add_felt, refuse_with_tool, softenings_for
 from .press_tool import pressed_tools, tool_figures, tool_summary
 from .tool_option import KINDS, tool_from
 
@@ -76,7 +75,6 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         metavar="MU",
         help="coefficient of friction between --tool and body (default: 0)",
     )
-    add_felt(parser)
     add_floor(parser)
     parser.add_argument(
         "--shape",
@@ -111,13 +109,12 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _press_points(arguments: argparse.Namespace, body: SoftBody, young_modulus: float) -> int:
     settings = ContactSettings(young_modulus, mode=arguments.mode or "consistent")
-    softenings = softenings_for(arguments, body, arguments.at)
-    touches = press_points(body, arguments.at, arguments.by, settings, softenings=softenings)
+    touches = press_points(body, arguments.at, arguments.by, settings)
     loads = [FingerLoad(touch.triangle, touch.nodal_forces) for touch in touches]
     displacements = _deformed(arguments, body, loads, young_modulus)
     contacts = [_contact_figures(body, touch, displacements) for touch in touches]
     common = _common_figures(arguments, displacements, young_modulus)
-    common |= {"mode": settings.mode, "felt": arguments.felt}
+    common |= {"mode": settings.mode}
     coupling = _coupling(body, arguments.at, young_modulus) if len(contacts) > 1 else None
     _print(arguments, contacts, common, coupling)
     return 0
@@ -126,7 +123,6 @@ def _press_points(arguments: argparse.Namespace, body: SoftBody, young_modulus: 
 def _press_tool(arguments: argparse.Namespace, body: SoftBody, young_modulus: float) -> int:
     if arguments.mode is not None:
         raise PalpateError("--mode: it is about points; leave it out with --tool")
-    refuse_with_tool(arguments)
     tool = tool_from(arguments.tool)
     settings = ContactSettings(young_modulus, arguments.friction or 0.0)
     touches = pressed_tools(body, tool, arguments.at, arguments.by, settings)

@@ -28,14 +28,12 @@ from ...core.stiffness.assembly import lame_parameters
 from ...simulated.hand.options import SimulatedOptions
 from ...simulated.simulated_process import SimulatedDevice
 from ..body.body_argument import add_body
-from .felt_option import add_felt, softening_table
 from .haply import add_haply_options, connect_haply
 from .servo_report import Felt, for_people, servo_report
 from .timing_check import add_check_timing
 
 if TYPE_CHECKING:
-    from ...core.servo.session import FingerCounters, Servo, Snapshot
-    from ...core.shape.force_at_depth.softening_table import SofteningTable
+    from ...core.servo.session import FingerCounters, Servo
 
 HELLO_SECONDS = 5.0
 LOOK_EVERY_SECONDS = 0.02
@@ -80,7 +78,6 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         help="contact inside triangles: its point moves by exactly the finger's displacement "
         "(consistent, the default), or as in the paper",
     )
-    add_felt(parser)
     parser.add_argument(
         "--seconds",
         type=float,
@@ -121,12 +118,8 @@ def run(arguments: argparse.Namespace) -> int:
         _check_ports([port, *others])
         stopped = stack.enter_context(stopped_by_signals())
         surface = native_body(body, whole=bool(others))
-        settings = Settings(young_modulus, mode=arguments.mode, felt=arguments.felt)
+        settings = Settings(young_modulus, mode=arguments.mode)
         servo = servo_on(surface, settings, rate_hz=arguments.rate)
-        table = None
-        if arguments.felt == "corrected":
-            table = stack.enter_context(softening_table(body, arguments.body))
-            table.listen(surface.set_softenings)
         stack.callback(servo.stop)
         _add_fingers(servo, others, arguments.baud)
         if arguments.record is not None:
@@ -138,7 +131,7 @@ def run(arguments: argparse.Namespace) -> int:
             _connect(servo, port, arguments.baud, stopped)
         for finger, other in enumerate(others, start=1):
             _await_greeting(servo, finger, other, stopped)
-        report = _touch(servo, port, arguments.seconds, stopped, table)
+        report = _touch(servo, port, arguments.seconds, stopped)
         if simulated is not None:
             report["simulated_device"] = simulated.stop()
         report["young_modulus"] = young_modulus
@@ -267,27 +260,17 @@ def _await_greeting(servo: Servo, finger: int, port: str, stopped: Sequence[int]
         )
 
 
-def _ask_for(table: SofteningTable, snapshot: Snapshot) -> None:
-    """Request the softenings of the touched places and their neighbourhood."""
-    nodes = np.concatenate([finger.nodes for finger in snapshot.fingers])
-    if len(nodes):
-        table.around(table.body.mesh.surface_nodes[nodes])
-
-
 def _touch(
     servo: Servo,
     port: str,
     seconds: float,
     stopped: Sequence[int],
-    table: SofteningTable | None,
 ) -> dict[str, Any]:
     felt = Felt()
     begin = time.monotonic()
     while not stopped and time.monotonic() < begin + seconds and servo.running:
         time.sleep(LOOK_EVERY_SECONDS)
         felt.take(servo.samples())
-        if table is not None:
-            _ask_for(table, servo.snapshot())
     last = servo.snapshot()
     servo.stop()
     felt.take(servo.samples())

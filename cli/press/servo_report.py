@@ -84,7 +84,6 @@ def servo_report(felt: Felt, last: Snapshot, counters: ServoCounters, port: str)
         "samples_lost": counters["samples_lost"],
         "last_state": last.state,
         "last_fault": last.fault,
-        "felt": last.felt,
         "touching_ticks": felt.touching,
         **_of_others(last, counters["fingers"]),
         "peak_contact_force_n": felt.contact_force,

@@ -12,7 +12,6 @@ from ...core.files.atomic_file import atomic_file, refuse_missing_folder
 from ...core.softness.curve_picture import curve_svg
 from ...core.softness.force_depth import MILLIMETRES, ForceDepthCurve, force_depth_curve
 from ..body.body_argument import add_body
-from ..press.felt_option import add_felt, refuse_with_tool, softenings_for
 from ..press.tool_option import KINDS, tool_from
 from .place_options import add_at, add_young, positive_length, refuse_suffix, young_modulus_of
 
@@ -47,7 +46,6 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         help="steps to that depth (default: %(default)d)",
     )
     add_young(parser)
-    add_felt(parser)
     parser.add_argument("--csv", type=Path, metavar="OUT.csv", help="write the curve as a table")
     parser.add_argument("--picture", type=Path, metavar="OUT.svg", help="write it as a picture")
 
@@ -90,11 +88,6 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _curve(arguments: argparse.Namespace, body: SoftBody) -> ForceDepthCurve:
-    softenings = None
-    if arguments.tool != POINT:
-        refuse_with_tool(arguments)
-    else:
-        softenings = softenings_for(arguments, body, arguments.at)
     return force_depth_curve(
         body,
         arguments.at,
@@ -102,5 +95,4 @@ def _curve(arguments: argparse.Namespace, body: SoftBody) -> ForceDepthCurve:
         tool=None if arguments.tool == POINT else tool_from(arguments.tool),
         steps=arguments.steps,
         young_modulus=young_modulus_of(arguments, body),
-        softenings=softenings,
     )

@@ -80,7 +80,6 @@ class Press:
         tips: Sequence[Tool | None],
         settings: ContactSettings = USUAL,
         *,
-        softenings: Array | None = None,
         spread: Spread | None = None,
     ) -> None:
         """Fingers without contact.
@@ -88,8 +87,6 @@ class Press:
         Parameters
         ----------
         tips : a tool for each finger, None for a point.
-        softenings : (s, 4), for the corrected force of points
-            (:mod:`..shape.force_at_depth.felt_force`), zero where unknown; None for the linear one.
         spread : contact points for all tools, in place of those of :mod:`.tool.tool_surface`.
 
         Raises
@@ -107,9 +104,6 @@ class Press:
             )
         some_tool = any(tip is not None for tip in self.tips)
         native = native_body(body, whole=some_tool or len(self.tips) > 1)
-        if softenings is not None:
-            known = np.flatnonzero(softenings.any(axis=1))
-            native.set_softenings(known, softenings[known])
         try:
             self._engine = ContactEngine(
                 native,
@@ -117,7 +111,6 @@ class Press:
                 young_modulus=modulus,
                 friction=settings.friction,
                 mode=settings.mode,
-                felt="linear" if softenings is None else "corrected",
             )
         except ValueError as problem:
             raise PalpateError("press: {problem}", problem=problem) from problem

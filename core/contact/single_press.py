@@ -30,8 +30,6 @@ def touch_at(
     alpha: ArrayLike,
     by: ArrayLike,
     settings: ContactSettings = USUAL,
-    *,
-    softenings: Array | None = None,
 ) -> PointTouch:
     """Touch surface triangle number ``triangle`` at area coordinates ``alpha``, moved ``by`` (3,).
 
@@ -41,7 +39,7 @@ def touch_at(
         As of :class:`Press`.
     """
     goal = PointGoal(triangle, np.asarray(alpha, dtype=np.float64), np.asarray(by, np.float64))
-    return _at_once(body, [goal], settings, softenings)[0]
+    return _at_once(body, [goal], settings)[0]
 
 
 def touch_nearest(
@@ -49,8 +47,6 @@ def touch_nearest(
     at: ArrayLike,
     by: ArrayLike,
     settings: ContactSettings = USUAL,
-    *,
-    softenings: Array | None = None,
 ) -> PointTouch:
     """Touch at the surface point nearest to ``at`` (3,), moved ``by`` (3,), metres.
 
@@ -68,7 +64,7 @@ def touch_nearest(
     PalpateError
         Coordinates that are not three finite numbers; as of :class:`Press`.
     """
-    return press_points(body, [at], [by], settings, softenings=softenings)[0]
+    return press_points(body, [at], [by], settings)[0]
 
 
 def press_points(
@@ -76,8 +72,6 @@ def press_points(
     at: ArrayLike | Sequence[ArrayLike],
     by: ArrayLike | Sequence[ArrayLike],
     settings: ContactSettings = USUAL,
-    *,
-    softenings: Array | None = None,
 ) -> tuple[PointTouch, ...]:
     """Touch with several fingers at once, each at the surface point nearest to its ``at``.
 
@@ -95,7 +89,7 @@ def press_points(
         PointGoal(int(triangle), alpha, way)
         for triangle, alpha, way in zip(places.triangle, places.alpha, ways, strict=True)
     ]
-    return _at_once(body, goals, settings, softenings)
+    return _at_once(body, goals, settings)
 
 
 def press_tool(
@@ -162,9 +156,8 @@ def _at_once(
     body: SoftBody,
     goals: Sequence[PointGoal],
     settings: ContactSettings,
-    softenings: Array | None,
 ) -> tuple[PointTouch, ...]:
-    touches = Press(body, [None] * len(goals), settings, softenings=softenings).to(goals)
+    touches = Press(body, [None] * len(goals), settings).to(goals)
     return tuple(one for one in touches if isinstance(one, PointTouch))
 
 

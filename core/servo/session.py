@@ -49,7 +49,6 @@ __all__ = [
     "native_compliance",
     "native_tool",
     "servo_on",
-    "touched_nodes",
 ]
 
 
@@ -76,8 +75,7 @@ def servo_on(
 
     Parameters
     ----------
-    surface : see :func:`native_body`. For the force law ``corrected`` it needs softenings, from a
-        :class:`..shape.force_at_depth.softening_table.SofteningTable`.
+    surface : see :func:`native_body`.
     settings : to begin with.
     rate_hz : 100 to 8000.
     max_force : newton; the clamp on the force of any device, unless ``settings`` have one.
@@ -106,13 +104,6 @@ def servo_on(
         )
     except (ValueError, OverflowError) as problem:
         raise PalpateError("servo: {problem}", problem=problem) from problem
-
-
-def touched_nodes(body: SoftBody, snapshot: Snapshot) -> NDArray[np.int64]:
-    """Node numbers (k,) of the mesh pressed by the fingers of a snapshot."""
-    nodes = [finger.nodes for finger in snapshot.fingers]
-    pressed: NDArray[np.int64] = np.concatenate([np.zeros(0, dtype=np.int64), *nodes])
-    return body.mesh.surface_nodes[pressed]
 
 
 def displacements_of(

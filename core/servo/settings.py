@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal, Protocol
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,8 +56,6 @@ class Settings:
     shading : force shading, from normals interpolated over the facets.
     static_friction, dynamic_friction : 0 <= dynamic <= static.
     mode : contact mode.
-    felt : force law of points, blended over 50 ms while touching; linear where the native body has
-        no softenings.
     coupling : of all fingers; None for the default of the rate and the device's encoders.
     frames : of the fingers' devices; a new one lifts the probe off and sets it down anew. None, or
         missing: as the device was opened with.
@@ -72,7 +70,6 @@ class Settings:
     static_friction: float = 0.0
     dynamic_friction: float = 0.0
     mode: ContactMode = "consistent"
-    felt: Literal["linear", "corrected"] = "linear"
     coupling: Coupling | None = None
     frames: Sequence[Frame | None] = ()
     orientations: Sequence[NDArray[np.float64]] = ()

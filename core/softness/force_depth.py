@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..body.soft_body import SoftBody
 from ..contact.place import Place, nearest_place
-from ..contact.press import ContactSettings, PointGoal, Press
+from ..contact.press import ContactSettings, Press
 from ..contact.single_press import touch_at
 from ..contact.tool.pose import Pose, facing
 from ..contact.tool.tools import Tool
@@ -26,9 +26,6 @@ SHARE_OF_THICKNESS = 0.2
 SHARE_OF_TOOL = 0.25
 
 MOST_STEPS = 1000
-
-# Half of the way over which the slope of a bending curve is taken, as a share of the whole depth.
-DIFFERENCE = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +83,6 @@ def force_depth_curve(
     tool: Tool | None = None,
     steps: int = 20,
     young_modulus: float | None = None,
-    softenings: NDArray[np.float64] | None = None,
 ) -> ForceDepthCurve:
     """Press straight in at the surface point nearest to ``at`` (3,), metres.
 
@@ -96,8 +92,6 @@ def force_depth_curve(
     tool : a rigid tool, its -z axis along the axis; None for a point.
     steps : number of depths, without 0.
     young_modulus : pascal; the body's own unless given.
-    softenings : (s, 4), for the corrected force of a point
-        (:mod:`..shape.force_at_depth.felt_force`); None for the linear one. A tool's is linear.
 
     Raises
     ------
@@ -129,12 +123,9 @@ def force_depth_curve(
         )
     depths = np.linspace(0.0, end, steps + 1)
     settings = ContactSettings(young_modulus)
-    if tool is None and softenings is None:
-        return _of_point(body, place, depths, settings)
-    press = Press(body, [tool], settings, softenings=softenings)
     if tool is None:
-        return _of_softening_point(place, depths, press)
-    return _of_tool(place, depths, press, tool)
+        return _of_point(body, place, depths, settings)
+    return _of_tool(place, depths, Press(body, [tool], settings), tool)
 
 
 def _of_point(
@@ -151,18 +142,6 @@ def _of_point(
         np.full(len(depths), stiffness),
         np.zeros(len(depths)),
     )
-
-
-def _of_softening_point(place: Place, depths: NDArray[np.float64], press: Press) -> ForceDepthCurve:
-    def force(depth: float) -> float:
-        (made,) = press.to([PointGoal(place.triangle, place.alpha, depth * place.axis)])
-        return 0.0 - float(made.force @ place.axis)
-
-    step = DIFFERENCE * float(depths[-1])
-    forces = np.array([force(depth) for depth in depths])
-    rise = [force(depth + step) - force(depth - step) for depth in depths]
-    stiffness = np.array(rise) / (2.0 * step)
-    return ForceDepthCurve("point", place, depths, forces, stiffness, np.zeros(len(depths)))
 
 
 def _of_tool(

@@ -25,7 +25,6 @@ from ..place.touched_place import TouchedPlace
 from ..scene.body_frame import BodyFrame, Point, as_point
 from ..session.live_settings import contact_mode
 from ..shape.drawn_shape import closing_shape
-from ..shape.felt_table import softenings_for
 from ..tool import tool_turn
 from ..tool.finger_tip import chosen_tip
 from ..traction.drawn_traction import patches_of, tractions_of
@@ -150,8 +149,7 @@ def _touches(
     body, chosen = drawn.body, thing.palpate
     settings = ContactSettings(chosen.young_modulus, chosen.static_friction, contact_mode(scene))
     if tool is None:
-        softenings = softenings_for(thing, drawn, places)
-        return press_points(body, places, inward, settings, softenings=softenings)
+        return press_points(body, places, inward, settings)
     nearest = [nearest_place(body, place) for place in places]
     turns = [
         tool_turn.rotation(scene, frame, -place.axis)

@@ -22,7 +22,6 @@ from ...core.servo.session import (
     native_body,
     native_tool,
     servo_on,
-    touched_nodes,
 )
 from ...simulated.simulated_process import SimulatedDevice
 from ..device import device_source
@@ -32,7 +31,6 @@ from ..object.drawn_body import DrawnBody
 from ..record import recording
 from ..record.recording import Recorder
 from ..scene.body_frame import BodyFrame
-from ..shape.felt_table import FeltTable
 from ..tool.finger_tip import FingerTip
 from ..tool.tool_turn import Point, Turn
 from .finger_leads import second_port
@@ -53,7 +51,6 @@ class ForceLoop:
     drawn: DrawnBody
     touched: Body
     tip: FingerTip
-    felt: FeltTable
     simulated: SimulatedDevice | None = None
     second_simulated: SimulatedDevice | None = None
     port: str = ""
@@ -75,8 +72,7 @@ class ForceLoop:
         """
         touched = native_body(drawn.body, whole=fingers > 1 or tip.tool is not None)
         servo = servo_on(touched, settings.servo, rate_hz=rate_hz)
-        felt = FeltTable(drawn.body, touched, drawn.file)
-        return cls(servo, settings, Recorder(servo, rate_hz), drawn, touched, tip, felt)
+        return cls(servo, settings, Recorder(servo, rate_hz), drawn, touched, tip)
 
     def give_tools(self, fingers: int) -> None:
         """Give the chosen tool to a number of fingers; points need none."""
@@ -203,9 +199,6 @@ class ForceLoop:
         snapshot = self.servo.snapshot()
         self.figures.look(self.servo, time.monotonic())
         self.recorder.follow(snapshot.time)
-        # The force law of tools is linear.
-        felt = self.settings.servo.felt if self.tip.tool is None else "linear"
-        self.felt.follow(felt, touched_nodes(self.drawn.body, snapshot))
         return snapshot
 
     def stop(self) -> None:
@@ -214,7 +207,6 @@ class ForceLoop:
             self.servo.stop()
             recording.keep(self.recorder)
         finally:
-            self.felt.close()
             for simulated in (self.simulated, self.second_simulated):
                 if simulated is not None:
                     simulated.stop()

@@ -12,7 +12,6 @@ from ...core.servo.session import device_coupling, haply_encoder_step
 from ...core.servo.settings import Coupling, Settings
 from ..device.device_source import DeviceFrame, is_planar
 from ..scene.package_preferences import preferences
-from ..shape.felt_table import chosen_felt
 
 
 def coupling_of(scene: bpy.types.Scene) -> Coupling:
@@ -59,7 +58,6 @@ class LiveSettings:
             static_friction=chosen.static_friction,
             dynamic_friction=min(chosen.dynamic_friction, chosen.static_friction),
             mode=contact_mode(scene),
-            felt=chosen_felt(thing),
             coupling=coupling_of(scene),
             frames=devices,
         )

@@ -236,8 +236,8 @@ class PressSession:
 
     def _report_problems(self, loop: ForceLoop) -> None:
         """Report each problem once, when it begins."""
-        shape, felt = self.seen.shape, loop.felt
-        found = (*self._problems, felt.problem, felt.notice, shape.problem, shape.notice)
+        shape = self.seen.shape
+        found = (*self._problems, shape.problem, shape.notice)
         # Both fingers may have the same.
         texts = [text for text in dict.fromkeys(found) if text]
         self.said += [Say(text, warning=True) for text in texts if text not in self._reported]

@@ -70,7 +70,6 @@ def test_press_takes_several_fingers_in_order(cube_file, tmp_path, palpate, figu
         "young modulus     1000",
         "shape             linear",
         "mode              consistent",
-        "felt              linear",
     ]
 
 

@@ -8,7 +8,6 @@ pub mod face;
 mod joining;
 mod normals;
 mod response;
-pub mod softening;
 pub mod surface;
 pub mod sweep;
 pub mod tree;

@@ -13,7 +13,6 @@ use crate::body::face::{Corner, Face, Fan, HalfEdge, measure_faces};
 use crate::body::joining::{edges_by_nodes, gather_fans, join_edges};
 use crate::body::normals::{is_soft, set_fan_normals};
 use crate::body::response::{Response, places_of};
-use crate::body::softening::Softenings;
 use crate::body::tree::Tree;
 
 /// A soft body as the servo sees it: rest surface and contact stiffness per node.
@@ -36,8 +35,6 @@ pub struct Body {
     reach: f64,
     response: Option<Response>,
     between_nodes: Option<BetweenNodes>,
-    /// Softenings of the nodes, as far as they are known.
-    pub softenings: Softenings,
 }
 
 impl Body {
@@ -68,7 +65,6 @@ impl Body {
         let tree = Tree::new(&faces);
         let size = tree.diagonal();
         let reach = (nodes.iter()).fold(size, |most, node| most.max(node.abs().max_element()));
-        let softenings = Softenings::unknown(nodes.len());
         Ok(Self {
             nodes,
             triangles,
@@ -84,7 +80,6 @@ impl Body {
             reach,
             response: None,
             between_nodes: None,
-            softenings,
         })
     }
 

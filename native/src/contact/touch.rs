@@ -3,7 +3,6 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::body::softening::{Relation, Softening};
 use crate::body::surface::Body;
 
 /// How a contact inside a triangle becomes a force.
@@ -113,49 +112,6 @@ pub fn touch(
         let block = &body.contact_blocks[nodes[k] as usize];
         *block * displacement * (young_modulus * alpha[k])
     });
-    Touch {
-        nodal_forces,
-        force: -(nodal_forces[0] + nodal_forces[1] + nodal_forces[2]),
-    }
-}
-
-/// The relation of a touched place at unit modulus, where its nodes soften so.
-#[inline]
-pub fn contact_relation(
-    body: &Body,
-    mode: ContactMode,
-    triangle: u32,
-    alpha: [f64; 3],
-    softenings: &[Softening; 3],
-) -> Relation {
-    Relation {
-        stiffness: contact_stiffness(body, mode, triangle, alpha),
-        softening: Softening::mixed(softenings, alpha),
-    }
-}
-
-/// As [`touch`], where the nodes soften so. `relation` is that of the place.
-#[inline]
-pub fn softened_touch(
-    body: &Body,
-    mode: ContactMode,
-    (triangle, alpha): (u32, [f64; 3]),
-    softenings: &[Softening; 3],
-    displacement: DVec3,
-    young_modulus: f64,
-) -> Touch {
-    let relation = contact_relation(body, mode, triangle, alpha, softenings);
-    let nodal_forces = if mode == ContactMode::Consistent && body.has_compliance() {
-        let push = relation.force(displacement) * young_modulus;
-        alpha.map(|share| push * share)
-    } else {
-        let softened = relation.softened(displacement);
-        let nodes = body.triangles[triangle as usize];
-        [0, 1, 2].map(|k: usize| {
-            let alone = body.contact_blocks[nodes[k] as usize] * displacement;
-            softened.force(alone, softenings[k].slope) * (young_modulus * alpha[k])
-        })
-    };
     Touch {
         nodal_forces,
         force: -(nodal_forces[0] + nodal_forces[1] + nodal_forces[2]),

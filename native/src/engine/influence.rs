@@ -127,18 +127,12 @@ impl Joint {
         }
         for _ in 0..MOST_TURNS {
             let reaction = self.reaction(grounds, beside);
-            // What fades in or out does so once a tick.
-            let dt = if beside.answers.is_none() {
-                beside.dt
-            } else {
-                0.0
-            };
             let (several, presses) = (&mut *beside.several, beside.presses);
-            let mut answers = several.solve(grounds, presses, &reaction, dt);
+            let mut answers = several.solve(grounds, presses, &reaction);
             if answers.is_none() {
                 self.influence.reduced = [0.0; MAX_FINGERS];
                 let none = Reaction::default();
-                answers = several.solve(grounds, presses, &none, dt);
+                answers = several.solve(grounds, presses, &none);
             }
             if answers.is_none() {
                 return true;

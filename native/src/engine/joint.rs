@@ -38,8 +38,6 @@ pub type AllLed<'a> = [Option<Led<'a>>; MOST_TOOLS];
 pub(super) struct Beside<'a> {
     pub several: &'a mut Several,
     pub presses: &'a Presses,
-    /// Length of the tick, s.
-    pub dt: f64,
     /// What became of them, once it is found.
     pub answers: Option<Answers>,
 }

@@ -68,7 +68,7 @@ impl LoneTool {
             presence: 1.0,
         });
         let presses = [None; crate::contact::cones::MAX_FINGERS];
-        self.engine.tick(&[ground], &presses, &mut led, 0.0);
+        self.engine.tick(&[ground], &presses, &mut led);
         self.collider.felt()
     }
 }

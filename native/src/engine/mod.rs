@@ -30,7 +30,7 @@ pub struct Engine {
 }
 
 impl Engine {
-    /// One tick of `dt` s on a list of bodies: what becomes of the points, and each tool keeps what it felt. `None` where there are no
+    /// One tick on a list of bodies: what becomes of the points, and each tool keeps what it felt. `None` where there are no
     /// points, on a body that does not keep its whole compliance, or where rounding has made nonsense
     /// of it.
     pub fn tick(
@@ -38,7 +38,6 @@ impl Engine {
         grounds: &[Ground<'_>],
         presses: &Presses,
         led: &mut AllLed<'_>,
-        dt: f64,
     ) -> Option<Answers> {
         let has_points = presses.iter().any(Option::is_some);
         if !has_points {
@@ -47,12 +46,11 @@ impl Engine {
         let are_held = grounds.iter().all(|ground| ground.mobility.is_none());
         if led.iter().all(Option::is_none) && self.joint.is_idle() && are_held {
             let none = Reaction::default();
-            return has_points.then(|| self.several.solve(grounds, presses, &none, dt))?;
+            return has_points.then(|| self.several.solve(grounds, presses, &none))?;
         }
         let mut beside = Beside {
             several: &mut self.several,
             presses,
-            dt,
             answers: None,
         };
         self.joint.tick(grounds, led, &mut beside);

@@ -8,11 +8,10 @@ use super::Engine;
 use super::goals::{Goal, PointTouch, Toucher, Unsettled, between};
 use super::joint::{AllLed, Led};
 use super::stillness::{MOST_TICKS, SETTLED, Stillness};
-use crate::body::softening::{Felt, Softening};
 use crate::body::surface::Body;
 use crate::contact::cones::MAX_FINGERS;
 use crate::contact::ground::{Ground, MOST_TOOLS};
-use crate::contact::touch::{ContactMode, softened_touch, touch};
+use crate::contact::touch::{ContactMode, touch};
 use crate::fingers::press::{Answers, Press, Presses};
 use crate::proxy::SurfacePoint;
 
@@ -28,7 +27,6 @@ pub struct Settling {
     /// Pa.
     pub young_modulus: f64,
     mode: ContactMode,
-    felt: Felt,
     /// All of the way matters, not its end alone.
     rubs: bool,
     engine: Engine,
@@ -42,14 +40,13 @@ impl Settling {
         body: Arc<Body>,
         touchers: Vec<Toucher>,
         young_modulus: f64,
-        (mode, felt): (ContactMode, Felt),
+        mode: ContactMode,
         rubs: bool,
     ) -> Self {
         Self {
             body,
             young_modulus,
             mode,
-            felt,
             rubs,
             engine: Engine::default(),
             touchers,
@@ -152,9 +149,7 @@ impl Settling {
             young_modulus: self.young_modulus,
             mobility: None,
         };
-        // Nothing fades in or out here: whatever was asked for is there at once.
-        let dt = f64::INFINITY;
-        let answers = self.engine.tick(&[ground], &presses, &mut led, dt);
+        let answers = self.engine.tick(&[ground], &presses, &mut led);
         self.take(goals, answers.as_ref());
         let largest = (before.iter().enumerate())
             .map(|(number, before)| self.force(number).length().max(before.length()))
@@ -208,7 +203,7 @@ impl Settling {
             let (force, nodal_forces) = match answers {
                 Some(answers) => {
                     let answer = &answers[number];
-                    let share = |alpha| answer.drawn.0 * (alpha * self.young_modulus);
+                    let share = |alpha| answer.force * (alpha * self.young_modulus);
                     let force = answer.contact_force * -self.young_modulus;
                     (force, hold.alpha.map(share))
                 }
@@ -224,10 +219,10 @@ impl Settling {
         }
     }
 
-    /// The force felt by a point that is alone, and those on the nodes by the linear relation, N.
+    /// The force felt by a point that is alone, and those on the nodes, N.
     fn alone(&self, hold: &SurfacePoint, displacement: DVec3) -> (DVec3, [DVec3; 3]) {
         let (body, modulus) = (&self.body, self.young_modulus);
-        let linear = touch(
+        let found = touch(
             body,
             self.mode,
             hold.triangle,
@@ -235,21 +230,7 @@ impl Settling {
             displacement,
             modulus,
         );
-        let softenings = self.softenings(hold);
-        if softenings.iter().all(Softening::is_none) {
-            return (linear.force, linear.nodal_forces);
-        }
-        let place = (hold.triangle, hold.alpha);
-        let softened = softened_touch(body, self.mode, place, &softenings, displacement, modulus);
-        (softened.force, linear.nodal_forces)
-    }
-
-    fn softenings(&self, hold: &SurfacePoint) -> [Softening; 3] {
-        let of = |node| match self.felt {
-            Felt::Corrected => self.body.softenings.of(node).unwrap_or_default(),
-            Felt::Linear => Softening::default(),
-        };
-        self.body.triangles[hold.triangle as usize].map(of)
+        (found.force, found.nodal_forces)
     }
 
     /// A point as the others see it. One that does not travel rests, and pushes back inwards.
@@ -267,7 +248,6 @@ impl Settling {
             push,
             most_stiffness: f64::INFINITY,
             presence: 1.0,
-            softening: Softening::mixed(&self.softenings(&hold), hold.alpha),
         }
     }
 }

@@ -2,7 +2,6 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::body::softening::Softening;
 use crate::contact::cones::{Blocks, MAX_FINGERS, Vectors};
 use crate::proxy::SurfacePoint;
 
@@ -23,8 +22,6 @@ pub struct Press {
     pub most_stiffness: f64,
     /// From 0 to 1 after it was lifted by a fault: how much it acts on the others.
     pub presence: f64,
-    /// How the place departs from the linear relation.
-    pub softening: Softening,
 }
 
 /// Those that are there, by number.
@@ -83,13 +80,8 @@ pub struct Answer {
     pub contact_force: DVec3,
     /// Its share of the energy of all, J at unit modulus.
     pub energy: f64,
-    /// Whether force and energy are those of the law, not on their way there.
-    pub is_settled: bool,
     /// How far the others move the contact point, m.
     pub by_others: DVec3,
-    /// As `force` and `by_others`, were all relations linear: so the linear body is drawn, in which
-    /// every contact point is where its finger has it.
-    pub drawn: (DVec3, DVec3),
     /// How far the surface goes beyond what the finger asks, m: zero unless its force is on its cone.
     pub slip: DVec3,
     /// Of the contact point while the others hold theirs, in series with what keeps the device from
@@ -97,8 +89,6 @@ pub struct Answer {
     pub seen_stiffness: DMat3,
     /// Compliance of that which keeps the device from seeing it whole.
     pub spring: f64,
-    /// How much of the place's softening is in the force, 0 to 1.
-    pub felt_share: f64,
 }
 
 /// Those that are there, by number.

@@ -15,7 +15,6 @@ use crate::contact::ground::Ground;
 use crate::contact::touch::{contact_compliance, inverse_of_definite};
 use crate::control::coupling::series_compliance;
 use crate::fingers::press::{Answer, Answers, Press, Presses, Reaction, numbered};
-use crate::fingers::softened::{Pressing, Softened};
 
 /// Where the others hold a finger, it still finds this share of the compliance it finds alone.
 const DISTINCT: f64 = 0.02;
@@ -38,7 +37,6 @@ struct Cross {
 pub struct Several {
     cross: [[Cross; MAX_FINGERS]; MAX_FINGERS],
     forces: Vectors,
-    softened: Softened,
 }
 
 impl Default for Several {
@@ -51,7 +49,6 @@ impl Default for Several {
         Self {
             cross: [[unread; MAX_FINGERS]; MAX_FINGERS],
             forces: [DVec3::ZERO; MAX_FINGERS],
-            softened: Softened::default(),
         }
     }
 }
@@ -65,14 +62,13 @@ impl Several {
     /// Forces of all fingers that touch, and how far they move the surface at all that are there,
     /// between tools that answer as told.
     ///
-    /// `dt` is the tick's length in s. `None` for a press on a body that is not there or does not keep
+    /// `None` for a press on a body that is not there or does not keep
     /// its whole compliance, or where rounding has made nonsense of one.
     pub fn solve(
         &mut self,
         grounds: &[Ground<'_>],
         presses: &Presses,
         tools: &Reaction,
-        dt: f64,
     ) -> Option<Answers> {
         let mut alone = self.coupled_compliance(grounds, presses)?;
         tell_apart(&mut alone, &Members::of(presses))?;
@@ -94,7 +90,6 @@ impl Several {
             series[p][p] += DMat3::IDENTITY * between[p];
             answers[p].seen_stiffness = series_share(&held[p], spring) * held[p];
             answers[p].spring = spring;
-            answers[p].felt_share = 1.0;
             asked[p] = press.displacement - tools.moved[p] - drift(&press);
             let own = alone[p][p] + DMat3::IDENTITY * between[p];
             cones[p] = Cone::about(press.push, &own)?;
@@ -109,31 +104,10 @@ impl Several {
                 let own = inverse_of_definite(&alone[p][p])?;
                 answers[p].force = force;
                 answers[p].energy = 0.5 * force.dot(press.displacement);
-                answers[p].is_settled = true;
                 answers[p].contact_force = force + own * force * between[p];
                 let moved = by_all + force * between[p];
                 answers[p].slip = moved - press.displacement;
             }
-            answers[p].drawn = (answers[p].force, answers[p].by_others);
-        }
-        if numbered(&touching).any(|(_, press)| !press.softening.is_none()) {
-            let pressing = Pressing {
-                compliance,
-                own: std::array::from_fn(|p| alone[p][p]),
-                between,
-                asked,
-                cones,
-                members,
-            };
-            // Where rounding has made nonsense of it, the linear answers stay.
-            if (self.softened)
-                .solve(&pressing, presses, tools, &mut answers, dt)
-                .is_none()
-            {
-                self.softened = Softened::default();
-            }
-        } else {
-            self.softened = Softened::default();
         }
         Some(answers)
     }
@@ -141,7 +115,6 @@ impl Several {
     /// Nobody touches: what was remembered of the forces is over.
     pub fn release(&mut self) {
         self.forces = [DVec3::ZERO; MAX_FINGERS];
-        self.softened = Softened::default();
     }
 
     /// C_pq of all fingers that are there, zero between bodies.

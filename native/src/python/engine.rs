@@ -13,7 +13,7 @@ use crate::engine::goals::{Goal, PointTouch, Toucher, Unsettled};
 use crate::engine::settling::Settling;
 use crate::proxy::SurfacePoint;
 use crate::python::body::surface::Body;
-use crate::python::servo::settings::{contact_mode, felt_choice};
+use crate::python::servo::settings::contact_mode;
 use crate::python::tool::shape::Tool;
 use crate::python::tool::surface::ToolSurface;
 use crate::python::tool::told::told_tool;
@@ -33,15 +33,13 @@ pub struct ContactEngine {
 #[pymethods]
 impl ContactEngine {
     #[new]
-    #[pyo3(signature = (body, tips, *, young_modulus, friction=0.0, mode="consistent",
-        felt="linear"))]
+    #[pyo3(signature = (body, tips, *, young_modulus, friction=0.0, mode="consistent"))]
     fn new(
         body: &Body,
         tips: Vec<Option<(PyRef<'_, ToolSurface>, PyRef<'_, Tool>)>>,
         young_modulus: f64,
         friction: f64,
         mode: &str,
-        felt: &str,
     ) -> PyResult<Self> {
         if !(1..=MAX_FINGERS).contains(&tips.len()) {
             return Err(PyValueError::new_err(format!(
@@ -82,7 +80,7 @@ impl ContactEngine {
                 body.inner.clone(),
                 touchers,
                 positive("young_modulus", young_modulus)?,
-                (contact_mode(mode)?, felt_choice(felt)?),
+                contact_mode(mode)?,
                 !friction.is_none(),
             ),
             body: body.inner.clone(),

@@ -137,7 +137,6 @@ impl Finger {
             Tip::Point => self.point.feel(followed, answer, coupler),
         };
         if !touch.found.touching {
-            self.point.blend.let_go();
             // In a tick without a position nobody knows, and the coupling waits.
             if followed.motors.is_some() {
                 self.coupler.release();

@@ -193,7 +193,7 @@ impl Servo {
             young_modulus: settings.young_modulus,
             mobility: None,
         };
-        let answers = (self.engine).tick(&[ground], &presses, &mut led, moment.dt);
+        let answers = (self.engine).tick(&[ground], &presses, &mut led);
         each(&mut self.fingers, |k, finger| {
             let answer = answers.as_ref().map(|answers| &answers[k]);
             Some(finger.feel(followed[k].as_ref()?, answer))

@@ -2,7 +2,6 @@
 
 use glam::DMat3;
 
-use crate::body::softening::Felt;
 use crate::body::surface::Body;
 use crate::contact::cones::MAX_FINGERS;
 use crate::control::coupling::Coupling;
@@ -21,8 +20,6 @@ pub struct Settings {
     pub max_force: Option<f64>,
     /// Shading, friction and how a contact becomes a force.
     pub feel: Feel,
-    /// Which relation between displacement and force is felt.
-    pub felt: Felt,
     /// Of each finger by number; those that are not there have theirs, too.
     pub fingers: [FingerSettings; MAX_FINGERS],
 }
@@ -35,7 +32,6 @@ impl Settings {
             enabled: true,
             max_force: None,
             feel: Feel::default(),
-            felt: Felt::default(),
             fingers: [FingerSettings::default(); MAX_FINGERS],
         }
     }

@@ -2,7 +2,6 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::body::softening::Felt;
 use crate::contact::cones::MAX_FINGERS;
 pub use crate::control::state::State;
 use crate::device::reason;
@@ -27,15 +26,10 @@ pub struct Snapshot {
     pub hold: Option<(u32, [f64; 3])>,
     /// Whether friction holds the contact point where it is.
     pub sticking: bool,
-    /// Relation that was to be felt.
-    pub felt: Felt,
     /// Node numbers of that triangle.
     pub triangle: [u32; 3],
-    /// (12), (13), of the linear relation whatever is felt: with them the linear body gives way as
-    /// far as the finger has come, N.
+    /// (12), (13): with them the body gives way as far as the finger has come, N.
     pub nodal_forces: [DVec3; 3],
-    /// Share of the corrected relation in the felt force, 0 to 1.
-    pub felt_share: f64,
     /// (14) before coupling and safety, N.
     pub contact_force: DVec3,
     /// On a tool about its reference point, N m, before safety; none on a point.

@@ -2,12 +2,9 @@
 
 use crate::scripted::{ABOVE, PRESSED, Table, probe, settings_of};
 use glam::DVec3;
-use palpate_servo::body::softening::{Felt, Relation, Softening};
-use palpate_servo::contact::touch::{ContactMode, contact_stiffness};
 use palpate_servo::control::coupling::Coupling;
 use palpate_servo::device::{DeviceFrame, Probe, Reading};
 use palpate_servo::servo::settings::FingerSettings;
-use palpate_servo::servo::settings::Settings;
 use palpate_servo::servo::snapshot::Snapshot;
 
 const SOFT: Coupling = Coupling {
@@ -42,56 +39,6 @@ fn a_motor_feels_no_more_than_the_limit_and_the_surface_shown_belongs_to_it() {
     assert!(shot.output_force.length() > 0.2 * 50.0 * depth);
     let nodal: DVec3 = shot.nodal_forces.iter().sum();
     assert!((nodal + shot.output_force).length() < 1e-9);
-}
-
-#[test]
-fn behind_the_limit_a_softening_body_takes_its_share_of_the_way() {
-    let softening = Softening {
-        slope: DVec3::Z * -60.0,
-        saturation: 4000.0,
-    };
-    for coupling in [SOFT, Coupling::default()] {
-        let mut table = Table::pressing();
-        for node in 0..table.body.nodes.len() as u32 {
-            table.body.softenings.tell(node, &softening);
-        }
-        table.settings.write(Settings {
-            felt: Felt::Corrected,
-            ..settings_of(FingerSettings {
-                coupling,
-                ..FingerSettings::default()
-            })
-        });
-        let shot = (0..200)
-            .map(|_| table.tick(Reading::At(probe(PRESSED))))
-            .last()
-            .unwrap();
-        assert_eq!((shot.felt, shot.felt_share), (Felt::Corrected, 1.0));
-        let (triangle, alpha) = shot.hold.unwrap();
-        let mode = ContactMode::Consistent;
-        let stiffness = contact_stiffness(&table.body, mode, triangle, alpha);
-        let relation = Relation {
-            stiffness,
-            softening,
-        };
-        let u = shot.probe - shot.proxy;
-        let felt = relation.force(u) * -1e4;
-        assert!(shot.contact_force.distance(felt) < 1e-12);
-        assert!(felt.length() < 0.95 * 1e4 * (stiffness * u).length());
-        // What the body does not take of the way, the spring of the limit does.
-        let drawn: DVec3 = shot.nodal_forces.iter().sum();
-        let taken = stiffness.inverse() * drawn / 1e4;
-        let force = relation.force(taken) * 1e4;
-        assert!((shot.output_force + force).length() < 1e-9 * force.length());
-        let left = u - taken;
-        if coupling.stiffness.is_finite() {
-            assert!(left.length() > 0.2 * u.length());
-            assert!(left.angle_between(force) < 1e-6);
-            assert!(shot.output_force.length() < 50.0 * u.length());
-        } else {
-            assert!(left.length() < 1e-9 * u.length());
-        }
-    }
 }
 
 #[test]

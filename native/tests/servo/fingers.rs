@@ -3,7 +3,6 @@
 
 use crate::scripted::{ABOVE, DT, OPTIONS, Table, probe, settings};
 use glam::{DMat3, DVec3};
-use palpate_servo::body::softening::Softening;
 use palpate_servo::body::surface::Body;
 use palpate_servo::contact::cones::{Blocks, Cone, MAX_FINGERS, Members, Vectors, solve_distinct};
 use palpate_servo::contact::ground::Ground;
@@ -62,7 +61,7 @@ pub fn two_fingers_on_nodes_press_as_equation_10_says() {
     let mut presses = [None; MAX_FINGERS];
     (presses[0], presses[1]) = (press(holds[0], u[0]), press(holds[1], u[1]));
     let answers = Several::default()
-        .solve(&[on(&body)], &presses, &Reaction::default(), 1e-3)
+        .solve(&[on(&body)], &presses, &Reaction::default())
         .expect("sound");
     let node = |k: usize| body.triangles[holds[k].triangle as usize][0];
     assert_ne!(node(0), node(1));
@@ -188,7 +187,6 @@ pub fn press(hold: SurfacePoint, displacement: DVec3) -> Option<Press> {
         push: displacement,
         most_stiffness: f64::INFINITY,
         presence: 1.0,
-        softening: Softening::default(),
     })
 }
 
@@ -209,8 +207,7 @@ pub fn what_one_does_to_the_other_the_other_does_to_the_one() {
                 let by = if k == change { by } else { DVec3::ZERO };
                 presses[k] = press(holds[k], push[k] + by);
             }
-            let answers =
-                Several::default().solve(&[on(&body)], &presses, &Reaction::default(), 1e-3);
+            let answers = Several::default().solve(&[on(&body)], &presses, &Reaction::default());
             answers.expect("a whole body").map(|answer| answer.force)
         };
         let still = forces(3, DVec3::ZERO);
@@ -240,7 +237,7 @@ pub fn fingers_on_one_place_share_what_one_would_feel() {
         };
         presses[0] = press(hold, body.face(100).normal * -1e-3);
         Several::default()
-            .solve(&[on(&body)], &presses, &Reaction::default(), 1e-3)
+            .solve(&[on(&body)], &presses, &Reaction::default())
             .expect("sound")[0]
             .force
     };
@@ -262,7 +259,7 @@ pub fn fingers_on_one_place_share_what_one_would_feel() {
                 );
             }
             let answers = Several::default()
-                .solve(&[on(&body)], &presses, &Reaction::default(), 1e-3)
+                .solve(&[on(&body)], &presses, &Reaction::default())
                 .expect("sound");
             let sum: DVec3 = answers.iter().map(|answer| answer.force).sum();
             assert!(

@@ -64,7 +64,7 @@ fn tick(
     for (press, point) in presses.iter_mut().rev().zip(points) {
         *press = Some(*point);
     }
-    let answers = engine.tick(grounds, &presses, &mut led, 1e-3);
+    let answers = engine.tick(grounds, &presses, &mut led);
     let answers = answers.into_iter().flatten().rev();
     answers.take(points.len()).collect()
 }
@@ -102,7 +102,6 @@ fn point(body: u8) -> Press {
         push: displacement,
         most_stiffness: f64::INFINITY,
         presence: 1.0,
-        softening: Default::default(),
     }
 }
 

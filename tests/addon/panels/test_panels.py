@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import threading
 from functools import partial
 from itertools import pairwise
 
 import bpy
 import pytest
 from recorded_layout import NARROW_WIDTH, USUAL_WIDTH, drawn
-from soft_scene import begin_pressed, cube, part, soft_cube, wait
+from soft_scene import begin_pressed, cube, part, soft_cube
 
 SHAPES = {
     "LINEAR": "linear",
@@ -56,11 +55,9 @@ class Halfway:
 def test_each_shape_is_explained_and_its_cost_told_before_the_press(panel, name, thing):
     thing.palpate.shape = name
     shapes = part("core.shape.shapes")
-    felt = part("core.shape.force_at_depth.felt_force")
     said = drawn(panel, thing)
-    assert said.properties == [*["shape"] * len(SHAPES), "felt"]
+    assert said.properties == ["shape"] * len(SHAPES)
     assert shapes.EXPLANATIONS[SHAPES[name]] in said.text
-    assert felt.EXPLANATIONS["linear"] in said.text
     assert not said.bars
     assert ("A Frame, About" in said.lines) == (name != "LINEAR")
     assert ("Memory, About" in said.lines) == (name != "LINEAR")
@@ -102,62 +99,13 @@ def test_a_body_too_large_for_60_frames_a_second_is_told_so(panel, thing):
     assert "60 times a second" not in drawn(panel, thing).text
 
 
-def test_the_corrected_force_tells_its_cost_and_that_tools_do_not_feel_it(panel, thing):
-    thing.palpate.felt = "CORRECTED"
-    assert "Whole Surface, About" in drawn(panel, thing).lines
-    bpy.context.scene.palpate.tip = "SPHERE"
-    said = drawn(panel, thing)
-    assert "Tools feel the linear force" in said.text
-    assert "Whole Surface, About" not in said.lines
-    bpy.context.scene.palpate.tip, bpy.context.scene.palpate.second = "POINT", "EMPTY"
-    assert "two fingers hold a slender part" in drawn(panel, thing).text
-
-
-def test_progress_is_a_bar_while_the_touched_place_is_computed(panel, press, monkeypatch):
-    shapes, made, allowed = part("core.shape.shapes"), [], threading.Event()
-
-    def slowly(body, _):
-        allowed.wait(5.0)
-        made.append(Halfway(body))
-        return made[0]
-
-    monkeypatch.setitem(shapes.MAKERS, "paper", slowly)
-    thing = soft_cube()
-    thing.palpate.shape = "TABLE"
-    session = press(thing)
-    assert drawn(panel, thing).bars == [(0.0, "Shape 0 %")]
-    allowed.set()
-    wait(session, lambda: session.seen.shape.ready == 0.5)
-    assert drawn(panel, thing).bars == [(0.5, "Shape 50 %")]
-    # It is of the pressed object only.
-    assert not drawn(panel, cube()).bars
-    made[0].ready = 1.0
-    assert not drawn(panel, thing).bars
-
-
-def test_why_the_linear_shape_is_drawn_stands_in_the_panel(panel, press, monkeypatch):
-    def refuse(*_):
-        raise part("core.errors").PalpateError("shape: no room; choose another")
-
-    monkeypatch.setitem(part("core.shape.shapes").MAKERS, "paper", refuse)
-    thing = soft_cube()
-    thing.palpate.shape = "TABLE"
-    session = press(thing)
-    wait(session, lambda: session.seen.shape.problem)
-    said = drawn(panel, thing)
-    assert "Shape: no room; choose another" in said.text
-    assert "The linear shape is drawn" in said.text
-    assert "ERROR" in said.icons
-    assert not said.bars
-
-
 @pytest.mark.parametrize("width", [USUAL_WIDTH, NARROW_WIDTH])
 @pytest.mark.parametrize("name", SHAPES)
 def test_no_sentence_of_any_panel_is_wider_than_the_sidebar(palpate, name, width):
     sentence, panels = part("addon.panels.sentence"), part("addon.panels.sidebar")
     thing = soft_cube()
     as_large(thing)
-    thing.palpate.shape, thing.palpate.felt = name, "CORRECTED"
+    thing.palpate.shape = name
     across = width // sentence.LETTER_PIXELS - sentence.MARGIN_LETTERS
     for cls in panels.classes:
         if not hasattr(cls, "poll") or cls.poll(bpy.context):

@@ -58,7 +58,6 @@ def test_one_press_three_ways(thing, name, tmp_path, capsys):
     chosen.tip, chosen.tip_turn = tip, "SURFACE"
     chosen.tip_radius, chosen.plate_width, chosen.plate_depth = 0.008, 0.016, 0.012
     thing.palpate.static_friction = friction
-    thing.palpate.felt = "LINEAR"
     drawn = part("operators.object.drawn_body").open_body(thing, scene)
     body = drawn.body
     places = [place_beside(body, one) for one in where]

@@ -64,10 +64,10 @@ def test_a_table_replaces_neither_what_a_link_leads_to_nor_another_file(tmp_path
     link(tmp_path / "link.npz", tmp_path / "letter")
     for name in ("link.npz", "letter"):
         with pytest.raises(UnwritableError, match="no table"):
-            write_table(tmp_path / name, "softening", KEY, {})
+            write_table(tmp_path / name, "newton-table", KEY, {})
     assert (tmp_path / "letter").read_text() == "dear"
-    write_table(tmp_path / "new.npz", "softening", KEY, {})
-    write_table(tmp_path / "new.npz", "softening", KEY, {"a": np.eye(2)})
+    write_table(tmp_path / "new.npz", "newton-table", KEY, {})
+    write_table(tmp_path / "new.npz", "newton-table", KEY, {"a": np.eye(2)})
 
 
 def test_a_file_may_take_a_links_place(tmp_path, link):

@@ -3,17 +3,15 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use numpy::ndarray::ArrayView1;
 use numpy::{AllowTypeChange, PyArray1, PyArrayLike1, PyArrayLike2, PyArrayLike3};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::body::closest;
-use crate::body::softening::{Felt, Softening};
 use crate::body::surface;
 use crate::contact::touch;
 use crate::python::body::compliance::Compliance;
-use crate::python::servo::settings::{contact_mode, felt_choice};
+use crate::python::servo::settings::contact_mode;
 use crate::python::vectors::{
     Matrix, Rows, Triple, Vector, array, finite, matrices, misshaped, rows, vectors,
 };
@@ -63,46 +61,7 @@ impl Body {
         self.inner.nodes.len()
     }
 
-    fn set_softenings(
-        &self,
-        nodes: PyArrayLike1<'_, i64, AllowTypeChange>,
-        softenings: PyArrayLike2<'_, f64, AllowTypeChange>,
-    ) -> PyResult<()> {
-        let (numbers, rows) = (node_numbers("nodes", &nodes)?, softenings.as_array());
-        if rows.shape() != [numbers.len(), 4] {
-            let wanted = format!("({}, 4), a row for each node", numbers.len());
-            return Err(misshaped("softenings", rows.shape(), wanted));
-        }
-        let count = self.inner.nodes.len();
-        if let Some(&node) = numbers.iter().find(|&&node| node as usize >= count) {
-            return Err(PyValueError::new_err(format!(
-                "node {node} is beyond the {count} nodes of the body; they are numbered from 0"
-            )));
-        }
-        let read = |(number, row): (usize, ArrayView1<'_, f64>)| {
-            let softening = Softening {
-                slope: DVec3::new(row[0], row[1], row[2]),
-                saturation: row[3],
-            };
-            softening.is_sound().then_some(softening).ok_or_else(|| {
-                PyValueError::new_err(format!(
-                    "softenings has {row} in row {number}; each must be finite, the fourth number not \
-                     negative, and positive where one of the others is not zero"
-                ))
-            })
-        };
-        let sound = rows.rows().into_iter().enumerate().map(read);
-        let sound = sound.collect::<PyResult<Vec<Softening>>>()?;
-        // The interpreter's lock is held: one thread tells at a time.
-        for (&node, softening) in numbers.iter().zip(&sound) {
-            self.inner.softenings.tell(node, softening);
-        }
-        Ok(())
-    }
-
-    #[pyo3(signature = (triangle, alpha, displacement, young_modulus, mode="consistent",
-        felt="linear"))]
-    #[allow(clippy::too_many_arguments)] // Keywords in Python.
+    #[pyo3(signature = (triangle, alpha, displacement, young_modulus, mode="consistent"))]
     fn contact<'py>(
         &self,
         py: Python<'py>,
@@ -111,20 +70,11 @@ impl Body {
         displacement: Triple,
         young_modulus: f64,
         mode: &str,
-        felt: &str,
     ) -> PyResult<(Matrix<'py>, Vector<'py>)> {
         self.check_triangle(triangle)?;
         let (body, mode, triangle) = (&self.inner, contact_mode(mode)?, triangle as u32);
         let displacement = DVec3::from_array(displacement);
-        let touch = match felt_choice(felt)? {
-            Felt::Linear => touch::touch(body, mode, triangle, alpha, displacement, young_modulus),
-            Felt::Corrected => {
-                let of = |node| body.softenings.of(node).unwrap_or_default();
-                let softenings = body.triangles[triangle as usize].map(of);
-                let hold = (triangle, alpha);
-                touch::softened_touch(body, mode, hold, &softenings, displacement, young_modulus)
-            }
-        };
+        let touch = touch::touch(body, mode, triangle, alpha, displacement, young_modulus);
         Ok((rows(py, &touch.nodal_forces)?, array(py, touch.force)))
     }
 

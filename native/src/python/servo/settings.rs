@@ -6,7 +6,6 @@ use glam::DMat3;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::body::softening::Felt;
 use crate::contact::cones::MAX_FINGERS;
 use crate::contact::touch::ContactMode;
 use crate::control::coupling::Coupling;
@@ -55,15 +54,6 @@ pub fn contact_mode(name: &str) -> PyResult<ContactMode> {
     })
 }
 
-pub fn felt_choice(name: &str) -> PyResult<Felt> {
-    let found = Felt::ALL.into_iter().find(|felt| felt.name() == name);
-    found.ok_or_else(|| {
-        PyValueError::new_err(format!(
-            "felt is {name:?}; it must be \"linear\" or \"corrected\""
-        ))
-    })
-}
-
 /// Settings as Python gives them: any object with these attributes, `core/servo/settings.py` has one.
 #[derive(FromPyObject)]
 pub struct Given {
@@ -74,7 +64,6 @@ pub struct Given {
     static_friction: f64,
     dynamic_friction: f64,
     mode: String,
-    felt: String,
     coupling: Option<GivenCoupling>,
     frames: Vec<Option<GivenFrame>>,
     orientations: Vec<Rows>,
@@ -164,7 +153,6 @@ impl Chosen {
                 mode: contact_mode(&given.mode)?,
                 ..feel(given.shading, given.static_friction, given.dynamic_friction)?
             },
-            felt: felt_choice(&given.felt)?,
             ..Settings::new(young_modulus)
         };
         let mut frames = [None; MAX_FINGERS];

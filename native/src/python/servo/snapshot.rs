@@ -58,14 +58,6 @@ impl FingerSnapshot {
         array(py, self.shot.contact_force)
     }
     #[getter]
-    fn felt(&self) -> &'static str {
-        self.shot.felt.name()
-    }
-    #[getter]
-    fn felt_share(&self) -> f64 {
-        self.shot.felt_share
-    }
-    #[getter]
     fn output_force<'py>(&self, py: Python<'py>) -> Vector<'py> {
         array(py, self.shot.output_force)
     }

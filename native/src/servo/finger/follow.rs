@@ -51,7 +51,6 @@ impl Finger {
                 tick: moment.tick,
                 time: moment.now,
                 body: moment.body_number,
-                felt: moment.settings.felt,
                 buttons: probe.map_or(0, |probe| probe.buttons),
                 orientation: self.pose.rotation,
                 probe: position,

@@ -5,15 +5,10 @@ use glam::DVec3;
 use super::among::Among;
 use super::followed::Followed;
 use super::touch::Touch;
-use crate::algebra::series_share;
 use crate::body::face::closest_on_face;
-use crate::body::softening::blend::Blend;
-use crate::body::softening::{Relation, Softening};
 use crate::body::surface::Body;
-use crate::contact::touch::{
-    ContactMode, contact_relation, softened_touch, surface_displacement, touch,
-};
-use crate::control::coupling::{Contact, Coupled, Coupler, series_compliance};
+use crate::contact::touch::{ContactMode, contact_stiffness, surface_displacement, touch};
+use crate::control::coupling::{Contact, Coupled, Coupler};
 use crate::fingers::press::{Answer, Press};
 use crate::proxy::{Proxy, SurfacePoint};
 use crate::servo::settings::Moment;
@@ -23,7 +18,6 @@ use crate::servo::snapshot::Snapshot;
 pub(super) struct Point {
     pub proxy: Option<Proxy>,
     pub among: Among,
-    pub blend: Blend,
 }
 
 impl Point {
@@ -32,14 +26,12 @@ impl Point {
         Self {
             proxy: None,
             among: Among::fresh(),
-            blend: Blend::default(),
         }
     }
 
     /// Goes over to another body, near a place.
     pub fn turn_to(&mut self, body: &Body, place: DVec3) {
         self.among = Among::default();
-        self.blend.let_go();
         if let Some(proxy) = &mut self.proxy {
             proxy.restart(body, place);
         }
@@ -81,7 +73,6 @@ impl Point {
                 push: displacement - self.among.moved_back,
                 most_stiffness: followed.motors.map_or(f64::INFINITY, |_| limit),
                 presence: followed.presence,
-                softening: Softening::mixed(&self.softenings(followed, &hold), hold.alpha),
             });
         }
         let proxy = self.proxy.as_ref().filter(|_| !followed.found.blind)?;
@@ -96,7 +87,6 @@ impl Point {
             push: DVec3::ZERO,
             most_stiffness: f64::INFINITY,
             presence: 0.0,
-            softening: Softening::default(),
         })
     }
 
@@ -140,16 +130,10 @@ impl Point {
     ) -> Touch {
         let Moment { body, settings, .. } = *followed.moment;
         let (mode, young_modulus) = (settings.feel.mode, settings.young_modulus);
-        let place @ (triangle, alpha) = (hold.triangle, hold.alpha);
+        let (triangle, alpha) = (hold.triangle, hold.alpha);
         let displacement = followed.displacement();
-        let felt = self.softenings(followed, hold);
         let linear = |u| touch(body, mode, triangle, alpha, u, young_modulus);
-        let is_softened = felt.iter().any(|one| !one.is_none());
-        let whole = if is_softened {
-            softened_touch(body, mode, place, &felt, displacement, young_modulus)
-        } else {
-            linear(displacement)
-        };
+        let whole = linear(displacement);
         if !whole.force.is_finite() {
             return Touch::nan(followed);
         }
@@ -159,34 +143,26 @@ impl Point {
             force: whole.force,
         };
         let (mut push, mut energy) = (-whole.force, -0.5 * whole.force.dot(displacement));
-        if is_softened || followed.motors.is_some() {
-            let relation = contact_relation(body, mode, triangle, alpha, &felt);
-            coupled = if followed.motors.is_none() {
-                coupled
-            } else if is_softened {
-                drive_softened(followed, &relation, coupler)
-            } else {
-                let contact = Contact {
-                    stiffness: relation.stiffness * young_modulus,
-                    displacement,
-                    force: whole.force,
-                };
-                followed.couple(coupler, &contact)
+        if followed.motors.is_some() {
+            let stiffness = contact_stiffness(body, mode, triangle, alpha) * young_modulus;
+            let contact = Contact {
+                stiffness,
+                displacement,
+                force: whole.force,
             };
-            let moved = coupled.body_displacement;
-            push = relation.force(moved) * young_modulus;
+            coupled = followed.couple(coupler, &contact);
+            push = stiffness * coupled.body_displacement;
             // The coupling's spring holds what it is pressed together by.
-            energy = relation.energy(moved) * young_modulus + 0.5 * push.dot(displacement - moved);
+            energy = 0.5 * push.dot(displacement);
         }
         let reached = coupled.body_displacement;
         let shot = Snapshot {
             contact_force: whole.force,
-            nodal_forces: if !is_softened && reached == displacement {
+            nodal_forces: if reached == displacement {
                 whole.nodal_forces
             } else {
                 linear(reached).nodal_forces
             },
-            felt_share: self.blend.share(alpha),
             ..followed.shot
         };
         let shot = self.on_surface(followed, hold, shot, DVec3::ZERO);
@@ -195,7 +171,7 @@ impl Point {
             // As published: nobody pays.
             return touch;
         }
-        touch.with_energy(push, (energy, energy), self.is_settled(followed))
+        touch.with_energy(push, (energy, energy), is_settled(followed))
     }
 
     /// The contact of a finger among others.
@@ -212,14 +188,14 @@ impl Point {
         if !(force.is_finite() && contact_force.is_finite()) {
             return Touch::nan(followed);
         }
-        let (drawn, carried) = answer.drawn;
         let shot = Snapshot {
             contact_force,
-            nodal_forces: hold.alpha.map(|share| drawn * (share * young_modulus)),
-            felt_share: self.blend.share(hold.alpha) * answer.felt_share,
+            nodal_forces: hold
+                .alpha
+                .map(|share| answer.force * (share * young_modulus)),
             ..followed.shot
         };
-        let shot = self.on_surface(followed, hold, shot, carried);
+        let shot = self.on_surface(followed, hold, shot, answer.by_others);
         let seen = Contact {
             stiffness: answer.seen_stiffness * young_modulus,
             displacement: followed.displacement() - answer.by_others,
@@ -227,23 +203,8 @@ impl Point {
         };
         let by_others = 0.5 * answer.force.dot(answer.by_others);
         let energy = [answer.energy, answer.energy - by_others].map(|e| e * young_modulus);
-        let is_settled = answer.is_settled && self.is_settled(followed);
         let wanted = followed.drive(coupler, &seen);
-        Touch::of(followed, shot, wanted).with_energy(-force, energy.into(), is_settled)
-    }
-
-    /// Whether the law stays as it is, and all of it is felt.
-    fn is_settled(&self, followed: &Followed<'_>) -> bool {
-        self.blend.is_settled() && followed.presence == 1.0 && followed.is_ramped
-    }
-
-    /// Softenings of the touched triangle's nodes, as they are felt in this tick.
-    fn softenings(&mut self, followed: &Followed<'_>, hold: &SurfacePoint) -> [Softening; 3] {
-        let Moment {
-            body, settings, dt, ..
-        } = *followed.moment;
-        let nodes = body.triangles[hold.triangle as usize];
-        (self.blend).follow(&body.softenings, nodes, settings.felt, dt)
+        Touch::of(followed, shot, wanted).with_energy(-force, energy.into(), is_settled(followed))
     }
 
     /// A contact with where it is: the touched point of the surface is moved by its own nodal forces
@@ -268,23 +229,7 @@ impl Point {
     }
 }
 
-/// A place that softens and the coupling's spring in series, damped.
-fn drive_softened(followed: &Followed<'_>, relation: &Relation, coupler: &mut Coupler) -> Coupled {
-    let young_modulus = followed.moment.settings.young_modulus;
-    let (displacement, most) = (followed.displacement(), followed.most_stiffness());
-    let tangent = relation.tangent(displacement) * young_modulus;
-    let spring = series_compliance(&(relation.stiffness * young_modulus), most)
-        .max(series_compliance(&tangent, most));
-    let moved = relation.behind_spring(spring * young_modulus, displacement);
-    let there = relation.tangent(moved) * young_modulus;
-    let seen = Contact {
-        stiffness: series_share(&there, spring) * there,
-        displacement,
-        force: relation.force(moved) * -young_modulus,
-    };
-    Coupled {
-        body_displacement: moved,
-        spring: seen.force,
-        force: followed.drive(coupler, &seen),
-    }
+/// Whether the law stays as it is, and all of it is felt.
+fn is_settled(followed: &Followed<'_>) -> bool {
+    followed.presence == 1.0 && followed.is_ramped
 }

@@ -1,1 +1,0 @@
-"""A force that gives way at large depth."""
