@@ -360,6 +360,16 @@ class Snapshot(FingerSnapshot):
         """
 
     @property
+    def remembered_nodes(self) -> NDArray[np.int64]:
+        """Nodes (k,) of the surface that remember a force, where the body gives way with time."""
+
+    @property
+    def remembered_forces(self) -> NDArray[np.float64]:
+        """Forces (k, 3), N, that would hold the body as it is, were it elastic with its modulus in
+        the end: those of this tick are among them.
+        """
+
+    @property
     def fingers(self) -> list[FingerSnapshot]:
         """All fingers, by number."""
 
@@ -670,6 +680,8 @@ class ServoSettings(Protocol):
     def dynamic_friction(self) -> float: ...
     @property
     def mode(self) -> ContactMode: ...
+    @property
+    def relaxation(self) -> Sequence[tuple[float, float]]: ...
     @property
     def coupling(self) -> _Coupling | None: ...
     @property

@@ -26,7 +26,7 @@ PACKAGED = FOLDER / "words.json"
 # Where every text that begins like a sentence or a label is shown, and where only these are: the
 # first text of such calls and of errors, and all in such tables.
 SHOWING, MARKING = ("addon", "operators"), ("core", "simulated")
-CALLS = {"Sentence", "reported", "shown", "Material", "_by_shore", "_smooth_on", "super().__init__"}
+CALLS = {"Sentence", "reported", "shown", "Material", "_silicone", "Relaxation", "super().__init__"}
 TABLES = {"EXPLANATIONS", "STAGES", "STEP_TEXTS"}
 # Read by whoever types commands, in English.
 COMMANDS = (

@@ -78,6 +78,7 @@ clock
 guardian
 device/serial device device/link device/haply
 control
+creep
 contact
 proxy
 tool

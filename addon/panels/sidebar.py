@@ -44,6 +44,7 @@ class PALPATE_PT_material(PalpatePanel, bpy.types.Panel):
         column.prop(settings, "young_modulus", text="Stiffness (Pa)")
         softness.draw_shore(column, context)
         while_idle(column).prop(settings, "poisson_ratio")
+        column.prop(settings, "relaxation")
 
 
 class PALPATE_PT_stiff_region(PalpatePanel, bpy.types.Panel):

@@ -1,33 +1,16 @@
 """Properties of an object: material, surface rendering, pins, baked body."""
 
-import math
 from collections.abc import Callable
 
 import bpy
 
-from ...core.softness.scales.materials import MATERIALS
 from ...operators.animation import live_pressers
 from ...operators.traction import layer_traction
 from .kinds import choice, chosen_collection, number, result, span, switch, text
+from .material import MaterialProperties
 from .scene import PalpateScene
 from .shape import ShapeProperties
 
-# Files hold the numbers of these items: add new ones at the end only.
-CUSTOM = "CUSTOM"
-# Custom came before all materials but the first seven.
-CUSTOM_NUMBER = 7
-MATERIAL_ITEMS = [
-    *(
-        (
-            name,
-            material.name,
-            f"{material.young_modulus:,.0f} Pa, {material.poisson_ratio:g}; {material.basis}",
-            number if number < CUSTOM_NUMBER else number + 1,
-        )
-        for number, (name, material) in enumerate(MATERIALS.items())
-    ),
-    (CUSTOM, "Custom", "Young's modulus and Poisson's ratio as set below", CUSTOM_NUMBER),
-]
 FRICTIONS = span(0.0, 5.0, soft_max=1.5, precision=2, step=5)
 PIN_ITEMS = [
     ("BELOW", "Below Height", "Everything in the lowest part of the object, as it stands"),
@@ -54,26 +37,6 @@ FORM_ITEMS = [
 ]
 
 
-def _take_material(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    material = MATERIALS.get(settings.material)
-    if material is not None:
-        settings.young_modulus = material.young_modulus
-        settings.poisson_ratio = material.poisson_ratio
-
-
-def _leave_material(name: str) -> Callable[[bpy.types.PropertyGroup, bpy.types.Context], None]:
-    """Update callback that sets Custom once the number ``name`` differs from the preset's."""
-
-    def update(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-        material = MATERIALS.get(settings.material)
-        if material is not None and not math.isclose(
-            getattr(settings, name), getattr(material, name), rel_tol=1e-5
-        ):
-            settings.material = CUSTOM
-
-    return update
-
-
 def _press_anew(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
     live_pressers.look_again()
     live_pressers.press_again(settings.id_data, context.evaluated_depsgraph_get())
@@ -98,33 +61,11 @@ def _keep_order(changed: str) -> Callable[[bpy.types.PropertyGroup, bpy.types.Co
     return update
 
 
-class PalpateObject(ShapeProperties, bpy.types.PropertyGroup):
+class PalpateObject(MaterialProperties, ShapeProperties, bpy.types.PropertyGroup):
     """``object.palpate``. The tetrahedra are ID properties: nodes, tets, fixed and, with a stiff
     region, young_scale.
     """
 
-    material: choice(
-        "Material",
-        "A usual soft material, as a start",
-        MATERIAL_ITEMS,
-        "PLUSH",
-        update=_take_material,
-    )
-    young_modulus: number(
-        "Young's Modulus",
-        "Stiffness in pascal. Takes effect at once, without a new bake",
-        1000.0,
-        span(1.0, 1e9, soft_max=1e6, precision=0, step=10000),
-        update=_leave_material("young_modulus"),
-    )
-    poisson_ratio: number(
-        "Poisson's Ratio",
-        "How much it bulges sideways: 0 like cork, near 0.5 like rubber or water. "
-        "Needs Rebuild Body",
-        0.3,
-        span(0.0, 0.499, precision=3, step=1),
-        update=_leave_material("poisson_ratio"),
-    )
     bake_from: choice(
         "Bake From",
         "What is filled and felt",

@@ -44,6 +44,7 @@ __all__ = [
     "Snapshot",
     "device_coupling",
     "displacements_of",
+    "drawn_loads",
     "haply_encoder_step",
     "native_body",
     "native_compliance",
@@ -106,16 +107,28 @@ def servo_on(
         raise PalpateError("servo: {problem}", problem=problem) from problem
 
 
+def drawn_loads(snapshot: Snapshot) -> list[tuple[NDArray[np.int64], NDArray[np.float64]]]:
+    """Nodes (k,) of the surface and forces (k, 3), N, under which the body looks as it does.
+
+    A load a finger, or one of all that a body remembers which gives way with time.
+    """
+    if len(snapshot.remembered_nodes):
+        return [(snapshot.remembered_nodes, snapshot.remembered_forces)]
+    fingers = snapshot.fingers
+    return [(finger.nodes, finger.nodal_forces) for finger in fingers if len(finger.nodes)]
+
+
 def displacements_of(
     body: SoftBody, snapshot: Snapshot, young_modulus: float | None = None
 ) -> NDArray[np.float64] | None:
-    """Displacements (n, 3) of the free surface nodes under all fingers of a snapshot.
+    """Displacements (n, 3) of the free surface nodes under all fingers of a snapshot, and by what
+    the body remembers of them.
 
-    None while none of them touches.
+    None while none of them touches and nothing is remembered.
     """
-    touching = [finger for finger in snapshot.fingers if len(finger.nodes)]
-    if not touching:
+    pressed = drawn_loads(snapshot)
+    if not pressed:
         return None
-    nodes = np.concatenate([finger.nodes for finger in touching])
-    forces = np.concatenate([finger.nodal_forces for finger in touching])
+    nodes = np.concatenate([nodes for nodes, _ in pressed])
+    forces = np.concatenate([forces for _, forces in pressed])
     return body.deform(body.mesh.surface_nodes[nodes], forces, young_modulus)

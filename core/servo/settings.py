@@ -56,6 +56,8 @@ class Settings:
     shading : force shading, from normals interpolated over the facets.
     static_friction, dynamic_friction : 0 <= dynamic <= static.
     mode : contact mode.
+    relaxation : of the modulus in time, pairs of a share of it and of seconds, at most three
+        (:mod:`..law.relaxation`); felt where the native body is whole and the mode consistent.
     coupling : of all fingers; None for the default of the rate and the device's encoders.
     frames : of the fingers' devices; a new one lifts the probe off and sets it down anew. None, or
         missing: as the device was opened with.
@@ -70,6 +72,7 @@ class Settings:
     static_friction: float = 0.0
     dynamic_friction: float = 0.0
     mode: ContactMode = "consistent"
+    relaxation: Sequence[tuple[float, float]] = ()
     coupling: Coupling | None = None
     frames: Sequence[Frame | None] = ()
     orientations: Sequence[NDArray[np.float64]] = ()

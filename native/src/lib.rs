@@ -12,6 +12,7 @@ pub mod body;
 pub mod clock;
 pub mod contact;
 pub mod control;
+pub mod creep;
 pub mod device;
 pub mod drawn;
 pub mod engine;

@@ -70,7 +70,9 @@ class ForceLoop:
         PalpateError
             A body that cannot be touched, or a setting that the servo refuses.
         """
-        touched = native_body(drawn.body, whole=fingers > 1 or tip.tool is not None)
+        gives_way = bool(settings.servo.relaxation)
+        is_whole = fingers > 1 or tip.tool is not None or gives_way
+        touched = native_body(drawn.body, whole=is_whole)
         servo = servo_on(touched, settings.servo, rate_hz=rate_hz)
         return cls(servo, settings, Recorder(servo, rate_hz), drawn, touched, tip)
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import bpy
 
 from ...core.contact.equations import ContactMode
+from ...core.law.relaxation import RELAXATIONS
 from ...core.servo.session import device_coupling, haply_encoder_step
 from ...core.servo.settings import Coupling, Settings
 from ..device.device_source import DeviceFrame, is_planar
@@ -58,6 +59,7 @@ class LiveSettings:
             static_friction=chosen.static_friction,
             dynamic_friction=min(chosen.dynamic_friction, chosen.static_friction),
             mode=contact_mode(scene),
+            relaxation=RELAXATIONS[chosen.relaxation].pairs,
             coupling=coupling_of(scene),
             frames=devices,
         )

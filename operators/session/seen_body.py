@@ -77,13 +77,15 @@ class SeenBody:
             (finger.touching, finger.nodes.tobytes(), finger.nodal_forces.tobytes())
             for finger in snapshot.fingers
         )
-        contact = (self.shape.name, self.shape.ready, young_modulus, fingers)
+        remembered = snapshot.remembered_forces.tobytes()
+        contact = (self.shape.name, self.shape.ready, young_modulus, fingers, remembered)
         fades = self.imprint.fades(yielding_of(thing, self.drawn.frame))
         if contact == self.drawn_contact and not fades:
             return
         self.drawn_contact = contact
         # A finger that was set down elsewhere is told by the last tick where it was before.
         is_past = snapshot.tick <= self._lifted_at
+        is_past &= not len(snapshot.remembered_nodes)
         self._loads = () if is_past else tuple(loads_of(self.drawn.body, snapshot))
         self._modulus = young_modulus
         if not self._loads:

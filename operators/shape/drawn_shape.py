@@ -16,7 +16,7 @@ import bpy
 
 from ...core.body.soft_body import SoftBody
 from ...core.errors import PalpateError
-from ...core.servo.session import Snapshot
+from ...core.servo.session import Snapshot, drawn_loads
 from ...core.shape.meeting import FingerLoad, Meeting, Met
 from ...core.shape.shapes import LinearShape, Shape, shape
 from ..object.drawn_body import DrawnBody
@@ -149,11 +149,10 @@ def closing_shape(thing: bpy.types.Object, drawn: DrawnBody) -> Iterator[Shape]:
 
 
 def loads_of(body: SoftBody, snapshot: Snapshot) -> list[FingerLoad]:
-    """Loads of all touching fingers."""
+    """Loads under which the body looks as it does."""
     return [
-        FingerLoad(body.mesh.surface_nodes[finger.nodes], finger.nodal_forces)
-        for finger in snapshot.fingers
-        if len(finger.nodes)
+        FingerLoad(body.mesh.surface_nodes[nodes], forces)
+        for nodes, forces in drawn_loads(snapshot)
     ]
 
 

@@ -88,13 +88,9 @@ REFUSALS = {
         lambda _: Compliance.dense(np.zeros((1, 3, 3), np.int32)),
         r"no array of f64 but of int32; give it as the body file has it",
     ),
-    "softening": (
-        lambda c: c.native.set_softenings([1], [[1.0, 0.0, 0.0, -1.0]]),
-        r"softenings has \[1, 0, 0, -1\] in row 0; each must be finite",
-    ),
-    "softened": (
-        lambda c: c.native.set_softenings([-1], np.zeros((1, 4))),
-        r"nodes names the node -1; nodes are numbered from 0",
+    "relaxation": (
+        lambda c: with_settings(c, relaxation=((-1.0, 2.0),)),
+        r"relaxation is \[\(-1\.0, 2\.0\)\]; give at most 3 pairs",
     ),
     "points": (
         lambda c: closest_points(c.nodes, c.triangles, [[0.0, np.nan, 0.0]]),

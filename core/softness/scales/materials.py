@@ -43,6 +43,8 @@ class Material:
     source : of the figures.
     basis : "measured", "derived" or "estimate"; see above.
     shore : by the data sheet, where it gives one.
+    relaxation : how it gives way with time, a key of
+        :data:`palpate.core.law.relaxation.RELAXATIONS`.
     """
 
     name: str
@@ -52,6 +54,7 @@ class Material:
     source: str = "order of magnitude"
     basis: str = "estimate"
     shore: Shore | None = None
+    relaxation: str = "NONE"
 
 
 def _silicone(name: str, shore: Shore, young_modulus: float, density: float) -> Material:
@@ -164,6 +167,7 @@ MATERIALS = {
         1_000.0,
         f"{NGUYEN}: shear modulus 2.0 kPa, times 3",
         "measured",
+        relaxation="GEL",
     ),
     "GELATINE_5": Material(
         "Gelatine 5 %",
@@ -172,6 +176,7 @@ MATERIALS = {
         1_010.0,
         f"{NGUYEN}: shear modulus 4.2 kPa, times 3",
         "measured",
+        relaxation="GEL",
     ),
     "BALLISTIC_GEL": Material(
         "Ballistic gel 10 %",
@@ -179,6 +184,7 @@ MATERIALS = {
         0.49,
         1_030.0,
         f"carried on from 3 to 7 % gelatine ({NGUYEN}) with their exponent of 1.9",
+        relaxation="GEL",
     ),
     "STUFFING": Material(
         "Firm toy stuffing",
@@ -194,5 +200,22 @@ MATERIALS = {
         1_050.0,
         "what an indenter feels on a forearm as a whole, about 5 to 10 kPa; order of "
         "magnitude after Pailler-Mattei et al. 2008, Medical Engineering and Physics 30, 599",
+        relaxation="FLESH",
+    ),
+    "MEMORY_FOAM": Material(
+        "Memory foam",
+        4_500.0,
+        0.20,
+        55.0,
+        f"indentation load deflection of 12 lbf (53 N on 323 cm2 at 25 %), {SLAB}",
+        relaxation="MEMORY_FOAM",
+    ),
+    "CHEWING_GUM": Material(
+        "Chewing gum",
+        2_000.0,
+        0.48,
+        1_150.0,
+        "order of magnitude of what lasts",
+        relaxation="CHEWING_GUM",
     ),
 }

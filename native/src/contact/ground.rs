@@ -5,6 +5,8 @@ use glam::{DMat3, DVec3};
 use crate::body::surface::Body;
 use crate::contact::cones::MAX_FINGERS;
 use crate::contact::mobility::Mobility;
+use crate::creep::memory::Memory;
+use crate::creep::step::Step;
 
 /// Compliant bodies that fingers can touch at once.
 pub const MOST_BODIES: usize = 4;
@@ -13,6 +15,9 @@ pub const MOST_SUPPORTS: usize = 16;
 /// Tools of fingers, by their numbers, and behind them supports.
 pub const MOST_TOOLS: usize = MAX_FINGERS + MOST_SUPPORTS;
 
+/// What bodies remember of past forces, by number in the list.
+pub type Memories = [Memory; MOST_BODIES];
+
 /// A compliant body in a tick.
 #[derive(Debug, Clone, Copy)]
 pub struct Ground<'a> {
@@ -20,8 +25,10 @@ pub struct Ground<'a> {
     pub body: &'a Body,
     /// Another one for each body of the list, and for each that takes its place there.
     pub number: u32,
-    /// Pa.
+    /// Of this tick, Pa.
     pub young_modulus: f64,
+    /// How it gives way with time in this tick.
+    pub creep: Step,
     /// How it moves as a whole, unless it is held.
     pub mobility: Option<Mobility>,
 }

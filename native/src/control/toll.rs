@@ -30,8 +30,7 @@ const FREE: f64 = 1.0e-4;
 /// A contact point that moved by less than this share of the depth has stayed: then the work of the law
 /// is what the energy gains, however long the step.
 const SAME_PLACE: f64 = 1.0e-9;
-/// A finger is as deep as it would be with this share of its own energy at least: others may draw the
-/// surface along until its share of all is less than nothing.
+/// A finger is as deep as with this share of its own energy at least: others may draw it along.
 const LEAST_SHARE: f64 = 0.1;
 /// No depth, m: less cannot be divided by.
 const SHALLOWEST: f64 = 1.0e-100;
@@ -43,6 +42,8 @@ const REST: f64 = 0.02;
 pub struct Pressed {
     /// Where the finger is, m.
     pub finger: DVec3,
+    /// How far the body itself has moved what is pressed: no work of the finger's, m.
+    pub carried: DVec3,
     /// It did not move there but was set down.
     pub is_set_down: bool,
     /// Its contact point at rest, m; a tool has none.
@@ -268,7 +269,7 @@ impl<const FINGERS: usize> Toll<FINGERS> {
             let by_law = if stay {
                 0.0
             } else {
-                now.held() - last.held() - now.work(last, brake.way)
+                now.held() - last.held() - now.work(last, brake.way - now.carried)
             };
             by_law - 0.5 * brake.beside.dot(brake.way)
         });

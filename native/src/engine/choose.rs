@@ -197,7 +197,11 @@ impl Joint {
                 && (led.as_ref()).is_some_and(|led| !led.collider.nodal_forces(body).is_empty())
         };
         let presses = |press: &Press| usize::from(press.body) == body;
-        if !(led.iter().enumerate().any(acts) || beside.presses.iter().flatten().any(presses)) {
+        let remembers = !beside.memories[body].is_empty();
+        if !(led.iter().enumerate().any(acts)
+            || beside.presses.iter().flatten().any(presses)
+            || remembers)
+        {
             return DVec3::ZERO;
         }
         let slots = self.patch.slots().iter().enumerate();
@@ -216,6 +220,7 @@ impl Joint {
         let nodes = ground.1.body.triangles[closest.triangle as usize];
         self.moved_by_tools(ground, led, nodes, closest.alpha, others)
             + self.moved_by_points(ground, beside, nodes, closest.alpha)
+            + self.moved_by_memory(ground, beside.memories, nodes, closest.alpha)[1]
     }
 
     /// How near a point would be to the tool where it is offered from: at rest, carried by others, or

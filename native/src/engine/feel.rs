@@ -23,6 +23,7 @@ impl Joint {
             felt.pressed,
             collider.pose().map_or(DVec3::ZERO, |pose| pose.position),
         );
+        let mut given = 0.0;
         for slot in self.patch.slots().iter().filter(|slot| slot.is_of(pair)) {
             if slot.force == DVec3::ZERO {
                 continue;
@@ -31,8 +32,12 @@ impl Joint {
             felt.force -= slot.force * young_modulus;
             felt.torque -= arm.cross(slot.force * young_modulus);
             felt.energy += held(slot) * young_modulus;
+            given -= slot.force.dot(slot.carried) * young_modulus;
             felt.pressed += 1;
             collider.take(slot);
+        }
+        if given != 0.0 {
+            felt.carried += felt.force * (given / felt.force.length_squared());
         }
         if felt.pressed > before {
             felt.own_energy += self.own_energy(pair) * young_modulus;
@@ -91,7 +96,7 @@ impl Joint {
 fn held(slot: &Slot) -> f64 {
     let spring = slot.spring * slot.push;
     let off = slot.seen.0 + spring;
-    0.5 * (slot.force.dot(slot.moved) + spring * slot.push) - off * slot.push
+    0.5 * (slot.force.dot(slot.moved - slot.remembered) + spring * slot.push) - off * slot.push
 }
 
 /// The stiffness of a tool without friction, with what points that stick add aside: where all stick

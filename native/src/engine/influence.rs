@@ -26,9 +26,11 @@ const MOST_TAKEN: f64 = 0.98;
 const MOST_TURNS: usize = 4;
 
 impl Joint {
-    /// Moves all slots by what the points do where they are now, with the forces of the last tick.
+    /// Moves all slots by what the points do where they are now, with the forces of the last tick, and
+    /// by what is remembered.
     pub(super) fn offset(&mut self, grounds: &[Ground<'_>], beside: &Beside<'_>) {
         self.find_influence(grounds, beside);
+        self.remember(beside.memories);
         for place in 0..self.patch.slots().len() {
             let offset = self.offset_of(place, beside);
             let slot = &mut self.patch.slots_mut()[place];
@@ -79,16 +81,18 @@ impl Joint {
             let found = self.influence_on(place, grounds, &press);
             self.influence.by_slot[place][p] = found;
         }
+        self.recall(place, grounds, beside.memories);
         self.patch.slots_mut()[place].offset = self.offset_of(place, beside);
     }
 
-    /// How far the points and the body's weight move a slot, m.
+    /// How far the points, past forces and the body's weight move a slot, m.
     fn offset_of(&self, place: usize, beside: &Beside<'_>) -> DVec3 {
         let (forces, by_slot) = (beside.several.forces(), &self.influence.by_slot[place]);
         let by_points = numbered(beside.presses)
             .filter(|(_, press)| press.touches)
             .map(|(p, _)| by_slot[p] * forces[p] * self.influence.reduced[p]);
-        drift(&self.mobilities, &self.patch.slots()[place]) + by_points.sum::<DVec3>()
+        let slot = &self.patch.slots()[place];
+        drift(&self.mobilities, slot) + slot.remembered + by_points.sum::<DVec3>()
     }
 
     /// How far points move a place in a triangle, m.

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::algebra::MOST_POINTS;
-use crate::contact::ground::{Ground, MOST_BODIES, MOST_TOOLS};
+use crate::contact::ground::{Ground, MOST_BODIES, MOST_TOOLS, Memories};
 use crate::contact::mobility::{Mobility, Motion};
 use crate::fingers::press::{Answers, Presses};
 use crate::fingers::several::Several;
@@ -38,6 +38,8 @@ pub type AllLed<'a> = [Option<Led<'a>>; MOST_TOOLS];
 pub(super) struct Beside<'a> {
     pub several: &'a mut Several,
     pub presses: &'a Presses,
+    /// What the bodies remember.
+    pub memories: &'a Memories,
     /// What became of them, once it is found.
     pub answers: Option<Answers>,
 }
@@ -119,6 +121,7 @@ impl Joint {
             let (more, found) = self.settle(grounds, led, &posed, beside);
             (linearisations, exact) = (linearisations + more, found);
         }
+        self.keep_traces(beside.memories);
         let mut are_numbers = self.patch.slots().iter().all(|slot| slot.moved.is_finite());
         for (number, tool) in posed.iter().enumerate() {
             let (Some(tool), Some(led)) = (tool, &mut led[number]) else {

@@ -8,6 +8,7 @@ use glam::DVec3;
 use super::Engine;
 use super::joint::Led;
 use crate::contact::ground::Ground;
+use crate::creep::step::Step;
 use crate::tool::collider::{Collider, Felt, NotANumber};
 use crate::tool::points::ToolSurface;
 use crate::tool::shape::{Pose, Tool};
@@ -60,6 +61,7 @@ impl LoneTool {
             number: 0,
             young_modulus,
             mobility: None,
+            creep: Step::default(),
         };
         let mut led = [const { None }; crate::contact::ground::MOST_TOOLS];
         led[0] = Some(Led {

@@ -12,11 +12,12 @@ mod influence;
 pub mod joint;
 pub mod lone;
 mod moving;
+mod remembering;
 mod responses;
 mod stillness;
 pub mod settling;
 
-use crate::contact::ground::Ground;
+use crate::contact::ground::{Ground, Memories};
 use crate::contact::mobility::Motion;
 use crate::fingers::press::{Answers, Presses, Reaction};
 use crate::fingers::several::Several;
@@ -27,6 +28,7 @@ use joint::{AllLed, Beside, Joint};
 pub struct Engine {
     several: Several,
     joint: Joint,
+    memories: Memories,
 }
 
 impl Engine {
@@ -34,6 +36,27 @@ impl Engine {
     /// points, on a body that does not keep its whole compliance, or where rounding has made nonsense
     /// of it.
     pub fn tick(
+        &mut self,
+        grounds: &[Ground<'_>],
+        presses: &Presses,
+        led: &mut AllLed<'_>,
+    ) -> Option<Answers> {
+        for (memory, ground) in self.memories.iter_mut().zip(grounds) {
+            memory.begin(ground.number, &ground.creep);
+        }
+        let presses = &(self.joint).recalled(grounds, presses, &self.memories);
+        let answers = self.solve(grounds, presses, led);
+        let memories = &mut self.memories;
+        remembering::end(memories, grounds, presses, answers.as_ref(), led);
+        answers
+    }
+
+    /// What the bodies remember of past forces, by number in the list.
+    pub fn memories(&self) -> &Memories {
+        &self.memories
+    }
+
+    fn solve(
         &mut self,
         grounds: &[Ground<'_>],
         presses: &Presses,
@@ -51,6 +74,7 @@ impl Engine {
         let mut beside = Beside {
             several: &mut self.several,
             presses,
+            memories: &self.memories,
             answers: None,
         };
         self.joint.tick(grounds, led, &mut beside);

@@ -12,6 +12,7 @@ use crate::body::surface::Body;
 use crate::contact::cones::MAX_FINGERS;
 use crate::contact::ground::{Ground, MOST_TOOLS};
 use crate::contact::touch::{ContactMode, touch};
+use crate::creep::step::Step;
 use crate::fingers::press::{Answers, Press, Presses};
 use crate::proxy::SurfacePoint;
 
@@ -148,6 +149,7 @@ impl Settling {
             number: 0,
             young_modulus: self.young_modulus,
             mobility: None,
+            creep: Step::default(),
         };
         let answers = self.engine.tick(&[ground], &presses, &mut led);
         self.take(goals, answers.as_ref());
@@ -248,6 +250,8 @@ impl Settling {
             push,
             most_stiffness: f64::INFINITY,
             presence: 1.0,
+            remembered: DVec3::ZERO,
+            carried: DVec3::ZERO,
         }
     }
 }

@@ -22,6 +22,10 @@ pub struct Press {
     pub most_stiffness: f64,
     /// From 0 to 1 after it was lifted by a fault: how much it acts on the others.
     pub presence: f64,
+    /// How far what the body remembers of past forces moves the place, m.
+    pub remembered: DVec3,
+    /// The part of that which is new in this tick, m.
+    pub carried: DVec3,
 }
 
 /// Those that are there, by number.
@@ -80,8 +84,12 @@ pub struct Answer {
     pub contact_force: DVec3,
     /// Its share of the energy of all, J at unit modulus.
     pub energy: f64,
-    /// How far the others move the contact point, m.
+    /// What its own force alone puts into the body, J at unit modulus.
+    pub own_energy: f64,
+    /// How far the others move the contact point, and past forces, m.
     pub by_others: DVec3,
+    /// How far the body itself has moved the contact point in this tick, m.
+    pub carried: DVec3,
     /// How far the surface goes beyond what the finger asks, m: zero unless its force is on its cone.
     pub slip: DVec3,
     /// Of the contact point while the others hold theirs, in series with what keeps the device from

@@ -90,20 +90,24 @@ impl Several {
             series[p][p] += DMat3::IDENTITY * between[p];
             answers[p].seen_stiffness = series_share(&held[p], spring) * held[p];
             answers[p].spring = spring;
-            asked[p] = press.displacement - tools.moved[p] - drift(&press);
+            asked[p] = press.displacement - tools.moved[p] - drift(&press) - press.remembered;
             let own = alone[p][p] + DMat3::IDENTITY * between[p];
             cones[p] = Cone::about(press.push, &own)?;
         }
         self.forces = solve_distinct(&series, &asked, &cones, &members, &self.forces)?;
         for (p, press) in numbered(presses) {
             let by_all = members.numbers().map(|q| compliance[p][q] * self.forces[q]);
-            let by_all = by_all.sum::<DVec3>() + tools.moved[p] + drift(&press);
+            let by_all = by_all.sum::<DVec3>() + tools.moved[p] + drift(&press) + press.remembered;
             let force = self.forces[p];
             answers[p].by_others = by_all - alone[p][p] * force;
             if press.touches {
                 let own = inverse_of_definite(&alone[p][p])?;
                 answers[p].force = force;
-                answers[p].energy = 0.5 * force.dot(press.displacement);
+                answers[p].carried = press.carried;
+                let held = press.displacement - press.remembered;
+                answers[p].energy = 0.5 * force.dot(held);
+                let own_part = press.displacement - answers[p].by_others;
+                answers[p].own_energy = 0.5 * force.dot(own_part);
                 answers[p].contact_force = force + own * force * between[p];
                 let moved = by_all + force * between[p];
                 answers[p].slip = moved - press.displacement;

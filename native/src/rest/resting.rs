@@ -10,6 +10,7 @@ use crate::body::surface::Body;
 use crate::contact::cones::{MAX_FINGERS, mean};
 use crate::contact::ground::{Ground, MOST_TOOLS};
 use crate::contact::mobility::Motion;
+use crate::creep::step::Step;
 use crate::engine::Engine;
 use crate::engine::joint::{AllLed, Led};
 use crate::tool::collider::Collider;
@@ -135,6 +136,7 @@ impl Resting {
             number: 0,
             young_modulus: self.young_modulus,
             mobility: Some(mobility),
+            creep: Step::default(),
         };
         let mut led: AllLed<'_> = [const { None }; MOST_TOOLS];
         for (led, (collider, pose)) in led.iter_mut().zip(&mut self.fingers) {
@@ -146,7 +148,7 @@ impl Resting {
         }
         self.prop.lead(&mut led);
         let presses = [None; MAX_FINGERS];
-        self.engine.tick(&[ground], &presses, &mut led, dt);
+        self.engine.tick(&[ground], &presses, &mut led);
         let motion = self.engine.motion(0);
         if !motion.is_finite() || self.colliders().any(|tool| tool.felt().is_err()) {
             return Err(Restless::NotANumber);

@@ -23,6 +23,8 @@ use crate::contact::cones::MAX_FINGERS;
 use crate::contact::ground::{Ground, MOST_TOOLS};
 use crate::contact::touch::ContactMode;
 use crate::control::toll::Toll;
+use crate::creep::shown::Remembered;
+use crate::creep::step::Step;
 use crate::device::{Device, Fault};
 use crate::engine::Engine;
 use crate::servo::exchange::{Hand, Holder, exchange};
@@ -46,6 +48,8 @@ pub struct Ends {
     pub settings: Input<Settings>,
     /// The newest tick.
     pub snapshots: Output<Published>,
+    /// What the body remembers of past forces.
+    pub remembered: Output<Remembered>,
     /// Every tick, as far as there is room.
     pub samples: Consumer<Sample>,
 }
@@ -62,6 +66,8 @@ pub struct Servo {
     /// Where ticks go while they are recorded.
     pub tape: Option<Tape>,
     engine: Engine,
+    remembered: Input<Remembered>,
+    remembers_nothing: bool,
     toll: Toll<MAX_FINGERS>,
     tick: u64,
     /// Time of the last tick, s.
@@ -85,6 +91,7 @@ impl Servo {
         let (settings_in, settings_out) = triple_buffer(settings);
         let before = Published::before_the_start(devices.len());
         let (snapshots_in, snapshots) = triple_buffer(&before);
+        let (remembered_in, remembered) = triple_buffer(&Remembered::default());
         let (samples_in, samples) = touched_ring(most_samples);
         let (mut tips, mut patches) = (Vec::new(), Vec::new());
         let fingers = devices.into_iter().zip(&settings.fingers);
@@ -104,6 +111,8 @@ impl Servo {
             samples: samples_in,
             tape: None,
             engine: Engine::default(),
+            remembered: remembered_in,
+            remembers_nothing: true,
             toll: Toll::default(),
             tick: 0,
             ticked_at: None,
@@ -116,6 +125,7 @@ impl Servo {
             patches,
             settings: settings_in,
             snapshots,
+            remembered,
             samples,
         };
         (servo, ends)
@@ -133,12 +143,17 @@ impl Servo {
         // tick never frees it.
         let (body, number, body_replaced) = self.bodies.newest();
         let body = Arc::clone(body);
-        let (settings, options) = (*self.settings.read(), self.options);
+        let (mut settings, options) = (*self.settings.read(), self.options);
+        let dt = 1.0 / f64::from(options.rate_hz);
+        let creep = creep_of(&settings, &body, dt);
+        let relaxed = settings.young_modulus;
+        settings.young_modulus *= creep.firmness();
         self.tick += 1;
         let moment = Moment {
             tick: self.tick,
             now,
-            dt: 1.0 / f64::from(options.rate_hz),
+            dt,
+            creep,
             gap: self.ticked_at.replace(now).map_or(0.0, |last| now - last),
             body: &body,
             body_number: number,
@@ -167,6 +182,7 @@ impl Servo {
         (self.toll)
             .sent(&shots.map(|shot| Some(shot.filter(|s| s.state.may_push())?.output_force)));
         self.stages.end_of(Stage::Write, &mut since);
+        self.show_memory(moment.tick, relaxed);
         self.publish(&shots, settings.young_modulus);
     }
 
@@ -175,10 +191,12 @@ impl Servo {
         let settings = moment.settings;
         // The paper couples fingers on nodes alone (10); in its mode each feels as if it were alone.
         let are_several = self.fingers.len() > 1;
-        let are_coupled = are_several && settings.feel.mode == ContactMode::Consistent;
+        let creeps = !moment.creep.is_none();
+        let is_consistent = settings.feel.mode == ContactMode::Consistent;
+        let are_coupled = (are_several || creeps) && is_consistent;
         let acts = followed.iter().flatten().any(Followed::acts);
         let mut presses = [None; MAX_FINGERS];
-        if are_coupled && (acts || self.fingers.iter().any(Finger::is_moved)) {
+        if are_coupled && (acts || creeps || self.fingers.iter().any(Finger::is_moved)) {
             presses = each(&mut self.fingers, |k, finger| {
                 finger.press(followed[k].as_ref()?)
             });
@@ -192,6 +210,7 @@ impl Servo {
             number: moment.body_number,
             young_modulus: settings.young_modulus,
             mobility: None,
+            creep: moment.creep,
         };
         let answers = (self.engine).tick(&[ground], &presses, &mut led);
         each(&mut self.fingers, |k, finger| {
@@ -229,6 +248,16 @@ impl Servo {
         self.snapshots.publish();
     }
 
+    /// Publishes what the body remembers, where that is or was anything.
+    fn show_memory(&mut self, tick: u64, young_modulus: f64) {
+        let memory = &self.engine.memories()[0];
+        if !(memory.is_empty() && self.remembers_nothing) {
+            (self.remembered.input_buffer_mut()).show(tick, memory, young_modulus);
+            self.remembered.publish();
+        }
+        self.remembers_nothing = memory.is_empty();
+    }
+
     /// Leaves all devices limp and says so.
     pub fn park(&mut self, fault: Option<Fault>) {
         let published = self.snapshots.input_buffer_mut();
@@ -238,6 +267,16 @@ impl Servo {
             *report = *finger.park(fault);
         }
         self.snapshots.publish();
+    }
+}
+
+/// How a body gives way with time in a tick of `dt` s: one that does not keep its whole compliance does
+/// not, for nobody knows how it moves where it was touched before. Nor does the paper's.
+fn creep_of(settings: &Settings, body: &Body, dt: f64) -> Step {
+    if body.is_whole() && settings.feel.mode == ContactMode::Consistent {
+        settings.creep.step(dt)
+    } else {
+        Step::default()
     }
 }
 

@@ -6,18 +6,22 @@ use crate::body::surface::Body;
 use crate::contact::cones::MAX_FINGERS;
 use crate::control::coupling::Coupling;
 use crate::control::safety::Limits;
+use crate::creep::relaxation::Creep;
+use crate::creep::step::Step;
 use crate::device::DeviceFrame;
 use crate::proxy::Feel;
 
 /// What may change while the servo runs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
-    /// Pa.
+    /// In the end, Pa.
     pub young_modulus: f64,
     /// False: zero force at once.
     pub enabled: bool,
     /// The most that any device is told, N; without one, what the servo began with.
     pub max_force: Option<f64>,
+    /// How the body gives way with time.
+    pub creep: Creep,
     /// Shading, friction and how a contact becomes a force.
     pub feel: Feel,
     /// Of each finger by number; those that are not there have theirs, too.
@@ -31,6 +35,7 @@ impl Settings {
             young_modulus,
             enabled: true,
             max_force: None,
+            creep: Creep::default(),
             feel: Feel::default(),
             fingers: [FingerSettings::default(); MAX_FINGERS],
         }
@@ -96,7 +101,9 @@ pub struct Moment<'a> {
     pub body_number: u32,
     /// The body is another one since this tick.
     pub body_replaced: bool,
-    /// In force.
+    /// How the body gives way with time in this tick.
+    pub creep: Step,
+    /// In force, Young's modulus that of the tick.
     pub settings: &'a Settings,
     /// Fixed at the start.
     pub options: &'a Options,

@@ -4,12 +4,14 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
+use glam::DVec3;
 use rtrb::Consumer;
 use triple_buffer::{Input, Output};
 
 use crate::body::surface::Body;
 use crate::clock::suspension::Suspension;
 use crate::clock::timing::Waking;
+use crate::creep::shown::Remembered;
 use crate::device::{Device, Fault};
 use crate::servo::Servo;
 use crate::servo::exchange::Hand;
@@ -33,6 +35,7 @@ pub struct Running {
     bodies: Mutex<Hand>,
     tips: Mutex<Vec<TipHand>>,
     patches: Mutex<Vec<Output<PressedPatch>>>,
+    remembered: Mutex<Output<Remembered>>,
     settings: Mutex<Input<Settings>>,
     snapshots: Mutex<Output<Published>>,
     samples: Mutex<Consumer<Sample>>,
@@ -104,6 +107,7 @@ impl Running {
             bodies: Mutex::new(ends.bodies),
             tips: Mutex::new(ends.tips),
             patches: Mutex::new(ends.patches),
+            remembered: Mutex::new(ends.remembered),
             settings: Mutex::new(ends.settings),
             snapshots: Mutex::new(ends.snapshots),
             samples: Mutex::new(ends.samples),
@@ -157,6 +161,11 @@ impl Running {
             std::thread::sleep(Duration::from_micros(200));
         }
         Ok(())
+    }
+
+    /// What the body remembers of past forces; see [`Remembered::nodes`].
+    pub fn remembered(&self) -> Vec<(u32, DVec3)> {
+        locked(&self.remembered).read().nodes().to_vec()
     }
 
     /// The newest tick with the patches of its tools, as far as these are of the same tick.

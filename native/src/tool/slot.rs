@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::points::Point;
+use crate::creep::step::Trace;
 
 /// Contact points that a tool can have near it at once.
 pub const MOST_NEAR: usize = 160;
@@ -32,10 +33,16 @@ pub struct Slot {
     pub slips: bool,
     /// Displacement, m.
     pub moved: DVec3,
-    /// The part of it that points cause, m.
+    /// The part of it that points cause, and what is remembered, m.
     pub offset: DVec3,
     /// The same before the points' forces were found anew, m.
     pub(crate) before: DVec3,
+    /// What it remembers of its displacements over time.
+    pub trace: Trace,
+    /// How far that moves it in this tick, m.
+    pub remembered: DVec3,
+    /// The part of that which is new in this tick, m.
+    pub carried: DVec3,
     /// Compliance between it and the tool along the normal, m/N at unit modulus.
     pub spring: f64,
     /// Outward from the tool where the point has gone to.
@@ -70,6 +77,9 @@ impl Slot {
             slips: false,
             moved: DVec3::ZERO,
             offset: DVec3::ZERO,
+            trace: Trace::default(),
+            remembered: DVec3::ZERO,
+            carried: DVec3::ZERO,
             before: DVec3::ZERO,
             spring: 0.0,
             normal: DVec3::ZERO,

@@ -5,3 +5,4 @@ mod bodies;
 mod compliance;
 mod cones;
 mod consistent_contact;
+mod creep;

@@ -175,6 +175,7 @@ fn on(body: &Body) -> Ground<'_> {
         number: 0,
         young_modulus: 1.0,
         mobility: None,
+        creep: Default::default(),
     }
 }
 
@@ -187,6 +188,8 @@ pub fn press(hold: SurfacePoint, displacement: DVec3) -> Option<Press> {
         push: displacement,
         most_stiffness: f64::INFINITY,
         presence: 1.0,
+        remembered: DVec3::ZERO,
+        carried: DVec3::ZERO,
     })
 }
 

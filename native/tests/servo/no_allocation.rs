@@ -8,6 +8,8 @@ use glam::DVec3;
 use palpate_servo::clock::timing::{Pace, Timing, Waking};
 use palpate_servo::contact::cones::MAX_FINGERS;
 use palpate_servo::control::safety::Limits;
+use palpate_servo::creep::relaxation::Creep;
+use palpate_servo::creep::term::Term;
 use palpate_servo::device::link::LinkDevice;
 use palpate_servo::device::pointer::{Pointer, Target};
 use palpate_servo::device::{Device, DeviceFrame, Fault, LinkReport, Probe, Reading};
@@ -32,13 +34,25 @@ fn settings() -> Settings {
     Settings::new(1e4)
 }
 
+/// A body that gives way with time.
+fn giving_way() -> Creep {
+    let terms = [Term {
+        share: 1.0,
+        seconds: 0.05,
+    }];
+    Creep::of(&terms).expect("a series")
+}
+
 /// Settings as a user changes them, other ones at each tick.
-fn changed(tick: u32) -> Settings {
+fn changed(tick: u32, creep: &Creep) -> Settings {
     let mut changed = settings();
     changed.young_modulus *= f64::from(1 + tick % 5);
     changed.feel.shading = tick % 2 == 0;
     changed.feel.static_friction = 0.1 * f64::from(tick % 3);
     changed.fingers[0].coupling.passivity_control = tick % 7 == 0;
+    if tick / 300 % 2 == 0 {
+        changed.creep = *creep;
+    }
     changed.enabled = tick % 1000 > 10;
     changed.fingers[0].frame.epoch = tick / 5000;
     changed
@@ -54,11 +68,12 @@ fn ticks_of<D: Device + 'static>(device: D, mut each: impl FnMut(u32)) -> (Publi
     let (mut servo, mut ends) =
         Servo::new(body, vec![Box::new(device)], OPTIONS, &settings(), 50_000);
     servo.tape = Some(tape);
+    let creep = giving_way();
     let ((), allocations) = counted(|| {
         for tick in 1..=TICKS {
             each(tick);
             if tick % 3 == 0 {
-                ends.settings.write(changed(tick));
+                ends.settings.write(changed(tick, &creep));
             }
             servo.tick(f64::from(tick) * 1e-3);
         }
@@ -212,10 +227,11 @@ fn five_fingers_that_feel_each_other_allocate_nothing() {
     let body = crate::bodies::elastic_cube();
     let (mut servo, mut ends) = Servo::new(body, devices.collect(), OPTIONS, &settings(), 50_000);
     let mut together = 0;
+    let creep = giving_way();
     let ((), allocations) = counted(|| {
         for tick in 1..=20_000 {
             if tick % 3 == 0 {
-                ends.settings.write(changed(tick));
+                ends.settings.write(changed(tick, &creep));
             }
             servo.tick(f64::from(tick) * 1e-3);
             let told = ends.snapshots.read().fingers();

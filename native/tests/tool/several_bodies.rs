@@ -41,6 +41,7 @@ fn grounds<'a>(bodies: &[&'a Arc<Body>], moduli: &[f64]) -> Vec<Ground<'a>> {
         number: number as u32,
         young_modulus: *modulus,
         mobility: None,
+        creep: Default::default(),
     };
     bodies.map(ground).collect()
 }
@@ -102,6 +103,8 @@ fn point(body: u8) -> Press {
         push: displacement,
         most_stiffness: f64::INFINITY,
         presence: 1.0,
+        remembered: DVec3::ZERO,
+        carried: DVec3::ZERO,
     }
 }
 

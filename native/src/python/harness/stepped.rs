@@ -173,7 +173,12 @@ impl SteppedServo {
     }
 
     fn snapshot(&self, py: Python<'_>) -> PyResult<Py<Snapshot>> {
-        Snapshot::of(py, locked(&self.stepped).ends.snapshots.read(), &[])
+        Snapshot::of(
+            py,
+            locked(&self.stepped).ends.snapshots.read(),
+            &[],
+            Vec::new(),
+        )
     }
 
     fn counters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {

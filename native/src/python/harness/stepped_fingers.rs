@@ -245,7 +245,8 @@ impl SteppedFingers {
         // No tick goes on meanwhile: all of the same one.
         let patches = ends.patches.iter_mut();
         let patches: Vec<PressedPatch> = patches.map(|patch| patch.read().clone()).collect();
-        Snapshot::of(py, ends.snapshots.read(), &patches)
+        let remembered = ends.remembered.read().nodes().to_vec();
+        Snapshot::of(py, ends.snapshots.read(), &patches, remembered)
     }
 }
 

@@ -10,6 +10,8 @@ use crate::contact::cones::MAX_FINGERS;
 use crate::contact::touch::ContactMode;
 use crate::control::coupling::Coupling;
 use crate::control::safety::Limits;
+use crate::creep::relaxation::Creep;
+use crate::creep::term::{MOST_TERMS, Term};
 use crate::device::DeviceFrame;
 use crate::proxy::Feel;
 use crate::python::vectors::{
@@ -54,6 +56,18 @@ pub fn contact_mode(name: &str) -> PyResult<ContactMode> {
     })
 }
 
+/// From shares of the modulus in the end, and times in s.
+fn creep(relaxation: &[(f64, f64)]) -> PyResult<Creep> {
+    let term = |&(share, seconds): &(f64, f64)| Term { share, seconds };
+    let terms: Vec<Term> = relaxation.iter().map(term).collect();
+    Creep::of(&terms).ok_or_else(|| {
+        PyValueError::new_err(format!(
+            "relaxation is {relaxation:?}; give at most {MOST_TERMS} pairs of a share, zero or more, \
+             and a time in seconds, each another one"
+        ))
+    })
+}
+
 /// Settings as Python gives them: any object with these attributes, `core/servo/settings.py` has one.
 #[derive(FromPyObject)]
 pub struct Given {
@@ -64,6 +78,7 @@ pub struct Given {
     static_friction: f64,
     dynamic_friction: f64,
     mode: String,
+    relaxation: Vec<(f64, f64)>,
     coupling: Option<GivenCoupling>,
     frames: Vec<Option<GivenFrame>>,
     orientations: Vec<Rows>,
@@ -149,6 +164,7 @@ impl Chosen {
             max_force: (given.max_force)
                 .map(|force| positive("max_force", force))
                 .transpose()?,
+            creep: creep(&given.relaxation)?,
             feel: Feel {
                 mode: contact_mode(&given.mode)?,
                 ..feel(given.shading, given.static_friction, given.dynamic_friction)?

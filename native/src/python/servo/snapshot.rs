@@ -1,5 +1,6 @@
 //! `Snapshot` and `FingerSnapshot`: one tick, whole, of all fingers or one.
 
+use glam::DVec3;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
@@ -149,6 +150,7 @@ impl FingerSnapshot {
 #[pyclass(frozen, extends = FingerSnapshot, module = "palpate_servo")]
 pub struct Snapshot {
     fingers: Vec<FingerSnapshot>,
+    remembered: Vec<(u32, DVec3)>,
 }
 
 impl Snapshot {
@@ -156,6 +158,7 @@ impl Snapshot {
         py: Python<'_>,
         published: &Published,
         patches: &[PressedPatch],
+        remembered: Vec<(u32, DVec3)>,
     ) -> PyResult<Py<Self>> {
         let reports = published.fingers().iter().enumerate();
         let fingers: Vec<_> = reports
@@ -165,7 +168,11 @@ impl Snapshot {
             })
             .collect();
         let first = fingers[0].clone();
-        Py::new(py, (Self { fingers }, first))
+        let told = Self {
+            fingers,
+            remembered,
+        };
+        Py::new(py, (told, first))
     }
 
     fn shot(&self) -> &crate::servo::snapshot::Snapshot {
@@ -190,6 +197,14 @@ impl Snapshot {
     #[getter]
     fn nodal_forces<'py>(&self, py: Python<'py>) -> PyResult<Matrix<'py>> {
         rows(py, &self.shot().nodal_forces)
+    }
+    #[getter]
+    fn remembered_nodes<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
+        PyArray1::from_iter(py, self.remembered.iter().map(|&(node, _)| i64::from(node)))
+    }
+    #[getter]
+    fn remembered_forces<'py>(&self, py: Python<'py>) -> PyResult<Matrix<'py>> {
+        table(py, self.remembered.iter().map(|&(_, force)| force))
     }
     #[getter]
     fn fingers(&self) -> Vec<FingerSnapshot> {

@@ -184,11 +184,11 @@ impl Servo {
     }
 
     fn snapshot(&self, py: Python<'_>) -> PyResult<Py<Snapshot>> {
-        let (published, patches) = match self.current() {
-            Some(running) => running.published_with_patches(),
-            None => (Published::before_the_start(1), Vec::new()),
+        let Some(running) = self.current() else {
+            return Snapshot::of(py, &Published::before_the_start(1), &[], Vec::new());
         };
-        Snapshot::of(py, &published, &patches)
+        let (published, patches) = running.published_with_patches();
+        Snapshot::of(py, &published, &patches, running.remembered())
     }
 
     fn samples<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {

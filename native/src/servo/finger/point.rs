@@ -73,6 +73,8 @@ impl Point {
                 push: displacement - self.among.moved_back,
                 most_stiffness: followed.motors.map_or(f64::INFINITY, |_| limit),
                 presence: followed.presence,
+                remembered: DVec3::ZERO,
+                carried: DVec3::ZERO,
             });
         }
         let proxy = self.proxy.as_ref().filter(|_| !followed.found.blind)?;
@@ -87,6 +89,8 @@ impl Point {
             push: DVec3::ZERO,
             most_stiffness: f64::INFINITY,
             presence: 0.0,
+            remembered: DVec3::ZERO,
+            carried: DVec3::ZERO,
         })
     }
 
@@ -201,10 +205,15 @@ impl Point {
             displacement: followed.displacement() - answer.by_others,
             force,
         };
-        let by_others = 0.5 * answer.force.dot(answer.by_others);
-        let energy = [answer.energy, answer.energy - by_others].map(|e| e * young_modulus);
+        let energy = [answer.energy, answer.own_energy].map(|e| e * young_modulus);
         let wanted = followed.drive(coupler, &seen);
-        Touch::of(followed, shot, wanted).with_energy(-force, energy.into(), is_settled(followed))
+        let mut touch = Touch::of(followed, shot, wanted).with_energy(
+            -force,
+            energy.into(),
+            is_settled(followed),
+        );
+        touch.pressed.carried = answer.carried;
+        touch
     }
 
     /// A contact with where it is: the touched point of the surface is moved by its own nodal forces

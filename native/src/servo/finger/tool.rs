@@ -80,6 +80,7 @@ impl ToolTouch {
             is_settled,
         );
         (touch.pressed.turn, touch.pressed.torque) = (turn, felt.torque * -share);
+        touch.pressed.carried = felt.carried;
         touch
     }
 }

@@ -15,6 +15,8 @@ pub struct Felt {
     pub stiffness: DMat3,
     /// Of what it presses, J: its share of the body's, and what springs before its points hold.
     pub energy: f64,
+    /// How far the body itself has moved what it presses in this tick, along its force, m.
+    pub carried: DVec3,
     /// What its own pushes put into that, were nobody else there, J.
     pub own_energy: f64,
     /// Points that are pressed.
@@ -35,6 +37,7 @@ impl Default for Felt {
             torque: DVec3::ZERO,
             stiffness: DMat3::ZERO,
             energy: 0.0,
+            carried: DVec3::ZERO,
             own_energy: 0.0,
             pressed: 0,
             linearisations: 0,
