@@ -49,10 +49,10 @@ def refuse_beside_floor(arguments: argparse.Namespace) -> None:
     """
     if arguments.mode is not None:
         raise PalpateError("--mode: it is about points; leave it out with --tool")
-    if arguments.felt != "linear" or arguments.shape != "linear":
+    if arguments.shape != "linear":
         raise PalpateError(
-            "--felt, --shape: a body without pins has the linear ones only; leave them out, or pin "
-            "the body ('palpate pin')"
+            "--shape: a body without pins has the linear one only; leave it out, or pin the body "
+            "('palpate pin')"
         )
 
 
