@@ -1,5 +1,7 @@
 //! All tools in one tick: one problem of contact, with the points beside them.
 
+mod responses;
+
 use glam::DVec3;
 
 use crate::algebra::MOST_POINTS;
@@ -16,7 +18,7 @@ use crate::tool::patch::Patch;
 use crate::tool::shape::Pose;
 use crate::tool::slot::Slot;
 
-use super::responses::Influence;
+use responses::Influence;
 
 /// Points of a tool that may enter in one tick.
 pub(super) const MOST_ENTERING: usize = 24;

@@ -13,9 +13,8 @@ pub mod joint;
 pub mod lone;
 mod moving;
 mod remembering;
-mod responses;
-mod stillness;
 pub mod settling;
+mod stillness;
 
 use crate::contact::ground::{Ground, Memories};
 use crate::contact::mobility::Motion;

@@ -8,7 +8,7 @@ use crate::tool::blocks::Recent;
 
 /// What is kept of it, and the memory to find it in.
 #[derive(Debug, Clone)]
-pub(super) struct Influence {
+pub(crate) struct Influence {
     pub recent: Recent,
     /// Of each slot: how far a force at each point moves it, m/N at unit modulus.
     pub by_slot: Vec<[DMat3; MAX_FINGERS]>,
@@ -19,7 +19,7 @@ pub(super) struct Influence {
 }
 
 impl Influence {
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self {
             recent: Recent::new(),
             by_slot: vec![[DMat3::ZERO; MAX_FINGERS]; MOST_POINTS],
