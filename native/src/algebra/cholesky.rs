@@ -7,7 +7,7 @@ use super::{MOST_POINTS, ROW, room};
 use crate::algebra::wide::widely;
 
 /// Sums that run beside each other, so that no addition waits for the one before.
-const LANES: usize = 8;
+pub const LANES: usize = 8;
 
 /// A pivot below this share of its diagonal entry is rounding.
 const LEAST_PIVOT: f64 = 1e-13;

@@ -192,14 +192,21 @@ impl Joint {
             }
         }
         self.problem.begin(self.chosen.len());
-        self.patch.begin_sum(|slot| slot.aside, |_| DVec3::ZERO);
-        let mut along = [0.0; MOST_POINTS];
+        let mut asides = [[0.0; MOST_POINTS]; 3];
+        let (mut along, mut by_asides) = ([0.0; MOST_POINTS], [0.0; MOST_POINTS]);
         for (i, &loaded) in self.chosen.iter().enumerate() {
+            let Slot { normal, aside, .. } = self.patch.slots()[loaded];
             if rubs {
-                self.patch.add(loaded);
+                let (ways, moved) = ([&normals, &asides], [&mut along, &mut by_asides]);
+                by_asides[loaded] += self
+                    .patch
+                    .moved_by_both(loaded, [normal, aside], ways, moved);
+                for (axis, number) in asides.iter_mut().zip(aside.to_array()) {
+                    axis[loaded] = number;
+                }
+            } else {
+                self.patch.moved_along(loaded, normal, &normals, &mut along);
             }
-            let normal = self.patch.slots()[loaded].normal;
-            self.patch.moved_along(loaded, normal, &normals, &mut along);
             for (j, &seen) in self.chosen[..=i].iter().enumerate() {
                 self.problem.set(i, j, along[seen]);
             }
@@ -207,8 +214,7 @@ impl Joint {
         self.add_springs(led);
         if rubs {
             for (place, &number) in self.chosen.iter().enumerate() {
-                let normal = self.patch.slots()[number].normal;
-                self.problem.gaps[place] += normal.dot(self.patch.summed(number));
+                self.problem.gaps[place] += by_asides[number];
             }
         }
     }

@@ -8,13 +8,13 @@ use std::ops::Range;
 
 use glam::{DMat3, DVec3};
 
-use products::{Vectors, add_along, add_moved, at, gather, set};
+use products::{Vectors, add_along, add_both, add_moved, at, gather, set};
 use slot_numbers::SlotNumbers;
 
 use super::blocks::{Blocks, Recent};
 use super::points::ToolSurface;
 use super::slot::Slot;
-use crate::algebra::{MOST_POINTS, room};
+use crate::algebra::MOST_POINTS;
 use crate::contact::ground::{Ground, MOST_TOOLS};
 
 /// Numbers of a slot: how those up to it give way to a force on it, an entry of the blocks after the
@@ -35,7 +35,7 @@ const WIDE: usize = 8;
 pub struct Patch {
     slots: Vec<Slot>,
     numbers: SlotNumbers,
-    /// C_ij at unit modulus, [`blocks_at`] each loaded slot j.
+    /// C_ij at unit modulus, [`blocks_at`] each loaded slot j; zero where nothing is kept.
     compliance: Vec<f64>,
     /// Forces whose displacements are summed up, and these.
     forces: Vectors,
@@ -54,7 +54,7 @@ impl Patch {
         Self {
             slots: Vec::with_capacity(MOST_POINTS),
             numbers: SlotNumbers::new(),
-            compliance: room(blocks_at(MOST_POINTS).start),
+            compliance: vec![0.0; blocks_at(MOST_POINTS).start],
             forces: [[0.0; MOST_POINTS]; 3],
             moved: [[0.0; MOST_POINTS]; 3],
             by_one: [[0.0; MOST_POINTS]; 3],
@@ -116,6 +116,19 @@ impl Patch {
     #[inline]
     pub(crate) fn moved_along(&self, slot: usize, force: DVec3, ways: &Vectors, along: &mut [f64]) {
         add_along(self.blocks_of(slot), force, ways, &mut along[..=slot]);
+    }
+
+    /// The same of a push and a force aside on it, the second added to what is there; how far that
+    /// slot moves along its push by the forces aside on those before it, a unit push given.
+    #[inline]
+    pub(crate) fn moved_by_both(
+        &self,
+        slot: usize,
+        forces: [DVec3; 2],
+        ways_and_asides: [&Vectors; 2],
+        moved: [&mut [f64; MOST_POINTS]; 2],
+    ) -> f64 {
+        add_both(self.blocks_of(slot), forces, ways_and_asides, moved)
     }
 
     /// Begins to sum up how far forces move all slots, from a displacement of each.

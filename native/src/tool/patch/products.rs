@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::algebra::MOST_POINTS;
-use crate::algebra::cholesky::dot_three;
+use crate::algebra::cholesky::{LANES, dot_three};
 use crate::algebra::wide::widely;
 
 /// A vector for each slot, an axis after the other.
@@ -67,5 +67,46 @@ widely! {
                 along[i] += way[i] * (x[i] * force.x + y[i] * force.y + z[i] * force.z);
             }
         }
+    }
+}
+
+widely! {
+    /// How far the first slots move, each along its own way, under the first force on the one whose
+    /// blocks these are, and, added up, under the second; the work of the first force on what forces on
+    /// the first slots move that one. Entries that are there to fill up are zero.
+    pub(super) fn add_both(
+        blocks: &[f64],
+        forces: [DVec3; 2],
+        vectors: [&Vectors; 2],
+        moved: [&mut [f64; MOST_POINTS]; 2],
+    ) -> f64 {
+        let ([first, second], [ways, others], [along, by]) = (forces, vectors, moved);
+        let count = blocks.len() / 9;
+        let mut lanes = [0.0; LANES];
+        for k in (0..count).step_by(LANES) {
+            let (mut by_first, mut by_second) = ([0.0; LANES], [0.0; LANES]);
+            for r in 0..3 {
+                let row = &blocks[3 * r * count..][..3 * count];
+                let (x, y) = (&row[k..][..LANES], &row[count + k..][..LANES]);
+                let z = &row[2 * count + k..][..LANES];
+                let (way, other) = (&ways[r][k..][..LANES], &others[r][k..][..LANES]);
+                for l in 0..LANES {
+                    let ahead = x[l] * first.x + y[l] * first.y + z[l] * first.z;
+                    by_first[l] += way[l] * ahead;
+                    lanes[l] += other[l] * ahead;
+                    by_second[l] += way[l] * (x[l] * second.x + y[l] * second.y + z[l] * second.z);
+                }
+            }
+            let (along, by) = (&mut along[k..][..LANES], &mut by[k..][..LANES]);
+            along.copy_from_slice(&by_first);
+            for l in 0..LANES {
+                by[l] += by_second[l];
+            }
+        }
+        let mut sum = 0.0;
+        for lane in lanes {
+            sum += lane;
+        }
+        sum
     }
 }
