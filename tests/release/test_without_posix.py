@@ -6,13 +6,15 @@ import subprocess
 import sys
 
 PROGRAM = """
-import importlib, pkgutil, signal, sys
+import importlib, pkgutil, signal, sys, types
 import multiprocessing.connection, subprocess, tempfile, asyncio, concurrent.futures.process
 import numpy, scipy.linalg.blas, scipy.optimize, scipy.sparse.linalg, scipy.spatial
 import psutil, serial.tools.list_ports, threadpoolctl, trimesh, plyfile, palpate_servo
 
 for name in ("fcntl", "termios", "tty", "pty", "resource", "pwd", "grp", "syslog"):
     sys.modules[name] = None
+for name in ("_winapi", "msvcrt"):
+    sys.modules[name] = types.ModuleType(name)
 for name in ("SIGKILL", "SIGSTOP", "SIGCONT", "SIGQUIT", "SIGHUP"):
     delattr(signal, name)
 sys.platform = "win32"

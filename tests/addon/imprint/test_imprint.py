@@ -211,7 +211,7 @@ def test_a_baked_animation_remembers(tapped):
         depths[frame] = (rest - seen_places(tapped)).astype(np.float64)
     assert not depths[1].any()
     # The way out adds a little at the rim.
-    np.testing.assert_allclose(depths[7], beyond(depths[4]), rtol=0, atol=0.02 * YIELD)
+    np.testing.assert_allclose(depths[7], beyond(depths[4]), rtol=0, atol=0.05 * YIELD)
     np.testing.assert_array_equal(depths[25], depths[7])
     assert depths[7].max() > 5e-4
 

@@ -67,6 +67,7 @@ def test_a_place_that_no_fingertip_gets_to_is_pushed_itself(slotted):
     # The vertices are few, so that a finer mesh carries the dent.
     fine = slotted.palpate.carrier or slotted
     rest, shift = rest_places(fine), moved(slotted, "Press 1")
-    most = np.argmax(np.linalg.norm(shift, axis=1))
-    assert np.linalg.norm(rest[most] - [0.0, 0.0, FLOOR]) < 0.006
-    assert shift[most, 2] < -0.0015
+    floor = np.argmin(np.linalg.norm(rest - [0.0, 0.0, FLOOR], axis=1))
+    assert shift[floor, 2] < -0.0015
+    # The jaws close over it; a fingertip would press down their rims, which it met first.
+    assert shift[rest[:, 2] > HALF - 0.001, 2].min() > -0.0015

@@ -100,7 +100,7 @@ def test_a_place_in_a_cubic_patch_is_its_bernstein_sum(rng):
 
 def test_a_place_in_a_patch_that_is_not_there_is_refused():
     for number in (-1, 2, 2**40):
-        with pytest.raises(ValueError, match="another patch"):
+        with pytest.raises(ValueError, match="a patch beyond the 2"):
             CubicPlaces([number], [[1, 0, 0]], 2)
 
 

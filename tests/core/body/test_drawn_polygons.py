@@ -45,7 +45,7 @@ def test_what_does_not_fit_is_refused(soup):
         polygons_on_line(*arrays, [0, 0, 0], [0, 0, 1])
     with pytest.raises(ValueError, match="corners name places"):
         nearest_polygon(*arrays, [0, 0, 0])
-    with pytest.raises(ValueError, match="no length"):
+    with pytest.raises(ValueError, match="with a length"):
         soup.on_line(np.zeros(3), np.zeros(3))
     with pytest.raises(ValueError, match="not finite"):
         soup.nearest(np.array([np.nan, 0, 0]))

@@ -235,8 +235,8 @@ def test_what_makes_no_sense_is_refused_before_any_port_is_opened(cube):
     servo = servo_on(native_body(cube), Settings(cube.young_modulus))
     for wrong, reason in (
         ({"model": "3diy"}, r"3diy.*2diy-3\.1"),
-        ({"angles": (400.0, 0.0)}, "between -360 and 360"),
-        ({"angles": (math.nan, 0.0)}, "between -360 and 360"),
+        ({"angles": (400.0, 0.0)}, "from -360 to 360"),
+        ({"angles": (math.nan, 0.0)}, "from -360 to 360"),
         ({"baud": 1200}, "1200"),
         ({"scale": 0.0}, "scale"),
     ):
