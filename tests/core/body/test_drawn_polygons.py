@@ -47,5 +47,5 @@ def test_what_does_not_fit_is_refused(soup):
         nearest_polygon(*arrays, [0, 0, 0])
     with pytest.raises(ValueError, match="with a length"):
         soup.on_line(np.zeros(3), np.zeros(3))
-    with pytest.raises(ValueError, match="not finite"):
+    with pytest.raises(ValueError, match="must be finite"):
         soup.nearest(np.array([np.nan, 0, 0]))
