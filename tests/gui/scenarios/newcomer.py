@@ -50,7 +50,8 @@ def from_the_default_cube_to_a_rendered_animation_in_eight_clicks(stage: Stage) 
     yield from stage.picture("3-stroke")
     yield from stage.event("LEFTMOUSE", "RELEASE", stage.mouse)
     yield from stage.until(lambda: layers.layers_of(bpy.data.objects["Cube"]), "the dent")
-    assert 0.05 < _largest(0) < 0.6
+    # At most what was dragged.
+    assert 0.05 < _largest(0) < 0.84
     yield from stage.move((x + 150, y))
     yield from stage.picture("4-kept")
 

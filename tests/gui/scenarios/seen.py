@@ -21,7 +21,7 @@ def a_posed_body_is_pressed_where_it_is_seen(stage: Stage) -> Wait:
     x, y = stage.pixel(place)
     yield from stage.drag([(x, y), (x + 25, y - 40)], release=False)
     yield from stage.until(lambda: depth() > 0.004, "a depth of 4 mm")
-    seen = press_session.current().place.seen
+    seen = press_session.current().places[0].seen
     assert np.linalg.norm(seen - np.array(place)) < 0.01
     yield from stage.picture("posed")
     yield from stage.event("LEFTMOUSE", "RELEASE", stage.mouse)
