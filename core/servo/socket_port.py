@@ -6,7 +6,6 @@ import errno
 import ipaddress
 import select
 import socket
-from types import TracebackType
 from typing import Self
 
 from ..errors import PalpateError
@@ -61,12 +60,7 @@ class SocketPort:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     @property

@@ -6,10 +6,10 @@ from numpy.typing import NDArray
 
 from ..layer import layers
 from ..reporting.translated import reported
-from .layer_operator import FINER, OnLayers, plain_layers, shared_refusal
+from .layer_operator import FINER, IntoTheMesh, plain_layers
 
 
-class PALPATE_OT_apply_layers(OnLayers, bpy.types.Operator):
+class PALPATE_OT_apply_layers(IntoTheMesh, bpy.types.Operator):
     bl_idname = "palpate.apply_layers"
     bl_label = "Apply Layers to Mesh"
     bl_description = (
@@ -17,10 +17,6 @@ class PALPATE_OT_apply_layers(OnLayers, bpy.types.Operator):
         "is another one then; Make Soft bakes it again"
     )
     bl_options = {"REGISTER", "UNDO"}
-
-    @classmethod
-    def refusal(cls, context: bpy.types.Context) -> str:
-        return super().refusal(context) or shared_refusal(context.object)
 
     def act(self, context: bpy.types.Context) -> None:
         thing = context.object

@@ -5,10 +5,10 @@ import bpy
 from ..layer import layers
 from ..reporting.translated import reported
 from ..scene.drawn_surface import rest_coordinates
-from .layer_operator import FINER, OnLayers, plain_layers, shared_refusal
+from .layer_operator import FINER, IntoTheMesh, plain_layers
 
 
-class PALPATE_OT_convert_layers(OnLayers, bpy.types.Operator):
+class PALPATE_OT_convert_layers(IntoTheMesh, bpy.types.Operator):
     bl_idname = "palpate.convert_layers"
     bl_label = "Convert Layers to Shape Keys"
     bl_description = (
@@ -16,10 +16,6 @@ class PALPATE_OT_convert_layers(OnLayers, bpy.types.Operator):
         "no modifiers"
     )
     bl_options = {"REGISTER", "UNDO"}
-
-    @classmethod
-    def refusal(cls, context: bpy.types.Context) -> str:
-        return super().refusal(context) or shared_refusal(context.object)
 
     def act(self, context: bpy.types.Context) -> None:
         thing = context.object

@@ -45,6 +45,14 @@ class OnLayers(Acting):
         return ""
 
 
+class IntoTheMesh(OnLayers):
+    """Mixin for one that puts dents into the object's mesh."""
+
+    @classmethod
+    def refusal(cls, context: bpy.types.Context) -> str:
+        return super().refusal(context) or shared_refusal(context.object)
+
+
 def shared_refusal(thing: bpy.types.Object) -> str:
     """Reason why an object's dents cannot go into its mesh: others would have them; empty if none
     would.

@@ -9,7 +9,6 @@ import struct
 import sys
 import threading
 import time
-from types import TracebackType
 from typing import Self
 
 from ....real_time import ask_for_real_time
@@ -37,12 +36,7 @@ class Pulse:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self._over.set()
         for thread in self._threads:
             thread.join()
