@@ -75,6 +75,14 @@ def names_of(group: bpy.types.PropertyGroup) -> list[str]:
     return sorted({*named, *group.keys(), *ARRAYS, "palpate", "name"})
 
 
+def keys_of(owner: bpy.types.bpy_struct) -> list[str]:
+    """What users may add to a holder; modifiers of 5.2 take nothing."""
+    try:
+        return list(owner.keys())
+    except TypeError:
+        return []
+
+
 @st.composite
 def plants(draw: st.DrawFn) -> tuple[str, int, object]:
     """Whose property, which of them (counted round), and what it is."""
@@ -91,7 +99,7 @@ def owned(
     if holder in {"layer", "group"}:
         found = thing.modifiers if holder == "layer" else bpy.data.node_groups
         owner = found[number % len(found)]
-        return owner, [*owner.keys(), "palpate_group"]
+        return owner, [*keys_of(owner), "palpate_group"]
     return {"mesh": thing.data, "custom": thing}[holder], CUSTOM
 
 
