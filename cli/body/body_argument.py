@@ -1,9 +1,12 @@
-"""Argument for a command's body."""
+"""Arguments for a command's body and its firmness."""
 
 from __future__ import annotations
 
 import argparse
 from pathlib import Path
+
+from ...core.body.soft_body import SoftBody
+from ...core.stiffness.assembly import lame_parameters
 
 
 def add_body(parser: argparse.ArgumentParser) -> None:
@@ -11,3 +14,23 @@ def add_body(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "body", type=Path, metavar="BODY.npz", help="body file, as 'palpate bake' writes it"
     )
+
+
+def add_young(parser: argparse.ArgumentParser | argparse._MutuallyExclusiveGroup) -> None:
+    """Add ``--young PA``."""
+    parser.add_argument(
+        "--young", type=float, metavar="PA", help="Young's modulus (default: the body's own)"
+    )
+
+
+def modulus_of(arguments: argparse.Namespace, body: SoftBody) -> float:
+    """Young's modulus in pascal: as given, or the body's own.
+
+    Raises
+    ------
+    PalpateError
+        It is not positive.
+    """
+    modulus: float = body.young_modulus if arguments.young is None else arguments.young
+    lame_parameters(modulus, body.poisson_ratio)
+    return modulus

@@ -21,8 +21,7 @@ from ...core.errors import PalpateError
 from ...core.files.atomic_file import atomic_file
 from ...core.shape.meeting import FingerLoad, settled
 from ...core.shape.shapes import FORMER_NAMES, SHAPES, shape, shape_name
-from ...core.stiffness.assembly import lame_parameters
-from ..body.body_argument import add_body
+from ..body.body_argument import add_body, add_young, modulus_of
 from ..body.figure_lines import as_lines
 from ..rest.floor_options import add_floor
 from ..rest.press_resting import pressed_on_floor, refuse_beside_floor, refuse_floor
@@ -54,9 +53,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
             metavar=("X", "Y", "Z"),
             help=f"{what} (metres, body coordinates); once for each finger",
         )
-    parser.add_argument(
-        "--young", type=float, metavar="PA", help="Young's modulus (default: the body's own)"
-    )
+    add_young(parser)
     parser.add_argument(
         "--mode",
         choices=CONTACT_MODES,
@@ -95,8 +92,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Touch, deform, print."""
     body = body_file.load(arguments.body)
-    young_modulus = body.young_modulus if arguments.young is None else arguments.young
-    lame_parameters(young_modulus, body.poisson_ratio)
+    young_modulus = modulus_of(arguments, body)
     if arguments.tool is not None and body.is_free:
         return _press_resting(arguments, body, young_modulus)
     refuse_floor(arguments, body)

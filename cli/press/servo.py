@@ -24,10 +24,9 @@ from ...core.servo.port_error import PortError
 from ...core.servo.ports import BAUD, check_baud, check_port
 from ...core.servo.session import STATES, LinkDevice, native_body, servo_on
 from ...core.servo.settings import Settings
-from ...core.stiffness.assembly import lame_parameters
 from ...simulated.hand.options import SimulatedOptions
 from ...simulated.simulated_process import SimulatedDevice
-from ..body.body_argument import add_body
+from ..body.body_argument import add_body, add_young, modulus_of
 from .haply import add_haply_options, connect_haply
 from .servo_report import Felt, for_people, servo_report
 from .timing_check import add_check_timing
@@ -89,9 +88,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "--rate", type=int, default=1000, metavar="HZ", help="ticks a second (default: %(default)s)"
     )
     add_check_timing(parser)
-    parser.add_argument(
-        "--young", type=float, metavar="PA", help="Young's modulus (default: the body's own)"
-    )
+    add_young(parser)
     parser.add_argument(
         "--record", type=Path, metavar="FILE", help="write every tick to FILE.csv or FILE.npz"
     )
@@ -105,8 +102,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.record is not None:
         _check_recording(arguments.record, arguments.seconds)
     body = body_file.load(arguments.body)
-    young_modulus = body.young_modulus if arguments.young is None else arguments.young
-    lame_parameters(young_modulus, body.poisson_ratio)
+    young_modulus = modulus_of(arguments, body)
     with ExitStack() as stack:
         simulated = None
         port = arguments.haply if arguments.port is None else arguments.port

@@ -11,7 +11,7 @@ import numpy as np
 from ...core.body import body_file
 from ...core.files.atomic_file import atomic_file
 from ...core.rest.resting import Resting, RestSettings
-from ..body.body_argument import add_body
+from ..body.body_argument import add_body, add_young, modulus_of
 from ..body.figure_lines import as_lines
 from .floor_options import add_floor, floor_under, gravity
 from .rest_figures import rest_figures
@@ -27,9 +27,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the command's options."""
     add_body(parser)
     add_floor(parser)
-    parser.add_argument(
-        "--young", type=float, metavar="PA", help="Young's modulus (default: the body's own)"
-    )
+    add_young(parser)
     parser.add_argument(
         "--surface",
         type=Path,
@@ -41,7 +39,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Load, settle, print."""
     body = body_file.load(arguments.body)
-    modulus = body.modulus(arguments.young)
+    modulus = modulus_of(arguments, body)
     settings = RestSettings(modulus, gravity=gravity(arguments))
     rest = Resting(body, [floor_under(arguments, body)], settings=settings).settle()
     if arguments.surface is not None:

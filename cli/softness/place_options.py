@@ -7,7 +7,7 @@ import argparse
 from ...core.body.soft_body import SoftBody
 from ...core.errors import PalpateError
 from ...core.softness.scales.shore import Shore, young_from_shore
-from ...core.stiffness.assembly import lame_parameters
+from ..body import body_argument
 
 
 def add_at(parser: argparse.ArgumentParser) -> None:
@@ -25,9 +25,7 @@ def add_at(parser: argparse.ArgumentParser) -> None:
 def add_young(parser: argparse.ArgumentParser) -> None:
     """Add ``--young PA`` or ``--shore SHORE``."""
     group = parser.add_mutually_exclusive_group()
-    group.add_argument(
-        "--young", type=float, metavar="PA", help="Young's modulus (default: the body's own)"
-    )
+    body_argument.add_young(group)
     group.add_argument(
         "--shore", metavar="SHORE", help="Young's modulus by its Shore value, such as 00-30 or A20"
     )
@@ -43,9 +41,7 @@ def young_modulus_of(arguments: argparse.Namespace, body: SoftBody) -> float:
     """
     if arguments.shore is not None:
         return young_from_shore(Shore.parse(arguments.shore), body.poisson_ratio)
-    modulus: float = body.young_modulus if arguments.young is None else arguments.young
-    lame_parameters(modulus, body.poisson_ratio)
-    return modulus
+    return body_argument.modulus_of(arguments, body)
 
 
 def positive_length(text: str) -> float:
