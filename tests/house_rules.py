@@ -56,7 +56,7 @@ operators/shape
 operators/session
 operators/bake
 operators/press
-operators/stroke
+operators/stroke/answer operators/stroke
 operators/animation
 operators/softness
 operators

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..scene.probe_drag import PEN_DEPTH, View
-from .motion import Asked, Motion
+from .answer.motion import Asked, Motion
 
 Array = NDArray[np.float64]
 

@@ -29,10 +29,10 @@ from ..tool.tool_sizes import chosen_sizes
 from ..traction import layer_traction
 from ..traction.drawn_traction import patches_of, tractions_of
 from . import stroke_words
-from .grips import grips_at
-from .motion import Asked, Motion
-from .pushing import Stroked
-from .stroke import Stroke
+from .answer.grips import grips_at
+from .answer.motion import Asked, Motion
+from .answer.pushing import Stroked
+from .answer.stroke import Stroke
 from .stroke_drag import StrokeDrag
 from .stroke_properties import StrokeProperties
 from .typed_amount import TypedAmount

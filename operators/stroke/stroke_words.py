@@ -8,8 +8,8 @@ import bpy
 
 from ..reporting.quantities import newtons, scene_length
 from ..reporting.translated import shown
-from .motion import Asked, Motion
-from .pushing import Stroked
+from .answer.motion import Asked, Motion
+from .answer.pushing import Stroked
 
 STATUS = {
     Motion.PUSH: "Drag away in any direction: Deeper     [Ctrl] Along the surface     "

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import bpy
 
-from .motion import Motion
+from .answer.motion import Motion
 
 # What can be part of a number with its unit.
 CHARACTERS = set("0123456789.,-+*/()'\"cmkutyfindhr ")

@@ -143,10 +143,11 @@ def test_angle_and_share_are_what_was_asked(thing):
 
 
 def test_nothing_is_asked_at_first_and_nothing_moves(thing):
-    scene, strokes = bpy.context.scene, part("operators.stroke.stroke")
+    scene, room = bpy.context.scene, "operators.stroke.answer"
+    strokes, motions = part(f"{room}.stroke"), part(f"{room}.motion")
     drawn = part("operators.object.drawn_body").open_body(thing, scene)
-    asked, motion = part("operators.stroke.motion").Asked, part("operators.stroke.motion").Motion
-    grips = part("operators.stroke.grips").grips_at(drawn, np.array(TOP), 0.01, (True, True, False))
+    asked, motion = motions.Asked, motions.Motion
+    grips = part(f"{room}.grips").grips_at(drawn, np.array(TOP), 0.01, (True, True, False))
     stroke = strokes.Stroke(drawn, grips, 1000.0, 0.5)
     for kind, amount in ((motion.PUSH, 0.0), (motion.PUSH, -0.0), (motion.TWIST, 0.0)):
         _, stroked = stroke.stroked(asked(kind, amount))

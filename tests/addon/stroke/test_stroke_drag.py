@@ -15,7 +15,7 @@ RIGHT, UP = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
 
 def dragged(motion, by=(0.0, 0.0), sign=1.0, **more):
     drags, view = part("operators.stroke.stroke_drag"), part("operators.scene.probe_drag").View
-    kind = part("operators.stroke.motion").Motion[motion]
+    kind = part("operators.stroke.answer.motion").Motion[motion]
     start = drags.StrokeDrag(
         kind, sign, view(RIGHT, UP, 1e-4), 0.01, 0.1, 1.0, (100.0, 50.0), (100.0, 50.0), **more
     )
@@ -68,7 +68,7 @@ def test_what_is_typed_counts_instead_of_the_drag(palpate):
 )
 def test_keys_become_a_number_in_the_units_of_the_scene(palpate, motion, keys, expected):
     typed = part("operators.stroke.typed_amount").TypedAmount(
-        part("operators.stroke.motion").Motion[motion]
+        part("operators.stroke.answer.motion").Motion[motion]
     )
     for key in keys:
         typed = typed.after(_key(key))

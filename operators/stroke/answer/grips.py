@@ -7,9 +7,9 @@ import itertools
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.contact.place import nearest_place
-from ...core.grip.patch import Grip
-from ..object.drawn_body import DrawnBody
+from ....core.contact.place import nearest_place
+from ....core.grip.patch import Grip
+from ...object.drawn_body import DrawnBody
 
 Array = NDArray[np.float64]
 

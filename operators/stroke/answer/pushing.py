@@ -7,15 +7,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.contact.press import ContactSettings, Press
-from ...core.contact.tool.pose import Pose, facing, resting_on
-from ...core.contact.tool.tool_dent import PressingTool
-from ...core.contact.tool.tool_surface import surface_and_correction
-from ...core.contact.tool.tools import Tool, sphere
-from ...core.contact.touches import ToolTouch
-from ...core.errors import PalpateError
-from ...core.grip.patch import Grip
-from ..object.drawn_body import DrawnBody
+from ....core.contact.press import ContactSettings, Press
+from ....core.contact.tool.pose import Pose, facing, resting_on
+from ....core.contact.tool.tool_dent import PressingTool
+from ....core.contact.tool.tool_surface import surface_and_correction
+from ....core.contact.tool.tools import Tool, sphere
+from ....core.contact.touches import ToolTouch
+from ....core.errors import PalpateError
+from ....core.grip.patch import Grip
+from ...object.drawn_body import DrawnBody
 from .grips import grip_at
 from .motion import Asked
 

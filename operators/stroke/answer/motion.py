@@ -8,7 +8,7 @@ from enum import Enum
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.grip import motions
+from ....core.grip import motions
 
 Array = NDArray[np.float64]
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.grip.patch import Grip
-from ..object.drawn_body import DrawnBody
-from ..scene import ray
+from ....core.grip.patch import Grip
+from ...object.drawn_body import DrawnBody
+from ...scene import ray
 
 Array = NDArray[np.float64]
 

@@ -8,9 +8,9 @@ from functools import cached_property
 
 import numpy as np
 
-from ...core.grip.held_patch import HeldPatch
-from ...core.grip.patch import Grip
-from ..object.drawn_body import DrawnBody
+from ....core.grip.held_patch import HeldPatch
+from ....core.grip.patch import Grip
+from ...object.drawn_body import DrawnBody
 from .motion import Asked, Motion
 from .pushing import Pushing, Stroked
 from .thickness import Thickness
@@ -27,7 +27,7 @@ class Stroke:
     """Stroke at one place of a body and at its mirror images.
 
     A push is that of a fingertip, by the laws of contact: it only pushes. All else holds a patch
-    of the surface (:mod:`...core.grip.held_patch`), and so does a push where no fingertip of this
+    of the surface (:mod:`....core.grip.held_patch`), and so does a push where no fingertip of this
     size gets to the place, as between two limbs: it would press what is beside it. Both are made
     when first asked for.
 

@@ -1,0 +1,1 @@
+"""What bodies answer to strokes: places held, fingertips led, forces and displacements."""
