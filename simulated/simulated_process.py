@@ -12,7 +12,7 @@ from typing import IO, Any, Self
 
 from ..core.errors import PalpateError
 from ..core.files.scratch_folder import ScratchFolder
-from ..core.machine import run_module
+from ..core.machine import c_runtime, run_module
 from ..core.sentence import Sentence
 from .hand.options import SimulatedOptions
 from .hand.plant import Vector
@@ -69,7 +69,8 @@ class SimulatedDevice:
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
                 start_new_session=True,
-                creationflags=NEW_GROUP,
+                env=c_runtime.for_a_child(),
+                creationflags=NEW_GROUP | c_runtime.NO_WINDOW,
             )
         except OSError as error:
             self._remove_folder()

@@ -18,7 +18,7 @@ from ..errors import PalpateError
 from ..files import scratch_folder
 from ..files.atomic_file import refuse_unwritable
 from ..files.scratch_folder import ScratchFolder
-from ..machine import run_module
+from ..machine import c_runtime, run_module
 from ..machine.ends_with_parent import end_with_this_process
 from ..machine.remaining_time import RemainingTime
 from ..mesh.fit import THICKNESS_DOUBTFUL, Fit, refuse_thin
@@ -187,6 +187,8 @@ class BakeJob:
                     stdin=subprocess.DEVNULL,
                     stdout=log,
                     stderr=subprocess.STDOUT,
+                    env=c_runtime.for_a_child(),
+                    creationflags=c_runtime.NO_WINDOW,
                 )
         except OSError as problem:
             raise PalpateError(

@@ -33,4 +33,5 @@ if __name__ == "__main__":
     sys.path[:] = [folder for folder in sys.path if folder != str(Path(__file__).parent)]
     del sys.argv[0]
     _load_package()
+    importlib.import_module(f"{NAME}.core.machine.c_runtime").take()
     sys.exit(importlib.import_module(f"{NAME}.{sys.argv[0]}").main())
