@@ -23,6 +23,8 @@ use crate::guardian::program::{DISMISSED, LEFT, Sheet, map_sheet};
 use crate::guardian::refusal::refused;
 use crate::guardian::watch::{Attention, PROGRAM, Watch, watch};
 
+const SYSTEM_ROOT: &str = "SystemRoot";
+
 /// A port that can be handed to another process.
 pub trait Handed {
     /// Its handle, valid for as long as it is borrowed.
@@ -73,6 +75,8 @@ impl Guardian {
         };
         let child = Command::new(program().map_err(refused)?)
             .env_clear()
+            // By which Windows finds parts of itself.
+            .envs(std::env::var_os(SYSTEM_ROOT).map(|root| (SYSTEM_ROOT, root)))
             .stdin(Stdio::from(host))
             .stdout(Stdio::from(port))
             .stderr(Stdio::from(paper))
