@@ -21,6 +21,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import blender_tool
+import bundled_libraries
 import bundled_wheels
 import reproducible_zip
 import translations
@@ -160,7 +161,7 @@ def _package(order: Order, wheels: list[Path]) -> Path:
     shutil.rmtree(stage)
     reproducible_zip.settle(package)
     blender_tool.validate(tool, package)
-    wrong = faults(package, platform, order.pythons)
+    wrong = faults(package, platform, order.pythons) or bundled_libraries.faults(package, platform)
     if wrong:
         package.unlink()
         raise PackagingError("the package is not whole: " + "; ".join(wrong))

@@ -46,7 +46,7 @@ def of_one(image: bytes, target: Target) -> Iterator[str]:
     if unsigned and machine == "arm64":
         yield f"arm64 would not load it: {unsigned}"
     asked = [entry.name for entry in library.libraries][library.header.file_type.name == "DYLIB" :]
-    foreign = [name for name in asked if not name.startswith(("/usr/lib/", "/System/"))]
+    foreign = [name for name in asked if not is_of_the_system(name)]
     if foreign:
         yield f"it wants libraries that macOS does not have: {', '.join(foreign)}"
     unknown = sorted(
@@ -56,6 +56,11 @@ def of_one(image: bytes, target: Target) -> Iterator[str]:
     )
     if unknown:
         yield f"libSystem does not have {', '.join(unknown)}"
+
+
+def is_of_the_system(library: str) -> bool:
+    """Tell whether macOS itself brings a library, by its path."""
+    return library.startswith(("/usr/lib/", "/System/"))
 
 
 def exported(image: bytes) -> set[str]:

@@ -1,0 +1,69 @@
+"""What the libraries in a package's wheels ask of their system, read as its loader would.
+
+Wheels of others are bundled unmodified. What their makers' computers had, a user's may not have.
+"""
+
+from __future__ import annotations
+
+import io
+import zipfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import lief
+from platforms import Platform
+from servo_wheel.code_signature import signature_fault
+from servo_wheel.mach_o import is_of_the_system
+from servo_wheel.pe import SYSTEM
+
+# Beside Blender's python.exe or, of the C runtime, shown to it by core/machine/c_runtime.py. Not
+# the C++ runtime (msvcp140): that of Blender 4.5 and 5.0 is of 2021, too old for newer compilers.
+BLENDERS = frozenset({"python3", "python311", "python313", "vcruntime140", "vcruntime140_1"})
+
+
+def faults(package: Path, platform: Platform) -> list[str]:
+    """Return one sentence for each library that cannot be loaded where the package is installed."""
+    with zipfile.ZipFile(package) as archive:
+        wheels = [name for name in archive.namelist() if name.endswith(".whl")]
+        return [
+            f"{Path(name).name}: {fault}"
+            for name in wheels
+            for fault in of_wheel(archive.read(name), platform)
+        ]
+
+
+def of_wheel(content: bytes, platform: Platform) -> Iterator[str]:
+    """Yield what is wrong with the libraries of one wheel; those for Linux go by their tag."""
+    with zipfile.ZipFile(io.BytesIO(content)) as wheel:
+        images = {name: wheel.read(name) for name in wheel.namelist()}
+    names = frozenset(Path(name).name.lower() for name in images)
+    for name, image in images.items():
+        if name.endswith((".pyd", ".dll")):
+            found = _of_windows(image, names)
+        elif name.endswith((".so", ".dylib")) and platform.name.startswith("macos"):
+            found = _of_macos(image, names)
+        else:
+            continue
+        yield from (f"{name} {fault}" for fault in found)
+
+
+def _of_windows(image: bytes, beside: frozenset[str]) -> Iterator[str]:
+    library: Any = lief.PE.parse(image)
+    asked = {entry.name.lower() for entry in (*library.imports, *library.delay_imports)}
+    for name in sorted(asked - beside):
+        stem = name.removesuffix(".dll")
+        if stem not in BLENDERS and not SYSTEM.fullmatch(stem):
+            yield f"asks for {name}, which neither Windows nor Blender has"
+
+
+def _of_macos(image: bytes, beside: frozenset[str]) -> Iterator[str]:
+    """A file may hold an image for each processor; whether it is signed matters to one."""
+    parts: Any = lief.MachO.parse(list(image))
+    for part in parts:
+        unsigned = signature_fault(image[part.fat_offset :])
+        if part.header.cpu_type.name == "ARM64" and unsigned:
+            yield f"is not loaded by arm64: {unsigned}"
+        for entry in part.libraries:
+            if not is_of_the_system(entry.name) and Path(entry.name).name.lower() not in beside:
+                yield f"asks for {entry.name}, which macOS does not have"

@@ -1,0 +1,90 @@
+"""A bundled library that a user's system could not load is found before it is packed."""
+
+from __future__ import annotations
+
+import io
+import zipfile
+from types import SimpleNamespace
+
+import bundled_libraries
+import pytest
+from platforms import PLATFORMS
+
+WINDOWS, MACOS = PLATFORMS["windows-x64"], PLATFORMS["macos-arm64"]
+
+
+def wheel(*names):
+    """A wheel with files of these names."""
+    content = io.BytesIO()
+    with zipfile.ZipFile(content, "w") as archive:
+        for name in names:
+            archive.writestr(name, b"an image")
+    return content.getvalue()
+
+
+def named(*names):
+    return [SimpleNamespace(name=name) for name in names]
+
+
+@pytest.fixture
+def windows(monkeypatch):
+    """Every image for Windows asks for these libraries."""
+
+    def asks(*names, late=()):
+        image = SimpleNamespace(imports=named(*names), delay_imports=named(*late))
+        monkeypatch.setattr(bundled_libraries.lief.PE, "parse", lambda _: image)
+
+    return asks
+
+
+@pytest.fixture
+def macos(monkeypatch):
+    """Every image for macOS is of this processor, asks for these libraries and is signed so."""
+
+    def asks(processor, *names, unsigned=None):
+        header = SimpleNamespace(cpu_type=SimpleNamespace(name=processor))
+        part = SimpleNamespace(header=header, fat_offset=0, libraries=named(*names))
+        monkeypatch.setattr(bundled_libraries.lief.MachO, "parse", lambda _: [part])
+        monkeypatch.setattr(bundled_libraries, "signature_fault", lambda _: unsigned)
+
+    return asks
+
+
+def test_what_windows_blender_and_the_wheel_have_is_no_fault(windows):
+    windows("KERNEL32.dll", "python311.dll", "VCRUNTIME140_1.dll", "msvcp140-8f1.dll")
+    content = wheel("a/a.pyd", "a.libs/msvcp140-8f1.dll")
+    assert list(bundled_libraries.of_wheel(content, WINDOWS)) == []
+
+
+@pytest.mark.parametrize("name", ["MSVCP140.dll", "python312.dll", "vcomp140.dll"])
+def test_what_nobody_has_is_told(windows, name):
+    windows("KERNEL32.dll", late=[name])
+    (fault,) = bundled_libraries.of_wheel(wheel("a/a.pyd"), WINDOWS)
+    assert fault == f"a/a.pyd asks for {name.lower()}, which neither Windows nor Blender has"
+
+
+def test_what_macos_and_the_wheel_have_is_no_fault(macos):
+    macos("ARM64", "/usr/lib/libSystem.B.dylib", "@loader_path/.dylibs/libgmp.dylib")
+    assert list(bundled_libraries.of_wheel(wheel("a.so", ".dylibs/libgmp.dylib"), MACOS)) == []
+
+
+def test_a_library_of_the_makers_computer_is_told(macos):
+    macos("ARM64", "/opt/homebrew/lib/libgmp.dylib")
+    (fault,) = bundled_libraries.of_wheel(wheel("a.so"), MACOS)
+    assert "a.so asks for /opt/homebrew/lib/libgmp.dylib" in fault
+
+
+@pytest.mark.parametrize(("processor", "count"), [("ARM64", 1), ("X86_64", 0)])
+def test_only_arm64_must_be_signed(macos, processor, count):
+    macos(processor, unsigned="it is not signed")
+    assert len(list(bundled_libraries.of_wheel(wheel("a.dylib"), MACOS))) == count
+
+
+def test_a_packages_faults_name_wheel_and_library(windows, tmp_path):
+    windows("cudart.dll")
+    package = tmp_path / "package.zip"
+    with zipfile.ZipFile(package, "w") as archive:
+        archive.writestr("wheels/one-1-py3-none-win_amd64.whl", wheel("one/a.pyd", "one/b.py"))
+        archive.writestr("__init__.py", "")
+    (fault,) = bundled_libraries.faults(package, WINDOWS)
+    assert fault.startswith("one-1-py3-none-win_amd64.whl: one/a.pyd asks for cudart.dll")
