@@ -33,8 +33,13 @@ if importlib.util.find_spec("bpy") is None:
     raise pytest.UsageError("tests/addon needs Blender's module: run `make test-addon`")
 
 # Blender reads its user folder when bpy is imported, so it must be chosen before any test does.
-USER_FOLDER = Path(tempfile.mkdtemp(prefix="palpate-addon-tests-"))
+# Users have names with spaces and umlauts, and their temporary files lie below these too.
+USER_FOLDER = Path(tempfile.mkdtemp(prefix="palpate-addon-tests of Jörg "))
 os.environ["BLENDER_USER_RESOURCES"] = str(USER_FOLDER)
+TEMPORARY_FILES = USER_FOLDER / "tmp"
+TEMPORARY_FILES.mkdir()
+tempfile.tempdir = str(TEMPORARY_FILES)
+os.environ.update(dict.fromkeys(("TMPDIR", "TEMP", "TMP"), tempfile.tempdir))
 
 import bpy  # noqa: E402 -- the environment comes first, see above
 from soft_scene import mesh_state, part, soft_cube  # noqa: E402
