@@ -81,7 +81,7 @@ class PressedCylinder:
                 if share < CONVERGED:
                     break
                 own = tangent[free][:, free]
-                way = splu(own, permc_spec="MMD_AT_PLUS_A").solve(-left)
+                way = splu(own, permc_spec="COLAMD").solve(-left)
                 way *= -np.sign(left @ way)
                 further = self._searched(u, depth, energy, way, float(left @ way))
                 if further is None and share < ROUNDING:
@@ -92,7 +92,7 @@ class PressedCylinder:
             else:
                 raise ArithmeticError(f"no end at a depth of {depth}")
             along = np.concatenate([basis.nodal_dofs[1], basis.facet_dofs[1]])
-            found.append(-float(self._system(u, depth)[2][along].sum()))
+            found.append(float(self._system(u, depth)[2][along].sum()))
         return np.array(found)
 
     @cached_property
