@@ -5,8 +5,8 @@
 Printed is the force over Hertz's at depths up to that of a reading of 10, 1.9 radii: by scikit-fem
 (:mod:`palpate.benchmarks.measuring.contact.pressed_cylinder`), and by ``rubber_ball_force``.
 
-Claimed: they agree within 1.5 %. The exit status tells whether that holds. Takes five minutes, more on
-a busy machine, which changes nothing else.
+Claimed: they agree within 1.5 %. The exit status tells whether that holds. Takes five minutes, more
+on a busy machine, which changes nothing else.
 """
 
 from __future__ import annotations
