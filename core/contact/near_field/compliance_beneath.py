@@ -32,7 +32,8 @@ from .regular_field import (
     facing,
     half_space_between,
 )
-from .solid_angle import FLAT, solid_angles
+from .rim_field import with_rims
+from .solid_angle import sharpness, solid_angles
 
 # Points whose normals have a smaller product than the first are not of one surface, from the second
 # on they are wholly: H may reach around an edge, but not through a thin part.
@@ -41,13 +42,6 @@ SAME_SURFACE = (-0.5, 0.0)
 # A pinned point gives way by this share of what the body's firmest node does under its own force,
 # besides what its nodes do: between three pinned nodes no point is the sum of others.
 OWN_PINNED = 0.1
-
-# A point with more than the second of these shares of a half-space around it is on a round surface,
-# with less than the first on an edge.
-ROUND = (0.55, 0.75)
-
-# The exponent that lets a cube's edge and tip give way as in finite elements.
-SHARPENING = 1.3
 
 # No point gives way to its own force by less than this share of what it does in a half-space: what
 # is left where pins are nearer than the points are apart.
@@ -164,7 +158,7 @@ def near_correction(
     """Correction for the contact points of a body, computed for pairs on demand. The body's
     ``field`` is computed unless given.
     """
-    field = RegularField.of(body) if field is None else field
+    field = with_rims(RegularField.of(body)) if field is None else field
     triangles = body.mesh.surface_local_triangles[points.triangles]
     shares = np.einsum("pc,pc->p", points.alphas, field.trusted[triangles])
     softness = np.einsum("pc,pc->p", points.alphas, field.softness[triangles])
@@ -214,7 +208,8 @@ def _own(
 ) -> NDArray[np.float64]:
     """Half-space part of each point's own compliance, (P, 3, 3)."""
     nu = field.body.poisson_ratio
-    alone = IN_CONTACT * softness * _sharpness(field.body, points)
+    sharp = sharpness(solid_angles(field.body.mesh, points.triangles, points.alphas))
+    alone = IN_CONTACT * softness * sharp
     moved = alone[:, None, None] * own_displacement(points.areas, points.normals, nu)
     across = np.eye(3) - np.einsum("px,py->pxy", points.normals, points.normals)
     lifted: NDArray[np.float64] = moved + ACROSS[field.body.formulation] * across @ moved @ across
@@ -246,19 +241,6 @@ def _lifted(
     missing = np.maximum(least - np.linalg.eigvalsh(whole)[:, 0], 0.0)
     lift: NDArray[np.float64] = (firmest * pinned + missing)[:, None, None] * np.eye(3)
     return lift
-
-
-def _sharpness(body: SoftBody, points: ContactPoints) -> NDArray[np.float64]:
-    """Compliance on an edge or a tip relative to a half-space, (P,), 1 and more.
-
-    The power of what there is around it to hold it that a cube's edge and tip come out as finite
-    elements have them, 2.5 and 6. A surface that is only made of flat triangles is not sharp.
-    """
-    around = solid_angles(body.mesh, points.triangles, points.alphas) / FLAT
-    low, high = ROUND
-    sharp = np.clip((high - around) / (high - low), 0.0, 1.0)
-    sharpness: NDArray[np.float64] = 1.0 + sharp * np.maximum(around**-SHARPENING - 1.0, 0.0)
-    return sharpness
 
 
 def _table_of(

@@ -96,7 +96,7 @@ class RegularField:
         normals, edges, softness = node_normals(mesh), mean_edges(body), surface_softness(body)
         places = mesh.nodes[mesh.surface_nodes]
         _, _, inner, outer = BELIEVED[body.formulation]
-        a, b = _within(places, outer * edges)
+        a, b = pairs_within(places, outer * edges)
         apart = np.linalg.norm(places[a] - places[b], axis=1)
         reach = 0.5 * (edges[a] + edges[b])
         alike = facing(normals[a], normals[b], SAME_SIDE)
@@ -108,7 +108,7 @@ class RegularField:
         node, other = np.concatenate([a, b]), np.concatenate([b, a])
         offsets = places[other] - places[node]
         beyond = np.concatenate([beyond, beyond.transpose(0, 2, 1)])
-        beyond -= _seen_across(body, far, node, other)
+        beyond -= seen_across(body, far, node, other)
         weight = np.concatenate([weight, weight])
         coupling = _coupling(-offsets, normals[node] + normals[other])
         excess = _excess(node, offsets, beyond, coupling, weight, edges)
@@ -127,8 +127,8 @@ class RegularField:
         offset = self.places[b] - self.places[a]
         from_a = self.regular[a] + np.einsum("kz,kzxy->kxy", offset, self.slope[a])
         from_b = self.regular[b] - np.einsum("kz,kzxy->kxy", offset, self.slope[b])
-        from_a += _seen_across(self.body, self.far, a, b)
-        from_b += _seen_across(self.body, self.far, b, a)
+        from_a += seen_across(self.body, self.far, a, b)
+        from_b += seen_across(self.body, self.far, b, a)
         mean: NDArray[np.float64] = 0.5 * (from_a + from_b.transpose(0, 2, 1))
         return mean
 
@@ -154,7 +154,7 @@ class RegularField:
         return places
 
 
-def _seen_across(
+def seen_across(
     body: SoftBody, far: FarSide, a: NDArray[np.int64], b: NDArray[np.int64]
 ) -> NDArray[np.float64]:
     """Displacement of the places across from nodes ``a`` (k,) per force on nodes ``b`` (k,),
@@ -244,7 +244,7 @@ def _fitted(
     return 0.5 * (regular + regular.transpose(0, 2, 1)), slope, known
 
 
-def _within(
+def pairs_within(
     places: NDArray[np.float64], reach: NDArray[np.float64]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Pairs a < b of places (s, 3) no farther apart than the mean of their reaches (s,)."""

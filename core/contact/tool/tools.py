@@ -20,6 +20,7 @@ from ...errors import PalpateError
 from ...mesh.closest_point import closest_area_coordinates
 from ...mesh.coordinates import refuse_unusable
 from ...sentence import Sentence
+from .front import pointed_spacing
 
 # Corners at most: distances to larger hulls take too long in the servo's tick.
 MOST_CORE_POINTS = 64
@@ -28,7 +29,7 @@ MOST_CORE_POINTS = 64
 FLATNESS = 1e-6
 
 # Spacing of contact points, as a share of the radius of a sphere, of a rod (more of which is in
-# contact), and of a flat tool's width.
+# contact), and of a flat tool's width; of a pointed one's see :mod:`.front`.
 SPACING_PER_RADIUS = 0.2
 SPACING_PER_ROD_RADIUS = 0.25
 SPACING_PER_WIDTH = 0.125
@@ -128,10 +129,13 @@ class Tool:
         """Width of the tool, metres: the middle one of its three extents."""
         return float(self.extents[1])
 
-    @property
+    @cached_property
     def spacing(self) -> float:
         """Spacing of contact points on a body for this tool, metres."""
-        if len(self.planes) or span(self.core)[0] == 2:
+        if len(self.planes):
+            pointed = pointed_spacing(self.core, self.faces, SPACING_PER_WIDTH)
+            return min(SPACING_PER_WIDTH * self.size, pointed)
+        if span(self.core)[0] == 2:
             return SPACING_PER_WIDTH * self.size
         round_share = SPACING_PER_RADIUS if len(self.core) == 1 else SPACING_PER_ROD_RADIUS
         return round_share * self.radius
