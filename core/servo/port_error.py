@@ -29,6 +29,9 @@ REASONS = {
     errno.ECONNRESET: _GONE,
 }
 
+# Ports there have no rights, only one owner at a time; and some names can be no file's.
+OF_WINDOWS = {errno.EACCES: errno.EBUSY, errno.EINVAL: errno.ENOENT}
+
 
 class PortError(PalpateError):
     """Unusable port; `reason` is the message without the port's name."""
@@ -56,12 +59,12 @@ def port_error(path: str, error: OSError) -> PortError:
     number = error.errno
     if isinstance(error, serial.SerialException) and number in (None, errno.EAGAIN):
         number = _number_in_words(str(error))
-    if number == errno.EACCES and sys.platform == "win32":
-        number = errno.EBUSY  # Ports there have no rights, only one owner at a time.
     if number is None:
         return PortError(
             path, Sentence("cannot be used ({error}); plug the device in again", error=error)
         )
+    if sys.platform == "win32":
+        number = OF_WINDOWS.get(number, number)
     unknown = Sentence(
         "cannot be opened ({reason}); plug the device in again", reason=os.strerror(number)
     )

@@ -18,12 +18,13 @@ needed() { # what pyproject.toml asks for, but for what only Linux has
     "$python" - <<'PYTHON'
 import tomllib
 project = tomllib.load(open("pyproject.toml", "rb"))["project"]
-asked = project["dependencies"] + project["optional-dependencies"]["test"] + ["colorama", "matplotlib"]
+extras = project["optional-dependencies"]
+asked = project["dependencies"] + extras["test"] + extras["scheduler"] + ["colorama", "matplotlib"]
 print(*(one for one in asked if not one.startswith("palpate") and "linux" not in one), sep="\n")
 PYTHON
 }
 
-[ -d "$packages/scipy" ] || needed | install --requirement /dev/stdin
+[ -d "$packages/distributed" ] || needed | install --requirement /dev/stdin
 install --no-deps --force-reinstall "$wheel"
 # What an editable install would do: the checkout as `palpate`, with its version.
 mkdir -p "$packages/palpate-0.dist-info" "$root/windows/checkout"

@@ -1,6 +1,7 @@
 """Bodies for the tests of the command line, and the commands as a user runs them."""
 
 import json
+import math
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from bodies.shared import (  # noqa: F401
     solved_displacements,
 )
 
+from palpate.cli.bake import status_line
 from palpate.cli.main import main
 from palpate.core.body import body_file
 
@@ -36,8 +38,12 @@ def cube_file(tmp_path_factory, cube):  # noqa: F811
 
 
 @pytest.fixture
-def palpate(capfd):
-    """Run a command: status, what it printed, and what it said beside it."""
+def palpate(capfd, monkeypatch):
+    """Run a command: status, what it printed, and what it said beside it.
+
+    On a busy computer no less and no more: without the lines now and then for those who wait.
+    """
+    monkeypatch.setattr(status_line, "SECONDS_BETWEEN_LINES", math.inf)
 
     def run(*words):
         capfd.readouterr()

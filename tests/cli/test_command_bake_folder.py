@@ -101,7 +101,8 @@ def test_many_meshes_become_bodies_in_a_folder(meshes, palpate):
 def test_lines_say_what_became_of_each(meshes, palpate):
     status, printed, _ = palpate("bake", "cube.npz", "--output-folder", "bodies")
     assert status == 0
-    assert printed.startswith("cube.npz -> bodies/cube.npz  125 nodes, 73 free on the surface, ")
+    place = Path("bodies/cube.npz")
+    assert printed.startswith(f"cube.npz -> {place}  125 nodes, 73 free on the surface, ")
 
 
 def test_a_cluster_bakes_as_this_computer_does(meshes, palpate, two_workers):

@@ -179,7 +179,11 @@ def test_a_com_port_that_is_missing_or_taken_is_told_in_any_language(monkeypatch
 
 @pytest.mark.parametrize(
     ("number", "reason"),
-    [(errno.ENOENT, "no such port"), (errno.EACCES, "in use by another program")],
+    [
+        (errno.ENOENT, "no such port"),
+        (errno.EINVAL, "no such port"),
+        (errno.EACCES, "in use by another program"),
+    ],
 )
 def test_a_com_port_is_checked_by_opening_it_once(monkeypatch, number, reason):
     asked = []
