@@ -21,6 +21,13 @@ from servo_wheel.pe import SYSTEM
 # the C++ runtime (msvcp140): that of Blender 4.5 and 5.0 is of 2021, too old for newer compilers.
 BLENDERS = frozenset({"python3", "python311", "python313", "vcruntime140", "vcruntime140_1"})
 
+# Where Blender unpacks wheels on Windows, for a user with a long name, and what a path may hold.
+UNPACKED = (
+    "C:/Users/" + "x" * 20 + "/AppData/Roaming/Blender Foundation/Blender/5.2/extensions"
+    "/.local/lib/python3.13/site-packages/"
+)
+LONGEST_PATH = 259
+
 
 def faults(package: Path, platform: Platform) -> list[str]:
     """Return one sentence for each library that cannot be loaded where the package is installed."""
@@ -37,6 +44,8 @@ def of_wheel(content: bytes, platform: Platform) -> Iterator[str]:
     """Yield what is wrong with the libraries of one wheel; those for Linux go by their tag."""
     with zipfile.ZipFile(io.BytesIO(content)) as wheel:
         images = {name: wheel.read(name) for name in wheel.namelist()}
+    if platform.name.startswith("windows"):
+        yield from (f"{name} has too long a path for Windows" for name in images if _is_long(name))
     names = frozenset(Path(name).name.lower() for name in images)
     for name, image in images.items():
         if name.endswith((".pyd", ".dll")):
@@ -46,6 +55,10 @@ def of_wheel(content: bytes, platform: Platform) -> Iterator[str]:
         else:
             continue
         yield from (f"{name} {fault}" for fault in found)
+
+
+def _is_long(name: str) -> bool:
+    return len(UNPACKED) + len(name) > LONGEST_PATH
 
 
 def _of_windows(image: bytes, beside: frozenset[str]) -> Iterator[str]:

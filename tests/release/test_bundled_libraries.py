@@ -63,6 +63,13 @@ def test_what_nobody_has_is_told(windows, name):
     assert fault == f"a/a.pyd asks for {name.lower()}, which neither Windows nor Blender has"
 
 
+@pytest.mark.parametrize(("length", "count"), [(135, 0), (136, 1)])
+def test_a_path_that_windows_cuts_is_told(length, count):
+    content = wheel("a/" + "b" * (length - 2))
+    assert len(list(bundled_libraries.of_wheel(content, WINDOWS))) == count
+    assert list(bundled_libraries.of_wheel(content, MACOS)) == []
+
+
 def test_what_macos_and_the_wheel_have_is_no_fault(macos):
     macos("ARM64", "/usr/lib/libSystem.B.dylib", "@loader_path/.dylibs/libgmp.dylib")
     assert list(bundled_libraries.of_wheel(wheel("a.so", ".dylibs/libgmp.dylib"), MACOS)) == []
