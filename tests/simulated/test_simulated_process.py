@@ -128,7 +128,7 @@ def test_it_outlives_a_ctrl_c_that_is_meant_for_its_parent():
 
 def test_a_start_that_fails_gives_the_reason_in_one_line(tmp_path):
     options = SimulatedOptions(script=str(tmp_path / "missing.csv"))
-    with pytest.raises(PalpateError, match=r"has ended: .*missing\.csv: .*No such file") as error:
+    with pytest.raises(PalpateError, match=r"has ended: .*missing\.csv: cannot be read") as error:
         SimulatedDevice(options)
     assert "\n" not in str(error.value)
 
