@@ -21,8 +21,9 @@ PRESS = 200
 ROUND = 1600
 # Ticks at rest before the first round and after the last one.
 REST = 20
-# Contact points so near to each other, in depths, are the same.
-SAME = 0.02
+# Contact points so near to each other, in depths, and forces, in shares of themselves, are the same:
+# what is stored then differs by less than a thousandth of F d / 2.
+SAME = 5e-4
 # Fingers of a pair begin at most so many depths apart.
 APART = 4.0
 
@@ -75,8 +76,8 @@ class Books:
     Attributes
     ----------
     rounds : energy that came out of each round. Only of those that touched throughout, and whose
-        contact points ended where they began: past a ridge one may lie on the other side, where
-        less of what the press has put in is held.
+        contact points and forces ended as they began: past a ridge one may lie on the other side,
+        where less of what the press has put in is held, and tools may go round by two ways in turn.
     path : of the whole path, from air to air.
     """
 
@@ -155,7 +156,10 @@ def books(loops: Sequence[Loop], follow: Follow) -> Books | None:
     rounds = []
     for number in range(2):
         begin = PRESS + REST - 1 + number * ROUND
+        end = begin + ROUND
         moved = np.linalg.norm(places[number + 1] - places[number], axis=1)
-        if size[begin : begin + ROUND + 1].min() > 0.0 and (moved < SAME * depths).all():
-            rounds.append(float(work[begin : begin + ROUND].sum()))
+        turned = np.linalg.norm(forces[end] - forces[begin], axis=1)
+        is_closed = (moved < SAME * depths).all() and (turned < SAME * size[begin]).all()
+        if is_closed and size[begin : end + 1].min() > 0.0:
+            rounds.append(float(work[begin:end].sum()))
     return Books(tuple(rounds), float(work.sum()))

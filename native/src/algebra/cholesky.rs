@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use super::{MOST_POINTS, ROW, room};
-use crate::algebra::wide::widely;
+use crate::algebra::wide::{plus_product, widely};
 
 /// Sums that run beside each other, so that no addition waits for the one before.
 pub const LANES: usize = 8;
@@ -12,9 +12,16 @@ pub const LANES: usize = 8;
 /// A pivot below this share of its diagonal entry is rounding.
 const LEAST_PIVOT: f64 = 1e-13;
 
-/// The sum of products, in a fixed order of additions.
+widely! {
+    /// The sum of products, in a fixed order of additions.
+    pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+        dot_within::<FUSED>(a, b)
+    }
+}
+
+/// The same within a loop that is compiled for wide registers.
 #[inline(always)]
-pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn dot_within<const FUSED: bool>(a: &[f64], b: &[f64]) -> f64 {
     let n = a.len().min(b.len());
     let (a, b) = (&a[..n], &b[..n]);
     let mut lanes = [0.0; LANES];
@@ -22,49 +29,50 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     while k + LANES <= n {
         let (x, y) = (&a[k..k + LANES], &b[k..k + LANES]);
         for l in 0..LANES {
-            lanes[l] += x[l] * y[l];
+            lanes[l] = plus_product::<FUSED>(lanes[l], x[l], y[l]);
         }
         k += LANES;
     }
-    total(&lanes, &a[k..], &b[k..])
+    total::<FUSED>(&lanes, &a[k..], &b[k..])
 }
 
 /// The sum of the lanes, and of products of what was too short for them.
 #[inline(always)]
-fn total(lanes: &[f64; LANES], a: &[f64], b: &[f64]) -> f64 {
+fn total<const FUSED: bool>(lanes: &[f64; LANES], a: &[f64], b: &[f64]) -> f64 {
     let mut tail = 0.0;
     for k in 0..a.len().min(b.len()) {
-        tail += a[k] * b[k];
+        tail = plus_product::<FUSED>(tail, a[k], b[k]);
     }
-    ((lanes[0] + lanes[4]) + (lanes[1] + lanes[5]))
-        + ((lanes[2] + lanes[6]) + (lanes[3] + lanes[7]))
+    // Halves of a register: what is beside each other in one is not added until the end.
+    ((lanes[0] + lanes[4]) + (lanes[2] + lanes[6]))
+        + ((lanes[1] + lanes[5]) + (lanes[3] + lanes[7]))
         + tail
 }
 
 /// The sum of products of three pairs together, in a fixed order of additions.
 #[inline(always)]
-pub fn dot_three(a: [&[f64]; 3], b: [&[f64]; 3]) -> f64 {
+pub(crate) fn dot_three<const FUSED: bool>(a: [&[f64]; 3], b: [&[f64]; 3]) -> f64 {
     let n = a[0].len();
     let [a, b] = [a, b].map(|rows| rows.map(|row| &row[..n]));
     let mut lanes = [0.0; LANES];
     let mut k = 0;
     while k + LANES <= n {
-        let end = k + LANES;
-        let (a0, a1, a2) = (&a[0][k..end], &a[1][k..end], &a[2][k..end]);
-        let (b0, b1, b2) = (&b[0][k..end], &b[1][k..end], &b[2][k..end]);
-        for l in 0..LANES {
-            lanes[l] += a0[l] * b0[l] + a1[l] * b1[l] + a2[l] * b2[l];
+        for r in 0..3 {
+            let (x, y) = (&a[r][k..k + LANES], &b[r][k..k + LANES]);
+            for l in 0..LANES {
+                lanes[l] = plus_product::<FUSED>(lanes[l], x[l], y[l]);
+            }
         }
         k += LANES;
     }
-    let rest = |r: usize| total(&[0.0; LANES], &a[r][k..], &b[r][k..]);
-    total(&lanes, &[], &[]) + rest(0) + rest(1) + rest(2)
+    let rest = |r: usize| total::<FUSED>(&[0.0; LANES], &a[r][k..], &b[r][k..]);
+    total::<FUSED>(&lanes, &[], &[]) + rest(0) + rest(1) + rest(2)
 }
 
-/// The sums of products of some rows with one, each as [`dot`] has it, to the bit: what is loaded of
+/// The sums of products of some rows with one, each as [`dot_within`] has it, to the bit: what is loaded of
 /// the one serves all.
 #[inline(always)]
-fn dots<const N: usize>(rows: [&[f64]; N], head: &[f64]) -> [f64; N] {
+fn dots<const FUSED: bool, const N: usize>(rows: [&[f64]; N], head: &[f64]) -> [f64; N] {
     let n = head.len();
     let rows = rows.map(|row| &row[..n]);
     let mut lanes = [[0.0; LANES]; N];
@@ -74,14 +82,14 @@ fn dots<const N: usize>(rows: [&[f64]; N], head: &[f64]) -> [f64; N] {
         for r in 0..N {
             let x = &rows[r][k..k + LANES];
             for l in 0..LANES {
-                lanes[r][l] += x[l] * y[l];
+                lanes[r][l] = plus_product::<FUSED>(lanes[r][l], x[l], y[l]);
             }
         }
         k += LANES;
     }
     let mut sums = [0.0; N];
     for r in 0..N {
-        sums[r] = total(&lanes[r], &rows[r][k..], &head[k..]);
+        sums[r] = total::<FUSED>(&lanes[r], &rows[r][k..], &head[k..]);
     }
     sums
 }
@@ -177,7 +185,7 @@ widely! {
     fn solve_lower(rows: &[f64], inverse_pivots: &[f64], size: usize, b: &mut [f64]) {
         for i in 0..size {
             let row = &rows[i * ROW..][..i];
-            b[i] = (b[i] - dot(row, &b[..i])) * inverse_pivots[i];
+            b[i] = (b[i] - dot_within::<FUSED>(row, &b[..i])) * inverse_pivots[i];
         }
     }
 }
@@ -193,7 +201,7 @@ widely! {
         for i in range {
             let row = &rows[i * ROW..][first..i];
             let [x, y, z] = [0, 1, 2].map(|k: usize| &columns[k][first..i]);
-            let sums = dots([x, y, z], row);
+            let sums = dots::<FUSED, _>([x, y, z], row);
             for (column, sum) in columns.iter_mut().zip(sums) {
                 column[i] = (column[i] - sum) * inverse_pivots[i];
             }
@@ -208,7 +216,7 @@ widely! {
             let (rest, x) = b.split_at_mut(i);
             let row = &rows[i * ROW..][..i];
             for (entry, l) in rest.iter_mut().zip(row) {
-                *entry -= x[0] * l;
+                *entry = plus_product::<FUSED>(*entry, -x[0], *l);
             }
         }
     }
@@ -225,10 +233,10 @@ widely! {
     fn append(rows: &mut [f64], inverse_pivots: &mut [f64], size: usize) -> bool {
         let (above, row) = rows.split_at_mut(size * ROW);
         for (j, before) in above.chunks_exact(ROW).enumerate() {
-            row[j] = (row[j] - dot(&row[..j], &before[..j])) * inverse_pivots[j];
+            row[j] = (row[j] - dot_within::<FUSED>(&row[..j], &before[..j])) * inverse_pivots[j];
         }
         let (head, own) = row.split_at_mut(size);
-        let Some(pivot) = root(own[0], own[0] - dot(head, head)) else {
+        let Some(pivot) = root(own[0], own[0] - dot_within::<FUSED>(head, head)) else {
             return false;
         };
         (own[0], inverse_pivots[size]) = (pivot, 1.0 / pivot);
@@ -242,7 +250,7 @@ widely! {
         for j in 0..size {
             let (above, below) = rows[..size * ROW].split_at_mut((j + 1) * ROW);
             let (head, own) = above[j * ROW..][..=j].split_at_mut(j);
-            let Some(pivot) = root(own[0], own[0] - dot(head, head)) else {
+            let Some(pivot) = root(own[0], own[0] - dot_within::<FUSED>(head, head)) else {
                 return false;
             };
             let inverse = 1.0 / pivot;
@@ -250,14 +258,14 @@ widely! {
             let mut fours = below.chunks_exact_mut(4 * ROW);
             for four in &mut fours {
                 let row = |k: usize| &four[k * ROW..][..j];
-                let sums = dots([row(0), row(1), row(2), row(3)], head);
+                let sums = dots::<FUSED, _>([row(0), row(1), row(2), row(3)], head);
                 for (k, sum) in sums.into_iter().enumerate() {
                     let entry = &mut four[k * ROW + j];
                     *entry = (*entry - sum) * inverse;
                 }
             }
             for row in fours.into_remainder().chunks_exact_mut(ROW) {
-                row[j] = (row[j] - dot(&row[..j], head)) * inverse;
+                row[j] = (row[j] - dot_within::<FUSED>(&row[..j], head)) * inverse;
             }
         }
         true

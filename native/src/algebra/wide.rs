@@ -1,9 +1,19 @@
 //! Loops over plain numbers, compiled for the wide registers that most processors have.
 //!
-//! Sums are added up in the order that the code says and products are rounded before: the result is
-//! the same, bit for bit, with and without.
+//! Sums are added up in the order that the code says. Where the processor adds a product in one step,
+//! that is rounded once: results of processors with and without differ by rounding.
 
-/// A function that is compiled twice, with wide registers where the processor has them.
+/// Whether what is not compiled for wide registers adds products in one step.
+pub(crate) const NARROW_FUSED: bool = cfg!(target_arch = "aarch64");
+
+/// a b + c, rounded once where the processor does so in one step.
+#[inline(always)]
+pub(crate) fn plus_product<const FUSED: bool>(c: f64, a: f64, b: f64) -> f64 {
+    if FUSED { a.mul_add(b, c) } else { c + a * b }
+}
+
+/// A function that is compiled twice, with wide registers where the processor has them. In its body
+/// `FUSED` says whether products are added in one step ([`plus_product`]).
 ///
 /// What it calls is compiled with it only where that is `#[inline(always)]`. A closure is not: it is a
 /// function of its own, and stays narrow unless the compiler happens to inline it.
@@ -16,20 +26,22 @@ macro_rules! widely {
         #[inline]
         $visible fn $name($($argument: $type),*) $(-> $result)? {
             #[inline(always)]
-            fn work($($argument: $type),*) $(-> $result)? $body
+            fn work<const FUSED: bool>($($argument: $type),*) $(-> $result)? $body
 
             #[cfg(target_arch = "x86_64")]
             {
-                #[target_feature(enable = "avx2")]
+                #[target_feature(enable = "avx2,fma")]
                 unsafe fn wide($($argument: $type),*) $(-> $result)? {
-                    work($($argument),*)
+                    work::<true>($($argument),*)
                 }
-                if std::arch::is_x86_feature_detected!("avx2") {
+                if std::arch::is_x86_feature_detected!("avx2")
+                    && std::arch::is_x86_feature_detected!("fma")
+                {
                     // SAFETY: the processor has what the function is compiled for.
                     return unsafe { wide($($argument),*) };
                 }
             }
-            work($($argument),*)
+            work::<{ $crate::algebra::wide::NARROW_FUSED }>($($argument),*)
         }
     };
 }

@@ -9,7 +9,7 @@
 
 mod face;
 
-use crate::algebra::cholesky::{Factor, dot};
+use crate::algebra::cholesky::{Factor, dot, dot_within};
 use crate::algebra::wide::widely;
 use crate::algebra::{MOST_POINTS, ROW, room};
 
@@ -268,7 +268,7 @@ widely! {
         let mut sum = 0.0;
         for &i in face {
             let row = &matrix[i * ROW..][..forces.len()];
-            sum += forces[i] * (0.5 * dot(row, forces) + gaps[i]);
+            sum += forces[i] * (0.5 * dot_within::<FUSED>(row, forces) + gaps[i]);
         }
         sum
     }
@@ -279,7 +279,7 @@ widely! {
     fn sweep(matrix: &[f64], gaps: &[f64], forces: &mut [f64]) {
         for i in 0..forces.len() {
             let row = &matrix[i * ROW..][..forces.len()];
-            let gap = dot(row, forces) + gaps[i];
+            let gap = dot_within::<FUSED>(row, forces) + gaps[i];
             forces[i] = (forces[i] - gap / row[i]).max(0.0);
         }
     }
@@ -290,7 +290,7 @@ widely! {
     fn open(matrix: &[f64], gaps: &[f64], forces: &[f64], opened: &mut [f64]) {
         for i in 0..opened.len() {
             let row = &matrix[i * ROW..][..forces.len()];
-            opened[i] = dot(row, forces) + gaps[i];
+            opened[i] = dot_within::<FUSED>(row, forces) + gaps[i];
         }
     }
 }

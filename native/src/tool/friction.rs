@@ -13,7 +13,7 @@ use glam::{DVec2, DVec3};
 
 use super::coefficients::{AllPosed, Posed};
 use super::patch::Patch;
-use crate::algebra::cholesky::dot;
+use crate::algebra::cholesky::dot_within;
 use crate::algebra::wide::widely;
 use crate::algebra::{MOST_POINTS, room};
 
@@ -169,8 +169,8 @@ widely! {
                 let (first, second) = rows.split_at(ROW);
                 let changes = &rubbing.changes[..unknowns];
                 let slip = DVec2::new(
-                    rubbing.away[2 * k] + dot(&first[..unknowns], changes),
-                    rubbing.away[2 * k + 1] + dot(&second[..unknowns], changes),
+                    rubbing.away[2 * k] + dot_within::<FUSED>(&first[..unknowns], changes),
+                    rubbing.away[2 * k + 1] + dot_within::<FUSED>(&second[..unknowns], changes),
                 );
                 let (xx, xy, yy) = (first[2 * k], first[2 * k + 1], second[2 * k + 1]);
                 let last = DVec2::new(rubbing.forces[2 * k], rubbing.forces[2 * k + 1]);

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::algebra::MOST_POINTS;
 use crate::algebra::cholesky::{LANES, dot_three};
-use crate::algebra::wide::widely;
+use crate::algebra::wide::{plus_product, widely};
 
 /// A vector for each slot, an axis after the other.
 pub(in crate::tool) type Vectors = [[f64; MOST_POINTS]; 3];
@@ -27,6 +27,14 @@ fn entry(blocks: &[f64], number: usize, count: usize) -> &[f64] {
     &blocks[blocks.len() / 9 * number..][..count]
 }
 
+/// A number with the product of a row of a block and a force.
+#[inline(always)]
+fn plus_three<const FUSED: bool>(to: f64, [x, y, z]: [f64; 3], force: DVec3) -> f64 {
+    let one = plus_product::<FUSED>(to, x, force.x);
+    let two = plus_product::<FUSED>(one, y, force.y);
+    plus_product::<FUSED>(two, z, force.z)
+}
+
 widely! {
     /// Adds how far the first slots move under a force on the one whose blocks these are.
     pub(super) fn add_moved(blocks: &[f64], force: DVec3, moved: &mut Vectors, count: usize) {
@@ -34,7 +42,7 @@ widely! {
             let [x, y, z] = [0, 1, 2].map(|c| entry(blocks, 3 * r + c, count));
             let sums = &mut axis[..count];
             for i in 0..sums.len() {
-                sums[i] += x[i] * force.x + y[i] * force.y + z[i] * force.z;
+                sums[i] = plus_three::<FUSED>(sums[i], [x[i], y[i], z[i]], force);
             }
         }
     }
@@ -48,7 +56,7 @@ widely! {
             let part = |r: usize| entry(blocks, 3 * r + c, count);
             let [x, y, z] = forces;
             let forces = [&x[..count], &y[..count], &z[..count]];
-            *sum = dot_three([part(0), part(1), part(2)], forces);
+            *sum = dot_three::<FUSED>([part(0), part(1), part(2)], forces);
         }
         moved
     }
@@ -64,7 +72,8 @@ widely! {
             let [x, y, z] = [0, 1, 2].map(|c| entry(blocks, 3 * r + c, count));
             let way = &way[..count];
             for i in 0..count {
-                along[i] += way[i] * (x[i] * force.x + y[i] * force.y + z[i] * force.z);
+                let ahead = plus_three::<FUSED>(0.0, [x[i], y[i], z[i]], force);
+                along[i] = plus_product::<FUSED>(along[i], way[i], ahead);
             }
         }
     }
@@ -91,10 +100,12 @@ widely! {
                 let z = &row[2 * count + k..][..LANES];
                 let (way, other) = (&ways[r][k..][..LANES], &others[r][k..][..LANES]);
                 for l in 0..LANES {
-                    let ahead = x[l] * first.x + y[l] * first.y + z[l] * first.z;
-                    by_first[l] += way[l] * ahead;
-                    lanes[l] += other[l] * ahead;
-                    by_second[l] += way[l] * (x[l] * second.x + y[l] * second.y + z[l] * second.z);
+                    let row = [x[l], y[l], z[l]];
+                    let ahead = plus_three::<FUSED>(0.0, row, first);
+                    let aside = plus_three::<FUSED>(0.0, row, second);
+                    by_first[l] = plus_product::<FUSED>(by_first[l], way[l], ahead);
+                    lanes[l] = plus_product::<FUSED>(lanes[l], other[l], ahead);
+                    by_second[l] = plus_product::<FUSED>(by_second[l], way[l], aside);
                 }
             }
             let (along, by) = (&mut along[k..][..LANES], &mut by[k..][..LANES]);
