@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from ...core.errors import PalpateError
@@ -13,7 +14,7 @@ from .real.guardians import guardian_rows
 from .real.lost_guardians import lost_guardian_rows
 from .real.processes import process_rows
 from .real.stalled_reader import stalled_reader_rows
-from .table import Table, is_chosen
+from .table import Row, Table, cells, is_chosen
 from .target import Target, baked_target, cube_target
 from .virtual.cause import Cause
 from .virtual.causes import CAUSES, HAPLY_CAUSES
@@ -99,13 +100,20 @@ def real_table(attack: Attack, say: Callable[[str], None]) -> Table:
             say(f"on a pseudo-terminal: {injected}")
         return is_wanted
 
-    rows = [
-        *process_rows(attack.times, wanted),
-        *stalled_reader_rows(wanted),
-        *guardian_rows(attack.times, wanted),
-        *lost_guardian_rows(attack.times, wanted),
-        *(firmware_rows(attack.board, attack.times, wanted) if attack.board else []),
-    ]
+    times, board = attack.times, attack.board
+    rows: list[Row] = []
+    # What was tried for an hour is said before the next is tried.
+    for tried in (
+        partial(process_rows, times, wanted),
+        partial(stalled_reader_rows, wanted),
+        partial(guardian_rows, times, wanted),
+        partial(lost_guardian_rows, times, wanted),
+        *([partial(firmware_rows, board, times, wanted)] if board else []),
+    ):
+        found = tried()
+        for row in found:
+            say("  ".join(cells(row)).rstrip())
+        rows += found
     if not rows:
         raise _nothing_chosen(attack.only)
     return Table("Real processes on a pseudo-terminal", tuple(rows))

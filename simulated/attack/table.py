@@ -44,11 +44,11 @@ class Table:
 
     def lines(self) -> Iterable[str]:
         """The table for people."""
-        cells = [HEAD, *(_cells(row) for row in self.rows)]
-        widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+        shown = [HEAD, *(cells(row) for row in self.rows)]
+        widths = [max(map(len, column)) for column in zip(*shown, strict=True)]
         yield self.title
         yield ""
-        for line in cells:
+        for line in shown:
             columns = (cell.ljust(width) for cell, width in zip(line, widths, strict=True))
             yield "  ".join(columns).rstrip()
 
@@ -66,7 +66,8 @@ def counted(problems: dict[str, int]) -> tuple[str, ...]:
     return tuple(f"{rule} ({count})" for rule, count in problems.items())
 
 
-def _cells(row: Row) -> tuple[str, ...]:
+def cells(row: Row) -> tuple[str, ...]:
+    """What is shown of a row, a column each."""
     verdict = f"FAILED: {', '.join(row.broken)}" if row.broken else "ok"
     return (
         row.injected,

@@ -21,8 +21,8 @@ PRESS = 200
 ROUND = 1600
 # Ticks at rest before the first round and after the last one.
 REST = 20
-# Contact points so near to each other, in depths, and forces, in shares of themselves, are the same:
-# what is stored then differs by less than a thousandth of F d / 2.
+# Contact points that differ by so many depths, and forces by such a share of themselves, are the
+# same: what is stored then differs by less than a thousandth of F d / 2.
 SAME = 5e-4
 # Fingers of a pair begin at most so many depths apart.
 APART = 4.0

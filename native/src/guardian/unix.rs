@@ -73,6 +73,12 @@ impl Guardian {
         watch(self.sheet, last_word, &mut self.attention, is_there)
     }
 
+    /// Its process, for tests that hold it up.
+    #[cfg(feature = "harness")]
+    pub fn process(&self) -> Option<u32> {
+        self.child.as_ref().map(Child::id)
+    }
+
     /// The device was let go: nothing will be left to say.
     pub fn dismiss(&mut self) {
         self.is_dismissed = true;
@@ -91,7 +97,7 @@ impl Drop for Guardian {
         let end_of_all = if self.is_dismissed { DISMISSED } else { LEFT };
         self.sheet.holder.store(end_of_all, SeqCst);
         self.tie = None;
-        end(&mut child);
+        end(&mut child, self.is_dismissed);
         let at = std::ptr::from_ref(self.sheet).cast_mut();
         // SAFETY: mapped by `map_sheet` for this one alone, and used no more.
         let _ = unsafe { libc::munmap(at.cast(), size_of::<Sheet>()) };

@@ -108,7 +108,7 @@ impl Drop for Guardian {
     fn drop(&mut self) {
         let end_of_all = if self.is_dismissed { DISMISSED } else { LEFT };
         self.sheet.holder.store(end_of_all, SeqCst);
-        end(&mut self.child);
+        end(&mut self.child, self.is_dismissed);
         let at = MEMORY_MAPPED_VIEW_ADDRESS {
             Value: std::ptr::from_ref(self.sheet).cast_mut().cast(),
         };

