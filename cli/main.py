@@ -13,11 +13,11 @@ from .bake import bake, pin
 from .body import info
 from .press import devices, press, servo
 from .rest import settle
-from .softness import curve, durometer, materials, shore, softness
+from .softness import curve, durometer, ild, materials, shore, softness
 
 COMMANDS = (
     *(bake, info, pin, press, settle, servo, devices),
-    *(materials, shore, durometer, curve, softness),
+    *(materials, shore, ild, durometer, curve, softness),
 )
 EXIT_ERROR = 2
 

@@ -20,6 +20,13 @@ def test_young_modulus_is_told_on_the_scales_that_reach_it(figures_of):
     assert figures_of("shore", "--young", "1.142e6")["shore_a"] == pytest.approx(30, abs=0.1)
 
 
+def test_foam_is_told_by_the_force_that_it_is_sold_by(figures_of, refusal):
+    figures = figures_of("ild", "80")
+    assert figures["ild_25_n"] == pytest.approx(80.0)
+    assert figures["young_modulus_in_the_mean"] == pytest.approx(7000.0, rel=0.05)
+    assert "positive" in refusal("ild", "0")
+
+
 @pytest.mark.parametrize(("young", "nearest"), [(1000, "00-10 to 00-90"), (1e9, "A 10 to A 90")])
 def test_what_no_scale_reaches_is_refused_in_one_line(refusal, young, nearest):
     assert nearest in refusal("shore", "--young", young)
