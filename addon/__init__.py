@@ -24,6 +24,7 @@ from ..operators.press import (
     switch_force,
 )
 from ..operators.record import recording_writer
+from ..operators.rest import reset, settle
 from ..operators.softness import force_curve, read_durometer, softness_colours
 from ..operators.stroke import stroke_operator, stroke_size
 from . import command, handlers, preferences, translations
@@ -63,6 +64,8 @@ modules = (
     read_durometer,
     force_curve,
     softness_colours,
+    settle,
+    reset,
     stroke_operator,
     stroke_size,
     sidebar,

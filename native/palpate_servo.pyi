@@ -543,6 +543,12 @@ class Resting:
         Raises RuntimeError where a force is no number.
         """
 
+    def come_in(self) -> None:
+        """What overlaps the body where it lies comes in from outside, while the body stays there.
+
+        Raises RuntimeError where a force is no number.
+        """
+
     def settle(self) -> None:
         """Tick until nothing changes any more. Raises RuntimeError where the body does not rest."""
 

@@ -54,6 +54,7 @@ operators/device
 operators/record
 operators/shape
 operators/session
+operators/rest
 operators/bake
 operators/press
 operators/stroke/answer operators/stroke

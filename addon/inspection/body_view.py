@@ -87,6 +87,8 @@ def _kept(
 def _pins(context: bpy.types.Context) -> tuple[Array, Array]:
     """Triangles (k, 3, 3) of the pinned part of the surface, world."""
     thing, scene = context.object, context.scene
+    if thing.palpate.pin_mode == "NONE":
+        return np.zeros((0, 3, 3)), np.zeros((0, 3))
     if thing.palpate.pin_mode == "CORE":
         return _core(context)
     surface = drawn_surface.read(thing, scene)

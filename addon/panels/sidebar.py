@@ -114,13 +114,39 @@ class PALPATE_PT_pins(PalpatePanel, bpy.types.Panel):
         elif settings.pin_mode == "BELOW":
             layout.prop(settings, "pin_fraction")
             layout.operator("palpate.pin_below", icon="GROUP_VERTEX")
-        layout.prop(context.scene.palpate, "show_pins")
+        if settings.pin_mode != "NONE":
+            layout.prop(context.scene.palpate, "show_pins")
+
+
+class PALPATE_PT_rest(PalpatePanel, bpy.types.Panel):
+    bl_idname = "PALPATE_PT_rest"
+    bl_label = "Rests On"
+    bl_parent_id = "PALPATE_PT_main"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return super().poll(context) and context.object.palpate.pin_mode == "NONE"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout, settings = named_properties(self), context.object.palpate
+        column = while_idle(layout)
+        column.prop(settings, "floor")
+        if settings.floor == "HEIGHT":
+            column.prop(settings, "floor_height")
+        column.prop(settings, "colliders")
+        column.prop(settings, "rest_friction")
+        column.prop(settings, "density", text="Density (kg/m³)")
+        row = column.row(align=True)
+        row.operator("palpate.settle", icon="TRIA_DOWN_BAR")
+        row.operator("palpate.reset_rest", icon="LOOP_BACK")
 
 
 classes = (
     PALPATE_PT_main,
     finger.PALPATE_PT_finger,
     PALPATE_PT_pins,
+    PALPATE_PT_rest,
     PALPATE_PT_material,
     PALPATE_PT_touch,
     PALPATE_PT_imprint,

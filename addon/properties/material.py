@@ -5,6 +5,7 @@ from collections.abc import Callable
 
 import bpy
 
+from ...core.compliance.free_body.density import LEAST_DENSITY, MOST_DENSITY
 from ...core.law.relaxation import RELAXATIONS
 from ...core.softness.scales.materials import MATERIALS
 from .kinds import choice, number, span
@@ -43,6 +44,7 @@ def _take_material(settings: bpy.types.PropertyGroup, context: bpy.types.Context
     if material is not None:
         settings.young_modulus = material.young_modulus
         settings.poisson_ratio = material.poisson_ratio
+        settings.density = material.density
         settings.relaxation = material.relaxation
 
 
@@ -89,6 +91,13 @@ class MaterialProperties:
         0.3,
         span(0.0, 0.499, precision=3, step=1),
         update=_leave_material("poisson_ratio"),
+    )
+    density: number(
+        "Density",
+        "What a cubic metre weighs, kg. Only a body without pins has weight. Takes effect at once",
+        MATERIALS["PLUSH"].density,
+        span(LEAST_DENSITY, MOST_DENSITY, soft_min=10.0, soft_max=3000.0, precision=0, step=1000),
+        update=_leave_material("density"),
     )
     relaxation: choice(
         "Gives Way",

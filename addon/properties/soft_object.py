@@ -8,6 +8,7 @@ from ...operators.animation import live_pressers
 from ...operators.traction import layer_traction
 from .kinds import choice, chosen_collection, number, result, span, switch, text
 from .material import MaterialProperties
+from .rest import RestProperties
 from .scene import PalpateScene
 from .shape import ShapeProperties
 
@@ -20,6 +21,7 @@ PIN_ITEMS = [
         "Core",
         "What lies deep inside, as a skeleton: all of the surface gives way, and nothing leans",
     ),
+    ("NONE", "None", "Nothing: the object rests on what is under it, slides, rolls and tips over"),
 ]
 FORMULATION_ITEMS = [
     (
@@ -61,7 +63,7 @@ def _keep_order(changed: str) -> Callable[[bpy.types.PropertyGroup, bpy.types.Co
     return update
 
 
-class PalpateObject(MaterialProperties, ShapeProperties, bpy.types.PropertyGroup):
+class PalpateObject(MaterialProperties, ShapeProperties, RestProperties, bpy.types.PropertyGroup):
     """``object.palpate``. The tetrahedra are ID properties: nodes, tets, fixed and, with a stiff
     region, young_scale.
     """

@@ -173,7 +173,7 @@ def _touch(
     body: SoftBody, tip: Tool | None, goal: PointGoal | Pose, told: SettledPoint | SettledTool
 ) -> Touch:
     if tip is not None and isinstance(goal, Pose):
-        return _tool_touch(body, tip, goal, cast("SettledTool", told))
+        return tool_touch(body, tip, goal, cast("SettledTool", told))
     return _point_touch(body, cast("PointGoal", goal), cast("SettledPoint", told))
 
 
@@ -183,7 +183,8 @@ def _point_touch(body: SoftBody, goal: PointGoal, told: SettledPoint) -> PointTo
     return PointTouch(corners, goal.alpha, point, goal.by, told["force"], told["nodal_forces"])
 
 
-def _tool_touch(body: SoftBody, tool: Tool, pose: Pose, told: SettledTool) -> ToolTouch:
+def tool_touch(body: SoftBody, tool: Tool, pose: Pose, told: SettledTool) -> ToolTouch:
+    """Touch of a tool at a pose, both of the body's frame, as the native engine tells it."""
     order = np.argsort(told["points"])
     return ToolTouch(
         tool=tool,

@@ -17,9 +17,11 @@ from ..body.soft_body import SoftBody
 from ..contact.near_field.compliance_beneath import near_correction
 from ..contact.near_field.contact_points import contact_points
 from ..contact.near_field.surface_shape import surface_area
+from ..contact.press import tool_touch
 from ..contact.tool.native_tool import native_shape, native_surface, native_tool
 from ..contact.tool.pose import Pose
 from ..contact.tool.tools import Tool
+from ..contact.touches import ToolTouch
 from ..errors import PalpateError
 from .rest import BodyTouch, Rest
 from .support import Floor, Support, friction_checked
@@ -113,7 +115,7 @@ class Resting:
         friction_checked(settings.friction)
         reach = _floor_reach(body, settings)
         self.body = body
-        self._modulus = body.modulus(settings.young_modulus)
+        self.young_modulus = body.modulus(settings.young_modulus)
         native = native_body(body, whole=True, may_move=True)
         surface = _surface(body, native, settings.spacing)
         try:
@@ -122,7 +124,7 @@ class Resting:
                 mass=body.mass,
                 centre=body.inertia.centre,
                 inertia=body.mass / body.inertia.volume * body.inertia.moments,
-                young_modulus=self._modulus,
+                young_modulus=self.young_modulus,
                 drag_time=settings.drag_time,
                 gravity=settings.gravity,
                 tools=[
@@ -133,7 +135,7 @@ class Resting:
             )
         except ValueError as problem:
             raise PalpateError("rest: {problem}", problem=problem) from problem
-        self._tool_count = len(tools)
+        self._tools = tuple(tool for tool, _ in tools)
         if placement is not None:
             self.place(placement)
 
@@ -141,17 +143,31 @@ class Resting:
         """Lay the body elsewhere; its contacts are found anew."""
         self._native.place(*_at(placement))
 
+    def come_in(self) -> None:
+        """What overlaps the body comes in from outside, while the body stays where it is: so one
+        that rested elsewhere goes on from there.
+
+        Raises
+        ------
+        PalpateError
+            A force is no number.
+        """
+        try:
+            self._native.come_in()
+        except RuntimeError as problem:
+            raise PalpateError("rest: {problem}", problem=problem) from problem
+
     def move_support(self, number: int, pose: Pose) -> None:
         """Have a support be elsewhere from the next step on."""
         self._native.lead_support(number, *_at(pose))
 
     def lead(self, goals: Sequence[Pose]) -> None:
         """Have the tools go to their goals, one each, from the next step on."""
-        if len(goals) != self._tool_count:
+        if len(goals) != len(self._tools):
             raise PalpateError(
                 "{goals} goals for {tools} tools; give one for each",
                 goals=len(goals),
-                tools=self._tool_count,
+                tools=len(self._tools),
             )
         for number, goal in enumerate(goals):
             self._native.lead_tool(number, *_at(goal))
@@ -199,7 +215,7 @@ class Resting:
         for number, told in enumerate(self._native.touches()):
             if told["free"]:
                 continue
-            if number < self._tool_count:
+            if number < len(self._tools):
                 raise PalpateError(
                     "tool {number} is within the body, which does not feel it; begin outside",
                     number=number,
@@ -207,9 +223,17 @@ class Resting:
             raise PalpateError(
                 "support {number} is within the body, which does not feel it; lay the body down "
                 "clear of it",
-                number=number - self._tool_count,
+                number=number - len(self._tools),
             )
         return self.rest
+
+    def tool_touches(self) -> tuple[ToolTouch, ...]:
+        """Touches of the tools in the body's own frame, as those of pinned bodies are."""
+        told = self._native.touches()[: len(self._tools)]
+        return tuple(
+            tool_touch(self.body, tool, Pose(one["position"], one["rotation"]), one)
+            for tool, one in zip(self._tools, told, strict=True)
+        )
 
     @property
     def rest(self) -> Rest:
@@ -219,8 +243,8 @@ class Resting:
         return Rest(
             self.body,
             placement,
-            tuple(touches[: self._tool_count]),
-            tuple(touches[self._tool_count :]),
+            tuple(touches[: len(self._tools)]),
+            tuple(touches[len(self._tools) :]),
             self._native.elastic,
             self._native.time,
         )

@@ -56,6 +56,12 @@ class NoPins:
 
 Pins = PinBelow | PinCore | PinWeights | PinNodes | NoPins
 
+
+def held_at(nodes: NDArray[np.int64]) -> PinNodes | NoPins:
+    """The rule that pins just these nodes (p,) of a given mesh; none of them, of a free body."""
+    return PinNodes(nodes) if len(nodes) else NoPins()
+
+
 # A piece is a shell when nothing in it is as deep as this share of its diagonal.
 SHALLOW = 0.03
 LOWEST = 0.1

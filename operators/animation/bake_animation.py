@@ -20,13 +20,24 @@ from ..object.drawn_body import DrawnBody, open_body
 from ..played import mesh_cache
 from ..press.modal_press import Pressing
 from ..reporting.translated import reported, shown
+from ..rest.keyed import key_places, refuse_others
+from ..rest.supports import supports_of
+from ..scene.body_frame import BodyFrame
 from ..scene.modal_progress import ModalProgress
 from ..shape.drawn_shape import closing_shape
 from ..traction.drawn_traction import patches_of, tractions_of
 from . import frame_keys, live_pressers
 from .force_table import FrameRows
 from .keeping import ITEMS, KEEPERS, Baking, collected
-from .pressed_frames import PressedFrame, frame_kept, imprinted, press_frames
+from .lying_frames import LyingFrames
+from .pressed_frames import (
+    AnimatedPress,
+    Following,
+    PressedFrame,
+    frame_kept,
+    imprinted,
+    press_frames,
+)
 
 MOST_KEYS = 2000
 # Seconds of pressing between two looks at the keyboard.
@@ -141,14 +152,22 @@ class PALPATE_OT_press_frames(Pressing, bpy.types.Operator):
         if self.keep == "KEYS" and not self.current_only:
             frame_keys.refuse(thing)
         drawn = open_body(thing, scene)
+        if drawn.body.is_free:
+            self._refuse_free(thing)
         rows = FrameRows(drawn, scene.render.fps / scene.render.fps_base)
         pressed = self._press(thing, scene, drawn, frames, rows)
         if self.current_only:
             yield from self._keep_last(thing, scene, drawn, pressed, len(frames))
         else:
             size = CacheSize(len(drawn.rest) // 3, len(frames), frames[0], self.step)
+            places: list[BodyFrame] = []
+            pressed = _noting(pressed, places)
             yield from KEEPERS[self.keep](thing, scene, drawn, pressed, size)
             live_pressers.end(thing)
+            if places:
+                floor = supports_of(thing, drawn, context.evaluated_depsgraph_get()).floor
+                key_places(thing, frames, places, floor)
+                scene.frame_set(scene.frame_current)
         if table is not None:
             rows.write(table)
 
@@ -168,7 +187,11 @@ class PALPATE_OT_press_frames(Pressing, bpy.types.Operator):
             closing_shape(thing, drawn) as shape,
         ):
             law = yielding_of(thing, drawn.frame)
-            pressed = press_frames(thing, scene, drawn, frames, shape)
+            seconds = self.step / rate
+            following: Following = AnimatedPress(thing, drawn, shape)
+            if drawn.body.is_free:
+                following = LyingFrames(thing, drawn, seconds)
+            pressed = press_frames(scene, frames, following)
             for here in imprinted(pressed, law, drawn, rate):
                 rows.add(here)
                 touched |= here.moved is not None
@@ -182,6 +205,16 @@ class PALPATE_OT_press_frames(Pressing, bpy.types.Operator):
         self._told = Sentence(
             "{count} frames, up to {largest:.3g} N", count=len(frames), largest=rows.largest_force
         )
+
+    def _refuse_free(self, thing: bpy.types.Object) -> None:
+        """Refuse what cannot be kept of an object that nobody holds."""
+        refuse_others(thing)
+        if self.current_only or self.keep not in {"CACHE", "KEYS"}:
+            raise PalpateError(
+                "{name}: nothing pins it, and its animation is kept as Mesh Cache or Shape Keys "
+                "with keyframes of its place; choose one of these",
+                name=thing.name,
+            )
 
     def _keep_last(
         self,
@@ -217,6 +250,14 @@ class PALPATE_OT_press_frames(Pressing, bpy.types.Operator):
                 most=MOST_KEYS,
             )
         return frames
+
+
+def _noting(pressed: Iterator[PressedFrame], places: list[BodyFrame]) -> Iterator[PressedFrame]:
+    """The frames, once the place of an object that nobody holds is noted."""
+    for here in pressed:
+        if here.lies is not None:
+            places.append(here.lies)
+        yield here
 
 
 @contextmanager

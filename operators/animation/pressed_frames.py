@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
+from typing import Protocol
 
 import bpy
 import numpy as np
@@ -33,13 +34,15 @@ SAME = 1e-3
 @dataclass(frozen=True, eq=False)
 class PressedFrame:
     """Result of a frame: each finger's touch and force (k, 3), N in world axes, and the flat
-    displacements (3 p,) of the drawn vertices, local units; None where none moves.
+    displacements (3 p,) of the drawn vertices, local units; None where none moves. ``lies`` is the
+    frame of an object that nobody holds.
     """
 
     frame: int
     fingers: tuple[Touch, ...]
     forces: NDArray[np.float64]
     moved: NDArray[np.float32] | None
+    lies: BodyFrame | None = None
 
     def coordinates(self, drawn: DrawnBody) -> NDArray[np.float32]:
         """Flat coordinates (3 p,) of the drawn vertices, local units."""
@@ -68,9 +71,14 @@ class AnimatedPress:
             is scaled otherwise here.
         """
         chosen = self.thing.palpate
+        if self.drawn.body.is_free:
+            raise PalpateError(
+                "{name}: nothing pins it, so it moves from frame to frame; press Bake Animation",
+                name=self.thing.name,
+            )
         self._go_along(graph)
         found = pressers_of(self.thing, graph, self.drawn)
-        if self._press is None or not _same_tools(found, self._pressers):
+        if self._press is None or not same_tools(found, self._pressers):
             settings = ContactSettings(chosen.young_modulus, chosen.static_friction)
             self._press = Press(self.drawn.body, [one.tool for one in found], settings)
             self._pressers = found
@@ -109,15 +117,17 @@ class AnimatedPress:
         return touched_place.nearest(self.thing, frame, presser.place, graph).frame(frame)
 
 
+class Following(Protocol):
+    """What goes through frames in their order."""
+
+    def now(self, graph: bpy.types.Depsgraph) -> PressedFrame:
+        """Result of the frame that a graph has."""
+
+
 def press_frames(
-    thing: bpy.types.Object,
-    scene: bpy.types.Scene,
-    drawn: DrawnBody,
-    frames: Sequence[int],
-    shape: Shape,
+    scene: bpy.types.Scene, frames: Sequence[int], press: Following
 ) -> Iterator[PressedFrame]:
-    """Lead the pressers through these frames, one result each; errors as of `AnimatedPress.now`."""
-    press = AnimatedPress(thing, drawn, shape)
+    """Lead the pressers through these frames, one result each; errors as of `Following.now`."""
     for frame in frames:
         scene.frame_set(frame)
         yield press.now(bpy.context.evaluated_depsgraph_get())
@@ -138,7 +148,8 @@ def imprinted(
         yield replace(here, moved=seen if seen.any() else None)
 
 
-def _same_tools(found: Sequence[Presser], before: Sequence[Presser]) -> bool:
+def same_tools(found: Sequence[Presser], before: Sequence[Presser]) -> bool:
+    """Whether pressers have the shapes that they had before."""
     return len(found) == len(before) and all(
         one.tool.core.shape == other.tool.core.shape
         # Matrices are float32, so a tool that turns is never quite the same.

@@ -12,7 +12,7 @@ from ...core.bake.cost.size import ShapeSize
 from ...core.bake.settings import BakeSettings
 from ...core.errors import PalpateError
 from ...core.machine.available_memory import available_memory
-from ...core.stiffness.pins import PinBelow, PinCore, Pins
+from ...core.stiffness.pins import NoPins, PinBelow, PinCore, Pins
 from ..pins import pin_group, stiff_region
 from ..scene.drawn_surface import DrawnSurface
 
@@ -47,6 +47,8 @@ def pins_of(thing: bpy.types.Object) -> Pins:
         return PinBelow(settings.pin_fraction)
     if settings.pin_mode == "CORE":
         return PinCore()
+    if settings.pin_mode == "NONE":
+        return NoPins()
     try:
         return pin_group.painted(thing)
     except PalpateError:
@@ -96,6 +98,7 @@ def all_settings_of(thing: bpy.types.Object, drawn: DrawnSurface) -> BakeSetting
     return replace(
         settings_of(thing, pin_group.pins(thing, drawn)),
         young_modulus=chosen.young_modulus,
+        density=chosen.density,
         time_limit=chosen.time_limit,
         stiffness=stiff_region.stiff_region(thing, drawn),
     )

@@ -14,7 +14,7 @@ from ...core.bake.steps import BakeReport, BakeSettings
 from ...core.body.soft_body import SoftBody
 from ...core.errors import CancelledError, PalpateError
 from ...core.mesh.surface import Surface
-from ...core.stiffness.pins import PinNodes
+from ...core.stiffness.pins import held_at
 from ..carrier import body_source, carrier, seen_mesh
 from ..carrier.seen_mesh import SeenSurface
 from ..layer import live_layer
@@ -277,7 +277,7 @@ def _rebuild_job(
             "{name}: {change}; press Make Soft to bake it anew", name=thing.name, change=change
         )
     if old.pins == now.pins:
-        settings = replace(settings, pins=PinNodes(within.fixed))
+        settings = replace(settings, pins=held_at(within.fixed))
     if old.stiffness == now.stiffness:
         settings = replace(settings, stiffness=within.stiffness)
     return BakeJob(within.mesh, settings, surface, python)

@@ -23,4 +23,5 @@ def settings_of(thing: bpy.types.Object) -> BakeSettings:
         formulation=baked.baked_formulation,
         form=baked.baked_form,
         tolerance=baked.baked_tolerance / 100,
+        density=baked.density,
     ).checked()

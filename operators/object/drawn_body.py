@@ -189,6 +189,24 @@ def open_body(
     )
 
 
+def open_pinned(thing: bpy.types.Object, scene: bpy.types.Scene) -> DrawnBody:
+    """Load an object's body as :func:`open_body`, one that something holds.
+
+    Raises
+    ------
+    PalpateError
+        As there; nothing pins it.
+    """
+    drawn = open_body(thing, scene)
+    if drawn.body.is_free:
+        raise PalpateError(
+            "{name}: nothing pins it, so it would move away under this; push it by a stroke, press "
+            "it by Bake Animation, or choose other Pins",
+            name=thing.name,
+        )
+    return drawn
+
+
 def _stored(thing: bpy.types.Object, status: BodyStatus) -> SoftBody:
     """Body of the object as its file has it.
 

@@ -17,8 +17,8 @@ from ...core.body.body_key import body_key, is_key_of
 from ...core.body.soft_body import SoftBody
 from ...core.errors import PalpateError
 from ...core.mesh.tet_mesh import TetMesh, young_scale_checked
-from ...core.stiffness.held_pins import pins_checked
-from ...core.stiffness.pins import PinNodes
+from ...core.stiffness.held_pins import free_or_pinned
+from ...core.stiffness.pins import held_at
 from ...core.stiffness.regions import TetScale
 
 ARRAYS = ("nodes", "tets", "fixed")
@@ -38,7 +38,7 @@ class EmbeddedBody:
 
     def baked_with(self, settings: BakeSettings) -> BakeSettings:
         """Settings of a bake that holds the same nodes and has the same factors."""
-        return replace(settings, pins=PinNodes(self.fixed), stiffness=self.stiffness)
+        return replace(settings, pins=held_at(self.fixed), stiffness=self.stiffness)
 
     @property
     def stiffness(self) -> TetScale | None:
@@ -91,7 +91,7 @@ def embedded(thing: bpy.types.Object) -> EmbeddedBody:
     try:
         nodes, tets = _numbers(baked, "nodes", "fd"), _numbers(baked, "tets", "i")
         mesh = TetMesh.checked(_rows(nodes, 3), _rows(tets, 4))
-        fixed = pins_checked(mesh, _numbers(baked, "fixed", "i"))
+        fixed = free_or_pinned(mesh, _numbers(baked, "fixed", "i"))
         scale = None
         if SCALE in baked:
             scale = young_scale_checked(_numbers(baked, SCALE, "fd"), len(mesh.tets))

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.errors import PalpateError
-from ...core.stiffness.pins import PinCore, PinWeights
+from ...core.stiffness.pins import NoPins, PinCore, PinWeights
 from ..scene.drawn_surface import DrawnSurface, group_weights
 from .group_digest import group_digest
 
@@ -23,15 +23,15 @@ def pin_rule(thing: bpy.types.Object) -> str:
     settings = thing.palpate
     if settings.pin_mode == "BELOW":
         return f"below {settings.pin_fraction:.4f}"
-    if settings.pin_mode == "CORE":
-        return "core"
+    if settings.pin_mode in {"CORE", "NONE"}:
+        return str(settings.pin_mode.lower())
     group = thing.vertex_groups.get(settings.pin_group)
     if group is None:
         return "no group"
     return f"group {group_digest(thing, group)}"
 
 
-def pins(thing: bpy.types.Object, surface: DrawnSurface) -> PinWeights | PinCore:
+def pins(thing: bpy.types.Object, surface: DrawnSurface) -> PinWeights | PinCore | NoPins:
     """Pins for a bake.
 
     Raises
@@ -39,8 +39,11 @@ def pins(thing: bpy.types.Object, surface: DrawnSurface) -> PinWeights | PinCore
     PalpateError
         The vertex group is missing or empty.
     """
-    if thing.palpate.pin_mode != "CORE":
-        return pinned_from(thing, surface)
+    match thing.palpate.pin_mode:
+        case "NONE":
+            return NoPins()
+        case "BELOW" | "GROUP":
+            return pinned_from(thing, surface)
     x, y, z = (float(one) for one in up_in_body(surface))
     return PinCore(up=(x, y, z))
 

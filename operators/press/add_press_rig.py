@@ -9,7 +9,7 @@ from ...core.grip.held_patch import HeldPatch
 from ...core.grip.motions import moved
 from ...core.grip.patch import Grip
 from ..layer import place_marks, press_rig
-from ..object.drawn_body import DrawnBody, open_body
+from ..object.drawn_body import DrawnBody, open_pinned
 from ..place import touched_place
 from ..reporting.translated import reported
 from .modal_press import Pressing
@@ -45,7 +45,7 @@ class PALPATE_OT_add_press_rig(Pressing, bpy.types.Operator):
 
     def act(self, context: bpy.types.Context) -> None:
         thing, scene = context.object, context.scene
-        drawn = open_body(thing, scene)
+        drawn = open_pinned(thing, scene)
         at = np.array(scene.cursor.location if self.use_cursor else self.at)
         with place_marks.marked(thing):
             rest = touched_place.nearest(thing, drawn.frame, at).rest

@@ -19,7 +19,7 @@ from ...core.errors import PalpateError
 from ...core.shape.meeting import FingerLoad, settled
 from ..imprint import kept_imprint
 from ..layer import place_marks
-from ..object.drawn_body import DrawnBody, open_body
+from ..object.drawn_body import DrawnBody, open_pinned
 from ..place import touched_place
 from ..place.touched_place import TouchedPlace
 from ..scene.body_frame import BodyFrame, Point, as_point
@@ -92,7 +92,7 @@ def press_several(
     PalpateError
         The object cannot be pressed, a coordinate is not finite, or the tool cannot be used.
     """
-    drawn = open_body(thing, scene)
+    drawn = open_pinned(thing, scene)
     frame, young_modulus = drawn.frame, thing.palpate.young_modulus
     tip = chosen_tip(scene, thing, drawn.size)
     points = [_point(at, "at") for at in ats]

@@ -41,8 +41,7 @@ def remove(animated: bpy.types.ID, path: str) -> None:
     """Remove keyframes and driver of a property of a datablock, where it has any."""
     animated.driver_remove(path)
     for bag in bags(animated):
-        curve = bag.find(path)
-        if curve is not None:
+        for curve in [one for one in bag if one.data_path == path]:
             bag.remove(curve)
 
 

@@ -20,7 +20,7 @@ from ...core.servo.session import Snapshot
 from ..device import servo_words
 from ..device.device_source import DeviceFrame
 from ..layer import live_layer, place_marks
-from ..object.drawn_body import DrawnBody, open_body
+from ..object.drawn_body import DrawnBody, open_pinned
 from ..place.touched_place import TouchedPlace
 from ..scene.body_frame import BodyFrame
 from ..scene.object_handle import ObjectHandle
@@ -279,7 +279,7 @@ def begin(
         busy = _current.handle.name
         raise PalpateError("{name} is being pressed; end that first (Escape)", name=busy)
     leads = BOTH_POINTER if pinch else leads_of(scene, source)
-    drawn = open_body(thing, scene)
+    drawn = open_pinned(thing, scene)
     tip = chosen_tip(scene, thing, drawn.size)
     homes = homes_of(thing, scene, drawn.frame, leads)
     session = PressSession(ObjectHandle.of(thing), scene.name, drawn, homes, leads, tip)

@@ -8,7 +8,7 @@ import bpy
 
 from ..bake.bake_session import OnSoft
 from ..layer import place_marks
-from ..object.drawn_body import DrawnBody, open_body
+from ..object.drawn_body import DrawnBody, open_pinned
 from ..place import touched_place
 from ..reporting.translated import reported, shown
 from ..scene import viewport
@@ -39,7 +39,7 @@ class SoftnessOperator(OnSoft, _Operator):
         return self.guarded(lambda: self._pick(context))
 
     def _pick(self, context: bpy.types.Context) -> set[str]:
-        self._drawn = open_body(context.object, context.scene)
+        self._drawn = open_pinned(context.object, context.scene)
         context.window.cursor_modal_set("EYEDROPPER")
         self._stay = ModalStay()
         self._stay.begin(self, context)
@@ -65,7 +65,7 @@ class SoftnessOperator(OnSoft, _Operator):
         return self.execute(context)
 
     def act(self, context: bpy.types.Context) -> None:
-        self.measure(context, open_body(context.object, context.scene))
+        self.measure(context, open_pinned(context.object, context.scene))
 
     def measure(self, context: bpy.types.Context, drawn: DrawnBody) -> None:
         """Measure, store and report."""

@@ -12,7 +12,7 @@ from ..imprint import kept_imprint
 from ..imprint.kept_imprint import NothingStaysError
 from ..layer import live_layer, place_marks
 from ..object import soft_object
-from ..object.drawn_body import DrawnBody, open_body
+from ..object.drawn_body import open_body
 from ..place import touched_place
 from ..place.seen_place import under_pointer
 from ..place.touched_place import TouchedPlace
@@ -26,14 +26,14 @@ from ..scene.object_handle import ObjectHandle, make_active
 from ..scene.probe_drag import View
 from ..session import press_session
 from ..tool.tool_sizes import chosen_sizes
-from ..traction import layer_traction
-from ..traction.drawn_traction import patches_of, tractions_of
 from . import stroke_words
+from .answer.free_stroke import FreeStroke, stroke_of
 from .answer.grips import grips_at
 from .answer.motion import Asked, Motion
-from .answer.pushing import Stroked
 from .answer.stroke import Stroke
+from .answer.stroked import Stroked
 from .stroke_drag import StrokeDrag
+from .stroke_drawing import draw
 from .stroke_properties import StrokeProperties
 from .typed_amount import TypedAmount
 
@@ -48,7 +48,7 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     _handle: ObjectHandle
-    _stroke: Stroke
+    _stroke: Stroke | FreeStroke
     _touched: TouchedPlace
     # Of the object, or of its instance that was touched.
     _frame: BodyFrame
@@ -74,21 +74,21 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
         with place_marks.marked(thing):
             touched = touched_place.nearest(thing, frame, np.array(self.place))
         self._begin(thing, scene, frame, touched)
-        wanted = self._asked()
+        wanted = self.asked(self._frame, self._touched.turn)
         if wanted.nothing:
             raise PalpateError(
                 "stroke: it moves nothing; give it a depth, a way, an angle or a share"
             )
-        live_layer.hang(thing)
+        self._hang(thing)
         try:
             asked, stroked = self._stroke.stroked(wanted)
-            _draw(thing, self._stroke.drawn, stroked)
+            draw(thing, self._stroke.drawn, stroked)
             self._keep(scene, thing, asked, stroked)
             if asked is not wanted:
-                self._tell(asked, scene)
+                self.tell(asked, self._frame, self._touched.turn)
                 self.report({"WARNING"}, shown(stroke_words.ENDS))
         except BaseException:
-            live_layer.remove(thing)
+            self._give_up(thing)
             raise
         if context.object != thing:
             make_active(context, thing)
@@ -147,7 +147,7 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
         if context.object != thing:
             make_active(context, thing)
         self._typed = TypedAmount(self._drag.motion)
-        live_layer.hang(thing)
+        self._hang(thing)
         self._stay = ModalStay()
         self._stay.begin(self, context)
         self._stay.say(context, stroke_words.status(self._drag.motion))
@@ -179,9 +179,18 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
         radius = metres * self.radius or chosen_sizes(scene, drawn.size).tip_radius
         self.radius = radius / metres
         grips = grips_at(drawn, touched.rest, radius, tuple(self.mirrored))
-        chosen = thing.palpate
         self._touched, self._frame, self._handle = touched, frame, ObjectHandle.of(thing)
-        self._stroke = Stroke(drawn, grips, chosen.young_modulus, chosen.static_friction)
+        self._stroke = stroke_of(thing, drawn, grips)
+
+    def _hang(self, thing: bpy.types.Object) -> None:
+        """Make all that the stroke changes ready."""
+        self._stroke.make_ready(thing)
+        live_layer.hang(thing)
+
+    def _give_up(self, thing: bpy.types.Object) -> None:
+        """Have the object as it was."""
+        live_layer.remove(thing)
+        self._stroke.give_back(thing)
 
     def _handle_event(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         pressed = event.value == "PRESS"
@@ -208,14 +217,14 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
         wanted = self._drag.asked(self._touched.turn)
         problem = ""
         try:
-            self._last = self._stroke.stroked(wanted)
+            self._last = self._stroke.towards(wanted)
             if self._last[0] is not wanted:
                 problem = f"   {shown(stroke_words.ENDS)}"
         except PalpateError as refused:
             # As far as it went; back from there the stroke goes on.
             problem = f"   {shown(refused)}"
         asked, stroked = self._last
-        _draw(thing, self._stroke.drawn, stroked)
+        draw(thing, self._stroke.drawn, stroked)
         text = f"{stroke_words.figures(scene, asked, stroked)}{problem}"
         if self._typed.text:
             text = f"[{self._typed.text}|]   {text}"
@@ -226,9 +235,9 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
             # A click moves nothing, and leaves nothing.
             self._leave(context, give_up=True)
             return {"CANCELLED"}
-        asked, stroked = self._last
         scene, thing = context.scene, self._thing()
-        self._tell(asked, scene)
+        asked, stroked = self._ended(thing)
+        self.tell(asked, self._frame, self._touched.turn)
         try:
             self._keep(scene, thing, asked, stroked)
         except NothingStaysError as problem:
@@ -246,10 +255,17 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
         figures = stroke_words.figures(scene, asked, stroked)
         self.report({"INFO"}, reported("{figures}, kept as '{name}'", figures=figures, name=name))
 
+    def _ended(self, thing: bpy.types.Object) -> tuple[Asked, Stroked]:
+        """What came of the stroke once all is at rest."""
+        asked, stroked = self._stroke.ended(*self._last)
+        if stroked is not self._last[1]:
+            draw(thing, self._stroke.drawn, stroked)
+        return asked, stroked
+
     def _leave(self, context: bpy.types.Context, *, give_up: bool) -> None:
         thing = self._handle.find()
         if give_up and thing is not None:
-            live_layer.remove(thing)
+            self._give_up(thing)
         self._stay.end(context)
 
     def _thing(self) -> bpy.types.Object:
@@ -260,40 +276,6 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
             # A script, undo or another tool took it.
             raise PalpateError("{name} has lost its live layer; stroke again", name=thing.name)
         return thing
-
-    def _asked(self) -> Asked:
-        """What the properties ask."""
-        frame = self._frame
-        way = frame.turn_to_body(np.array(self.by)) * frame.metres_per_unit
-        by = way @ self._touched.turn
-        match motion := Motion[self.motion]:
-            case Motion.GRAB:
-                return Asked(motion, by=by)
-            case Motion.TWIST:
-                return Asked(motion, self.angle)
-            case Motion.PINCH:
-                return Asked(motion, self.share)
-        return Asked(motion, self.depth * frame.metres_per_unit, by=by)
-
-    def _tell(self, asked: Asked, scene: bpy.types.Scene) -> None:
-        """Write what was asked into the properties, for the redo panel."""
-        metres = metres_per_unit(scene)
-        if asked.by is not None:
-            seen = self._touched.turn @ asked.by
-            self.by = self._frame.turn_to_world(seen) / metres
-        match asked.motion:
-            case Motion.TWIST:
-                self.angle = asked.amount
-            case Motion.PINCH:
-                self.share = asked.amount
-            case Motion.PUSH:
-                self.depth = asked.amount / metres
-
-
-def _draw(thing: bpy.types.Object, drawn: DrawnBody, stroked: Stroked) -> None:
-    moved = drawn.drawn_displacement(stroked.displacements, stroked.tools)
-    live_layer.write(thing, moved)
-    layer_traction.write(thing, tractions_of(thing, drawn, moved, patches_of(stroked.touches)))
 
 
 classes = (PALPATE_OT_stroke,)

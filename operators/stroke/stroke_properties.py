@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 from ...core.errors import PalpateError
 from ..place.seen_place import SeenPlace
@@ -11,6 +12,9 @@ from ..reporting.quantities import newtons
 from ..reporting.translated import shown
 from ..scene.body_frame import BodyFrame
 from ..scene.drawn_surface import frame_of, metres_per_unit
+from .answer.motion import Asked, Motion
+
+Array = NDArray[np.float64]
 
 MOTION_ITEMS = [
     ("PUSH", "Push", "A fingertip presses in along the surface's normal; outward it pulls"),
@@ -120,6 +124,33 @@ class StrokeProperties:
             return frame_of(thing, scene)
         matrix = np.reshape(self.object_matrix, (4, 4))
         return BodyFrame.of_matrix(matrix, metres_per_unit(scene))
+
+    def asked(self, frame: BodyFrame, turn: Array) -> Asked:
+        """What is asked of a body whose object is in a frame; ``turn`` (3, 3) is from the axes at
+        rest to those as seen.
+        """
+        by = frame.turn_to_body(np.array(self.by)) * frame.metres_per_unit @ turn
+        match motion := Motion[self.motion]:
+            case Motion.GRAB:
+                return Asked(motion, by=by)
+            case Motion.TWIST:
+                return Asked(motion, self.angle)
+            case Motion.PINCH:
+                return Asked(motion, self.share)
+        return Asked(motion, self.depth * frame.metres_per_unit, by=by)
+
+    def tell(self, asked: Asked, frame: BodyFrame, turn: Array) -> None:
+        """Take over what was asked, for the redo panel."""
+        metres = frame.metres_per_unit
+        if asked.by is not None:
+            self.by = frame.turn_to_world(turn @ asked.by) / metres
+        match asked.motion:
+            case Motion.TWIST:
+                self.angle = asked.amount
+            case Motion.PINCH:
+                self.share = asked.amount
+            case Motion.PUSH:
+                self.depth = asked.amount / metres
 
     def draw(self, context: bpy.types.Context) -> None:
         layout: bpy.types.UILayout = self.layout  # type: ignore[attr-defined]  # of Operator

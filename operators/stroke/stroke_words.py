@@ -9,7 +9,7 @@ import bpy
 from ..reporting.quantities import newtons, scene_length
 from ..reporting.translated import shown
 from .answer.motion import Asked, Motion
-from .answer.pushing import Stroked
+from .answer.stroked import Stroked
 
 STATUS = {
     Motion.PUSH: "Drag away in any direction: Deeper     [Ctrl] Along the surface     "

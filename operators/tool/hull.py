@@ -33,12 +33,13 @@ MOST_KEPT = 64
 
 @dataclass(frozen=True, eq=False)
 class Hull:
-    """Corners (k, 3) of a hull, metres in the object's axes, and a remark on changes to the mesh;
-    empty where it was convex and simple.
+    """Corners (k, 3) of a hull, metres in the object's axes; a remark on changes to the mesh, empty
+    where it was convex and simple; whether the mesh was smaller than its hull.
     """
 
     corners: Array
     remark: str
+    hollow: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +79,8 @@ def hull_of(
             name=thing.name,
         )
     few = _most_spread(corners)
-    return Hull(few, _remark(thing.name, len(corners), len(few), hollow=local.hollow))
+    remark = _remark(thing.name, len(corners), len(few), hollow=local.hollow)
+    return Hull(few, remark, local.hollow)
 
 
 def _remark(name: str, corners: int, left: int, *, hollow: bool) -> str:

@@ -56,10 +56,12 @@ def mesh_object(vertices: Any, faces: Any, name: str = "Thing") -> bpy.types.Obj
     return select(thing)
 
 
-def soft_cube(edge: float = 0.05) -> bpy.types.Object:
+def soft_cube(edge: float = 0.05, pins: str = "BELOW") -> bpy.types.Object:
     """A cube with its body: baked the first time, the same body again afterwards."""
     thing = cube(edge)
-    kept = Path(os.environ["BLENDER_USER_RESOURCES"]) / f"cube-{edge}.npz"
+    if pins != "BELOW":
+        thing.palpate.pin_mode = pins
+    kept = Path(os.environ["BLENDER_USER_RESOURCES"]) / f"cube-{edge}-{pins}.npz"
     if kept.is_file():
         _give_body(thing, kept)
     else:

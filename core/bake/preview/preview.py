@@ -9,7 +9,7 @@ from palpate_servo import closest_points
 
 from ...mesh.surface import Surface
 from ...mesh.tet_mesh import TetMesh
-from ...stiffness.pins import PinNodes, pinned_nodes
+from ...stiffness.pins import held_at, pinned_nodes
 from ...stiffness.regions import TetScale, young_scale
 from ..settings import BakeSettings
 from .lattice import lattice
@@ -45,7 +45,7 @@ def preview(surface: Surface, settings: BakeSettings) -> Preview:
     """
     mesh = lattice(surface)
     # By nodes and tetrahedra, so that the surface is not compared once more.
-    held = PinNodes(pinned_nodes(settings.pins, mesh, surface))
+    held = held_at(pinned_nodes(settings.pins, mesh, surface))
     stiffness = settings.stiffness
     if stiffness is not None:
         stiffness = TetScale(young_scale(stiffness, mesh, surface))

@@ -136,6 +136,10 @@ impl Resting {
         self.inner.tick(dt, hurried).map(drop).map_err(restless)
     }
 
+    fn come_in(&mut self, py: Python<'_>) -> PyResult<()> {
+        py.detach(|| self.inner.come_in()).map_err(restless)
+    }
+
     fn settle(&mut self, py: Python<'_>) -> PyResult<()> {
         py.detach(|| self.inner.settle()).map_err(restless)
     }

@@ -41,6 +41,10 @@ const MOST_TICKS: usize = 20_000;
 const MOST_SIZES: f64 = 20.0;
 /// Tools are at their goals if they miss them by this share of the body's size.
 const AT_GOAL: f64 = 1e-9;
+/// What comes in does so in ticks that are so short beside the shortest others.
+const INSTANT: f64 = 1e-3;
+/// Strides in which they come in at most.
+const MOST_STRIDES_IN: usize = 2000;
 
 /// Why a body does not rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -95,6 +99,35 @@ impl Resting {
         let supports = self.prop.supports.iter_mut();
         let all = tools.chain(supports.map(|support| &mut support.collider));
         all.for_each(Collider::lift);
+    }
+
+    /// What overlaps the body where it lies comes in from outside, while the body stays there: so a
+    /// body goes on from where it rested.
+    ///
+    /// # Errors
+    /// [`Restless::NotANumber`].
+    pub fn come_in(&mut self) -> Result<(), Restless> {
+        let placement = self.prop.placement;
+        let tools = self.fingers.iter_mut().map(|(tool, pose)| (tool, pose));
+        let supports = self.prop.supports.iter_mut();
+        let supports = supports.map(|support| (&mut support.collider, &mut support.pose));
+        for (tool, pose) in tools.chain(supports) {
+            if let Some(outside) = tool.way_out(&placement.to_body(pose)) {
+                tool.restart(&outside);
+            }
+        }
+        let instant = INSTANT * SHORTEST * self.longest_tick();
+        let mut before = self.wrenches();
+        for _ in 0..MOST_STRIDES_IN {
+            self.tick(instant, false)?;
+            self.prop.placement = placement;
+            let now = self.wrenches();
+            if self.are_at_goals() && have_stayed(&before, &now) {
+                break;
+            }
+            before = now;
+        }
+        Ok(())
     }
 
     /// Since it was set down, s.
@@ -237,17 +270,28 @@ impl Resting {
     /// Whether the wrenches on the body cancel and stay.
     fn is_quiet(&self, before: &[DVec3], now: &[DVec3]) -> bool {
         let weight = self.prop.gravity * self.prop.free.mass;
-        let largest =
-            (now.iter().chain([&weight])).fold(0.0_f64, |most, force| most.max(force.length()));
-        let change = before
-            .iter()
-            .zip(now)
-            .fold(0.0_f64, |most, (a, b)| most.max(a.distance(*b)));
+        let largest = largest(now).max(weight.length());
         let (force, torque) = self.wrench();
         let left = force + self.prop.placement.direction_to_body(weight);
         self.are_at_goals()
             && left.length() <= AT_REST * largest
             && torque.length() <= AT_REST * largest * self.body.size()
-            && change <= SETTLED * largest
+            && change(before, now) <= SETTLED * largest
     }
+}
+
+/// The largest of some forces, N.
+fn largest(forces: &[DVec3]) -> f64 {
+    (forces.iter()).fold(0.0_f64, |most, force| most.max(force.length()))
+}
+
+/// By how much a force has changed at most, N.
+fn change(before: &[DVec3], now: &[DVec3]) -> f64 {
+    let pairs = before.iter().zip(now);
+    pairs.fold(0.0_f64, |most, (a, b)| most.max(a.distance(*b)))
+}
+
+/// Whether forces have stayed as they were, or there are none.
+fn have_stayed(before: &[DVec3], now: &[DVec3]) -> bool {
+    change(before, now) <= SETTLED * largest(now)
 }

@@ -6,13 +6,15 @@ import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+import bpy
 import numpy as np
 
 from ....core.grip.held_patch import HeldPatch
 from ....core.grip.patch import Grip
 from ...object.drawn_body import DrawnBody
 from .motion import Asked, Motion
-from .pushing import Pushing, Stroked
+from .pushing import Pushing
+from .stroked import Stroked
 from .thickness import Thickness
 
 # Share of its thickness by which a push squeezes a body at most: beyond, it would come out on the
@@ -68,6 +70,20 @@ class Stroke:
             farther = done.amount * MOST_SQUEEZED / max(share, LEAST_SQUEEZED)
             done = replace(asked, amount=min(asked.amount, farther))
         return (asked if done.amount == asked.amount else done), stroked
+
+    def towards(self, asked: Asked) -> tuple[Asked, Stroked]:
+        """The same while the pointer moves."""
+        return self.stroked(asked)
+
+    def ended(self, asked: Asked, stroked: Stroked) -> tuple[Asked, Stroked]:
+        """What came of the stroke once all is at rest: the same."""
+        return asked, stroked
+
+    def make_ready(self, thing: bpy.types.Object) -> None:
+        """Nothing moves an object that is pinned."""
+
+    def give_back(self, thing: bpy.types.Object) -> None:
+        """Nothing has moved it."""
 
     def _done(self, asked: Asked, *, inward: bool) -> Stroked:
         if inward and self._pushing.reaches:

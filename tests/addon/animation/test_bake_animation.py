@@ -51,7 +51,9 @@ def frames_of(thing, scene, frames):
     with part("operators.shape.drawn_shape").closing_shape(thing, opened) as shape:
         return [
             here.coordinates(opened).reshape(-1, 3).copy()
-            for here in pressed.press_frames(thing, scene, opened, frames, shape)
+            for here in pressed.press_frames(
+                scene, frames, pressed.AnimatedPress(thing, opened, shape)
+            )
         ]
 
 
@@ -110,7 +112,9 @@ def test_the_table_agrees_with_the_pressure_and_the_geometry(tapped, tmp_path):
     opened = part("operators.object.drawn_body").open_body(tapped, scene)
     pressed = part("operators.animation.pressed_frames")
     with part("operators.shape.drawn_shape").closing_shape(tapped, opened) as shape:
-        frames = list(pressed.press_frames(tapped, scene, opened, list(range(1, 8)), shape))
+        frames = list(
+            pressed.press_frames(scene, range(1, 8), pressed.AnimatedPress(tapped, opened, shape))
+        )
     touched = 0
     for row, here in zip(rows, frames, strict=True):
         (touch,) = here.fingers

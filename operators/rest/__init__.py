@@ -1,0 +1,1 @@
+"""Bodies that nobody holds: what they rest on, how they come to lie, and their objects."""

@@ -1,0 +1,199 @@
+"""Free body of an object, among what it rests on and what presses it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.body.soft_body import SoftBody
+from ...core.contact.tool.pose import Pose
+from ...core.contact.tool.tool_dent import PressingTool
+from ...core.contact.tool.tools import Tool
+from ...core.contact.touches import ToolTouch
+from ...core.errors import PalpateError
+from ...core.rest.rest import Rest
+from ...core.rest.resting import Resting, RestSettings
+from ..layer import layers, stack
+from ..object.drawn_body import DrawnBody
+from ..played import mesh_cache
+from ..scene.body_frame import BodyFrame
+from ..shape.drawn_shape import chosen_shape
+from .placement import frame_at, placement_of
+from .supports import Supports, supports_of
+
+Array = NDArray[np.float64]
+
+# The body opened last, at another density than its file tells, and as it was.
+_weighed: tuple[SoftBody, SoftBody] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Lying:
+    """A free body where it lies.
+
+    Attributes
+    ----------
+    frame : of its object there.
+    touches : of the tools, in the body's own axes.
+    displacements : float64 (n, 3), of the free surface nodes, metres.
+    moved : float32 (3 p,), of the drawn vertices, local units.
+    rest : the same in the world.
+    """
+
+    frame: BodyFrame
+    touches: tuple[ToolTouch, ...]
+    displacements: Array
+    moved: NDArray[np.float32]
+    rest: Rest
+
+
+@dataclass(frozen=True, eq=False)
+class FreeBody:
+    """Free body of an object; made by :func:`lie`.
+
+    Attributes
+    ----------
+    drawn : the body, and its object as it was at first.
+    supports : what it rests on.
+    resting : its equilibrium.
+    """
+
+    drawn: DrawnBody
+    supports: Supports
+    resting: Resting
+
+    def settle(self) -> Lying:
+        """Where it comes to rest.
+
+        Raises
+        ------
+        PalpateError
+            It does not.
+        """
+        self.resting.settle()
+        return self.now()
+
+    def now(self) -> Lying:
+        """Where it is now."""
+        rest, touches = self.resting.rest, self.resting.tool_touches()
+        displacements = rest.displacements(self.resting.young_modulus)
+        drawn = self.drawn
+        pressing = [PressingTool(one.tool, one.pose, one.force) for one in touches]
+        moved = drawn.drawn_displacement(displacements, pressing)
+        frame = frame_at(drawn.frame, rest.placement)
+        return Lying(
+            frame, touches, displacements, _above(drawn, frame, moved, self.supports.floor), rest
+        )
+
+
+def lie(
+    thing: bpy.types.Object,
+    drawn: DrawnBody,
+    supports: Supports,
+    tools: Sequence[tuple[Tool, Pose]] = (),
+    placement: Pose | None = None,
+) -> FreeBody:
+    """A free body where its object is, or at a ``placement``; poses of tools are in the world.
+
+    Raises
+    ------
+    PalpateError
+        Too many tools or colliders.
+    """
+    chosen, scene = thing.palpate, bpy.context.scene
+    x, y, z = scene.gravity if scene.use_gravity else (0.0, 0.0, 0.0)
+    settings = RestSettings(
+        young_modulus=chosen.young_modulus, friction=chosen.static_friction, gravity=(x, y, z)
+    )
+    resting = Resting(
+        _at_density(drawn.body, chosen.density),
+        supports.all,
+        tools,
+        placement=placement or placement_of(drawn.frame),
+        settings=settings,
+    )
+    resting.come_in()
+    return FreeBody(drawn, supports, resting)
+
+
+def supports_under(
+    thing: bpy.types.Object, drawn: DrawnBody, graph: bpy.types.Depsgraph
+) -> Supports:
+    """What the free body of an object rests on.
+
+    Raises
+    ------
+    PalpateError
+        It is pinned or cannot move by itself, nothing bears it, with the remedy.
+    """
+    reason = _refusal(thing)
+    if reason is not None:
+        raise reason
+    if not drawn.body.is_free:
+        raise PalpateError(
+            "{name} is pinned, so it stays where it is; choose Pins: None and press Rebuild Body",
+            name=thing.name,
+        )
+    return supports_of(thing, drawn, graph)
+
+
+def _refusal(thing: bpy.types.Object) -> PalpateError | None:
+    """Reason why an object cannot move by itself."""
+    if thing.parent is not None or any(one.enabled for one in thing.constraints):
+        return PalpateError(
+            "{name} is moved by its parent or a constraint, and cannot lie by itself; clear them, "
+            "or choose other Pins",
+            name=thing.name,
+        )
+    if chosen_shape(thing) != "linear":
+        return PalpateError(
+            "{name}: without pins it is drawn by the linear shape alone; choose Linear under Large "
+            "Deformation",
+            name=thing.name,
+        )
+    posing = [kind for kind in stack.following(thing, layers.made_by(thing)) if kind in stack.POSES]
+    if posing and not mesh_cache.plays(thing):
+        return PalpateError(
+            "{name} is posed by its modifiers, and rests as it was made; hide them, or choose "
+            "other Pins",
+            name=thing.name,
+        )
+    return None
+
+
+def _at_density(body: SoftBody, density: float) -> SoftBody:
+    """The body of this density, kg/m3; the same one each time, as much is kept with it."""
+    global _weighed  # noqa: PLW0603  one cached body
+    if body.density == density:
+        return body
+    if _weighed is None or _weighed[0] is not body or _weighed[1].density != density:
+        _weighed = body, replace(body, density=density)
+    return _weighed[1]
+
+
+def forget() -> None:
+    """Free the memory."""
+    global _weighed  # noqa: PLW0603  see _at_density
+    _weighed = None
+
+
+def _above(
+    drawn: DrawnBody, frame: BodyFrame, moved: NDArray[np.float32], floor: float | None
+) -> NDArray[np.float32]:
+    """Displacements, none of which leads beneath a floor: between nodes a body may sag farther."""
+    if floor is None:
+        return moved
+    local = (drawn.rest + moved).reshape(-1, 3).astype(np.float64)
+    places = frame.world_from_body(frame.body_from_local(local))
+    beneath = np.flatnonzero(places[:, 2] < floor / frame.metres_per_unit)
+    if not len(beneath):
+        return moved
+    places[beneath, 2] = floor / frame.metres_per_unit
+    lifted = frame.local_from_body(frame.body_from_world(places[beneath]))
+    found = moved.copy()
+    found.reshape(-1, 3)[beneath] = lifted - drawn.rest.reshape(-1, 3)[beneath]
+    return found

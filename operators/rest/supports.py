@@ -1,0 +1,93 @@
+"""What an object rests on: a floor at a height, and the colliders that it names."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+
+from ...core.contact.tool.pose import Pose
+from ...core.contact.tool.tools import Tool
+from ...core.errors import PalpateError
+from ...core.rest.support import Floor, Support
+from ..object.drawn_body import DrawnBody
+from ..place.evaluation import evaluated
+from ..scene.drawn_surface import frame_of, metres_per_unit
+from .collider_tool import collider_tool
+from .laid import found_floor
+from .placement import placement_of
+
+# Share of its size by which an object may be beneath the ground and still stand on it.
+ROUNDING = 1e-4
+
+
+@dataclass(frozen=True, eq=False)
+class Supports:
+    """Supports of an object as a graph has them; ``floor`` is its height, metres, None without."""
+
+    all: tuple[Floor | Support, ...]
+    floor: float | None
+
+    @property
+    def ways(self) -> list[tuple[Tool | None, Pose]]:
+        """Tool and pose of each; a floor has no tool."""
+        return [(getattr(one, "tool", None), one.pose) for one in self.all]
+
+
+def supports_of(thing: bpy.types.Object, drawn: DrawnBody, graph: bpy.types.Depsgraph) -> Supports:
+    """What an object rests on.
+
+    Raises
+    ------
+    PalpateError
+        There is nothing, or a collider cannot bear it.
+    """
+    chosen = thing.palpate
+    friction = chosen.rest_friction
+    height = _floor_height(thing, drawn, metres_per_unit(graph.scene))
+    found: list[Floor | Support] = [] if height is None else [Floor(height, friction)]
+    for one in [] if chosen.colliders is None else chosen.colliders.all_objects:
+        if one == thing:
+            raise PalpateError(
+                "colliders: {name} cannot rest on itself; take it out of the collection",
+                name=thing.name,
+            )
+        pose = placement_of(frame_of(evaluated(one, graph), graph.scene))
+        found.append(Support(collider_tool(one, graph), pose, friction))
+    if not found:
+        raise PalpateError(
+            "{name}: there is nothing under it; choose a floor or colliders under Rests On",
+            name=thing.name,
+        )
+    return Supports(tuple(found), height)
+
+
+def _floor_height(thing: bpy.types.Object, drawn: DrawnBody, metres: float) -> float | None:
+    """Height of the floor, metres: as chosen, as found before, or under the object; None where
+    there is none.
+    """
+    chosen = thing.palpate
+    if chosen.floor == "NONE":
+        return None
+    if chosen.floor == "HEIGHT":
+        return float(metres * chosen.floor_height)
+    before = found_floor(thing)
+    if before is not None:
+        return before
+    lowest = metres * float(drawn.frame.world_from_body(drawn.rest_places)[:, 2].min())
+    return lowest if lowest < -ROUNDING * drawn.size else 0.0
+
+
+def same_shapes(before: Supports, after: Supports) -> bool:
+    """Whether two are of the same shapes, perhaps elsewhere."""
+    return len(before.all) == len(after.all) and all(
+        (one is None and other is None)
+        or (
+            one is not None
+            and other is not None
+            and one.core.shape == other.core.shape
+            and np.allclose(one.core, other.core, rtol=0.0, atol=1e-3 * one.radius)
+        )
+        for (one, _), (other, _) in zip(before.ways, after.ways, strict=True)
+    )

@@ -1,0 +1,80 @@
+"""Fingertips of a push: where they are set down on a body at rest, and where they go."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....core.contact.tool.pose import Pose, facing, resting_on
+from ....core.contact.tool.tool_surface import surface_and_correction
+from ....core.contact.tool.tools import Tool, sphere
+from ....core.grip.patch import Grip
+from ...object.drawn_body import DrawnBody
+from .grips import grip_at
+from .motion import Asked
+
+Array = NDArray[np.float64]
+
+# Radii by which what is beside it may keep a fingertip off its place.
+FARTHEST_OFF = 0.5
+
+
+@dataclass(frozen=True, eq=False)
+class Fingertips:
+    """Fingertips over their places.
+
+    Attributes
+    ----------
+    drawn : the body.
+    grips : the places.
+    tool : the fingertip.
+    samples : float64 (n, 3), places that it may touch.
+    """
+
+    drawn: DrawnBody
+    grips: tuple[Grip, ...]
+    tool: Tool
+    samples: Array
+
+    @classmethod
+    def over(cls, drawn: DrawnBody, grips: tuple[Grip, ...]) -> Fingertips:
+        """Fingertips as large as grips.
+
+        Raises
+        ------
+        PalpateError
+            They are too small for the body.
+        """
+        tool = sphere(grips[0].radius)
+        return cls(drawn, grips, tool, surface_and_correction(drawn.body, tool)[0].positions)
+
+    @property
+    def reach(self) -> bool:
+        """Whether a fingertip gets to its place without being held off by what is beside it."""
+        grip = self.grips[0]
+        off = self.set_down(grip).position - grip.centre(self.drawn.body.mesh)
+        farthest = (1.0 + FARTHEST_OFF) * self.tool.radius
+        return float(np.linalg.norm(off)) <= farthest
+
+    def places(self, asked: Asked) -> list[Grip]:
+        """Places along the surface, over which fingertips then go in."""
+        return [self._beside(grip, asked) for grip in self.grips]
+
+    def pose(self, grip: Grip, depth: float) -> Pose:
+        """Where a fingertip is that has gone in by a depth, metres."""
+        start = self.set_down(grip)
+        return Pose(start.position - depth * grip.normal, start.rotation)
+
+    def set_down(self, grip: Grip) -> Pose:
+        """Where a fingertip just touches a place."""
+        turn = facing(grip.normal, np.eye(3)[0])
+        centre = grip.centre(self.drawn.body.mesh)
+        return resting_on(self.tool, turn, centre, grip.normal, self.samples)
+
+    def _beside(self, grip: Grip, asked: Asked) -> Grip:
+        if asked.by is None or not asked.by.any():
+            return grip
+        beside = grip.centre(self.drawn.body.mesh) + grip.mirror @ asked.by
+        return grip_at(self.drawn, beside, grip.radius, grip.mirror)

@@ -1,0 +1,26 @@
+"""Drawing of a stroke: what it does to the surface, and where an object that nobody holds goes."""
+
+from __future__ import annotations
+
+import bpy
+
+from ..layer import live_layer
+from ..object.drawn_body import DrawnBody
+from ..rest import rest_layer
+from ..rest.laid import place
+from ..traction import layer_traction
+from ..traction.drawn_traction import patches_of, tractions_of
+from .answer.stroked import Stroked
+
+
+def draw(thing: bpy.types.Object, drawn: DrawnBody, stroked: Stroked) -> None:
+    """Write the displacement of a stroke into the live layer, beside what shows how it rests."""
+    lying = stroked.lying
+    if lying is None:
+        moved = drawn.drawn_displacement(stroked.displacements, stroked.tools)
+        live_layer.write(thing, moved)
+    else:
+        moved = lying.moved
+        live_layer.write(thing, moved - rest_layer.shown(thing, len(moved) // 3))
+        place(thing, lying.frame)
+    layer_traction.write(thing, tractions_of(thing, drawn, moved, patches_of(stroked.touches)))

@@ -1,0 +1,161 @@
+"""Objects that nobody holds come to rest, and are brought back."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+import pytest
+from mathutils import Euler, Matrix
+from soft_scene import (
+    error_of,
+    layer_names,
+    mesh_state,
+    part,
+    rest_places,
+    seen_places,
+    select,
+    status,
+)
+
+EDGE = 0.05
+
+
+def world_places(thing):
+    """Drawn vertices as seen, world coordinates."""
+    bpy.context.view_layer.update()
+    matrix = np.array(thing.matrix_world)
+    return seen_places(thing) @ matrix[:3, :3].T + matrix[:3, 3]
+
+
+def weight_of(thing):
+    return thing.palpate.density * EDGE**3 * 9.81
+
+
+def test_an_object_settles_on_the_ground_and_is_brought_back(free_cube):
+    free_cube.location.z = 0.03
+    bpy.context.view_layer.update()
+    before, place = mesh_state(free_cube), free_cube.matrix_world.copy()
+    assert bpy.ops.palpate.settle() == {"FINISHED"}
+    assert layer_names(free_cube) == ["Rests"]
+    assert 0.0245 < free_cube.location.z < 0.025
+    low = world_places(free_cube)[:, 2].min()
+    assert low == pytest.approx(0.0, abs=2e-6)
+    sag = seen_places(free_cube) - rest_places(free_cube)
+    assert 1e-5 < np.abs(sag).max() < 2e-3
+    assert bpy.ops.palpate.reset_rest() == {"FINISHED"}
+    assert free_cube.matrix_world == place
+    assert mesh_state(free_cube) == before
+
+
+def test_what_rests_already_stays_there(free_cube):
+    bpy.ops.palpate.settle()
+    once, first = world_places(free_cube), free_cube.matrix_world.copy()
+    bpy.ops.palpate.settle()
+    # Friction of the way down is not remembered: what bulged at the foot may slip a little.
+    np.testing.assert_allclose(world_places(free_cube), once, rtol=0, atol=2e-4)
+    np.testing.assert_allclose(free_cube.matrix_world, first, rtol=0, atol=2e-4)
+
+
+def test_the_floor_bears_the_weight(free_cube):
+    settle = part("operators.rest.settle").settle
+    lying = settle(free_cube, bpy.context.evaluated_depsgraph_get())
+    (floor,) = lying.rest.supports
+    np.testing.assert_allclose(floor.force, (0.0, 0.0, -weight_of(free_cube)), atol=2e-6)
+
+
+def test_a_heavier_one_sags_more_without_a_bake(free_cube):
+    bpy.ops.palpate.settle()
+    light = np.abs(seen_places(free_cube) - rest_places(free_cube)).max()
+    bpy.ops.palpate.reset_rest()
+    free_cube.palpate.density *= 3.0
+    assert status(free_cube).fit.name == "READY"
+    bpy.ops.palpate.settle()
+    heavy = np.abs(seen_places(free_cube) - rest_places(free_cube)).max()
+    assert heavy == pytest.approx(3.0 * light, rel=0.3)
+
+
+def test_a_floor_at_a_height_and_one_that_is_leant(free_cube, board):
+    free_cube.palpate.floor, free_cube.palpate.floor_height = "HEIGHT", -0.1
+    bpy.ops.palpate.settle()
+    assert free_cube.location.z == pytest.approx(-0.075, abs=5e-4)
+    bpy.ops.palpate.reset_rest()
+    # The board is above the floor, and bears it.
+    free_cube.location.z = 0.03
+    board(at=(0.0, 0.0, 0.0))
+    bpy.ops.palpate.settle()
+    assert free_cube.location.z == pytest.approx(0.025, abs=5e-4)
+
+
+@pytest.mark.parametrize(("degrees", "stays"), [(15.0, True), (40.0, False)])
+def test_friction_holds_it_on_a_slope(free_cube, board, degrees, stays):
+    turn = Matrix.Rotation(np.radians(degrees), 4, "Y")
+    board(turn=turn)
+    free_cube.matrix_world = turn @ Matrix.Translation((0.0, 0.0, 0.0252))
+    free_cube.palpate.floor = "NONE"
+    bpy.context.view_layer.update()
+    before = np.array(free_cube.location)
+    if stays:
+        bpy.ops.palpate.settle()
+        assert np.linalg.norm(np.array(free_cube.location) - before) < 2e-3
+    else:
+        assert "still moves" in error_of(bpy.ops.palpate.settle)
+        np.testing.assert_array_equal(free_cube.location, before)
+        assert layer_names(free_cube) == []
+
+
+def test_a_flat_collider_is_a_slab_and_a_hollow_one_is_refused(free_cube, colliders):
+    free_cube.palpate.floor = "NONE"
+    free_cube.location.z = 0.03
+    bpy.ops.mesh.primitive_plane_add(size=0.4)
+    colliders.objects.link(bpy.context.object)
+    select(free_cube)
+    bpy.ops.palpate.settle()
+    assert free_cube.location.z == pytest.approx(0.025, abs=5e-4)
+    bpy.ops.mesh.primitive_torus_add(location=(5.0, 0.0, 0.0))
+    torus = bpy.context.object
+    colliders.objects.link(torus)
+    select(free_cube)
+    message = error_of(bpy.ops.palpate.settle)
+    assert torus.name in message
+    assert "convex parts" in message
+
+
+def test_what_cannot_lie_by_itself_is_refused_with_the_remedy(free_cube, thing):
+    select(thing)
+    assert "Pins: None" in error_of(bpy.ops.palpate.settle)
+    select(free_cube)
+    free_cube.palpate.floor = "NONE"
+    assert "Rests On" in error_of(bpy.ops.palpate.settle)
+    free_cube.palpate.floor = "UNDER"
+    free_cube.parent = thing
+    assert "parent" in error_of(bpy.ops.palpate.settle)
+
+
+def test_a_turned_object_tips_onto_a_face_and_keeps_its_scale(free_cube):
+    turn = Euler((0.2, 0.1, 0.3))
+    free_cube.matrix_world = Matrix.LocRotScale((0.1, 0.2, 0.06), turn, (1.0, 1.0, 1.0))
+    bpy.context.view_layer.update()
+    bpy.ops.palpate.settle()
+    np.testing.assert_array_equal(free_cube.scale, (1.0, 1.0, 1.0))
+    places = world_places(free_cube)
+    assert places[:, 2].min() == pytest.approx(0.0, abs=2e-6)
+    assert places[:, 2].max() == pytest.approx(EDGE, abs=1e-3)
+
+
+def test_pins_can_be_given_later_and_taken_away(free_cube):
+    free_cube.palpate.pin_mode = "BELOW"
+    assert status(free_cube).pins.quick
+    assert bpy.ops.palpate.update_pins() == {"FINISHED"}
+    assert bpy.ops.palpate.press(at=(0.0, 0.0, 0.025), by=(0.0, 0.0, -0.002)) == {"FINISHED"}
+    free_cube.palpate.pin_mode = "NONE"
+    assert bpy.ops.palpate.update_pins() == {"FINISHED"}
+    assert bpy.ops.palpate.settle() == {"FINISHED"}
+
+
+@pytest.mark.parametrize("name", ["press", "read_durometer", "map_softness", "force_curve"])
+def test_what_needs_pins_says_so_and_leaves_nothing(free_cube, name):
+    bpy.context.scene.palpate.tip = "SPHERE"
+    before, told = mesh_state(free_cube), {"at": (0.0, 0.0, 0.025), "by": (0.0, 0.0, -0.002)}
+    message = error_of(getattr(bpy.ops.palpate, name), **(told if name == "press" else {}))
+    assert "nothing pins it" in message
+    assert mesh_state(free_cube) == before
