@@ -40,9 +40,7 @@ def test_a_body_goes_on_from_where_it_rested_on_a_table(cube):
 
 
 def test_a_table_that_is_raised_takes_the_body_along(cube):
-    resting = Resting(
-        cube, [table(0.0)], placement=Pose(np.array([0.0, 0.0, 0.002]), np.eye(3))
-    )
+    resting = Resting(cube, [table(0.0)], placement=Pose(np.array([0.0, 0.0, 0.002]), np.eye(3)))
     before = resting.settle()
     low, high = table(0.0).pose, table(0.01).pose
     follow(resting, Ways([], [(table(0.0).tool, low, high)]), 0.2)
