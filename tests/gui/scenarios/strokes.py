@@ -223,6 +223,41 @@ def _random_drags_on_bodies(stage: Stage, scale: float) -> Wait:
         assert not missed, f"{name}: {missed}"
 
 
+def an_object_without_pins_settles_is_pushed_along_and_given_back(stage: Stage) -> Wait:
+    yield from _free_default_cube(stage)
+    before = _placed()
+    with stage.view():
+        bpy.ops.palpate.settle("INVOKE_DEFAULT", True)
+    yield from stage.until(lambda: _layers() == ["Rests"], "the object at rest")
+    settled = _placed()
+    assert 0.5 < before[2, 3] - settled[2, 3] < 1.5
+    yield from stage.picture("settled")
+    with stage.view():
+        bpy.ops.wm.tool_set_by_id(name="palpate.tool")
+    # From the front right: it gives way, and slides.
+    here = stage.pixel((0.2, -1.0, 1.2))
+    drag = [here, (here[0] + 80, here[1])]
+    yield from stage.drag(drag, release=False)
+    yield from stage.picture("pushed")
+    assert np.abs(_placed() - settled).max() > 1e-3
+    yield from stage.key("ESC")
+    yield from stage.event("LEFTMOUSE", "RELEASE", stage.mouse)
+    yield from stage.until(lambda: _layers() == ["Rests"], "the object given back")
+    np.testing.assert_allclose(_placed(), settled, rtol=0, atol=1e-5)
+    yield from stage.drag(drag, release=False)
+    yield from stage.event("LEFTMOUSE", "RELEASE", stage.mouse)
+    yield from stage.until(lambda: "Press 1" in _layers(), "the stroke that is kept")
+    yield from stage.picture("kept")
+    assert np.abs(_placed() - settled).max() > 1e-3
+    yield from type_key(stage, "Z", ctrl=True)
+    yield from stage.until(lambda: _layers() == ["Rests"], "the undo of the stroke")
+    np.testing.assert_allclose(_placed(), settled, rtol=0, atol=1e-5)
+    with stage.view():
+        bpy.ops.palpate.reset_rest()
+    yield from stage.until(lambda: _layers() == [], "the object as it was")
+    np.testing.assert_allclose(_placed(), before, rtol=0, atol=1e-6)
+
+
 def _settled(stage: Stage) -> Wait:
     """Wait until the sidebar has its place, which a larger interface gives it in steps."""
     before = None
@@ -288,3 +323,41 @@ def last_stroke(thing: bpy.types.Object) -> np.ndarray:
     moved = layers.displacement(thing, thing.modifiers[kept(thing)[-1]])
     assert moved is not None
     return moved
+
+
+def _free_default_cube(stage: Stage) -> Wait:
+    """The factory scene's cube, with vertices to dent, a metre over the ground, without pins."""
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=False)
+    yield 0.3
+    cube = _default_cube()
+    mesh = bmesh.new()
+    mesh.from_mesh(cube.data)
+    bmesh.ops.subdivide_edges(mesh, edges=mesh.edges[:], cuts=15, use_grid_fill=True)
+    mesh.to_mesh(cube.data)
+    mesh.free()
+    cube.location.z = 2.0
+    settings = cube.palpate
+    # Two metres of plush would sink into a heap.
+    settings.young_modulus, settings.density, settings.pin_mode = 1e5, 100.0, "NONE"
+    settings.edge_length = 0.12
+    bpy.context.scene.palpate.tip_radius = 0.3
+    with stage.view():
+        bpy.context.view_layer.objects.active = cube
+        bpy.ops.palpate.make_soft("EXEC_DEFAULT")
+    yield from stage.open_sidebar("Palpate")
+    yield 0.5
+    bpy.ops.ed.undo_push(message="Free cube")
+    yield
+
+
+def _default_cube() -> bpy.types.Object:
+    return bpy.data.objects["Cube"]
+
+
+def _placed() -> np.ndarray:
+    bpy.context.view_layer.update()
+    return np.array(_default_cube().matrix_world)
+
+
+def _layers() -> list[str]:
+    return [layer.name for layer in layers.layers_of(_default_cube())]
