@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 @dataclass(frozen=True, eq=False)
 class Patch:
     """Contact patch of a tool: places (p, 3) and outward directions (p, 3) in the world,
-    pressures (p,) in Pa, and the radius (p,) of the disc around each, in world units.
+    pressures (p,) in Pa, and the radius (p,) of the share of each at rest, in world units.
     """
 
     places: Array
@@ -126,8 +126,7 @@ def _of_tool(
     force, pushes = _force(finger), np.asarray(finger.point_forces)
     carries = pressures > 0.0
     sizes = np.linalg.norm(pushes[carries], axis=1)
-    # Three times its own area, so that neighbours blend.
-    radii = np.sqrt(3.0 * sizes / pressures[carries] / np.pi) / frame.metres_per_unit
+    radii = np.sqrt(sizes / pressures[carries] / np.pi) / frame.metres_per_unit
     points = _as_drawn(session, finger, np.asarray(finger.points)[carries])
     places = frame.world_from_body(points)
     outward = frame.turn_to_world(-pushes[carries] / sizes[:, None])

@@ -21,8 +21,6 @@ AMBIENT = 0.45
 GLASS, RIM = 0.2, 0.95
 # Its highlight: how narrow, and how bright.
 SHINE, SHINING = 30, 0.7
-# A disc has its full colour up to this share of its radius.
-DISC_SEGMENTS, FULL_SHARE = 14, 0.6
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,41 +69,6 @@ def glass(
     rgba[:, :3] += shine * (1.0 - rgba[:, :3])
     rgba[:, 3:] *= np.maximum(opacity, shine)
     return vertices, rgba, triangles
-
-
-def discs(
-    places: NDArray[np.float64],
-    normals: NDArray[np.float64],
-    radii: NDArray[np.float64],
-    colors: NDArray[np.float64],
-) -> Lit:
-    """Discs at places (p, 3) across unit normals (p, 3), colours (p, 3), fading to the rims."""
-    count = len(places)
-    helper = np.eye(3)[np.argmin(np.abs(normals), axis=1)]
-    right = np.cross(normals, helper)
-    right /= np.linalg.norm(right, axis=1, keepdims=True)
-    up = np.cross(normals, right)
-    angle = 2.0 * np.pi * np.arange(DISC_SEGMENTS) / DISC_SEGMENTS
-    around = np.cos(angle)[:, None] * right[:, None] + np.sin(angle)[:, None] * up[:, None]
-    inner, outer = (
-        places[:, None] + share * radii[:, None, None] * around for share in (FULL_SHARE, 1.0)
-    )
-    vertices = np.concatenate([places[:, None], inner, outer], axis=1).reshape(-1, 3)
-    rgba = np.ones((count, 2 * DISC_SEGMENTS + 1, 4), dtype=np.float32)
-    rgba[:, :, :3] = colors[:, None]
-    rgba[:, DISC_SEGMENTS + 1 :, 3] = 0.0
-    near = 1 + np.arange(DISC_SEGMENTS)
-    far, beside = near + DISC_SEGMENTS, np.roll(near, -1)
-    fan = np.concatenate(
-        [
-            np.column_stack([np.zeros(DISC_SEGMENTS, dtype=np.int64), near, beside]),
-            np.column_stack([near, far, beside + DISC_SEGMENTS]),
-            np.column_stack([near, beside + DISC_SEGMENTS, beside]),
-        ]
-    )
-    first = (2 * DISC_SEGMENTS + 1) * np.arange(count)[:, None, None]
-    triangles = (first + fan).reshape(-1, 3).astype(np.int32)
-    return vertices.astype(np.float32), rgba.reshape(-1, 4), triangles
 
 
 def tool_shape(tool: Tool) -> Shape:

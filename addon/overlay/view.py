@@ -25,10 +25,11 @@ from ...operators.session import press_session
 from ...operators.session.press_session import PressSession
 from ...operators.session.press_state import Phase
 from . import hud, labels, regions, workspace
+from .contact_film import contact_film
 from .labels import Label
-from .pressure_colors import PressureScale, color_of
+from .pressure_colors import PressureScale
 from .reading import Patch, Reading, readings
-from .shapes import CONE, SPHERE, Lit, Shape, discs, glass, lit, tool_shape
+from .shapes import CONE, SPHERE, Lit, Shape, glass, lit, tool_shape
 
 Array = NDArray[np.float64]
 # Start, end, colour and width in pixels of a line.
@@ -40,8 +41,8 @@ HALF_LENGTH_FORCE = 0.3
 CONTACT_SIZE, LINE_PIXELS = 0.6, 2.5
 WORKSPACE_COLOR, WORKSPACE_PIXELS = (0.75, 0.85, 1.0, 0.4), 1.5
 HEAD_LENGTH, HEAD_WIDTH, SHAFT_PIXELS = 20.0, 7.0, 4.0
-# The patch is drawn this share of a disc's radius nearer to the viewer, since the drawn surface is
-# coarser than the contact.
+# The patch is drawn this share of its points' spacing nearer to the viewer, since the drawn surface
+# is coarser than the contact.
 PATCH_LIFT, PATCH_SEEN_THROUGH = 0.5, 0.15
 
 
@@ -168,25 +169,11 @@ def arrow_tip(figures: Reading, pixel: float) -> tuple[Array, Array]:
 
 
 def _draw_patches(patches: list[Patch], top: float, view: View) -> None:
-    """Draw patches, faintly also through the drawn surface; but not those on the far side of the
-    body.
-    """
-    toward = view.axes[2]
+    """Draw patches, faintly also through the drawn surface where they face the viewer."""
     for patch in patches:
-        lifted = patch.places + PATCH_LIFT * patch.radii[:, None] * toward
-        # The highest pressure is drawn last, so that nothing covers it.
-        order = np.argsort(patch.pressures)
-        seen = order[patch.normals[order] @ toward > 0.0]
-        for chosen, depth_test, opacity in (
-            (seen, "NONE", PATCH_SEEN_THROUGH),
-            (order, "LESS_EQUAL", 1.0),
-        ):
-            # Blender cannot draw nothing: all of a patch may face away.
-            if not len(chosen):
-                continue
-            colors = color_of(patch.pressures[chosen] / top)
-            part = discs(lifted[chosen], patch.normals[chosen], patch.radii[chosen], colors)
-            _draw([part], [], depth_test, opacity, both_sides=True)
+        film = contact_film(patch, top, PATCH_LIFT * view.axes[2])
+        _draw([film], [], "NONE", PATCH_SEEN_THROUGH)
+        _draw([film], [], "LESS_EQUAL", 1.0, both_sides=True)
 
 
 def _tool(session: PressSession, tool: Tool, figures: Reading, view: View) -> Lit:

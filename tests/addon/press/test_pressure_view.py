@@ -55,18 +55,45 @@ def test_a_tool_is_drawn_where_it_is_felt(palpate, name):
     assert np.einsum("vx,vx->v", normals, shape.normals).min() > 0.5
 
 
-def test_discs_lie_across_the_pressure(palpate):
-    places, normals = np.zeros((2, 3)), np.array([[0.0, 0.0, 1.0], [0.6, 0.8, 0.0]])
-    radii, colors = np.array([1.0, 2.0]), np.ones((2, 3))
-    vertices, rgba, triangles = part("addon.overlay.shapes").discs(places, normals, radii, colors)
-    each = vertices.reshape(2, -1, 3)
-    assert np.allclose(np.einsum("dvx,dx->dv", each, normals), 0.0, atol=1e-6)
-    away = np.linalg.norm(each, axis=2) / radii[:, None]
-    opacity = rgba.reshape(2, -1, 4)[:, :, 3]
-    assert np.allclose(away.max(axis=1), 1.0)
-    # Full in the middle, nothing at the rim.
-    assert np.array_equal(opacity == 0.0, away > 0.99)
-    assert triangles.max() == len(vertices) - 1
+BALL, ACROSS = 1.0, 0.1
+
+
+def cap(stretched):
+    """Patch of a ball with the middle of its top pressed most, points 0.1 apart times a stretch."""
+    steps = np.arange(-6, 7) * ACROSS * stretched
+    flat = np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
+    flat = flat[np.linalg.norm(flat, axis=1) < 0.45]
+    up = np.sqrt(BALL**2 - (flat**2).sum(axis=1))
+    points = np.column_stack([flat, up])
+    radii = np.full(len(points), ACROSS / np.sqrt(np.pi))
+    return part("addon.overlay.reading").Patch(points, points, 1.0 - (flat**2).sum(axis=1), radii)
+
+
+@pytest.mark.parametrize("stretched", [1.0, 1.7])
+def test_a_patch_is_one_area_without_gaps_on_the_surface_that_is_touched(palpate, stretched):
+    patch = cap(stretched)
+    film = part("addon.overlay.contact_film").contact_film
+    vertices, rgba, triangles = film(patch, 2.0, np.zeros(3))
+    away = np.linalg.norm(vertices[:, :2], axis=1)
+    within = away < 0.35
+    assert within.sum() > 2 * len(patch.places)
+    assert (rgba[within, 3] == 1.0).all()
+    assert (rgba[away > 0.45 + 3.0 * ACROSS * stretched, 3] == 0.0).all()
+    np.testing.assert_allclose(np.linalg.norm(vertices[within], axis=1), BALL, atol=0.01)
+    expected = part("addon.overlay.pressure_colors").color_of((1.0 - away[within] ** 2) / 2.0)
+    np.testing.assert_allclose(rgba[within, :3], expected, atol=0.03)
+    corners = vertices[triangles]
+    inside = within[triangles].all(axis=1)
+    outward = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[inside]
+    assert (np.einsum("fx,fx->f", outward, corners[inside].mean(axis=1)) > 0.0).all()
+
+
+def test_one_contact_point_is_an_area_too(palpate):
+    whole = cap(1.0)
+    one = type(whole)(whole.places[:1], whole.normals[:1], whole.pressures[:1], whole.radii[:1])
+    vertices, rgba, _ = part("addon.overlay.contact_film").contact_film(one, 1.0, np.zeros(3))
+    assert np.isfinite(vertices).all()
+    assert rgba[:, 3].max() == 1.0
 
 
 SLAB = "456 467 021 032 015 054 126 165 237 276 304 347"
@@ -131,22 +158,6 @@ ROOM = (10.0, 10.0, 790.0, 590.0)
 
 def places(*corners):
     return np.array(corners, dtype=np.float64)
-
-
-@pytest.mark.parametrize(("facing", "drawn"), [(1.0, [4, 4]), (-1.0, [4])])
-def test_a_patch_that_faces_away_is_not_drawn_through_the_surface(
-    palpate, monkeypatch, facing, drawn
-):
-    view = part("addon.overlay.view")
-    normals = np.tile([0.0, 0.0, facing], (4, 1))
-    patch = SimpleNamespace(
-        places=np.zeros((4, 3)), normals=normals, radii=np.ones(4), pressures=np.ones(4)
-    )
-    found = []
-    monkeypatch.setattr(view, "discs", lambda places, *_: found.append(len(places)))
-    monkeypatch.setattr(view, "_draw", lambda *_, **__: None)
-    view._draw_patches([patch], 1.0, SimpleNamespace(axes=np.eye(3)))
-    assert found == drawn
 
 
 @pytest.mark.parametrize(

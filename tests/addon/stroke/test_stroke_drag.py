@@ -64,6 +64,11 @@ def test_what_is_typed_counts_instead_of_the_drag(palpate):
         ("PINCH", ["5", "0"], 0.5),
         ("PUSH", ["-"], None),
         ("PUSH", ["5", "/", "0"], None),
+        ("PUSH", [*"0.3+2cm"], 0.32),
+        ("PUSH", [*"-(1+2)*2mm"], -0.006),
+        ("PUSH", [*"1'6\""], 0.4572),
+        ("PUSH", [*"6cm/4"], 0.015),
+        ("TWIST", [*"90/2"], math.pi / 4),
     ],
 )
 def test_keys_become_a_number_in_the_units_of_the_scene(palpate, motion, keys, expected):
@@ -74,6 +79,35 @@ def test_keys_become_a_number_in_the_units_of_the_scene(palpate, motion, keys, e
         typed = typed.after(_key(key))
     value = typed.value(bpy.context.scene)
     assert value == (None if expected is None else pytest.approx(expected))
+
+
+@pytest.mark.parametrize(
+    "text", ["-", "-()", "(", "3)", "1(2)", "1 2", "3,", "9**9**9", "5cmm", "//"]
+)
+@pytest.mark.parametrize("motion", ["PUSH", "TWIST"])
+def test_what_is_no_number_yet_is_none_and_nothing_is_printed(palpate, capfd, motion, text):
+    typed = part("operators.stroke.typed_amount").TypedAmount(
+        part("operators.stroke.motion").Motion[motion], text
+    )
+    assert (typed.value(bpy.context.scene) is None) == (text != "3,")
+    assert capfd.readouterr() == ("", "")
+
+
+def test_a_bare_number_is_in_the_unit_that_the_scene_shows(palpate):
+    units = bpy.context.scene.unit_settings
+    amount = part("operators.stroke.typed_amount").TypedAmount
+    push = part("operators.stroke.motion").Motion.PUSH
+    for system, unit, metres in (
+        ("METRIC", "MILLIMETERS", 0.006),
+        ("METRIC", "ADAPTIVE", 6.0),
+        ("IMPERIAL", "INCHES", 0.1524),
+        ("IMPERIAL", "ADAPTIVE", 1.8288),
+        ("NONE", "METERS", 6.0),
+    ):
+        units.system = system
+        if system != "NONE":
+            units.length_unit = unit
+        assert amount(push, "2*3").value(bpy.context.scene) == pytest.approx(metres), (system, unit)
 
 
 def _key(name: str) -> SimpleNamespace:

@@ -1,6 +1,7 @@
 """Progress that is true: it never falls, ends at one, and leads to a fair time that remains."""
 
 import io
+import itertools
 import json
 import time
 
@@ -9,7 +10,7 @@ import pytest
 import trimesh
 
 from palpate.core.bake.child import ProgressLines
-from palpate.core.bake.foreseen_share import ForeseenShare
+from palpate.core.bake.foreseen_share import ForeseenShare, foreseen
 from palpate.core.bake.job import BakeJob
 from palpate.core.bake.settings import BakeSettings
 from palpate.core.bake.steps import bake
@@ -117,13 +118,37 @@ def test_remaining_time_counts_down_while_the_share_stands_still():
     assert remaining.update(60.0, 0.5) == 0.0
 
 
-def test_remaining_time_does_not_jump_when_work_gets_slower():
+def told_of(share, until):
     remaining = RemainingTime()
-    remaining.update(0.0, 0.0)
-    left = [remaining.update(s, 0.1 * s if s < 5 else 0.5 + 0.02 * (s - 5)) for s in range(1, 29)]
-    figures = np.array(left[2:])
-    assert np.abs(np.diff(figures)).max() < 10.0
-    assert figures[-1] == pytest.approx(3.0, abs=2.5)
+    return [remaining.update(seconds, share(seconds)) for seconds in np.arange(0.0, until, 0.5)]
+
+
+def rises(told):
+    """Whether what is told ever rises, but after nothing was told."""
+    pairs = itertools.pairwise(told)
+    return any(one is not None and other is not None and other > one for one, other in pairs)
+
+
+def test_remaining_time_of_work_that_gets_much_slower_is_unknown_before_it_is_right_again():
+    told = told_of(lambda s: 0.1 * s if s < 5 else min(1.0, 0.5 + 0.01 * (s - 5)), 55.0)
+    assert not rises(told)
+    late = told.index(None, 4)
+    assert 5.0 < 0.5 * late < 25.0
+    assert told[-1] == pytest.approx(0.5, abs=2.5)
+    assert all(one is not None for one in told[-8:])
+
+
+def test_remaining_time_stands_still_while_the_work_is_a_little_slower():
+    told = told_of(lambda s: 0.05 * s if s < 10 else min(1.0, 0.5 + 0.04 * (s - 10)), 22.0)
+    assert not rises(told)
+    assert None not in told[2:]
+    assert told[-1] == pytest.approx(0.5, abs=2.0)
+
+
+def test_remaining_time_that_the_last_of_a_foreseen_step_drags_out_never_rises():
+    told = told_of(lambda s: 0.9 * foreseen(s / 6.0), 60.0)
+    assert not rises(told)
+    assert all(one is None or one > 0.0 for one in told)
 
 
 def test_progress_lines_are_few(monkeypatch):
