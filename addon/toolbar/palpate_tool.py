@@ -6,7 +6,6 @@ import bpy
 
 from ...operators.layer import layers
 from ...operators.object import soft_object
-from ...operators.reporting.translated import shown
 from ..panels.base import draw_material
 from . import surface_circle
 
@@ -61,13 +60,14 @@ class PalpateTool(bpy.types.WorkSpaceTool):
         if chosen.stroke != "GRAB":
             layout.prop(chosen, "stroke_outward", toggle=True)
         row = layout.row(align=True)
-        row.label(text=shown("Mirrored"), translate=False)
+        # As in Sculpt Mode, and no words: the header must fit a view of 1280 pixels.
+        row.label(icon="MOD_MIRROR")
         row.prop(chosen, "stroke_mirrored", text="", toggle=True)
         if thing is not None and thing.type == "MESH":
             layout.prop(thing.palpate, "material", text="")
             if layers.layers_of(thing):
                 layout.operator("palpate.animate_layers", icon="KEY_HLT")
-            layout.operator("palpate.press", text="Press with Device", icon="MODIFIER")
+            layout.operator("palpate.press", icon="FORCE_FORCE")
 
     @staticmethod
     def draw_cursor(

@@ -241,8 +241,8 @@ def size_warnings(mesh: TetMesh) -> list[Sentence]:
         return []
     return [
         Sentence(
-            "the body is {size} large; if that is not meant, correct the unit (Scene Properties > "
-            "Units > Unit Scale, or --metres-per-unit) or the object's scale, and bake again",
+            "the body is {size} large; if that is not meant, correct the metres per unit (in "
+            "Blender Scene Properties > Units > Unit Scale) or its scale, and bake again",
             size=length(diagonal),
         )
     ]

@@ -12,10 +12,10 @@ AWAITS_PRESS = "The body is ready and comes when pressing ends"
 
 
 def how_far(progress: JobProgress) -> str:
-    """Share and remaining time: ``62 %, 12 s left``; elapsed time if unknown."""
+    """Share and remaining time: ``62 %, 12 s left``; if unknown, ``96 %, 2 min so far``."""
     share = "" if progress.share is None else f"{100 * progress.share:.0f} %, "
     if progress.remaining is None:
-        return f"{share}{duration(progress.seconds)}"
+        return share + shown("{time} so far", time=duration(progress.seconds))
     return share + shown("{time} left", time=duration(progress.remaining))
 
 

@@ -122,3 +122,13 @@ def test_boxes_are_read_once_while_an_object_is_pressed(crowd, monkeypatch):
     bpy.context.view_layer.update()
     found_on(origin, along)
     assert len(times) == 2
+
+
+def test_undo_looks_for_live_layers_only_where_there_are_modifiers(crowd, monkeypatch):
+    live, looked = part("operators.layer.live_layer"), []
+    remove = live.remove
+    live.hang(crowd)
+    monkeypatch.setattr(live, "remove", lambda thing: (looked.append(thing), remove(thing)))
+    live.remove_leftovers()
+    assert looked == [crowd]
+    assert live.find(crowd) is None

@@ -167,7 +167,9 @@ def test_a_body_of_unlikely_size_is_told_about_units(size, said):
     if said:
         assert said in told[0]
         assert "Unit Scale" in told[0]
-        assert "--metres-per-unit" in told[0]
+        assert "metres per unit" in told[0]
+        # A panel shows it, too, where a command line's words say nothing.
+        assert "--" not in told[0]
 
 
 def test_lengths_and_volumes_are_said_in_fitting_units():
