@@ -156,7 +156,9 @@ class PalpateObject(MaterialProperties, ShapeProperties, RestProperties, bpy.typ
         "Forget Time",
         "Seconds in which an imprint fades to about a third, as in memory foam; 0 for never",
         0.0,
-        span(0.0, soft_max=60.0, precision=2, step=10),
+        span(
+            0.0, soft_max=60.0, precision=2, step=10, subtype="TIME_ABSOLUTE", unit="TIME_ABSOLUTE"
+        ),
     )
     force_attributes: switch(
         "Force Attributes",

@@ -87,7 +87,7 @@ def test_keys_become_a_number_in_the_units_of_the_scene(palpate, motion, keys, e
 @pytest.mark.parametrize("motion", ["PUSH", "TWIST"])
 def test_what_is_no_number_yet_is_none_and_nothing_is_printed(palpate, capfd, motion, text):
     typed = part("operators.stroke.typed_amount").TypedAmount(
-        part("operators.stroke.motion").Motion[motion], text
+        part("operators.stroke.answer.motion").Motion[motion], text
     )
     assert (typed.value(bpy.context.scene) is None) == (text != "3,")
     assert capfd.readouterr() == ("", "")
@@ -96,7 +96,7 @@ def test_what_is_no_number_yet_is_none_and_nothing_is_printed(palpate, capfd, mo
 def test_a_bare_number_is_in_the_unit_that_the_scene_shows(palpate):
     units = bpy.context.scene.unit_settings
     amount = part("operators.stroke.typed_amount").TypedAmount
-    push = part("operators.stroke.motion").Motion.PUSH
+    push = part("operators.stroke.answer.motion").Motion.PUSH
     for system, unit, metres in (
         ("METRIC", "MILLIMETERS", 0.006),
         ("METRIC", "ADAPTIVE", 6.0),
