@@ -165,6 +165,7 @@ def _at_port(arguments: argparse.Namespace) -> Table:
 
 
 def _say(line: str) -> None:
-    if sys.stderr.isatty():
-        sys.stderr.write(f"\r\033[K{line}")
-        sys.stderr.flush()
+    """On a terminal the newest line alone; elsewhere all, as a record of an hour that broke off."""
+    is_shown = sys.stderr.isatty()
+    sys.stderr.write(f"\r\033[K{line}" if is_shown else f"{line}\n")
+    sys.stderr.flush()

@@ -125,6 +125,8 @@ impl Joint {
         }
         self.keep_traces(beside.memories);
         let mut are_numbers = self.patch.slots().iter().all(|slot| slot.moved.is_finite());
+        // What presses is found by the numbers of slots: none goes before all tools have felt.
+        let mut lets_go = [false; MOST_TOOLS];
         for (number, tool) in posed.iter().enumerate() {
             let (Some(tool), Some(led)) = (tool, &mut led[number]) else {
                 continue;
@@ -154,10 +156,9 @@ impl Joint {
                 }
             }
             are_numbers &= felt.force.is_finite() && felt.torque.is_finite();
-            if led.collider.feel(felt, nearest) {
-                self.patch.let_go(|slot| usize::from(slot.tool) == number);
-            }
+            lets_go[number] = led.collider.feel(felt, nearest);
         }
+        self.patch.let_go(|slot| lets_go[usize::from(slot.tool)]);
         if !are_numbers {
             for tool in led.iter_mut().flatten() {
                 tool.collider.fail();
