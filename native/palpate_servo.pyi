@@ -360,6 +360,12 @@ class Snapshot(FingerSnapshot):
         """
 
     @property
+    def placement(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Position, m, and rotation of the body's frame after the tick; of one that is held those
+        of the world.
+        """
+
+    @property
     def remembered_nodes(self) -> NDArray[np.int64]:
         """Nodes (k,) of the surface that remember a force, where the body gives way with time."""
 
@@ -433,6 +439,9 @@ PoseTarget: TypeAlias = tuple[_Vector, _Matrix]
 LaidTool: TypeAlias = tuple[ToolSurface, Tool, _Vector, _Matrix, float]
 """Contact points, shape, position and rotation in the world, coefficient of friction."""
 
+LaidPoint: TypeAlias = tuple[int, _Vector, float | None, _Vector]
+"""Triangle, area coordinates there, friction (None: it holds the place), goal in the world, m."""
+
 class SettledPoint(TypedDict):
     """What a point came to."""
 
@@ -482,12 +491,24 @@ class SettledTool(TypedDict):
     nodal_forces: NDArray[np.float64]
     """On these nodes, (k, 3), N."""
 
-@final
-class Resting:
-    """A body that nobody holds, with tools and supports on it, without a clock.
-
-    Poses are those in the world; what touches() tells is in the body's frame.
+class RestTouch(TypedDict):
+    """What a tool, point or support of a body feels that nobody holds, in the body's frame; as of
+    SettledTool. A point presses no contact points.
     """
+
+    force: NDArray[np.float64]
+    torque: NDArray[np.float64]
+    free: bool
+    areas: NDArray[np.float64]
+    pushes: NDArray[np.float64]
+    places: NDArray[np.float64]
+    displacements: NDArray[np.float64]
+    nodes: NDArray[np.int64]
+    nodal_forces: NDArray[np.float64]
+
+@final
+class Prop:
+    """A body that nobody holds, laid down in the world on supports; immutable."""
 
     def __init__(
         self,
@@ -496,20 +517,36 @@ class Resting:
         mass: float,
         centre: _Vector,
         inertia: _Matrix,
-        young_modulus: float,
         drag_time: float,
         gravity: _Vector,
-        tools: Sequence[LaidTool],
         supports: Sequence[LaidTool],
+        position: _Vector,
+        rotation: _Matrix,
     ) -> None:
-        """Lay the body down with its frame that of the world.
+        """Lay a whole body down with its frame so posed.
 
         mass, kg; centre of mass, m, and inertia about it, kg m^2, at rest; under a force its speed
-        is that over the mass times drag_time, s; gravity, m/s^2. Tools and supports: contact points
-        on the body, shape, position, rotation, coefficient of friction.
+        is that over the mass times drag_time, s; gravity, m/s^2. Supports: contact points on the
+        body, shape, position, rotation, coefficient of friction.
 
-        Raises ValueError for more tools than MAX_FINGERS or supports than MOST_SUPPORTS, one for
-        another body, and numbers that cannot be.
+        Raises ValueError for more supports than MOST_SUPPORTS, one for another body, a body that
+        is not whole, and numbers that cannot be.
+        """
+
+@final
+class Resting:
+    """A body that nobody holds, pressed by fingers, without a clock.
+
+    Poses are those in the world; what touches() tells is in the body's frame.
+    """
+
+    def __init__(
+        self, prop: Prop, *, young_modulus: float, fingers: Sequence[LaidTool | LaidPoint]
+    ) -> None:
+        """Begin with a prop as it was laid down.
+
+        Raises ValueError for more fingers than MAX_FINGERS, one for another body, and numbers that
+        cannot be.
         """
 
     @property
@@ -531,8 +568,8 @@ class Resting:
     def place(self, position: _Vector, rotation: _Matrix) -> None:
         """Lay the body elsewhere; all that touches it is set down anew."""
 
-    def lead_tool(self, number: int, position: _Vector, rotation: _Matrix) -> None:
-        """Where a tool goes from the next tick on, by a stride in each."""
+    def lead(self, number: int, position: _Vector, rotation: _Matrix) -> None:
+        """Where a finger goes from the next tick on, a tool by a stride in each."""
 
     def lead_support(self, number: int, position: _Vector, rotation: _Matrix) -> None:
         """Where a support is from the next tick on."""
@@ -552,8 +589,8 @@ class Resting:
     def settle(self) -> None:
         """Tick until nothing changes any more. Raises RuntimeError where the body does not rest."""
 
-    def touches(self) -> list[SettledTool]:
-        """What each tool feels, and then each support."""
+    def touches(self) -> list[RestTouch]:
+        """What each finger feels, and then each support."""
 
 @final
 class ContactEngine:
@@ -758,12 +795,20 @@ class Servo:
         another Body than that of the servo.
         """
 
+    def lay(self, prop: Prop | None) -> None:
+        """Lay the body down as one that nobody holds, also while the servo runs, or have it held
+        again (None): zero force in that tick, then a ramp; all that touches it is set down anew.
+
+        Its contact is always consistent. Returns when the thread uses it. ValueError for a prop of
+        another Body than that of the servo.
+        """
+
     def set_body(self, body: Body, settings: ServoSettings) -> None:
         """Touch another body with its settings, also while the servo runs: zero force in that tick,
         then a ramp. ValueError if there is more than one finger and the body is not whole.
 
         The probe is set down anew: inside of the new body nothing is felt until it was outside. A
-        finger with a tool waits until that is set again, made for the new body.
+        finger with a tool waits until that is set again, made for the new body, which is held.
         Returns when the thread uses the new body and the old one is freed.
         """
 

@@ -88,8 +88,8 @@ engine
 rest
 servo
 harness
-python/vectors.rs python/servo/settings.rs python/body python/device python/tool python/servo
-python/harness python
+python/vectors.rs python/servo/settings.rs python/body python/device python/tool python/rest
+python/servo python/harness python
 lib.rs
 """.split()  # noqa: SIM905 - a level of the house is a line
 

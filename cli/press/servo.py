@@ -17,16 +17,20 @@ from numpy.typing import NDArray
 
 from ...core.body import body_file
 from ...core.body.soft_body import SoftBody
+from ...core.contact.tool.pose import Pose
 from ...core.errors import PalpateError
 from ...core.machine.stop_signals import stopped_by_signals
 from ...core.record.recording import check_recording_path, check_room, write_recording
+from ...core.rest.prop import WORLD
 from ...core.servo.port_error import PortError
 from ...core.servo.ports import BAUD, check_baud, check_port
-from ...core.servo.session import STATES, LinkDevice, native_body, servo_on
+from ...core.servo.session import STATES, LinkDevice, servo_on
 from ...core.servo.settings import Settings
 from ...simulated.hand.options import SimulatedOptions
 from ...simulated.simulated_process import SimulatedDevice
 from ..body.body_argument import add_body, add_young, modulus_of
+from ..rest.floor_options import add_floor
+from ..rest.laid_body import laid_body
 from .haply import add_haply_options, connect_haply
 from .servo_report import Felt, for_people, servo_report
 from .timing_check import add_check_timing
@@ -89,6 +93,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     )
     add_check_timing(parser)
     add_young(parser)
+    add_floor(parser)
     parser.add_argument(
         "--record", type=Path, metavar="FILE", help="write every tick to FILE.csv or FILE.npz"
     )
@@ -103,26 +108,26 @@ def run(arguments: argparse.Namespace) -> int:
         _check_recording(arguments.record, arguments.seconds)
     body = body_file.load(arguments.body)
     young_modulus = modulus_of(arguments, body)
+    others: list[str] = arguments.second_port
+    laid = laid_body(arguments, body, young_modulus, whole=bool(others))
     with ExitStack() as stack:
         simulated = None
         port = arguments.haply if arguments.port is None else arguments.port
         if arguments.simulate:
-            hand = press_from_above(body, young_modulus)
+            hand = press_from_above(body, young_modulus, laid.placement)
             simulated = stack.enter_context(SimulatedDevice(hand))
             port = simulated.port
-        others: list[str] = arguments.second_port
         _check_ports([port, *others])
         stopped = stack.enter_context(stopped_by_signals())
-        surface = native_body(body, whole=bool(others))
         settings = Settings(young_modulus, mode=arguments.mode)
-        servo = servo_on(surface, settings, rate_hz=arguments.rate)
+        servo = servo_on(laid.native, settings, rate_hz=arguments.rate, prop=laid.prop)
         stack.callback(servo.stop)
         _add_fingers(servo, others, arguments.baud)
         if arguments.record is not None:
             _start_recording(servo, arguments.record, arguments.seconds)
         if arguments.haply is not None:
             _, at, _ = _highest_place(body)
-            connect_haply(servo, arguments, _vector(at), stopped)
+            connect_haply(servo, arguments, _vector(laid.placement.to_world(at)), stopped)
         else:
             _connect(servo, port, arguments.baud, stopped)
         for finger, other in enumerate(others, start=1):
@@ -161,8 +166,10 @@ def _write_recording(path: Path, servo: Servo) -> dict[str, object]:
     return {"file": str(path), "ticks": ticks, "lost": servo.recording_lost}
 
 
-def press_from_above(body: SoftBody, young_modulus: float) -> SimulatedOptions:
-    """Simulated hand that presses the body at its highest place, against the normal.
+def press_from_above(
+    body: SoftBody, young_modulus: float, placement: Pose = WORLD
+) -> SimulatedOptions:
+    """Simulated hand that presses the body, placed there, at its highest place, against the normal.
 
     It goes in by a tenth of the body's height or until it takes `HAND_FORCE`, whichever is less.
     """
@@ -176,6 +183,7 @@ def press_from_above(body: SoftBody, young_modulus: float) -> SimulatedOptions:
     # The hand's target is deeper than the device's: its spring yields to the body's force.
     reach = depth * (1.0 + stiffness / hand.hand_stiffness)
     height = 0.2 * float(extents.max())
+    at, normal = placement.to_world(at), placement.rotation @ normal
     return SimulatedOptions(
         rest=_vector(at + height * normal),
         at=_vector(at),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 
 from ...core.body.soft_body import SoftBody
+from ...core.errors import PalpateError
 from ...core.rest.resting import EARTH
 from ...core.rest.support import Floor
 
@@ -53,3 +54,19 @@ def floor_under(arguments: argparse.Namespace, body: SoftBody) -> Floor:
 def gravity(arguments: argparse.Namespace) -> tuple[float, float, float]:
     """As the options tell, (3,), m/s2."""
     return EARTH if arguments.gravity is None else (0.0, 0.0, -arguments.gravity)
+
+
+def refuse_floor_of_pinned(arguments: argparse.Namespace) -> None:
+    """Refuse a floor under a body that is pinned.
+
+    Raises
+    ------
+    PalpateError
+        Names the option.
+    """
+    for option in ("floor", "floor_friction", "gravity"):
+        if getattr(arguments, option) is not None:
+            raise PalpateError(
+                f"--{option.replace('_', '-')}: the body is pinned and lies on nothing; bake it "
+                "with --pins none, or leave the option out"
+            )

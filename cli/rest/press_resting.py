@@ -15,7 +15,7 @@ from ...core.contact.tool.tools import Tool
 from ...core.errors import PalpateError
 from ...core.rest.rest import Rest
 from ...core.rest.resting import Resting, RestSettings
-from .floor_options import floor_under, gravity
+from .floor_options import floor_under, gravity, refuse_floor_of_pinned
 
 
 def refuse_floor(arguments: argparse.Namespace, body: SoftBody) -> None:
@@ -31,12 +31,7 @@ def refuse_floor(arguments: argparse.Namespace, body: SoftBody) -> None:
             "--tool: a body without pins is pressed by tools only, as it lies on its floor; give "
             "one, such as sphere:0.008, or pin the body ('palpate pin')"
         )
-    for option in ("floor", "floor_friction", "gravity"):
-        if getattr(arguments, option) is not None:
-            raise PalpateError(
-                f"--{option.replace('_', '-')}: the body is pinned and lies on nothing; bake it "
-                "with --pins none, or leave the option out"
-            )
+    refuse_floor_of_pinned(arguments)
 
 
 def refuse_beside_floor(arguments: argparse.Namespace) -> None:

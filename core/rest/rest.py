@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class BodyTouch:
-    """Touch of a tool or support with a free body.
+    """Touch of a tool, grip or support with a free body; a grip presses no places with an area.
 
     Attributes
     ----------
@@ -70,8 +70,7 @@ class Rest:
 
     def to_world(self, places: Array) -> Array:
         """Places (..., 3) of the body's frame in the world, metres."""
-        moved: Array = places @ self.placement.rotation.T + self.placement.position
-        return moved
+        return self.placement.to_world(places)
 
     def displacements(self, young_modulus: float | None = None) -> Array:
         """Elastic displacements (n, 3) of the surface nodes in the body's frame, metres."""

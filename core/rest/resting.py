@@ -1,67 +1,34 @@
-"""A free body under its weight, on supports, pressed by tools: step by step, or until it rests."""
+"""A free body under its weight, on supports, pressed by tools and points: step by step, or until it
+rests.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
-import numpy as np
-from numpy.typing import NDArray
-from palpate_servo import MAX_FINGERS, MOST_SUPPORTS
+from palpate_servo import MAX_FINGERS
 from palpate_servo import Resting as NativeResting
-from palpate_servo import Tool as NativeTool
 
 from ..body.native_body import native_body
 from ..body.soft_body import SoftBody
-from ..contact.near_field.compliance_beneath import near_correction
-from ..contact.near_field.contact_points import contact_points
-from ..contact.near_field.surface_shape import surface_area
 from ..contact.press import tool_touch
-from ..contact.tool.native_tool import native_shape, native_surface, native_tool
+from ..contact.tool.native_tool import native_tool
 from ..contact.tool.pose import Pose
 from ..contact.tool.tools import Tool
 from ..contact.touches import ToolTouch
 from ..errors import PalpateError
+from .grip import Grip, native_grip
+from .prop import at, native_prop
 from .rest import BodyTouch, Rest
+from .rest_settings import EARTH, USUAL_REST, RestSettings
 from .support import Floor, Support, friction_checked
 
 if TYPE_CHECKING:
     # Types only, absent at run time.
-    from palpate_servo import Body, LaidTool, SettledTool, ToolSurface
+    from palpate_servo import LaidPoint, LaidTool, RestTouch, SettledTool
 
-EARTH = (0.0, 0.0, -9.81)
-# Contact points for supports lie apart by this share of the root of the body's surface: a flat side
-# of a cube has some fifty.
-SUPPORT_SPACING = 1.0 / 14.0
-# Displacements on a floor are found to some millionths of so many times how far a body sags, or of
-# this share of its size.
-REACH_PER_SAG = 30.0
-LEAST_REACH = 1e-4
-
-
-@dataclass(frozen=True)
-class RestSettings:
-    """Settings of a free body.
-
-    Attributes
-    ----------
-    young_modulus : pascal; None for the body's own.
-    friction : Coulomb's coefficient between tools and body; supports have their own.
-    gravity : m/s2, in the world.
-    drag_time : seconds; under a force the body goes by force over mass times this, metres a second.
-        Where it comes to rest does not depend on it, without friction.
-    spacing : metres between contact points for supports; None for the usual.
-    """
-
-    young_modulus: float | None = None
-    friction: float = 0.5
-    gravity: tuple[float, float, float] = EARTH
-    drag_time: float = 0.05
-    spacing: float | None = None
-
-
-USUAL_REST = RestSettings()
+__all__ = ["EARTH", "USUAL_REST", "RestSettings", "Resting"]
 
 
 class Resting:
@@ -81,7 +48,8 @@ class Resting:
     ----------
     body : free, with a density.
     supports : what it may rest on.
-    tools : what may press it, with their poses in the world, outside of it.
+    tools : what may press it, with their poses in the world, outside of it; of a grip the position
+        counts, to which its place is led.
     placement : of the body's frame in the world; None for that of the world.
 
     Raises
@@ -94,54 +62,41 @@ class Resting:
         self,
         body: SoftBody,
         supports: Sequence[Floor | Support],
-        tools: Sequence[tuple[Tool, Pose]] = (),
+        tools: Sequence[tuple[Tool | Grip, Pose]] = (),
         *,
         placement: Pose | None = None,
         settings: RestSettings = USUAL_REST,
     ) -> None:
-        if not body.is_free:
+        if len(tools) > MAX_FINGERS:
             raise PalpateError(
-                "the body is pinned and cannot rest on anything; bake it without pins"
-            )
-        if len(tools) > MAX_FINGERS or len(supports) > MOST_SUPPORTS:
-            raise PalpateError(
-                "{tools} tools and {supports} supports touch the body; at most {most_tools} and "
-                "{most_supports} may",
+                "{tools} tools touch the body; at most {most_tools} may",
                 tools=len(tools),
-                supports=len(supports),
                 most_tools=MAX_FINGERS,
-                most_supports=MOST_SUPPORTS,
             )
         friction_checked(settings.friction)
-        reach = _floor_reach(body, settings)
         self.body = body
         self.young_modulus = body.modulus(settings.young_modulus)
         native = native_body(body, whole=True, may_move=True)
-        surface = _surface(body, native, settings.spacing)
+        prop = native_prop(body, native, supports, placement, settings)
+
+        def finger(tip: Tool | Grip, pose: Pose) -> LaidTool | LaidPoint:
+            if isinstance(tip, Grip):
+                return native_grip(body, tip, pose)
+            return *native_tool(body, native, tip), *at(pose), settings.friction
+
         try:
             self._native = NativeResting(
-                native,
-                mass=body.mass,
-                centre=body.inertia.centre,
-                inertia=body.mass / body.inertia.volume * body.inertia.moments,
+                prop,
                 young_modulus=self.young_modulus,
-                drag_time=settings.drag_time,
-                gravity=settings.gravity,
-                tools=[
-                    (*native_tool(body, native, tool), *_at(pose), settings.friction)
-                    for tool, pose in tools
-                ],
-                supports=[_laid(surface, support, reach) for support in supports],
+                fingers=[finger(tip, pose) for tip, pose in tools],
             )
         except ValueError as problem:
             raise PalpateError("rest: {problem}", problem=problem) from problem
         self._tools = tuple(tool for tool, _ in tools)
-        if placement is not None:
-            self.place(placement)
 
     def place(self, placement: Pose) -> None:
         """Lay the body elsewhere; its contacts are found anew."""
-        self._native.place(*_at(placement))
+        self._native.place(*at(placement))
 
     def come_in(self) -> None:
         """What overlaps the body comes in from outside, while the body stays where it is: so one
@@ -159,7 +114,7 @@ class Resting:
 
     def move_support(self, number: int, pose: Pose) -> None:
         """Have a support be elsewhere from the next step on."""
-        self._native.lead_support(number, *_at(pose))
+        self._native.lead_support(number, *at(pose))
 
     def lead(self, goals: Sequence[Pose]) -> None:
         """Have the tools go to their goals, one each, from the next step on."""
@@ -170,7 +125,7 @@ class Resting:
                 tools=len(self._tools),
             )
         for number, goal in enumerate(goals):
-            self._native.lead_tool(number, *_at(goal))
+            self._native.lead(number, *at(goal))
 
     def step(self, seconds: float = 1e-3) -> Rest:
         """Go on by a tick, in which each tool goes by a stride at most.
@@ -228,11 +183,16 @@ class Resting:
         return self.rest
 
     def tool_touches(self) -> tuple[ToolTouch, ...]:
-        """Touches of the tools in the body's own frame, as those of pinned bodies are."""
-        told = self._native.touches()[: len(self._tools)]
+        """Touches of the tools, without the grips, in the body's own frame, as those of pinned
+        bodies are.
+        """
+        pairs = zip(self._tools, self._native.touches(), strict=False)
+        tools = (
+            (tool, cast("SettledTool", told)) for tool, told in pairs if not isinstance(tool, Grip)
+        )
         return tuple(
-            tool_touch(self.body, tool, Pose(one["position"], one["rotation"]), one)
-            for tool, one in zip(self._tools, told, strict=True)
+            tool_touch(self.body, tool, Pose(told["position"], told["rotation"]), told)
+            for tool, told in tools
         )
 
     @property
@@ -250,32 +210,7 @@ class Resting:
         )
 
 
-def _surface(body: SoftBody, native: Body, spacing: float | None) -> ToolSurface:
-    """Contact points that all supports share."""
-    usual = SUPPORT_SPACING * float(np.sqrt(surface_area(body.mesh)))
-    points = contact_points(body, usual if spacing is None else spacing)
-    return native_surface(native, points, near_correction(body, points))
-
-
-def _floor_reach(body: SoftBody, settings: RestSettings) -> float:
-    """Metres, some millionths of which do not count where the body lies: of how far it sags."""
-    size = float(np.linalg.norm(np.ptp(body.mesh.nodes, axis=0)))
-    weight = body.mass * float(np.linalg.norm(settings.gravity))
-    sag = weight / (body.modulus(settings.young_modulus) * size)
-    return min(size, max(REACH_PER_SAG * sag, LEAST_REACH * size))
-
-
-def _laid(surface: ToolSurface, support: Floor | Support, reach: float) -> LaidTool:
-    if isinstance(support, Floor):
-        return surface, NativeTool.endless(reach), *_at(support.pose), support.friction
-    return surface, native_shape(support.tool), *_at(support.pose), support.friction
-
-
-def _at(pose: Pose) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    return pose.position, pose.rotation
-
-
-def _touch(body: SoftBody, placement: Pose, told: SettledTool) -> BodyTouch:
+def _touch(body: SoftBody, placement: Pose, told: RestTouch) -> BodyTouch:
     turn = placement.rotation.T
     return BodyTouch(
         force=told["force"] @ turn,

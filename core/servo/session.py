@@ -13,6 +13,7 @@ from palpate_servo import (
     HaplyDevice,
     LinkDevice,
     Pointer,
+    Prop,
     Servo,
     Snapshot,
     device_coupling,
@@ -29,6 +30,7 @@ from ..body.native_body import native_body, native_compliance
 from ..body.soft_body import SoftBody
 from ..contact.tool.native_tool import native_tool
 from ..errors import PalpateError
+from ..rest.prop import native_prop
 from .settings import Settings
 
 LEAST_HZ, MOST_HZ = 100, 8000
@@ -40,6 +42,7 @@ __all__ = [
     "HaplyDevice",
     "LinkDevice",
     "Pointer",
+    "Prop",
     "Servo",
     "Snapshot",
     "device_coupling",
@@ -48,6 +51,7 @@ __all__ = [
     "haply_encoder_step",
     "native_body",
     "native_compliance",
+    "native_prop",
     "native_tool",
     "servo_on",
 ]
@@ -60,6 +64,7 @@ def servo_on(
     rate_hz: int = 1000,
     max_force: float = 3.0,
     record_seconds: float = 10.0,
+    prop: Prop | None = None,
 ) -> Servo:
     """Servo for a native body, ready to be started with a pointer or a serial device.
 
@@ -82,6 +87,9 @@ def servo_on(
     max_force : newton; the clamp on the force of any device, unless ``settings`` have one.
     record_seconds : length of samples kept until they are read, 0 to 60; their memory is taken at
         the start. ``Servo.start_recording`` keeps more.
+    prop : the same body laid down as one that nobody holds (:func:`native_prop`); places and forces
+        are then those in the world, in which ``Snapshot.placement`` tells where the body is, and
+        its contact is always consistent.
 
     Raises
     ------
@@ -96,15 +104,17 @@ def servo_on(
             most=MOST_HZ,
         )
     try:
-        return Servo(
+        servo = Servo(
             surface,
             settings,
             rate_hz=rate_hz,
             max_force=max_force,
             record_seconds=record_seconds,
         )
+        servo.lay(prop)
     except (ValueError, OverflowError) as problem:
         raise PalpateError("servo: {problem}", problem=problem) from problem
+    return servo
 
 
 def drawn_loads(snapshot: Snapshot) -> list[tuple[NDArray[np.int64], NDArray[np.float64]]]:

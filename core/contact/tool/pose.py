@@ -58,6 +58,11 @@ class Pose:
             )
         return cls(place, turn)
 
+    def to_world(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Points (..., 3) of the frame that is so posed, in the frame in which it is."""
+        placed: NDArray[np.float64] = points @ self.rotation.T + self.position
+        return placed
+
     def to_tool(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Body coordinates (p, 3) in the tool's frame."""
         own: NDArray[np.float64] = (points - self.position) @ self.rotation

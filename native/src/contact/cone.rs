@@ -12,7 +12,7 @@ const NARROWEST_CONE: f64 = 1.0;
 pub struct Cone {
     /// Unit vector of its push, zero without one.
     axis: DVec3,
-    /// Tangent of the half angle.
+    /// Tangent of the half angle; infinite for all forces.
     width: f64,
 }
 
@@ -31,6 +31,16 @@ impl Cone {
         })
     }
 
+    /// About a direction of unit length, so wide; of no width it is a ray.
+    pub fn of(axis: DVec3, width: f64) -> Self {
+        Self { axis, width }
+    }
+
+    /// All forces: it holds what it acts on.
+    pub fn everywhere() -> Self {
+        Self::of(DVec3::ZERO, f64::INFINITY)
+    }
+
     /// How far along and how far across its axis a force is.
     fn split(&self, force: DVec3) -> (f64, DVec3) {
         let along = force.dot(self.axis);
@@ -39,6 +49,9 @@ impl Cone {
 
     /// The force nearest to `force` in the cone; zero for a cone without an axis.
     pub(super) fn nearest(&self, force: DVec3) -> DVec3 {
+        if self.width == f64::INFINITY {
+            return force;
+        }
         let (along, sideways) = self.split(force);
         let across = sideways.length();
         if self.axis == DVec3::ZERO || along <= -self.width * across {
@@ -53,10 +66,16 @@ impl Cone {
 
     /// Derivative of [`nearest`](Self::nearest); times the force itself it gives that.
     pub(super) fn derivative(&self, force: DVec3) -> DMat3 {
+        if self.width == f64::INFINITY {
+            return DMat3::IDENTITY;
+        }
         let (along, sideways) = self.split(force);
         let across = sideways.length();
         if self.axis == DVec3::ZERO || along <= -self.width * across {
             return DMat3::ZERO;
+        }
+        if self.width == 0.0 {
+            return outer(self.axis);
         }
         if across <= self.width * along {
             return DMat3::IDENTITY;

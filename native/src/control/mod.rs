@@ -2,6 +2,7 @@
 
 pub mod coupling;
 pub mod passivity;
+pub mod pressed;
 pub mod safety;
 pub mod state;
 pub mod toll;

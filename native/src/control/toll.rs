@@ -19,6 +19,8 @@
 
 use glam::DVec3;
 
+use super::pressed::Pressed;
+
 /// Debts are paid within about this share of the depth,
 const PAYING: f64 = 0.016;
 /// the brake turns within this one,
@@ -27,129 +29,14 @@ const TURNING: f64 = 0.02;
 const GROWING: f64 = 0.2;
 /// This share of the energy may be owed: work adds up from tick to tick to rounding and bends.
 const FREE: f64 = 1.0e-4;
-/// A contact point that moved by less than this share of the depth has stayed: then the work of the law
-/// is what the energy gains, however long the step.
-const SAME_PLACE: f64 = 1.0e-9;
-/// A finger is as deep as with this share of its own energy at least: others may draw it along.
-const LEAST_SHARE: f64 = 0.1;
-/// No depth, m: less cannot be divided by.
-const SHALLOWEST: f64 = 1.0e-100;
 /// A finger at rest loses its brake within this time, s.
 const REST: f64 = 0.02;
 
-/// A finger at the end of a tick; by default it is not there, or presses nothing.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Pressed {
-    /// Where the finger is, m.
-    pub finger: DVec3,
-    /// How far the body itself has moved what is pressed: no work of the finger's, m.
-    pub carried: DVec3,
-    /// It did not move there but was set down.
-    pub is_set_down: bool,
-    /// Its contact point at rest, m; a tool has none.
-    pub place: Option<DVec3>,
-    /// How far a tool was turned in this tick, about an axis by its length in rad.
-    pub turn: DVec3,
-    /// The torque with which a tool turns the body by the law, N m.
-    pub torque: DVec3,
-    /// Its force on the body by the law of contact, N.
-    pub push: DVec3,
-    /// Its share of the energy of all by that law at these places and displacements, J.
-    pub energy: f64,
-    /// What its own force alone puts into the body, J.
-    pub own_energy: f64,
-    /// What is asked of the motors but for a brake, N.
-    pub wanted: DVec3,
-    /// By which law it presses.
-    pub law: Law,
-    /// That law is not known, or changes, or its force is not sent whole.
-    pub is_unsettled: bool,
-}
-
-/// What the law depends on but for places and displacements. Who changes it while a finger presses
-/// puts energy in or takes it, and owes nothing.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Law {
-    /// Young's modulus, Pa.
-    pub modulus: f64,
-    /// The most that motors see of the body's stiffness, N/m.
-    pub most_stiffness: f64,
-    /// The largest force that is sent, N.
-    pub most_force: f64,
-}
-
-impl Pressed {
-    /// Of a force of this size, N, the share that is sent.
-    fn sent_share(&self) -> f64 {
-        let push = self.push.length();
-        if push > self.law.most_force {
-            self.law.most_force / push
-        } else {
-            1.0
-        }
-    }
-
-    /// The push as far as it is sent, N.
-    fn felt(&self) -> DVec3 {
-        self.push * self.sent_share()
-    }
-
-    /// The energy that is had back by going straight out, J: less where the force is cut off.
-    fn held(&self) -> f64 {
-        let share = self.sent_share();
-        self.energy * share * (2.0 - share)
-    }
-
-    /// How deep it is, m; 0 unless it presses.
-    fn depth(&self) -> f64 {
-        let energy = self.energy.max(LEAST_SHARE * self.own_energy);
-        let depth = 2.0 * energy / self.push.length();
-        if depth > SHALLOWEST && depth.is_finite() {
-            depth
-        } else {
-            0.0
-        }
-    }
-
-    /// What is to be sent without a brake, N. Damping is left out, for it takes; cut off together with
-    /// the law's force it need not, and is counted.
-    fn asked(&self) -> DVec3 {
-        if self.wanted.length() > self.law.most_force {
-            -self.felt()
-        } else {
-            self.wanted
-        }
-    }
-
-    fn presses(&self) -> bool {
-        self.push != DVec3::ZERO
-    }
-
-    /// Whether it presses by the law of the last tick.
-    fn presses_as(&self, last: &Self) -> bool {
-        let is_same = self.law == last.law || !(self.presses() && last.presses());
-        is_same && !self.is_unsettled && !last.is_unsettled
-    }
-
-    /// Whether it presses where it did, with a force that is sent whole.
-    fn stays(&self, last: &Self) -> bool {
-        let is_off = !self.presses() && !last.presses();
-        let nearest = SAME_PLACE * self.depth().max(last.depth());
-        let moved = (self.place.zip(last.place)).map(|(now, last)| now.distance(last));
-        is_off || (moved.is_some_and(|moved| moved <= nearest) && self.sent_share() == 1.0)
-    }
-
-    /// The finger's work against the push as it is sent, J, and that of who turns the tool.
-    fn work(&self, last: &Self, way: DVec3) -> f64 {
-        let turned = self.torque * self.sent_share() + last.torque * last.sent_share();
-        let work = 0.5 * ((last.felt() + self.felt()).dot(way) + turned.dot(self.turn));
-        if self.presses() {
-            work
-        } else {
-            // The rest of the way out was in the air.
-            work.max(-last.held())
-        }
-    }
+/// Of the force of whichever finger it is cut off most, the share that is sent: with that share it has
+/// worked against the body's weight.
+fn least_share(pressed: &[Pressed]) -> f64 {
+    let pressing = pressed.iter().filter(|finger| finger.presses());
+    pressing.map(Pressed::sent_share).fold(1.0, f64::min)
 }
 
 /// The brake of one finger.
@@ -220,8 +107,9 @@ impl<const FINGERS: usize> Default for Toll<FINGERS> {
 }
 
 impl<const FINGERS: usize> Toll<FINGERS> {
-    /// The brakes on the fingers, N, `dt` seconds after the last tick.
-    pub fn take(&mut self, pressed: &[Pressed; FINGERS], dt: f64) -> [DVec3; FINGERS] {
+    /// The brakes on the fingers, N, `dt` seconds after the last tick; `beside` is what the body can
+    /// give back more than then besides what the fingers hold, J, as one that nobody holds may.
+    pub fn take(&mut self, pressed: &[Pressed; FINGERS], beside: f64, dt: f64) -> [DVec3; FINGERS] {
         let last = std::mem::replace(&mut self.last, *pressed);
         let held: f64 = pressed.iter().map(Pressed::held).sum();
         if held <= 0.0 {
@@ -239,7 +127,7 @@ impl<const FINGERS: usize> Toll<FINGERS> {
         }
         self.is_kept = (pressed.iter().zip(&last)).all(|(now, last)| now.presses_as(last));
         if self.is_kept {
-            self.debt += self.made(pressed, &last);
+            self.debt += self.made(pressed, &last) + beside * least_share(pressed);
         }
         self.brake(pressed, held, dt);
         self.brakes.map(|brake| -brake.force())

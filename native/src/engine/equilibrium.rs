@@ -226,7 +226,8 @@ impl Joint {
             let presence = led[usize::from(slot.tool)]
                 .as_ref()
                 .map_or(1.0, |led| led.presence);
-            let mut share = 1.0 / presence.max(LEAST_PRESENCE) - 1.0;
+            let fading = 1.0 / presence.max(LEAST_PRESENCE) - 1.0;
+            let mut share = fading;
             for (other, _) in self.kin[usize::from(slot.body)][usize::from(slot.tool)]
                 .iter()
                 .enumerate()
@@ -241,7 +242,13 @@ impl Joint {
                     share += SHARING * near.clamp(0.0, 1.0);
                 }
             }
-            let spring = share * self.problem.own(unknown);
+            // How the body moves as a whole depends on the tick's length: what two tools share does not.
+            let carried = self.mobilities[usize::from(slot.body)].map_or(0.0, |mobility| {
+                let place = slot.at.position;
+                (slot.normal).dot(mobility.between(place, place) * slot.normal)
+            });
+            let elastic = self.problem.own(unknown) - carried;
+            let spring = share * elastic + fading * carried;
             self.patch.slots_mut()[place].spring = spring;
             self.problem
                 .set(unknown, unknown, self.problem.own(unknown) + spring);

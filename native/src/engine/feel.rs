@@ -31,10 +31,11 @@ impl Joint {
             let arm = slot.at.position + slot.moved - position;
             felt.force -= slot.force * young_modulus;
             felt.torque -= arm.cross(slot.force * young_modulus);
-            felt.energy += held(slot) * young_modulus;
+            let moved = self.moved_in_frame(slot);
+            felt.energy += held(slot, moved) * young_modulus;
             given -= slot.force.dot(slot.carried) * young_modulus;
             felt.pressed += 1;
-            collider.take(slot);
+            collider.take(Slot { moved, ..*slot });
         }
         if given != 0.0 {
             felt.carried += felt.force * (given / felt.force.length_squared());
@@ -90,13 +91,13 @@ impl Joint {
     }
 }
 
-/// What a point holds, J at unit modulus, and with it the spring before it, where the tool is now. A
+/// What a point moved so far holds, J at unit modulus, and with it the spring before it, where the tool is now. A
 /// tick whose bound on the work leaves the point a little off the tool has the body hold more or less
 /// than that, and the next one, which gets nearer, would seem to give or take the difference.
-fn held(slot: &Slot) -> f64 {
+fn held(slot: &Slot, moved: DVec3) -> f64 {
     let spring = slot.spring * slot.push;
     let off = slot.seen.0 + spring;
-    0.5 * (slot.force.dot(slot.moved - slot.remembered) + spring * slot.push) - off * slot.push
+    0.5 * (slot.force.dot(moved - slot.remembered) + spring * slot.push) - off * slot.push
 }
 
 /// The stiffness of a tool without friction, with what points that stick add aside: where all stick

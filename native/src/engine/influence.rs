@@ -216,7 +216,8 @@ impl Joint {
             let own = (grounds.get(usize::from(press.body))).and_then(|ground| {
                 let at = ground.place(press.hold.triangle, press.hold.alpha);
                 contact_compliance(ground.body, press.hold.triangle, press.hold.alpha)
-                    .map(|own| own + ground.carried(at, at))
+                    // Of how the body as a whole gives way tools may take all.
+                    .map(|own| own + ground.carried(at, at) * (1.0 / MOST_TAKEN))
             });
             let taken = own.map_or(0.0, |own| share_taken(&own, &-reaction.by[p][p]));
             self.influence.reduced[p] = (MOST_TAKEN / taken).sqrt().min(1.0);

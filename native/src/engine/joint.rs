@@ -123,6 +123,7 @@ impl Joint {
             let (more, found) = self.settle(grounds, led, &posed, beside);
             (linearisations, exact) = (linearisations + more, found);
         }
+        self.find_motions(grounds, beside);
         self.keep_traces(beside.memories);
         let mut are_numbers = self.patch.slots().iter().all(|slot| slot.moved.is_finite());
         // What presses is found by the numbers of slots: none goes before all tools have felt.
@@ -164,7 +165,7 @@ impl Joint {
                 tool.collider.fail();
             }
         }
-        self.move_on(grounds, beside);
+        self.move_on();
     }
 
     /// Tools take their way; slots of those that are not there any more, or feel nothing, go.

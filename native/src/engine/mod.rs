@@ -44,7 +44,10 @@ impl Engine {
             memory.begin(ground.number, &ground.creep);
         }
         let presses = &(self.joint).recalled(grounds, presses, &self.memories);
-        let answers = self.solve(grounds, presses, led);
+        let mut answers = self.solve(grounds, presses, led);
+        if let Some(answers) = &mut answers {
+            self.joint.take_motions(grounds, presses, answers);
+        }
         let memories = &mut self.memories;
         remembering::end(memories, grounds, presses, answers.as_ref(), led);
         answers

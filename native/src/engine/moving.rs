@@ -5,7 +5,8 @@ use glam::DVec3;
 use super::joint::{Beside, Joint};
 use crate::contact::ground::Ground;
 use crate::contact::mobility::Motion;
-use crate::fingers::press::{Press, numbered};
+use crate::fingers::press::{Answers, Press, Presses, numbered};
+use crate::tool::slot::Slot;
 
 impl Joint {
     /// How the body at a place of the list moved in the last tick; not at all where it is held.
@@ -29,8 +30,8 @@ impl Joint {
         }
     }
 
-    /// Finds how bodies move by what presses them, and sees their contact points from where they go.
-    pub(super) fn move_on(&mut self, grounds: &[Ground<'_>], beside: &Beside<'_>) {
+    /// Finds how bodies move by what presses them.
+    pub(super) fn find_motions(&mut self, grounds: &[Ground<'_>], beside: &Beside<'_>) {
         for body in 0..self.mobilities.len() {
             self.motions[body] = Motion::default();
             let (Some(mobility), Some(ground)) = (self.mobilities[body], grounds.get(body)) else {
@@ -49,13 +50,37 @@ impl Joint {
                         forces[p],
                     )
                 });
-            let motion = mobility.motion(by_tools.chain(by_points));
-            for slot in self.patch.slots_mut() {
-                if usize::from(slot.body) == body {
-                    slot.moved -= motion.at(slot.at.position);
-                }
+            self.motions[body] = mobility.motion(by_tools.chain(by_points));
+        }
+    }
+
+    /// Sees the contact points from where their bodies have gone.
+    pub(super) fn move_on(&mut self) {
+        for slot in self.patch.slots_mut() {
+            slot.moved -= self.motions[usize::from(slot.body)].at(slot.at.position);
+        }
+    }
+
+    /// How far a contact point is moved in its body's frame, which has moved on by then, m.
+    pub(super) fn moved_in_frame(&self, slot: &Slot) -> DVec3 {
+        slot.moved - self.motions[usize::from(slot.body)].at(slot.at.position)
+    }
+
+    /// Takes from what points hold in bodies what only moved these as a whole.
+    pub(super) fn take_motions(
+        &self,
+        grounds: &[Ground<'_>],
+        presses: &Presses,
+        answers: &mut Answers,
+    ) {
+        for (p, press) in numbered(presses).filter(|(_, press)| press.touches) {
+            let body = usize::from(press.body);
+            if grounds[body].mobility.is_some() {
+                let at = grounds[body].place(press.hold.triangle, press.hold.alpha);
+                let answer = &mut answers[p];
+                answer.energy -= 0.5 * answer.force.dot(self.motions[body].at(at));
+                answer.own_energy -= 0.5 * answer.force.dot(answer.along);
             }
-            self.motions[body] = motion;
         }
     }
 

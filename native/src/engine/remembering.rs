@@ -107,10 +107,13 @@ impl Joint {
 
     /// Has each slot remember how far the forces of this tick move it.
     pub(super) fn keep_traces(&mut self, memories: &Memories) {
+        let motions = &self.motions;
         for slot in self.patch.slots_mut() {
-            let step = memories[usize::from(slot.body)].step();
+            let body = usize::from(slot.body);
+            let step = memories[body].step();
             if !step.is_none() {
-                let moved = (slot.moved - slot.remembered) * step.at_once();
+                let moved = slot.moved - motions[body].at(slot.at.position);
+                let moved = (moved - slot.remembered) * step.at_once();
                 slot.trace.advance(step, moved);
             }
         }

@@ -248,6 +248,7 @@ impl Settling {
             touches: true,
             displacement,
             push,
+            cone: None,
             most_stiffness: f64::INFINITY,
             presence: 1.0,
             remembered: DVec3::ZERO,

@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::contact::cones::{Blocks, MAX_FINGERS, Vectors};
+use crate::contact::cones::{Blocks, Cone, MAX_FINGERS, Vectors};
 use crate::proxy::SurfacePoint;
 
 /// A finger on the body, or near it where the others move the surface.
@@ -18,6 +18,8 @@ pub struct Press {
     pub displacement: DVec3,
     /// The part of that which it adds to what the others do, m.
     pub push: DVec3,
+    /// What its force stays in; by default a cone about its push, as wide as that needs.
+    pub cone: Option<Cone>,
     /// Of all that its device may see, over Young's modulus; infinite for no such limit.
     pub most_stiffness: f64,
     /// From 0 to 1 after it was lifted by a fault: how much it acts on the others.
@@ -88,6 +90,8 @@ pub struct Answer {
     pub own_energy: f64,
     /// How far the others move the contact point, and past forces, m.
     pub by_others: DVec3,
+    /// How far its own force takes a body that nobody holds along, m.
+    pub along: DVec3,
     /// How far the body itself has moved the contact point in this tick, m.
     pub carried: DVec3,
     /// How far the surface goes beyond what the finger asks, m: zero unless its force is on its cone.

@@ -72,6 +72,7 @@ impl Several {
     ) -> Option<Answers> {
         let mut alone = self.coupled_compliance(grounds, presses)?;
         tell_apart(&mut alone, &Members::of(presses))?;
+        carry(&mut alone, grounds, presses);
         let compliance = tools.on(&alone);
         let drift = |press: &Press| grounds[usize::from(press.body)].drift();
         let touching = presses.map(|press| press.filter(|p| p.touches));
@@ -92,7 +93,10 @@ impl Several {
             answers[p].spring = spring;
             asked[p] = press.displacement - tools.moved[p] - drift(&press) - press.remembered;
             let own = alone[p][p] + DMat3::IDENTITY * between[p];
-            cones[p] = Cone::about(press.push, &own)?;
+            cones[p] = match press.cone {
+                Some(cone) => cone,
+                None => Cone::about(press.push, &own)?,
+            };
         }
         self.forces = solve_distinct(&series, &asked, &cones, &members, &self.forces)?;
         for (p, press) in numbered(presses) {
@@ -104,6 +108,9 @@ impl Several {
                 let own = inverse_of_definite(&alone[p][p])?;
                 answers[p].force = force;
                 answers[p].carried = press.carried;
+                let ground = &grounds[usize::from(press.body)];
+                answers[p].along =
+                    ground.carried(place(ground, &press), place(ground, &press)) * force;
                 let held = press.displacement - press.remembered;
                 answers[p].energy = 0.5 * force.dot(held);
                 let own_part = press.displacement - answers[p].by_others;
@@ -121,15 +128,13 @@ impl Several {
         self.forces = [DVec3::ZERO; MAX_FINGERS];
     }
 
-    /// C_pq of all fingers that are there, zero between bodies.
+    /// C_pq of all fingers that are there, zero between bodies, each of which is taken as held.
     fn coupled_compliance(&mut self, grounds: &[Ground<'_>], presses: &Presses) -> Option<Blocks> {
         let mut compliance = [[DMat3::ZERO; MAX_FINGERS]; MAX_FINGERS];
         for (p, press) in numbered(presses) {
             let ground = grounds.get(usize::from(press.body))?;
             let Ground { body, number, .. } = *ground;
-            let at = |press: &Press| ground.place(press.hold.triangle, press.hold.alpha);
-            compliance[p][p] = contact_compliance(body, press.hold.triangle, press.hold.alpha)?
-                + ground.carried(at(&press), at(&press));
+            compliance[p][p] = contact_compliance(body, press.hold.triangle, press.hold.alpha)?;
             let before = numbered(presses).take_while(|&(q, _)| q < p);
             for (q, other) in before.filter(|(_, other)| other.body == press.body) {
                 let triangles = [press.hold.triangle, other.hold.triangle];
@@ -138,7 +143,7 @@ impl Several {
                     cross.blocks = blocks_between(body, triangles)?;
                     (cross.triangles, cross.body) = (triangles, number);
                 }
-                let mut sum = ground.carried(at(&press), at(&other));
+                let mut sum = DMat3::ZERO;
                 for (row, a) in cross.blocks.iter().zip(press.hold.alpha) {
                     for (block, b) in row.iter().zip(other.hold.alpha) {
                         sum += *block * (a * b);
@@ -148,6 +153,23 @@ impl Several {
             }
         }
         Some(compliance)
+    }
+}
+
+fn place(ground: &Ground<'_>, press: &Press) -> DVec3 {
+    ground.place(press.hold.triangle, press.hold.alpha)
+}
+
+/// Adds how bodies that nobody holds go along: that tells fingers apart which the surface cannot.
+fn carry(compliance: &mut Blocks, grounds: &[Ground<'_>], presses: &Presses) {
+    for (p, press) in numbered(presses) {
+        let ground = &grounds[usize::from(press.body)];
+        if ground.mobility.is_none() {
+            continue;
+        }
+        for (q, other) in numbered(presses).filter(|(_, other)| other.body == press.body) {
+            compliance[p][q] += ground.carried(place(ground, &press), place(ground, &other));
+        }
     }
 }
 

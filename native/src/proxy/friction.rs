@@ -153,7 +153,12 @@ impl Pull {
 }
 
 /// The direction nearest to `towards` among the normals of the surface at a place.
-fn nearest_normal(body: &Body, hold: SurfacePoint, shading: bool, towards: DVec3) -> DVec3 {
+pub(super) fn nearest_normal(
+    body: &Body,
+    hold: SurfacePoint,
+    shading: bool,
+    towards: DVec3,
+) -> DVec3 {
     let SurfacePoint { triangle, alpha } = hold;
     let face = body.face(triangle);
     let of = |t: u32, alpha: [f64; 3]| {

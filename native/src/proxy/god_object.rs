@@ -5,6 +5,7 @@ use glam::DVec3;
 use crate::body::surface::Body;
 use crate::proxy::contact_point::{ContactPoint, Judged};
 use crate::proxy::feel::Feel;
+use crate::proxy::friction::nearest_normal;
 use crate::proxy::place::{Place, SurfacePoint, snap};
 
 /// The god object and the contact point that follows it.
@@ -103,6 +104,11 @@ impl Proxy {
             Place::Free { .. } | Place::Buried { .. } => None,
             _ => Some(self.hold),
         }
+    }
+
+    /// The direction nearest to `towards` among the outward normals of the surface at the contact point.
+    pub fn normal(&self, body: &Body, feel: &Feel, towards: DVec3) -> DVec3 {
+        nearest_normal(body, self.contact.hold, feel.shading, towards)
     }
 
     /// Whether friction holds the contact point where it is.

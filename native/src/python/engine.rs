@@ -11,7 +11,7 @@ use crate::body::surface;
 use crate::contact::cones::MAX_FINGERS;
 use crate::engine::goals::{Goal, PointTouch, Toucher, Unsettled};
 use crate::engine::settling::Settling;
-use crate::proxy::SurfacePoint;
+use crate::python::body::place::surface_point;
 use crate::python::body::surface::Body;
 use crate::python::servo::settings::contact_mode;
 use crate::python::tool::shape::Tool;
@@ -20,9 +20,6 @@ use crate::python::tool::told::told_tool;
 use crate::python::vectors::{array, finite, pose, positive, rows};
 use crate::tool::coefficients::Friction;
 use crate::tool::collider::Collider;
-
-/// What area coordinates that were computed may be off.
-const ALPHA_ROUNDING: f64 = 1e-6;
 
 #[pyclass(module = "palpate_servo")]
 pub struct ContactEngine {
@@ -130,30 +127,8 @@ impl ContactEngine {
                 "target {number} is neither (position, rotation) nor (triangle, alpha, by)"
             ))
         })?;
-        let count = self.body.triangles.len();
-        let Some(triangle) = u32::try_from(triangle)
-            .ok()
-            .filter(|&t| (t as usize) < count)
-        else {
-            return Err(PyValueError::new_err(format!(
-                "target {number} is on triangle {triangle}, and the body has 0 to {}",
-                count.saturating_sub(1)
-            )));
-        };
-        let alpha = finite("alpha", alpha)?;
-        if alpha.min_element() < -ALPHA_ROUNDING
-            || (alpha.element_sum() - 1.0).abs() > ALPHA_ROUNDING
-        {
-            return Err(PyValueError::new_err(format!(
-                "target {number} has the area coordinates {alpha}; give three that are not negative \
-                 and add up to 1"
-            )));
-        }
-        let alpha = alpha.to_array();
-        Ok(Goal::Point(
-            SurfacePoint { triangle, alpha },
-            finite("by", by)?,
-        ))
+        let hold = surface_point(&self.body, &format!("target {number}"), triangle, alpha)?;
+        Ok(Goal::Point(hold, finite("by", by)?))
     }
 
     fn told<'py>(&self, py: Python<'py>, toucher: &Toucher) -> PyResult<Bound<'py, PyDict>> {

@@ -35,7 +35,8 @@ fn palpate_servo(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<tool::shape::Tool>()?;
     module.add_class::<tool::surface::ToolSurface>()?;
     module.add_class::<engine::ContactEngine>()?;
-    module.add_class::<rest::Resting>()?;
+    module.add_class::<rest::prop::Prop>()?;
+    module.add_class::<rest::resting::Resting>()?;
     module.add_function(wrap_pyfunction!(body::closest::closest_points, module)?)?;
     module.add_function(wrap_pyfunction!(body::polygons::polygons_on_line, module)?)?;
     module.add_function(wrap_pyfunction!(body::polygons::nearest_polygon, module)?)?;

@@ -34,6 +34,12 @@ impl Placement {
         }
     }
 
+    /// A place in the world, as seen from the body.
+    #[inline]
+    pub fn place_to_body(&self, place: DVec3) -> DVec3 {
+        self.rotation.inverse() * (place - self.position)
+    }
+
     /// A direction in the world, as seen from the body.
     #[inline]
     pub fn direction_to_body(&self, direction: DVec3) -> DVec3 {

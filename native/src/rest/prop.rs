@@ -1,9 +1,12 @@
 //! A body that nobody holds: its mass, where it is, what bears it.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use super::free_body::FreeBody;
 use super::placement::Placement;
+use crate::body::surface::Body;
 use crate::contact::cones::MAX_FINGERS;
 use crate::contact::mobility::{Mobility, Motion};
 use crate::engine::joint::{AllLed, Led};
@@ -22,6 +25,8 @@ pub struct Support {
 /// A body that nobody holds.
 #[derive(Debug, Clone)]
 pub struct Prop {
+    /// Its surface.
+    pub body: Arc<Body>,
     /// Mass and drag.
     pub free: FreeBody,
     /// Where it is.
@@ -33,6 +38,20 @@ pub struct Prop {
 }
 
 impl Prop {
+    /// Whether it is this body.
+    pub fn is(&self, body: &Body) -> bool {
+        std::ptr::eq(&raw const *self.body, body)
+    }
+
+    /// What it can give back, J: by its weight, from the height of the world's origin on, and by what
+    /// its supports hold in it.
+    pub fn stored(&self) -> f64 {
+        let centre = self.placement.to_world(self.free.centre);
+        let supports = self.supports.iter();
+        let held = supports.filter_map(|support| support.collider.felt().ok());
+        held.map(|felt| felt.energy).sum::<f64>() - self.free.mass * self.gravity.dot(centre)
+    }
+
     /// How wrenches move it in `dt` s.
     pub fn mobility(&self, young_modulus: f64, dt: f64) -> Mobility {
         let gravity = self.placement.direction_to_body(self.gravity);

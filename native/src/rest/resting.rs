@@ -4,17 +4,16 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::finger::Finger;
 use super::placement::Placement;
 use super::prop::Prop;
-use crate::body::surface::Body;
 use crate::contact::cones::{MAX_FINGERS, mean};
 use crate::contact::ground::{Ground, MOST_TOOLS};
 use crate::contact::mobility::Motion;
 use crate::creep::step::Step;
 use crate::engine::Engine;
-use crate::engine::joint::{AllLed, Led};
+use crate::engine::joint::AllLed;
 use crate::tool::collider::Collider;
-use crate::tool::shape::Pose;
 
 /// Ticks on the way to rest are so long at most that a force takes the body as a whole so many times as
 /// far as it presses in what it acts on. Friction is found in sweeps over points, which all move with
@@ -22,7 +21,7 @@ use crate::tool::shape::Pose;
 const LONGEST: f64 = 100.0;
 const LONGEST_RUBBING: f64 = 0.5;
 /// And this share of that at least.
-const SHORTEST: f64 = 1e-3;
+pub(super) const SHORTEST: f64 = 1e-3;
 /// On the way to rest it moves by this share of the distance between contact points in a tick, about.
 const WAY_PER_SPACING: f64 = 0.25;
 /// While it goes by more than this share of its size in a millisecond, ticks may be as long as that.
@@ -41,10 +40,6 @@ const MOST_TICKS: usize = 20_000;
 const MOST_SIZES: f64 = 20.0;
 /// Tools are at their goals if they miss them by this share of the body's size.
 const AT_GOAL: f64 = 1e-9;
-/// What comes in does so in ticks that are so short beside the shortest others.
-const INSTANT: f64 = 1e-3;
-/// Strides in which they come in at most.
-const MOST_STRIDES_IN: usize = 2000;
 
 /// Why a body does not rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -58,27 +53,20 @@ pub enum Restless {
 /// A body that nobody holds, and tools on it.
 #[derive(Debug, Clone)]
 pub struct Resting {
-    body: Arc<Body>,
     young_modulus: f64,
     /// Where it is, and on what.
     pub prop: Prop,
-    /// Tools, by number, with their poses in the world.
-    pub fingers: Vec<(Collider, Pose)>,
+    /// What presses it, by number.
+    pub fingers: Vec<Finger>,
     engine: Engine,
     time: f64,
 }
 
 impl Resting {
-    /// A body that touches nothing yet; at most as many tools as fingers.
-    pub fn new(
-        body: Arc<Body>,
-        young_modulus: f64,
-        prop: Prop,
-        fingers: Vec<(Collider, Pose)>,
-    ) -> Self {
+    /// A body that touches nothing yet.
+    pub fn new(young_modulus: f64, prop: Prop, fingers: Vec<Finger>) -> Self {
         debug_assert!(fingers.len() <= MAX_FINGERS);
         Self {
-            body,
             young_modulus,
             prop,
             fingers,
@@ -95,39 +83,9 @@ impl Resting {
     /// Lays the body elsewhere: all that touches it is set down anew.
     pub fn place(&mut self, placement: Placement) {
         self.prop.placement = placement;
-        let tools = self.fingers.iter_mut().map(|(tool, _)| tool);
+        self.fingers.iter_mut().for_each(Finger::lift);
         let supports = self.prop.supports.iter_mut();
-        let all = tools.chain(supports.map(|support| &mut support.collider));
-        all.for_each(Collider::lift);
-    }
-
-    /// What overlaps the body where it lies comes in from outside, while the body stays there: so a
-    /// body goes on from where it rested.
-    ///
-    /// # Errors
-    /// [`Restless::NotANumber`].
-    pub fn come_in(&mut self) -> Result<(), Restless> {
-        let placement = self.prop.placement;
-        let tools = self.fingers.iter_mut().map(|(tool, pose)| (tool, pose));
-        let supports = self.prop.supports.iter_mut();
-        let supports = supports.map(|support| (&mut support.collider, &mut support.pose));
-        for (tool, pose) in tools.chain(supports) {
-            if let Some(outside) = tool.way_out(&placement.to_body(pose)) {
-                tool.restart(&outside);
-            }
-        }
-        let instant = INSTANT * SHORTEST * self.longest_tick();
-        let mut before = self.wrenches();
-        for _ in 0..MOST_STRIDES_IN {
-            self.tick(instant, false)?;
-            self.prop.placement = placement;
-            let now = self.wrenches();
-            if self.are_at_goals() && have_stayed(&before, &now) {
-                break;
-            }
-            before = now;
-        }
-        Ok(())
+        supports.for_each(|support| support.collider.lift());
     }
 
     /// Since it was set down, s.
@@ -137,24 +95,35 @@ impl Resting {
 
     /// The elastic energy in it, J.
     pub fn elastic(&self) -> f64 {
-        self.engine.elastic(0) * self.young_modulus
+        let by_points = self.fingers.iter().map(|finger| match finger {
+            Finger::Tool(..) => 0.0,
+            Finger::Point(point) => point.energy,
+        });
+        (self.engine.elastic(0) + by_points.sum::<f64>()) * self.young_modulus
     }
 
     /// All forces on the body, N, and their torque about its centre of mass, N m, as the last tick found
     /// them; in its frame, without its weight.
     pub fn wrench(&self) -> (DVec3, DVec3) {
         let (mut force, mut torque) = (DVec3::ZERO, DVec3::ZERO);
-        for slot in self.colliders().flat_map(Collider::pressed) {
-            let push = slot.force * self.young_modulus;
+        let by_fingers = self
+            .fingers
+            .iter()
+            .flat_map(|finger| finger.pushes(&self.prop.body));
+        let by_supports = self.prop.supports.iter();
+        let by_supports = by_supports.flat_map(|support| support.collider.pressed());
+        let by_supports = by_supports.map(|slot| (slot.at.position, slot.force));
+        for (place, push) in by_fingers.chain(by_supports) {
+            let push = push * self.young_modulus;
             force += push;
-            torque += (slot.at.position - self.prop.free.centre).cross(push);
+            torque += (place - self.prop.free.centre).cross(push);
         }
         (force, torque)
     }
 
     fn colliders(&self) -> impl Iterator<Item = &Collider> {
         let supports = self.prop.supports.iter().map(|support| &support.collider);
-        self.fingers.iter().map(|(tool, _)| tool).chain(supports)
+        self.fingers.iter().filter_map(Finger::tool).chain(supports)
     }
 
     /// One tick of `dt` s: how the body moved, in its frame. A hurried one is bounded like the servo's.
@@ -163,25 +132,30 @@ impl Resting {
     /// [`Restless::NotANumber`].
     pub fn tick(&mut self, dt: f64, is_hurried: bool) -> Result<Motion, Restless> {
         self.engine.set_turns(if is_hurried { 1 } else { TURNS });
+        let body = Arc::clone(&self.prop.body);
         let mobility = self.prop.mobility(self.young_modulus, dt);
         let ground = Ground {
-            body: &self.body,
+            body: &body,
             number: 0,
             young_modulus: self.young_modulus,
             mobility: Some(mobility),
             creep: Step::default(),
         };
         let mut led: AllLed<'_> = [const { None }; MOST_TOOLS];
-        for (led, (collider, pose)) in led.iter_mut().zip(&mut self.fingers) {
-            *led = Some(Led {
-                goal: self.prop.placement.to_body(pose),
-                collider,
-                presence: 1.0,
-            });
+        let placement = self.prop.placement;
+        let mut presses = [None; MAX_FINGERS];
+        for (number, finger) in self.fingers.iter_mut().enumerate() {
+            presses[number] = finger.press(&body, &placement);
+            led[number] = finger.lead(&placement);
         }
         self.prop.lead(&mut led);
-        let presses = [None; MAX_FINGERS];
-        self.engine.tick(&[ground], &presses, &mut led);
+        let answers = self.engine.tick(&[ground], &presses, &mut led);
+        if answers.is_none() && presses.iter().any(Option::is_some) {
+            return Err(Restless::NotANumber);
+        }
+        for (finger, answer) in self.fingers.iter_mut().zip(answers.iter().flatten()) {
+            finger.take(answer);
+        }
         let motion = self.engine.motion(0);
         if !motion.is_finite() || self.colliders().any(|tool| tool.felt().is_err()) {
             return Err(Restless::NotANumber);
@@ -212,13 +186,13 @@ impl Resting {
             if quiet == QUIET_TICKS {
                 return Ok(());
             }
-            let way = motion.most(self.body.size());
+            let way = motion.most(self.prop.body.size());
             (speed, gone) = (way / dt, gone + way);
-            if gone > MOST_SIZES * self.body.size() {
+            if gone > MOST_SIZES * self.prop.body.size() {
                 break;
             }
             let most = (WAY_PER_SPACING * self.spacing() / way).clamp(0.1, 2.0);
-            let is_brisk = speed * MILLISECOND > BRISK * self.body.size();
+            let is_brisk = speed * MILLISECOND > BRISK * self.prop.body.size();
             let longest = if is_brisk {
                 longest.max(MILLISECOND)
             } else {
@@ -230,11 +204,12 @@ impl Resting {
     }
 
     /// The longest tick in which contact with friction, if there is any, is found, s.
-    fn longest_tick(&self) -> f64 {
-        let blocks = self.body.contact_blocks.iter();
+    pub(super) fn longest_tick(&self) -> f64 {
+        let blocks = self.prop.body.contact_blocks.iter();
         let stiffness: f64 = blocks.map(mean).sum();
-        let gives = self.body.nodes.len() as f64 / (stiffness * self.young_modulus);
-        let rubs = self.colliders().any(Collider::rubs);
+        let gives = self.prop.body.nodes.len() as f64 / (stiffness * self.young_modulus);
+        let has_points = self.fingers.iter().any(|finger| finger.tool().is_none());
+        let rubs = has_points || self.colliders().any(Collider::rubs);
         let times = if rubs { LONGEST_RUBBING } else { LONGEST };
         times * gives * self.prop.free.mass / self.prop.free.drag_time
     }
@@ -242,29 +217,37 @@ impl Resting {
     /// The least distance between contact points, m.
     fn spacing(&self) -> f64 {
         let surfaces = self.colliders().filter_map(|tool| tool.surface(0));
-        surfaces.fold(self.body.size(), |least, surface| {
+        surfaces.fold(self.prop.body.size(), |least, surface| {
             least.min(surface.spacing())
         })
     }
 
     /// Whether tools and supports are where they are to be.
-    fn are_at_goals(&self) -> bool {
+    pub(super) fn are_at_goals(&self) -> bool {
         let placement = &self.prop.placement;
         let supports = self.prop.supports.iter();
         let supports = supports.map(|support| (&support.collider, &support.pose));
-        let tools = self.fingers.iter().map(|(tool, pose)| (tool, pose));
+        let tools = self.fingers.iter().filter_map(|finger| match finger {
+            Finger::Tool(tool, pose) => Some((&**tool, pose)),
+            Finger::Point(_) => None,
+        });
         tools.chain(supports).all(|(tool, goal)| {
             tool.pose().is_some_and(|pose| {
                 let (way, turn) = pose.way_to(&placement.to_body(goal));
-                way.length() <= AT_GOAL * self.body.size() && turn.length() <= AT_GOAL
+                way.length() <= AT_GOAL * self.prop.body.size() && turn.length() <= AT_GOAL
             })
         })
     }
 
-    /// Forces on all tools, N.
-    fn wrenches(&self) -> Vec<DVec3> {
+    /// Forces on all fingers and supports, N.
+    pub(super) fn wrenches(&self) -> Vec<DVec3> {
+        let fingers = self
+            .fingers
+            .iter()
+            .map(|finger| finger.force(self.young_modulus));
+        let supports = self.prop.supports.iter().map(|support| &support.collider);
         let felt = |tool: &Collider| tool.felt().map_or(DVec3::NAN, |felt| felt.force);
-        self.colliders().map(felt).collect()
+        fingers.chain(supports.map(felt)).collect()
     }
 
     /// Whether the wrenches on the body cancel and stay.
@@ -275,7 +258,7 @@ impl Resting {
         let left = force + self.prop.placement.direction_to_body(weight);
         self.are_at_goals()
             && left.length() <= AT_REST * largest
-            && torque.length() <= AT_REST * largest * self.body.size()
+            && torque.length() <= AT_REST * largest * self.prop.body.size()
             && change(before, now) <= SETTLED * largest
     }
 }
@@ -292,6 +275,6 @@ fn change(before: &[DVec3], now: &[DVec3]) -> f64 {
 }
 
 /// Whether forces have stayed as they were, or there are none.
-fn have_stayed(before: &[DVec3], now: &[DVec3]) -> bool {
+pub(super) fn have_stayed(before: &[DVec3], now: &[DVec3]) -> bool {
     change(before, now) <= SETTLED * largest(now)
 }

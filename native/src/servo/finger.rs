@@ -8,6 +8,7 @@ mod among;
 mod follow;
 mod followed;
 mod inspection;
+mod loose;
 mod output;
 mod point;
 mod tool;
@@ -22,10 +23,11 @@ use crate::control::state::Standing;
 use crate::device::{Device, Reading};
 use crate::engine::joint::Led;
 use crate::fingers::press::{Answer, Press};
+use crate::servo::exchange::rings::Taker;
 use crate::servo::pressed_patch::PressedPatch;
 use crate::servo::settings::{FingerSettings, Moment};
 use crate::servo::snapshot::FingerReport;
-use crate::servo::tip::{Tip, TipHolder};
+use crate::servo::tip::Tip;
 use crate::tool::coefficients::Friction;
 use crate::tool::shape::Pose;
 pub use followed::Followed;
@@ -38,10 +40,10 @@ pub struct Finger {
     /// What moves it.
     device: Box<dyn Device>,
     /// What it touches with.
-    pub tips: TipHolder,
+    pub tips: Taker<Tip>,
     /// Where the patch of a tool is shown.
     patches: Input<PressedPatch>,
-    /// The last that is known.
+    /// The last that is known, as the hand has it.
     pose: Pose,
     frame_epoch: u32,
     /// Time of the last tick after a gap, s.
@@ -62,7 +64,7 @@ impl Finger {
     /// A finger at rest.
     pub fn new(
         device: Box<dyn Device>,
-        tips: TipHolder,
+        tips: Taker<Tip>,
         patches: Input<PressedPatch>,
         settings: &FingerSettings,
     ) -> Self {
@@ -99,7 +101,7 @@ impl Finger {
 
     /// Whether its tip is a tool.
     pub fn has_tool(&self) -> bool {
-        matches!(self.tips.tip, Tip::Tool(_))
+        matches!(self.tips.held, Tip::Tool(_))
     }
 
     /// The finger as the others see it, unless its tip is a tool.
@@ -108,10 +110,10 @@ impl Finger {
         is_point.then(|| self.point.press(followed))?
     }
 
-    /// The tool and where it is to go, if the finger has one and knows where it is. Among several it
-    /// presses as far as it is present.
-    pub fn lead(&mut self, followed: &Followed<'_>, are_several: bool) -> Option<Led<'_>> {
-        let Tip::Tool(tool) = &mut self.tips.tip else {
+    /// The tool and where it is to go, if the finger has one and knows where it is. Beside others, and
+    /// on a body that it may move, it presses as far as it is present.
+    pub fn lead(&mut self, followed: &Followed<'_>, is_beside: bool) -> Option<Led<'_>> {
+        let Tip::Tool(tool) = &mut self.tips.held else {
             return None;
         };
         if !followed.is_sound {
@@ -124,15 +126,15 @@ impl Finger {
         });
         Some(Led {
             collider: tool,
-            goal: self.pose,
-            presence: if are_several { self.presence } else { 1.0 },
+            goal: followed.pose,
+            presence: if is_beside { self.presence } else { 1.0 },
         })
     }
 
     /// The contact of the finger, alone or with what the others make of it.
     pub fn feel(&mut self, followed: &Followed<'_>, answer: Option<&Answer>) -> Touch {
         let coupler = &mut self.coupler;
-        let touch = match &self.tips.tip {
+        let touch = match &self.tips.held {
             Tip::Tool(tool) => self.tool.feel(followed, tool, coupler),
             Tip::Point => self.point.feel(followed, answer, coupler),
         };

@@ -15,8 +15,8 @@ pub mod tip;
 use std::sync::Arc;
 use std::time::Instant;
 
-use rtrb::{Consumer, Producer};
-use triple_buffer::{Input, Output, triple_buffer};
+use rtrb::Producer;
+use triple_buffer::{Input, Output};
 
 use crate::body::surface::Body;
 use crate::contact::cones::MAX_FINGERS;
@@ -25,38 +25,25 @@ use crate::contact::touch::ContactMode;
 use crate::control::toll::Toll;
 use crate::creep::shown::Remembered;
 use crate::creep::step::Step;
-use crate::device::{Device, Fault};
+use crate::device::Fault;
 use crate::engine::Engine;
-use crate::servo::exchange::{Hand, Holder, exchange};
+use crate::rest::frame::Frame;
+use crate::servo::exchange::bodies::Holder;
+use crate::servo::exchange::ends::Laid;
+use crate::servo::exchange::rings::Taker;
 use crate::servo::finger::{Finger, Followed, Touch};
-use crate::servo::pressed_patch::PressedPatch;
-use crate::servo::recorder::{Tape, touched_ring};
+use crate::servo::recorder::Tape;
 use crate::servo::settings::{Moment, Options, Settings};
 use crate::servo::snapshot::{Published, Sample, Snapshot};
 use crate::servo::stages::{Stage, Stages};
-use crate::servo::tip::{Tip, TipHand, exchange_tips};
-
-/// The ends of a servo's ways that stay outside of its thread.
-pub struct Ends {
-    /// Bodies to touch.
-    pub bodies: Hand,
-    /// Tips, by finger.
-    pub tips: Vec<TipHand>,
-    /// Patches of tools, by finger.
-    pub patches: Vec<Output<PressedPatch>>,
-    /// Settings.
-    pub settings: Input<Settings>,
-    /// The newest tick.
-    pub snapshots: Output<Published>,
-    /// What the body remembers of past forces.
-    pub remembered: Output<Remembered>,
-    /// Every tick, as far as there is room.
-    pub samples: Consumer<Sample>,
-}
 
 /// The loop's body and memory.
 pub struct Servo {
     bodies: Holder,
+    /// The body as one that nobody holds, if it is one.
+    prop: Taker<Laid>,
+    /// What that could give back after the last tick, J.
+    stored: f64,
     /// Those that touch it, at least one.
     pub fingers: Vec<Finger>,
     options: Options,
@@ -77,60 +64,6 @@ pub struct Servo {
 }
 
 impl Servo {
-    /// A servo at rest, with as many fingers as devices, one to [`MAX_FINGERS`], points all of them;
-    /// and its other ends. As many samples are kept as asked.
-    pub fn new(
-        body: Arc<Body>,
-        devices: Vec<Box<dyn Device>>,
-        options: Options,
-        settings: &Settings,
-        most_samples: usize,
-    ) -> (Self, Ends) {
-        assert!((1..=MAX_FINGERS).contains(&devices.len()));
-        let (bodies, holder) = exchange(body);
-        let (settings_in, settings_out) = triple_buffer(settings);
-        let before = Published::before_the_start(devices.len());
-        let (snapshots_in, snapshots) = triple_buffer(&before);
-        let (remembered_in, remembered) = triple_buffer(&Remembered::default());
-        let (samples_in, samples) = touched_ring(most_samples);
-        let (mut tips, mut patches) = (Vec::new(), Vec::new());
-        let fingers = devices.into_iter().zip(&settings.fingers);
-        let fingers = fingers.map(|(device, own)| {
-            let (tip_hand, tip_holder) = exchange_tips(Tip::Point);
-            let (patches_in, patches_out) = triple_buffer(&PressedPatch::default());
-            tips.push(tip_hand);
-            patches.push(patches_out);
-            Finger::new(device, tip_holder, patches_in, own)
-        });
-        let servo = Self {
-            fingers: fingers.collect(),
-            bodies: holder,
-            options,
-            settings: settings_out,
-            snapshots: snapshots_in,
-            samples: samples_in,
-            tape: None,
-            engine: Engine::default(),
-            remembered: remembered_in,
-            remembers_nothing: true,
-            toll: Toll::default(),
-            tick: 0,
-            ticked_at: None,
-            samples_lost: 0,
-            stages: Arc::default(),
-        };
-        let ends = Ends {
-            bodies,
-            tips,
-            patches,
-            settings: settings_in,
-            snapshots,
-            remembered,
-            samples,
-        };
-        (servo, ends)
-    }
-
     /// Times of the tick's parts, for other threads to read.
     pub fn stages(&self) -> Arc<Stages> {
         self.stages.clone()
@@ -141,9 +74,15 @@ impl Servo {
         let mut since = Instant::now();
         // The body before the settings that belong to it. The exchange keeps it: the end of this
         // tick never frees it.
-        let (body, number, body_replaced) = self.bodies.newest();
+        let (body, number, is_other) = self.bodies.newest();
         let body = Arc::clone(body);
+        let is_laid = self.prop.exchange();
+        let frame = self.frame(&body);
         let (mut settings, options) = (*self.settings.read(), self.options);
+        if !frame.is_held() {
+            // The paper has no body that anything moves.
+            settings.feel.mode = ContactMode::Consistent;
+        }
         let dt = 1.0 / f64::from(options.rate_hz);
         let creep = creep_of(&settings, &body, dt);
         let relaxed = settings.young_modulus;
@@ -157,7 +96,8 @@ impl Servo {
             gap: self.ticked_at.replace(now).map_or(0.0, |last| now - last),
             body: &body,
             body_number: number,
-            body_replaced,
+            body_replaced: is_other || is_laid,
+            frame,
             settings: &settings,
             options: &options,
         };
@@ -183,36 +123,46 @@ impl Servo {
             .sent(&shots.map(|shot| Some(shot.filter(|s| s.state.may_push())?.output_force)));
         self.stages.end_of(Stage::Write, &mut since);
         self.show_memory(moment.tick, relaxed);
-        self.publish(&shots, settings.young_modulus);
+        self.publish(&shots, &self.frame(&body), settings.young_modulus);
     }
 
     /// The contact of each finger with the body.
     fn feel(&mut self, moment: &Moment<'_>, followed: &Each<Followed<'_>>) -> Each<Touch> {
         let settings = moment.settings;
         // The paper couples fingers on nodes alone (10); in its mode each feels as if it were alone.
-        let are_several = self.fingers.len() > 1;
+        let moves = !moment.frame.is_held();
+        let is_beside = self.fingers.len() > 1 || moves;
         let creeps = !moment.creep.is_none();
         let is_consistent = settings.feel.mode == ContactMode::Consistent;
-        let are_coupled = (are_several || creeps) && is_consistent;
+        let are_coupled = (is_beside || creeps) && is_consistent;
         let acts = followed.iter().flatten().any(Followed::acts);
         let mut presses = [None; MAX_FINGERS];
-        if are_coupled && (acts || creeps || self.fingers.iter().any(Finger::is_moved)) {
+        if are_coupled && (acts || creeps || moves || self.fingers.iter().any(Finger::is_moved)) {
             presses = each(&mut self.fingers, |k, finger| {
                 finger.press(followed[k].as_ref()?)
             });
         }
         let mut led = [const { None }; MOST_TOOLS];
         for ((led, finger), followed) in led.iter_mut().zip(&mut self.fingers).zip(followed) {
-            *led = (followed.as_ref()).and_then(|followed| finger.lead(followed, are_several));
+            *led = (followed.as_ref()).and_then(|followed| finger.lead(followed, is_beside));
         }
+        let mut prop = self.prop.held.as_deref_mut().filter(|_| moves);
         let ground = Ground {
             body: moment.body,
             number: moment.body_number,
             young_modulus: settings.young_modulus,
-            mobility: None,
+            mobility: prop
+                .as_ref()
+                .map(|prop| prop.mobility(settings.young_modulus, moment.dt)),
             creep: moment.creep,
         };
+        if let Some(prop) = &mut prop {
+            prop.lead(&mut led);
+        }
         let answers = (self.engine).tick(&[ground], &presses, &mut led);
+        if let Some(prop) = prop {
+            prop.move_on(&self.engine.motion(0));
+        }
         each(&mut self.fingers, |k, finger| {
             let answer = answers.as_ref().map(|answers| &answers[k]);
             Some(finger.feel(followed[k].as_ref()?, answer))
@@ -221,21 +171,25 @@ impl Servo {
 
     /// The contact of each finger with what it pays for sliding.
     fn pay(&mut self, moment: &Moment<'_>, touches: &Each<Touch>) -> Each<Touch> {
+        let prop = (self.prop.held.as_ref()).filter(|_| !moment.frame.is_held());
+        let stored = prop.map_or(0.0, |prop| prop.stored());
+        let mut beside = stored - std::mem::replace(&mut self.stored, stored);
         if moment.body_replaced {
-            self.toll = Toll::default();
+            (self.toll, beside) = (Toll::default(), 0.0);
         }
         let pressed = touches.map(|touch| touch.map_or_else(Default::default, |t| t.pressed));
-        let brakes = self.toll.take(&pressed, moment.dt);
+        let brakes = self.toll.take(&pressed, beside, moment.dt);
         each(&mut self.fingers, |k, _| {
             Some(touches[k]?.braked(brakes[k]))
         })
     }
 
-    fn publish(&mut self, shots: &Each<Snapshot>, young_modulus: f64) {
+    fn publish(&mut self, shots: &Each<Snapshot>, frame: &Frame, young_modulus: f64) {
         let published = self.snapshots.input_buffer_mut();
         published.count = self.fingers.len();
+        published.placement = frame.placement();
         for (number, shot) in shots.iter().flatten().enumerate() {
-            published.reports[number] = *self.fingers[number].tell(shot, young_modulus);
+            published.reports[number] = *self.fingers[number].tell(shot, frame, young_modulus);
             let sample = Sample::of(shot, number as u32);
             if self.samples.push(sample).is_err() {
                 self.samples_lost += 1;
@@ -246,6 +200,12 @@ impl Servo {
         }
         published.samples_lost = self.samples_lost;
         self.snapshots.publish();
+    }
+
+    /// The frame of a body where it is now: one that nobody holds, if it is the one that was laid down.
+    fn frame(&self, body: &Body) -> Frame {
+        let prop = self.prop.held.as_ref().filter(|prop| prop.is(body));
+        prop.map_or_else(Frame::default, |prop| Frame::of(prop.placement))
     }
 
     /// Publishes what the body remembers, where that is or was anything.

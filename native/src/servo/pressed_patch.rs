@@ -3,6 +3,7 @@
 
 use glam::DVec3;
 
+use crate::rest::frame::Frame;
 use crate::tool::collider::Collider;
 use crate::tool::slot::{MOST_NEAR, MOST_NODES};
 
@@ -46,21 +47,21 @@ impl PressedPatch {
         &self.points[..self.point_count]
     }
 
-    /// Nodes of the surface that carry force, and their forces, N.
+    /// Nodes of the surface that carry force, and their forces, N, in the body's axes.
     pub fn nodes(&self) -> &[(u32, DVec3)] {
         &self.nodes[..self.node_count]
     }
 
-    /// Becomes what a tool presses in a tick, or nothing.
-    pub fn show(&mut self, tick: u64, tool: Option<&Collider>, young_modulus: f64) {
+    /// Becomes what a tool presses in a tick, or nothing, on a body whose frame is there now.
+    pub fn show(&mut self, tick: u64, tool: Option<&Collider>, frame: &Frame, young_modulus: f64) {
         (self.tick, self.point_count, self.node_count) = (tick, 0, 0);
         let Some(tool) = tool else { return };
         for (point, slot) in self.points.iter_mut().zip(tool.pressed()) {
             let place = &slot.at;
             let force = slot.force * young_modulus;
             *point = PressedPoint {
-                position: place.position + slot.moved,
-                force,
+                position: frame.place(place.position + slot.moved),
+                force: frame.direction(force),
                 pressure: slot.push * young_modulus / place.area,
             };
             self.point_count += 1;

@@ -10,6 +10,7 @@ use crate::creep::relaxation::Creep;
 use crate::creep::step::Step;
 use crate::device::DeviceFrame;
 use crate::proxy::Feel;
+use crate::rest::frame::Frame;
 
 /// What may change while the servo runs.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -99,8 +100,10 @@ pub struct Moment<'a> {
     pub body: &'a Body,
     /// Counts the exchanges of the body.
     pub body_number: u32,
-    /// The body is another one since this tick.
+    /// The body is another one since this tick, or was laid elsewhere.
     pub body_replaced: bool,
+    /// The body's frame, as the hands see it when the tick begins.
+    pub frame: Frame,
     /// How the body gives way with time in this tick.
     pub creep: Step,
     /// In force, Young's modulus that of the tick.

@@ -6,8 +6,10 @@ use crate::contact::cones::MAX_FINGERS;
 pub use crate::control::state::State;
 use crate::device::reason;
 use crate::device::{Fault, LinkReport};
+use crate::rest::placement::Placement;
 
-/// One finger in one tick, whole: all fields belong together.
+/// One finger in one tick, whole: all fields belong together. Places, directions and forces are those
+/// that the hand has, in the world where the body moves; forces on nodes are in the body's axes.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Snapshot {
     /// Counts from 1; 0 before the first tick.
@@ -16,7 +18,7 @@ pub struct Snapshot {
     pub time: f64,
     /// Position of the finger, m.
     pub probe: DVec3,
-    /// Rotation from its tool's axes to the body's.
+    /// Rotation from its tool's axes to the hand's.
     pub orientation: DMat3,
     /// Contact point that makes the force, m: the god object, shaded or held back by friction.
     pub proxy: DVec3,
@@ -37,7 +39,7 @@ pub struct Snapshot {
     /// Position of the touched point of the surface, m; known while touching, if the body has a
     /// compliance.
     pub surface_point: Option<DVec3>,
-    /// Sent to the device, N, body axes.
+    /// Sent to the device, N.
     pub output_force: DVec3,
     /// Named state.
     pub state: State,
@@ -77,6 +79,8 @@ pub struct Published {
     pub count: usize,
     /// Samples not recorded because nobody emptied the ring.
     pub samples_lost: u64,
+    /// Where the body is after the tick; one that is held stays.
+    pub placement: Placement,
 }
 
 impl Published {

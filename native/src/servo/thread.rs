@@ -14,14 +14,16 @@ use crate::clock::timing::Waking;
 use crate::creep::shown::Remembered;
 use crate::device::{Device, Fault};
 use crate::servo::Servo;
-use crate::servo::exchange::Hand;
+use crate::servo::exchange::bodies::Hand;
+use crate::servo::exchange::ends::Laid;
+use crate::servo::exchange::rings::Giver;
 use crate::servo::paced::{Paced, locked};
 use crate::servo::pressed_patch::PressedPatch;
 use crate::servo::recorder::{RING_SECONDS, Recorder};
 use crate::servo::settings::{Options, Settings};
 use crate::servo::snapshot::{Published, Sample};
 use crate::servo::stages::Stages;
-use crate::servo::tip::{Tip, TipHand};
+use crate::servo::tip::Tip;
 
 /// Longest wait of an exchange of the body for the thread.
 const EXCHANGE_SECONDS: Duration = Duration::from_millis(200);
@@ -33,7 +35,8 @@ const SAME_TICK_TRIES: usize = 100;
 pub struct Running {
     paced: Paced,
     bodies: Mutex<Hand>,
-    tips: Mutex<Vec<TipHand>>,
+    prop: Mutex<Giver<Laid>>,
+    tips: Mutex<Vec<Giver<Tip>>>,
     patches: Mutex<Vec<Output<PressedPatch>>>,
     remembered: Mutex<Output<Remembered>>,
     settings: Mutex<Input<Settings>>,
@@ -60,10 +63,10 @@ impl Running {
     ) -> std::io::Result<Self> {
         let points = devices.iter().map(|_| Tip::Point).collect();
         let recording = (record_samples, recorded_ticks);
-        Self::start_with_tips(body, devices, points, options, settings, recording)
+        Self::start_with_tips(body, devices, points, None, options, settings, recording)
     }
 
-    /// The same with a tip for each finger, from the first tick on.
+    /// The same with a tip for each finger, and the body laid down, from the first tick on.
     ///
     /// # Errors
     /// When the system gives no thread.
@@ -71,6 +74,7 @@ impl Running {
         body: Arc<Body>,
         devices: Vec<Box<dyn Device>>,
         tips: Vec<Tip>,
+        laid: Laid,
         options: Options,
         settings: Settings,
         (record_samples, recorded_ticks): (usize, usize),
@@ -84,8 +88,9 @@ impl Running {
         let most_samples = record_samples * finger_count;
         let (mut servo, ends) = Servo::new(body, devices, options, &settings, most_samples);
         for (finger, tip) in servo.fingers.iter_mut().zip(tips) {
-            finger.tips.tip = tip;
+            finger.tips.held = tip;
         }
+        servo.prop.held = laid;
         servo.tape = Some(tape);
         let stages = servo.stages();
         let paced = Paced::spawn(
@@ -105,6 +110,7 @@ impl Running {
         Ok(Self {
             paced,
             bodies: Mutex::new(ends.bodies),
+            prop: Mutex::new(ends.prop),
             tips: Mutex::new(ends.tips),
             patches: Mutex::new(ends.patches),
             remembered: Mutex::new(ends.remembered),
@@ -150,12 +156,23 @@ impl Running {
     /// # Errors
     /// The tip, while the thread has not got to several others before it.
     pub fn set_tip(&self, finger: usize, tip: Tip) -> Result<(), Tip> {
-        let mut tips = locked(&self.tips);
-        tips[finger].free_old();
-        tips[finger].give(tip)?;
+        self.hand_over(&mut locked(&self.tips)[finger], tip)
+    }
+
+    /// Lays the body down as one that nobody holds, or has it held; the same for the rest.
+    ///
+    /// # Errors
+    /// What was to be laid, while the thread has not got to several before it.
+    pub fn lay(&self, laid: Laid) -> Result<(), Laid> {
+        self.hand_over(&mut locked(&self.prop), laid)
+    }
+
+    fn hand_over<T>(&self, giver: &mut Giver<T>, thing: T) -> Result<(), T> {
+        giver.free_old();
+        giver.give(thing)?;
         let since = Instant::now();
         while self.paced.is_running() && since.elapsed() < EXCHANGE_SECONDS {
-            if tips[finger].free_old() > 0 {
+            if giver.free_old() > 0 {
                 break;
             }
             std::thread::sleep(Duration::from_micros(200));

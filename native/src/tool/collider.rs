@@ -203,11 +203,11 @@ impl Collider {
     }
 
     /// A point that is pressed, with what its nodes carry of that.
-    pub(crate) fn take(&mut self, slot: &Slot) {
-        self.pressed.push(*slot);
+    pub(crate) fn take(&mut self, slot: Slot) {
         if let Some(side) = &mut self.sides[usize::from(slot.body)] {
-            side.take(slot);
+            side.take(&slot);
         }
+        self.pressed.push(slot);
     }
 
     /// What it feels; `nearest` is its nearest point on each body. A tool that lost a surface while in

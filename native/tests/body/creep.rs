@@ -74,6 +74,7 @@ impl Pressed {
                 touches: by.is_some(),
                 displacement,
                 push: self.body.face(hold.triangle).normal * -1e-3,
+                cone: None,
                 most_stiffness: f64::INFINITY,
                 presence: 1.0,
                 remembered: DVec3::ZERO,

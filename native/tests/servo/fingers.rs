@@ -186,6 +186,7 @@ pub fn press(hold: SurfacePoint, displacement: DVec3) -> Option<Press> {
         touches: true,
         displacement,
         push: displacement,
+        cone: None,
         most_stiffness: f64::INFINITY,
         presence: 1.0,
         remembered: DVec3::ZERO,

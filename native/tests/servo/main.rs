@@ -10,6 +10,7 @@ mod faults_of_fingers;
 mod fingers;
 mod interrupted;
 mod jumps;
+mod laid;
 mod no_allocation;
 mod recorder;
 mod scripted;

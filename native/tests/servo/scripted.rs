@@ -8,11 +8,13 @@ use palpate_servo::body::surface::Body;
 use palpate_servo::control::safety::Limits;
 use palpate_servo::device::{Device, DeviceFrame, Fault, Probe, Reading};
 use palpate_servo::servo::Servo;
-use palpate_servo::servo::exchange::Hand;
+use palpate_servo::servo::exchange::bodies::Hand;
+use palpate_servo::servo::exchange::ends::Laid;
+use palpate_servo::servo::exchange::rings::Giver;
 use palpate_servo::servo::settings::FingerSettings;
 use palpate_servo::servo::settings::{Options, Settings};
 use palpate_servo::servo::snapshot::{Published, Sample, Snapshot, State};
-use palpate_servo::servo::tip::TipHand;
+use palpate_servo::servo::tip::Tip;
 use rtrb::Consumer;
 use triple_buffer::{Input, Output};
 
@@ -89,7 +91,8 @@ pub struct Table {
     pub body: Arc<Body>,
     pub devices: Vec<Scripted>,
     pub hand: Hand,
-    pub tips: Vec<TipHand>,
+    pub prop: Giver<Laid>,
+    pub tips: Vec<Giver<Tip>>,
     pub settings: Input<Settings>,
     pub samples: Consumer<Sample>,
     pub now: f64,
@@ -113,6 +116,7 @@ impl Table {
             body,
             devices,
             hand: ends.bodies,
+            prop: ends.prop,
             tips: ends.tips,
             settings: ends.settings,
             samples: ends.samples,

@@ -8,8 +8,9 @@ use glam::DVec3;
 use palpate_servo::body::surface::Body;
 use palpate_servo::device::reason;
 use palpate_servo::device::{Fault, Reading};
+use palpate_servo::servo::exchange::rings::rings;
 use palpate_servo::servo::snapshot::{Snapshot, State};
-use palpate_servo::servo::tip::{Tip, exchange_tips};
+use palpate_servo::servo::tip::Tip;
 use palpate_servo::tool::collider::Collider;
 use palpate_servo::tool::points::{Point, ToolSurface};
 use palpate_servo::tool::shape::Tool;
@@ -18,7 +19,7 @@ const RADIUS: f64 = 0.012;
 const TOP: f64 = 0.05;
 
 /// A contact point on every node of the body.
-fn surface(body: &Arc<Body>) -> Arc<ToolSurface> {
+pub fn surface(body: &Arc<Body>) -> Arc<ToolSurface> {
     let point = |node: usize| {
         let holds = |triangle: &&[u32; 3]| triangle.contains(&(node as u32));
         let nodes = *body.triangles.iter().find(holds).expect("on the surface");
@@ -35,7 +36,7 @@ fn surface(body: &Arc<Body>) -> Arc<ToolSurface> {
     Arc::new(surface.expect("sound"))
 }
 
-fn ball(surface: &Arc<ToolSurface>) -> Tip {
+pub fn ball(surface: &Arc<ToolSurface>) -> Tip {
     let ball = Tool::new(&[DVec3::ZERO], RADIUS).expect("sound");
     Tip::Tool(Box::new(Collider::new(surface.clone(), ball)))
 }
@@ -46,7 +47,7 @@ fn table(with_ball: &[bool]) -> (Table, Arc<ToolSurface>) {
     let surface = surface(&table.body);
     for (finger, &with_ball) in table.servo.fingers.iter_mut().zip(with_ball) {
         if with_ball {
-            finger.tips.tip = ball(&surface);
+            finger.tips.held = ball(&surface);
         }
     }
     (table, surface)
@@ -254,7 +255,7 @@ fn on_another_body_a_tool_waits_to_be_set_again() {
 
 #[test]
 fn a_body_does_not_take_more_tips_than_it_can_keep() {
-    let (mut hand, mut holder) = exchange_tips(Tip::Point);
+    let (mut hand, mut holder) = rings(Tip::Point);
     let given = (0..10).filter(|_| hand.give(Tip::Point).is_ok()).count();
     assert!(given < 10);
     assert!(holder.exchange());

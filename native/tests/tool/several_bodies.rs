@@ -101,6 +101,7 @@ fn point(body: u8) -> Press {
         touches: true,
         displacement,
         push: displacement,
+        cone: None,
         most_stiffness: f64::INFINITY,
         presence: 1.0,
         remembered: DVec3::ZERO,

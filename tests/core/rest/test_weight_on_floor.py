@@ -91,7 +91,7 @@ def test_what_nothing_bears_does_not_rest(cube):
 def test_what_cannot_rest_is_refused(cube):
     with pytest.raises(PalpateError, match="pinned"):
         Resting(soft_block((0.05, 0.05, 0.05), (2, 2, 2)), [Floor()])
-    with pytest.raises(PalpateError, match="supports touch the body; at most"):
+    with pytest.raises(PalpateError, match="20 supports bear the body; at most"):
         Resting(cube, [Floor()] * 20)
     with pytest.raises(PalpateError, match="coefficient of friction"):
         Floor(friction=-0.1)

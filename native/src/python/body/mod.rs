@@ -3,5 +3,6 @@
 pub mod closest;
 pub mod compliance;
 pub mod drawn;
+pub mod place;
 pub mod polygons;
 pub mod surface;

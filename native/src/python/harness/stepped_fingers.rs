@@ -13,6 +13,7 @@ use crate::control::safety::Limits;
 use crate::device::{Device, DeviceFrame, Probe, Reading};
 use crate::python::body::surface::Body;
 use crate::python::harness::stepping::Stepping;
+use crate::python::rest::prop::Prop;
 use crate::python::servo::settings::{Chosen, Given};
 use crate::python::servo::snapshot::Snapshot;
 use crate::python::tool::made::{GivenTool, made, tip};
@@ -90,7 +91,8 @@ impl Stepped {
 /// The ticks of a Servo, by hand and in virtual time, with fingers led along paths.
 ///
 /// No device, no limits; fingers are where the path says, however far apart its places lie. With a
-/// `max_force`, N, they have motors that bear so much.
+/// `max_force`, N, they have motors that bear so much. With a `prop` the body is laid down as one that
+/// nobody holds.
 /// `follow(paths)` takes (ticks, m, 3), m, and gives contact forces on the fingers, N, and torques,
 /// N m, (ticks, m, 3), before coupling and safety; `sent(paths)` the forces that devices are told, N,
 /// (ticks, m, 3); `costs(paths)` the CPU time of each tick, s. ValueError
@@ -101,13 +103,14 @@ pub struct SteppedFingers(Mutex<Stepped>);
 #[pymethods]
 impl SteppedFingers {
     #[new]
-    #[pyo3(signature = (body, positions, settings, *, rate_hz=1000, max_force=None))]
+    #[pyo3(signature = (body, positions, settings, *, rate_hz=1000, max_force=None, prop=None))]
     fn new(
         body: &Body,
         positions: PyArrayLike2<'_, f64, AllowTypeChange>,
         settings: Given,
         rate_hz: u32,
         max_force: Option<f64>,
+        prop: Option<PyRef<'_, Prop>>,
     ) -> PyResult<Self> {
         let places = vectors("positions", &positions)?;
         if places.is_empty() || places.len() > MAX_FINGERS {
@@ -143,6 +146,10 @@ impl SteppedFingers {
             .iter()
             .map(|one| -> Box<dyn Device> { Box::new(one.clone()) });
         let mut stepping = Stepping::new(body, boxed.collect(), &settings, options)?;
+        if let Some(prop) = prop {
+            // Nothing else is on its way yet.
+            let _ = (stepping.ends.prop).give(Some(Box::new(prop.inner.clone())));
+        }
         stepping.tick(Some(0.0));
         Ok(Self(Mutex::new(Stepped { stepping, led })))
     }

@@ -5,8 +5,9 @@ use pyo3::prelude::*;
 use crate::device::Device;
 use crate::python::body::surface::Body;
 use crate::python::servo::settings::{Chosen, Given};
+use crate::servo::Servo;
+use crate::servo::exchange::ends::Ends;
 use crate::servo::settings::{Options, Settings};
-use crate::servo::{Ends, Servo};
 
 /// A servo with all its ends, and the time of its last tick, s.
 pub struct Stepping {

@@ -1,6 +1,7 @@
 //! The running thread, its settings and what it tells.
 
 pub mod counters;
+pub mod laying;
 pub mod refusals;
 pub mod samples;
 pub mod settings;

@@ -1,11 +1,12 @@
 //! `Snapshot` and `FingerSnapshot`: one tick, whole, of all fingers or one.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
 use crate::device::Fault;
 use crate::python::vectors::{Matrix, Vector, array, rows, square, table};
+use crate::rest::placement::Placement;
 use crate::servo::pressed_patch::{PressedPatch, PressedPoint};
 use crate::servo::snapshot::Published;
 
@@ -150,6 +151,7 @@ impl FingerSnapshot {
 #[pyclass(frozen, extends = FingerSnapshot, module = "palpate_servo")]
 pub struct Snapshot {
     fingers: Vec<FingerSnapshot>,
+    placement: Placement,
     remembered: Vec<(u32, DVec3)>,
 }
 
@@ -170,6 +172,7 @@ impl Snapshot {
         let first = fingers[0].clone();
         let told = Self {
             fingers,
+            placement: published.placement,
             remembered,
         };
         Py::new(py, (told, first))
@@ -197,6 +200,11 @@ impl Snapshot {
     #[getter]
     fn nodal_forces<'py>(&self, py: Python<'py>) -> PyResult<Matrix<'py>> {
         rows(py, &self.shot().nodal_forces)
+    }
+    #[getter]
+    fn placement<'py>(&self, py: Python<'py>) -> PyResult<(Vector<'py>, Matrix<'py>)> {
+        let turn = square(py, DMat3::from_quat(self.placement.rotation))?;
+        Ok((array(py, self.placement.position), turn))
     }
     #[getter]
     fn remembered_nodes<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {

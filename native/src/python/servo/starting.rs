@@ -69,11 +69,13 @@ impl Servo {
         let settings = locked(&self.settings).settings;
         let armed_ticks = *locked(&self.armed_ticks);
         let tools = locked(&self.tools).clone();
+        let prop = locked(&self.prop).clone();
         let running = py.detach(|| {
             Running::start_with_tips(
                 locked(&self.body).clone(),
                 devices,
                 tools.into_iter().map(tip).collect(),
+                prop,
                 self.options,
                 settings,
                 (self.record_samples, armed_ticks),

@@ -14,17 +14,18 @@ use crate::control::coupling::Coupling;
 use crate::device::Device;
 use crate::python::body::surface::Body;
 use crate::python::device::setups::{DeviceSetup, Lead};
+use crate::python::rest::prop::Prop;
 use crate::python::servo::counters::{finger_counters, stage_counters, timing_counters};
-use crate::python::servo::refusals::{NOT_WHOLE, check_finger, check_kept};
+use crate::python::servo::refusals::{NOT_WHOLE, check_kept};
 use crate::python::servo::samples::{structured, structured_pieces};
 use crate::python::servo::settings::{Chosen, Given, options};
 use crate::python::servo::snapshot::Snapshot;
 use crate::python::servo::standing::Standing;
-use crate::python::tool::made::{GivenTool, MadeTool, made, tip};
+use crate::python::tool::made::{GivenTool, MadeTool};
 use crate::python::vectors::{Triple, check_seconds, finite, positive};
+use crate::servo::exchange::ends::Laid;
 use crate::servo::paced::locked;
-use crate::servo::settings::FingerSettings;
-use crate::servo::settings::Options;
+use crate::servo::settings::{FingerSettings, Options};
 use crate::servo::snapshot::{Published, Sample};
 use crate::servo::thread::Running;
 
@@ -45,6 +46,8 @@ pub struct Servo {
     pub(super) others: Mutex<Vec<Box<dyn Device>>>,
     /// Tools by finger, each on the body that it was made for.
     pub(super) tools: Mutex<[Option<MadeTool>; MAX_FINGERS]>,
+    /// The body as one that nobody holds.
+    pub(super) prop: Mutex<Laid>,
     /// Targets of pointers, by finger.
     pub(super) targets: Mutex<[Option<Lead>; MAX_FINGERS]>,
 }
@@ -83,6 +86,7 @@ impl Servo {
             running: Mutex::new(None),
             others: Mutex::default(),
             tools: Mutex::default(),
+            prop: Mutex::default(),
             targets: Mutex::default(),
         })
     }
@@ -143,23 +147,11 @@ impl Servo {
 
     #[pyo3(signature = (tool, finger=0))]
     fn set_tool(&self, py: Python<'_>, tool: Option<GivenTool<'_>>, finger: usize) -> PyResult<()> {
-        check_finger(finger)?;
-        let made = tool.as_ref().map(made);
-        let body = locked(&self.body).clone();
-        if (made.as_ref()).is_some_and(|(surface, _)| !Arc::ptr_eq(surface.body(), &body)) {
-            return Err(PyValueError::new_err(
-                "the tool was made for another body; make it with the Body that the servo touches",
-            ));
-        }
-        locked(&self.tools)[finger].clone_from(&made);
-        let Some(running) = self.alive().filter(|r| finger < r.finger_count()) else {
-            return Ok(());
-        };
-        py.detach(|| running.set_tip(finger, tip(made))).map_err(|_| {
-            PyRuntimeError::new_err(
-                "the servo's thread has not taken the tools that it was given before; try again",
-            )
-        })
+        self.equip(py, tool, finger)
+    }
+
+    fn lay(&self, py: Python<'_>, prop: Option<PyRef<'_, Prop>>) -> PyResult<()> {
+        self.laid(py, prop.as_deref())
     }
 
     fn set_body(&self, py: Python<'_>, body: &Body, settings: Given) -> PyResult<()> {
@@ -174,8 +166,9 @@ impl Servo {
             let mut standing = locked(&self.settings);
             let settings = standing.choose(chosen);
             (*locked(&self.body)).clone_from(&body);
-            // Tools are made for one body.
+            // Tools and props are made for one body.
             *locked(&self.tools) = Default::default();
+            *locked(&self.prop) = None;
             if let Some(running) = self.current() {
                 running.set_body(body, settings);
             }

@@ -33,11 +33,12 @@ impl Among {
         self.by_others != DVec3::ZERO || self.moved_back != DVec3::ZERO
     }
 
-    /// Carried along by the others. Across its push a finger holds the surface as it met it.
+    /// Carried along by the others. Across its push a finger holds the surface as it met it, unless the
+    /// body may move as a whole: there its cone says what it holds.
     #[must_use]
-    pub fn carried(self) -> Self {
+    pub fn carried(self, is_held: bool) -> Self {
         let n = self.push_direction;
-        let moved_back = if n == DVec3::ZERO {
+        let moved_back = if n == DVec3::ZERO || !is_held {
             self.by_others
         } else {
             self.moved_back + n * n.dot(self.by_others - self.moved_back)

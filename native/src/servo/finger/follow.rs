@@ -9,6 +9,7 @@ use crate::proxy::Proxy;
 use crate::servo::settings::{FingerSettings, Moment};
 use crate::servo::snapshot::Snapshot;
 use crate::servo::tip::Tip;
+use crate::tool::shape::Pose;
 
 impl Finger {
     /// Finds out what is wrong, and moves the proxy after the probe.
@@ -24,9 +25,10 @@ impl Finger {
         }
         if moment.body_replaced {
             // Even in a tick without a probe: nothing may be left of the old body.
-            self.point.turn_to(moment.body, self.pose.position);
+            let seen = moment.frame.to_body(&self.pose);
+            self.point.turn_to(moment.body, seen.position);
         }
-        let tip_fits = self.tips.tip.fits(moment.body);
+        let tip_fits = self.tips.held.fits(moment.body);
         let mut found = self.inspect(moment, reading, tip_fits);
         let probe = reading.probe();
         let mut is_set_down = moment.body_replaced || tip_changed;
@@ -35,7 +37,8 @@ impl Finger {
             if probe.position.is_finite() {
                 self.pose.position = probe.position;
                 is_set_down |= self.jumps(own, probe, &found);
-                self.go(moment, is_set_down, tip_fits);
+                let seen = moment.frame.to_body(&self.pose);
+                self.go(moment, &seen, is_set_down, tip_fits);
             }
         }
         self.appear(&found, moment);
@@ -43,7 +46,8 @@ impl Finger {
         let hold = proxy.and_then(Proxy::hold);
         found.inside = proxy.is_some_and(Proxy::is_buried);
         let is_sound = !found.blind && found.fault != Some(Fault::Nan) && tip_fits;
-        let position = self.pose.position;
+        let pose = moment.frame.to_body(&self.pose);
+        let proxy = (proxy.filter(|_| hold.is_some())).map_or(pose.position, Proxy::position);
         Followed {
             moment,
             own,
@@ -53,10 +57,12 @@ impl Finger {
                 body: moment.body_number,
                 buttons: probe.map_or(0, |probe| probe.buttons),
                 orientation: self.pose.rotation,
-                probe: position,
-                proxy: (proxy.filter(|_| hold.is_some())).map_or(position, Proxy::position),
+                probe: self.pose.position,
+                proxy: moment.frame.place(proxy),
                 ..Snapshot::default()
             },
+            pose,
+            proxy,
             found,
             motors: probe
                 .map(|probe| probe.max_force)
@@ -64,7 +70,7 @@ impl Finger {
             is_sound,
             hold: hold.filter(|_| is_sound),
             touches: is_sound
-                && match &self.tips.tip {
+                && match &self.tips.held {
                     Tip::Tool(tool) => tool.felt().is_ok_and(|felt| felt.pressed > 0),
                     Tip::Point => hold.is_some(),
                 },
@@ -85,13 +91,13 @@ impl Finger {
     }
 
     /// Moves the proxy after the probe, or sets the tip down anew.
-    fn go(&mut self, moment: &Moment<'_>, is_lifted: bool, tip_fits: bool) {
+    fn go(&mut self, moment: &Moment<'_>, seen: &Pose, is_lifted: bool, tip_fits: bool) {
         if is_lifted {
             self.point.set_down();
         }
-        match &mut self.tips.tip {
-            Tip::Point => self.point.follow(moment, self.pose.position, is_lifted),
-            Tip::Tool(tool) if is_lifted && tip_fits => tool.restart(&self.pose),
+        match &mut self.tips.held {
+            Tip::Point => self.point.follow(moment, seen.position, is_lifted),
+            Tip::Tool(tool) if is_lifted && tip_fits => tool.restart(seen),
             Tip::Tool(_) => {}
         }
     }

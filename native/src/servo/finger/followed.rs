@@ -3,20 +3,25 @@
 use glam::DVec3;
 
 use crate::control::coupling::{Contact, Coupled, Coupler};
+use crate::control::pressed::{Law, Pressed};
 use crate::control::safety::Limits;
 use crate::control::state::Findings;
-use crate::control::toll::{Law, Pressed};
 use crate::proxy::SurfacePoint;
 use crate::servo::settings::{FingerSettings, Moment};
 use crate::servo::snapshot::Snapshot;
+use crate::tool::shape::Pose;
 
 /// A finger in a tick, before its contact is known.
 #[derive(Debug, Clone, Copy)]
 pub struct Followed<'a> {
     pub(super) moment: &'a Moment<'a>,
     pub(super) own: &'a FingerSettings,
-    /// What is known of the tick: where the finger and its proxy are.
+    /// What is known of the tick: where the finger and its proxy are, as the hand sees them.
     pub(super) shot: Snapshot,
+    /// The finger, as seen from the body.
+    pub(super) pose: Pose,
+    /// Its proxy, as seen from the body, m.
+    pub(super) proxy: DVec3,
     pub(super) found: Findings,
     /// Largest force of the device, N; none without motors, or without a position.
     pub(super) motors: Option<f64>,
@@ -39,9 +44,9 @@ impl Followed<'_> {
         self.presence > 0.0 && self.touches
     }
 
-    /// From the proxy to the probe, m.
+    /// From the proxy to the probe, m, in the body's axes.
     pub(super) fn displacement(&self) -> DVec3 {
-        self.shot.probe - self.shot.proxy
+        self.pose.position - self.proxy
     }
 
     /// The most that motors may see of the body's stiffness, N/m.
@@ -67,7 +72,8 @@ impl Followed<'_> {
         Pressed {
             finger: self.shot.probe,
             is_set_down: self.is_set_down,
-            place: self.hold.map(|_| self.shot.proxy),
+            // On a body that moves no place stays.
+            place: (self.hold.filter(|_| self.moment.frame.is_held())).map(|_| self.proxy),
             law: Law {
                 modulus: self.moment.settings.young_modulus,
                 most_stiffness: self.most_stiffness(),
@@ -77,7 +83,7 @@ impl Followed<'_> {
         }
     }
 
-    /// A contact as motors are to make it felt; as it is without them.
+    /// A contact, in the hand's axes, as motors are to make it felt; as it is without them.
     pub(super) fn couple(&self, coupler: &mut Coupler, contact: &Contact) -> Coupled {
         if self.motors.is_none() {
             return Coupled {
@@ -90,7 +96,7 @@ impl Followed<'_> {
         coupler.couple(contact, &own.coupling, own.frame.scale, self.moment.dt)
     }
 
-    /// The force, N, of a contact in which the coupling's spring is already.
+    /// The force, N, of a contact, in the hand's axes, in which the coupling's spring is already.
     pub(super) fn drive(&self, coupler: &mut Coupler, seen: &Contact) -> DVec3 {
         if self.motors.is_none() {
             return seen.force;

@@ -8,6 +8,7 @@ use super::touch::Touch;
 use crate::control::state::{Standing, State, transition};
 use crate::device::Fault;
 use crate::device::reason;
+use crate::rest::frame::Frame;
 use crate::servo::snapshot::{FingerReport, Snapshot};
 use crate::servo::tip::Tip;
 
@@ -54,10 +55,10 @@ impl Finger {
     }
 
     /// The tick with its counters, for others to read.
-    pub fn tell(&mut self, shot: &Snapshot, young_modulus: f64) -> &FingerReport {
-        if let Tip::Tool(tool) = &self.tips.tip {
+    pub fn tell(&mut self, shot: &Snapshot, frame: &Frame, young_modulus: f64) -> &FingerReport {
+        if let Tip::Tool(tool) = &self.tips.held {
             let tool = shot.touching.then_some(&**tool);
-            (self.patches.input_buffer_mut()).show(shot.tick, tool, young_modulus);
+            (self.patches.input_buffer_mut()).show(shot.tick, tool, frame, young_modulus);
             self.patches.publish();
         }
         let report = &mut self.report;

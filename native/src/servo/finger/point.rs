@@ -18,6 +18,8 @@ use crate::servo::snapshot::Snapshot;
 pub(super) struct Point {
     pub proxy: Option<Proxy>,
     pub among: Among,
+    /// Where the probe was when it last did not touch, m, as the hand sees it.
+    pub(super) begin: DVec3,
 }
 
 impl Point {
@@ -26,6 +28,7 @@ impl Point {
         Self {
             proxy: None,
             among: Among::fresh(),
+            begin: DVec3::ZERO,
         }
     }
 
@@ -48,7 +51,7 @@ impl Point {
     /// moved the surface. Across its push a finger holds the surface as it met it.
     pub fn follow(&mut self, moment: &Moment<'_>, probe: DVec3, is_lifted: bool) {
         let is_lifted = is_lifted || std::mem::take(&mut self.among.set_down_again);
-        self.among = self.among.carried();
+        self.among = self.among.carried(moment.frame.is_held());
         let (body, seen) = (moment.body, probe - self.among.moved_back);
         match &mut self.proxy {
             Some(proxy) if !is_lifted => {
@@ -64,13 +67,15 @@ impl Point {
         let Moment { body, settings, .. } = *followed.moment;
         if let Some(hold) = followed.hold.filter(|_| followed.acts()) {
             let displacement = followed.displacement();
+            let push = displacement - self.among.moved_back;
             let limit = followed.most_stiffness() / settings.young_modulus;
             return Some(Press {
                 body: 0,
                 hold,
                 touches: true,
                 displacement,
-                push: displacement - self.among.moved_back,
+                push,
+                cone: self.cone(followed, push),
                 most_stiffness: followed.motors.map_or(f64::INFINITY, |_| limit),
                 presence: followed.presence,
                 remembered: DVec3::ZERO,
@@ -79,7 +84,7 @@ impl Point {
         }
         let proxy = self.proxy.as_ref().filter(|_| !followed.found.blind)?;
         let mut hold = proxy.nearest();
-        let seen = followed.shot.probe - self.among.moved_back;
+        let seen = followed.pose.position - self.among.moved_back;
         hold.alpha = closest_on_face(body.face(hold.triangle), seen).0;
         Some(Press {
             body: 0,
@@ -87,6 +92,7 @@ impl Point {
             touches: false,
             displacement: DVec3::ZERO,
             push: DVec3::ZERO,
+            cone: None,
             most_stiffness: f64::INFINITY,
             presence: 0.0,
             remembered: DVec3::ZERO,
@@ -111,10 +117,14 @@ impl Point {
             }
         };
         let Some(hold) = followed.hold else {
+            self.begin = followed.shot.probe;
             return Touch::none(followed);
         };
         if let Some(answer) = answer.filter(|_| acts) {
             return self.feel_others(followed, &hold, answer, coupler);
+        }
+        if !followed.moment.frame.is_held() {
+            return self.feel_nothing(followed, acts);
         }
         let mut touch = self.feel_alone(followed, &hold, coupler);
         if answer.is_some() {
@@ -186,9 +196,12 @@ impl Point {
         answer: &Answer,
         coupler: &mut Coupler,
     ) -> Touch {
-        let young_modulus = followed.moment.settings.young_modulus;
+        let Moment {
+            settings, frame, ..
+        } = followed.moment;
+        let young_modulus = settings.young_modulus;
         let [force, contact_force] =
-            [answer.force, answer.contact_force].map(|f| f * -young_modulus);
+            [answer.force, answer.contact_force].map(|f| frame.direction(f * -young_modulus));
         if !(force.is_finite() && contact_force.is_finite()) {
             return Touch::nan(followed);
         }
@@ -199,10 +212,15 @@ impl Point {
                 .map(|share| answer.force * (share * young_modulus)),
             ..followed.shot
         };
-        let shot = self.on_surface(followed, hold, shot, answer.by_others);
+        let shot = self.on_surface(followed, hold, shot, answer.by_others + answer.along);
         let seen = Contact {
-            stiffness: answer.seen_stiffness * young_modulus,
-            displacement: followed.displacement() - answer.by_others,
+            stiffness: frame.matrix(answer.seen_stiffness * young_modulus),
+            displacement: if frame.is_held() {
+                followed.displacement() - answer.by_others
+            } else {
+                // The hand's own way, not that of the body under it.
+                shot.probe - self.begin
+            },
             force,
         };
         let energy = [answer.energy, answer.own_energy].map(|e| e * young_modulus);
@@ -212,7 +230,7 @@ impl Point {
             energy.into(),
             is_settled(followed),
         );
-        touch.pressed.carried = answer.carried;
+        touch.pressed.carried = frame.direction(answer.carried);
         touch
     }
 
@@ -232,7 +250,12 @@ impl Point {
             sticking: self.proxy.as_ref().is_some_and(Proxy::is_sticking),
             hold: Some((triangle, alpha)),
             triangle: body.triangles[triangle as usize],
-            surface_point: moved.map(|moved| shot.proxy + moved + carried),
+            surface_point: moved.map(|moved| {
+                followed
+                    .moment
+                    .frame
+                    .place(followed.proxy + moved + carried)
+            }),
             ..shot
         }
     }

@@ -16,11 +16,11 @@ const STIFFNESS_SECONDS: f64 = 0.01;
 /// The touch of a tool, as the coupling remembers it.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct ToolTouch {
-    /// Where the probe was when it last did not touch, m.
+    /// Where the probe was when it last did not touch, m, as the hand sees it.
     begin: DVec3,
-    /// Smoothed, N/m.
+    /// Smoothed, N/m, in the hand's axes.
     stiffness: DMat3,
-    /// In the last tick.
+    /// In the last tick, to the hand's axes.
     rotation: DMat3,
 }
 
@@ -35,19 +35,20 @@ impl ToolTouch {
         if !followed.is_sound {
             return Touch::none(followed);
         }
-        let Ok(felt) = tool.felt() else {
+        let frame = &followed.moment.frame;
+        let Ok(felt) = tool.felt().map(|felt| frame.felt(felt)) else {
             return Touch::nan(followed);
         };
         let mut followed = *followed;
         followed.found.inside = !tool.is_free();
         let mut turn = DVec3::ZERO;
-        if let Some(pose) = tool.pose() {
+        if let Some(pose) = tool.pose().map(|pose| frame.pose(pose)) {
             followed.shot.proxy = pose.position;
             let last = Pose {
                 rotation: std::mem::replace(&mut self.rotation, pose.rotation),
-                ..*pose
+                ..pose
             };
-            turn = last.way_to(pose).1;
+            turn = last.way_to(&pose).1;
         }
         if felt.pressed == 0 {
             self.begin = followed.shot.probe;

@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use super::followed::Followed;
+use crate::control::pressed::Pressed;
 use crate::control::state::Findings;
-use crate::control::toll::Pressed;
 use crate::device::Fault;
 use crate::servo::snapshot::Snapshot;
 

@@ -1,0 +1,46 @@
+"""The part of ``palpate servo`` that lays a body without pins on a floor."""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import dataclass
+
+from ...core.body.native_body import native_body
+from ...core.body.soft_body import SoftBody
+from ...core.contact.tool.pose import Pose
+from ...core.rest.prop import WORLD, native_prop
+from ...core.rest.resting import Resting, RestSettings
+from ...core.servo.session import Body, Prop
+from .floor_options import floor_under, gravity, refuse_floor_of_pinned
+
+
+@dataclass(frozen=True)
+class LaidBody:
+    """A body for the servo: native, where its frame is in the world, and as one that nobody holds.
+
+    A pinned one has no prop, and its frame is that of the world.
+    """
+
+    native: Body
+    placement: Pose
+    prop: Prop | None
+
+
+def laid_body(
+    arguments: argparse.Namespace, body: SoftBody, young_modulus: float, *, whole: bool
+) -> LaidBody:
+    """The body as the options lay it: one without pins at rest on its floor.
+
+    Raises
+    ------
+    PalpateError
+        A floor under a pinned body; a body that does not come to rest.
+    """
+    if not body.is_free:
+        refuse_floor_of_pinned(arguments)
+        return LaidBody(native_body(body, whole=whole), WORLD, None)
+    floor = floor_under(arguments, body)
+    settings = RestSettings(young_modulus, gravity=gravity(arguments))
+    placement = Resting(body, [floor], settings=settings).settle().placement
+    native = native_body(body, whole=True, may_move=True)
+    return LaidBody(native, placement, native_prop(body, native, [floor], placement, settings))

@@ -1,0 +1,4 @@
+//! Bodies that nobody holds.
+
+pub mod prop;
+pub mod resting;

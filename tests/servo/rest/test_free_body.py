@@ -1,0 +1,100 @@
+"""A body that nobody holds, in the servo: forces and places as of ``Resting``, in any frame."""
+
+import numpy as np
+import pytest
+from bodies.laid import TIP
+from scipy.spatial.transform import Rotation
+
+from palpate.core.contact.tool.pose import Pose
+from palpate.core.rest.grip import Grip
+from palpate.core.rest.resting import Resting
+
+DEPTH = 0.004
+ON_TOP = {"tool": np.array([0.03, 0.027, 0.0605]), "point": np.array([0.03, 0.027, 0.0505])}
+
+
+def tip_of(kind):
+    return TIP if kind == "tool" else None
+
+
+def press(start, ticks=200, rest=200):
+    """Places of a finger that stays, goes down by ``DEPTH`` and stays, (ticks, 3), m."""
+    low = start - [0.0, 0.0, DEPTH]
+    down = np.linspace(start, low, ticks)
+    return np.concatenate([np.repeat(start[None], rest, 0), down, np.repeat(low[None], rest, 0)])
+
+
+def touched_place(body, shot):
+    mesh = body.mesh
+    corners = mesh.nodes[mesh.surface_nodes][mesh.surface_local_triangles[shot.triangle_index]]
+    return shot.alpha @ corners
+
+
+@pytest.mark.parametrize("kind", ["tool", "point"])
+def test_force_at_rest_is_that_of_a_body_without_a_clock(laid, kind):
+    start = ON_TOP[kind]
+    servo = laid.servo(start, tip=tip_of(kind))
+    forces, _ = servo.follow(press(start, rest=2500)[:, None])
+    shot = servo.snapshot()
+    finger = TIP if kind == "tool" else Grip(touched_place(laid.body, shot), friction=0.0)
+    resting = Resting(
+        laid.body, laid.corner(), [(finger, Pose.at(start))], settings=laid.settings()
+    )
+    resting.settle()
+    resting.lead([Pose.at(start - [0.0, 0.0, DEPTH])])
+    rest = resting.settle()
+    force = rest.tools[0].force
+    assert force[2] > 1.0
+    assert np.linalg.norm(forces[-1, 0] - force) < 1e-6 * np.linalg.norm(force)
+    position, rotation = shot.placement
+    assert np.abs(position - rest.placement.position).max() < 1e-9
+    assert np.abs(rotation - rest.placement.rotation).max() < 1e-7
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.4])
+def test_each_tick_with_a_tool_is_that_of_a_body_without_a_clock(laid, friction):
+    start = ON_TOP["tool"]
+    path = press(start, rest=50)
+    path[60:200] += 0.002 * np.sin(np.linspace(0.0, 3.0, 140))[:, None] * [1.0, 0.5, 0.0]
+    floors = laid.corner(friction)
+    resting = Resting(laid.body, floors, [(TIP, Pose.at(start))], settings=laid.settings(friction))
+    felt = []
+    for place in path:
+        resting.lead([Pose.at(place)])
+        resting.tick(1e-3, hurried=True)
+        felt.append(resting.rest.tools[0].force)
+    # The servo has seen one tick when it begins, with a point in the air.
+    servo = laid.servo(start, tip=TIP, friction=friction)
+    forces = servo.follow(path[:, None])[0][:, 0]
+    settled = np.abs(felt[-1] - forces[-1]).max()
+    assert settled < 1e-3 * np.abs(felt[-1]).max()
+
+
+@pytest.mark.parametrize("kind", ["tool", "point"])
+@pytest.mark.parametrize("max_force", [None, 3.0])
+def test_a_turned_world_turns_all_that_is_felt(laid, kind, max_force):
+    start = ON_TOP[kind]
+    path = press(start)
+    turn = Rotation.from_rotvec([1.0, -2.0, 0.7])
+    felt, shots = [], []
+    for world in (Rotation.identity(), turn):
+        servo = laid.servo(start, tip=tip_of(kind), turn=world, max_force=max_force)
+        felt.append(world.inv().apply(servo.sent(world.apply(path)[:, None])[:, 0]))
+        shots.append(servo.snapshot())
+    largest = np.abs(felt[0]).max()
+    assert largest > 1.0
+    assert np.abs(felt[0] - felt[1]).max() < 1e-6 * largest
+    upright, turned = shots
+    assert np.abs(turn.apply(upright.probe) - turned.probe).max() < 1e-12
+    assert np.abs(turn.apply(upright.proxy) - turned.proxy).max() < 1e-8
+    assert np.abs(turn.apply(upright.placement[0]) - turned.placement[0]).max() < 1e-8
+    assert np.abs(upright.nodal_forces - turned.nodal_forces).max() < 1e-6 * largest
+
+
+def test_the_surface_of_a_point_is_where_the_finger_is(laid):
+    start = ON_TOP["point"]
+    servo = laid.servo(start)
+    servo.follow(press(start, rest=500)[:, None])
+    shot = servo.snapshot()
+    assert shot.touching
+    assert np.abs(shot.surface_point - shot.probe)[2] < 1e-6
