@@ -17,6 +17,7 @@ from palpate.core.servo.settings import Coupling, Settings
 TIP = sphere(0.01)
 # Into a corner of three floors, so that it comes to rest without friction.
 INTO_CORNER = (-3.0, -4.0, -8.0)
+DOWN = (0.0, 0.0, -9.81)
 UPRIGHT = Rotation.identity()
 
 
@@ -33,11 +34,21 @@ class Laid:
     def corner(self, friction=0.0, turn=UPRIGHT):
         return [Floor(friction=friction, up=tuple(turn.apply(up))) for up in np.eye(3)]
 
-    def servo(self, start, *, tip=None, friction=0.0, turn=UPRIGHT, floors=None, max_force=None):
+    def servo(
+        self,
+        start,
+        *,
+        tip=None,
+        friction=0.0,
+        turn=UPRIGHT,
+        floors=None,
+        gravity=INTO_CORNER,
+        max_force=None,
+    ):
         """Fingers of the servo, the first of which begins at ``start``, before the world is turned;
         without a ``max_force`` they have no motors.
         """
-        settings = self.settings(friction, turn)
+        settings = self.settings(friction, turn, gravity)
         if floors is None:
             floors = self.corner(friction, turn)
         placement = Pose(np.zeros(3), turn.as_matrix())

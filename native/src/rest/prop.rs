@@ -37,6 +37,9 @@ pub struct Prop {
     pub supports: Vec<Support>,
 }
 
+/// A body as one that nobody holds, or none that is held.
+pub type Laid = Option<Box<Prop>>;
+
 impl Prop {
     /// Whether it is this body.
     pub fn is(&self, body: &Body) -> bool {

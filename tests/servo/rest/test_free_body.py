@@ -59,15 +59,15 @@ def test_each_tick_with_a_tool_is_that_of_a_body_without_a_clock(laid, friction)
     floors = laid.corner(friction)
     resting = Resting(laid.body, floors, [(TIP, Pose.at(start))], settings=laid.settings(friction))
     felt = []
+    # The servo makes a tick before it is led.
+    resting.tick(1e-3, hurried=True)
     for place in path:
         resting.lead([Pose.at(place)])
         resting.tick(1e-3, hurried=True)
         felt.append(resting.rest.tools[0].force)
-    # The servo has seen one tick when it begins, with a point in the air.
     servo = laid.servo(start, tip=TIP, friction=friction)
     forces = servo.follow(path[:, None])[0][:, 0]
-    settled = np.abs(felt[-1] - forces[-1]).max()
-    assert settled < 1e-3 * np.abs(felt[-1]).max()
+    assert np.abs(np.array(felt) - forces).max() < 1e-9 * np.abs(felt).max()
 
 
 @pytest.mark.parametrize("kind", ["tool", "point"])
@@ -97,4 +97,5 @@ def test_the_surface_of_a_point_is_where_the_finger_is(laid):
     servo.follow(press(start, rest=500)[:, None])
     shot = servo.snapshot()
     assert shot.touching
-    assert np.abs(shot.surface_point - shot.probe)[2] < 1e-6
+    # Along its push exactly; aside the surface slides, for it has no friction.
+    assert np.abs(shot.surface_point - shot.probe)[2] < 2e-5

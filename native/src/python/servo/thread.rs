@@ -23,7 +23,7 @@ use crate::python::servo::snapshot::Snapshot;
 use crate::python::servo::standing::Standing;
 use crate::python::tool::made::{GivenTool, MadeTool};
 use crate::python::vectors::{Triple, check_seconds, finite, positive};
-use crate::servo::exchange::ends::Laid;
+use crate::rest::prop::Laid;
 use crate::servo::paced::locked;
 use crate::servo::settings::{FingerSettings, Options};
 use crate::servo::snapshot::{Published, Sample};

@@ -13,7 +13,7 @@ use crate::control::toll::Toll;
 use crate::creep::shown::Remembered;
 use crate::device::Device;
 use crate::engine::Engine;
-use crate::rest::prop::Prop;
+use crate::rest::prop::Laid;
 use crate::servo::Servo;
 use crate::servo::finger::Finger;
 use crate::servo::pressed_patch::PressedPatch;
@@ -21,9 +21,6 @@ use crate::servo::recorder::touched_ring;
 use crate::servo::settings::{Options, Settings};
 use crate::servo::snapshot::{Published, Sample};
 use crate::servo::tip::Tip;
-
-/// The body as one that nobody holds, or none that is held.
-pub type Laid = Option<Box<Prop>>;
 
 /// The ends of a servo's ways that stay outside of its thread.
 pub struct Ends {
