@@ -7,7 +7,7 @@ they came: over facets, edges, corners and thin parts of the sample bodies, poin
 the mesh deep and wide, tools 0.1 to 2 of their radii (a plate's counts as a third of its length),
 in steps of less than a hundredth of the depth, by the servo's own ticks. Work is that of the forces
 as sent, by the trapezoidal rule, of all fingers, as a share of F d / 2 (largest force, depth of the
-press). Columns: rounds that touched throughout and ended where they began, the share of them that
+press). Columns: rounds that touched throughout and ended as they began, the share of them that
 gave more than 0.1 and 1 %, the most that one gave, and the mean loss of the others; the same of
 whole paths, from air to air. *Motors* have the coupling of a device, *cut off* a force limit of 0.6
 of what is asked, *far* of 0.03, *two* are beside each other, led together. Tools, which take some
