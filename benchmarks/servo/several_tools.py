@@ -72,7 +72,7 @@ def all_together() -> tuple[Together, ...]:
             np.array(tips),
             0.005,
             np.array([[0.003, 0.0, 0.0], [0.0, 0.003, 0.0]]),
-            (650.0, 900.0),
+            (500.0, 750.0),
         ),
         Together(
             "two plates, deep",
@@ -81,7 +81,7 @@ def all_together() -> tuple[Together, ...]:
             np.array(plates),
             0.003,
             np.array([[0.004, 0.0, 0.0], [0.0, 0.0, 0.0]]),
-            (600.0, 700.0),
+            (570.0, 660.0),
         ),
     )
 

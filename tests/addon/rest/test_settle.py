@@ -53,8 +53,8 @@ def test_what_rests_already_stays_there(free_cube):
     once, first = world_places(free_cube), free_cube.matrix_world.copy()
     bpy.ops.palpate.settle()
     # Friction of the way down is not remembered: what bulged at the foot may slip a little.
-    np.testing.assert_allclose(world_places(free_cube), once, rtol=0, atol=2e-4)
-    np.testing.assert_allclose(free_cube.matrix_world, first, rtol=0, atol=2e-4)
+    np.testing.assert_allclose(world_places(free_cube), once, rtol=0, atol=3e-4)
+    np.testing.assert_allclose(free_cube.matrix_world, first, rtol=0, atol=1e-3)
 
 
 def test_the_floor_bears_the_weight(free_cube):

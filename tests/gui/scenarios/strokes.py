@@ -195,6 +195,7 @@ def clay_springs_back_to_its_imprint_by_strokes_and_presses(stage: Stage) -> Wai
     yield from stage.picture("let-go")
 
 
+@at_length
 def random_drags_press_where_the_cursor_is(stage: Stage) -> Wait:
     yield from _random_drags_on_bodies(stage, 1.0)
 
