@@ -27,7 +27,8 @@ from palpate.core.contact.tool.pose import Pose, resting_on
 from palpate.core.contact.tool.tools import plate, sphere
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.mesh.surface import Surface
-from palpate.core.rest.resting import Resting, RestSettings
+from palpate.core.rest.rest_settings import RestSettings
+from palpate.core.rest.resting import Resting
 from palpate.core.rest.support import Floor
 from palpate.core.stiffness.pins import NoPins
 from palpate.tests.bodies import fingertip_on_cube as cube

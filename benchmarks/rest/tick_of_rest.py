@@ -20,7 +20,8 @@ from palpate_servo.harness import SteppedFingers
 from palpate.core.body.soft_body import SoftBody
 from palpate.core.contact.tool.pose import Pose
 from palpate.core.contact.tool.tools import sphere
-from palpate.core.rest.resting import Resting, RestSettings
+from palpate.core.rest.rest_settings import RestSettings
+from palpate.core.rest.resting import Resting
 from palpate.core.rest.support import Floor
 from palpate.core.servo.session import native_body, native_prop, native_tool
 from palpate.core.servo.settings import Settings

@@ -6,7 +6,7 @@ import argparse
 
 from ...core.body.soft_body import SoftBody
 from ...core.errors import PalpateError
-from ...core.rest.resting import EARTH
+from ...core.rest.rest_settings import EARTH
 from ...core.rest.support import Floor
 
 USUAL_FRICTION = Floor.friction

@@ -9,7 +9,8 @@ from ...core.body.native_body import native_body
 from ...core.body.soft_body import SoftBody
 from ...core.contact.tool.pose import Pose
 from ...core.rest.prop import WORLD, native_prop
-from ...core.rest.resting import Resting, RestSettings
+from ...core.rest.rest_settings import RestSettings
+from ...core.rest.resting import Resting
 from ...core.servo.session import Body, Prop
 from .floor_options import floor_under, gravity, refuse_floor_of_pinned
 

@@ -14,7 +14,8 @@ from ...core.contact.tool.pose import Pose
 from ...core.contact.tool.tools import Tool
 from ...core.errors import PalpateError
 from ...core.rest.rest import Rest
-from ...core.rest.resting import Resting, RestSettings
+from ...core.rest.rest_settings import RestSettings
+from ...core.rest.resting import Resting
 from .floor_options import floor_under, gravity, refuse_floor_of_pinned
 
 

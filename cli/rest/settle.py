@@ -10,7 +10,8 @@ import numpy as np
 
 from ...core.body import body_file
 from ...core.files.atomic_file import atomic_file
-from ...core.rest.resting import Resting, RestSettings
+from ...core.rest.rest_settings import RestSettings
+from ...core.rest.resting import Resting
 from ..body.body_argument import add_body, add_young, modulus_of
 from ..body.figure_lines import as_lines
 from .floor_options import add_floor, floor_under, gravity

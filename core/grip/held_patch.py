@@ -23,8 +23,8 @@ from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 
 from ..body.soft_body import SoftBody
+from ..contact.near_field.surface_shape import node_areas
 from ..errors import PalpateError
-from ..mesh.tet_mesh import TetMesh
 from .cells import cells_of
 from .motions import FIELDS
 from .patch import Grip, Patch, patch_of
@@ -110,7 +110,7 @@ class HeldPatch:
         )
         nodes = body.free_index(mesh.surface_nodes[held])
         hold = _Hold(
-            nodes, places, _areas(mesh)[held], weights.max(axis=1), _radius(patches), asked
+            nodes, places, node_areas(mesh)[held], weights.max(axis=1), _radius(patches), asked
         )
         forces = hold.forces(body)
         moved = [body.compliance.apply(forces[:, :, number], nodes) for number in range(FIELDS)]
@@ -204,15 +204,6 @@ def _solved(matrix: Array, right: Array) -> Array:
     raise PalpateError(
         "the compliance of the touched patch is not that of a body at rest; press Make Soft again"
     )
-
-
-def _areas(mesh: TetMesh) -> Array:
-    """Share of the surface of each surface node, (s,), square metres."""
-    i, j, k = (mesh.nodes[mesh.surface_triangles[:, corner]] for corner in range(3))
-    third = np.linalg.norm(np.cross(j - i, k - i), axis=1) / 6.0
-    triangles = mesh.surface_local_triangles
-    areas = np.bincount(triangles.ravel(), np.repeat(third, 3), len(mesh.surface_nodes))
-    return areas.astype(np.float64)
 
 
 def _radius(patches: Sequence[Patch]) -> float:

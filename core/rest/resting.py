@@ -21,14 +21,12 @@ from ..errors import PalpateError
 from .grip import Grip, native_grip
 from .prop import at, native_prop
 from .rest import BodyTouch, Rest
-from .rest_settings import EARTH, USUAL_REST, RestSettings
+from .rest_settings import USUAL_REST, RestSettings
 from .support import Floor, Support, friction_checked
 
 if TYPE_CHECKING:
     # Types only, absent at run time.
     from palpate_servo import LaidPoint, LaidTool, RestTouch, SettledTool
-
-__all__ = ["EARTH", "USUAL_REST", "RestSettings", "Resting"]
 
 
 class Resting:

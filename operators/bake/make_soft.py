@@ -11,6 +11,7 @@ from ...core.softness.scales.materials import MATERIALS
 from ..object import soft_object
 from ..reporting.acting import Acting
 from ..reporting.translated import reported, shown
+from ..reporting.wait_cursor import wait_cursor
 from ..scene.drawn_surface import metres_per_unit
 from ..scene.modal_progress import ModalProgress
 from ..session import press_session
@@ -48,11 +49,8 @@ class BakingOperator(Acting):
     def _start(self, context: bpy.types.Context) -> set[str]:
         thing = context.object
         # A large mesh takes a second to read.
-        context.window.cursor_modal_set("WAIT")
-        try:
+        with wait_cursor(context):
             self._begin(thing, context.scene)
-        finally:
-            context.window.cursor_modal_restore()
         self._progress = ModalProgress()
         self._progress.begin(self, context, 1 / POLLS_PER_SECOND)
         self._show(context)

@@ -7,6 +7,7 @@ import bpy
 from ..carrier import body_source
 from ..object import pin_change, soft_object
 from ..reporting.translated import reported
+from ..reporting.wait_cursor import wait_cursor
 from .bake_session import OnSoft
 
 
@@ -20,11 +21,8 @@ class PALPATE_OT_update_pins(OnSoft, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        context.window.cursor_modal_set("WAIT")
-        try:
+        with wait_cursor(context):
             return self.execute(context)
-        finally:
-            context.window.cursor_modal_restore()
 
     def act(self, context: bpy.types.Context) -> None:
         thing = context.object

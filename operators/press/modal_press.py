@@ -8,6 +8,7 @@ from ...core.errors import PalpateError
 from ..object import soft_object
 from ..reporting.acting import Acting
 from ..reporting.translated import reported, shown
+from ..reporting.wait_cursor import wait_cursor
 from ..scene import viewport
 from ..scene.modal_stay import ModalStay
 from ..scene.viewport import Viewport, redraw_views
@@ -86,20 +87,18 @@ class ModalPress(Pressing):
                 "{name} is hidden; show it (Object > Show/Hide) to press it", name=thing.name
             )
         # A missing body file is recomputed first, which may take a few seconds.
-        context.window.cursor_modal_set("WAIT")
-        try:
-            self._session = press_session.begin(thing, context.scene, source, pinch=pinch)
-            self._hand = PointerHand(self._session, (0, 1) if pinch else (0,))
-            if context.area is not None and context.area.type == "VIEW_3D":
-                self._session.area = context.area.as_pointer()
-            if pinch:
-                self._hand.place_on_both_sides(context.space_data.region_3d)
-        except PalpateError:
-            press_session.give_way("")
-            redraw_views()
-            raise
-        finally:
-            context.window.cursor_modal_restore()
+        with wait_cursor(context):
+            try:
+                self._session = press_session.begin(thing, context.scene, source, pinch=pinch)
+                self._hand = PointerHand(self._session, (0, 1) if pinch else (0,))
+                if context.area is not None and context.area.type == "VIEW_3D":
+                    self._session.area = context.area.as_pointer()
+                if pinch:
+                    self._hand.place_on_both_sides(context.space_data.region_3d)
+            except PalpateError:
+                press_session.give_way("")
+                redraw_views()
+                raise
         self._stay = ModalStay()
         self._stay.begin(self, context, 1 / FRAMES_PER_SECOND)
         self._show(context)

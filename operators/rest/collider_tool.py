@@ -53,7 +53,7 @@ def _slab(name: str, seen: bpy.types.Object, frame: BodyFrame) -> Array | None:
     mesh = seen.to_mesh()
     try:
         places = frame.body_from_local(coordinates(mesh).reshape(-1, 3))
-        normals, areas = _faces(mesh, frame)
+        normals, areas = _faces(mesh, frame, places)
     finally:
         seen.to_mesh_clear()
     if len(places) < 3 or not areas.sum() > 0.0:
@@ -73,14 +73,14 @@ def _slab(name: str, seen: bpy.types.Object, frame: BodyFrame) -> Array | None:
     return np.concatenate([corners, behind])
 
 
-def _faces(mesh: bpy.types.Mesh, frame: BodyFrame) -> tuple[Array, Array]:
-    """Unit normals (f, 3) and areas (f,) of a mesh's triangles, metres."""
+def _faces(mesh: bpy.types.Mesh, frame: BodyFrame, places: Array) -> tuple[Array, Array]:
+    """Unit normals (f, 3) and areas (f,) of a mesh's triangles, vertices at ``places``, metres."""
     mesh.calc_loop_triangles()
     corners = np.empty(3 * len(mesh.loop_triangles), dtype=np.int32)
     mesh.loop_triangles.foreach_get("vertices", corners)
     triangles = frame.wind(corners.reshape(-1, 3).astype(np.int64))
-    places = frame.body_from_local(coordinates(mesh).reshape(-1, 3))[triangles]
-    across = np.cross(places[:, 1] - places[:, 0], places[:, 2] - places[:, 0])
+    a, b, c = (places[triangles[:, corner]] for corner in range(3))
+    across = np.cross(b - a, c - a)
     twice = np.linalg.norm(across, axis=1)
     return across / np.maximum(twice, np.finfo(float).tiny)[:, None], 0.5 * twice
 

@@ -16,7 +16,8 @@ from ...core.contact.tool.tools import Tool
 from ...core.contact.touches import ToolTouch
 from ...core.errors import PalpateError
 from ...core.rest.rest import Rest
-from ...core.rest.resting import Resting, RestSettings
+from ...core.rest.rest_settings import RestSettings
+from ...core.rest.resting import Resting
 from ..layer import layers, stack
 from ..object.drawn_body import DrawnBody
 from ..played import mesh_cache

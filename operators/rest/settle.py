@@ -11,6 +11,7 @@ from ..object.drawn_body import open_body
 from ..played import mesh_cache
 from ..reporting.acting import Acting
 from ..reporting.translated import reported
+from ..reporting.wait_cursor import wait_cursor
 from ..session import press_session
 from . import rest_layer
 from .free_body import Lying, lie, supports_under
@@ -33,11 +34,8 @@ class PALPATE_OT_settle(Acting, bpy.types.Operator):
         return soft_object.refusal_unbaked(context.object)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        context.window.cursor_modal_set("WAIT")
-        try:
+        with wait_cursor(context):
             return self.execute(context)
-        finally:
-            context.window.cursor_modal_restore()
 
     def act(self, context: bpy.types.Context) -> None:
         thing = context.object

@@ -18,6 +18,7 @@ from ..place.seen_place import under_pointer
 from ..place.touched_place import TouchedPlace
 from ..reporting.acting import Acting
 from ..reporting.translated import reported, shown
+from ..reporting.wait_cursor import wait_cursor
 from ..scene import viewport
 from ..scene.body_frame import BodyFrame
 from ..scene.drawn_surface import metres_per_unit
@@ -131,8 +132,7 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
         if not self.properties.is_property_set("mirrored"):
             self.mirrored = scene.palpate.stroke_mirrored
         self.remember(seen)
-        context.window.cursor_modal_set("WAIT")
-        try:
+        with wait_cursor(context):
             with place_marks.marked(thing):
                 touched = touched_place.touched(seen, *here.line_of_sight())
             view = here.view_at(touched.seen, frame)
@@ -142,8 +142,6 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
             self._drag = self._drag_from(event, view, scene)
             # What takes time is prepared before anything is changed, and a pinned place refused.
             self._last = self._stroke.stroked(self._drag.asked(touched.turn))
-        finally:
-            context.window.cursor_modal_restore()
         if context.object != thing:
             make_active(context, thing)
         self._typed = TypedAmount(self._drag.motion)

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from palpate.core.body.soft_body import SoftBody
 from palpate.core.contact.tool.pose import Pose
 from palpate.core.contact.tool.tools import sphere
-from palpate.core.rest.resting import RestSettings
+from palpate.core.rest.rest_settings import RestSettings
 from palpate.core.rest.support import Floor
 from palpate.core.servo.session import Body, native_prop, native_tool
 from palpate.core.servo.settings import Coupling, Settings

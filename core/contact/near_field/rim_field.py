@@ -18,7 +18,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...body.pair_blocks import pair_blocks
-from ...mesh.tet_mesh import TetMesh
 from ...stiffness.formulation import SMOOTHED
 from .half_space import own_displacement
 from .regular_field import (
@@ -31,7 +30,7 @@ from .regular_field import (
     seen_across,
 )
 from .solid_angle import edge_shares, node_angles, sharpness
-from .surface_shape import face_areas
+from .surface_shape import node_areas
 
 
 def with_rims(field: RegularField) -> RegularField:
@@ -43,10 +42,12 @@ def with_rims(field: RegularField) -> RegularField:
     # Each pair from both its ends.
     node, other = np.concatenate([a, b]), np.concatenate([b, a])
     weight = np.concatenate([weight, weight])
-    sharp = edge_shares(node_angles(body.mesh))
+    angles = node_angles(body.mesh)
+    sharp = edge_shares(angles)
     share = sharp * field.trusted
     np.maximum.at(share, node, weight * sharp[other] * field.trusted[node])
-    missing = _in_the_mean(field, node, other, weight) - field.regular
+    softness = field.softness * sharpness(angles)
+    missing = _in_the_mean(field, softness, node, other, weight) - field.regular
     # Along the normal and across it: how a push draws aside an even pressure does not tell.
     along = np.einsum("sx,sy->sxy", field.normals, field.normals)
     across = np.eye(3) - along
@@ -70,15 +71,18 @@ def _doubted(
 
 def _in_the_mean(
     field: RegularField,
+    softness: NDArray[np.float64],
     node: NDArray[np.int64],
     other: NDArray[np.int64],
     weight: NDArray[np.float64],
 ) -> NDArray[np.float64]:
-    """Regular part (s, 3, 3) by an even pressure on each ``node`` and its ``other`` nodes (k,)."""
+    """Regular part (s, 3, 3) by an even pressure on each ``node`` and its ``other`` nodes (k,);
+    nodes give way by themselves ``softness`` (s,) times as far as a half-space.
+    """
     body, places = field.body, field.places
-    areas, everyone = _node_areas(body.mesh), np.arange(len(places))
+    areas, everyone = node_areas(body.mesh), np.arange(len(places))
     own = own_displacement(areas, field.normals, body.poisson_ratio)
-    own *= (field.softness * sharpness(node_angles(body.mesh)))[:, None, None]
+    own *= softness[:, None, None]
     summed = pair_blocks(body, everyone, everyone) - own
     summed -= seen_across(body, field.far, everyone, everyone)
     summed *= areas[:, None, None]
@@ -91,11 +95,3 @@ def _in_the_mean(
     total = areas + np.bincount(node, pressed, len(places))
     mean: NDArray[np.float64] = summed / total[:, None, None]
     return 0.5 * (mean + mean.transpose(0, 2, 1))
-
-
-def _node_areas(mesh: TetMesh) -> NDArray[np.float64]:
-    """Share of the surface of each of its nodes, (s,), square metres."""
-    corners = mesh.surface_local_triangles.ravel()
-    areas: NDArray[np.float64] = np.zeros(len(mesh.surface_nodes))
-    np.add.at(areas, corners, np.repeat(face_areas(mesh) / 3.0, 3))
-    return areas

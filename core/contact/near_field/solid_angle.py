@@ -38,11 +38,6 @@ def sharpness(angles: NDArray[np.float64]) -> NDArray[np.float64]:
     return sharp
 
 
-def node_angles(mesh: TetMesh) -> NDArray[np.float64]:
-    """Solid angle of the body at each surface node, (s,), steradian."""
-    return _around_nodes(mesh)
-
-
 def solid_angles(
     mesh: TetMesh, triangles: NDArray[np.int64], alphas: NDArray[np.float64]
 ) -> NDArray[np.float64]:
@@ -55,14 +50,14 @@ def solid_angles(
     found = np.full(len(triangles), FLAT)
     rows, corners = np.nonzero(alphas == 1.0)
     nodes = mesh.surface_local_triangles[triangles[rows], corners]
-    found[rows] = _around_nodes(mesh)[nodes]
+    found[rows] = node_angles(mesh)[nodes]
     rows, corners = np.nonzero((alphas == 0.0) & ((alphas == 0.0).sum(axis=1) == 1)[:, None])
     found[rows] = 2.0 * _along_edges(mesh)[triangles[rows], (corners + 1) % 3]
     return found
 
 
-def _around_nodes(mesh: TetMesh) -> NDArray[np.float64]:
-    """Sum over the tetrahedra at each surface node, (s,).
+def node_angles(mesh: TetMesh) -> NDArray[np.float64]:
+    """Solid angle of the body at each surface node, (s,), steradian: the sum over the tetrahedra.
 
     Each by A. Van Oosterom and J. Strackee, IEEE Trans. Biomed. Eng. 30 (1983), 125.
     """

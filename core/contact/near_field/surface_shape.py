@@ -59,6 +59,13 @@ def face_areas(mesh: TetMesh) -> NDArray[np.float64]:
     return areas
 
 
+def node_areas(mesh: TetMesh) -> NDArray[np.float64]:
+    """Share of the surface of each of its nodes, (s,), square metres."""
+    corners = mesh.surface_local_triangles.ravel()
+    areas = np.bincount(corners, np.repeat(face_areas(mesh) / 3.0, 3), len(mesh.surface_nodes))
+    return areas.astype(np.float64)
+
+
 def surface_area(mesh: TetMesh) -> float:
     """Surface area of a body, square metres."""
     return float(face_areas(mesh).sum())

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from bodies.free_shapes import free_block
 
-from palpate.core.rest.resting import Resting, RestSettings
+from palpate.core.rest.rest_settings import RestSettings
+from palpate.core.rest.resting import Resting
 from palpate.core.rest.support import Floor
 
 FRICTION = 0.5

@@ -5,7 +5,8 @@ import pytest
 
 from palpate.core.contact.tool.pose import Pose
 from palpate.core.contact.tool.tools import sphere
-from palpate.core.rest.resting import Resting, RestSettings
+from palpate.core.rest.rest_settings import RestSettings
+from palpate.core.rest.resting import Resting
 from palpate.core.rest.support import Floor
 
 

@@ -8,7 +8,8 @@ import pytest
 from palpate.core.contact.tool.pose import Pose
 from palpate.core.contact.tool.tools import plate
 from palpate.core.rest.following import Ways, between, follow
-from palpate.core.rest.resting import Resting, RestSettings
+from palpate.core.rest.rest_settings import RestSettings
+from palpate.core.rest.resting import Resting
 from palpate.core.rest.support import Floor, Support
 
 HALF_TURN = np.diag([1.0, -1.0, -1.0])

@@ -11,7 +11,8 @@ from bodies.free_shapes import free_ball
 
 from palpate.core.contact.tool.pose import Pose
 from palpate.core.contact.tool.tools import plate
-from palpate.core.rest.resting import Resting, RestSettings
+from palpate.core.rest.rest_settings import RestSettings
+from palpate.core.rest.resting import Resting
 from palpate.core.rest.support import Floor, Support
 
 RADIUS, MODULUS = 0.025, 100_000.0

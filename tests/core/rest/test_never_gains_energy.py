@@ -6,7 +6,8 @@ from bodies.free_shapes import free_ball, free_block
 from scipy.spatial.transform import Rotation
 
 from palpate.core.contact.tool.pose import Pose
-from palpate.core.rest.resting import Resting, RestSettings
+from palpate.core.rest.rest_settings import RestSettings
+from palpate.core.rest.resting import Resting
 from palpate.core.rest.support import Floor
 
 BODIES = {

@@ -7,7 +7,8 @@ from bodies.soft_block import soft_block
 from palpate.core.contact.tool.pose import Pose
 from palpate.core.contact.tool.tools import plate, sphere
 from palpate.core.errors import PalpateError
-from palpate.core.rest.resting import EARTH, Resting, RestSettings
+from palpate.core.rest.rest_settings import EARTH, RestSettings
+from palpate.core.rest.resting import Resting
 from palpate.core.rest.support import Floor, Support
 
 TURNED = np.array([[0.8, 0.0, 0.6], [0.0, 1.0, 0.0], [-0.6, 0.0, 0.8]])
