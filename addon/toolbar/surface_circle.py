@@ -21,6 +21,7 @@ from ...operators.place.seen_place import SeenPlace, under_pointer
 from ...operators.scene import viewport
 from ...operators.scene.drawn_surface import metres_per_unit
 from ...operators.scene.viewport import Viewport
+from ...operators.session import press_session
 from ...operators.stroke.stroke_size import radius_for
 
 SEGMENTS = 48
@@ -53,8 +54,12 @@ class PALPATE_OT_hover(bpy.types.Operator):
 
 
 def draw(xy: tuple[int, int]) -> None:
-    """Draw at a pointer in window coordinates; nothing beside soft objects."""
+    """Draw at a pointer in window coordinates; nothing beside soft objects, nor while a press shows
+    its own finger.
+    """
     context = bpy.context
+    if press_session.current() is not None:
+        return
     if _found is None or context.window is None or context.mode != "OBJECT":
         return
     here = viewport.under_pointer(context.window, *xy)

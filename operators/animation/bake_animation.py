@@ -15,7 +15,7 @@ from ...core.files.point_cache import CacheSize
 from ...core.sentence import Sentence
 from ..imprint import kept_imprint
 from ..imprint.surface_imprint import yielding_of
-from ..layer import place_marks
+from ..layer import place_marks, stack
 from ..object.drawn_body import DrawnBody, open_body
 from ..played import mesh_cache
 from ..press.modal_press import Pressing
@@ -262,11 +262,12 @@ def _noting(pressed: Iterator[PressedFrame], places: list[BodyFrame]) -> Iterato
 
 @contextmanager
 def _met_as_seen(thing: bpy.types.Object) -> Iterator[None]:
-    """The body is met where it is seen, but for what an earlier bake plays."""
+    """The body is met where it is seen, but for what an earlier bake or live pressers show."""
     if frame_keys.plays(thing):
         yield
         return
-    with mesh_cache.silent(thing), place_marks.marked(thing, live_pressers.LAYER_NAME):
+    names = mesh_cache.MODIFIER_NAME, live_pressers.LAYER_NAME
+    with stack.silent(thing, *names), place_marks.marked(thing):
         yield
 
 

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from ...core.errors import PalpateError
 from ...core.shape.shapes import Shape, shape
 from ..carrier import changing
-from ..layer import layers, place_marks
+from ..layer import imprints, layers, place_marks
 from ..object import body_store
 from ..object.drawn_body import DrawnBody, open_body
 from ..place.evaluation import evaluated
@@ -246,7 +246,7 @@ def _opened(thing: bpy.types.Object, graph: bpy.types.Depsgraph, *, asked: bool)
                 "Animation",
                 name=thing.name,
             )
-        followed = _Followed(drawn, shape(drawn.body, chosen_shape(thing), drawn.file), known)
+        followed = _Followed(drawn, shape(drawn.at_rest, chosen_shape(thing), drawn.file), known)
         _followed[thing.session_uid] = followed
     followed.drawn = moved
     return followed
@@ -261,6 +261,7 @@ def _known_of(thing: bpy.types.Object) -> tuple[object, ...]:
         chosen_shape(thing),
         chosen.young_modulus,
         chosen.static_friction,
+        imprints.told_by(thing),
     )
 
 

@@ -1,7 +1,7 @@
 """Marks by which a place of the mesh as seen is found again at rest, while it is pressed.
 
-A modifier before the live layer gives every vertex its place at rest and its place there; whatever
-comes later passes both on, to the vertices that it makes too.
+A modifier before the live layer gives every vertex its place at rest, with its imprints, and its
+place there; whatever comes later passes both on, to the vertices that it makes too.
 """
 
 from __future__ import annotations
@@ -11,8 +11,8 @@ from contextlib import contextmanager
 
 import bpy
 
-from ..scene.drawn_surface import rest_coordinates
 from . import layers, stack
+from .imprints import imprinted_rest
 from .layer_groups import AT, DISPLACEMENT, LIVE, PRESSED, REST, Kind
 
 NAME = "Palpate Places"
@@ -40,7 +40,7 @@ def hang(thing: bpy.types.Object, live: str) -> None:
         return
     mesh = layers.drawn_mesh(thing)
     attribute = mesh.attributes.new(REST, "FLOAT_VECTOR", "POINT")
-    attribute.data.foreach_set("vector", rest_coordinates(mesh))
+    attribute.data.foreach_set("vector", imprinted_rest(thing))
     layers.add_modifier(thing, NAME, Kind.PLACES, {DISPLACEMENT: attribute.name, LIVE: live})
 
 

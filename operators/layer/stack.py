@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import bpy
@@ -99,6 +101,21 @@ def following(thing: bpy.types.Object, made_by: list[bpy.types.Modifier]) -> lis
         and not modifier.use_pin_to_last
         and modifier not in made_by
     ]
+
+
+@contextmanager
+def silent(thing: bpy.types.Object, *names: str) -> Iterator[None]:
+    """Modifiers of these names are not shown meanwhile; what is done may remove one."""
+    found = (thing.modifiers.get(name) for name in names)
+    shown = [one.name for one in found if one is not None and one.show_viewport]
+    for name in shown:
+        thing.modifiers[name].show_viewport = False
+    try:
+        yield
+    finally:
+        for name in shown:
+            if name in thing.modifiers:
+                thing.modifiers[name].show_viewport = True
 
 
 def words(thing: bpy.types.Object, made_by: list[bpy.types.Modifier]) -> str:

@@ -12,12 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.body.drawn_map import DrawnMap
+from ...core.body.imprinted_body import DrawnImprint, imprinted
 from ...core.body.soft_body import SoftBody
 from ...core.contact.place import nearest_place
 from ...core.contact.tool.tool_dent import PressingTool, kept_out
 from ...core.errors import PalpateError
 from ..carrier import body_source
 from ..layer import layers
+from ..layer.imprints import imprint_of
 from ..scene import drawn_surface, ray
 from ..scene.body_frame import BodyFrame
 from ..scene.drawn_surface import DrawnSurface
@@ -42,16 +44,20 @@ class DrawnBody:
 
     Attributes
     ----------
-    body : metres.
+    body : metres; with its imprints, as a press finds it.
+    at_rest : the same without, whose shapes and tables are those of its file.
     hung : the map W to the drawn vertices.
     rest : flat float32 (3 p,), the drawn vertices at rest, local units.
+    imprint : flat float32 (3 p,), what stayed of earlier presses, local units.
     frame : between local units, metres and the world.
     file : of the body, next to which its tables are stored; None without.
     """
 
     body: SoftBody
+    at_rest: SoftBody
     hung: DrawnMap
     rest: NDArray[np.float32]
+    imprint: NDArray[np.float32]
     frame: BodyFrame
     file: Path | None = None
 
@@ -62,7 +68,7 @@ class DrawnBody:
 
     @property
     def surface_nodes(self) -> Array:
-        """Surface nodes at rest, (s, 3), metres."""
+        """Surface nodes as a press finds them, (s, 3), metres."""
         mesh = self.body.mesh
         nodes: Array = mesh.nodes[mesh.surface_nodes]
         return nodes
@@ -82,9 +88,10 @@ class DrawnBody:
         return place.position, normal / np.linalg.norm(normal)
 
     @cached_property
-    def rest_places(self) -> Array:
-        """Drawn vertices at rest, (p, 3), metres, body coordinates."""
-        return self.frame.body_from_local(self.rest.reshape(-1, 3).astype(np.float64))
+    def places(self) -> Array:
+        """Drawn vertices as a press finds them, (p, 3), metres, body coordinates."""
+        found = self.rest + self.imprint
+        return self.frame.body_from_local(found.reshape(-1, 3).astype(np.float64))
 
     def drawn_displacement(
         self, displacements: Array, tools: Sequence[PressingTool] = ()
@@ -97,11 +104,11 @@ class DrawnBody:
         local = self.hung.displacements(displacements @ into_local)
         if tools:
             near = self._near(tools, float(np.abs(displacements).max(initial=0.0)))
-            rest, normals = self.rest_places[near], self.hung.normals[self.hung.triangle[near]]
-            places = rest + local[near] @ self.frame.metric
+            found, normals = self.places[near], self.hung.normals[self.hung.triangle[near]]
+            places = found + local[near] @ self.frame.metric
             for pressing in tools:
                 places = kept_out(places, normals, pressing)
-            local[near] = (places - rest) @ into_local
+            local[near] = (places - found) @ into_local
         return local.ravel()
 
     def _near(self, tools: Sequence[PressingTool], largest: float) -> NDArray[np.int64]:
@@ -111,7 +118,7 @@ class DrawnBody:
         found = []
         for pressing in tools:
             reach = FARTHEST_KEPT_OUT * pressing.tool.reach + 2.0 * largest
-            x, y, z = self._rest_axes
+            x, y, z = self._axes
             at = pressing.pose.position.astype(np.float32)
             near = np.flatnonzero(np.abs(x - at[0]) < reach)
             for axis, middle in zip((y, z), at[1:], strict=True):
@@ -120,9 +127,9 @@ class DrawnBody:
         return np.unique(np.concatenate(found))
 
     @cached_property
-    def _rest_axes(self) -> NDArray[np.float32]:
-        """Coordinates (3, p) of the drawn vertices at rest, one axis after the other, metres."""
-        return np.ascontiguousarray(self.rest_places.T, dtype=np.float32)
+    def _axes(self) -> NDArray[np.float32]:
+        """These coordinates (3, p), one axis after the other, metres."""
+        return np.ascontiguousarray(self.places.T, dtype=np.float32)
 
     def node_displacements(self, displacements: Array) -> Array:
         """Displacements of all nodes (N, 3), zero where pinned or inside."""
@@ -179,14 +186,25 @@ def open_body(
     soft_object.refuse_changed(thing, status)
     body = _stored(thing, status) if as_stored else _body(thing, surface, status)
     rest = drawn_surface.rest_coordinates(layers.drawn_mesh(thing))
-    places = rest.reshape(-1, 3).astype(np.float64)
+    places = surface.frame.body_from_local(rest.reshape(-1, 3).astype(np.float64))
+    imprint = imprint_of(thing)
     return DrawnBody(
-        body=body,
-        hung=hung_on(body, surface.frame.body_from_local(places)),
+        body=_imprinted(body, thing, places, imprint @ surface.frame.metric),
+        at_rest=body,
+        hung=hung_on(body, places),
         rest=rest,
+        imprint=imprint.ravel(),
         frame=surface.frame,
         file=body_store.locate(thing),
     )
+
+
+def _imprinted(body: SoftBody, thing: bpy.types.Object, places: Array, imprint: Array) -> SoftBody:
+    """The body with the imprint (p, 3) of what is drawn, ``places`` (p, 3) at rest, metres."""
+    if not imprint.any():
+        return body
+    triangles = drawn_surface.triangles_of(layers.drawn_mesh(thing))
+    return imprinted(body, DrawnImprint(places, triangles, imprint))
 
 
 def open_pinned(thing: bpy.types.Object, scene: bpy.types.Scene) -> DrawnBody:

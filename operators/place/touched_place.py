@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.errors import PalpateError
-from ..layer import layers, place_marks
+from ..layer import place_marks
+from ..layer.imprints import imprinted_rest
 from ..layer.layer_groups import AT, PRESSED, REST
 from ..scene.body_frame import BodyFrame
-from ..scene.drawn_surface import rest_coordinates
 from . import seen_triangle
 from .evaluation import evaluated
 from .seen_place import SeenPlace
@@ -34,8 +34,8 @@ class TouchedPlace:
 
     Attributes
     ----------
-    rest, seen : float64 (3,), where it is at rest, and as seen; metres, body coordinates of the
-        object's frame, or of its instance's.
+    rest, seen : float64 (3,), where it is at rest, with its imprints, and as seen; metres, body
+        coordinates of the object's frame, or of its instance's.
     normal : float64 (3,), outward unit normal as seen.
     turn : float64 (3, 3), rotation from a displacement at rest to the same as seen.
     corners : vertices of its triangle in the evaluated mesh.
@@ -195,7 +195,7 @@ def _marks(mesh: bpy.types.Mesh, name: str, corners: list[int]) -> Array:
 
 def _rest_by_number(thing: bpy.types.Object, mesh: bpy.types.Mesh, corners: list[int]) -> Array:
     """Local coordinates (3, 3) at rest of vertices that are the drawn mesh's own."""
-    rest = rest_coordinates(layers.drawn_mesh(thing)).reshape(-1, 3)
+    rest = imprinted_rest(thing).reshape(-1, 3)
     if len(rest) != len(mesh.vertices) or place_marks.needed(thing):
         raise PalpateError(
             "{name}: its modifiers make vertices that cannot be followed; press again",

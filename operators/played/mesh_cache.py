@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 import bpy
@@ -19,19 +17,6 @@ def plays(thing: bpy.types.Object) -> bool:
     """Whether the object's modifier plays a cache now."""
     modifier = thing.modifiers.get(MODIFIER_NAME)
     return modifier is not None and modifier.type in PLAYERS and modifier.show_viewport
-
-
-@contextmanager
-def silent(thing: bpy.types.Object) -> Iterator[None]:
-    """The object's modifier plays nothing meanwhile."""
-    played = plays(thing)
-    if played:
-        thing.modifiers[MODIFIER_NAME].show_viewport = False
-    try:
-        yield
-    finally:
-        if played:
-            thing.modifiers[MODIFIER_NAME].show_viewport = True
 
 
 def play(thing: bpy.types.Object, cache: Path, size: CacheSize) -> bpy.types.Modifier:

@@ -75,7 +75,7 @@ def _floor_height(thing: bpy.types.Object, drawn: DrawnBody, metres: float) -> f
     before = found_floor(thing)
     if before is not None:
         return before
-    lowest = metres * float(drawn.frame.world_from_body(drawn.rest_places)[:, 2].min())
+    lowest = metres * float(drawn.frame.world_from_body(drawn.places)[:, 2].min())
     return lowest if lowest < -ROUNDING * drawn.size else 0.0
 
 

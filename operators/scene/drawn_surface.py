@@ -113,12 +113,9 @@ def read(
         if same and surface.frame.stretches_as(frame):
             # The stretch differs by rounding only, as between two rotations of the object.
             return replace(surface, frame=replace(frame, stretch=surface.frame.stretch))
-    mesh.calc_loop_triangles()
-    triangles = np.empty(3 * len(mesh.loop_triangles), dtype=np.int32)
-    mesh.loop_triangles.foreach_get("vertices", triangles)
     surface = DrawnSurface(
         local=local.astype(np.float64).reshape(-1, 3),
-        triangles=triangles.astype(np.int64).reshape(-1, 3),
+        triangles=triangles_of(mesh),
         corners=corners.astype(np.int64),
         face_starts=starts.astype(np.int64),
         frame=frame,
@@ -151,6 +148,14 @@ def polygons(mesh: bpy.types.Mesh) -> tuple[NDArray[np.int32], NDArray[np.int32]
     starts = np.empty(len(mesh.polygons), dtype=np.int32)
     mesh.polygons.foreach_get("loop_start", starts)
     return corners, starts
+
+
+def triangles_of(mesh: bpy.types.Mesh) -> NDArray[np.int64]:
+    """Triangles (m, 3) of all polygons, as Blender divides them."""
+    mesh.calc_loop_triangles()
+    triangles = np.empty(3 * len(mesh.loop_triangles), dtype=np.int32)
+    mesh.loop_triangles.foreach_get("vertices", triangles)
+    return triangles.astype(np.int64).reshape(-1, 3)
 
 
 def rest_coordinates(mesh: bpy.types.Mesh) -> NDArray[np.float32]:

@@ -53,7 +53,7 @@ class SeenBody:
     @cached_property
     def shape(self) -> DrawnShape:
         """Shape of the body under its fingers."""
-        return DrawnShape(self.drawn.body, self.drawn.file)
+        return DrawnShape(self.drawn.at_rest, self.drawn.file)
 
     @cached_property
     def surface_samples(self) -> Array:

@@ -141,7 +141,7 @@ def closing_shape(thing: bpy.types.Object, drawn: DrawnBody) -> Iterator[Shape]:
     PalpateError
         It cannot be computed.
     """
-    made = shape(drawn.body, chosen_shape(thing), drawn.file)
+    made = shape(drawn.at_rest, chosen_shape(thing), drawn.file)
     try:
         yield made
     finally:

@@ -77,7 +77,7 @@ def _at_vertices(
 ) -> NDArray[np.float64]:
     """Values of the object's vertices (p,) from those of the surface nodes (s,) around each."""
     local = rest_coordinates(thing.data).reshape(-1, 3)
-    places = drawn.body.closest_points.query(drawn.frame.body_from_local(local))
+    places = drawn.at_rest.closest_points.query(drawn.frame.body_from_local(local))
     corners = drawn.body.mesh.surface_local_triangles[places.triangle]
     values: NDArray[np.float64] = np.einsum("pc,pc->p", places.alpha, of_nodes[corners])
     return values

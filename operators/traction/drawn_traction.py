@@ -52,7 +52,7 @@ def tractions_of(
         return found
     metric = drawn.frame.metric
     near = np.flatnonzero(moved.reshape(-1, 3).any(axis=1))
-    places = drawn.rest_places[near] + moved.reshape(-1, 3)[near] @ metric
+    places = drawn.places[near] + moved.reshape(-1, 3)[near] @ metric
     of_body = tractions(pressed, places)
     sizes = np.linalg.norm(of_body, axis=1)
     # Normals go the other way than places: by the inverse transpose.

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from weakref import WeakKeyDictionary
 
+import numpy as np
+
+from ...body.imprinted_body import ImprintedBody
 from ...body.soft_body import SoftBody
 from ..near_field.compliance_beneath import NearCorrection, near_correction
 from ..near_field.contact_points import ContactPoints, contact_points, spacing_on
+from ..near_field.surface_shape import smooth_corner_normals, unit
 from .tools import Tool
 
 # Contact points take long to spread and are the same for every touch of a body by a tool.
@@ -20,8 +25,26 @@ def surface_and_correction(body: SoftBody, tool: Tool) -> tuple[ContactPoints, N
     them; cached with the body.
     """
     known = _surfaces.setdefault(body, {})
-    spacing = spacing_on(body, tool.spacing)
-    if spacing not in known:
+    at_rest = body.at_rest if isinstance(body, ImprintedBody) else body
+    spacing = spacing_on(at_rest, tool.spacing)
+    if spacing in known:
+        return known[spacing]
+    if isinstance(body, ImprintedBody):
+        points, near = surface_and_correction(at_rest, tool)
+        known[spacing] = _imprinted(points, body), near
+    else:
         points = contact_points(body, spacing)
         known[spacing] = points, near_correction(body, points)
     return known[spacing]
+
+
+def _imprinted(points: ContactPoints, body: ImprintedBody) -> ContactPoints:
+    """The points of a body at rest where its imprint has them: as it is drawn, since the triangles
+    of the body are coarser than a dent.
+    """
+    corner_normals = smooth_corner_normals(body.mesh)[points.triangles]
+    return replace(
+        points,
+        positions=points.positions + body.imprint.at(points.positions),
+        normals=unit(np.einsum("pc,pcx->px", points.alphas, corner_normals)),
+    )

@@ -54,6 +54,29 @@ def test_what_is_live_is_baked(pressed, tmp_path):
     assert baked_dent == pytest.approx(live_dent, rel=0.3)
 
 
+def test_no_dent_of_another_frame_is_seen_while_it_is_baked(pressed, tmp_path, monkeypatch):
+    scene, rest = bpy.context.scene, seen_places(pressed)
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "pressed.blend"))
+    scene.frame_set(4)
+    dented = seen_places(pressed)
+    assert np.abs(dented - rest).max() > 1e-4
+    frames = part("operators.animation.bake_animation")
+    seen, original = [], frames.press_frames
+
+    def watched(*arguments):
+        for here in original(*arguments):
+            seen.append(seen_places(pressed))
+            yield here
+        raise part("core.errors").PalpateError("The line is down")
+
+    monkeypatch.setattr(frames, "press_frames", watched)
+    bpy.context.view_layer.objects.active = pressed
+    assert "The line is down" in error_of(bpy.ops.palpate.press_frames, frame_start=1, frame_end=7)
+    np.testing.assert_array_equal(seen, [rest] * 7)
+    # And it is as it was.
+    np.testing.assert_array_equal(seen_places(pressed), dented)
+
+
 def test_several_parts_press_together_and_an_empty_is_a_sphere(pressed):
     scene = bpy.context.scene
     scene.frame_set(4)

@@ -193,6 +193,14 @@ def clay_springs_back_to_its_imprint_by_strokes_and_presses(stage: Stage) -> Wai
     yield from stage.key("RET")
     yield from stage.until(lambda: len(kept(cube)) == 2, "the imprint of the press")
     yield from stage.picture("let-go")
+    # A second tap beside the first goes on from its imprint: it is seen where it touches.
+    beside = (here[0] + 12, here[1] + 6)
+    yield from stage.drag([beside, (beside[0] + 90, beside[1])])
+    yield from stage.until(lambda: len(kept(cube)) == 3, "the second tap")
+    yield from stage.picture("second-tap")
+    both = [layers.displacement(cube, cube.modifiers[name]) for name in ("Press 1", "Press 3")]
+    sum_of = np.linalg.norm(both[0] + both[1], axis=1).max()
+    assert sum_of > 1.3 * left
 
 
 @at_length
