@@ -10,6 +10,8 @@ from .device_port import DevicePort
 
 BUFFER_BYTES = 4096
 """What the system holds of each direction, about: a host that stops reading is noticed."""
+MOST_READS = 64
+"""Of a period: a host that never ends is heard again in the next one."""
 
 
 class LocalSocket(DevicePort):
@@ -69,17 +71,21 @@ class LocalSocket(DevicePort):
         return heard + self._take() if self._accept() else heard
 
     def _take(self) -> bytes:
-        if self._host is None:
-            return b""
-        try:
-            heard = self._host.recv(4096)
-        except BlockingIOError:
-            return b""
-        except ConnectionError:
-            heard = b""
-        if not heard:
-            self._hang_up()
-        return heard
+        """All that has come: a host that is gone is noticed behind the last that it said."""
+        heard = bytearray()
+        for _ in range(MOST_READS):
+            if self._host is None:
+                break
+            try:
+                part = self._host.recv(BUFFER_BYTES)
+            except BlockingIOError:
+                break
+            except ConnectionError:
+                part = b""
+            if not part:
+                self._hang_up()
+            heard += part
+        return bytes(heard)
 
     def _accept(self) -> bool:
         """Let a host come if there is none, and hang up on all others; whether one has come."""

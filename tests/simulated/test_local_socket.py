@@ -51,6 +51,17 @@ def test_the_next_host_finds_nothing_of_the_one_before(port):
         assert host.read(5) == b"state"
 
 
+def test_a_host_that_comes_before_the_last_word_of_the_one_before_was_read_is_not_hung_up_on(port):
+    with SocketPort(port.path, timeout=20.0) as host:
+        host.write(b"1")
+        assert heard(port, 1) == b"1"
+        host.write(b"last word")
+    with socket.create_connection(address_of(port.path)) as second:
+        assert port.read(0.0) == b"last word"
+        second.sendall(b"2")
+        assert heard(port, 1) == b"2"
+
+
 def test_a_second_host_is_hung_up_on(port):
     with SocketPort(port.path, timeout=20.0) as host:
         host.write(b"1")
