@@ -123,6 +123,11 @@ ON_ALL_CORES := --numprocesses auto --maxprocesses 4 --dist loadfile
 
 # What the engine answers does not depend on when it is asked.
 ENGINE_TESTS := tests/servo/engine tests/servo/contact
+CORE_TESTS := tests/core $(ENGINE_TESTS) tests/simulated tests/cli tests/passivity tests/demo tests/release \
+  tests/test_architecture.py tests/test_docs.py tests/test_examples.py
+# They have deadlines and mostly wait.
+ON_TWO_CORES := --numprocesses auto --maxprocesses 2 --dist loadfile
+SERVO_TESTS := tests/servo tests/firmware $(ENGINE_TESTS:%=--ignore=%)
 
 # What compiles and downloads goes side by side; a make that knows how (4.0 and later) prints each part
 # in one piece. The parts of the tests come one after the other: some have deadlines, others fill all cores.
@@ -139,8 +144,10 @@ test-all: test test-at-length test-drags $(BLENDERS:%=test-addon-%) check-system
 
 .PHONY: test-at-length
 test-at-length: $(VENV)/.servo-installed $(BPY_VENV)/.installed build/packages/.made $(WINDOWED_PACKAGE) | build/reports ## of all parts what takes long
-	$(BPY_VENV)/bin/pytest -q -m at_length $(ON_ALL_CORES) tests/addon $(REPORT)
-	BLENDER_GUI='$(BLENDER_GUI)' $(BIN)/pytest -q -m at_length tests/gui $(REPORT)
+	$(BIN)/pytest -q -m at_length $(ON_ALL_CORES) $(CORE_TESTS) $(REPORT)
+	$(BIN)/pytest -q -m at_length $(ON_TWO_CORES) $(SERVO_TESTS) $(APPENDED)
+	$(BPY_VENV)/bin/pytest -q -m at_length $(ON_ALL_CORES) tests/addon $(APPENDED)
+	BLENDER_GUI='$(BLENDER_GUI)' $(BIN)/pytest -q -m at_length tests/gui $(APPENDED)
 
 build/reports:
 	mkdir -p $@
@@ -160,11 +167,11 @@ test-native: $(VENV)/.installed | build/reports ## the servo's own tests
 
 .PHONY: test-core
 test-core: $(VENV)/.servo-installed | build/reports ## core, engine, command line and packages, without Blender
-	$(BIN)/pytest -q $(ON_ALL_CORES) tests/core $(ENGINE_TESTS) tests/simulated tests/cli tests/passivity tests/demo tests/release tests/test_architecture.py tests/test_docs.py tests/test_examples.py $(REPORT)
+	$(BIN)/pytest -q $(ON_ALL_CORES) $(CORE_TESTS) $(REPORT)
 
 .PHONY: test-servo
-test-servo: $(VENV)/.servo-installed | build/reports ## servo and firmware: they have deadlines and mostly wait, so two at once at most
-	$(BIN)/pytest -q --numprocesses auto --maxprocesses 2 --dist loadfile tests/servo tests/firmware $(ENGINE_TESTS:%=--ignore=%) $(REPORT)
+test-servo: $(VENV)/.servo-installed | build/reports ## servo and firmware, two at once at most
+	$(BIN)/pytest -q $(ON_TWO_CORES) $(SERVO_TESTS) $(REPORT)
 
 .PHONY: test-addon
 test-addon: test-addon-$(BPY) ## the package installed in Blender as a module, driven by its operators

@@ -38,7 +38,14 @@ def test_bake_prints_the_papers_table_for_the_cube(tets, tmp_path, figures_of):
     assert again["free_surface_nodes"] == 73
 
 
-@pytest.mark.parametrize("suffix", ["obj", "ply", "stl"])
+@pytest.mark.parametrize(
+    "suffix",
+    [
+        "obj",
+        pytest.param("ply", marks=pytest.mark.at_length),
+        pytest.param("stl", marks=pytest.mark.at_length),
+    ],
+)
 def test_surfaces_of_every_kind_are_filled_with_tetrahedra(filled, suffix):
     box = trimesh.creation.box((50, 50, 50)).export(file_type=suffix)
     content = box.encode() if isinstance(box, str) else box
@@ -113,7 +120,7 @@ def test_pins_of_the_file_are_taken_unless_told_otherwise(tmp_path, figures_of):
     assert figures_of(*words, "--pin-below", 0.5)["fixed_nodes"] > 300
 
 
-@pytest.mark.parametrize("form", ["dense", "compressed"])
+@pytest.mark.parametrize("form", ["dense", pytest.param("compressed", marks=pytest.mark.at_length)])
 def test_a_body_may_have_no_pins_until_it_is_given_some(form, tmp_path, figures_of):
     free, material = tmp_path / "free.npz", ["--material", "plush", "--form", form]
     figures = figures_of("bake", MOUSE, "-o", free, "--pins", "none", *material)

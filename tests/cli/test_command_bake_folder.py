@@ -244,6 +244,7 @@ def test_a_scheduler_that_a_network_reaches_is_known(address, is_open):
     assert scheduler.is_open(address) == is_open
 
 
+@pytest.mark.at_length
 def test_an_open_scheduler_is_told_once(meshes, palpate, start_cluster):
     """It listens on all interfaces, though it is reached by the loopback."""
     everywhere = start_cluster(n_workers=1, scheduler_kwargs={"host": "tcp://0.0.0.0:0"})

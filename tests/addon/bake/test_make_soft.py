@@ -175,6 +175,7 @@ def test_a_fake_user_is_nobody_who_shares_the_mesh(palpate):
     assert bpy.ops.palpate.make_soft() == {"FINISHED"}
 
 
+@pytest.mark.at_length
 def test_a_fine_sphere_gets_a_body_of_its_own_shape(palpate):
     bpy.ops.mesh.primitive_uv_sphere_add(segments=160, ring_count=80, radius=0.05)
     thing = bpy.context.object

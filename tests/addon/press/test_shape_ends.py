@@ -58,7 +58,14 @@ def test_enter_keeps_what_every_shape_drew(sessions, states, name, thing):
     np.testing.assert_array_equal(kept, drawn)
 
 
-@pytest.mark.parametrize("trouble", ["missing", "damaged", "foreign", "no table"])
+@pytest.mark.parametrize(
+    "trouble",
+    [
+        "missing",
+        "damaged",
+        *(pytest.param(one, marks=pytest.mark.at_length) for one in ("foreign", "no table")),
+    ],
+)
 def test_a_table_file_that_is_no_good_is_told_once_and_made_anew(sessions, states, trouble, thing):
     thing.palpate.shape = "TABLE"
     press_down(thing, depth=DEPTH)

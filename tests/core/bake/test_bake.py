@@ -78,7 +78,17 @@ def bodies():
     }
 
 
-@pytest.mark.parametrize("name", bodies())
+# Of those that differ little from another, one each is made each time.
+RARELY_MADE = ("seams", "entwined", "apart", "dense")
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=pytest.mark.at_length) if name in RARELY_MADE else name
+        for name in bodies()
+    ],
+)
 def test_what_artists_have_becomes_a_body(name, tmp_path, temporary):
     mesh, pieces = bodies()[name]
     target = tmp_path / "body.npz"

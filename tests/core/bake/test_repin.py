@@ -195,7 +195,7 @@ def test_the_time_foretold_grows_with_pins_and_is_a_bakes_for_a_compressed_body(
     assert pin_more_seconds(size, compressed, 3_000, 1) == estimate_cost(size, compressed).seconds
 
 
-@pytest.mark.parametrize("name", ["cube", "mouse"])
+@pytest.mark.parametrize("name", ["cube", pytest.param("mouse", marks=pytest.mark.at_length)])
 def test_a_free_body_takes_its_first_pins_as_a_bake_with_them(name, rng, request):
     pinned_before = request.getfixturevalue(name)
     mesh, ratio = pinned_before.mesh, pinned_before.poisson_ratio

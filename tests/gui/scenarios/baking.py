@@ -56,6 +56,7 @@ def too_little_memory_is_said_and_one_click_fits_it(stage: Stage) -> Wait:
         yield from stage.picture("coarser")
 
 
+@at_length
 def the_panel_says_which_pins_need_no_bake(stage: Stage) -> Wait:
     yield from open_mouse(stage)
     # What earlier runs computed would be known.

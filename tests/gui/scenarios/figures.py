@@ -48,6 +48,7 @@ def figures_keep_clear_of_the_body_at_any_scale_of_the_interface(stage: Stage) -
         view.ui_scale = usual
 
 
+@at_length
 def figures_are_drawn_in_one_view_only(stage: Stage) -> Wait:
     yield from open_mouse(stage)
     with stage.view():
@@ -72,6 +73,7 @@ def figures_are_drawn_in_one_view_only(stage: Stage) -> Wait:
     yield from end_press(stage)
 
 
+@at_length
 def depth_and_force_rise_until_the_tool_goes_no_deeper(stage: Stage) -> Wait:
     """Beyond the fingertip's own radius too; the wheel then leads it no further."""
     yield from open_mouse(stage)

@@ -66,6 +66,7 @@ def escape_and_right_click_restore_every_bit(stage: Stage) -> Wait:
         assert _coordinates() == before
 
 
+@at_length
 def the_wheel_goes_deeper_while_the_button_is_held(stage: Stage) -> Wait:
     yield from open_mouse(stage)
     yield from start_press(stage)
@@ -102,6 +103,7 @@ def the_view_turns_while_a_dent_is_held_and_another_touch_starts_elsewhere(stage
     yield from end_press(stage)
 
 
+@at_length
 def numpad_turns_the_view_and_ctrl_s_saves_while_a_dent_is_held(stage: Stage) -> Wait:
     yield from open_mouse(stage)
     yield from start_press(stage)
@@ -193,6 +195,7 @@ def a_hidden_object_is_refused_with_a_remedy(stage: Stage) -> Wait:
     yield
 
 
+@at_length
 def the_modulus_slider_is_felt_while_pressing(stage: Stage) -> Wait:
     yield from open_mouse(stage)
     yield from start_press(stage)

@@ -7,7 +7,7 @@ import numpy as np
 import posed_bodies
 from mathutils import Matrix, Vector
 from mouse_scene import BACK, depth, kept, mouse, open_mouse, phase, start_press, type_key
-from stage import Stage, Wait
+from stage import Stage, Wait, at_length
 
 from bl_ext.user_default.palpate.operators.session import press_session
 from bl_ext.user_default.palpate.operators.session.press_state import Phase
@@ -31,6 +31,7 @@ def a_posed_body_is_pressed_where_it_is_seen(stage: Stage) -> Wait:
     assert kept() == ["Press 1", "Pose"]
 
 
+@at_length
 def a_bent_elbow_is_dented_inward_from_outside_and_inside(stage: Stage) -> Wait:
     thing = posed_bodies.arm()
     rest = posed_bodies.places(thing)

@@ -111,6 +111,7 @@ def a_push_goes_along_the_surface_with_ctrl(stage: Stage) -> Wait:
     assert math.isclose(-last_stroke(cube)[:, 2].min(), before, rel_tol=0.3)
 
 
+@at_length
 def a_stroke_is_undone_and_done_again_by_keys(stage: Stage) -> Wait:
     cube = yield from _soft_default_cube(stage)
     _choose_tool(stage)
@@ -167,6 +168,7 @@ def a_depth_is_typed_while_dragging(stage: Stage) -> Wait:
     assert math.isclose(last.properties["depth"], 0.2, rel_tol=1e-5)
 
 
+@at_length
 def clay_springs_back_to_its_imprint_by_strokes_and_presses(stage: Stage) -> Wait:
     cube = yield from _soft_default_cube(stage)
     cube.palpate.yield_depth = 0.1

@@ -63,7 +63,11 @@ DEEP = Span(RADIUS, (0.5, 2.0), (0.2, 1.0))
 
 
 @pytest.mark.parametrize(
-    "tool", [sphere(RADIUS), plate(3 * RADIUS, 2 * RADIUS)], ids=["tip", "plate"]
+    "tool",
+    [
+        pytest.param(sphere(RADIUS), id="tip"),
+        pytest.param(plate(3 * RADIUS, 2 * RADIUS), id="plate", marks=pytest.mark.at_length),
+    ],
 )
 @pytest.mark.parametrize("max_force", [None, 0.05], ids=["whole", "cut off"])
 def test_no_tool_gives_energy_down_to_two_radii(body, tool, max_force):
