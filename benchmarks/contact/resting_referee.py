@@ -4,8 +4,9 @@
 
 The referee is scikit-fem, axially symmetric, with its own contact at plate and table; see
 ``benchmarks/measuring/contact/resting_ball.py``. A ball of 60 mm, baked without pins, lies on a
-smooth floor without weight, and a plate comes down on it. Claimed: force on plate and floor within
-5 % from 4 mm on; before, where three to five contact points carry all, 12 %. The ball that is glued
+floor without weight, turned anyhow, and a plate comes down on it; a friction of 0.05 keeps it from
+rolling to where its mesh is softest. Its radius is the mean of its contact points'. Claimed: force
+on the plate within 5 % from 4 mm on, before 10 %, and 6 % in the mean. The ball that is glued
 up to a tenth of its height is the referee's alone: what a body feels too firm by when it is held
 there. A cube of 50 mm that a sphere of 14 mm presses on its middle: within 3 %, the referee's floor
 being smooth and Palpate's rough enough to keep it in place. The exit status tells whether all of
@@ -18,15 +19,18 @@ import argparse
 import sys
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from palpate.benchmarks.measuring.contact.contact_reference import reference_forces
 from palpate.benchmarks.measuring.contact.resting_ball import RestingBall
 from palpate.core.bake.settings import BakeSettings
 from palpate.core.bake.steps import bake
-from palpate.core.contact.tool.pose import Pose, resting_on
+from palpate.core.body.soft_body import SoftBody
+from palpate.core.contact.tool.pose import Pose
 from palpate.core.contact.tool.tools import plate, sphere
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.mesh.surface import Surface
+from palpate.core.rest.bearing_points import bearing_points
 from palpate.core.rest.rest_settings import RestSettings
 from palpate.core.rest.resting import Resting
 from palpate.core.rest.support import Floor
@@ -37,9 +41,11 @@ from palpate.tests.bodies.golden_sphere import golden_sphere
 
 RADIUS, POISSON_RATIO, YOUNG_MODULUS = 0.03, 0.45, 1e4
 DEPTHS = (0.001, 0.002, 0.004, 0.012)
-# The patch is then as wide as two distances between contact points.
+# Below, the contact is hardly wider than an element.
 WIDE_FROM = 0.004
-LARGEST_ERROR, LARGEST_ERROR_OF_FEW = 0.05, 0.12
+LARGEST_ERROR, LARGEST_ERROR_OF_FEW, LARGEST_MEAN_ERROR = 0.05, 0.10, 0.06
+TURNS, AIR, FRICTION = 4, 2e-4, 0.05
+SURFACE_NODES = 3000
 EDGE, LARGEST_ERROR_OF_CUBE = cube.EDGE, 0.03
 
 
@@ -65,6 +71,26 @@ def cube_holds() -> bool:
     return held
 
 
+def turned_ratios(body: SoftBody, radius: float, table: RestingBall, seed: int) -> list[float]:
+    """Force on the plate over the referee's at all depths, of the ball turned anyhow."""
+    turn = Rotation.random(random_state=np.random.default_rng(seed)).as_matrix()
+    top = 2.0 * radius
+    resting = Resting(
+        body,
+        [Floor(0.0, friction=FRICTION)],
+        [(plate(0.05, 0.05), Pose.at([0.0, 0.0, top + AIR]))],
+        placement=Pose.at([0.0, 0.0, radius + 0.2 * AIR], turn),
+        settings=RestSettings(friction=FRICTION, gravity=(0.0, 0.0, -1e-6)),
+    )
+    resting.step()
+    ratios = []
+    for depth in DEPTHS:
+        resting.lead([Pose.at([0.0, 0.0, top - depth])])
+        force = table.under_plate(depth / radius)[0] * YOUNG_MODULUS * radius**2
+        ratios.append(float(resting.settle().tools[0].force[2]) / force)
+    return ratios
+
+
 def main() -> int:
     """Print the table; the exit status tells whether the claim holds."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
@@ -76,31 +102,23 @@ def main() -> int:
         edge_length=parser.parse_args().edge_length,
         epsilon=1e-3,
     )
-    body, _ = bake(Surface(*golden_sphere(3000, RADIUS)), settings)
-    surface = body.mesh.nodes[body.mesh.surface_nodes]
-    low, high = surface[:, 2].min(), surface[:, 2].max()
-    radius = 0.5 * (high - low)
-    tool, up = plate(0.05, 0.05), np.array([0.0, 0.0, 1.0])
-    start = resting_on(tool, np.eye(3), high * up, up, surface)
-    weightless = RestSettings(friction=0.0, gravity=(0.0, 0.0, 0.0))
-    resting = Resting(body, [Floor(low, friction=0.0)], [(tool, start)], settings=weightless)
-    resting.step()
+    body, _ = bake(Surface(*golden_sphere(SURFACE_NODES, RADIUS)), settings)
+    points, _ = bearing_points(body)
+    radius = float(np.linalg.norm(points.positions, axis=1).mean())
     table = RestingBall(POISSON_RATIO)
     glued = RestingBall(POISSON_RATIO, glued=0.2)
     held = cube_holds()
-    print(f"{len(body.mesh.nodes)} nodes")
-    print("depth, mm   referee, N   glued / resting   Palpate's plate, floor / referee")
-    for depth in DEPTHS:
+    ratios = np.array([turned_ratios(body, radius, table, seed) for seed in range(TURNS)])
+    print(f"{len(body.mesh.nodes)} nodes, {len(points)} contact points, {TURNS} turns")
+    print("depth, mm   glued / resting   Palpate / referee: mean, least, largest")
+    for depth, some in zip(DEPTHS, ratios.T, strict=True):
         share = depth / radius
-        alone, _ = table.under_plate(share)
-        firmer = glued.under_plate(share)[0] / alone
-        resting.lead([Pose(start.position - depth * up, start.rotation)])
-        rest = resting.settle()
-        force = alone * YOUNG_MODULUS * radius**2
-        ratios = np.array([rest.tools[0].force[2], -rest.supports[0].force[2]]) / force
-        print(f"{1e3 * depth:9.1f}{force:13.4f}{firmer:18.2f}     {ratios.round(4)}", flush=True)
+        firmer = glued.under_plate(share)[0] / table.under_plate(share)[0]
+        figures = [some.mean(), some.min(), some.max()]
+        print(f"{1e3 * depth:9.1f}{firmer:18.2f}     {np.round(figures, 3)}", flush=True)
         most = LARGEST_ERROR if depth >= WIDE_FROM else LARGEST_ERROR_OF_FEW
-        held &= bool((np.abs(ratios - 1.0) <= most).all())
+        held &= bool((np.abs(some - 1.0) <= most).all())
+        held &= abs(figures[0] - 1.0) <= LARGEST_MEAN_ERROR
     print("the claim holds" if held else "THE CLAIM DOES NOT HOLD")
     return 0 if held else 1
 

@@ -13,6 +13,7 @@ from ...core.contact.single_press import pairs_checked, set_down
 from ...core.contact.tool.pose import Pose
 from ...core.contact.tool.tools import Tool
 from ...core.errors import PalpateError
+from ...core.rest.bearing_points import pressing_points
 from ...core.rest.rest import Rest
 from ...core.rest.rest_settings import RestSettings
 from ...core.rest.resting import Resting
@@ -87,5 +88,6 @@ def _set_down(alone: Rest, tool: Tool, place: NDArray[np.float64]) -> Pose:
     """Pose in the world of a tool on the body's surface at rest, nearest to a place there."""
     turn = alone.placement.rotation
     own = (place - alone.placement.position) @ turn
-    laid = set_down(alone.body, tool, nearest_place(alone.body, own))
+    points, _ = pressing_points(alone.body, tool)
+    laid = set_down(alone.body, tool, nearest_place(alone.body, own), points=points)
     return Pose(alone.to_world(laid.position), turn @ laid.rotation)

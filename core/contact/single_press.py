@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..body.soft_body import SoftBody
 from ..errors import PalpateError
 from ..mesh.coordinates import LARGEST_COORDINATE
+from .near_field.contact_points import ContactPoints
 from .place import Place
 from .press import USUAL, ContactSettings, PointGoal, Press, Spread
 from .tool.pose import Pose, facing, resting_on
@@ -113,14 +114,20 @@ def press_tool(
     return cast("ToolTouch", made)
 
 
-def set_down(body: SoftBody, tool: Tool, place: Place, rotation: Array | None = None) -> Pose:
+def set_down(
+    body: SoftBody,
+    tool: Tool,
+    place: Place,
+    rotation: Array | None = None,
+    points: ContactPoints | None = None,
+) -> Pose:
     """Pose of a tool just out of contact, its -z side over a place.
 
     Without ``rotation`` (3, 3) that side is tangential to the surface, and the tool's x axis as
-    close as possible to the body's.
+    close as possible to the body's. ``points`` are those that it meets, the usual ones unless told.
     """
     turn = facing(-place.axis, np.eye(3)[0]) if rotation is None else rotation
-    points, _ = surface_and_correction(body, tool)
+    points = surface_and_correction(body, tool)[0] if points is None else points
     return resting_on(tool, turn, place.position, -place.axis, points.positions)
 
 

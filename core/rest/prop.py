@@ -12,12 +12,10 @@ from palpate_servo import Prop as NativeProp
 from palpate_servo import Tool as NativeTool
 
 from ..body.soft_body import SoftBody
-from ..contact.near_field.compliance_beneath import near_correction
-from ..contact.near_field.contact_points import contact_points
-from ..contact.near_field.surface_shape import surface_area
 from ..contact.tool.native_tool import native_shape, native_surface
 from ..contact.tool.pose import Pose
 from ..errors import PalpateError
+from .bearing_points import Touchable, even_points
 from .rest_settings import USUAL_REST, RestSettings
 from .support import Floor, Support
 
@@ -25,9 +23,6 @@ if TYPE_CHECKING:
     # Types only, absent at run time.
     from palpate_servo import Body, LaidTool, ToolSurface
 
-# Contact points for supports lie apart by this share of the root of the body's surface: a flat side
-# of a cube has some fifty.
-SUPPORT_SPACING = 1.0 / 14.0
 # Displacements on a floor are found to some millionths of so many times how far a body sags, or of
 # this share of its size.
 REACH_PER_SAG = 30.0
@@ -42,10 +37,12 @@ def native_prop(
     supports: Sequence[Floor | Support],
     placement: Pose | None = None,
     settings: RestSettings = USUAL_REST,
+    points: Touchable | None = None,
 ) -> NativeProp:
     """A body of which ``native`` is the whole native one, laid down on supports.
 
-    ``placement`` is that of the body's frame in the world; None for one and the same.
+    ``placement`` is that of the body's frame in the world; None for one and the same. ``points``
+    are what supports can press; None for as few as a tick of 1 kHz has time for.
 
     Raises
     ------
@@ -61,7 +58,8 @@ def native_prop(
             most_supports=MOST_SUPPORTS,
         )
     reach = _floor_reach(body, settings)
-    surface = _surface(body, native, settings.spacing)
+    borne = even_points(body, settings.spacing) if points is None else points
+    surface = native_surface(native, *borne)
     position, rotation = at(WORLD if placement is None else placement)
     try:
         return NativeProp(
@@ -82,13 +80,6 @@ def native_prop(
 def at(pose: Pose) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Position and rotation."""
     return pose.position, pose.rotation
-
-
-def _surface(body: SoftBody, native: Body, spacing: float | None) -> ToolSurface:
-    """Contact points that all supports share."""
-    usual = SUPPORT_SPACING * float(np.sqrt(surface_area(body.mesh)))
-    points = contact_points(body, usual if spacing is None else spacing)
-    return native_surface(native, points, near_correction(body, points))
 
 
 def _floor_reach(body: SoftBody, settings: RestSettings) -> float:

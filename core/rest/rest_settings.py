@@ -18,7 +18,7 @@ class RestSettings:
     gravity : m/s2, in the world.
     drag_time : seconds; under a force the body goes by force over mass times this, metres a second.
         Where it comes to rest does not depend on it, without friction.
-    spacing : metres between contact points for supports; None for the usual.
+    spacing : metres between contact points for supports; None for one that follows the curvature.
     """
 
     young_modulus: float | None = None

@@ -18,6 +18,7 @@ from ..contact.tool.pose import Pose
 from ..contact.tool.tools import Tool
 from ..contact.touches import ToolTouch
 from ..errors import PalpateError
+from .bearing_points import bearing_points, pressing_points
 from .grip import Grip, native_grip
 from .prop import at, native_prop
 from .rest import BodyTouch, Rest
@@ -75,12 +76,15 @@ class Resting:
         self.body = body
         self.young_modulus = body.modulus(settings.young_modulus)
         native = native_body(body, whole=True, may_move=True)
-        prop = native_prop(body, native, supports, placement, settings)
+        prop = native_prop(
+            body, native, supports, placement, settings, bearing_points(body, settings.spacing)
+        )
 
         def finger(tip: Tool | Grip, pose: Pose) -> LaidTool | LaidPoint:
             if isinstance(tip, Grip):
                 return native_grip(body, tip, pose)
-            return *native_tool(body, native, tip), *at(pose), settings.friction
+            points = pressing_points(body, tip, settings.spacing)
+            return *native_tool(body, native, tip, points), *at(pose), settings.friction
 
         try:
             self._native = NativeResting(

@@ -16,7 +16,15 @@ from scipy.spatial import cKDTree
 from ...body.soft_body import SoftBody
 from ...errors import PalpateError
 from ...mesh.tet_mesh import TetMesh
-from .surface_shape import edge_lengths, node_normals, smooth_corner_normals, surface_area, unit
+from .surface_shape import (
+    edge_lengths,
+    face_areas,
+    node_normals,
+    on_curved_triangles,
+    smooth_corner_normals,
+    surface_area,
+    unit,
+)
 from .surface_shares import surface_shares
 
 # Shares of the spacing. Nodes that all triangles meet in are thinned out to the first; points of
@@ -73,8 +81,12 @@ class ContactPoints:
         )
 
 
-def contact_points(body: SoftBody, spacing: float) -> ContactPoints:
-    """Points on the surface about ``spacing`` metres apart.
+def contact_points(
+    body: SoftBody, spacing: float | NDArray[np.float64], *, rounded: bool = False
+) -> ContactPoints:
+    """Points on the surface about ``spacing`` metres apart, everywhere or one for each surface node
+    (s,); the least of a triangle's corners counts. ``rounded``, they lie on the curved surface that
+    the flat triangles stand for.
 
     Triangles with longer edges carry a regular lattice, edges as many points as their own length
     asks for, whatever triangle they are seen from. Where nodes lie closer than the spacing, a
@@ -86,31 +98,37 @@ def contact_points(body: SoftBody, spacing: float) -> ContactPoints:
         A spacing that is not positive and finite, or asks for more points than
         :data:`MOST_ON_BODY`.
     """
-    if not (np.isfinite(spacing) and spacing > 0):
+    mesh = body.mesh
+    at_nodes = np.broadcast_to(np.asarray(spacing, np.float64), mesh.surface_nodes.shape)
+    least = float(at_nodes.min())
+    if not (np.isfinite(at_nodes).all() and least > 0):
         raise PalpateError(
             "contact points: a spacing of {spacing} m leaves nothing to choose; give a positive "
             "length, for a fingertip about a third of its radius",
-            spacing=spacing,
+            spacing=least,
         )
-    mesh = body.mesh
-    expected = int(POINTS_PER_SPACING_SQUARED * surface_area(mesh) / spacing**2)
+    spacings: NDArray[np.float64] = at_nodes[mesh.surface_local_triangles].min(axis=1)
+    expected = int(POINTS_PER_SPACING_SQUARED * float((face_areas(mesh) / spacings**2).sum()))
     if expected > MOST_ON_BODY:
         raise PalpateError(
             "contact points: {millimetres:.3g} mm apart the body would have about {expected} of "
             "them, more than {most}; take a larger tool",
-            millimetres=1000 * spacing,
+            millimetres=1000 * least,
             expected=expected,
             most=MOST_ON_BODY,
         )
     corner_normals = smooth_corner_normals(mesh)
-    everything = _join(_nodes(mesh), _on_edges(mesh, spacing), _inside(mesh, spacing))
+    everything = _join(_nodes(mesh), _on_edges(mesh, at_nodes), _inside(mesh, spacings))
     normals = _normals(mesh, corner_normals, everything)
     corners = mesh.nodes[mesh.surface_triangles[everything.triangles]]
     positions = np.einsum("pc,pcx->px", everything.alphas, corners)
-    kept = _spread(positions, normals, everything.is_node, spacing)
-    areas = surface_shares(mesh, corner_normals, positions[kept], normals[kept], spacing)
+    kept = _spread(positions, normals, everything.is_node, spacings[everything.triangles])
+    areas = surface_shares(mesh, corner_normals, positions[kept], normals[kept], spacings)
     # A point none of the surface is nearest to is no place of its own.
     kept, areas = kept[areas > 0], areas[areas > 0]
+    if rounded:
+        turned = corner_normals[everything.triangles]
+        positions = on_curved_triangles(corners, turned, everything.alphas)
     return ContactPoints(
         positions[kept],
         normals[kept],
@@ -161,8 +179,10 @@ def _nodes(mesh: TetMesh) -> _Places:
     return _Places(triangle, np.eye(3)[corner], triangle, np.ones(len(first), dtype=np.bool_))
 
 
-def _on_edges(mesh: TetMesh, spacing: float) -> _Places:
-    """Points that divide each edge into equal parts, without its ends."""
+def _on_edges(mesh: TetMesh, at_nodes: NDArray[np.float64]) -> _Places:
+    """Points that divide each edge into equal parts, by the least spacing of its ends; without
+    these.
+    """
     triangles = mesh.surface_local_triangles
     # Edge number 3 t + c runs from corner c of triangle t to the next one.
     ends = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2).reshape(-1, 2)
@@ -174,6 +194,7 @@ def _on_edges(mesh: TetMesh, spacing: float) -> _Places:
     far_side[edge] = np.arange(len(ends)) // 3
     later = np.arange(len(ends)) != first[edge]
     far_side[edge[later]] = np.flatnonzero(later) // 3
+    spacing = at_nodes[ends[first]].min(axis=1)
     parts = _parts(edge_lengths(mesh).reshape(-1)[first], spacing)
     which = np.repeat(np.arange(len(first)), parts - 1)
     step = 1 + np.arange(len(which)) - np.repeat(np.cumsum(parts - 1) - (parts - 1), parts - 1)
@@ -186,10 +207,10 @@ def _on_edges(mesh: TetMesh, spacing: float) -> _Places:
     return _Places(triangle, alphas, far_side[which], np.zeros(len(which), dtype=np.bool_))
 
 
-def _inside(mesh: TetMesh, spacing: float) -> _Places:
-    """A regular lattice within each triangle, without its edges."""
+def _inside(mesh: TetMesh, spacings: NDArray[np.float64]) -> _Places:
+    """A regular lattice within each triangle, of its spacing, without its edges."""
     mean_square = (edge_lengths(mesh) ** 2).mean(axis=1)
-    parts = _parts(np.sqrt(mean_square), spacing)
+    parts = _parts(np.sqrt(mean_square), spacings)
     triangles, alphas = [np.empty(0, dtype=np.int64)], [np.empty((0, 3))]
     for count in np.unique(parts[parts > 2]).tolist():
         lattice = _inner_lattice(count)
@@ -209,7 +230,7 @@ def _inner_lattice(parts: int) -> NDArray[np.float64]:
     return np.column_stack([parts - i[inner] - j[inner], i[inner], j[inner]]) / parts
 
 
-def _parts(lengths: NDArray[np.float64], spacing: float) -> NDArray[np.int64]:
+def _parts(lengths: NDArray[np.float64], spacing: NDArray[np.float64]) -> NDArray[np.int64]:
     """Number of parts of a length that come nearest to the spacing, as a ratio."""
     exact = 0.5 * (np.sqrt(1.0 + 4.0 * (lengths / spacing) ** 2) - 1.0)
     return np.maximum(np.ceil(exact - 1e-9), 1).astype(np.int64)
@@ -219,14 +240,15 @@ def _spread(
     positions: NDArray[np.float64],
     normals: NDArray[np.float64],
     is_node: NDArray[np.bool_],
-    spacing: float,
+    spacing: NDArray[np.float64],
 ) -> NDArray[np.int64]:
     """Points to keep so that none on the same side of the body are too close, ascending.
 
     Each point in turn is kept unless one before it is close: nodes first.
     """
     reach = np.where(is_node, CLOSEST_NODES, CLOSEST_OTHERS) * spacing
-    pairs = cKDTree(positions).query_pairs(CLOSEST_NODES * spacing, output_type="ndarray")
+    widest = CLOSEST_NODES * float(spacing.max())
+    pairs = cKDTree(positions).query_pairs(widest, output_type="ndarray")
     first, second = pairs.min(axis=1), pairs.max(axis=1)
     apart = np.linalg.norm(positions[first] - positions[second], axis=1)
     facing = np.einsum("px,px->p", normals[first], normals[second]) > 0

@@ -33,6 +33,22 @@ def smooth_corner_normals(mesh: TetMesh) -> NDArray[np.float64]:
     return unit((mean @ faces).reshape(-1, 3, 3))
 
 
+def on_curved_triangles(
+    corners: NDArray[np.float64], normals: NDArray[np.float64], alphas: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Places (p, 3) of area coordinates ``alphas`` (p, 3) on curved triangles with these corners
+    and unit normals there, both (p, 3, 3), metres.
+
+    Half of the mean way to the corners' tangent planes is added to a place of the flat triangle,
+    which is exact to second order on any smooth surface: the whole of it goes twice too far. (The
+    planes are those of Phong tessellation, Boubekeur and Alexa 2008, where the share is free.)
+    """
+    flat = np.einsum("pc,pcx->px", alphas, corners)
+    short = np.einsum("pcx,pcx->pc", corners - flat[:, None], normals)
+    curved: NDArray[np.float64] = flat + 0.5 * np.einsum("pc,pcx->px", alphas * short, normals)
+    return curved
+
+
 def node_normals(mesh: TetMesh) -> NDArray[np.float64]:
     """Angle-weighted mean normals of all faces around each surface node, (s, 3)."""
     weighted = corner_angles(mesh)[:, :, None] * face_normals(mesh)[:, None, :]

@@ -21,14 +21,15 @@ def surface_shares(
     corner_normals: NDArray[np.float64],
     positions: NDArray[np.float64],
     normals: NDArray[np.float64],
-    spacing: float,
+    spacings: NDArray[np.float64],
 ) -> NDArray[np.float64]:
     """Area of the surface nearest to each point, (P,), by sampling.
 
-    Points that look the other way, as those beyond a thin wall, take nothing from this side.
+    ``spacings`` (S,), metres, are those of the points in each triangle. Points that look
+    the other way, as those beyond a thin wall, take nothing from this side.
     """
     longest = edge_lengths(mesh).max(axis=1)
-    cuts = np.maximum(np.ceil(longest / (SAMPLE_SPACING * spacing)), 2).astype(np.int64)
+    cuts = np.maximum(np.ceil(longest / (SAMPLE_SPACING * spacings)), 2).astype(np.int64)
     areas = face_areas(mesh)
     tree, shares = cKDTree(positions), np.zeros(len(positions))
     corners = mesh.nodes[mesh.surface_triangles]

@@ -11,7 +11,7 @@ from ...body.soft_body import SoftBody
 from ...errors import PalpateError
 from ..near_field.compliance_beneath import NearCorrection
 from ..near_field.contact_points import ContactPoints
-from .tool_surface import surface_and_correction
+from .tool_surface import Touchable, surface_and_correction
 from .tools import Tool
 
 NativeTip: TypeAlias = tuple[ToolSurface, NativeTool]
@@ -42,7 +42,9 @@ def native_shape(tool: Tool) -> NativeTool:
     return NativeTool(tool.core, tool.radius)
 
 
-def native_tool(body: SoftBody, native: Body, tool: Tool) -> NativeTip:
+def native_tool(
+    body: SoftBody, native: Body, tool: Tool, touchable: Touchable | None = None
+) -> NativeTip:
     """Contact points and shape of a tool, for a finger of the servo.
 
     Takes some tenths of a second, to spread contact points and to estimate the near field.
@@ -50,13 +52,14 @@ def native_tool(body: SoftBody, native: Body, tool: Tool) -> NativeTip:
     Parameters
     ----------
     native : of ``native_body(body, whole=True)``, the one that the servo touches.
+    touchable : the points that the tool can press, and their near field; None for those it asks for.
 
     Raises
     ------
     PalpateError
         A body without its whole compliance, or a tool too small for the body.
     """
-    points, near = surface_and_correction(body, tool)
+    points, near = surface_and_correction(body, tool) if touchable is None else touchable
     try:
         return native_surface(native, points, near), native_shape(tool)
     except ValueError as problem:

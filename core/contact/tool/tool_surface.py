@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TypeAlias
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -14,13 +15,14 @@ from ..near_field.contact_points import ContactPoints, contact_points, spacing_o
 from ..near_field.surface_shape import smooth_corner_normals, unit
 from .tools import Tool
 
+Touchable: TypeAlias = tuple[ContactPoints, NearCorrection]
+"""Contact points, and what the near field adds to the compliance between them."""
+
 # Contact points take long to spread and are the same for every touch of a body by a tool.
-_surfaces: WeakKeyDictionary[SoftBody, dict[float, tuple[ContactPoints, NearCorrection]]] = (
-    WeakKeyDictionary()
-)
+_surfaces: WeakKeyDictionary[SoftBody, dict[float, Touchable]] = WeakKeyDictionary()
 
 
-def surface_and_correction(body: SoftBody, tool: Tool) -> tuple[ContactPoints, NearCorrection]:
+def surface_and_correction(body: SoftBody, tool: Tool) -> Touchable:
     """Contact points of a body for a tool, and what the near field adds to the compliance between
     them; cached with the body.
     """

@@ -6,9 +6,11 @@ pub mod cholesky;
 pub mod small_matrix;
 pub(crate) mod wide;
 
-/// Contact points that all tools on one body can have at once: the exact solve of more takes too long
-/// for a tick of 1 kHz.
-pub const MOST_POINTS: usize = 208;
+/// Contact points that all tools can have at once where there is no clock: memory is for so many.
+pub const MOST_POINTS: usize = 416;
+
+/// The same in a tick of 1 kHz, for which the exact solve of more takes too long.
+pub const MOST_IN_TICK: usize = 208;
 
 /// From one row of a matrix between them to the next: an odd number of lines of a processor's cache,
 /// so that a column lies in all of its sets.

@@ -3,13 +3,11 @@
 use glam::DVec3;
 
 use super::joint::{AllLed, Beside, Joint, Led, MOST_ENTERING};
-use crate::algebra::MOST_POINTS;
 use crate::body::closest::closest_point;
 use crate::contact::ground::Ground;
 use crate::fingers::press::Press;
 use crate::tool::collider::side::Side;
 use crate::tool::shape::{Pose, Tool};
-use crate::tool::slot::MOST_NEAR;
 
 /// Points within so many spacings of the tool are looked at.
 pub(super) const MARGIN: f64 = 1.0;
@@ -247,10 +245,10 @@ impl Joint {
     /// The tool among whose points room is to be made; none for all.
     fn has_room(&self, number: u8, more: usize) -> Result<(), Option<u8>> {
         let slots = self.patch.slots();
-        if slots.iter().filter(|slot| slot.tool == number).count() + more > MOST_NEAR {
+        if slots.iter().filter(|slot| slot.tool == number).count() + more > self.room.of_one {
             return Err(Some(number));
         }
-        if slots.len() + more > MOST_POINTS {
+        if slots.len() + more > self.room.of_all {
             return Err(None);
         }
         Ok(())

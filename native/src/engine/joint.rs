@@ -4,7 +4,7 @@ mod responses;
 
 use glam::DVec3;
 
-use crate::algebra::MOST_POINTS;
+use crate::algebra::{MOST_IN_TICK, MOST_POINTS};
 use crate::contact::ground::{Ground, MOST_BODIES, MOST_TOOLS, Memories};
 use crate::contact::mobility::{Mobility, Motion};
 use crate::fingers::press::{Answers, Presses};
@@ -16,9 +16,29 @@ use crate::tool::effort::Effort;
 use crate::tool::friction::{Rubbing, take_anchors};
 use crate::tool::patch::Patch;
 use crate::tool::shape::Pose;
-use crate::tool::slot::Slot;
+use crate::tool::slot::{MOST_NEAR, Slot};
 
 use responses::Influence;
+
+/// Contact points that may be looked at at once.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Room {
+    pub of_all: usize,
+    pub of_one: usize,
+}
+
+impl Room {
+    /// As many as a tick of 1 kHz has time for.
+    pub(super) const IN_TICK: Self = Self {
+        of_all: MOST_IN_TICK,
+        of_one: MOST_NEAR,
+    };
+    /// As many as there is memory for.
+    pub(super) const MOST: Self = Self {
+        of_all: MOST_POINTS,
+        of_one: MOST_POINTS,
+    };
+}
 
 /// Points of a tool that may enter in one tick.
 pub(super) const MOST_ENTERING: usize = 24;
@@ -60,6 +80,7 @@ pub struct Joint {
     pub(super) effort: Effort,
     /// How often a tick may take up its bounded work.
     pub(super) turns: usize,
+    pub(super) room: Room,
     /// Whose slots there are.
     eras: [Option<u64>; MOST_TOOLS],
     bodies: [Option<u32>; MOST_BODIES],
@@ -81,6 +102,7 @@ impl Default for Joint {
             entering: Vec::with_capacity(MOST_ENTERING + 1),
             effort: Effort::default(),
             turns: 1,
+            room: Room::IN_TICK,
             eras: [None; MOST_TOOLS],
             bodies: [None; MOST_BODIES],
             mobilities: [None; MOST_BODIES],
