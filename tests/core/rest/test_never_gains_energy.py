@@ -18,8 +18,8 @@ BODIES = {
 
 
 @pytest.fixture(scope="module", params=list(BODIES))
-def body(request):
-    return BODIES[request.param]()
+def thrown(request):
+    return request.param, BODIES[request.param]()
 
 
 def energy(body, rest, gravity):
@@ -28,13 +28,16 @@ def energy(body, rest, gravity):
 
 
 @pytest.mark.parametrize("seed", range(11))
-def test_a_settling_body_never_gains_energy(body, seed):
+def test_a_settling_body_never_gains_energy(thrown, seed):
+    kind, body = thrown
     random = np.random.default_rng(seed)
     rotation = Rotation.random(random_state=random).as_matrix()
     lowest = (body.mesh.nodes @ rotation.T)[:, 2].min()
     placement = Pose.at([0.0, 0.0, 0.002 - lowest], rotation)
     settings = RestSettings(drag_time=float(random.uniform(0.02, 0.1)))
-    floor = Floor(friction=float(random.choice([0.0, 0.2, 0.8])))
+    # A smooth ball would turn for ever so slowly to where its mesh is softest.
+    least = 0.05 if kind == "ball" else 0.0
+    floor = Floor(friction=float(random.choice([least, 0.2, 0.8])))
     resting = Resting(body, [floor], placement=placement, settings=settings)
     size = np.linalg.norm(np.ptp(body.mesh.nodes, axis=0))
     scale = body.mass * 9.81 * size
